@@ -1,0 +1,378 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Lookup of the screw's behaviour over speed, opposing load and temperature.
+
+Speeds are mapped, s = log(speed) - log(onset(load, temperature)), so that a rectilinear grid can crowd the
+nodes where asperity contact begins. Lookup is exact at the nodes, never extrapolates and keeps the kinks at
+zero load and at the unloading load. Needs numpy only and never imports ROS.
+
+"""
+
+from bisect import bisect_right
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+import enum
+import math
+from operator import mul
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from surrogate import surface_file, torque
+from surrogate.hermite import (
+    Array, extend_patch_weights, first_rows, hermite_weights, patch_table, patch_weights)
+from surrogate.surface_file import SurfaceData, SurfaceError
+
+__all__ = ['shipped_surface', 'Surface', 'SurfaceError', 'SurfacePoint', 'Validity']
+
+FIELDS = ('friction_torque', 'rcs', 'asperity_share', 'film_ratio', 'central_film', 'minimum_film',
+          'friction_coefficient', 'max_pressure')
+"""Interpolated fields in table order."""
+LOGARITHMIC = ('film_ratio', 'central_film', 'minimum_film')
+Place = tuple[int, float, float]
+"""Cell, its width and the fraction of it at which a value lies."""
+NOTHING = (math.nan,) * len(FIELDS)
+SHIPPED = Path(__file__).parent / 'data' / 'surfaces'
+
+
+class Validity(enum.IntEnum):
+    """Whether a point could be looked up; numbers as in ballscrew_msgs/PointResult."""
+
+    UNKNOWN = 0
+    VALID = 1
+    SPEED_BELOW_RANGE = 2
+    SPEED_ABOVE_RANGE = 3
+    LOAD_OUT_OF_RANGE = 4
+    TEMPERATURE_OUT_OF_RANGE = 5
+    MASKED = 6
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class SurfacePoint:
+    """
+    What the surface says of one point; every number is NaN unless `validity` is VALID.
+
+    Opposing load [N] and lead [m] belong to the question; `values` are in the order of `FIELDS`, `errors`
+    the measured interpolation errors of the cell, of torque [N m] and RCS [-].
+
+    """
+
+    validity: Validity
+    opposing_load: float
+    lead: float
+    values: Sequence[float] = NOTHING
+    worst_contact: int = -1
+    errors: Sequence[float] = NOTHING
+
+    @property
+    def friction_torque(self) -> float:
+        """Torque lost to friction [N m]."""
+        return self.values[0]
+
+    @property
+    def rcs(self) -> float:
+        """RCS of the worst contact [-]; a patch may pass its corners by a hair, this may not."""
+        return _share(self.values[1])
+
+    @property
+    def asperity_share(self) -> float:
+        """Share of the load on asperities in the worst contact [-]."""
+        return _share(self.values[2])
+
+    @property
+    def film_ratio(self) -> float:
+        """Film ratio Lambda of the thinnest contact [-]."""
+        return math.exp(self.values[3])
+
+    @property
+    def central_film(self) -> float:
+        """Central film of the thinnest contact [m]."""
+        return math.exp(self.values[4])
+
+    @property
+    def minimum_film(self) -> float:
+        """Minimum film of the thinnest contact [m]."""
+        return math.exp(self.values[5])
+
+    @property
+    def friction_coefficient(self) -> float:
+        """Load-weighted mean coefficient of sliding friction [-]."""
+        return self.values[6]
+
+    @property
+    def max_pressure(self) -> float:
+        """Largest Hertz pressure [Pa]."""
+        return self.values[7]
+
+    @property
+    def worst_nut(self) -> int:
+        """Nut of the worst contact: 1 pressed by the load, 2 relieved, 0 unknown."""
+        return self.worst_contact // 2 + 1
+
+    @property
+    def worst_side(self) -> int:
+        """Side of the worst contact: 1 screw, 2 nut, 0 unknown."""
+        return self.worst_contact % 2 + 1 if self.worst_contact >= 0 else 0
+
+    @property
+    def friction_torque_error(self) -> float:
+        """Measured interpolation error of the torque in this cell [N m]."""
+        return self.errors[0]
+
+    @property
+    def rcs_error(self) -> float:
+        """Measured interpolation error of RCS in this cell [-]."""
+        return self.errors[1]
+
+    @property
+    def rcs_std(self) -> float:
+        """Standard deviation of RCS over roughness draws [-]; NaN without draws."""
+        return math.nan
+
+    @property
+    def efficiency_std(self) -> float:
+        """Standard deviation of the efficiency over roughness draws [-]; NaN without draws."""
+        return math.nan
+
+    @property
+    def efficiency(self) -> float:
+        """Transmission efficiency [-]; NaN unless valid."""
+        if self.validity is not Validity.VALID:
+            return math.nan
+        return torque.efficiency(self.friction_torque, self.opposing_load, self.lead)
+
+    @property
+    def driving_torque(self) -> float:
+        """Torque on the screw [N m], positive along the motion."""
+        return float(torque.driving_torque(self.friction_torque, self.opposing_load, self.lead))
+
+    @property
+    def back_driving(self) -> bool:
+        """Whether the load drives the screw and yields more than friction takes."""
+        return torque.is_back_driving(self.friction_torque, self.opposing_load, self.lead)
+
+    @property
+    def efficiency_error(self) -> float:
+        """Interpolation error of the efficiency [-], from that of the torque."""
+        error = self.friction_torque_error
+        if self.validity is not Validity.VALID or self.opposing_load == 0.0:
+            return math.nan
+        beside = (torque.efficiency(max(self.friction_torque + shift, 0.0),
+                                    self.opposing_load, self.lead) for shift in (-error, error))
+        return max(abs(value - self.efficiency) for value in beside)
+
+
+class Surface:
+    """A verified surface, ready for lookup; build it with `load` or from `SurfaceData`."""
+
+    def __init__(self, data: SurfaceData) -> None:
+        """Tabulate values and slopes; raises SurfaceError for an unknown tier."""
+        self.header: Mapping[str, Any] = data.header
+        self.sha256 = data.sha256
+        self._axes = (data.speed_coordinate, data.load, data.temperature)
+        self._lists = tuple(axis.tolist() for axis in self._axes)
+        breaks = np.asarray(data.header['load_breaks'], dtype=float)
+        cuts = (np.empty(0), breaks, np.empty(0))
+        self._rows = tuple(first_rows(axis, cut) for axis, cut in zip(self._axes, cuts))
+        # Plain lists: a small table is read faster than an array is sliced.
+        self._onset = patch_table(self._axes[1:], cuts[1:], data.log_onset).tolist()
+        values = np.stack([_transform(name, data.fields[name]) for name in FIELDS], axis=-1)
+        self._table = patch_table(self._axes, cuts, values)
+        self._speed_range = tuple(data.header['settings']['speed_range'])
+        self._lead = float(data.header['inputs']['screw']['lead'])
+        self._worst = data.worst_contact
+        self._open_cells = _open_cells(data.mask)
+        self._errors = np.stack([data.errors[name] for name in ('friction_torque', 'rcs')], -1)
+        self.errors = {name: _summary(error) for name, error in data.errors.items()}
+
+    @classmethod
+    def load(cls, path: str | Path, *, screw: str | None = None,
+             oil: str | None = None) -> 'Surface':
+        """
+        Load and verify a surface file.
+
+        Raises SurfaceError, one sentence, for a file that cannot be read, is damaged, of an unknown
+        version, or built for another `screw` or `oil` than the named ones.
+
+        """
+        data = surface_file.read(path)
+        for kind, wanted in (('screw', screw), ('lubricant', oil)):
+            found = data.header['inputs'][kind]['name']
+            if wanted is not None and found != wanted:
+                raise SurfaceError(f'{path}: built for {kind} {found!r}, configured is {wanted!r}')
+        return cls(data)
+
+    @property
+    def tier(self) -> str:
+        """Model behind the numbers: `closed_form` or `full`."""
+        return str(self.header['tier'])
+
+    @property
+    def screw_name(self) -> str:
+        """Name of the screw datasheet."""
+        return str(self.header['inputs']['screw']['name'])
+
+    @property
+    def oil_name(self) -> str:
+        """Name of the oil datasheet."""
+        return str(self.header['inputs']['lubricant']['name'])
+
+    @property
+    def preload(self) -> float:
+        """Preload of the nuts [N]."""
+        return float(self.header['inputs']['screw']['preload'])
+
+    @property
+    def lead(self) -> float:
+        """Lead of the screw [m]."""
+        return self._lead
+
+    @property
+    def unloading_load(self) -> float:
+        """Axial load at which the relieved nut carries nothing [N]: 2^(3/2) preload."""
+        return 2.0 ** 1.5 * self.preload
+
+    @property
+    def reference_temperature(self) -> float:
+        """Temperature at which the oil's datasheet holds [K]."""
+        return float(self.header['inputs']['lubricant']['reference_temperature'])
+
+    @property
+    def speed_range(self) -> tuple[float, float]:
+        """Speeds covered, whatever load and temperature [rad/s]."""
+        return self._speed_range
+
+    @property
+    def load_range(self) -> tuple[float, float]:
+        """Opposing loads covered [N]."""
+        return self._lists[1][0], self._lists[1][-1]
+
+    @property
+    def temperature_range(self) -> tuple[float, float]:
+        """Temperatures covered [K]."""
+        return self._lists[2][0], self._lists[2][-1]
+
+    @property
+    def cells(self) -> tuple[int, int, int]:
+        """Number of cells along speed, load and temperature."""
+        return tuple(len(axis) - 1 for axis in self._lists)  # type: ignore[return-value]
+
+    @property
+    def masked_cells(self) -> int:
+        """Number of cells that answer MASKED."""
+        return int(np.count_nonzero(~self._open_cells))
+
+    def onset_speed(self, opposing_load: float, temperature: float) -> float:
+        """Return the speed [rad/s] of the coordinate origin at load [N], temperature [K]."""
+        load, heat = self._place(1, opposing_load), self._place(2, temperature)
+        if load is None or heat is None:
+            return math.nan
+        return math.exp(self._log_onset(load, heat, self._patch(load, heat)))
+
+    def speed_nodes(self, opposing_load: float, temperature: float) -> list[float]:
+        """Return the node speeds [rad/s] at a load [N] and a temperature [K] inside the range."""
+        onset = self.onset_speed(opposing_load, temperature)
+        return [] if math.isnan(onset) else [onset * math.exp(s) for s in self._lists[0]]
+
+    def lookup(self, speed: float, opposing_load: float, temperature: float) -> SurfacePoint:
+        """
+        Look up |w| [rad/s], opposing load [N] (positive opposes the motion), temperature [K].
+
+        Never extrapolates: outside the nodes, and in cells beside an unconverged node, the answer is
+        NaN and `validity` says which limit was passed. A NaN argument is out of range.
+
+        """
+        heat = self._place(2, temperature)
+        if heat is None:
+            return self._empty(Validity.TEMPERATURE_OUT_OF_RANGE, opposing_load)
+        load = self._place(1, opposing_load)
+        if load is None:
+            return self._empty(Validity.LOAD_OUT_OF_RANGE, opposing_load)
+        if not self._speed_range[0] <= speed <= self._speed_range[1]:
+            fast = speed > self._speed_range[1]
+            return self._empty(Validity.SPEED_ABOVE_RANGE if fast
+                               else Validity.SPEED_BELOW_RANGE, opposing_load)
+        patch = self._patch(load, heat)
+        s = math.log(speed) - self._log_onset(load, heat, patch)
+        return self._interpolate(self._place_speed(s), load, heat, patch, opposing_load)
+
+    def _place(self, axis: int, value: float) -> Place | None:
+        """Return cell, width and fraction of `value`, or None outside."""
+        nodes = self._lists[axis]
+        if not nodes[0] <= value <= nodes[-1]:
+            return None
+        cell = bisect_right(nodes, value, 1, len(nodes) - 1) - 1
+        width = nodes[cell + 1] - nodes[cell]
+        return cell, width, (value - nodes[cell]) / width
+
+    def _place_speed(self, s: float) -> Place:
+        """Place a speed coordinate; the mapping rounds, so an end may be passed by a rounding."""
+        nodes = self._lists[0]
+        return self._place(0, min(max(s, nodes[0]), nodes[-1]))  # type: ignore[return-value]
+
+    def _patch(self, load: Place, heat: Place) -> list[float]:
+        return patch_weights(hermite_weights(load[1], load[2]), hermite_weights(heat[1], heat[2]))
+
+    def _log_onset(self, load: Place, heat: Place, patch: list[float]) -> float:
+        j, k = self._rows[1][load[0]], self._rows[2][heat[0]]
+        low, high = self._onset[j], self._onset[j + 1]
+        return sum(map(mul, patch, (*low[k], *low[k + 1], *high[k], *high[k + 1])))
+
+    def _interpolate(self, fast: Place, load: Place, heat: Place, patch: list[float],
+                     opposing_load: float) -> SurfacePoint:
+        cell = fast[0], load[0], heat[0]
+        if not self._open_cells[cell]:
+            return self._empty(Validity.MASKED, opposing_load)
+        i, j, k = self._rows[0][cell[0]], self._rows[1][cell[1]], self._rows[2][cell[2]]
+        corners = self._table[i:i + 2, j:j + 2, k:k + 2].reshape(32, -1)
+        weights = extend_patch_weights(hermite_weights(fast[1], fast[2]), patch)
+        nearest = (cell[0] + (fast[2] > 0.5), cell[1] + (load[2] > 0.5), cell[2] + (heat[2] > 0.5))
+        return SurfacePoint(
+            validity=Validity.VALID, opposing_load=opposing_load, lead=self._lead,
+            values=np.array(weights).dot(corners).tolist(), worst_contact=int(self._worst[nearest]),
+            errors=self._errors[cell].tolist())
+
+    def _empty(self, validity: Validity, opposing_load: float) -> SurfacePoint:
+        return SurfacePoint(validity=validity, opposing_load=opposing_load, lead=self._lead)
+
+
+def _share(value: float) -> float:
+    """Return `value` between 0 and 1; NaN stays NaN."""
+    return 0.0 if value < 0.0 else 1.0 if value > 1.0 else value
+
+
+def _transform(name: str, values: Array) -> Array:
+    with np.errstate(divide='ignore', invalid='ignore'):
+        return np.log(values) if name in LOGARITHMIC else values
+
+
+def _open_cells(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Return the cells of which no corner is masked."""
+    good = ~mask
+    for axis in range(3):
+        low = [slice(None)] * 3
+        high = [slice(None)] * 3
+        low[axis], high[axis] = slice(None, -1), slice(1, None)
+        good = good[tuple(low)] & good[tuple(high)]
+    return good
+
+
+def _summary(error: Array) -> tuple[float, float]:
+    """Return the largest and the 95th percentile of the measured errors; NaN if none."""
+    known = error[np.isfinite(error)]
+    if not known.size:
+        return math.nan, math.nan
+    return float(known.max()), float(np.quantile(known, 0.95))
+
+
+def shipped_surface(screw: str = 'nominal', oil: str = 'iso_vg_68') -> Path:
+    """Return where the shipped surface of `screw` and `oil` lies; raises SurfaceError if none."""
+    path = SHIPPED / f'{screw}_{oil}.npz'
+    if not path.is_file():
+        shipped = ', '.join(sorted(found.stem for found in SHIPPED.glob('*.npz')))
+        raise SurfaceError(f'no surface is shipped for screw {screw!r} and oil {oil!r}, '
+                           f'shipped are {shipped or "none"}')
+    return path

@@ -1,0 +1,178 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+The surface file, format version 1: one self-describing .npz with a JSON header, never a pickle.
+
+The hash covers the header without its provenance and every array in name order, little-endian, C order.
+A file that does not verify is refused with one sentence.
+
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+import hashlib
+import json
+import os
+from pathlib import Path
+import tempfile
+from typing import Any
+import zipfile
+import zlib
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+FORMAT = 'ballscrew_surface'
+FORMAT_VERSION = 1
+TIERS = ('closed_form', 'full')
+LARGEST_FILE = 256 * 2 ** 20
+"""Largest file that is read [byte]."""
+DAMAGE = (OSError, ValueError, KeyError, TypeError, EOFError, zipfile.BadZipFile, zlib.error,
+          NotImplementedError)
+"""What numpy and zipfile raise on a damaged file."""
+
+
+class SurfaceError(ValueError):
+    """One sentence about a surface file or its use: what, where, allowed."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class SurfaceData:
+    """
+    Content of a surface file.
+
+    Axes: speed coordinate s [-], opposing load [N], temperature [K]. `log_onset` [load, temperature] is the
+    logarithm of the onset speed [rad/s]. Fields [speed, load, temperature] in SI; `worst_contact` 0 to 3
+    counts loaded nut on screw, on nut, relieved nut on screw, on nut; `mask` marks unconverged nodes;
+    `errors` hold the measured interpolation error of each field per cell. `header` has the keys
+    format, format_version, tier, inputs, settings, load_breaks; `provenance` is not hashed.
+
+    """
+
+    header: Mapping[str, Any]
+    speed_coordinate: Array
+    load: Array
+    temperature: Array
+    log_onset: Array
+    fields: Mapping[str, Array]
+    errors: Mapping[str, Array]
+    worst_contact: NDArray[np.uint8]
+    mask: NDArray[np.bool_]
+    provenance: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def sha256(self) -> str:
+        """Content hash, 64 hexadecimal digits."""
+        digest = hashlib.sha256(_canonical(self.header))
+        for name, array in _arrays(self):
+            shape = f'{name} {array.dtype.str} {array.shape}'
+            digest.update(shape.encode() + np.ascontiguousarray(array).tobytes())
+        return digest.hexdigest()
+
+
+def write(path: str | Path, data: SurfaceData) -> None:
+    """Write the file whole or not at all; raises SurfaceError when it cannot be written."""
+    path = Path(path)
+    head = {**data.header, 'sha256': data.sha256, 'provenance': data.provenance}
+    arrays = dict(_arrays(data))
+    arrays['header'] = np.frombuffer(_canonical(head), dtype=np.uint8)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.NamedTemporaryFile(dir=path.parent, suffix='.npz', delete=False) as file:
+            temporary = Path(file.name)
+            try:
+                np.savez(file, **arrays)  # type: ignore[arg-type]
+                file.flush()
+                os.fsync(file.fileno())
+                temporary.chmod(0o644)
+                temporary.replace(path)
+            finally:
+                temporary.unlink(missing_ok=True)
+    except OSError as error:
+        raise SurfaceError(f'{path}: the surface cannot be written, {error.strerror}') from None
+
+
+def read(path: str | Path) -> SurfaceData:
+    """Read and verify a file; raises SurfaceError with one sentence."""
+    header, arrays = _read_arrays(Path(path))
+    stated, provenance = header.pop('sha256', ''), header.pop('provenance', {})
+    try:
+        data = _assemble(header, provenance, arrays)
+    except DAMAGE as error:
+        raise SurfaceError(f'{path}: damaged surface, {error}') from None
+    if data.sha256 != stated:
+        raise SurfaceError(f'{path}: damaged surface, content hash {data.sha256[:16]} differs '
+                           f'from the stated {str(stated)[:16]}')
+    _check_shapes(path, data)
+    return data
+
+
+def _read_arrays(path: Path) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
+    if not path.is_file():
+        raise SurfaceError(f'{path}: no such surface file')
+    if path.stat().st_size > LARGEST_FILE:
+        raise SurfaceError(f'{path}: {path.stat().st_size} bytes, allowed is {LARGEST_FILE}')
+    try:
+        with np.load(path, allow_pickle=False) as archive:
+            arrays = {name: archive[name] for name in archive.files}
+        header = json.loads(arrays.pop('header').tobytes())
+    except DAMAGE as error:
+        reason = ' '.join(str(error).split())
+        raise SurfaceError(f'{path}: damaged or not a surface file, {reason}') from None
+    except AttributeError:
+        raise SurfaceError(f'{path}: not a surface file (.npz with a header)') from None
+    if not isinstance(header, dict) or header.get('format') != FORMAT:
+        raise SurfaceError(f'{path}: not a surface file, its header is of another format')
+    if header.get('format_version') != FORMAT_VERSION:
+        raise SurfaceError(f'{path}: surface format version {header.get("format_version")}, '
+                           f'this program reads version {FORMAT_VERSION}')
+    return header, arrays
+
+
+def _assemble(header: dict[str, Any], provenance: Any,
+              arrays: dict[str, NDArray[Any]]) -> SurfaceData:
+    def group(prefix: str) -> dict[str, Array]:
+        return {name.removeprefix(prefix): array for name, array in arrays.items()
+                if name.startswith(prefix)}
+
+    return SurfaceData(
+        header=header, provenance=provenance, speed_coordinate=arrays['axis_speed_coordinate'],
+        load=arrays['axis_load'], temperature=arrays['axis_temperature'],
+        log_onset=arrays['log_onset'], fields=group('field_'), errors=group('error_'),
+        worst_contact=arrays['worst_contact'], mask=arrays['mask'])
+
+
+def _check_shapes(path: str | Path, data: SurfaceData) -> None:
+    """Refuse a file that verifies but was written by a program that broke the format."""
+    axes = (data.speed_coordinate, data.load, data.temperature)
+    nodes = tuple(len(axis) for axis in axes)
+    cells = tuple(count - 1 for count in nodes)
+    sound = (
+        all(axis.ndim == 1 and len(axis) > 1 and bool(np.all(np.diff(axis) > 0))
+            for axis in axes)
+        and data.log_onset.shape == nodes[1:]
+        and data.mask.shape == data.worst_contact.shape == nodes
+        and all(values.shape == nodes for values in data.fields.values())
+        and all(values.shape == cells for values in data.errors.values())
+        and data.header.get('tier') in TIERS)
+    if not sound:
+        raise SurfaceError(f'{path}: damaged surface, axes, fields and tier do not fit together')
+
+
+def _arrays(data: SurfaceData) -> Iterator[tuple[str, NDArray[Any]]]:
+    """Yield every array under its name on file, in name order."""
+    named: dict[str, NDArray[Any]] = {
+        'axis_speed_coordinate': data.speed_coordinate, 'axis_load': data.load,
+        'axis_temperature': data.temperature, 'log_onset': data.log_onset,
+        'worst_contact': data.worst_contact, 'mask': data.mask,
+        **{f'field_{name}': values for name, values in data.fields.items()},
+        **{f'error_{name}': values for name, values in data.errors.items()}}
+    for name in sorted(named):
+        array = named[name]
+        yield name, array.astype(array.dtype.newbyteorder('<'), copy=False)
+
+
+def _canonical(header: Mapping[str, Any]) -> bytes:
+    return json.dumps(header, sort_keys=True, separators=(',', ':'), allow_nan=False).encode()
