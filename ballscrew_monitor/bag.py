@@ -38,9 +38,10 @@ class Message:
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class TopicInfo:
-    """Type and number of messages of one topic."""
+    """Type, encoding and number of messages of one topic."""
 
     type_name: str
+    encoding: str
     count: int
 
 
@@ -74,6 +75,9 @@ class Bag:
             if found.type_name != type_name:
                 raise InputError(f'bag {self.path}: topic {name} is of type {found.type_name}, '
                                  f'it must be {type_name}')
+            if found.encoding != 'cdr':
+                raise InputError(f'bag {self.path}: topic {name} is encoded as {found.encoding}, '
+                                 'it must be cdr')
             if not found.count:
                 raise InputError(f'bag {self.path}: topic {name} holds no message, '
                                  'at least one is needed')
@@ -107,6 +111,7 @@ class Bag:
                 known = self.topics.get(channel.topic)
                 self.topics[channel.topic] = TopicInfo(
                     type_name=summary.schemas[channel.schema_id].name,
+                    encoding=channel.message_encoding,
                     count=(known.count if known else 0)
                     + summary.statistics.channel_message_counts.get(number, 0))
             return summary.statistics.message_start_time, summary.statistics.message_end_time

@@ -1,0 +1,332 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Generate the bag of a nominal machine cycle: 60 s of one milling machine axis.
+
+A table of 200 kg on the nominal screw (lead 10 mm), from cold to warm oil: homing, rapids, a facing
+cut with climb return, light finishing, a deep cut near the unloading load, a dwell, warm-up
+by rapid reversals, the facing cut again and the same cut at high speed. A warm-up takes the better
+part of an hour; here the oil heats up within the cycle. The bytes are the same every time.
+
+"""
+
+import argparse
+import dataclasses
+import math
+import os
+from pathlib import Path
+import shutil
+import struct
+import sys
+import tempfile
+
+from ballscrew_monitor.bag_writer import BagWriter, Offer, Topic
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+LEAD = 0.010  # [m]
+TABLE_MASS = 200.0  # [kg]
+GUIDE_FRICTION = 90.0  # [N] way covers and wipers
+GUIDE_DAMPING = 180.0  # [N s/m]
+ACCELERATION = 2.5  # [m/s2]
+JERK_TIME = 0.04  # [s] acceleration is smoothed over this time
+ENGAGEMENT_TIME = 0.12  # [s] a cutter enters and leaves the work over this time
+FINE_STEP = 0.001  # [s] of the simulation
+PERIOD = 0.010  # [s] of speed and load samples
+LOAD_PHASE = 0.004  # [s] load samples come before speed samples by this time
+COUNTS = 2 ** 17  # encoder counts per revolution
+SPEED_WINDOW = 0.001  # [s] over which the drive counts to get a speed
+BEGIN = 1_767_600_000_000_000_000  # [ns] 2026-01-05 08:00 UTC
+SEED = 2026
+
+JOINT_STATES = Topic(name='/joint_states', type_name='sensor_msgs/msg/JointState',
+                     offer=Offer.SENSOR)
+AXIAL_LOAD = Topic(name='/axial_load', type_name='geometry_msgs/msg/WrenchStamped',
+                   offer=Offer.SENSOR)
+OIL_TEMPERATURE = Topic(name='/oil_temperature', type_name='sensor_msgs/msg/Temperature',
+                        offer=Offer.SENSOR)
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Phase:
+    """
+    A stretch of the cycle.
+
+    Duration [s]; commanded speed [rev/min]; cutting force that opposes the motion [N], negative in
+    climb milling, when the cut pulls the table along; tooth-passing frequency [Hz].
+
+    """
+
+    name: str
+    duration: float
+    speed: float = 0.0
+    cut: float = 0.0
+    tooth: float = 23.0
+
+
+def _reversals(number: int) -> tuple[Phase, ...]:
+    return tuple(Phase(name='warm-up', duration=1.45, speed=1900.0 * (-1) ** turn)
+                 for turn in range(number))
+
+
+CYCLE = (
+    Phase(name='drives on', duration=1.7),
+    Phase(name='homing', duration=2.0, speed=-60.0),
+    Phase(name='homing', duration=1.3, speed=25.0),
+    Phase(name='homing', duration=1.7, speed=-15.0),
+    Phase(name='at home', duration=0.8),
+    Phase(name='rapid', duration=1.6, speed=2000.0),
+    Phase(name='at work', duration=0.3),
+    Phase(name='rapid', duration=1.6, speed=-2000.0),
+    Phase(name='at work', duration=0.4),
+    Phase(name='facing', duration=3.8, speed=800.0, cut=1150.0, tooth=27.0),
+    Phase(name='reversal', duration=0.3),
+    Phase(name='climb return', duration=3.8, speed=-800.0, cut=-1250.0, tooth=27.0),
+    Phase(name='reversal', duration=0.3),
+    Phase(name='finishing', duration=2.0, speed=1500.0, cut=330.0, tooth=41.0),
+    Phase(name='reversal', duration=0.3),
+    Phase(name='finishing', duration=2.0, speed=-1500.0, cut=330.0, tooth=41.0),
+    Phase(name='at work', duration=0.4),
+    Phase(name='rapid', duration=1.6, speed=2000.0),
+    Phase(name='at work', duration=0.3),
+    Phase(name='rapid', duration=1.6, speed=-2000.0),
+    Phase(name='at work', duration=0.8),
+    Phase(name='deep cut', duration=2.8, speed=380.0, cut=2750.0, tooth=17.0),
+    Phase(name='deep cut, slow', duration=3.2, speed=110.0, cut=2850.0, tooth=13.0),
+    Phase(name='dwell', duration=3.4),
+    *_reversals(6),
+    Phase(name='at work', duration=0.8),
+    Phase(name='facing, warm', duration=3.6, speed=800.0, cut=1150.0, tooth=27.0),
+    Phase(name='reversal', duration=0.4),
+    Phase(name='climb return, fast', duration=1.7, speed=-2050.0, cut=-1700.0, tooth=37.0),
+    Phase(name='reversal', duration=0.3),
+    Phase(name='facing, fast', duration=1.7, speed=2050.0, cut=1500.0, tooth=37.0),
+    Phase(name='at work', duration=0.8),
+    Phase(name='park', duration=0.35, speed=-250.0),
+    Phase(name='parked', duration=3.65),
+)
+
+
+def starts() -> tuple[tuple[float, Phase], ...]:
+    """Return every phase with its begin [s]."""
+    times = np.cumsum([0.0] + [phase.duration for phase in CYCLE])
+    return tuple(zip(times.tolist(), CYCLE))
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Motion:
+    """Times [s], screw angle [rad] and speed [rad/s], load on the nut [N] and oil [degC]."""
+
+    time: Array
+    angle: Array
+    speed: Array
+    load: Array
+    oil: Array
+
+
+def simulate() -> Motion:
+    """Return the cycle without sensors, on a fine grid of times."""
+    time = np.arange(0.0, sum(phase.duration for phase in CYCLE), FINE_STEP)
+    number = np.searchsorted([begin for begin, _ in starts()], time, side='right') - 1
+    target = np.array([phase.speed for phase in CYCLE])[number] / 60.0 * LEAD
+    velocity = _smooth(_limit_slope(target, ACCELERATION * FINE_STEP), JERK_TIME)
+    acceleration = np.gradient(velocity, FINE_STEP)
+    along = np.tanh(velocity / 2e-4)  # direction of motion
+    friction = along * GUIDE_FRICTION + GUIDE_DAMPING * velocity
+    load = -TABLE_MASS * acceleration - friction - along * _cutting_force(time, number, velocity)
+    angle = np.cumsum(velocity) * FINE_STEP * 2 * math.pi / LEAD
+    return Motion(time=time, angle=angle, speed=velocity * 2 * math.pi / LEAD, load=load,
+                  oil=_oil(time))
+
+
+def _cutting_force(time: Array, number: NDArray[np.int64], velocity: Array) -> Array:
+    """Return the force along the feed [N]: engagement, tooth passing and spindle runout."""
+    level = np.array([phase.cut for phase in CYCLE])[number]
+    tooth = np.array([phase.tooth for phase in CYCLE])[number]
+    moving = np.abs(velocity) > 0.5 * np.abs(np.array(
+        [phase.speed for phase in CYCLE])[number]) / 60.0 * LEAD
+    engaged = _smooth(np.where(moving, level, 0.0), ENGAGEMENT_TIME)
+    ripple = 0.05 * np.sin(2 * math.pi * tooth * time) ** 2 + 0.02 * np.sin(
+        2 * math.pi * tooth / 4 * time)
+    return engaged * (0.98 + ripple)
+
+
+def _oil(time: Array) -> Array:
+    """Return the oil temperature [degC]: 25 to 45 along a smooth step, slow at both ends."""
+    part = np.clip((time - 6.0) / 44.0, 0.0, 1.0)
+    return 25.0 + 20.0 * part * part * (3.0 - 2.0 * part)
+
+
+def _limit_slope(target: Array, step: float) -> Array:
+    """Follow `target` by at most `step` per sample."""
+    followed = np.empty_like(target)
+    here = 0.0
+    for index, goal in enumerate(target.tolist()):
+        here += min(max(goal - here, -step), step)
+        followed[index] = here
+    return followed
+
+
+def _smooth(values: Array, time: float) -> Array:
+    """Return the mean over the last `time` [s]."""
+    width = round(time / FINE_STEP)
+    padded = np.concatenate([np.full(width, values[0]), values])
+    sums = np.cumsum(padded)
+    return (sums[width:] - sums[:-width]) / width
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Record:
+    """One message: topic, stamp and log time [ns], serialised."""
+
+    topic: str
+    stamp: int
+    log_time: int
+    data: bytes
+
+
+def records() -> list[Record]:
+    """Return every message of the cycle in the order of log time."""
+    motion, random = simulate(), np.random.Generator(np.random.PCG64(SEED))
+    made = _joint_records(motion, random) + _load_records(motion, random)
+    made += _oil_records(motion, random)
+    return sorted(made, key=lambda record: (record.log_time, record.topic))
+
+
+def _joint_records(motion: Motion, random: np.random.Generator) -> list[Record]:
+    """Encoder: the angle in whole counts, the speed from the counts of one drive cycle."""
+    time = np.arange(PERIOD, motion.time[-1], PERIOD)
+    count = 2 * math.pi / COUNTS
+    # Cogging and the servo loop: a small share of the speed and a little at rest.
+    wobble = random.normal(0.0, 0.002 + 0.0008 * np.abs(_at(motion, 'speed', time)))
+    speed = _at(motion, 'speed', time) + wobble
+    speed = np.round(speed * SPEED_WINDOW / count) * count / SPEED_WINDOW
+    angle = np.round(_at(motion, 'angle', time) / count) * count
+    return [_record(JOINT_STATES, at, random, _joint_state, position, velocity)
+            for at, position, velocity in zip(time.tolist(), angle.tolist(), speed.tolist())]
+
+
+def _load_records(motion: Motion, random: np.random.Generator) -> list[Record]:
+    """Strain gauges between nut and table: 4 N of noise, steps of 0.5 N."""
+    time = np.arange(PERIOD, motion.time[-1], PERIOD) - LOAD_PHASE
+    load = _at(motion, 'load', time) + random.normal(0.0, 4.0, time.size)
+    load = np.round(load / 0.5) * 0.5
+    return [_record(AXIAL_LOAD, at, random, _wrench, force)
+            for at, force in zip(time.tolist(), load.tolist())]
+
+
+def _oil_records(motion: Motion, random: np.random.Generator) -> list[Record]:
+    """Resistance thermometer in the return line: 0.05 degC of noise, steps of 0.1 degC."""
+    time = np.arange(0.0, motion.time[-1], 1.0)
+    oil = np.round(_at(motion, 'oil', time) + random.normal(0.0, 0.05, time.size), 1)
+    return [_record(OIL_TEMPERATURE, at, random, _temperature, degrees)
+            for at, degrees in zip(time.tolist(), oil.tolist())]
+
+
+def _at(motion: Motion, name: str, time: Array) -> Array:
+    return np.interp(time, motion.time, getattr(motion, name))
+
+
+def _record(topic: Topic, time: float, random: np.random.Generator, encode, *values) -> Record:
+    """Return a message stamped `time` [s] that arrives a fraction of a millisecond later."""
+    stamp = BEGIN + round(time * 1e9)
+    delay = round(random.uniform(2e-4, 6e-4) * 1e9)
+    return Record(topic=topic.name, stamp=stamp, log_time=stamp + delay,
+                  data=encode(stamp, *values))
+
+
+class Cdr:
+    """Little-endian CDR with zeroed padding, which a ROS serialiser does not promise."""
+
+    def __init__(self, stamp: int, frame: str) -> None:
+        """Begin a message with its header."""
+        self._bytes = bytearray()
+        self.put('i', stamp // 1_000_000_000)
+        self.put('I', stamp % 1_000_000_000)
+        self.text(frame)
+
+    def put(self, kind: str, *values: float) -> None:
+        """Append numbers of one kind, aligned to its size."""
+        size = struct.calcsize(f'<{kind}')
+        self._bytes += bytes(-len(self._bytes) % size)
+        self._bytes += struct.pack(f'<{len(values)}{kind}', *values)
+
+    def text(self, value: str) -> None:
+        """Append a text."""
+        data = value.encode() + b'\0'
+        self.put('I', len(data))
+        self._bytes += data
+
+    def doubles(self, *values: float) -> None:
+        """Append a sequence of float64."""
+        self.put('I', len(values))
+        if values:
+            self.put('d', *values)
+
+    def message(self) -> bytes:
+        """Return the serialised message."""
+        return b'\0\1\0\0' + bytes(self._bytes)
+
+
+def _joint_state(stamp: int, position: float, velocity: float) -> bytes:
+    cdr = Cdr(stamp, 'x_axis')
+    cdr.put('I', 1)
+    cdr.text('x_axis')
+    cdr.doubles(position)
+    cdr.doubles(velocity)
+    cdr.doubles()
+    return cdr.message()
+
+
+def _wrench(stamp: int, force: float) -> bytes:
+    cdr = Cdr(stamp, 'x_nut')
+    cdr.put('d', force, 0.0, 0.0, 0.0, 0.0, 0.0)
+    return cdr.message()
+
+
+def _temperature(stamp: int, degrees: float) -> bytes:
+    cdr = Cdr(stamp, 'x_nut')
+    cdr.put('d', degrees, 0.0025)
+    return cdr.message()
+
+
+def generate(directory: Path) -> None:
+    """Write the bag to `directory`, which appears, or is replaced, only when it is complete."""
+    directory = directory.resolve()
+    directory.parent.mkdir(parents=True, exist_ok=True)
+    partial = Path(tempfile.mkdtemp(prefix=f'.{directory.name}.', dir=directory.parent))
+    try:
+        _write(partial, directory.name)
+        partial.chmod(0o755)
+        if directory.exists():
+            shutil.rmtree(directory)
+        os.replace(partial, directory)
+    finally:
+        shutil.rmtree(partial, ignore_errors=True)
+
+
+def _write(directory: Path, name: str) -> None:
+    # Uncompressed, so that the bytes do not depend on the version of a compressor.
+    with BagWriter(directory, name, compress=False) as writer:
+        for topic in (JOINT_STATES, AXIAL_LOAD, OIL_TEMPERATURE):
+            writer.add_topic(topic)
+        for record in records():
+            writer.write(record.topic, record.data, log_time=record.log_time,
+                         publish_time=record.stamp)
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Generate the bag from the command line."""
+    parser = argparse.ArgumentParser(description='Generate the nominal machine cycle as a bag.')
+    parser.add_argument('--out', type=Path, default=Path(__file__).with_name('nominal_cycle'),
+                        help='directory of the bag (default: %(default)s)')
+    directory = parser.parse_args(arguments).out
+    generate(directory)
+    print(f'{directory}: {sum(phase.duration for phase in CYCLE):.1f} s')
+    return 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())
