@@ -1,0 +1,286 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Make `.venv` and the nominal bag; run by the Python that `.venv` is to be made of.
+
+Each step has a stamp, the hash of what it depends on: a step is done again when its stamp is
+missing or different, and so are those after it that build on it. A stamp is written when its step
+is complete, so an interrupted set-up goes on where it stopped. Only the standard library is used.
+
+"""
+
+from collections.abc import Callable, Iterable, Iterator
+import contextlib
+import dataclasses
+import fcntl
+import hashlib
+import json
+import os
+from pathlib import Path
+import shutil
+import subprocess
+import sys
+import time
+
+TREE = Path(__file__).resolve().parent.parent
+VENV = TREE / '.venv'
+PYTHON = VENV / 'bin' / 'python'
+STAMPS = VENV / 'set_up.json'
+LOG = TREE / 'log' / 'set_up.log'
+INTERFACES = TREE / 'msg_defs'
+INSTALLED_INTERFACES = VENV / 'ballscrew_msgs.txt'
+PACKAGE = 'ballscrew_monitor'
+BAG = TREE / 'bags' / 'nominal_cycle'
+BAG_GENERATOR = TREE / 'bags' / 'nominal_cycle.py'
+# Other modules that decide what the bag looks like.
+BAG_SOURCES = ('bags/*.py', f'{PACKAGE}/bag_writer.py', f'{PACKAGE}/message_definitions.py')
+# An installer must neither ask nor follow a user's own idea of where packages go.
+PIP = (PYTHON, '-m', 'pip', '--disable-pip-version-check', '--no-input')
+INSTALL = (*PIP, 'install', '--no-deps', '--no-build-isolation')
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Step:
+    """A part of the set-up: what to say, what to do, and the hash of what it depends on."""
+
+    name: str
+    text: str
+    key: str
+    work: Callable[[], None]
+    made: bool = True  # False when what the step makes is plainly not there
+
+
+class Failure(Exception):
+    """One sentence about what went wrong."""
+
+
+def digest(*parts: str, files: Iterable[Path] = ()) -> str:
+    """Return the SHA-256 of some words and of the names and contents of some files."""
+    content = hashlib.sha256('\0'.join(parts).encode())
+    for path in sorted(files):
+        content.update(f'\0{path.relative_to(TREE)}\0'.encode() + path.read_bytes())
+    return content.hexdigest()
+
+
+def run(*command: object, **variables: str) -> None:
+    """Run a command with its output going to the log; raise Failure when it fails."""
+    words = [str(word) for word in command]
+    with LOG.open('a') as log:
+        print('$', *words, file=log, flush=True)
+        done = subprocess.run(
+            words,
+            stdin=subprocess.DEVNULL,
+            stdout=log,
+            stderr=log,
+            cwd=TREE,
+            env={**os.environ, 'PIP_USER': '0', **variables},
+            check=False,
+        )
+    if done.returncode:
+        raise Failure(f'{Path(words[0]).name} failed with exit code {done.returncode}')
+
+
+def make_environment() -> None:
+    """Make the environment anew with exactly the pinned packages."""
+    pins = TREE / 'constraints.txt'
+    run(sys.executable, '-m', 'venv', '--clear', VENV)
+    # What has no wheel is built with the pinned setuptools too.
+    run(*INSTALL, '--constraint', pins, 'setuptools')
+    run(*INSTALL, '--requirement', pins)
+
+
+def build_interfaces() -> None:
+    """Build and install msg_defs into the environment, where nothing has to be sourced."""
+    remove_installed_interfaces()
+    build = VENV / 'build'
+    shutil.rmtree(build, ignore_errors=True)
+    prefix = {
+        'AMENT_PREFIX_PATH': str(VENV),
+        'CMAKE_PREFIX_PATH': str(VENV),
+        'PATH': f'{VENV / "bin"}{os.pathsep}{os.environ["PATH"]}',
+    }
+    run(
+        VENV / 'bin' / 'cmake',
+        '-S',
+        INTERFACES,
+        '-B',
+        build,
+        '-G',
+        'Ninja',
+        '-DCMAKE_BUILD_TYPE=Release',
+        '-DBUILD_TESTING=OFF',
+        f'-DCMAKE_INSTALL_PREFIX={VENV}',
+        f'-DPython3_EXECUTABLE={PYTHON}',
+        f'-DCMAKE_PROJECT_INCLUDE={TREE / "scripts" / "relocate_ros_wheels.cmake"}',
+        **prefix,
+    )
+    run(VENV / 'bin' / 'cmake', '--build', build, '--target', 'install', **prefix)
+    shutil.copy(build / 'install_manifest.txt', INSTALLED_INTERFACES)
+    shutil.rmtree(build)
+    run(
+        PYTHON,
+        '-c',
+        'from ballscrew_msgs.msg import BallScrewState as State; '
+        'from rclpy.serialization import serialize_message; serialize_message(State())',
+    )
+
+
+def remove_installed_interfaces() -> None:
+    """Remove what an earlier build installed: a message that is gone must not stay importable."""
+    if INSTALLED_INTERFACES.exists():
+        for line in INSTALLED_INTERFACES.read_text().splitlines():
+            Path(line).unlink(missing_ok=True)
+
+
+def install_package() -> None:
+    """Install the package so that the tree itself is what runs, and nothing goes stale."""
+    run(*INSTALL, '--editable', TREE)
+    share = VENV / 'share'
+    index = share / 'ament_index' / 'resource_index' / 'packages'
+    link(index / PACKAGE, TREE / 'resource' / PACKAGE)
+    for name in ('package.xml', 'config', 'launch'):
+        link(share / PACKAGE / name, TREE / name)
+    # Launch tools look for executables here.
+    for name in ('ballscrew', PACKAGE):
+        link(VENV / 'lib' / PACKAGE / name, VENV / 'bin' / name)
+
+
+def link(place: Path, target: Path) -> None:
+    """Make `place` a relative symbolic link to `target`."""
+    place.parent.mkdir(parents=True, exist_ok=True)
+    place.unlink(missing_ok=True)
+    place.symlink_to(os.path.relpath(target, place.parent))
+
+
+def generate_bag() -> None:
+    """Generate the bag of the nominal cycle anew."""
+    shutil.rmtree(BAG, ignore_errors=True)
+    run(PYTHON, BAG_GENERATOR)
+
+
+def steps() -> list[Step]:
+    """Return the steps in order, with their keys as the tree is now."""
+    environment = digest(
+        sys.executable,
+        sys.version,
+        str(VENV),
+        files=[Path(__file__).resolve(), TREE / 'constraints.txt'],
+    )
+    interfaces = [path for path in INTERFACES.rglob('*') if path.is_file()]
+    cmake = TREE / 'scripts' / 'relocate_ros_wheels.cmake'
+    declared = [TREE / name for name in ('package.xml', 'setup.cfg', 'setup.py')]
+    bag = [path for pattern in BAG_SOURCES for path in TREE.glob(pattern)]
+    version = '.'.join(map(str, sys.version_info[:3]))
+    made = [
+        Step(
+            name='environment',
+            text=f'Python {version} and the pinned packages in .venv',
+            key=environment,
+            work=make_environment,
+        ),
+        Step(
+            name='interfaces',
+            text='the ROS interfaces, compiled',
+            work=build_interfaces,
+            key=digest(environment, files=[*interfaces, cmake]),
+        ),
+        Step(
+            name='package',
+            text=PACKAGE,
+            work=install_package,
+            key=digest(environment, files=declared),
+        ),
+    ]
+    if BAG_GENERATOR.exists():
+        made.append(
+            Step(
+                name='bag',
+                text='the bag of the nominal cycle',
+                work=generate_bag,
+                key=digest(environment, files=bag),
+                made=(BAG / 'metadata.yaml').exists(),
+            )
+        )
+    return made
+
+
+def read_stamps() -> dict[str, str]:
+    """Return the stamps; none when there is no environment that runs."""
+    try:
+        stamps: dict[str, str] = json.loads(STAMPS.read_text())
+        subprocess.run([PYTHON, '-S', '-c', ''], check=True, capture_output=True)
+    except (OSError, ValueError, subprocess.CalledProcessError):
+        return {}
+    return stamps
+
+
+def write_stamps(stamps: dict[str, str]) -> None:
+    """Replace the stamps as a whole."""
+    fresh = STAMPS.with_suffix('.new')
+    fresh.write_text(json.dumps(stamps, indent=2) + '\n')
+    fresh.replace(STAMPS)
+
+
+def set_up() -> None:
+    """Do the steps that are not done."""
+    stamps = read_stamps()
+    wanted = steps()
+    if stamps.get('environment') != wanted[0].key:
+        stamps = {}  # all the others are in it
+    missing = [step for step in wanted if stamps.get(step.name) != step.key or not step.made]
+    if not missing:
+        return
+    LOG.parent.mkdir(exist_ok=True)
+    LOG.write_text('')
+    begin = time.monotonic()
+    for number, step in enumerate(missing, start=1):
+        say(f'{number} of {len(missing)}: {step.text} ...', end=' ')
+        since = time.monotonic()
+        # Gone while its step is at work, so that an interruption leaves no false stamp.
+        stamps.pop(step.name, None)
+        if STAMPS.exists():
+            write_stamps(stamps)
+        step.work()
+        stamps[step.name] = step.key
+        write_stamps(stamps)
+        print(f'{time.monotonic() - since:.0f} s', flush=True)
+    say(f'done in {time.monotonic() - begin:.0f} s')
+
+
+def say(text: str, end: str = '\n') -> None:
+    """Print a line of progress."""
+    print(f'set-up: {text}', end=end, flush=True)
+
+
+@contextlib.contextmanager
+def alone() -> Iterator[None]:
+    """Wait for another set-up of this tree to end, and hold off the next."""
+    tree = os.open(TREE, os.O_RDONLY)
+    try:
+        try:
+            fcntl.flock(tree, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            say('waiting for another set-up of this tree')
+            fcntl.flock(tree, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(tree)
+
+
+def main() -> int:
+    """Set up, and say in one sentence what went wrong if it did."""
+    try:
+        with alone():
+            set_up()
+    except KeyboardInterrupt:
+        print('\nset-up: interrupted; the next call goes on from here', file=sys.stderr)
+        return 130
+    except (Failure, OSError) as reason:
+        print('\n' + ''.join(LOG.read_text().splitlines(True)[-30:]), file=sys.stderr)
+        print(f'set-up: {reason}; the whole output is in {LOG.relative_to(TREE)}', file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())

