@@ -1,0 +1,121 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Replays a bag through the same pure pipeline as the node, without DDS, faster than real time.
+
+Samples are taken in the order of their stamps, equal stamps in the fixed order of the sources; ticks
+fall on the same grid of stamps as online.
+
+"""
+
+import heapq
+import itertools
+from typing import Any, Iterator, Mapping, NamedTuple
+
+from ballscrew_msgs.msg import BallScrewState, OutOfZone
+from rclpy.serialization import deserialize_message
+
+from ballscrew_monitor.axis import Axis, build_axis
+from ballscrew_monitor.bag import Bag, Message
+from ballscrew_monitor.conversions import nanoseconds
+from ballscrew_monitor.inputs import Input, Refusal, Sample
+from ballscrew_monitor.messages import out_of_zone_message, StateWriter, TIERS
+from ballscrew_monitor.monitor import State
+
+REORDER = nanoseconds(1.0)  # [ns] log time over which samples are put into the order of stamps
+
+
+class Judged(NamedTuple):
+    """A state and, if an event began or ended with it, that event; the state is reused."""
+
+    state: BallScrewState
+    event: OutOfZone | None
+
+
+def input_topics(values: Mapping[str, Any]) -> dict[str, str]:
+    """Return topic and type of every input configured in the parameters `values`."""
+    found = {}
+    for axis in values['axes']:
+        for name in ('speed', 'load', 'temperature', 'torque'):
+            topic = values[f'{axis}.{name}.topic']
+            if topic:
+                found[absolute(topic)] = values[f'{axis}.{name}.type']
+    return found
+
+
+def absolute(topic: str) -> str:
+    """Return the full name of a topic that a node in the root namespace names."""
+    return topic if topic.startswith('/') else f'/{topic}'
+
+
+def replay(bag: Bag, values: Mapping[str, Any]) -> Iterator[Judged]:
+    """
+    Yield every state that the node would publish for `bag` with the parameters `values`.
+
+    Raises InputError for bad parameters and for a bag without the topics that they name.
+
+    """
+    bag.require(input_topics(values))
+    axes = [build_axis(name, values) for name in values['axes']]
+    return itertools.chain.from_iterable(_run(bag, axes, nanoseconds(values['tick_period'])))
+
+
+class _Entry(NamedTuple):
+    """A sample or refusal with its place in the order; `number` settles the rest."""
+
+    stamp: int
+    source: int
+    number: int
+    log_time: int
+    axis: int
+    event: Sample | Refusal
+
+
+def _run(bag: Bag, axes: list[Axis], period: int) -> Iterator[list[Judged]]:
+    writers = [StateWriter(axis.name, TIERS[axis.surface.tier]) for axis in axes]
+    grid = None
+    for entry in _ordered(_read(bag, axes)):
+        if grid is None or entry.stamp < grid - period:
+            grid = entry.stamp - entry.stamp % period + period
+        while grid < entry.stamp:
+            for axis, writer in zip(axes, writers, strict=True):
+                yield _judged(writer, axis.name, axis.monitor.tick(grid))
+            grid += period
+        axis = axes[entry.axis]
+        yield _judged(writers[entry.axis], axis.name, axis.monitor.update(entry.event))
+
+
+def _judged(writer: StateWriter, axis: str, state: State | None) -> list[Judged]:
+    if state is None:
+        return []
+    event = None if state.event is None else out_of_zone_message(axis, state.event)
+    return [Judged(state=writer.write(state), event=event)]
+
+
+def _read(bag: Bag, axes: list[Axis]) -> Iterator[_Entry]:
+    readers: dict[str, list[tuple[int, Axis, Input]]] = {}
+    for number, axis in enumerate(axes):
+        for source in axis.inputs:
+            readers.setdefault(absolute(source.topic), []).append((number, axis, source))
+    numbers = itertools.count()
+    for message in bag.messages(readers):
+        decoded = _decode(message, readers[message.topic][0][2].message_type)
+        for number, axis, source in readers[message.topic]:
+            event = source.read(decoded, now=message.log_time, max_future=axis.max_future)
+            stamp = event.stamp if isinstance(event, Sample) else message.log_time
+            yield _Entry(stamp, event.source, next(numbers), message.log_time, number, event)
+
+
+def _decode(message: Message, message_type: Any) -> Any:
+    return deserialize_message(message.data, message_type)
+
+
+def _ordered(entries: Iterator[_Entry]) -> Iterator[_Entry]:
+    """Yield the entries by stamp, as far as they are out of order by less than `REORDER`."""
+    waiting: list[_Entry] = []
+    for entry in entries:
+        heapq.heappush(waiting, entry)
+        while entry.log_time - waiting[0].log_time > REORDER:
+            yield heapq.heappop(waiting)
+    while waiting:
+        yield heapq.heappop(waiting)
