@@ -115,7 +115,7 @@ def _read_arrays(path: Path) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
     if path.stat().st_size > LARGEST_FILE:
         raise SurfaceError(f'{path}: {path.stat().st_size} bytes, allowed is {LARGEST_FILE}')
     try:
-        with np.load(path, allow_pickle=False) as archive:
+        with path.open('rb') as file, np.load(file, allow_pickle=False) as archive:
             arrays = {name: archive[name] for name in archive.files}
         header = json.loads(arrays.pop('header').tobytes())
     except DAMAGE as error:

@@ -1,0 +1,145 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The offline commands as a user types them."""
+
+import argparse
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from surrogate.cli import add_commands
+from surrogate.parameters import InputError
+from surrogate.surface import shipped_surface, SurfaceError
+from surrogate.surface_file import read, write
+
+POINT = ['point', '--screw', 'nominal', '--oil', 'iso_vg_68', '--tier', 'closed_form']
+
+
+def run(*words: str) -> int:
+    """Run one command line."""
+    parser = argparse.ArgumentParser()
+    add_commands(parser.add_subparsers(required=True))
+    args = parser.parse_args(words)
+    return args.handler(args)
+
+
+def record(capsys, *words: str) -> dict:
+    """Return the JSON that a point prints."""
+    assert run(*POINT, '--json', *words) == 0
+    return json.loads(capsys.readouterr().out)
+
+
+def test_point_as_json(capsys):
+    """The record is strict JSON in SI with four contacts and the tier's name."""
+    found = record(capsys, '--speed-rpm', '600', '--load-N', '1000')
+    assert found['tier'] == 'closed_form'
+    assert found['efficiency'] == pytest.approx(0.942, abs=2e-3)
+    assert found['entrainment_speed_m_s'] == pytest.approx(0.49657, abs=1e-5)
+    assert found['driving_torque_Nm'] == pytest.approx(
+        10 / (2 * np.pi) + found['friction_torque_Nm'])
+    assert [(c['nut'], c['side']) for c in found['contacts']] == [
+        ('loaded', 'screw'), ('loaded', 'nut'), ('relieved', 'screw'), ('relieved', 'nut')]
+    assert found['normal_force_loaded_N'] > 27.6 > found['normal_force_relieved_N']
+    assert found['regime'] == 'mixed'
+
+
+def test_unknown_numbers_are_null_with_a_reason(capsys):
+    """Past unloading the relieved nut has no film: null, and a word why."""
+    found = record(capsys, '--speed-rpm', '600', '--load-N', '3000')
+    relieved = found['contacts'][2]
+    assert relieved['central_film_m'] is None
+    assert relieved['reason'] == 'no load on this nut, so no film'
+    assert any('unloading begins at 2800 N' in text for text in found['warnings'])
+
+
+@pytest.mark.parametrize(('rpm', 'load', 'drives'), [
+    ('600', '1000', False), ('600', '-1000', True), ('-600', '1000', True),
+    ('-600', '-1000', False)])
+def test_four_quadrants(capsys, rpm, load, drives):
+    """The load drives the screw when it has not the sign of the motion."""
+    found = record(capsys, '--speed-rpm', rpm, '--load-N', load)
+    assert found['back_driving'] is drives
+    assert (found['driving_torque_Nm'] < 0) is drives
+    assert found['efficiency'] == pytest.approx(0.939 if drives else 0.942, abs=2e-3)
+
+
+def test_point_as_a_page(capsys):
+    """A person reads the tier, the point and what leaves a fitted range."""
+    assert run(*POINT, '--speed-rpm', '600', '--load-N', '1000',
+               '--temperature-degC', '40') == 0
+    text = capsys.readouterr().out
+    for part in ('tier closed_form: 600 rev/min, 1000 N, 40 degC', 'efficiency           0.942',
+                 'relieved nut, screw', 'outside its range', 'status: closed form'):
+        assert part in text
+
+
+def test_ratings_are_warned_about(capsys):
+    """Beyond D n, the static rating or the oil sheet the point is solved, with a warning."""
+    found = record(capsys, '--speed-rpm', '3000', '--load-N', '60000',
+                   '--temperature-degC', '110')
+    for part in ('speed: D n is 96', 'load: 6e+04 N, the static rating is 5.5e+04 N',
+                 'temperature: 110 degC, the oil sheet covers 0 to 100 degC'):
+        assert any(part in text for text in found['warnings'])
+
+
+@pytest.mark.parametrize('words', [
+    ['--speed-rpm', 'nan', '--load-N', '1'], ['--speed-rpm', '1', '--load-N', 'inf'],
+    ['--speed-rpm', '1', '--load-N', '1', '--temperature-degC', '900']])
+def test_a_number_out_of_range_is_refused(words):
+    """Not a number and absurd values are one sentence."""
+    with pytest.raises(InputError, match='allowed is'):
+        run(*POINT, *words)
+
+
+def test_build_info_check(tmp_path: Path, capsys):
+    """A surface is built, described and found good; a second build is the same surface."""
+    path = tmp_path / 'map.npz'
+    assert run('surface', 'build', '--out', str(path), '--load-range', '-500', '500',
+               '--temperature-range', '30', '50', '--speed-range', '1', '2000') == 0
+    built = capsys.readouterr().out
+    assert run('surface', 'info', str(path), '--json') == 0
+    info = json.loads(capsys.readouterr().out)
+    assert info['sha256'] in built
+    assert info['load_range_N'] == [-500.0, 500.0]
+    assert info['speed_range_rad_s'] == pytest.approx([0.10472, 209.44], rel=1e-4)
+    assert run('surface', 'info', str(path)) == 0
+    assert 'speed        1 to 2000 rev/min' in capsys.readouterr().out
+    assert run('surface', 'check', str(path), '--points', '5') == 0
+    assert 'passed, hash verified, 5 of 5 points' in capsys.readouterr().out
+
+
+def test_check_defaults_to_twenty_points_of_the_shipped_surface(capsys):
+    """Without a file the shipped surface is checked."""
+    assert run('surface', 'check') == 0
+    out = capsys.readouterr().out
+    assert str(shipped_surface()) in out
+    assert '20 of 20 points' in out
+
+
+def test_check_finds_a_wrong_surface(tmp_path: Path, capsys):
+    """A surface whose numbers are not those of its datasheets fails with exit code 1."""
+    from dataclasses import replace
+    data = read(shipped_surface())
+    wrong = replace(data, fields={**data.fields, 'rcs': 0.5 * data.fields['rcs']})
+    path = tmp_path / 'wrong.npz'
+    write(path, wrong)
+    assert run('surface', 'check', str(path)) == 1
+    assert 'FAILED' in capsys.readouterr().out
+
+
+def test_check_without_time_is_a_failure(capsys):
+    """Nothing solved is nothing shown."""
+    assert run('surface', 'check', '--max-seconds', '0') == 1
+    assert '0 of 20 points' in capsys.readouterr().out
+
+
+def test_bad_files_reach_the_user_as_sentences(tmp_path: Path):
+    """Missing files and unknown names raise the two exceptions that the program reports."""
+    with pytest.raises(SurfaceError, match='no such surface file'):
+        run('surface', 'info', str(tmp_path / 'none.npz'))
+    with pytest.raises(InputError, match='nor one of the shipped datasheets'):
+        run('surface', 'build', '--oil', 'water')
+    with pytest.raises(InputError, match='--points is 0'):
+        run('surface', 'check', '--points', '0')

@@ -1,0 +1,161 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Datasheets: shipped values, ranges, and one sentence for each kind of mistake."""
+
+from dataclasses import asdict, replace
+import math
+from pathlib import Path
+import re
+
+from hypothesis import given, strategies as st
+import pytest
+
+from surrogate.lubricant import lubricant_state
+from surrogate.parameters import (
+    DATA, InputError, load_lubricant, load_screw, OperatingPoint, ZERO_CELSIUS)
+
+SCREW = (DATA / 'screws' / 'nominal.yaml').read_text(encoding='utf-8')
+OIL = (DATA / 'lubricants' / 'iso_vg_68.yaml').read_text(encoding='utf-8')
+
+PLACES = {
+    'contact_angle': ('screw', 'contact_angle', math.pi / 180),
+    'normal_force_at_preload': None,
+    'young_modulus': ('screw.raceway', 'young_modulus', 1),
+    'poisson_ratio': ('screw.raceway', 'poisson_ratio', 1),
+    'viscosity': ('oil', 'viscosity', 1),
+    'pressure_viscosity': ('oil', 'pressure_viscosity', 1),
+    'density': ('oil', 'density', 1),
+    'eyring_stress': ('oil', 'eyring_stress', 1),
+    'asperity_friction': ('screw.roughness', 'asperity_friction', 1),
+    'roughness_rms': ('screw.roughness', 'rms', 1),
+    'fractal_dimension': ('screw.roughness', 'fractal_dimension', 1),
+    'fractal_roughness': ('screw.roughness', 'fractal_roughness', 1),
+    'fractal_sample_length': ('screw.roughness', 'sample_length', 1),
+    'central_film_at_502mm_s': None,
+    'rcs_limit': None,
+    'efficiency_limit': None,
+    'reference_temperature': ('oil', 'reference_temperature', 1),
+    'kinematic_viscosity_40C': ('oil', 'kinematic_viscosity_40', 1),
+    'kinematic_viscosity_100C': ('oil', 'kinematic_viscosity_100', 1),
+    'ball_density': ('screw.ball', 'density', 1),
+    'film_floor': ('screw.roughness', 'film_floor', 1),
+    'shortest_wavelength': ('screw.roughness', 'shortest_wavelength', 1),
+    'fractal_scale_ratio': ('screw.roughness', 'scale_ratio', 1),
+    'fractal_ridges': ('screw.roughness', 'ridges', 1),
+    'speed_limit_Dn': ('screw', 'speed_limit', math.pi / 30),
+}
+"""Where a quantity of the table stands in the datasheets; None: it is a result or a limit."""
+
+
+def test_nominal_datasheets_hold_every_quantity_of_the_table(table, screw, oil):
+    """The datasheets and the table of the nominal screw say the same."""
+    for row in table('nominal_screw.csv'):
+        place = PLACES.get(row['quantity'], ('screw', row['quantity'], 1))
+        if place is None:
+            continue
+        owner: object = {'screw': screw, 'oil': oil}[place[0].split('.')[0]]
+        for part in place[0].split('.')[1:]:
+            owner = getattr(owner, part)
+        assert getattr(owner, place[1]) == pytest.approx(
+            float(row['value']) * place[2], rel=1e-12), row['quantity']
+
+
+def test_vg_68_has_the_nominal_viscosity_at_40_degrees(oil):
+    """The oil is anchored at its reference temperature, exactly."""
+    assert float(lubricant_state(oil, 40 + ZERO_CELSIUS).viscosity) == 0.060
+
+
+@pytest.mark.parametrize('name', ['iso_vg_32', 'iso_vg_68', 'iso_vg_100'])
+def test_grades_have_their_viscosity_and_a_source(name):
+    """Each grade has its ISO 3448 number at 40 degC and says where it comes from."""
+    oil = load_lubricant(name)
+    assert oil.kinematic_viscosity_40 * 1e6 == pytest.approx(int(name.split('_')[-1]))
+    assert oil.viscosity == pytest.approx(oil.kinematic_viscosity_40 * oil.density, rel=0.02)
+    assert len(oil.source) > 20
+
+
+MISTAKES = [
+    ('lead_mm: 10.0\n', '', 'missing key lead_mm'),
+    ('lead_mm: 10.0', 'lead_mm: 10.0\nfriction: 0.1', 'unknown key friction, allowed are name'),
+    ('lead_mm: 10.0', 'lead_m: 0.01', 'lead_m has a wrong unit, the key is lead_mm'),
+    ('rms_um: 0.12', 'rms_nm: 120.0', 'roughness: rms_nm has a wrong unit, the key is rms_um'),
+    ('lead_mm: 10.0', 'lead_mm: 0.01', 'lead_mm is 0.01, allowed is 0.5 to 200'),
+    ('lead_mm: 10.0', 'lead_mm: .nan', 'lead_mm is nan, allowed is 0.5 to 200'),
+    ('lead_mm: 10.0', 'lead_mm: .inf', 'lead_mm is inf, allowed is 0.5 to 200'),
+    ('lead_mm: 10.0', 'lead_mm: ten', "lead_mm is 'ten', allowed is a number from 0.5 to 200"),
+    ('lead_mm: 10.0', 'lead_mm: 1e1', 'write 1.0e-8, not 1e-8'),
+    ('poisson_ratio: 0.3', 'poisson_ratio: true', 'poisson_ratio is True, allowed is a number'),
+    ('loaded_balls_per_nut: 51', 'loaded_balls_per_nut: 51.5', 'allowed is a whole number'),
+    ('ball_diameter_mm: 5.953', 'ball_diameter_mm: 16.5', 'allowed is less than pitch_radius_mm'),
+    ('raceway:', 'raceway: 3\nunused:', 'unknown key unused'),
+    ('name: nominal', 'name: [', 'cannot be read as YAML'),
+]
+
+
+@pytest.mark.parametrize(('old', 'new', 'sentence'), MISTAKES, ids=[m[2][:30] for m in MISTAKES])
+def test_a_mistake_in_a_datasheet_is_one_sentence(tmp_path: Path, old, new, sentence):
+    """The sentence names the file, the key, the value and what is allowed."""
+    path = tmp_path / 'screw.yaml'
+    assert old in SCREW
+    path.write_text(SCREW.replace(old, new, 1), encoding='utf-8')
+    with pytest.raises(InputError, match=re.escape(sentence)) as caught:
+        load_screw(str(path))
+    assert str(path) in str(caught.value)
+    assert '\n' not in str(caught.value)
+
+
+@pytest.mark.parametrize('content', ['', '3', '[1, 2]', 'name', '\x00'])
+def test_a_file_that_is_no_mapping_is_refused(tmp_path: Path, content):
+    """Anything but a mapping is named as such, whatever YAML makes of it."""
+    path = tmp_path / 'oil.yaml'
+    path.write_text(content, encoding='utf-8')
+    with pytest.raises(InputError, match=r'oil\.yaml: (must be a mapping|cannot be read)'):
+        load_lubricant(str(path))
+
+
+def test_the_source_is_mandatory(tmp_path: Path):
+    """A datasheet without a source is not a datasheet."""
+    path = tmp_path / 'screw.yaml'
+    path.write_text(re.sub(r'source: >-\n(  .*\n)+', "source: ''\n", SCREW), encoding='utf-8')
+    with pytest.raises(InputError, match='source is .* allowed is a text that is not empty'):
+        load_screw(str(path))
+
+
+def test_an_oil_that_thickens_when_warm_is_refused(oil):
+    """The two viscosities must fall with temperature."""
+    with pytest.raises(InputError, match='kinematic_viscosity_100_mm2_s is 70 mm2/s'):
+        replace(oil, kinematic_viscosity_100=70e-6)
+
+
+def test_the_reference_temperature_lies_inside_the_sheet(oil):
+    """An anchor outside its own range is a mistake."""
+    with pytest.raises(InputError, match='reference_temperature_degC is 40 degC'):
+        replace(oil, minimum_temperature=50 + ZERO_CELSIUS)
+
+
+def test_an_unknown_name_lists_the_shipped_ones():
+    """A wrong name is answered with the right ones."""
+    with pytest.raises(InputError, match='nor one of the shipped .*iso_vg_100, iso_vg_32, iso_vg'):
+        load_lubricant('iso_vg_46')
+
+
+def test_limits_themselves_are_allowed(screw):
+    """A value on its limit is inside, in spite of the conversion to SI."""
+    assert replace(screw, conformity_nut=0.7).conformity_nut == 0.7
+    assert replace(screw, contact_angle=math.radians(70)).contact_angle == math.radians(70)
+
+
+@given(speed=st.floats(-1e4, 1e4), load=st.floats(-1e6, 1e6))
+def test_a_point_and_its_mirror_image_are_one_point(speed, load):
+    """Reversing motion and load leaves the opposing load as it was."""
+    point = OperatingPoint(speed=speed, load=load, temperature=313.15)
+    mirror = replace(point, speed=-speed, load=-load)
+    if speed:
+        assert mirror.opposing_load == point.opposing_load
+
+
+def test_sheets_are_frozen(screw):
+    """A datasheet cannot be changed by accident."""
+    with pytest.raises(AttributeError):
+        screw.lead = 0.02
+    assert set(asdict(screw)) >= {'lead', 'roughness'}
