@@ -3,8 +3,8 @@
 """
 Build a surface: choose the nodes, solve them, and measure the interpolation error in every cell.
 
-The error of a cell is the difference between the lookup and a solve at the cell's centre, a point that is
-no node.
+The error of a cell is the difference between the lookup and a solve at the cell's centre, a point
+that is no node.
 
 """
 
@@ -18,7 +18,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 import scipy
-
 from surrogate import closed_form
 from surrogate.film_formulas import film_ratio_at_share_aihara_1987
 from surrogate.load_sharing import UNLOADING_RATIO
@@ -42,9 +41,9 @@ class SurfaceSettings:
     """
     Ranges and nodes of a surface.
 
-    Speeds [rad/s] and loads [N] and temperatures [K] as (low, high), covered everywhere. Numbers of nodes:
-    along speed, along load per side below and above unloading, along temperature. `onset_rcs` [-] is
-    the RCS whose speed is the origin of the speed coordinate.
+    Speeds [rad/s] and loads [N] and temperatures [K] as (low, high), covered everywhere. Numbers
+    of nodes: along speed, along load per side below and above unloading, along temperature.
+    `onset_rcs` [-] is the RCS whose speed is the origin of the speed coordinate.
 
     """
 
@@ -64,11 +63,17 @@ def default_settings(screw: Screw) -> SurfaceSettings:
     return SurfaceSettings(
         speed_range=(SLOWEST_SPEED, screw.speed_limit / (2 * screw.pitch_radius)),
         load_range=(-reach, reach),
-        temperature_range=(10 + ZERO_CELSIUS, 80 + ZERO_CELSIUS))
+        temperature_range=(10 + ZERO_CELSIUS, 80 + ZERO_CELSIUS),
+    )
 
 
-def build_closed_form(screw: Screw, lubricant: Lubricant, settings: SurfaceSettings, *,
-                      progress: Progress = lambda done, total: None) -> SurfaceData:
+def build_closed_form(
+    screw: Screw,
+    lubricant: Lubricant,
+    settings: SurfaceSettings,
+    *,
+    progress: Progress = lambda done, total: None,
+) -> SurfaceData:
     """
     Build the surface of the closed-form tier; `progress(done, total)` counts solved slices.
 
@@ -79,21 +84,28 @@ def build_closed_form(screw: Screw, lubricant: Lubricant, settings: SurfaceSetti
     started = time.perf_counter()
     load, breaks = load_nodes(screw, settings)
     temperature = temperature_nodes(screw, lubricant, settings)
-    log_onset = np.log(onset_speed(
-        screw, lubricant, load[:, None], temperature, settings.onset_rcs))
+    log_onset = np.log(
+        onset_speed(screw, lubricant, load[:, None], temperature, settings.onset_rcs)
+    )
     s = speed_coordinates(settings, log_onset)
     total = 2 * len(temperature) - 1
-    nodes = _solve(screw, lubricant, s, load, temperature, log_onset,
-                   lambda done: progress(done, total))
+    nodes = _solve(
+        screw, lubricant, s, load, temperature, log_onset, lambda done: progress(done, total)
+    )
     data = SurfaceData(
-        header=_header(screw, lubricant, settings, breaks), speed_coordinate=s, load=load,
-        temperature=temperature, log_onset=log_onset,
+        header=_header(screw, lubricant, settings, breaks),
+        speed_coordinate=s,
+        load=load,
+        temperature=temperature,
+        log_onset=log_onset,
         fields={name: nodes[name] for name in FIELDS},
         errors=_unmeasured((s, load, temperature)),
         worst_contact=nodes['worst_contact'].astype(np.uint8),
-        mask=~np.all([np.isfinite(nodes[name]) for name in FIELDS], axis=0))
-    errors = measure_errors(screw, lubricant, data,
-                            lambda done: progress(len(temperature) + done, total))
+        mask=~np.all([np.isfinite(nodes[name]) for name in FIELDS], axis=0),
+    )
+    errors = measure_errors(
+        screw, lubricant, data, lambda done: progress(len(temperature) + done, total)
+    )
     return replace(data, errors=errors, provenance=_provenance(time.perf_counter() - started))
 
 
@@ -101,7 +113,8 @@ def load_nodes(screw: Screw, settings: SurfaceSettings) -> tuple[Array, list[flo
     """
     Return load nodes [N] and, among them, the break nodes: zero and the unloading load.
 
-    Nodes crowd towards the unloading load, where what the relieved nut carries runs out as a power.
+    Nodes crowd towards the unloading load, where what the relieved nut carries runs out as a
+    power.
 
     """
     low, high = settings.load_range
@@ -131,8 +144,9 @@ def temperature_nodes(screw: Screw, lubricant: Lubricant, settings: SurfaceSetti
     return nodes
 
 
-def onset_speed(screw: Screw, lubricant: Lubricant, load: Array, temperature: Array,
-                rcs: float) -> Array:
+def onset_speed(
+    screw: Screw, lubricant: Lubricant, load: Array, temperature: Array, rcs: float
+) -> Array:
     """Return the speed [rad/s] at which the worst contact reaches `rcs`; arguments broadcast."""
     load, temperature = np.broadcast_arrays(load, temperature)
     ratio = closed_form.solve(screw, lubricant, 1.0, load, temperature).film_ratio
@@ -149,8 +163,9 @@ def speed_coordinates(settings: SurfaceSettings, log_onset: Array) -> Array:
     return np.sinh(np.linspace(ends[0], ends[1], settings.speed_nodes))
 
 
-def measure_errors(screw: Screw, lubricant: Lubricant, data: SurfaceData,
-                   step: Callable[[int], None]) -> dict[str, Array]:
+def measure_errors(
+    screw: Screw, lubricant: Lubricant, data: SurfaceData, step: Callable[[int], None]
+) -> dict[str, Array]:
     """
     Return, per field and cell, |lookup - solve| at the centre of the cell.
 
@@ -158,19 +173,36 @@ def measure_errors(screw: Screw, lubricant: Lubricant, data: SurfaceData,
 
     """
     surface = Surface(data)
-    s, load, temperature = (0.5 * (axis[1:] + axis[:-1]) for axis in (
-        data.speed_coordinate, data.load, data.temperature))
-    log_onset = np.log([[surface.onset_speed(force, heat) for heat in temperature]
-                        for force in load])
+    s, load, temperature = (
+        0.5 * (axis[1:] + axis[:-1])
+        for axis in (data.speed_coordinate, data.load, data.temperature)
+    )
+    log_onset = np.log(
+        [[surface.onset_speed(force, heat) for heat in temperature] for force in load]
+    )
     solved = _solve(screw, lubricant, s, load, temperature, log_onset, step)
-    points = [surface.lookup(math.exp(s[i] + log_onset[j, k]), load[j], temperature[k])
-              for i, j, k in np.ndindex(len(s), len(load), len(temperature))]
-    return {name: np.abs(np.reshape([getattr(point, name) for point in points],
-                                    solved[name].shape) - solved[name]) for name in FIELDS}
+    points = [
+        surface.lookup(math.exp(s[i] + log_onset[j, k]), float(load[j]), float(temperature[k]))
+        for i, j, k in np.ndindex(len(s), len(load), len(temperature))
+    ]
+    return {
+        name: np.abs(
+            np.reshape([getattr(point, name) for point in points], solved[name].shape)
+            - solved[name]
+        )
+        for name in FIELDS
+    }
 
 
-def _solve(screw: Screw, lubricant: Lubricant, s: Array, load: Array, temperature: Array,
-           log_onset: Array, step: Callable[[int], None]) -> dict[str, Array]:
+def _solve(
+    screw: Screw,
+    lubricant: Lubricant,
+    s: Array,
+    load: Array,
+    temperature: Array,
+    log_onset: Array,
+    step: Callable[[int], None],
+) -> dict[str, Array]:
     """Solve a grid slice by slice of temperature, which bounds the memory."""
     slices: dict[str, list[Array]] = {name: [] for name in (*FIELDS, 'worst_contact')}
     for k, heat in enumerate(temperature):
@@ -188,36 +220,50 @@ def _unmeasured(axes: tuple[Array, ...]) -> dict[str, Array]:
 
 def _check(settings: SurfaceSettings, lubricant: Lubricant) -> None:
     for name, unit, (low, high) in (
-            ('speed range', 'rad/s', settings.speed_range),
-            ('load range', 'N', settings.load_range),
-            ('temperature range', 'K', settings.temperature_range)):
+        ('speed range', 'rad/s', settings.speed_range),
+        ('load range', 'N', settings.load_range),
+        ('temperature range', 'K', settings.temperature_range),
+    ):
         if not (math.isfinite(low) and math.isfinite(high) and low < high):
-            raise InputError(f'{name} is {low:g} to {high:g} {unit}, '
-                             'allowed is a low end below a high end')
+            raise InputError(
+                f'{name} is {low:g} to {high:g} {unit}, allowed is a low end below a high end'
+            )
     if settings.speed_range[0] <= 0:
-        raise InputError(f'speed range begins at {settings.speed_range[0]:g} rad/s, '
-                         'allowed is above 0')
+        raise InputError(
+            f'speed range begins at {settings.speed_range[0]:g} rad/s, allowed is above 0'
+        )
     low, high = settings.temperature_range
     if low < lubricant.minimum_temperature or high > lubricant.maximum_temperature:
         raise InputError(
             f'temperature range is {low - ZERO_CELSIUS:g} to {high - ZERO_CELSIUS:g} degC, '
             f'oil {lubricant.name} allows {lubricant.minimum_temperature - ZERO_CELSIUS:g} to '
-            f'{lubricant.maximum_temperature - ZERO_CELSIUS:g} degC')
+            f'{lubricant.maximum_temperature - ZERO_CELSIUS:g} degC'
+        )
 
 
-def _header(screw: Screw, lubricant: Lubricant, settings: SurfaceSettings,
-            breaks: list[float]) -> dict[str, Any]:
+def _header(
+    screw: Screw, lubricant: Lubricant, settings: SurfaceSettings, breaks: list[float]
+) -> dict[str, Any]:
     """Return the hashed part of the header, in plain JSON types."""
     return {
-        'format': FORMAT, 'format_version': FORMAT_VERSION, 'tier': closed_form.TIER,
+        'format': FORMAT,
+        'format_version': FORMAT_VERSION,
+        'tier': closed_form.TIER,
         'inputs': {'screw': asdict(screw), 'lubricant': asdict(lubricant)},
-        'settings': {name: list(value) if isinstance(value, tuple) else value
-                     for name, value in asdict(settings).items()},
-        'load_breaks': breaks}
+        'settings': {
+            name: list(value) if isinstance(value, tuple) else value
+            for name, value in asdict(settings).items()
+        },
+        'load_breaks': breaks,
+    }
 
 
 def _provenance(seconds: float) -> Mapping[str, Any]:
-    return {'built': time.strftime('%Y-%m-%dT%H:%M:%SZ', time.gmtime()),
-            'build_seconds': round(seconds, 3), 'machine': platform.machine(),
-            'python': platform.python_version(), 'numpy': np.__version__,
-            'scipy': scipy.__version__}
+    return {
+        'built': time.strftime('%Y-%m-%dT%H:%M:%SZ', time.gmtime()),
+        'build_seconds': round(seconds, 3),
+        'machine': platform.machine(),
+        'python': platform.python_version(),
+        'numpy': np.__version__,
+        'scipy': scipy.__version__,
+    }

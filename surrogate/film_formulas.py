@@ -3,9 +3,9 @@
 """
 Published closed forms of film, asperity share and rolling resistance, with their ranges.
 
-Films follow the smooth isothermal contact with the entrainment along x. Each formula names the groups it
-was fitted over in `RANGES`; `outside_range` tells where a use leaves them. Inside a formula the
-symbols are those of its paper.
+Films follow the smooth isothermal contact with the entrainment along x. Each formula names the
+groups it was fitted over in `RANGES`; `outside_range` tells where a use leaves them. Inside a
+formula the symbols are those of its paper.
 
 """
 
@@ -13,7 +13,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-
 from surrogate.geometry import Contact
 
 Array = NDArray[np.float64]
@@ -21,12 +20,17 @@ Array = NDArray[np.float64]
 RANGES: dict[str, dict[str, tuple[float, float]]] = {
     # The thirty-four computed cases of the paper.
     'central_film_hamrock_dowson_1977': {
-        'speed': (8.4e-13, 5.05e-11), 'load': (1.1e-7, 1.3e-6),
-        'material': (2.3e3, 6.8e3), 'radius_ratio': (1.0, 26.0)},
+        'speed': (8.4e-13, 5.05e-11),
+        'load': (1.1e-7, 1.3e-6),
+        'material': (2.3e3, 6.8e3),
+        'radius_ratio': (1.0, 26.0),
+    },
     'central_film_nijenbanning_1994': {
-        'moes_load': (1.0, 1e4), 'moes_material': (0.0, 25.0), 'radius_ratio': (1.0, 20.0)},
-    'rolling_force_biboulet_houpert_2010': {
-        'moes_load': (1.0, 1e4), 'radius_ratio': (1.0, 100.0)},
+        'moes_load': (1.0, 1e4),
+        'moes_material': (0.0, 25.0),
+        'radius_ratio': (1.0, 20.0),
+    },
+    'rolling_force_biboulet_houpert_2010': {'moes_load': (1.0, 1e4), 'radius_ratio': (1.0, 100.0)},
 }
 """Fitted range of each formula in the groups of `Groups` [-]."""
 
@@ -57,15 +61,22 @@ class Groups:
         return np.asarray(self.material * (2 * self.speed) ** 0.25)
 
 
-def groups(contact: Contact, load: ArrayLike, entrainment_speed: ArrayLike, viscosity: ArrayLike,
-           pressure_viscosity: ArrayLike) -> Groups:
+def groups(
+    contact: Contact,
+    load: ArrayLike,
+    entrainment_speed: ArrayLike,
+    viscosity: ArrayLike,
+    pressure_viscosity: ArrayLike,
+) -> Groups:
     """Return the groups for load [N], speed [m/s], viscosity [Pa s], coefficient [1/Pa]."""
     modulus, radius = contact.reduced_modulus, contact.radius_x
     speed = np.asarray(viscosity) * np.asarray(entrainment_speed) / (modulus * radius)
     return Groups(
-        speed=np.asarray(speed), load=np.asarray(load) / (modulus * radius ** 2),
+        speed=np.asarray(speed),
+        load=np.asarray(load) / (modulus * radius**2),
         material=np.asarray(pressure_viscosity) * modulus,
-        radius_ratio=contact.radius_y / contact.radius_x)
+        radius_ratio=contact.radius_y / contact.radius_x,
+    )
 
 
 def outside_range(formula: str, g: Groups) -> tuple[str, ...]:
@@ -84,12 +95,12 @@ def central_film_hamrock_dowson_1977(contact: Contact, g: Groups) -> Array:
     """
     Return the central film [m].
 
-    Hc = 2.69 U^0.67 G^0.53 W^-0.067 (1 - 0.61 e^(-0.73 k)), k = 1.03 (Ry/Rx)^0.64: Hamrock, Dowson,
-    J. Lubr. Technol. 99 (1977) 264. About 4 to 10 % above converged solutions.
+    Hc = 2.69 U^0.67 G^0.53 W^-0.067 (1 - 0.61 e^(-0.73 k)), k = 1.03 (Ry/Rx)^0.64: Hamrock,
+    Dowson, J. Lubr. Technol. 99 (1977) 264. About 4 to 10 % above converged solutions.
 
     """
-    U, W, G, k = g.speed, g.load, g.material, 1.03 * g.radius_ratio ** 0.64
-    film = 2.69 * U ** 0.67 * G ** 0.53 * W ** -0.067 * (1 - 0.61 * np.exp(-0.73 * k))
+    U, W, G, k = g.speed, g.load, g.material, 1.03 * g.radius_ratio**0.64
+    film = 2.69 * U**0.67 * G**0.53 * W**-0.067 * (1 - 0.61 * np.exp(-0.73 * k))
     return np.asarray(film * contact.radius_x)
 
 
@@ -97,12 +108,12 @@ def minimum_film_hamrock_dowson_1977(contact: Contact, g: Groups) -> Array:
     """
     Return the minimum film [m].
 
-    Hm = 3.63 U^0.68 G^0.49 W^-0.073 (1 - e^(-0.68 k)), source as for the central film. Within 7 % from
-    ellipticity 3 on; up to 90 % off for circular contacts.
+    Hm = 3.63 U^0.68 G^0.49 W^-0.073 (1 - e^(-0.68 k)), source as for the central film. Within 7 %
+    from ellipticity 3 on; up to 90 % off for circular contacts.
 
     """
-    U, W, G, k = g.speed, g.load, g.material, 1.03 * g.radius_ratio ** 0.64
-    film = 3.63 * U ** 0.68 * G ** 0.49 * W ** -0.073 * (1 - np.exp(-0.68 * k))
+    U, W, G, k = g.speed, g.load, g.material, 1.03 * g.radius_ratio**0.64
+    film = 3.63 * U**0.68 * G**0.49 * W**-0.073 * (1 - np.exp(-0.68 * k))
     return np.asarray(film * contact.radius_x)
 
 
@@ -110,20 +121,20 @@ def central_film_nijenbanning_1994(contact: Contact, g: Groups) -> Array:
     """
     Return the central film [m] by a fit over all regimes.
 
-    Rigid and elastic, isoviscous and piezoviscous asymptotes joined: Nijenbanning, Venner, Moes, Wear 176
-    (1994) 217, for an incompressible fluid.
+    Rigid and elastic, isoviscous and piezoviscous asymptotes joined: Nijenbanning, Venner, Moes,
+    Wear 176 (1994) 217, for an incompressible fluid.
 
     """
     D, M, L = 1 / g.radius_ratio, g.moes_load, g.moes_material
     shape = 1 + 0.006 * np.log(D) + 0.63 * D ** (4 / 7)
-    H_RI = 145 * (1 + 0.796 * D ** (14 / 15)) ** (-15 / 7) / D * M ** -2
+    H_RI = 145 * (1 + 0.796 * D ** (14 / 15)) ** (-15 / 7) / D * M**-2
     H_RP = 1.29 * (1 + 0.691 * D) ** (-2 / 3) * L ** (2 / 3)
     H_EI = 3.18 * shape ** (-14 / 25) * D ** (-1 / 15) * M ** (-2 / 15)
-    H_EP = 1.48 * shape ** (-7 / 20) * D ** (-1 / 24) * M ** (-1 / 12) * L ** 0.75
+    H_EP = 1.48 * shape ** (-7 / 20) * D ** (-1 / 24) * M ** (-1 / 12) * L**0.75
     H_00 = 1.8 / D
     s = 1.5 * (1 + np.exp(-1.2 * H_EI / H_EP))
-    isoviscous = (H_RI ** 1.5 + (H_EI ** -4 + H_00 ** -4) ** (-3 / 8)) ** (2 * s / 3)
-    film = (isoviscous + (H_RP ** -8 + H_EP ** -8) ** (-s / 8)) ** (1 / s)
+    isoviscous = (H_RI**1.5 + (H_EI**-4 + H_00**-4) ** (-3 / 8)) ** (2 * s / 3)
+    film = (isoviscous + (H_RP**-8 + H_EP**-8) ** (-s / 8)) ** (1 / s)
     return np.asarray(film * contact.radius_x * np.sqrt(2 * g.speed))
 
 
@@ -147,15 +158,15 @@ def rolling_force_biboulet_houpert_2010(contact: Contact, g: Groups) -> Array:
     """
     Return the hydrodynamic rolling force on each surface [N].
 
-    F = F_e + (F_i - F_e)/(1 + M/6.6), F_i = 2.9766 E' Rx^2 (Ry/Rx)^0.3316 W^(1/3) U^(2/3) isoviscous rigid,
-    F_e = 7.5826 E' Rx^2 (Ry/Rx)^0.4055 W^(1/3) U^(3/4) elastic, M = W U^(-3/4): Biboulet, Houpert, Proc.
-    IMechE J 224 (2010) 765 and 777.
+    F = F_e + (F_i - F_e)/(1 + M/6.6), F_i = 2.9766 E' Rx^2 (Ry/Rx)^0.3316 W^(1/3) U^(2/3)
+    isoviscous rigid, F_e = 7.5826 E' Rx^2 (Ry/Rx)^0.4055 W^(1/3) U^(3/4) elastic, M = W U^(-3/4):
+    Biboulet, Houpert, Proc. IMechE J 224 (2010) 765 and 777.
 
     """
     U, W, k = g.speed, g.load, g.radius_ratio
-    scale = contact.reduced_modulus * contact.radius_x ** 2 * np.cbrt(W)
-    rigid = 2.9766 * scale * k ** 0.3316 * U ** (2 / 3)
-    elastic = 7.5826 * scale * k ** 0.4055 * U ** 0.75
+    scale = contact.reduced_modulus * contact.radius_x**2 * np.cbrt(W)
+    rigid = 2.9766 * scale * k**0.3316 * U ** (2 / 3)
+    elastic = 7.5826 * scale * k**0.4055 * U**0.75
     # 1/(1 + M/6.6) written so that a contact at rest is legal.
-    weight = 6.6 * U ** 0.75 / np.maximum(6.6 * U ** 0.75 + W, np.finfo(float).tiny)
+    weight = 6.6 * U**0.75 / np.maximum(6.6 * U**0.75 + W, np.finfo(float).tiny)
     return np.asarray(elastic + (rigid - elastic) * weight)

@@ -3,8 +3,9 @@
 """
 Sliding friction over a Hertzian ellipse with one film thickness, by slip power.
 
-The film part shears by Eyring's law under the local pressure, the asperity part by a boundary coefficient;
-both oppose the local slip. The power over the ellipse gives the torque, its mean the coefficient.
+The film part shears by Eyring's law under the local pressure, the asperity part by a boundary
+coefficient; both oppose the local slip. The power over the ellipse gives the torque, its mean the
+coefficient.
 
 """
 
@@ -12,7 +13,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-
 from surrogate.geometry import Hertz, Side
 from surrogate.kinematics import slip_arm
 from surrogate.lubricant import LubricantState, shear_stress_eyring_1936, viscosity_roelands_1966
@@ -37,8 +37,9 @@ class Sliding:
     friction_coefficient: Array
 
 
-def ellipse_nodes(radial: int = RADIAL_NODES,
-                  angular: int = ANGULAR_NODES) -> tuple[Array, Array, Array]:
+def ellipse_nodes(
+    radial: int = RADIAL_NODES, angular: int = ANGULAR_NODES
+) -> tuple[Array, Array, Array]:
     """Return nodes x, y on the unit disk [-] and weights that sum to pi [-], all flat."""
     points, weights = np.polynomial.legendre.leggauss(radial)
     radius = 0.5 * (points + 1)
@@ -48,31 +49,45 @@ def ellipse_nodes(radial: int = RADIAL_NODES,
     return x.ravel(), y.ravel(), area.ravel()
 
 
-def sliding_friction(screw: Screw, side: Side, ellipse: Hertz, film: Array, share: Array,
-                     oil: LubricantState, speed: Array) -> Sliding:
+def sliding_friction(
+    screw: Screw,
+    side: Side,
+    ellipse: Hertz,
+    film: Array,
+    share: Array,
+    oil: LubricantState,
+    speed: Array,
+) -> Sliding:
     """
     Integrate the traction of one contact; all arrays share one shape.
 
-    `ellipse` under the normal force, `film` [m], asperity `share` [-], screw `speed` [rad/s], at least 0. At
-    speed zero the film carries no traction and the limit of slow motion remains.
+    `ellipse` under the normal force, `film` [m], asperity `share` [-], screw `speed` [rad/s], at
+    least 0. At speed zero the film carries no traction and the limit of slow motion remains.
 
     """
     x, y, weight = ellipse_nodes()
     pressure = ellipse.max_pressure[..., None] * np.sqrt(1 - x * x - y * y)
-    arm = slip_arm(screw, side, ellipse.semi_axis_x[..., None] * x,
-                   ellipse.semi_axis_y[..., None] * y, ellipse.semi_axis_y[..., None])
+    arm = slip_arm(
+        screw,
+        side,
+        ellipse.semi_axis_x[..., None] * x,
+        ellipse.semi_axis_y[..., None] * y,
+        ellipse.semi_axis_y[..., None],
+    )
     viscosity = viscosity_roelands_1966(
-        pressure, oil.viscosity[..., None], oil.pressure_viscosity[..., None])
+        pressure, oil.viscosity[..., None], oil.pressure_viscosity[..., None]
+    )
     slip = arm * speed[..., None]
     thickness = np.broadcast_to(film[..., None], slip.shape)
     rate = np.divide(slip, thickness, out=np.zeros_like(slip), where=thickness > 0)
     sheared = shear_stress_eyring_1936(viscosity, rate, oil.eyring_stress)
-    traction = ((1 - share[..., None]) * sheared
-                + share[..., None] * screw.roughness.asperity_friction * pressure)
+    traction = (1 - share[..., None]) * sheared + share[
+        ..., None
+    ] * screw.roughness.asperity_friction * pressure
     area = weight * (ellipse.semi_axis_x * ellipse.semi_axis_y)[..., None]
     force = np.sum(traction * area, axis=-1)
     normal = np.sum(pressure * area, axis=-1)
     return Sliding(
         torque=np.sum(traction * arm * area, axis=-1),
-        friction_coefficient=np.divide(force, normal, out=np.zeros_like(force),
-                                       where=normal > 0))
+        friction_coefficient=np.divide(force, normal, out=np.zeros_like(force), where=normal > 0),
+    )

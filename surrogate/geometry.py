@@ -3,8 +3,8 @@
 """
 Geometry of the ball-screw contacts and Hertz's solution for them.
 
-x runs along the track (rolling, entrainment), y across it. Contact A is ball on screw, contact B ball on
-nut; both share the groove curvature across the track unless the conformities differ.
+x runs along the track (rolling, entrainment), y across it. Contact A is ball on screw, contact B
+ball on nut; both share the groove curvature across the track unless the conformities differ.
 
 """
 
@@ -16,7 +16,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq
 from scipy.special import elliprd, elliprf
-
 from surrogate.parameters import Material, Screw
 
 Array = NDArray[np.float64]
@@ -44,7 +43,8 @@ class Hertz:
     """
     Hertzian contact under one or many loads.
 
-    Semi-axes along and across the track [m], largest pressure [Pa], approach [m]; all zero at zero load.
+    Semi-axes along and across the track [m], largest pressure [Pa], approach [m]; all zero at zero
+    load.
 
     """
 
@@ -60,9 +60,14 @@ def helix_angle(screw: Screw) -> float:
 
 
 def curvature_ratio(screw: Screw) -> float:
-    """Return g = r_b cos(beta) cos^2(alpha) / r_m [-], ball radius over path radius at the contact."""
-    return (0.5 * screw.ball_diameter * math.cos(screw.contact_angle)
-            * math.cos(helix_angle(screw)) ** 2 / screw.pitch_radius)
+    """Return g = r_b cos(beta) cos^2(alpha) / r_m [-], the ball over the path at the contact."""
+    return (
+        0.5
+        * screw.ball_diameter
+        * math.cos(screw.contact_angle)
+        * math.cos(helix_angle(screw)) ** 2
+        / screw.pitch_radius
+    )
 
 
 def conformity(screw: Screw, side: Side) -> float:
@@ -72,8 +77,7 @@ def conformity(screw: Screw, side: Side) -> float:
 
 def reduced_modulus(first: Material, second: Material) -> float:
     """Return E' [Pa] with 2/E' = (1 - nu1^2)/E1 + (1 - nu2^2)/E2."""
-    compliance = sum((1 - body.poisson_ratio ** 2) / body.young_modulus
-                     for body in (first, second))
+    compliance = sum((1 - body.poisson_ratio**2) / body.young_modulus for body in (first, second))
     return 2.0 / compliance
 
 
@@ -89,21 +93,24 @@ def screw_contact(screw: Screw, side: Side) -> Contact:
     return Contact(
         radius_x=ball_radius * (1 - g if side == 'screw' else 1 + g),
         radius_y=ball_radius / (1 - 0.5 / conformity(screw, side)),
-        reduced_modulus=reduced_modulus(screw.raceway, screw.ball))
+        reduced_modulus=reduced_modulus(screw.raceway, screw.ball),
+    )
 
 
 def ellipticity(contact: Contact) -> float:
     """
     Return the axis ratio k = a_y / a_x [-] of the Hertz ellipse, either orientation.
 
-    Ry/Rx = R_D(0, k^2, 1) / R_D(0, 1, k^2) with Carlson's elliptic integral: Hertz's condition, e.g.
-    Johnson, Contact Mechanics (1985), eq. (4.26), free of cancellation for the circle.
+    Ry/Rx = R_D(0, k^2, 1) / R_D(0, 1, k^2) with Carlson's elliptic integral: Hertz's condition,
+    e.g. Johnson, Contact Mechanics (1985), eq. (4.26), free of cancellation for the circle.
 
     """
+
     def mismatch(log_k: float) -> float:
         square = math.exp(2 * log_k)
-        return math.log(elliprd(0, square, 1) / elliprd(0, 1, square)
-                        * contact.radius_x / contact.radius_y)
+        return math.log(
+            elliprd(0, square, 1) / elliprd(0, 1, square) * contact.radius_x / contact.radius_y
+        )
 
     return math.exp(brentq(mismatch, -12.0, 12.0, xtol=1e-14, rtol=1e-14))
 
@@ -112,8 +119,8 @@ def hertz(contact: Contact, load: ArrayLike) -> Hertz:
     """
     Solve the dry smooth contact under `load` [N], any shape.
 
-    a_x^3 = 2 Q Rx R_D(0, k^2, 1) / (pi E'), p0 = 3 Q / (2 pi a_x a_y),
-    approach = 3 Q R_F(0, a_x^2, a_y^2) / (pi E'): Johnson (1985), section 4.2, with exact integrals.
+    a_x^3 = 2 Q Rx R_D(0, k^2, 1) / (pi E'), p0 = 3 Q / (2 pi a_x a_y), approach = 3 Q R_F(0,
+    a_x^2, a_y^2) / (pi E'): Johnson (1985), section 4.2, with exact integrals.
 
     """
     load = np.asarray(load, dtype=float)
@@ -121,8 +128,11 @@ def hertz(contact: Contact, load: ArrayLike) -> Hertz:
     modulus = contact.reduced_modulus
     semi_x = np.cbrt(2 * load * contact.radius_x * elliprd(0, k * k, 1) / (math.pi * modulus))
     loaded = load > 0
-    area = np.where(loaded, math.pi * k * semi_x ** 2, 1.0)
+    area = np.where(loaded, math.pi * k * semi_x**2, 1.0)
     inverse_size = np.divide(1.0, semi_x, out=np.zeros_like(semi_x), where=loaded)
     return Hertz(
-        semi_axis_x=semi_x, semi_axis_y=k * semi_x, max_pressure=1.5 * load / area,
-        approach=3 * load * elliprf(0, 1, k * k) * inverse_size / (math.pi * modulus))
+        semi_axis_x=semi_x,
+        semi_axis_y=k * semi_x,
+        max_pressure=1.5 * load / area,
+        approach=3 * load * elliprf(0, 1, k * k) * inverse_size / (math.pi * modulus),
+    )

@@ -3,9 +3,9 @@
 """
 Local C1 monotone cubic Hermite interpolation on a rectilinear grid.
 
-Slopes are those of Fritsch and Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300: zero at extrema, so that
-data which rise keep rising between the nodes. At a break node the axis is cut: each side takes its own
-one-sided slope, which keeps a kink a kink. Needs numpy only.
+Slopes are those of Fritsch and Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300: zero at extrema,
+so that data which rise keep rising between the nodes. At a break node the axis is cut: each side
+takes its own one-sided slope, which keeps a kink a kink. Needs numpy only.
 
 """
 
@@ -65,8 +65,14 @@ def split_at(nodes: Array, breaks: Array) -> list[slice]:
 
 
 def first_rows(nodes: Array, breaks: Array) -> list[int]:
-    """Return the table row at which each cell begins; a break node has two rows, left and right."""
-    rows, start = [], 0
+    """
+    Return the table row at which each cell begins.
+
+    A break node has two rows, left and right.
+
+    """
+    rows: list[int] = []
+    start = 0
     for piece in split_at(nodes, breaks):
         cells = piece.stop - piece.start - 1
         rows += range(start, start + cells)
@@ -78,16 +84,24 @@ def patch_table(axes: Sequence[Array], breaks: Sequence[Array], values: Array) -
     """
     Tabulate what the patches of all cells need: per node the value and one slope per axis.
 
-    `values` has one dimension per axis and any number behind; the table has the rows of `first_rows` along
-    each axis, then value and slopes, then the trailing dimensions of `values`. Cross derivatives
-    at the nodes are taken as zero (Ferguson's patch), which keeps the interpolant C1.
+    `values` has one dimension per axis and any number behind; the table has the rows of
+    `first_rows` along each axis, then value and slopes, then the trailing dimensions of `values`.
+    Cross derivatives at the nodes are taken as zero (Ferguson's patch), which keeps the
+    interpolant C1.
 
     """
     for axis, (nodes, cuts) in enumerate(zip(axes, breaks)):
-        values = np.concatenate([np.take(values, range(piece.start, piece.stop), axis)
-                                 for piece in split_at(nodes, cuts)], axis)
-    slopes = [_slopes_by_piece(nodes, cuts, values, axis)
-              for axis, (nodes, cuts) in enumerate(zip(axes, breaks))]
+        values = np.concatenate(
+            [
+                np.take(values, range(piece.start, piece.stop), axis)
+                for piece in split_at(nodes, cuts)
+            ],
+            axis,
+        )
+    slopes = [
+        _slopes_by_piece(nodes, cuts, values, axis)
+        for axis, (nodes, cuts) in enumerate(zip(axes, breaks))
+    ]
     return np.stack([values, *slopes], axis=len(axes))
 
 
@@ -107,23 +121,69 @@ def hermite_weights(width: float, fraction: float) -> Weights:
     """Return the weights of value, slope, value, slope at `fraction` of a cell of `width`."""
     rest = 1.0 - fraction
     left, right = rest * rest, fraction * fraction
-    return ((1.0 + 2.0 * fraction) * left, width * fraction * left,
-            (3.0 - 2.0 * fraction) * right, -width * rest * right)
+    return (
+        (1.0 + 2.0 * fraction) * left,
+        width * fraction * left,
+        (3.0 - 2.0 * fraction) * right,
+        -width * rest * right,
+    )
 
 
 def patch_weights(p: Weights, q: Weights) -> list[float]:
     """Return the weights of the four corners of a cell in two dimensions, value and two slopes."""
     a, da, b, db = p
     c, dc, d, dd = q
-    return [a * c, da * c, a * dc, a * d, da * d, a * dd,
-            b * c, db * c, b * dc, b * d, db * d, b * dd]
+    return [
+        a * c,
+        da * c,
+        a * dc,
+        a * d,
+        da * d,
+        a * dd,
+        b * c,
+        db * c,
+        b * dc,
+        b * d,
+        db * d,
+        b * dd,
+    ]
 
 
 def extend_patch_weights(p: Weights, patch: list[float]) -> list[float]:
     """Return the weights of eight corners, value and three slopes, from those of a face."""
     a, da, b, db = p
     v0, l0, t0, v1, l1, t1, v2, l2, t2, v3, l3, t3 = patch
-    return [a * v0, da * v0, a * l0, a * t0, a * v1, da * v1, a * l1, a * t1,
-            a * v2, da * v2, a * l2, a * t2, a * v3, da * v3, a * l3, a * t3,
-            b * v0, db * v0, b * l0, b * t0, b * v1, db * v1, b * l1, b * t1,
-            b * v2, db * v2, b * l2, b * t2, b * v3, db * v3, b * l3, b * t3]
+    return [
+        a * v0,
+        da * v0,
+        a * l0,
+        a * t0,
+        a * v1,
+        da * v1,
+        a * l1,
+        a * t1,
+        a * v2,
+        da * v2,
+        a * l2,
+        a * t2,
+        a * v3,
+        da * v3,
+        a * l3,
+        a * t3,
+        b * v0,
+        db * v0,
+        b * l0,
+        b * t0,
+        b * v1,
+        db * v1,
+        b * l1,
+        b * t1,
+        b * v2,
+        db * v2,
+        b * l2,
+        b * t2,
+        b * v3,
+        db * v3,
+        b * l3,
+        b * t3,
+    ]

@@ -7,7 +7,6 @@ import math
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-
 from surrogate.parameters import Lubricant
 
 Array = NDArray[np.float64]
@@ -42,20 +41,22 @@ def kinematic_viscosity_astm_d341(temperature: ArrayLike, at_40: float, at_100: 
     log log (nu + 0.7) = A - B log T with nu in mm2/s: ASTM D341, valid from 2 to 2e7 mm2/s.
 
     """
+
     def double_log(viscosity: float) -> float:
         return math.log10(math.log10(viscosity * 1e6 + 0.7))
 
     warm, hot = math.log10(313.15), math.log10(373.15)
     slope = (double_log(at_40) - double_log(at_100)) / (hot - warm)
     exponent = double_log(at_40) - slope * (np.log10(temperature) - warm)
-    return np.asarray((10.0 ** (10.0 ** exponent) - 0.7) * 1e-6)
+    return np.asarray((10.0 ** (10.0**exponent) - 0.7) * 1e-6)
 
 
 def pressure_viscosity_gold_2001(reference: float, viscosity_ratio: ArrayLike) -> Array:
     """
     Pressure-viscosity coefficient [1/Pa] from its `reference` [1/Pa] and nu / nu_reference [-].
 
-    alpha = alpha_ref (nu / nu_ref)^0.139 for mineral oils: Gold et al., Lubrication Science 13 (2001).
+    alpha = alpha_ref (nu / nu_ref)^0.139 for mineral oils: Gold et al., Lubrication Science 13
+    (2001).
 
     """
     return np.asarray(reference * np.asarray(viscosity_ratio) ** GOLD_EXPONENT_MINERAL)
@@ -68,9 +69,11 @@ def lubricant_state(lubricant: Lubricant, temperature: ArrayLike) -> LubricantSt
     eta = eta_ref nu rho / (nu_ref rho_ref); density falls linearly.
 
     """
+
     def kinematic(kelvin: ArrayLike) -> Array:
         return kinematic_viscosity_astm_d341(
-            kelvin, lubricant.kinematic_viscosity_40, lubricant.kinematic_viscosity_100)
+            kelvin, lubricant.kinematic_viscosity_40, lubricant.kinematic_viscosity_100
+        )
 
     temperature = np.asarray(temperature, dtype=float)
     warming = temperature - lubricant.reference_temperature
@@ -79,11 +82,14 @@ def lubricant_state(lubricant: Lubricant, temperature: ArrayLike) -> LubricantSt
     return LubricantState(
         viscosity=lubricant.viscosity * ratio * density / lubricant.density,
         pressure_viscosity=pressure_viscosity_gold_2001(lubricant.pressure_viscosity, ratio),
-        density=density, eyring_stress=lubricant.eyring_stress)
+        density=density,
+        eyring_stress=lubricant.eyring_stress,
+    )
 
 
-def viscosity_roelands_1966(pressure: ArrayLike, viscosity: ArrayLike,
-                            pressure_viscosity: ArrayLike) -> Array:
+def viscosity_roelands_1966(
+    pressure: ArrayLike, viscosity: ArrayLike, pressure_viscosity: ArrayLike
+) -> Array:
     """
     Viscosity [Pa s] under `pressure` [Pa], ambient `viscosity` [Pa s], coefficient [1/Pa].
 
@@ -97,8 +103,9 @@ def viscosity_roelands_1966(pressure: ArrayLike, viscosity: ArrayLike,
     return np.asarray(viscosity * np.exp(span * growth))
 
 
-def shear_stress_eyring_1936(viscosity: ArrayLike, shear_rate: ArrayLike,
-                             eyring_stress: float) -> Array:
+def shear_stress_eyring_1936(
+    viscosity: ArrayLike, shear_rate: ArrayLike, eyring_stress: float
+) -> Array:
     """
     Shear stress [Pa] at `viscosity` [Pa s] and `shear_rate` [1/s].
 

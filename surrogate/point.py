@@ -9,7 +9,10 @@ from typing import Any
 
 from surrogate import closed_form, torque
 from surrogate.film_formulas import (
-    central_film_nijenbanning_1994, outside_range, rolling_force_biboulet_houpert_2010)
+    central_film_nijenbanning_1994,
+    outside_range,
+    rolling_force_biboulet_houpert_2010,
+)
 from surrogate.geometry import helix_angle, screw_contact
 from surrogate.load_sharing import nut_forces, UNLOADING_RATIO
 from surrogate.parameters import Lubricant, OperatingPoint, Screw, ZERO_CELSIUS
@@ -27,13 +30,15 @@ def regime(film_ratio: float) -> str:
     return 'boundary' if film_ratio < 1 else 'mixed' if film_ratio < 3 else 'hydrodynamic'
 
 
-def closed_form_record(screw: Screw, lubricant: Lubricant,
-                       point: OperatingPoint) -> dict[str, Any]:
+def closed_form_record(
+    screw: Screw, lubricant: Lubricant, point: OperatingPoint
+) -> dict[str, Any]:
     """
-    Solve one point in the closed-form tier and return it in SI units, JSON types, NaN where unknown.
+    Solve one point in the closed-form tier and return it in SI units, JSON types, NaN where
+    unknown.
 
-    Four quadrants: the speed's sign is the direction of motion, the load opposes the motion when both
-    have one sign.
+    Four quadrants: the speed's sign is the direction of motion, the load opposes the motion when
+    both have one sign.
 
     """
     started = time.perf_counter()
@@ -43,16 +48,23 @@ def closed_form_record(screw: Screw, lubricant: Lubricant,
     contacts = [_contact_record(contact) for contact in result.contacts]
     worst = contacts[int(result.worst_contact)]
     return {
-        'tier': closed_form.TIER, 'status': STATUS,
+        'tier': closed_form.TIER,
+        'status': STATUS,
         'warnings': _warnings(screw, lubricant, point, result),
-        'screw': screw.name, 'oil': lubricant.name, 'speed_rad_s': point.speed,
-        'load_N': point.load, 'opposing_load_N': load, 'temperature_K': point.temperature,
+        'screw': screw.name,
+        'oil': lubricant.name,
+        'speed_rad_s': point.speed,
+        'load_N': point.load,
+        'opposing_load_N': load,
+        'temperature_K': point.temperature,
         'efficiency': torque.efficiency(friction_torque, load, screw.lead),
         'friction_torque_Nm': friction_torque,
         'driving_torque_Nm': float(torque.driving_torque(friction_torque, load, screw.lead)),
         'back_driving': torque.is_back_driving(friction_torque, load, screw.lead),
-        'rcs': float(result.rcs), 'asperity_share': float(result.asperity_share),
-        'film_ratio': film_ratio, 'regime': regime(film_ratio),
+        'rcs': float(result.rcs),
+        'asperity_share': float(result.asperity_share),
+        'film_ratio': film_ratio,
+        'regime': regime(film_ratio),
         'central_film_m': float(result.central_film),
         'minimum_film_m': float(result.minimum_film),
         'friction_coefficient': float(result.friction_coefficient),
@@ -61,14 +73,18 @@ def closed_form_record(screw: Screw, lubricant: Lubricant,
         'normal_force_loaded_N': float(result.contacts[0].normal_force),
         'normal_force_relieved_N': float(result.contacts[2].normal_force),
         'entrainment_speed_m_s': float(result.entrainment_speed),
-        'contact_angle_A_rad': screw.contact_angle, 'contact_angle_B_rad': screw.contact_angle,
-        'contacts': contacts, 'comparators': _comparators(screw, point, result.contacts[0]),
-        'wall_s': time.perf_counter() - started}
+        'contact_angle_A_rad': screw.contact_angle,
+        'contact_angle_B_rad': screw.contact_angle,
+        'contacts': contacts,
+        'comparators': _comparators(screw, point, result.contacts[0]),
+        'wall_s': time.perf_counter() - started,
+    }
 
 
 def _contact_record(contact: closed_form.ContactResult) -> dict[str, Any]:
     return {
-        'nut': contact.nut, 'side': contact.side,
+        'nut': contact.nut,
+        'side': contact.side,
         'reason': '' if contact.normal_force > 0 else 'no load on this nut, so no film',
         'normal_force_N': float(contact.normal_force),
         'semi_axis_x_m': float(contact.ellipse.semi_axis_x),
@@ -82,47 +98,62 @@ def _contact_record(contact: closed_form.ContactResult) -> dict[str, Any]:
         'friction_coefficient': float(contact.friction_coefficient),
         'rolling_force_N': float(contact.rolling_force),
         'sliding_torque_Nm': float(contact.sliding_torque),
-        'rolling_torque_Nm': float(contact.rolling_torque)}
+        'rolling_torque_Nm': float(contact.rolling_torque),
+    }
 
 
-def _comparators(screw: Screw, point: OperatingPoint,
-                 loaded_screw: closed_form.ContactResult) -> dict[str, Any]:
+def _comparators(
+    screw: Screw, point: OperatingPoint, loaded_screw: closed_form.ContactResult
+) -> dict[str, Any]:
     """Return what the classical formulas say of the same point."""
     loaded, relieved = (float(force) for force in nut_forces(point.load, screw.preload))
     angle, load = helix_angle(screw), abs(point.load)
     film = math.nan
     if point.speed:
-        film = float(central_film_nijenbanning_1994(
-            screw_contact(screw, loaded_screw.side), loaded_screw.film_groups))
+        film = float(
+            central_film_nijenbanning_1994(
+                screw_contact(screw, loaded_screw.side), loaded_screw.film_groups
+            )
+        )
     driving = torque.torque_constant_friction(
-        loaded, relieved, screw.pitch_radius, angle, CONSTANT_FRICTION)
+        loaded, relieved, screw.pitch_radius, angle, CONSTANT_FRICTION
+    )
     ideal = load * screw.lead / (2 * math.pi)
     return {
         'constant_friction_coefficient': CONSTANT_FRICTION,
         'constant_friction_torque_Nm': driving,
         'constant_friction_efficiency': ideal / driving if driving > 0 else 0.0,
         'catalogue_drag_torque_Nm': torque.drag_torque_catalogue(screw.preload, screw.lead, angle),
-        'central_film_nijenbanning_m': film}
+        'central_film_nijenbanning_m': film,
+    }
 
 
-def _warnings(screw: Screw, lubricant: Lubricant, point: OperatingPoint,
-              result: closed_form.ScrewResult) -> list[str]:
+def _warnings(
+    screw: Screw, lubricant: Lubricant, point: OperatingPoint, result: closed_form.ScrewResult
+) -> list[str]:
     """Return a sentence for each rating or fitted range that the point leaves."""
     warnings = []
     product = abs(point.speed) * 2 * screw.pitch_radius
     if product > screw.speed_limit:
-        warnings.append(f'speed: D n is {product * 30 / math.pi:.3g} m rev/min, the screw allows '
-                        f'{screw.speed_limit * 30 / math.pi:.3g}')
+        warnings.append(
+            f'speed: D n is {product * 30 / math.pi:.3g} m rev/min, the screw allows '
+            f'{screw.speed_limit * 30 / math.pi:.3g}'
+        )
     if abs(point.load) > screw.static_rating:
-        warnings.append(f'load: {abs(point.load):.4g} N, the static rating is '
-                        f'{screw.static_rating:.4g} N')
+        warnings.append(
+            f'load: {abs(point.load):.4g} N, the static rating is {screw.static_rating:.4g} N'
+        )
     if abs(point.load) >= UNLOADING_RATIO * screw.preload:
-        warnings.append('load: the relieved nut carries nothing, unloading begins at '
-                        f'{UNLOADING_RATIO * screw.preload:.4g} N')
+        warnings.append(
+            'load: the relieved nut carries nothing, unloading begins at '
+            f'{UNLOADING_RATIO * screw.preload:.4g} N'
+        )
     low, high = lubricant.minimum_temperature, lubricant.maximum_temperature
     if not low <= point.temperature <= high:
-        warnings.append(f'temperature: {point.temperature - ZERO_CELSIUS:.4g} degC, the oil sheet '
-                        f'covers {low - ZERO_CELSIUS:g} to {high - ZERO_CELSIUS:g} degC')
+        warnings.append(
+            f'temperature: {point.temperature - ZERO_CELSIUS:.4g} degC, the oil sheet '
+            f'covers {low - ZERO_CELSIUS:g} to {high - ZERO_CELSIUS:g} degC'
+        )
     g = result.contacts[0].film_groups
     for formula in FORMULAS:
         phrases = outside_range(formula, g) if point.speed else ()
@@ -142,28 +173,40 @@ def to_json(record: Any) -> Any:
 def page(record: Mapping[str, Any]) -> str:
     """Return a record as a page of text in workshop units."""
     rows = [
-        ('efficiency', f'{record["efficiency"]:.3f}'
-                       + (', load drives the screw' if record['back_driving'] else '')),
+        (
+            'efficiency',
+            f'{record["efficiency"]:.3f}'
+            + (', load drives the screw' if record['back_driving'] else ''),
+        ),
         ('friction torque', f'{record["friction_torque_Nm"]:.4f} N m'),
         ('driving torque', f'{record["driving_torque_Nm"]:.4f} N m'),
         ('regime', f'{record["regime"]}, Lambda {record["film_ratio"]:.2f}'),
         ('RCS', f'{100 * record["rcs"]:.2f} % (estimate)'),
         ('central film', f'{1e9 * record["central_film_m"]:.1f} nm'),
         ('friction coefficient', f'{record["friction_coefficient"]:.4f}'),
-        ('entrainment speed', f'{1e3 * record["entrainment_speed_m_s"]:.1f} mm/s')]
+        ('entrainment speed', f'{1e3 * record["entrainment_speed_m_s"]:.1f} mm/s'),
+    ]
     contacts = [
         f'  {contact["nut"] + " nut, " + contact["side"]:20} {contact["normal_force_N"]:9.2f} N '
-        f'{1e-9 * contact["hertz_pressure_Pa"]:8.3f} GPa {1e9 * contact["central_film_m"]:8.1f} nm '
-        f'{contact["film_ratio"]:8.2f} {100 * contact["rcs"]:8.2f} %'
-        for contact in record['contacts']]
+        f'{1e-9 * contact["hertz_pressure_Pa"]:8.3f} GPa '
+        f'{1e9 * contact["central_film_m"]:8.1f} nm {contact["film_ratio"]:8.2f} {100 * contact["rcs"]:8.2f} %'
+        for contact in record['contacts']
+    ]
     compared = record['comparators']
-    return '\n'.join([
-        f'{record["screw"]}, {record["oil"]}, tier {record["tier"]}: '
-        f'{record["speed_rad_s"] * 30 / math.pi:g} rev/min, {record["load_N"]:g} N, '
-        f'{record["temperature_K"] - ZERO_CELSIUS:g} degC',
-        *(f'  {name:20} {text}' for name, text in rows), '',
-        '  contact              per ball     pressure     film      Lambda      RCS', *contacts, '',
-        f'  compare: constant friction {compared["constant_friction_efficiency"]:.3f}, catalogue '
-        f'drag {compared["catalogue_drag_torque_Nm"]:.3f} N m, Nijenbanning film '
-        f'{1e9 * compared["central_film_nijenbanning_m"]:.1f} nm',
-        f'  status: {record["status"]}', *(f'  warning: {text}' for text in record['warnings'])])
+    return '\n'.join(
+        [
+            f'{record["screw"]}, {record["oil"]}, tier {record["tier"]}: '
+            f'{record["speed_rad_s"] * 30 / math.pi:g} rev/min, {record["load_N"]:g} N, '
+            f'{record["temperature_K"] - ZERO_CELSIUS:g} degC',
+            *(f'  {name:20} {text}' for name, text in rows),
+            '',
+            '  contact              per ball     pressure     film      Lambda      RCS',
+            *contacts,
+            '',
+            f'  compare: constant friction {compared["constant_friction_efficiency"]:.3f}, '
+            f'catalogue drag {compared["catalogue_drag_torque_Nm"]:.3f} N m, Nijenbanning film '
+            f'{1e9 * compared["central_film_nijenbanning_m"]:.1f} nm',
+            f'  status: {record["status"]}',
+            *(f'  warning: {text}' for text in record['warnings']),
+        ]
+    )

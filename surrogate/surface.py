@@ -3,9 +3,9 @@
 """
 Lookup of the screw's behaviour over speed, opposing load and temperature.
 
-Speeds are mapped, s = log(speed) - log(onset(load, temperature)), so that a rectilinear grid can crowd the
-nodes where asperity contact begins. Lookup is exact at the nodes, never extrapolates and keeps the kinks at
-zero load and at the unloading load. Needs numpy only and never imports ROS.
+Speeds are mapped, s = log(speed) - log(onset(load, temperature)), so that a rectilinear grid can
+crowd the nodes where asperity contact begins. Lookup is exact at the nodes, never extrapolates and
+keeps the kinks at zero load and at the unloading load. Needs numpy only and never imports ROS.
 
 """
 
@@ -20,16 +20,29 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-
 from surrogate import surface_file, torque
 from surrogate.hermite import (
-    Array, extend_patch_weights, first_rows, hermite_weights, patch_table, patch_weights)
+    Array,
+    extend_patch_weights,
+    first_rows,
+    hermite_weights,
+    patch_table,
+    patch_weights,
+)
 from surrogate.surface_file import SurfaceData, SurfaceError
 
 __all__ = ['shipped_surface', 'Surface', 'SurfaceError', 'SurfacePoint', 'Validity']
 
-FIELDS = ('friction_torque', 'rcs', 'asperity_share', 'film_ratio', 'central_film', 'minimum_film',
-          'friction_coefficient', 'max_pressure')
+FIELDS = (
+    'friction_torque',
+    'rcs',
+    'asperity_share',
+    'film_ratio',
+    'central_film',
+    'minimum_film',
+    'friction_coefficient',
+    'max_pressure',
+)
 """Interpolated fields in table order."""
 LOGARITHMIC = ('film_ratio', 'central_film', 'minimum_film')
 Place = tuple[int, float, float]
@@ -55,8 +68,8 @@ class SurfacePoint:
     """
     What the surface says of one point; every number is NaN unless `validity` is VALID.
 
-    Opposing load [N] and lead [m] belong to the question; `values` are in the order of `FIELDS`, `errors`
-    the measured interpolation errors of the cell, of torque [N m] and RCS [-].
+    Opposing load [N] and lead [m] belong to the question; `values` are in the order of `FIELDS`,
+    `errors` the measured interpolation errors of the cell, of torque [N m] and RCS [-].
 
     """
 
@@ -160,8 +173,12 @@ class SurfacePoint:
         error = self.friction_torque_error
         if self.validity is not Validity.VALID or self.opposing_load == 0.0:
             return math.nan
-        beside = (torque.efficiency(max(self.friction_torque + shift, 0.0),
-                                    self.opposing_load, self.lead) for shift in (-error, error))
+        beside = (
+            torque.efficiency(
+                max(self.friction_torque + shift, 0.0), self.opposing_load, self.lead
+            )
+            for shift in (-error, error)
+        )
         return max(abs(value - self.efficiency) for value in beside)
 
 
@@ -189,13 +206,14 @@ class Surface:
         self.errors = {name: _summary(error) for name, error in data.errors.items()}
 
     @classmethod
-    def load(cls, path: str | Path, *, screw: str | None = None,
-             oil: str | None = None) -> 'Surface':
+    def load(
+        cls, path: str | Path, *, screw: str | None = None, oil: str | None = None
+    ) -> 'Surface':
         """
         Load and verify a surface file.
 
-        Raises SurfaceError, one sentence, for a file that cannot be read, is damaged, of an unknown
-        version, or built for another `screw` or `oil` than the named ones.
+        Raises SurfaceError, one sentence, for a file that cannot be read, is damaged, of an
+        unknown version, or built for another `screw` or `oil` than the named ones.
 
         """
         data = surface_file.read(path)
@@ -233,7 +251,7 @@ class Surface:
     @property
     def unloading_load(self) -> float:
         """Axial load at which the relieved nut carries nothing [N]: 2^(3/2) preload."""
-        return 2.0 ** 1.5 * self.preload
+        return 2.0**1.5 * self.preload
 
     @property
     def reference_temperature(self) -> float:
@@ -281,8 +299,8 @@ class Surface:
         """
         Look up |w| [rad/s], opposing load [N] (positive opposes the motion), temperature [K].
 
-        Never extrapolates: outside the nodes, and in cells beside an unconverged node, the answer is
-        NaN and `validity` says which limit was passed. A NaN argument is out of range.
+        Never extrapolates: outside the nodes, and in cells beside an unconverged node, the answer
+        is NaN and `validity` says which limit was passed. A NaN argument is out of range.
 
         """
         heat = self._place(2, temperature)
@@ -293,8 +311,9 @@ class Surface:
             return self._empty(Validity.LOAD_OUT_OF_RANGE, opposing_load)
         if not self._speed_range[0] <= speed <= self._speed_range[1]:
             fast = speed > self._speed_range[1]
-            return self._empty(Validity.SPEED_ABOVE_RANGE if fast
-                               else Validity.SPEED_BELOW_RANGE, opposing_load)
+            return self._empty(
+                Validity.SPEED_ABOVE_RANGE if fast else Validity.SPEED_BELOW_RANGE, opposing_load
+            )
         patch = self._patch(load, heat)
         s = math.log(speed) - self._log_onset(load, heat, patch)
         return self._interpolate(self._place_speed(s), load, heat, patch, opposing_load)
@@ -321,19 +340,24 @@ class Surface:
         low, high = self._onset[j], self._onset[j + 1]
         return sum(map(mul, patch, (*low[k], *low[k + 1], *high[k], *high[k + 1])))
 
-    def _interpolate(self, fast: Place, load: Place, heat: Place, patch: list[float],
-                     opposing_load: float) -> SurfacePoint:
+    def _interpolate(
+        self, fast: Place, load: Place, heat: Place, patch: list[float], opposing_load: float
+    ) -> SurfacePoint:
         cell = fast[0], load[0], heat[0]
         if not self._open_cells[cell]:
             return self._empty(Validity.MASKED, opposing_load)
         i, j, k = self._rows[0][cell[0]], self._rows[1][cell[1]], self._rows[2][cell[2]]
-        corners = self._table[i:i + 2, j:j + 2, k:k + 2].reshape(32, -1)
+        corners = self._table[i : i + 2, j : j + 2, k : k + 2].reshape(32, -1)
         weights = extend_patch_weights(hermite_weights(fast[1], fast[2]), patch)
         nearest = (cell[0] + (fast[2] > 0.5), cell[1] + (load[2] > 0.5), cell[2] + (heat[2] > 0.5))
         return SurfacePoint(
-            validity=Validity.VALID, opposing_load=opposing_load, lead=self._lead,
-            values=np.array(weights).dot(corners).tolist(), worst_contact=int(self._worst[nearest]),
-            errors=self._errors[cell].tolist())
+            validity=Validity.VALID,
+            opposing_load=opposing_load,
+            lead=self._lead,
+            values=np.array(weights).dot(corners).tolist(),
+            worst_contact=int(self._worst[nearest]),
+            errors=self._errors[cell].tolist(),
+        )
 
     def _empty(self, validity: Validity, opposing_load: float) -> SurfacePoint:
         return SurfacePoint(validity=validity, opposing_load=opposing_load, lead=self._lead)
@@ -373,6 +397,8 @@ def shipped_surface(screw: str = 'nominal', oil: str = 'iso_vg_68') -> Path:
     path = SHIPPED / f'{screw}_{oil}.npz'
     if not path.is_file():
         shipped = ', '.join(sorted(found.stem for found in SHIPPED.glob('*.npz')))
-        raise SurfaceError(f'no surface is shipped for screw {screw!r} and oil {oil!r}, '
-                           f'shipped are {shipped or "none"}')
+        raise SurfaceError(
+            f'no surface is shipped for screw {screw!r} and oil {oil!r}, '
+            f'shipped are {shipped or "none"}'
+        )
     return path

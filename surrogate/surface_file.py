@@ -3,8 +3,8 @@
 """
 The surface file, format version 1: one self-describing .npz with a JSON header, never a pickle.
 
-The hash covers the header without its provenance and every array in name order, little-endian, C order.
-A file that does not verify is refused with one sentence.
+The hash covers the header without its provenance and every array in name order, little-endian, C
+order. A file that does not verify is refused with one sentence.
 
 """
 
@@ -27,10 +27,18 @@ Array = NDArray[np.float64]
 FORMAT = 'ballscrew_surface'
 FORMAT_VERSION = 1
 TIERS = ('closed_form', 'full')
-LARGEST_FILE = 256 * 2 ** 20
+LARGEST_FILE = 256 * 2**20
 """Largest file that is read [byte]."""
-DAMAGE = (OSError, ValueError, KeyError, TypeError, EOFError, zipfile.BadZipFile, zlib.error,
-          NotImplementedError)
+DAMAGE = (
+    OSError,
+    ValueError,
+    KeyError,
+    TypeError,
+    EOFError,
+    zipfile.BadZipFile,
+    zlib.error,
+    NotImplementedError,
+)
 """What numpy and zipfile raise on a damaged file."""
 
 
@@ -43,11 +51,12 @@ class SurfaceData:
     """
     Content of a surface file.
 
-    Axes: speed coordinate s [-], opposing load [N], temperature [K]. `log_onset` [load, temperature] is the
-    logarithm of the onset speed [rad/s]. Fields [speed, load, temperature] in SI; `worst_contact` 0 to 3
-    counts loaded nut on screw, on nut, relieved nut on screw, on nut; `mask` marks unconverged nodes;
-    `errors` hold the measured interpolation error of each field per cell. `header` has the keys
-    format, format_version, tier, inputs, settings, load_breaks; `provenance` is not hashed.
+    Axes: speed coordinate s [-], opposing load [N], temperature [K]. `log_onset` [load,
+    temperature] is the logarithm of the onset speed [rad/s]. Fields [speed, load, temperature] in
+    SI; `worst_contact` 0 to 3 counts loaded nut on screw, on nut, relieved nut on screw, on nut;
+    `mask` marks unconverged nodes; `errors` hold the measured interpolation error of each field
+    per cell. `header` has the keys format, format_version, tier, inputs, settings, load_breaks;
+    `provenance` is not hashed.
 
     """
 
@@ -103,8 +112,10 @@ def read(path: str | Path) -> SurfaceData:
     except DAMAGE as error:
         raise SurfaceError(f'{path}: damaged surface, {error}') from None
     if data.sha256 != stated:
-        raise SurfaceError(f'{path}: damaged surface, content hash {data.sha256[:16]} differs '
-                           f'from the stated {str(stated)[:16]}')
+        raise SurfaceError(
+            f'{path}: damaged surface, content hash {data.sha256[:16]} differs '
+            f'from the stated {str(stated)[:16]}'
+        )
     _check_shapes(path, data)
     return data
 
@@ -126,22 +137,35 @@ def _read_arrays(path: Path) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
     if not isinstance(header, dict) or header.get('format') != FORMAT:
         raise SurfaceError(f'{path}: not a surface file, its header is of another format')
     if header.get('format_version') != FORMAT_VERSION:
-        raise SurfaceError(f'{path}: surface format version {header.get("format_version")}, '
-                           f'this program reads version {FORMAT_VERSION}')
+        raise SurfaceError(
+            f'{path}: surface format version {header.get("format_version")}, '
+            f'this program reads version {FORMAT_VERSION}'
+        )
     return header, arrays
 
 
-def _assemble(header: dict[str, Any], provenance: Any,
-              arrays: dict[str, NDArray[Any]]) -> SurfaceData:
+def _assemble(
+    header: dict[str, Any], provenance: Any, arrays: dict[str, NDArray[Any]]
+) -> SurfaceData:
     def group(prefix: str) -> dict[str, Array]:
-        return {name.removeprefix(prefix): array for name, array in arrays.items()
-                if name.startswith(prefix)}
+        return {
+            name.removeprefix(prefix): array
+            for name, array in arrays.items()
+            if name.startswith(prefix)
+        }
 
     return SurfaceData(
-        header=header, provenance=provenance, speed_coordinate=arrays['axis_speed_coordinate'],
-        load=arrays['axis_load'], temperature=arrays['axis_temperature'],
-        log_onset=arrays['log_onset'], fields=group('field_'), errors=group('error_'),
-        worst_contact=arrays['worst_contact'], mask=arrays['mask'])
+        header=header,
+        provenance=provenance,
+        speed_coordinate=arrays['axis_speed_coordinate'],
+        load=arrays['axis_load'],
+        temperature=arrays['axis_temperature'],
+        log_onset=arrays['log_onset'],
+        fields=group('field_'),
+        errors=group('error_'),
+        worst_contact=arrays['worst_contact'],
+        mask=arrays['mask'],
+    )
 
 
 def _check_shapes(path: str | Path, data: SurfaceData) -> None:
@@ -150,13 +174,13 @@ def _check_shapes(path: str | Path, data: SurfaceData) -> None:
     nodes = tuple(len(axis) for axis in axes)
     cells = tuple(count - 1 for count in nodes)
     sound = (
-        all(axis.ndim == 1 and len(axis) > 1 and bool(np.all(np.diff(axis) > 0))
-            for axis in axes)
+        all(axis.ndim == 1 and len(axis) > 1 and bool(np.all(np.diff(axis) > 0)) for axis in axes)
         and data.log_onset.shape == nodes[1:]
         and data.mask.shape == data.worst_contact.shape == nodes
         and all(values.shape == nodes for values in data.fields.values())
         and all(values.shape == cells for values in data.errors.values())
-        and data.header.get('tier') in TIERS)
+        and data.header.get('tier') in TIERS
+    )
     if not sound:
         raise SurfaceError(f'{path}: damaged surface, axes, fields and tier do not fit together')
 
@@ -164,11 +188,15 @@ def _check_shapes(path: str | Path, data: SurfaceData) -> None:
 def _arrays(data: SurfaceData) -> Iterator[tuple[str, NDArray[Any]]]:
     """Yield every array under its name on file, in name order."""
     named: dict[str, NDArray[Any]] = {
-        'axis_speed_coordinate': data.speed_coordinate, 'axis_load': data.load,
-        'axis_temperature': data.temperature, 'log_onset': data.log_onset,
-        'worst_contact': data.worst_contact, 'mask': data.mask,
+        'axis_speed_coordinate': data.speed_coordinate,
+        'axis_load': data.load,
+        'axis_temperature': data.temperature,
+        'log_onset': data.log_onset,
+        'worst_contact': data.worst_contact,
+        'mask': data.mask,
         **{f'field_{name}': values for name, values in data.fields.items()},
-        **{f'error_{name}': values for name, values in data.errors.items()}}
+        **{f'error_{name}': values for name, values in data.errors.items()},
+    }
     for name in sorted(named):
         array = named[name]
         yield name, array.astype(array.dtype.newbyteorder('<'), copy=False)

@@ -3,8 +3,8 @@
 """
 From friction torque to driving torque and efficiency, and the classical comparators.
 
-The normal force has the arm r_m exactly, so the load contributes F L / (2 pi) and friction adds to it.
-Plain arithmetic on floats or arrays, without further imports: the lookup uses it too.
+The normal force has the arm r_m exactly, so the load contributes F L / (2 pi) and friction adds to
+it. Plain arithmetic on floats or arrays, without further imports: the lookup uses it too.
 
 """
 
@@ -16,8 +16,8 @@ def driving_torque(friction_torque: Any, opposing_load: Any, lead: float) -> Any
     """
     Return the torque on the screw [N m], positive along the motion.
 
-    F L/(2 pi) + M_f, with the friction torque [N m], the opposing load [N] and the lead [m]. Negative: the
-    load drives the screw and the motor must hold it back.
+    F L/(2 pi) + M_f, with the friction torque [N m], the opposing load [N] and the lead [m].
+    Negative: the load drives the screw and the motor must hold it back.
 
     """
     return opposing_load * lead / (2 * math.pi) + friction_torque
@@ -27,8 +27,8 @@ def efficiency(friction_torque: float, opposing_load: float, lead: float) -> flo
     """
     Return output over input power [-], 0 to 1, from torque [N m], opposing load [N], lead [m].
 
-    Load opposes the motion: F L/(2 pi M). Load drives the motion: 2 pi M/(F L) with the torque taken
-    from the screw, 0 where friction keeps more than the load gives. 0 at zero load.
+    Load opposes the motion: F L/(2 pi M). Load drives the motion: 2 pi M/(F L) with the torque
+    taken from the screw, 0 where friction keeps more than the load gives. 0 at zero load.
 
     """
     ideal = abs(opposing_load) * lead / (2 * math.pi)
@@ -44,25 +44,32 @@ def is_back_driving(friction_torque: float, opposing_load: float, lead: float) -
     return driving_torque(friction_torque, opposing_load, lead) < 0
 
 
-def torque_constant_friction(loaded_force: float, relieved_force: float, pitch_radius: float,
-                             helix_angle: float, friction_coefficient: float) -> float:
+def torque_constant_friction(
+    loaded_force: float,
+    relieved_force: float,
+    pitch_radius: float,
+    helix_angle: float,
+    friction_coefficient: float,
+) -> float:
     """
     Return the driving torque [N m] of a double nut with one constant friction coefficient [-].
 
-    M = r_m [F_L tan(alpha + rho) - F_R tan(alpha - rho)], rho = atan(mu), nut forces [N], radius [m],
-    angle [rad]: the constant-friction model of Pan and others.
+    M = r_m [F_L tan(alpha + rho) - F_R tan(alpha - rho)], rho = atan(mu), nut forces [N], radius
+    [m], angle [rad]: the constant-friction model of Pan and others.
 
     """
     rho = math.atan(friction_coefficient)
-    return pitch_radius * (loaded_force * math.tan(helix_angle + rho)
-                           - relieved_force * math.tan(helix_angle - rho))
+    return pitch_radius * (
+        loaded_force * math.tan(helix_angle + rho) - relieved_force * math.tan(helix_angle - rho)
+    )
 
 
 def drag_torque_catalogue(preload: float, lead: float, helix_angle: float) -> float:
     """
     Return the catalogue drag torque [N m] of a preloaded nut.
 
-    0.05 (tan alpha)^-0.5 F_pre L / (2 pi), preload [N], lead [m], angle [rad]: ISO 3408-3 practice.
+    0.05 (tan alpha)^-0.5 F_pre L / (2 pi), preload [N], lead [m], angle [rad]: ISO 3408-3
+    practice.
 
     """
     return 0.05 / math.sqrt(math.tan(helix_angle)) * preload * lead / (2 * math.pi)

@@ -6,7 +6,6 @@ import csv
 from pathlib import Path
 
 import pytest
-
 from surrogate.build import build_closed_form, default_settings
 from surrogate.parameters import load_lubricant, load_screw, Lubricant, Screw
 from surrogate.surface_file import SurfaceData

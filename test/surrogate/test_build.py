@@ -7,10 +7,14 @@ import math
 
 import numpy as np
 import pytest
-
 from surrogate import closed_form
 from surrogate.build import (
-    build_closed_form, default_settings, load_nodes, onset_speed, temperature_nodes)
+    build_closed_form,
+    default_settings,
+    load_nodes,
+    onset_speed,
+    temperature_nodes,
+)
 from surrogate.parameters import InputError
 from surrogate.surface import FIELDS, Surface, Validity
 
@@ -20,7 +24,7 @@ SMALL = {'speed_nodes': 16, 'load_cells': 3, 'unloaded_cells': 1, 'temperature_n
 def test_break_nodes_are_nodes(screw):
     """Zero load and the unloading load, both signs, are nodes and breaks."""
     load, breaks = load_nodes(screw, default_settings(screw))
-    assert breaks == pytest.approx([-2 ** 1.5 * 990, 0.0, 2 ** 1.5 * 990])
+    assert breaks == pytest.approx([-(2**1.5) * 990, 0.0, 2**1.5 * 990])
     assert set(breaks) <= set(load.tolist())
     assert np.all(np.diff(load) > 0)
 
@@ -47,8 +51,10 @@ def test_measured_errors_are_those_of_the_lookup(screw, oil):
     surface = Surface(data)
     measured = np.argwhere(np.isfinite(data.errors['rcs']))
     i, j, k = measured[len(measured) // 2]
-    s, load, kelvin = (float(0.5 * (axis[n] + axis[n + 1])) for axis, n in (
-        (data.speed_coordinate, i), (data.load, j), (data.temperature, k)))
+    s, load, kelvin = (
+        float(0.5 * (axis[n] + axis[n + 1]))
+        for axis, n in ((data.speed_coordinate, i), (data.load, j), (data.temperature, k))
+    )
     speed = surface.onset_speed(load, kelvin) * math.exp(s)
     solved = closed_form.solve(screw, oil, speed, load, kelvin)
     found = surface.lookup(speed, load, kelvin)
@@ -62,7 +68,8 @@ def test_more_nodes_mean_smaller_errors(screw, oil):
     """Refining every axis shrinks the measured error of torque and film ratio."""
     coarse, fine = (
         Surface(build_closed_form(screw, oil, replace(default_settings(screw), **nodes))).errors
-        for nodes in (SMALL, {name: 2 * number - 1 for name, number in SMALL.items()}))
+        for nodes in (SMALL, {name: 2 * number - 1 for name, number in SMALL.items()})
+    )
     for name in ('friction_torque', 'film_ratio', 'rcs'):
         assert fine[name][1] < 0.5 * coarse[name][1]
 
@@ -85,12 +92,16 @@ def test_zero_preload_masks_zero_load_only(screw, oil):
     assert surface.lookup(60.0, 4000.0, 313.15).validity is Validity.VALID
 
 
-@pytest.mark.parametrize(('changes', 'sentence'), [
-    ({'speed_range': (100.0, 10.0)}, 'speed range is 100 to 10 rad/s, allowed is a low end'),
-    ({'speed_range': (0.0, 10.0)}, 'speed range begins at 0 rad/s, allowed is above 0'),
-    ({'load_range': (5.0, 5.0)}, 'load range is 5 to 5 N'),
-    ({'temperature_range': (313.15, math.nan)}, 'temperature range is 313.15 to nan K'),
-    ({'temperature_range': (263.15, 353.15)}, 'oil iso_vg_68 allows 0 to 100 degC')])
+@pytest.mark.parametrize(
+    ('changes', 'sentence'),
+    [
+        ({'speed_range': (100.0, 10.0)}, 'speed range is 100 to 10 rad/s, allowed is a low end'),
+        ({'speed_range': (0.0, 10.0)}, 'speed range begins at 0 rad/s, allowed is above 0'),
+        ({'load_range': (5.0, 5.0)}, 'load range is 5 to 5 N'),
+        ({'temperature_range': (313.15, math.nan)}, 'temperature range is 313.15 to nan K'),
+        ({'temperature_range': (263.15, 353.15)}, 'oil iso_vg_68 allows 0 to 100 degC'),
+    ],
+)
 def test_a_wrong_range_is_one_sentence(screw, oil, changes, sentence):
     """Reversed, empty, or beyond the oil's datasheet."""
     with pytest.raises(InputError, match=sentence):

@@ -8,7 +8,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-
 from surrogate.cli import add_commands
 from surrogate.parameters import InputError
 from surrogate.surface import shipped_surface, SurfaceError
@@ -38,9 +37,14 @@ def test_point_as_json(capsys):
     assert found['efficiency'] == pytest.approx(0.942, abs=2e-3)
     assert found['entrainment_speed_m_s'] == pytest.approx(0.49657, abs=1e-5)
     assert found['driving_torque_Nm'] == pytest.approx(
-        10 / (2 * np.pi) + found['friction_torque_Nm'])
+        10 / (2 * np.pi) + found['friction_torque_Nm']
+    )
     assert [(c['nut'], c['side']) for c in found['contacts']] == [
-        ('loaded', 'screw'), ('loaded', 'nut'), ('relieved', 'screw'), ('relieved', 'nut')]
+        ('loaded', 'screw'),
+        ('loaded', 'nut'),
+        ('relieved', 'screw'),
+        ('relieved', 'nut'),
+    ]
     assert found['normal_force_loaded_N'] > 27.6 > found['normal_force_relieved_N']
     assert found['regime'] == 'mixed'
 
@@ -54,9 +58,15 @@ def test_unknown_numbers_are_null_with_a_reason(capsys):
     assert any('unloading begins at 2800 N' in text for text in found['warnings'])
 
 
-@pytest.mark.parametrize(('rpm', 'load', 'drives'), [
-    ('600', '1000', False), ('600', '-1000', True), ('-600', '1000', True),
-    ('-600', '-1000', False)])
+@pytest.mark.parametrize(
+    ('rpm', 'load', 'drives'),
+    [
+        ('600', '1000', False),
+        ('600', '-1000', True),
+        ('-600', '1000', True),
+        ('-600', '-1000', False),
+    ],
+)
 def test_four_quadrants(capsys, rpm, load, drives):
     """The load drives the screw when it has not the sign of the motion."""
     found = record(capsys, '--speed-rpm', rpm, '--load-N', load)
@@ -67,26 +77,37 @@ def test_four_quadrants(capsys, rpm, load, drives):
 
 def test_point_as_a_page(capsys):
     """A person reads the tier, the point and what leaves a fitted range."""
-    assert run(*POINT, '--speed-rpm', '600', '--load-N', '1000',
-               '--temperature-degC', '40') == 0
+    assert run(*POINT, '--speed-rpm', '600', '--load-N', '1000', '--temperature-degC', '40') == 0
     text = capsys.readouterr().out
-    for part in ('tier closed_form: 600 rev/min, 1000 N, 40 degC', 'efficiency           0.942',
-                 'relieved nut, screw', 'outside its range', 'status: closed form'):
+    for part in (
+        'tier closed_form: 600 rev/min, 1000 N, 40 degC',
+        'efficiency           0.942',
+        'relieved nut, screw',
+        'outside its range',
+        'status: closed form',
+    ):
         assert part in text
 
 
 def test_ratings_are_warned_about(capsys):
     """Beyond D n, the static rating or the oil sheet the point is solved, with a warning."""
-    found = record(capsys, '--speed-rpm', '3000', '--load-N', '60000',
-                   '--temperature-degC', '110')
-    for part in ('speed: D n is 96', 'load: 6e+04 N, the static rating is 5.5e+04 N',
-                 'temperature: 110 degC, the oil sheet covers 0 to 100 degC'):
+    found = record(capsys, '--speed-rpm', '3000', '--load-N', '60000', '--temperature-degC', '110')
+    for part in (
+        'speed: D n is 96',
+        'load: 6e+04 N, the static rating is 5.5e+04 N',
+        'temperature: 110 degC, the oil sheet covers 0 to 100 degC',
+    ):
         assert any(part in text for text in found['warnings'])
 
 
-@pytest.mark.parametrize('words', [
-    ['--speed-rpm', 'nan', '--load-N', '1'], ['--speed-rpm', '1', '--load-N', 'inf'],
-    ['--speed-rpm', '1', '--load-N', '1', '--temperature-degC', '900']])
+@pytest.mark.parametrize(
+    'words',
+    [
+        ['--speed-rpm', 'nan', '--load-N', '1'],
+        ['--speed-rpm', '1', '--load-N', 'inf'],
+        ['--speed-rpm', '1', '--load-N', '1', '--temperature-degC', '900'],
+    ],
+)
 def test_a_number_out_of_range_is_refused(words):
     """Not a number and absurd values are one sentence."""
     with pytest.raises(InputError, match='allowed is'):
@@ -96,8 +117,24 @@ def test_a_number_out_of_range_is_refused(words):
 def test_build_info_check(tmp_path: Path, capsys):
     """A surface is built, described and found good; a second build is the same surface."""
     path = tmp_path / 'map.npz'
-    assert run('surface', 'build', '--out', str(path), '--load-range', '-500', '500',
-               '--temperature-range', '30', '50', '--speed-range', '1', '2000') == 0
+    assert (
+        run(
+            'surface',
+            'build',
+            '--out',
+            str(path),
+            '--load-range',
+            '-500',
+            '500',
+            '--temperature-range',
+            '30',
+            '50',
+            '--speed-range',
+            '1',
+            '2000',
+        )
+        == 0
+    )
     built = capsys.readouterr().out
     assert run('surface', 'info', str(path), '--json') == 0
     info = json.loads(capsys.readouterr().out)
@@ -121,6 +158,7 @@ def test_check_defaults_to_twenty_points_of_the_shipped_surface(capsys):
 def test_check_finds_a_wrong_surface(tmp_path: Path, capsys):
     """A surface whose numbers are not those of its datasheets fails with exit code 1."""
     from dataclasses import replace
+
     data = read(shipped_surface())
     wrong = replace(data, fields={**data.fields, 'rcs': 0.5 * data.fields['rcs']})
     path = tmp_path / 'wrong.npz'

@@ -5,10 +5,10 @@
 from dataclasses import replace
 import math
 
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, settings
+from hypothesis import strategies as st
 import numpy as np
 import pytest
-
 from surrogate import closed_form
 from surrogate.friction import ellipse_nodes
 from surrogate.kinematics import no_slip_rates
@@ -82,6 +82,7 @@ def test_a_boundary_lubricated_contact_rubs_by_the_slip_arm(screw, oil):
 def test_friction_does_not_know_the_direction_of_the_load(rpm, ratio, kelvin):
     """Two equal nuts: the sign of the load picks the nut, not the friction."""
     from surrogate.parameters import load_lubricant, load_screw
+
     screw, oil = load_screw('nominal'), load_lubricant('iso_vg_68')
     one, other = (solve(screw, oil, rpm, sign * ratio * 990, kelvin) for sign in (1, -1))
     assert one.friction_torque == other.friction_torque > 0

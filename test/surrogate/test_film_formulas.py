@@ -2,33 +2,58 @@
 # SPDX-License-Identifier: Apache-2.0
 """Film, asperity and rolling formulas against tables, asymptotes and each other."""
 
-from hypothesis import given, strategies as st
+from hypothesis import given
+from hypothesis import strategies as st
 import numpy as np
 import pytest
-
 from surrogate.film_formulas import (
-    asperity_share_aihara_1987, central_film_hamrock_dowson_1977, central_film_nijenbanning_1994,
-    film_ratio_at_share_aihara_1987, Groups, groups, minimum_film_hamrock_dowson_1977,
-    outside_range, RANGES, rolling_force_biboulet_houpert_2010)
+    asperity_share_aihara_1987,
+    central_film_hamrock_dowson_1977,
+    central_film_nijenbanning_1994,
+    film_ratio_at_share_aihara_1987,
+    Groups,
+    groups,
+    minimum_film_hamrock_dowson_1977,
+    outside_range,
+    RANGES,
+    rolling_force_biboulet_houpert_2010,
+)
 from surrogate.geometry import Contact
 
 
 def dimensional(row):
     """Return contact, load, groups of a row of the dimensional table."""
-    contact = Contact(radius_x=float(row['Rx_mm']) * 1e-3, radius_y=float(row['Ry_mm']) * 1e-3,
-                      reduced_modulus=float(row['E_reduced_GPa']) * 1e9)
+    contact = Contact(
+        radius_x=float(row['Rx_mm']) * 1e-3,
+        radius_y=float(row['Ry_mm']) * 1e-3,
+        reduced_modulus=float(row['E_reduced_GPa']) * 1e9,
+    )
     load = float(row['load_N'])
-    return contact, load, groups(contact, load, float(row['speed_m_s']), float(row['eta0_Pa_s']),
-                                 float(row['alpha_1_Pa']))
+    return (
+        contact,
+        load,
+        groups(
+            contact,
+            load,
+            float(row['speed_m_s']),
+            float(row['eta0_Pa_s']),
+            float(row['alpha_1_Pa']),
+        ),
+    )
 
 
 def moes(load, material, radius_ratio):
     """Return a unit contact and groups with Moes parameters M and L."""
     speed = 1e-11
-    return (Contact(radius_x=1.0, radius_y=radius_ratio, reduced_modulus=1.0),
-            Groups(speed=np.float64(speed), load=np.float64(load * (2 * speed) ** 0.75),
-                   material=np.float64(material * (2 * speed) ** -0.25),
-                   radius_ratio=radius_ratio))
+    return (
+        Contact(radius_x=1.0, radius_y=radius_ratio, reduced_modulus=1.0),
+        Groups(
+            speed=np.float64(speed),
+            load=np.float64(load * (2 * speed) ** 0.75),
+            material=np.float64(material * (2 * speed) ** -0.25),
+            radius_ratio=radius_ratio,
+        ),
+    )
 
 
 def test_central_film_stays_4_to_11_percent_above_converged_solutions(table):
@@ -56,12 +81,17 @@ def test_minimum_film_of_the_papers_own_case(table):
     assert g.material == pytest.approx(4522, rel=2e-3)
     assert outside_range('central_film_hamrock_dowson_1977', g) == ()
     assert minimum_film_hamrock_dowson_1977(contact, g) == pytest.approx(
-        float(row['hmin_nm']) * 1e-9, rel=0.06)
+        float(row['hmin_nm']) * 1e-9, rel=0.06
+    )
 
 
-@pytest.mark.parametrize(('load', 'material', 'ratio', 'film'), [
-    (500, 10, 25.0, 5.310),  # an incompressible solution extrapolated to 5.314
-    (20, 10, 1.0, 4.265)])
+@pytest.mark.parametrize(
+    ('load', 'material', 'ratio', 'film'),
+    [
+        (500, 10, 25.0, 5.310),  # an incompressible solution extrapolated to 5.314
+        (20, 10, 1.0, 4.265),
+    ],
+)
 def test_nijenbanning_values(load, material, ratio, film):
     """Values of the fit in Moes scale."""
     contact, g = moes(load, material, ratio)
@@ -91,20 +121,24 @@ def test_rolling_force_lies_above_the_short_domains(table):
 def test_rolling_force_of_the_nominal_contact(screw):
     """The nominal contact tends to 1.05e-3 of its load for a far inlet; the fit is 20 % below."""
     from surrogate.geometry import screw_contact
+
     contact = screw_contact(screw, 'screw')
     g = groups(contact, 27.6, 0.49657, 0.060, 2e-8)
     assert rolling_force_biboulet_houpert_2010(contact, g) / 27.6 == pytest.approx(
-        1.05e-3, rel=0.25)
+        1.05e-3, rel=0.25
+    )
 
 
 @given(st.floats(0.1, 1e3), st.floats(1.01, 100))
 def test_rolling_force_has_its_isoviscous_limit(load, factor):
     """At M far below 6.6 the force is the rigid one and grows as U^(2/3)."""
     contact, slow = moes(1e-6 * load, 0.1, 4.0)
-    fast = Groups(speed=slow.speed * factor, load=slow.load, material=slow.material,
-                  radius_ratio=4.0)
-    gain = (rolling_force_biboulet_houpert_2010(contact, fast)
-            / rolling_force_biboulet_houpert_2010(contact, slow))
+    fast = Groups(
+        speed=slow.speed * factor, load=slow.load, material=slow.material, radius_ratio=4.0
+    )
+    gain = rolling_force_biboulet_houpert_2010(
+        contact, fast
+    ) / rolling_force_biboulet_houpert_2010(contact, slow)
     assert gain == pytest.approx(factor ** (2 / 3), rel=1e-3)
 
 
@@ -132,6 +166,7 @@ def test_film_ratio_inverts_the_share(share):
 def test_every_range_names_a_formula_and_real_groups():
     """The table of ranges cannot name a formula or group that does not exist."""
     import surrogate.film_formulas as module
+
     for formula, ranges in RANGES.items():
         assert callable(getattr(module, formula))
         for name, (low, high) in ranges.items():
@@ -143,4 +178,5 @@ def test_leaving_a_range_is_told_with_numbers():
     """The phrase names group, value and range."""
     _, g = moes(500, 10, 25.0)
     assert outside_range('central_film_nijenbanning_1994', g) == (
-        'radius_ratio 25 (fitted 1 to 20)',)
+        'radius_ratio 25 (fitted 1 to 20)',
+    )

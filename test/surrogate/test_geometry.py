@@ -4,13 +4,12 @@
 
 import math
 
-from hypothesis import given, strategies as st
+from hypothesis import given
+from hypothesis import strategies as st
 import numpy as np
 import pytest
 from scipy.special import ellipe, ellipk
-
-from surrogate.geometry import (
-    Contact, ellipticity, hertz, reduced_modulus, screw_contact)
+from surrogate.geometry import Contact, ellipticity, hertz, reduced_modulus, screw_contact
 
 RADII = st.floats(1e-3, 0.5)
 
@@ -18,16 +17,20 @@ RADII = st.floats(1e-3, 0.5)
 def test_hertz_table(table, screw):
     """Semi-axes, pressure and approach of both contacts and two ball sizes, to 0.5 %."""
     from dataclasses import replace
+
     for row in table('hertz.csv'):
         f = float(row['conformity'])
-        sized = replace(screw, ball_diameter=float(row['ball_diameter_mm']) * 1e-3,
-                        conformity_screw=f, conformity_nut=f)
+        sized = replace(
+            screw,
+            ball_diameter=float(row['ball_diameter_mm']) * 1e-3,
+            conformity_screw=f,
+            conformity_nut=f,
+        )
         side = 'screw' if row['contact'] == 'A' else 'nut'
         found = hertz(screw_contact(sized, side), 27.6)
         assert found.semi_axis_y == pytest.approx(float(row['a_um']) * 1e-6, rel=5e-3)
         assert found.semi_axis_x == pytest.approx(float(row['b_um']) * 1e-6, rel=5e-3)
-        assert found.max_pressure == pytest.approx(
-            float(row['max_pressure_GPa']) * 1e9, rel=5e-3)
+        assert found.max_pressure == pytest.approx(float(row['max_pressure_GPa']) * 1e9, rel=5e-3)
         assert found.approach == pytest.approx(float(row['approach_um']) * 1e-6, rel=5e-3)
 
 
@@ -37,8 +40,8 @@ def test_sphere_on_flat_is_johnson():
     found, radius = hertz(contact, 50.0), (0.75 * 50.0 * 0.01 / 1.1e11) ** (1 / 3)
     assert found.semi_axis_x == pytest.approx(radius, rel=1e-12)
     assert found.semi_axis_y == pytest.approx(radius, rel=1e-12)
-    assert found.approach == pytest.approx(radius ** 2 / 0.01, rel=1e-12)
-    assert found.max_pressure == pytest.approx(1.5 * 50.0 / (math.pi * radius ** 2), rel=1e-12)
+    assert found.approach == pytest.approx(radius**2 / 0.01, rel=1e-12)
+    assert found.max_pressure == pytest.approx(1.5 * 50.0 / (math.pi * radius**2), rel=1e-12)
 
 
 @given(RADII, RADII)
@@ -47,8 +50,8 @@ def test_ellipticity_solves_the_legendre_form(radius_x, radius_y):
     k = ellipticity(Contact(radius_x=radius_x, radius_y=radius_y, reduced_modulus=2e11))
     ratio, k = (radius_y / radius_x, k) if k >= 1 else (radius_x / radius_y, 1 / k)
     if k > 1.001:
-        m = 1 - 1 / k ** 2
-        legendre = (k ** 2 * ellipe(m) - ellipk(m)) / (ellipk(m) - ellipe(m))
+        m = 1 - 1 / k**2
+        legendre = (k**2 * ellipe(m) - ellipk(m)) / (ellipk(m) - ellipe(m))
         assert legendre == pytest.approx(ratio, rel=1e-6)
 
 
@@ -65,10 +68,10 @@ def test_turning_a_contact_by_90_degrees_swaps_the_axes(radius_x, radius_y, load
 def test_hertz_scales_with_the_cube_root_of_the_load(load, factor):
     """Pressure and axes grow as Q^(1/3), the approach as Q^(2/3)."""
     contact = Contact(radius_x=0.003, radius_y=0.08, reduced_modulus=2.26e11)
-    small, large = hertz(contact, load), hertz(contact, factor ** 3 * load)
+    small, large = hertz(contact, load), hertz(contact, factor**3 * load)
     assert large.max_pressure == pytest.approx(factor * small.max_pressure, rel=1e-9)
     assert large.semi_axis_x == pytest.approx(factor * small.semi_axis_x, rel=1e-9)
-    assert large.approach == pytest.approx(factor ** 2 * small.approach, rel=1e-9)
+    assert large.approach == pytest.approx(factor**2 * small.approach, rel=1e-9)
 
 
 def test_no_load_is_no_contact():

@@ -2,13 +2,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """Hermite interpolation: slopes, breaks, holes, weights."""
 
-from hypothesis import given, strategies as st
+from hypothesis import given
+from hypothesis import strategies as st
 import numpy as np
 import pytest
-
 from surrogate.hermite import (
-    extend_patch_weights, first_rows, hermite_weights, monotone_slopes, patch_table,
-    patch_weights, split_at)
+    extend_patch_weights,
+    first_rows,
+    hermite_weights,
+    monotone_slopes,
+    patch_table,
+    patch_weights,
+    split_at,
+)
 
 NONE = np.empty(0)
 
@@ -20,15 +26,17 @@ def interpolate(nodes, values, x, breaks=NONE):
     row = first_rows(nodes, breaks)[cell]
     width = nodes[cell + 1] - nodes[cell]
     weights = hermite_weights(width, (x - nodes[cell]) / width)
-    return float(np.dot(weights, table[row:row + 2].ravel()))
+    return float(np.dot(weights, table[row : row + 2].ravel()))
 
 
-@given(st.lists(st.floats(0.01, 10), min_size=3, max_size=9),
-       st.lists(st.floats(0, 10), min_size=9, max_size=9))
+@given(
+    st.lists(st.floats(0.01, 10), min_size=3, max_size=9),
+    st.lists(st.floats(0, 10), min_size=9, max_size=9),
+)
 def test_rising_data_rise_between_the_nodes(widths, rises):
     """Monotone in, monotone out."""
     nodes = np.concatenate([[0.0], np.cumsum(widths)])
-    values = np.concatenate([[0.0], np.cumsum(rises)])[:len(nodes)]
+    values = np.concatenate([[0.0], np.cumsum(rises)])[: len(nodes)]
     fine = np.linspace(nodes[0], nodes[-1], 200)
     found = np.array([interpolate(nodes, values, x) for x in fine])
     assert np.all(np.diff(found) >= -1e-9 * max(values[-1], 1))
@@ -45,6 +53,7 @@ def test_straight_lines_are_exact_and_nodes_are_hit():
 
 def test_smooth_monotone_data_converge_at_second_order_or_better():
     """Halving the cells of exp(x) cuts the error by more than four."""
+
     def error(cells):
         nodes = np.linspace(0, 2, cells + 1)
         fine = np.linspace(0, 2, 301)
@@ -71,7 +80,7 @@ def test_breaks_at_the_ends_change_nothing():
 def test_a_hole_spoils_only_its_own_cells():
     """Beside a NaN the slope is one-sided; further away nothing changes."""
     nodes = np.arange(7.0)
-    values = nodes ** 2
+    values = nodes**2
     holed = values.copy()
     holed[3] = np.nan
     slopes, expected = monotone_slopes(nodes, holed), monotone_slopes(nodes, values)
@@ -108,7 +117,7 @@ def test_patch_weights_reproduce_planes(x, y, z):
 def test_tables_of_several_axes_agree_with_one_axis_each():
     """A table over two axes holds, per axis, the slopes of one dimension."""
     a, b = np.array([0.0, 1.0, 3.0]), np.array([-1.0, 0.0, 2.0, 5.0])
-    values = np.outer(a ** 2 + 1, np.exp(b))
+    values = np.outer(a**2 + 1, np.exp(b))
     table = patch_table([a, b], [NONE, np.array([0.0])], values)
     assert table.shape == (3, 5, 3)
     assert table[:, 0, 1] == pytest.approx(monotone_slopes(a, values[:, 0]))

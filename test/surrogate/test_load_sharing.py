@@ -4,9 +4,9 @@
 
 import math
 
-from hypothesis import given, strategies as st
+from hypothesis import given
+from hypothesis import strategies as st
 import pytest
-
 from surrogate.load_sharing import normal_force, nut_forces, UNLOADING_RATIO
 
 
@@ -23,8 +23,9 @@ def test_both_equations_hold(ratio, preload):
     """The springs share the approach and the forces balance the load."""
     loaded, relieved = nut_forces(ratio * preload, preload)
     assert loaded - relieved == pytest.approx(abs(ratio) * preload, rel=1e-9, abs=1e-9 * preload)
-    assert (loaded ** (2 / 3) + relieved ** (2 / 3)
-            == pytest.approx(2 * preload ** (2 / 3), rel=1e-9))
+    assert loaded ** (2 / 3) + relieved ** (2 / 3) == pytest.approx(
+        2 * preload ** (2 / 3), rel=1e-9
+    )
 
 
 @given(st.floats(1.0, 10.0))

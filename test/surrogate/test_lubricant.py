@@ -2,13 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """Lubricant laws at anchors, limits and by properties."""
 
-from hypothesis import given, strategies as st
+from hypothesis import given
+from hypothesis import strategies as st
 import numpy as np
 import pytest
-
 from surrogate.lubricant import (
-    kinematic_viscosity_astm_d341, lubricant_state, shear_stress_eyring_1936,
-    viscosity_roelands_1966)
+    kinematic_viscosity_astm_d341,
+    lubricant_state,
+    shear_stress_eyring_1936,
+    viscosity_roelands_1966,
+)
 
 
 def test_d341_passes_through_both_anchors():
@@ -18,15 +21,22 @@ def test_d341_passes_through_both_anchors():
 
 
 def test_d341_between_the_anchors():
-    """By hand at 65 degC: log log falls from 0.264099 by 3.62445 x 0.033356, so nu is 23.9 mm2/s."""
+    """
+    By hand at 65 degC.
+
+    Log log falls from 0.264099 by 3.62445 x 0.033356, so nu is 23.9 mm2/s.
+
+    """
     assert kinematic_viscosity_astm_d341(338.15, 68e-6, 8.7e-6) == pytest.approx(
-        23.88e-6, rel=1e-3)
+        23.88e-6, rel=1e-3
+    )
 
 
 @given(st.floats(275.0, 370.0))
 def test_a_warmer_oil_is_thinner_lighter_and_softer(kelvin):
     """Viscosity, density and pressure-viscosity fall with temperature."""
     from surrogate.parameters import load_lubricant
+
     oil = lubricant_state(load_lubricant('iso_vg_68'), [kelvin, kelvin + 1])
     for name in ('viscosity', 'density', 'pressure_viscosity'):
         cooler, warmer = getattr(oil, name)
@@ -41,7 +51,12 @@ def test_roelands_is_barus_for_small_pressure():
 
 
 def test_roelands_printed_value():
-    """At 1 GPa: z 0.571713, (6.10204)^z 2.81233, e^(6.85659 x 1.81233) x 0.06 Pa s = 14 958 Pa s."""
+    """
+    At 1 GPa.
+
+    Z 0.571713, (6.10204)^z 2.81233, e^(6.85659 x 1.81233) x 0.06 Pa s = 14 958 Pa s.
+
+    """
     assert viscosity_roelands_1966(1e9, 0.06, 2e-8) == pytest.approx(14958, rel=1e-3)
 
 

@@ -7,12 +7,18 @@ import math
 from pathlib import Path
 import re
 
-from hypothesis import given, strategies as st
+from hypothesis import given
+from hypothesis import strategies as st
 import pytest
-
 from surrogate.lubricant import lubricant_state
 from surrogate.parameters import (
-    DATA, InputError, load_lubricant, load_screw, OperatingPoint, ZERO_CELSIUS)
+    DATA,
+    InputError,
+    load_lubricant,
+    load_screw,
+    OperatingPoint,
+    ZERO_CELSIUS,
+)
 
 SCREW = (DATA / 'screws' / 'nominal.yaml').read_text(encoding='utf-8')
 OIL = (DATA / 'lubricants' / 'iso_vg_68.yaml').read_text(encoding='utf-8')
@@ -57,7 +63,8 @@ def test_nominal_datasheets_hold_every_quantity_of_the_table(table, screw, oil):
         for part in place[0].split('.')[1:]:
             owner = getattr(owner, part)
         assert getattr(owner, place[1]) == pytest.approx(
-            float(row['value']) * place[2], rel=1e-12), row['quantity']
+            float(row['value']) * place[2], rel=1e-12
+        ), row['quantity']
 
 
 def test_vg_68_has_the_nominal_viscosity_at_40_degrees(oil):

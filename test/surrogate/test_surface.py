@@ -9,10 +9,10 @@ import subprocess
 import sys
 import tracemalloc
 
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, settings
+from hypothesis import strategies as st
 import numpy as np
 import pytest
-
 from surrogate import closed_form, torque
 from surrogate.surface import FIELDS, shipped_surface, Surface, SurfaceError, Validity
 from surrogate.surface_file import SurfaceData, write
@@ -51,7 +51,8 @@ def test_lookup_is_exact_at_the_nodes(surface, surface_data):
         found = surface.lookup(speed, float(data.load[j]), float(data.temperature[k]))
         for name in FIELDS:
             assert getattr(found, name) == pytest.approx(
-                float(data.fields[name][i, j, k]), rel=1e-11, abs=1e-15)
+                float(data.fields[name][i, j, k]), rel=1e-11, abs=1e-15
+            )
         checked += 1
     assert checked > 500
 
@@ -61,12 +62,14 @@ def test_lookup_is_exact_at_the_nodes(surface, surface_data):
 def test_lookup_agrees_with_the_model(speed, load, kelvin):
     """Anywhere: efficiency and RCS within 0.003 of a solve at the same point."""
     from surrogate.parameters import load_lubricant, load_screw
+
     screw, oil = load_screw('nominal'), load_lubricant('iso_vg_68')
     solved = closed_form.solve(screw, oil, speed, load, kelvin)
     found = SHIPPED.lookup(speed, load, kelvin)
     if abs(load) > 0.25 * screw.preload:
         assert found.efficiency == pytest.approx(
-            torque.efficiency(float(solved.friction_torque), load, screw.lead), abs=0.003)
+            torque.efficiency(float(solved.friction_torque), load, screw.lead), abs=0.003
+        )
     assert found.rcs == pytest.approx(float(solved.rcs), abs=0.003)
     assert found.film_ratio == pytest.approx(float(solved.film_ratio), rel=0.01)
 
@@ -87,21 +90,28 @@ def test_lookup_is_continuous(speed, load, kelvin, name):
     """A step of a millionth changes nothing by more than a part in ten thousand."""
     here = getattr(SHIPPED.lookup(speed, load, kelvin), name)
     for step in ((1e-6, 0, 0), (0, 1e-3, 0), (0, 0, 1e-5)):
-        beside = SHIPPED.lookup(min(speed * (1 + step[0]), 229.0), min(load + step[1], 3960.0),
-                                min(kelvin + step[2], 353.15))
+        beside = SHIPPED.lookup(
+            min(speed * (1 + step[0]), 229.0),
+            min(load + step[1], 3960.0),
+            min(kelvin + step[2], 353.15),
+        )
         assert getattr(beside, name) == pytest.approx(here, rel=1e-4, abs=1e-6)
 
 
-@pytest.mark.parametrize(('point', 'validity'), [
-    ((0.0, 0.0, 313.15), Validity.SPEED_BELOW_RANGE),
-    ((0.0499, 0.0, 313.15), Validity.SPEED_BELOW_RANGE),
-    ((229.1, 0.0, 313.15), Validity.SPEED_ABOVE_RANGE),
-    ((math.inf, 0.0, 313.15), Validity.SPEED_ABOVE_RANGE),
-    ((math.nan, 0.0, 313.15), Validity.SPEED_BELOW_RANGE),
-    ((60.0, 3960.1, 313.15), Validity.LOAD_OUT_OF_RANGE),
-    ((60.0, math.nan, 313.15), Validity.LOAD_OUT_OF_RANGE),
-    ((60.0, 0.0, 283.14), Validity.TEMPERATURE_OUT_OF_RANGE),
-    ((60.0, 0.0, math.nan), Validity.TEMPERATURE_OUT_OF_RANGE)])
+@pytest.mark.parametrize(
+    ('point', 'validity'),
+    [
+        ((0.0, 0.0, 313.15), Validity.SPEED_BELOW_RANGE),
+        ((0.0499, 0.0, 313.15), Validity.SPEED_BELOW_RANGE),
+        ((229.1, 0.0, 313.15), Validity.SPEED_ABOVE_RANGE),
+        ((math.inf, 0.0, 313.15), Validity.SPEED_ABOVE_RANGE),
+        ((math.nan, 0.0, 313.15), Validity.SPEED_BELOW_RANGE),
+        ((60.0, 3960.1, 313.15), Validity.LOAD_OUT_OF_RANGE),
+        ((60.0, math.nan, 313.15), Validity.LOAD_OUT_OF_RANGE),
+        ((60.0, 0.0, 283.14), Validity.TEMPERATURE_OUT_OF_RANGE),
+        ((60.0, 0.0, math.nan), Validity.TEMPERATURE_OUT_OF_RANGE),
+    ],
+)
 def test_outside_is_an_answer_and_never_a_number(point, validity):
     """No extrapolation: NaN and the reason."""
     found = SHIPPED.lookup(*point)
@@ -123,9 +133,14 @@ def test_limits_of_the_ranges_belong_to_the_surface():
 def test_kinks_are_kept(surface):
     """At the unloading load the pressure goes on, and the slope of the torque jumps."""
     w, kelvin, load = 60.0, 313.15, surface.unloading_load
-    left, right = ((surface.lookup(w, load + side, kelvin).friction_torque
-                    - surface.lookup(w, load, kelvin).friction_torque) / side
-                   for side in (-1e-3, 1e-3))
+    left, right = (
+        (
+            surface.lookup(w, load + side, kelvin).friction_torque
+            - surface.lookup(w, load, kelvin).friction_torque
+        )
+        / side
+        for side in (-1e-3, 1e-3)
+    )
     assert abs(left - right) > 0.5 * abs(right)
 
 
@@ -202,8 +217,11 @@ def test_an_unshipped_surface_lists_the_shipped_ones():
 
 def test_the_lookup_needs_numpy_alone():
     """Importing the surface brings in no scipy, yaml, numba or ROS."""
-    code = ('import sys; import surrogate.surface; '
-            'print([m for m in ("scipy", "yaml", "numba", "rclpy") if m in sys.modules])')
-    found = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True,
-                           check=True, timeout=60)
+    code = (
+        'import sys; import surrogate.surface; '
+        'print([m for m in ("scipy", "yaml", "numba", "rclpy") if m in sys.modules])'
+    )
+    found = subprocess.run(
+        [sys.executable, '-c', code], capture_output=True, text=True, check=True, timeout=60
+    )
     assert found.stdout.strip() == '[]'

@@ -6,14 +6,15 @@ from dataclasses import replace
 import json
 from pathlib import Path
 
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, settings
+from hypothesis import strategies as st
 import numpy as np
 import pytest
-
 from surrogate.surface import shipped_surface
 from surrogate.surface_file import FORMAT_VERSION, read, SurfaceData, SurfaceError, write
 
 SHIPPED = shipped_surface().read_bytes()
+WHOLE = read(shipped_surface()).sha256
 
 
 def rewrite(path: Path, **changes) -> None:
@@ -46,8 +47,10 @@ def test_the_hash_covers_content_and_not_provenance(surface_data: SurfaceData):
     rcs[3, 3, 3] = np.nextafter(rcs[3, 3, 3], 1)
     other = replace(surface_data, fields={**surface_data.fields, 'rcs': rcs})
     assert other.sha256 != surface_data.sha256
-    assert replace(surface_data, header={**surface_data.header, 'tier': 'full'}).sha256 \
+    assert (
+        replace(surface_data, header={**surface_data.header, 'tier': 'full'}).sha256
         != surface_data.sha256
+    )
 
 
 @settings(max_examples=30, deadline=None)
@@ -70,23 +73,31 @@ def test_a_flipped_byte_is_refused_or_harmless(tmp_path_factory, place, change):
     path = tmp_path_factory.mktemp('flip') / 'flip.npz'
     path.write_bytes(damaged)
     try:
-        assert read(path).sha256 == read(shipped_surface()).sha256
+        digest, sentence = read(path).sha256, ''
     except SurfaceError as error:
-        assert '\n' not in str(error)
+        digest, sentence = WHOLE, str(error)
+    assert digest == WHOLE
+    assert '\n' not in sentence
 
 
 def test_an_unknown_version_is_told_before_anything_else(tmp_path: Path):
     """A newer format is not called damaged."""
     path = tmp_path / 'new.npz'
     rewrite(path, format_version=FORMAT_VERSION + 1)
-    with pytest.raises(SurfaceError, match='surface format version 2, this program reads version 1'):
+    with pytest.raises(
+        SurfaceError, match='surface format version 2, this program reads version 1'
+    ):
         read(path)
 
 
-@pytest.mark.parametrize(('changes', 'sentence'), [
-    ({'tier': 'full'}, 'content hash .* differs'),
-    ({'sha256': '0' * 64}, 'content hash .* differs from the stated 0000000000000000'),
-    ({'format': 'map'}, 'not a surface file, its header is of another format')])
+@pytest.mark.parametrize(
+    ('changes', 'sentence'),
+    [
+        ({'tier': 'full'}, 'content hash .* differs'),
+        ({'sha256': '0' * 64}, 'content hash .* differs from the stated 0000000000000000'),
+        ({'format': 'map'}, 'not a surface file, its header is of another format'),
+    ],
+)
 def test_a_changed_header_is_refused(tmp_path: Path, changes, sentence):
     """The header is part of the hash."""
     path = tmp_path / 'changed.npz'
@@ -129,8 +140,9 @@ def test_a_missing_file_is_one_sentence(tmp_path: Path):
         read(tmp_path / 'none.npz')
 
 
-def test_a_failed_write_leaves_the_old_file(tmp_path: Path, surface_data: SurfaceData,
-                                            monkeypatch):
+def test_a_failed_write_leaves_the_old_file(
+    tmp_path: Path, surface_data: SurfaceData, monkeypatch
+):
     """A full disk does not cost the previous surface, and nothing half-written stays."""
     path = tmp_path / 'map.npz'
     write(path, surface_data)

@@ -4,13 +4,18 @@
 
 import math
 
-from hypothesis import given, strategies as st
+from hypothesis import given
+from hypothesis import strategies as st
 import pytest
-
 from surrogate.geometry import helix_angle
 from surrogate.load_sharing import nut_forces
 from surrogate.torque import (
-    drag_torque_catalogue, driving_torque, efficiency, is_back_driving, torque_constant_friction)
+    drag_torque_catalogue,
+    driving_torque,
+    efficiency,
+    is_back_driving,
+    torque_constant_friction,
+)
 
 LEAD = 0.01
 FRICTION, LOAD = st.floats(1e-6, 10.0), st.floats(1.0, 1e5)
@@ -33,8 +38,7 @@ def test_constant_friction_table(table):
     drag = torque_constant_friction(preload, preload, 0.016, angle, mu)
     assert drag == pytest.approx(float(row['drag_torque_Nm']), abs=1e-3)
     for ratio in (0.5, 1, 2):
-        assert driven(ratio) == pytest.approx(
-            float(row[f'eta_at_{ratio}_preload']), abs=1e-3)
+        assert driven(ratio) == pytest.approx(float(row[f'eta_at_{ratio}_preload']), abs=1e-3)
 
 
 @given(FRICTION, LOAD)
@@ -75,5 +79,6 @@ def test_catalogue_drag(screw):
     """0.05 (tan alpha)^-0.5 F L/(2 pi) is 0.25 N m for the nominal nut."""
     found = drag_torque_catalogue(screw.preload, screw.lead, helix_angle(screw))
     assert found == pytest.approx(
-        0.05 / math.sqrt(math.tan(helix_angle(screw))) * 990 * 0.01 / 6.2832, rel=1e-4)
+        0.05 / math.sqrt(math.tan(helix_angle(screw))) * 990 * 0.01 / 6.2832, rel=1e-4
+    )
     assert found == pytest.approx(0.250, abs=1e-3)
