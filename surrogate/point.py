@@ -189,7 +189,8 @@ def page(record: Mapping[str, Any]) -> str:
     contacts = [
         f'  {contact["nut"] + " nut, " + contact["side"]:20} {contact["normal_force_N"]:9.2f} N '
         f'{1e-9 * contact["hertz_pressure_Pa"]:8.3f} GPa '
-        f'{1e9 * contact["central_film_m"]:8.1f} nm {contact["film_ratio"]:8.2f} {100 * contact["rcs"]:8.2f} %'
+        f'{1e9 * contact["central_film_m"]:8.1f} nm {contact["film_ratio"]:8.2f}'
+        f' {100 * contact["rcs"]:8.2f} %'
         for contact in record['contacts']
     ]
     compared = record['comparators']
