@@ -3,8 +3,8 @@
 """
 Time the surface lookup and show it as a multiple of one Python call.
 
-Usage: python bench/surface_lookup.py [FILE]. Times are the best of several repeats; the ratio to an empty
-call, measured in the same run, is the number that must not rot.
+Usage: python bench/surface_lookup.py [FILE]. Times are the best of several repeats; the ratio to
+an empty call, measured in the same run, is the number that must not rot.
 
 """
 

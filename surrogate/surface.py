@@ -169,17 +169,10 @@ class SurfacePoint:
 
     @property
     def efficiency_error(self) -> float:
-        """Interpolation error of the efficiency [-], from that of the torque."""
-        error = self.friction_torque_error
-        if self.validity is not Validity.VALID or self.opposing_load == 0.0:
-            return math.nan
-        beside = (
-            torque.efficiency(
-                max(self.friction_torque + shift, 0.0), self.opposing_load, self.lead
-            )
-            for shift in (-error, error)
+        """Interpolation error of the efficiency [-], to first order in that of the torque."""
+        return self.errors[0] * torque.efficiency_slope(
+            self.values[0], self.opposing_load, self.lead
         )
-        return max(abs(value - self.efficiency) for value in beside)
 
 
 class Surface:

@@ -39,6 +39,19 @@ def efficiency(friction_torque: float, opposing_load: float, lead: float) -> flo
     return 0.0
 
 
+def efficiency_slope(friction_torque: float, opposing_load: float, lead: float) -> float:
+    """
+    Return how much efficiency is lost per friction torque [1/(N m)], at least 0.
+
+    Torque [N m], opposing load [N], lead [m]; NaN at zero load, where no efficiency is defined.
+
+    """
+    ideal = abs(opposing_load) * lead / (2 * math.pi)
+    if opposing_load > 0:
+        return ideal / (ideal + friction_torque) ** 2
+    return 1 / ideal if opposing_load < 0 else math.nan
+
+
 def is_back_driving(friction_torque: float, opposing_load: float, lead: float) -> bool:
     """Tell whether the load drives the screw and gives more torque [N m] than friction takes."""
     return driving_torque(friction_torque, opposing_load, lead) < 0

@@ -13,6 +13,7 @@ from surrogate.torque import (
     drag_torque_catalogue,
     driving_torque,
     efficiency,
+    efficiency_slope,
     is_back_driving,
     torque_constant_friction,
 )
@@ -61,6 +62,17 @@ def test_a_driving_load_gives_what_friction_leaves(friction, load):
     else:
         assert found == 0.0
         assert not is_back_driving(friction, -load, LEAD)
+
+
+@given(FRICTION, LOAD, st.sampled_from([1, -1]))
+def test_slope_is_the_derivative(friction, load, sign):
+    """The slope agrees with a difference quotient, where the screw moves at all."""
+    step, load = 1e-4 * friction, sign * load
+    low, high = (efficiency(friction + side * step, load, LEAD) for side in (-1, 1))
+    if low > 0 and high > 0:
+        assert efficiency_slope(friction, load, LEAD) == pytest.approx(
+            (low - high) / (2 * step), rel=1e-3
+        )
 
 
 def test_zero_load_has_efficiency_zero():
