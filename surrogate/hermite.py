@@ -42,7 +42,7 @@ def _inner(width: Array, secant: Array) -> Array:
     before, after = secant[:-1], secant[1:]
     heavy_after, heavy_before = 2 * width[1:] + width[:-1], width[1:] + 2 * width[:-1]
     rising = before * after > 0
-    with np.errstate(divide='ignore', invalid='ignore'):
+    with np.errstate(divide='ignore', invalid='ignore', over='ignore'):
         mean = (heavy_after + heavy_before) / (heavy_after / before + heavy_before / after)
     slope = np.where(rising, mean, 0.0)
     slope = np.where(np.isnan(before), after, slope)
