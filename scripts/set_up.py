@@ -36,7 +36,8 @@ BAG_GENERATOR = TREE / 'bags' / 'nominal_cycle.py'
 BAG_SOURCES = ('bags/*.py', f'{PACKAGE}/bag_writer.py', f'{PACKAGE}/message_definitions.py')
 # An installer must neither ask nor follow a user's own idea of where packages go.
 PIP = (PYTHON, '-m', 'pip', '--disable-pip-version-check', '--no-input')
-INSTALL = (*PIP, 'install', '--no-deps', '--no-build-isolation')
+# Bytecode is made when a module is first imported: most of what is installed never is.
+INSTALL = (*PIP, 'install', '--no-compile', '--no-deps', '--no-build-isolation')
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)

@@ -15,8 +15,8 @@ check() {
     ".venv/bin/$@" || failed="$failed '$*'"
 }
 
-check ruff check --quiet
-check ruff format --check --quiet
+check ruff check --quiet --output-format concise
+check ruff format --check --quiet --output-format concise
 check mypy
 [ -z "$failed" ] || echo "== failed:$failed"
 .venv/bin/pytest -q "$@"
