@@ -10,6 +10,7 @@ numbers are values, with the unit in brackets.
 """
 
 import math
+from typing import Mapping
 
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 
@@ -17,7 +18,7 @@ from surrogate.surface import Surface
 
 from ballscrew_monitor.conversions import celsius, seconds
 from ballscrew_monitor.estimate import Validity
-from ballscrew_monitor.inputs import Health, InputState
+from ballscrew_monitor.inputs import Health, InputState, Source
 from ballscrew_monitor.judgement import Code, Gate, Level
 from ballscrew_monitor.monitor import Event, State
 
@@ -58,21 +59,29 @@ def failed(node: str, axis: str, reason: str) -> list[DiagnosticStatus]:
 
 
 def statuses(node: str, axis: str, state: State | None, event: Event, surface: Surface, *,
-             active: bool) -> list[DiagnosticStatus]:
-    """Return the three statuses of a configured axis, `state` its last one if there is one."""
+             publishers: Mapping[Source, int] | None) -> list[DiagnosticStatus]:
+    """
+    Return the three statuses of a configured axis, `state` its last one if there is one.
+
+    `publishers` says how many publishers each input is matched with; None: the node is inactive.
+
+    """
     made = blank(node, axis)
     for status in made:
         status.hardware_id = surface.screw_name
     made[2].level, made[2].message = OK, f'{surface.tier} surface loaded'
     made[2].values = _values(_surface_values(surface))
-    if state is None or not active:
+    made[1].values = _values([(f'{source.name.capitalize()} publishers [-]', count)
+                              for source, count in (publishers or {}).items()])
+    if state is None or publishers is None:
         for status in made[:2]:
-            status.level, status.message = STALE, NOTHING_YET if active else INACTIVE
+            status.level = STALE
+            status.message = INACTIVE if publishers is None else NOTHING_YET
         return made
     for status, (level, message) in zip(made, summaries(state, event)):
         status.level, status.message = level, message
     made[0].values = _values(_lubrication_values(state))
-    made[1].values = _values(_input_values(state.inputs))
+    made[1].values = [*made[1].values, *_values(_input_values(state.inputs))]
     return made
 
 

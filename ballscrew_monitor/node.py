@@ -6,7 +6,8 @@ import dataclasses
 import functools
 import signal
 import sys
-from typing import Any
+import traceback
+from typing import Any, Callable
 
 from ballscrew_msgs.msg import BallScrewState, OutOfZone, PointResult, SurfaceInfo
 from ballscrew_msgs.srv import EvaluateOperatingPoint
@@ -14,7 +15,7 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from rcl_interfaces.msg import SetParametersResult
 import rclpy
 from rclpy.clock import Clock, ClockType
-from rclpy.exceptions import InvalidTopicNameException, ParameterException
+from rclpy.exceptions import ParameterException
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
 from rclpy.parameter import Parameter
@@ -28,7 +29,7 @@ from ballscrew_monitor.axis import Axis, build_axis, load_surface
 from ballscrew_monitor.conversions import nanoseconds
 from ballscrew_monitor.errors import InputError
 from ballscrew_monitor.estimate import estimate
-from ballscrew_monitor.inputs import Input
+from ballscrew_monitor.inputs import Input, Source
 from ballscrew_monitor.judgement import Level
 from ballscrew_monitor.messages import (
     fill_result, out_of_zone_message, read_point, StateWriter, surface_info_message, TIERS)
@@ -54,8 +55,21 @@ class Station:
     state_publisher: Any
     event_publisher: Any
     info_publisher: Any
+    subscriptions: dict[Source, Any] = dataclasses.field(default_factory=dict)
     last: State | None = None
     said: tuple[diagnostics.Summary, ...] = ()
+
+
+def _reported(transition: Callable[..., Any]) -> Callable[..., Any]:
+    """Log an exception in a transition; rclpy swallows it and goes to error processing."""
+    @functools.wraps(transition)
+    def report(self: LifecycleNode, state: LifecycleState) -> Any:
+        try:
+            return transition(self, state)
+        except Exception:
+            self.get_logger().error(traceback.format_exc())
+            raise
+    return report
 
 
 class BallscrewMonitor(LifecycleNode):
@@ -66,6 +80,7 @@ class BallscrewMonitor(LifecycleNode):
         super().__init__(parameters.NODE_NAME, **kwargs)
         self._stations: dict[str, Station] = {}
         self._active = False
+        self._finalized = False
         self._reason = ''  # why the last configure failed
         self._inputs: list[Any] = []
         self._tick_timer: Any = None
@@ -81,10 +96,15 @@ class BallscrewMonitor(LifecycleNode):
         self.create_service(Trigger, '~/reset_totals', self._on_reset)
         self.create_service(Trigger, '~/acknowledge', self._on_acknowledge)
 
-    @property
-    def autostart(self) -> bool:
-        """Whether the node is to configure and activate itself."""
-        return bool(self._values['autostart'])
+    def start(self) -> None:
+        """Configure and activate, if the node is to do so itself."""
+        if self._values['autostart'] and self.trigger_configure() == SUCCESS:
+            self.trigger_activate()
+
+    def finish(self) -> None:
+        """Go to the final lifecycle state, if the node is not there yet."""
+        if not self._finalized:
+            self.trigger_shutdown()
 
     # Parameters
 
@@ -140,6 +160,7 @@ class BallscrewMonitor(LifecycleNode):
 
     # Lifecycle
 
+    @_reported
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Load the surfaces and compile the inputs; on failure stay unconfigured, with a reason."""
         try:
@@ -161,7 +182,7 @@ class BallscrewMonitor(LifecycleNode):
             for source in axis.inputs:
                 try:
                     topic = self.resolve_topic_name(source.topic)
-                except InvalidTopicNameException:
+                except RuntimeError:
                     raise InputError(f'parameter {axis.name}.{source.source.name.lower()}.topic '
                                      f'is {source.topic!r}, no topic name') from None
                 if types.setdefault(topic, source.type_name) != source.type_name:
@@ -176,6 +197,7 @@ class BallscrewMonitor(LifecycleNode):
             event_publisher=make(OutOfZone, f'~/{axis.name}/out_of_zone', LATCHED_QOS),
             info_publisher=make(SurfaceInfo, f'~/{axis.name}/surface_info', LATCHED_QOS))
 
+    @_reported
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Subscribe and begin to judge."""
         result = super().on_activate(state)
@@ -195,11 +217,15 @@ class BallscrewMonitor(LifecycleNode):
             for source in station.axis.inputs:
                 readers.setdefault(self.resolve_topic_name(source.topic), []).append(
                     (station, source))
-        self._inputs = [
-            self.create_subscription(those[0][1].message_type, topic,
-                                     functools.partial(self._on_message, those), INPUT_QOS)
-            for topic, those in readers.items()]
+        for topic, those in readers.items():
+            subscription = self.create_subscription(
+                those[0][1].message_type, topic, functools.partial(self._on_message, those),
+                INPUT_QOS)
+            self._inputs.append(subscription)
+            for station, source in those:
+                station.subscriptions[source.source] = subscription
 
+    @_reported
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Stop to judge; levels, events and totals stand."""
         self._stop()
@@ -207,13 +233,16 @@ class BallscrewMonitor(LifecycleNode):
         self._publish_diagnostics()
         return result
 
+    @_reported
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Forget the axes."""
         self._clear()
         return SUCCESS
 
+    @_reported
     def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Stop and forget the axes."""
+        self._finalized = True
         self._clear()
         return SUCCESS
 
@@ -229,6 +258,8 @@ class BallscrewMonitor(LifecycleNode):
         for subscription in self._inputs:
             self.destroy_subscription(subscription)
         self._inputs = []
+        for station in self._stations.values():
+            station.subscriptions = {}
         if self._tick_timer is not None:
             self.destroy_timer(self._tick_timer)
             self._tick_timer = None
@@ -284,8 +315,11 @@ class BallscrewMonitor(LifecycleNode):
         before, station.said = station.said, summaries
         if not before or before[1] != summaries[1]:
             level, text = summaries[1]
-            log = self.get_logger().info if level == diagnostics.OK else self.get_logger().warning
-            log(f'axis {station.axis.name}: {text}')
+            # Two calls: rclpy ties one severity to one place in the code.
+            if level == diagnostics.OK:
+                self.get_logger().info(f'axis {station.axis.name}: {text}')
+            else:
+                self.get_logger().warning(f'axis {station.axis.name}: {text}')
         self._publish_diagnostics()
 
     def _publish_event(self, station: Station) -> None:
@@ -317,13 +351,16 @@ class BallscrewMonitor(LifecycleNode):
         for name in self._values['axes']:
             station = self._stations.get(name)
             if station is not None:
+                matched = {source: subscription.get_publisher_count()
+                           for source, subscription in station.subscriptions.items()}
                 made += diagnostics.statuses(
                     node, name, station.last, station.axis.monitor.event, station.axis.surface,
-                    active=self._active)
+                    publishers=matched if self._active else None)
             elif self._reason:
                 made += diagnostics.failed(node, name, f'not configured: {self._reason}')
             else:
-                made += diagnostics.failed(node, name, 'not configured')
+                reason = 'shut down' if self._finalized else 'not configured'
+                made += diagnostics.failed(node, name, reason)
         return made
 
     # Services
@@ -390,12 +427,6 @@ def _plain(value: Any) -> Any:
     return value if value is None or isinstance(value, (bool, str, float, int)) else list(value)
 
 
-def start(node: BallscrewMonitor) -> None:
-    """Configure and activate, if the node is to do so itself."""
-    if node.autostart and node.trigger_configure() == SUCCESS:
-        node.trigger_activate()
-
-
 def main(args: list[str] | None = None) -> int:
     """Run the node until SIGINT or SIGTERM; return 0, or 2 after bad input."""
     stop: list[int] = []
@@ -411,12 +442,12 @@ def main(args: list[str] | None = None) -> int:
         return 2
     executor = SingleThreadedExecutor()
     executor.add_node(node)
-    start(node)
+    node.start()
     while not stop:
         executor.spin_once(timeout_sec=POLL)
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, signal.SIG_IGN)
-    node.trigger_shutdown()
+    node.finish()
     executor.shutdown()
     node.destroy_node()
     rclpy.shutdown()

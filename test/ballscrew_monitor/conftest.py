@@ -1,0 +1,250 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""A surface of constants for exact tests of the core, and the node in a process of its own."""
+
+import dataclasses
+import math
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import time
+import types
+import warnings
+
+from ballscrew_monitor.conversions import direction_of, SECOND
+from ballscrew_monitor.estimate import Point, PointSource, Validity
+from ballscrew_monitor.inputs import Source
+from ballscrew_monitor.judgement import Limits
+from ballscrew_monitor.monitor import Monitor, Settings
+from ballscrew_msgs.msg import BallScrewState
+from diagnostic_msgs.msg import DiagnosticArray
+from domain_coordinator import domain_id
+from geometry_msgs.msg import WrenchStamped
+from lifecycle_msgs.srv import ChangeState, GetState
+import pytest
+from rcl_interfaces.srv import SetParametersAtomically
+import rclpy
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.parameter import Parameter
+from rclpy.qos import QoSProfile, QoSReliabilityPolicy
+from sensor_msgs.msg import JointState
+
+with warnings.catch_warnings():
+    # A parser that the wheels bring along uses a deprecated module of Python.
+    warnings.simplefilter('ignore', DeprecationWarning)
+    import rosidl_generator_py  # noqa: F401
+
+os.environ['ROS_PYTHON_CHECK_FIELDS'] = '1'
+os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+DEADLINE = 30.0  # [s] for anything that another process has to do
+
+
+@dataclasses.dataclass(kw_only=True)
+class Numbers:
+    """What a surface says of a point."""
+
+    validity: Validity = Validity.VALID
+    rcs: float = 0.0
+    efficiency: float = 0.9
+    film_ratio: float = 3.0
+    friction_torque: float = 0.125
+    driving_torque: float = 2.0
+    back_driving: bool = False
+    worst_nut: int = 1
+    worst_side: int = 2
+    asperity_share: float = 0.0
+    central_film: float = 1e-7
+    minimum_film: float = 5e-8
+    friction_coefficient: float = 0.02
+    max_pressure: float = 1e9
+    efficiency_error: float = 1e-4
+    rcs_error: float = 1e-5
+    efficiency_std: float = math.nan
+    rcs_std: float = math.nan
+
+
+class ConstantSurface:
+    """The same numbers everywhere in its range; each may be changed or be a function of a point."""
+
+    sha256 = '0123456789abcdef' * 4
+    tier = 'closed_form'
+    screw_name = 'constant'
+    oil_name = 'water'
+    preload = 1000.0
+    lead = 0.01
+    speed_range = (0.1, 100.0)
+    load_range = (-4000.0, 4000.0)
+    temperature_range = (283.15, 353.15)
+    errors = {'rcs': (2e-3, 1e-3)}
+
+    def __init__(self, **numbers):
+        self.numbers = numbers
+        self.asked = []
+
+    def lookup(self, speed, opposing_load, temperature):
+        self.asked.append((speed, opposing_load, temperature))
+        if not self.speed_range[0] <= speed:
+            return Numbers(validity=Validity.SPEED_BELOW_RANGE)
+        if not speed <= self.speed_range[1]:
+            return Numbers(validity=Validity.SPEED_ABOVE_RANGE)
+        if not self.load_range[0] <= opposing_load <= self.load_range[1]:
+            return Numbers(validity=Validity.LOAD_OUT_OF_RANGE)
+        if not self.temperature_range[0] <= temperature <= self.temperature_range[1]:
+            return Numbers(validity=Validity.TEMPERATURE_OUT_OF_RANGE)
+        return Numbers(**{
+            name: value(speed, opposing_load) if callable(value) else value
+            for name, value in self.numbers.items()})
+
+
+def make_limits(**changes):
+    """Return limits whose numbers are exact in binary, changed as asked."""
+    values = {'rcs': 0.25, 'efficiency': 0.75, 'light_load': 256.0, 'standstill_speed': 0.5,
+              'raise_delay': SECOND // 2, 'clear_delay': SECOND, 'hysteresis': 0.5}
+    return Limits(**(values | changes))
+
+
+def make_point(speed=10.0, axial_load=-1000.0, temperature=313.15, **changes):
+    """Return a measured point, moving in the direction of its speed."""
+    values = {'speed_source': PointSource.MEASURED, 'axial_load_source': PointSource.MEASURED,
+              'temperature_source': PointSource.MEASURED, 'direction': direction_of(speed)}
+    return Point(speed=speed, axial_load=axial_load, temperature=temperature,
+                 **(values | changes))
+
+
+def make_monitor(surface=None, limits=None, **changes):
+    """Return a monitor of axis x whose speed and load have 0.5 s timeout."""
+    values = {'axis': 'x', 'limits': limits or make_limits(), 'default_temperature': 313.15,
+              'timeouts': {Source.SPEED: SECOND // 2, Source.LOAD: SECOND // 2}}
+    return Monitor(surface or ConstantSurface(), Settings(**(values | changes)))
+
+
+@pytest.fixture(scope='session')
+def core():
+    """Make the parts that tests of the core are built from."""
+    return types.SimpleNamespace(surface=ConstantSurface, numbers=Numbers, limits=make_limits,
+                                 point=make_point, monitor=make_monitor)
+
+
+class NodeProcess:
+    """The node in a process of its own, and a small node here that talks to it."""
+
+    name = '/ballscrew_monitor'
+
+    def __init__(self, domain, folder):
+        self.domain = domain
+        self.output = folder / 'node.log'
+        self.process = None
+        self.context = rclpy.Context()
+        rclpy.init(context=self.context, domain_id=domain)
+        self.node = rclpy.create_node('tester', context=self.context, enable_rosout=False,
+                                      start_parameter_services=False)
+        self.executor = SingleThreadedExecutor(context=self.context)
+        self.executor.add_node(self.node)
+        self.stamp = self.node.get_clock().now().nanoseconds
+
+    def start(self, *arguments, **parameters):
+        """Start the node; parameters of axis x are named with `__` for a dot."""
+        command = [sys.executable, '-m', 'ballscrew_monitor.node', '--ros-args', *arguments]
+        for name, value in ({'diagnostics_period': 0.1} | parameters).items():
+            command += ['-p', f'{name.replace("__", ".")}:={value}']
+        environment = {name: value for name, value in os.environ.items()
+                       if name not in ('LD_LIBRARY_PATH', '_ROS_WHEELS_BOOTSTRAP_COMPLETE')}
+        environment |= {'ROS_DOMAIN_ID': str(self.domain), 'PYTHONPATH': str(ROOT)}
+        with open(self.output, 'w') as output:
+            self.process = subprocess.Popen(command, env=environment, stdout=output, stderr=output)
+
+    def until(self, condition, what='the condition'):
+        """Spin until `condition` gives something true, and return that."""
+        end = time.monotonic() + DEADLINE
+        while time.monotonic() < end:
+            result = condition()
+            if result:
+                return result
+            self.executor.spin_once(timeout_sec=0.02)
+        raise AssertionError(f'{what} did not come, the node said:\n{self.output.read_text()}')
+
+    def listen(self, kind, topic, qos=10):
+        """Return the list to which messages of `topic` are appended."""
+        heard = []
+        self.node.create_subscription(kind, topic, heard.append, qos)
+        return heard
+
+    def states(self, axis='x'):
+        """Return the list to which the states of an axis are appended."""
+        qos = QoSProfile(depth=1000, reliability=QoSReliabilityPolicy.RELIABLE)
+        return self.listen(BallScrewState, f'{self.name}/{axis}/state', qos)
+
+    def call(self, kind, service, **request):
+        """Return the answer of a service of the node."""
+        client = self.node.create_client(kind, f'{self.name}/{service}')
+        self.until(client.service_is_ready, service)
+        future = client.call_async(kind.Request(**request))
+        self.until(future.done, f'the answer of {service}')
+        self.node.destroy_client(client)
+        return future.result()
+
+    def set_parameters(self, **values):
+        """Set parameters as one; return the result."""
+        parameters = [Parameter(name.replace('__', '.'), value=value).to_parameter_msg()
+                      for name, value in values.items()]
+        return self.call(SetParametersAtomically, 'set_parameters_atomically',
+                         parameters=parameters).result
+
+    def transition(self, label):
+        """Ask for a lifecycle transition; return whether it succeeded."""
+        request = ChangeState.Request()
+        request.transition.label = label
+        return self.call(ChangeState, 'change_state', transition=request.transition).success
+
+    def lifecycle(self):
+        """Return the label of the lifecycle state."""
+        return self.call(GetState, 'get_state').current_state.label
+
+    def machine(self, speed_topic='joint_states', load_topic='axial_load'):
+        """Return a function that publishes a speed [rad/s] and a force [N], 10 ms later each."""
+        speeds = self.node.create_publisher(JointState, speed_topic, 100)
+        loads = self.node.create_publisher(WrenchStamped, load_topic, 100)
+        told = self.listen(DiagnosticArray, '/diagnostics')
+        # A best-effort sample is lost unless both sides know of each other.
+        self.until(lambda: told and {'Speed publishers [-]', 'Load publishers [-]'} <= {
+            pair.key for status in told[-1].status for pair in status.values
+            if pair.value == '1'}, 'the match with the inputs of the node')
+
+        def publish(speed, force=-1000.0, *, step=SECOND // 100, joint='x_axis'):
+            self.stamp += step
+            load, joints = WrenchStamped(), JointState(name=[joint], velocity=[speed])
+            for message in (load, joints):
+                stamp = message.header.stamp
+                stamp.sec, stamp.nanosec = divmod(self.stamp, SECOND)
+            load.wrench.force.x = force
+            loads.publish(load)
+            speeds.publish(joints)
+        return publish
+
+    def stop(self, number=signal.SIGINT):
+        """Send a signal; return the exit code."""
+        self.process.send_signal(number)
+        return self.process.wait(DEADLINE)
+
+    def close(self):
+        """End what is left."""
+        if self.process is not None and self.process.poll() is None:
+            self.process.kill()
+            self.process.wait()
+        self.executor.shutdown()
+        self.node.destroy_node()
+        rclpy.shutdown(context=self.context)
+
+
+@pytest.fixture
+def node(tmp_path):
+    """Make a node process that is not started yet, in a DDS domain of its own."""
+    with domain_id() as domain:
+        process = NodeProcess(domain, tmp_path)
+        try:
+            yield process
+        finally:
+            process.close()
