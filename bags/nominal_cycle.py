@@ -3,10 +3,11 @@
 """
 Generate the bag of a nominal machine cycle: 60 s of one milling machine axis.
 
-A table of 200 kg on the nominal screw (lead 10 mm), from cold to warm oil: homing, rapids, a facing
-cut with climb return, light finishing, a deep cut near the unloading load, a dwell, warm-up
-by rapid reversals, the facing cut again and the same cut at high speed. A warm-up takes the better
-part of an hour; here the oil heats up within the cycle. The bytes are the same every time.
+A table of 200 kg on the nominal screw (lead 10 mm), from cold to warm oil: homing, rapids, a
+facing cut with climb return, light finishing, a deep cut near the unloading load, a dwell,
+warm-up by rapid reversals, the facing cut again and the same cut at high speed. A warm-up takes
+the better part of an hour; here the oil heats up within the cycle. The bytes are the same every
+time.
 
 """
 
@@ -36,17 +37,20 @@ ENGAGEMENT_TIME = 0.12  # [s] a cutter enters and leaves the work over this time
 FINE_STEP = 0.001  # [s] of the simulation
 PERIOD = 0.010  # [s] of speed and load samples
 LOAD_PHASE = 0.004  # [s] load samples come before speed samples by this time
-COUNTS = 2 ** 17  # encoder counts per revolution
+COUNTS = 2**17  # encoder counts per revolution
 SPEED_WINDOW = 0.001  # [s] over which the drive counts to get a speed
 BEGIN = 1_767_600_000_000_000_000  # [ns] 2026-01-05 08:00 UTC
 SEED = 2026
 
-JOINT_STATES = Topic(name='/joint_states', type_name='sensor_msgs/msg/JointState',
-                     offer=Offer.SENSOR)
-AXIAL_LOAD = Topic(name='/axial_load', type_name='geometry_msgs/msg/WrenchStamped',
-                   offer=Offer.SENSOR)
-OIL_TEMPERATURE = Topic(name='/oil_temperature', type_name='sensor_msgs/msg/Temperature',
-                        offer=Offer.SENSOR)
+JOINT_STATES = Topic(
+    name='/joint_states', type_name='sensor_msgs/msg/JointState', offer=Offer.SENSOR
+)
+AXIAL_LOAD = Topic(
+    name='/axial_load', type_name='geometry_msgs/msg/WrenchStamped', offer=Offer.SENSOR
+)
+OIL_TEMPERATURE = Topic(
+    name='/oil_temperature', type_name='sensor_msgs/msg/Temperature', offer=Offer.SENSOR
+)
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -67,8 +71,9 @@ class Phase:
 
 
 def _reversals(number: int) -> tuple[Phase, ...]:
-    return tuple(Phase(name='warm-up', duration=1.45, speed=1900.0 * (-1) ** turn)
-                 for turn in range(number))
+    return tuple(
+        Phase(name='warm-up', duration=1.45, speed=1900.0 * (-1) ** turn) for turn in range(number)
+    )
 
 
 CYCLE = (
@@ -137,19 +142,23 @@ def simulate() -> Motion:
     friction = along * GUIDE_FRICTION + GUIDE_DAMPING * velocity
     load = -TABLE_MASS * acceleration - friction - along * _cutting_force(time, number, velocity)
     angle = np.cumsum(velocity) * FINE_STEP * 2 * math.pi / LEAD
-    return Motion(time=time, angle=angle, speed=velocity * 2 * math.pi / LEAD, load=load,
-                  oil=_oil(time))
+    return Motion(
+        time=time, angle=angle, speed=velocity * 2 * math.pi / LEAD, load=load, oil=_oil(time)
+    )
 
 
 def _cutting_force(time: Array, number: NDArray[np.int64], velocity: Array) -> Array:
     """Return the force along the feed [N]: engagement, tooth passing and spindle runout."""
     level = np.array([phase.cut for phase in CYCLE])[number]
     tooth = np.array([phase.tooth for phase in CYCLE])[number]
-    moving = np.abs(velocity) > 0.5 * np.abs(np.array(
-        [phase.speed for phase in CYCLE])[number]) / 60.0 * LEAD
+    moving = (
+        np.abs(velocity)
+        > 0.5 * np.abs(np.array([phase.speed for phase in CYCLE])[number]) / 60.0 * LEAD
+    )
     engaged = _smooth(np.where(moving, level, 0.0), ENGAGEMENT_TIME)
     ripple = 0.05 * np.sin(2 * math.pi * tooth * time) ** 2 + 0.02 * np.sin(
-        2 * math.pi * tooth / 4 * time)
+        2 * math.pi * tooth / 4 * time
+    )
     return engaged * (0.98 + ripple)
 
 
@@ -204,8 +213,10 @@ def _joint_records(motion: Motion, random: np.random.Generator) -> list[Record]:
     speed = _at(motion, 'speed', time) + wobble
     speed = np.round(speed * SPEED_WINDOW / count) * count / SPEED_WINDOW
     angle = np.round(_at(motion, 'angle', time) / count) * count
-    return [_record(JOINT_STATES, at, random, _joint_state, position, velocity)
-            for at, position, velocity in zip(time.tolist(), angle.tolist(), speed.tolist())]
+    return [
+        _record(JOINT_STATES, at, random, _joint_state, position, velocity)
+        for at, position, velocity in zip(time.tolist(), angle.tolist(), speed.tolist())
+    ]
 
 
 def _load_records(motion: Motion, random: np.random.Generator) -> list[Record]:
@@ -213,16 +224,20 @@ def _load_records(motion: Motion, random: np.random.Generator) -> list[Record]:
     time = np.arange(PERIOD, motion.time[-1], PERIOD) - LOAD_PHASE
     load = _at(motion, 'load', time) + random.normal(0.0, 4.0, time.size)
     load = np.round(load / 0.5) * 0.5
-    return [_record(AXIAL_LOAD, at, random, _wrench, force)
-            for at, force in zip(time.tolist(), load.tolist())]
+    return [
+        _record(AXIAL_LOAD, at, random, _wrench, force)
+        for at, force in zip(time.tolist(), load.tolist())
+    ]
 
 
 def _oil_records(motion: Motion, random: np.random.Generator) -> list[Record]:
     """Resistance thermometer in the return line: 0.05 degC of noise, steps of 0.1 degC."""
     time = np.arange(0.0, motion.time[-1], 1.0)
     oil = np.round(_at(motion, 'oil', time) + random.normal(0.0, 0.05, time.size), 1)
-    return [_record(OIL_TEMPERATURE, at, random, _temperature, degrees)
-            for at, degrees in zip(time.tolist(), oil.tolist())]
+    return [
+        _record(OIL_TEMPERATURE, at, random, _temperature, degrees)
+        for at, degrees in zip(time.tolist(), oil.tolist())
+    ]
 
 
 def _at(motion: Motion, name: str, time: Array) -> Array:
@@ -233,8 +248,9 @@ def _record(topic: Topic, time: float, random: np.random.Generator, encode, *val
     """Return a message stamped `time` [s] that arrives a fraction of a millisecond later."""
     stamp = BEGIN + round(time * 1e9)
     delay = round(random.uniform(2e-4, 6e-4) * 1e9)
-    return Record(topic=topic.name, stamp=stamp, log_time=stamp + delay,
-                  data=encode(stamp, *values))
+    return Record(
+        topic=topic.name, stamp=stamp, log_time=stamp + delay, data=encode(stamp, *values)
+    )
 
 
 class Cdr:
@@ -313,15 +329,20 @@ def _write(directory: Path, name: str) -> None:
         for topic in (JOINT_STATES, AXIAL_LOAD, OIL_TEMPERATURE):
             writer.add_topic(topic)
         for record in records():
-            writer.write(record.topic, record.data, log_time=record.log_time,
-                         publish_time=record.stamp)
+            writer.write(
+                record.topic, record.data, log_time=record.log_time, publish_time=record.stamp
+            )
 
 
 def main(arguments: list[str] | None = None) -> int:
     """Generate the bag from the command line."""
     parser = argparse.ArgumentParser(description='Generate the nominal machine cycle as a bag.')
-    parser.add_argument('--out', type=Path, default=Path(__file__).with_name('nominal_cycle'),
-                        help='directory of the bag (default: %(default)s)')
+    parser.add_argument(
+        '--out',
+        type=Path,
+        default=Path(__file__).with_name('nominal_cycle'),
+        help='directory of the bag (default: %(default)s)',
+    )
     directory = parser.parse_args(arguments).out
     generate(directory)
     print(f'{directory}: {sum(phase.duration for phase in CYCLE):.1f} s')

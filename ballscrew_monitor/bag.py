@@ -8,22 +8,32 @@ an MCAP file itself. Whatever is wrong with it is one sentence in an InputError.
 
 """
 
+from collections.abc import Collection, Iterator, Mapping
 import contextlib
 import dataclasses
 import heapq
 from pathlib import Path
 import struct
-from typing import Any, Iterator, Mapping
+from typing import Any
 
+from ballscrew_monitor.errors import InputError
 from mcap.exceptions import McapError
 from mcap.reader import make_reader, McapReader
 import yaml
 
-from ballscrew_monitor.errors import InputError
-
 # What the reader is known to raise for a file that is not as it should be.
-DAMAGE = (McapError, ValueError, KeyError, IndexError, TypeError, AttributeError, EOFError,
-          struct.error, MemoryError, OverflowError)
+DAMAGE = (
+    McapError,
+    ValueError,
+    KeyError,
+    IndexError,
+    TypeError,
+    AttributeError,
+    EOFError,
+    struct.error,
+    MemoryError,
+    OverflowError,
+)
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -51,9 +61,9 @@ class Bag:
     def __init__(self, path: str | Path) -> None:
         """Open the bag at `path`; raises InputError when it is not readable to its end."""
         self.path = Path(path)
-        self._files = _mcap_files(self.path)
+        self.files = _mcap_files(self.path)
         self.topics: dict[str, TopicInfo] = {}
-        spans = [self._read_summary(file) for file in self._files]
+        spans = [self._read_summary(file) for file in self.files]
         spans = [span for span in spans if span[1]]
         if not self.topics or not spans:
             raise InputError(f'bag {self.path} holds no message, at least one is needed')
@@ -66,27 +76,33 @@ class Bag:
         return (self.end_time - self.start_time) * 1e-9
 
     def require(self, topics: Mapping[str, str]) -> None:
-        """Raise InputError unless the bag holds messages of all `topics`, given with their type."""
+        """Raise InputError unless the bag holds messages of all `topics`, given with type."""
         for name, type_name in topics.items():
             if name not in self.topics:
-                raise InputError(f'bag {self.path}: topic {name} ({type_name}) is missing, the '
-                                 f'bag holds {", ".join(sorted(self.topics))}')
+                raise InputError(
+                    f'bag {self.path}: topic {name} ({type_name}) is missing, the '
+                    f'bag holds {", ".join(sorted(self.topics))}'
+                )
             found = self.topics[name]
             if found.type_name != type_name:
-                raise InputError(f'bag {self.path}: topic {name} is of type {found.type_name}, '
-                                 f'it must be {type_name}')
+                raise InputError(
+                    f'bag {self.path}: topic {name} is of type {found.type_name}, '
+                    f'it must be {type_name}'
+                )
             if found.encoding != 'cdr':
-                raise InputError(f'bag {self.path}: topic {name} is encoded as {found.encoding}, '
-                                 'it must be cdr')
+                raise InputError(
+                    f'bag {self.path}: topic {name} is encoded as {found.encoding}, it must be cdr'
+                )
             if not found.count:
-                raise InputError(f'bag {self.path}: topic {name} holds no message, '
-                                 'at least one is needed')
+                raise InputError(
+                    f'bag {self.path}: topic {name} holds no message, at least one is needed'
+                )
 
-    def messages(self, topics: Mapping[str, Any] | None = None) -> Iterator[Message]:
-        """Yield the messages of `topics` (all if None) by log time; raises InputError on damage."""
+    def messages(self, topics: Collection[str] | None = None) -> Iterator[Message]:
+        """Yield messages of `topics` (None: all) by log time; raises InputError on damage."""
         wanted = list(self.topics if topics is None else topics)
         with contextlib.ExitStack() as stack:
-            streams = [self._read(stack, file, wanted) for file in self._files]
+            streams = [self._read(stack, file, wanted) for file in self.files]
             yield from heapq.merge(*streams, key=lambda message: message.log_time)
 
     def verify(self) -> None:
@@ -94,13 +110,18 @@ class Bag:
         for _ in self.messages():
             pass
 
-    def _read(self, stack: contextlib.ExitStack, file: Path,
-              wanted: list[str]) -> Iterator[Message]:
+    def _read(
+        self, stack: contextlib.ExitStack, file: Path, wanted: list[str]
+    ) -> Iterator[Message]:
         with self._damage_is_input(file):
             reader = make_reader(stack.enter_context(file.open('rb')), validate_crcs=True)
             for _, channel, message in reader.iter_messages(topics=wanted):
-                yield Message(topic=channel.topic, data=message.data, log_time=message.log_time,
-                              publish_time=message.publish_time)
+                yield Message(
+                    topic=channel.topic,
+                    data=message.data,
+                    log_time=message.log_time,
+                    publish_time=message.publish_time,
+                )
 
     def _read_summary(self, file: Path) -> tuple[int, int]:
         """Add the topics of one file; return its first and last log time [ns], 0 if empty."""
@@ -113,7 +134,8 @@ class Bag:
                     type_name=summary.schemas[channel.schema_id].name,
                     encoding=channel.message_encoding,
                     count=(known.count if known else 0)
-                    + summary.statistics.channel_message_counts.get(number, 0))
+                    + summary.statistics.channel_message_counts.get(number, 0),
+                )
             return summary.statistics.message_start_time, summary.statistics.message_end_time
 
     @contextlib.contextmanager
@@ -126,8 +148,9 @@ class Bag:
             raise InputError(f'bag {file} cannot be read: {error.strerror}') from None
         except DAMAGE as error:
             reason = ' '.join(str(error).split()) or type(error).__name__
-            raise InputError(f'bag {file} is truncated or damaged, it must be a complete MCAP '
-                             f'file ({reason})') from None
+            raise InputError(
+                f'bag {file} is truncated or damaged, it must be a complete MCAP file ({reason})'
+            ) from None
 
 
 def _complete_summary(reader: McapReader) -> Any:

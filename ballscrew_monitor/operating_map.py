@@ -8,20 +8,19 @@ the coldest and the warmest oil too, because it moves with the oil.
 
 """
 
+from collections.abc import Sequence
 import dataclasses
 import math
-from typing import Any, Sequence
+from typing import Any
 
+from ballscrew_monitor.conversions import kelvin
+from ballscrew_monitor.trace import Limits, Trace
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 import numpy as np
 from numpy.typing import NDArray
-
 from surrogate.surface import Surface, Validity
-
-from ballscrew_monitor.conversions import kelvin
-from ballscrew_monitor.trace import Limits, Trace
 
 Array = NDArray[np.float64]
 
@@ -51,11 +50,21 @@ def sample(surface: Surface, trace: Trace, temperature: float) -> Field:
     low, high = _load_span(surface, trace)
     speed = np.linspace(*surface.speed_range, SPEEDS)
     load = np.linspace(low, high, LOADS)
-    points = [[surface.lookup(w, f, kelvin(temperature)) for w in speed.tolist()]
-              for f in load.tolist()]
-    columns = {name: np.array([[getattr(point, name) if point.validity is Validity.VALID
-                                else math.nan for point in row] for row in points])
-               for name in ('efficiency', 'rcs', 'film_ratio')}
+    points = [
+        [surface.lookup(w, f, kelvin(temperature)) for w in speed.tolist()] for f in load.tolist()
+    ]
+    columns = {
+        name: np.array(
+            [
+                [
+                    getattr(point, name) if point.validity is Validity.VALID else math.nan
+                    for point in row
+                ]
+                for row in points
+            ]
+        )
+        for name in ('efficiency', 'rcs', 'film_ratio')
+    }
     return Field(speed=speed * RPM, load=load, **columns)
 
 
@@ -69,7 +78,9 @@ def draw_map(axes: Axes, trace: Trace, surface: Surface) -> float:
     field = sample(surface, trace, mean)
     _draw_zone(axes, field, trace.limits)
     _draw_lines(axes, field, trace.limits, mean)
-    others = [float(degrees) for degrees in (spread.min(), spread.max()) if abs(degrees - mean) > 2]
+    others = [
+        float(degrees) for degrees in (spread.min(), spread.max()) if abs(degrees - mean) > 2
+    ]
     for degrees in others:
         _draw_border(axes, sample(surface, trace, degrees), trace.limits, degrees)
     _label(axes, field)
@@ -90,52 +101,108 @@ def _draw_zone(axes: Axes, field: Field, limits: Limits) -> None:
     """Fill the optimal zone; under a light load only RCS counts."""
     light = np.abs(field.load)[:, None] < limits.light_load
     optimal = (field.rcs < limits.rcs) & (light | (field.efficiency >= limits.efficiency))
-    axes.contourf(field.speed, field.load, optimal.astype(float), levels=[0.5, 1.5],
-                  colors=[OPTIMAL_FILL], zorder=0)
-    axes.axhspan(-limits.light_load, limits.light_load, facecolor='none', edgecolor='#b5b5b5',
-                 hatch='..', linewidth=0.0, zorder=1)
+    axes.contourf(
+        field.speed,
+        field.load,
+        optimal.astype(float),
+        levels=[0.5, 1.5],
+        colors=[OPTIMAL_FILL],
+        zorder=0,
+    )
+    axes.axhspan(
+        -limits.light_load,
+        limits.light_load,
+        facecolor='none',
+        edgecolor='#b5b5b5',
+        hatch='..',
+        linewidth=0.0,
+        zorder=1,
+    )
 
 
 def _draw_lines(axes: Axes, field: Field, limits: Limits, degrees: float) -> None:
-    shown = np.where(np.abs(field.load)[:, None] < 0.2 * limits.light_load, math.nan,
-                     field.efficiency)
-    lines = axes.contour(field.speed, field.load, shown, levels=EFFICIENCIES, colors=BLUE,
-                         linewidths=0.6, alpha=0.75, zorder=2)
+    shown = np.where(
+        np.abs(field.load)[:, None] < 0.2 * limits.light_load, math.nan, field.efficiency
+    )
+    lines = axes.contour(
+        field.speed,
+        field.load,
+        shown,
+        levels=EFFICIENCIES,
+        colors=BLUE,
+        linewidths=0.6,
+        alpha=0.75,
+        zorder=2,
+    )
     axes.clabel(lines, fmt=lambda value: f'{100 * value:.0f} %', fontsize=7)
-    axes.contour(field.speed, field.load, shown, levels=[limits.efficiency], colors=BLUE,
-                 linewidths=2.2, zorder=3)
-    border = axes.contour(field.speed, field.load, field.rcs, levels=[limits.rcs], colors=PURPLE,
-                          linewidths=2.2, zorder=3)
+    axes.contour(
+        field.speed,
+        field.load,
+        shown,
+        levels=[limits.efficiency],
+        colors=BLUE,
+        linewidths=2.2,
+        zorder=3,
+    )
+    border = axes.contour(
+        field.speed,
+        field.load,
+        field.rcs,
+        levels=[limits.rcs],
+        colors=PURPLE,
+        linewidths=2.2,
+        zorder=3,
+    )
     _name_line(axes, field, border.allsegs[0], f'{degrees:.0f} °C', PURPLE, BELOW_TOP)
-    ratios = axes.contour(field.speed, field.load, field.film_ratio, levels=[1.0, 3.0],
-                          colors='#404040', linewidths=0.9, linestyles='dotted', zorder=2)
+    ratios = axes.contour(
+        field.speed,
+        field.load,
+        field.film_ratio,
+        levels=[1.0, 3.0],
+        colors='#404040',
+        linewidths=0.9,
+        linestyles='dotted',
+        zorder=2,
+    )
     for level, paths in zip((1.0, 3.0), ratios.allsegs, strict=True):
         _name_line(axes, field, paths, f'Λ = {level:.0f}', '#404040', TOP)
 
 
 def _draw_border(axes: Axes, field: Field, limits: Limits, degrees: float) -> None:
-    lines = axes.contour(field.speed, field.load, field.rcs, levels=[limits.rcs], colors=PURPLE,
-                         linewidths=1.2, linestyles='dashed', zorder=3)
+    lines = axes.contour(
+        field.speed,
+        field.load,
+        field.rcs,
+        levels=[limits.rcs],
+        colors=PURPLE,
+        linewidths=1.2,
+        linestyles='dashed',
+        zorder=3,
+    )
     _name_line(axes, field, lines.allsegs[0], f'{degrees:.0f} °C', PURPLE, BELOW_TOP)
 
 
-def _name_line(axes: Axes, field: Field, paths: Sequence[Array], text: str, colour: str,
-               height: float) -> None:
+def _name_line(
+    axes: Axes, field: Field, paths: Sequence[Array], text: str, colour: str, height: float
+) -> None:
     """Write on a line where it comes nearest to a `height` [-] of the map."""
     points = [path for path in paths if len(path)]
     if points:
         line = np.concatenate(points)
         level = field.load[0] + height * (field.load[-1] - field.load[0])
-        axes.text(*line[np.argmin(np.abs(line[:, 1] - level))], text, fontsize=8, color=colour,
-                  ha='center', va='center', bbox=BOX, zorder=6)
+        x, y = line[np.argmin(np.abs(line[:, 1] - level))].tolist()
+        axes.text(
+            x, y, text, fontsize=8, color=colour, ha='center', va='center', bbox=BOX, zorder=6
+        )
 
 
 def _label(axes: Axes, field: Field) -> None:
     axes.set_xlim(0.0, field.speed[-1])
     axes.set_ylim(field.load[0], field.load[-1])
     axes.axhline(0.0, color='black', linewidth=0.6, zorder=2)
-    axes.set_xlabel('screw speed, either direction [rev/min]; '
-                    'each point was judged at its own oil temperature')
+    axes.set_xlabel(
+        'screw speed, either direction [rev/min]; each point was judged at its own oil temperature'
+    )
     axes.set_ylabel('axial load [N]\nassists the motion  |  opposes the motion')
 
 
@@ -143,14 +210,38 @@ def legend_entries(limits: Limits, mean: float, *, others: bool) -> list[Any]:
     """Return what the lines of the map mean."""
     entries: list[Any] = [
         Patch(facecolor=OPTIMAL_FILL, edgecolor='none', label=f'optimal zone at {mean:.0f} °C'),
-        Patch(facecolor='none', edgecolor='#b5b5b5', hatch='....', linewidth=0.0,
-              label='light load: efficiency not judged'),
+        Patch(
+            facecolor='none',
+            edgecolor='#b5b5b5',
+            hatch='....',
+            linewidth=0.0,
+            label='light load: efficiency not judged',
+        ),
         Line2D([], [], color=PURPLE, linewidth=2.2, label=f'RCS = {limits.rcs:g}'),
-        Line2D([], [], color=BLUE, linewidth=2.2,
-               label=f'efficiency = {100 * limits.efficiency:g} %')]
+        Line2D(
+            [], [], color=BLUE, linewidth=2.2, label=f'efficiency = {100 * limits.efficiency:g} %'
+        ),
+    ]
     if others:
-        entries.insert(3, Line2D([], [], color=PURPLE, linewidth=1.2, linestyle='dashed',
-                                 label='the same, coldest and warmest oil'))
-    entries.append(Line2D([], [], color='#404040', linewidth=0.9, linestyle='dotted',
-                          label='film ratio Λ = 1 and 3'))
+        entries.insert(
+            3,
+            Line2D(
+                [],
+                [],
+                color=PURPLE,
+                linewidth=1.2,
+                linestyle='dashed',
+                label='the same, coldest and warmest oil',
+            ),
+        )
+    entries.append(
+        Line2D(
+            [],
+            [],
+            color='#404040',
+            linewidth=0.9,
+            linestyle='dotted',
+            label='film ratio Λ = 1 and 3',
+        )
+    )
     return entries

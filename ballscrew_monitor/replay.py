@@ -3,24 +3,25 @@
 """
 Replays a bag through the same pure pipeline as the node, without DDS, faster than real time.
 
-Samples are taken in the order of their stamps, equal stamps in the fixed order of the sources; ticks
-fall on the same grid of stamps as online.
+Samples are taken in the order of their stamps, equal stamps in the fixed order of the sources;
+ticks fall on the same grid of stamps as online.
 
 """
 
+from collections.abc import Iterator, Mapping, Sequence
 import heapq
 import itertools
-from typing import Any, Iterator, Mapping, NamedTuple
-
-from ballscrew_msgs.msg import BallScrewState, OutOfZone
-from rclpy.serialization import deserialize_message
+from typing import Any, NamedTuple
 
 from ballscrew_monitor.axis import Axis, build_axis
 from ballscrew_monitor.bag import Bag, Message
 from ballscrew_monitor.conversions import nanoseconds
+from ballscrew_monitor.errors import InputError
 from ballscrew_monitor.inputs import Input, Refusal, Sample
 from ballscrew_monitor.messages import out_of_zone_message, StateWriter, TIERS
 from ballscrew_monitor.monitor import State
+from ballscrew_msgs.msg import BallScrewState, OutOfZone
+from rclpy.serialization import deserialize_message
 
 REORDER = nanoseconds(1.0)  # [ns] log time over which samples are put into the order of stamps
 
@@ -41,6 +42,30 @@ def input_topics(values: Mapping[str, Any]) -> dict[str, str]:
             if topic:
                 found[absolute(topic)] = values[f'{axis}.{name}.type']
     return found
+
+
+def speed_messages(bag: Bag, axes: Sequence[Axis]) -> dict[str, int]:
+    """
+    Return for each axis how many messages of `bag` speak of its speed.
+
+    Reads and so verifies the whole bag; raises InputError when it is damaged, or when it says
+    nothing of an axis.
+
+    """
+    speed = {axis.name: axis.inputs[-1] for axis in axes}
+    counts = dict.fromkeys(speed, 0)
+    for message in bag.messages():
+        for name, source in speed.items():
+            if message.topic == absolute(source.topic):
+                value = source.read_field(_decode(message, source.message_type))
+                counts[name] += value is not None
+    for name, count in counts.items():
+        if not count:
+            raise InputError(
+                f'bag {bag.path}: no message of {absolute(speed[name].topic)} holds '
+                f'the speed of axis {name}, at least one must'
+            )
+    return counts
 
 
 def absolute(topic: str) -> str:

@@ -2,18 +2,26 @@
 # SPDX-License-Identifier: Apache-2.0
 """The live status: one line on a terminal that is written over, or one plain line a second."""
 
+from collections.abc import Mapping, Sequence
 import math
 import shutil
-from typing import Mapping, Sequence, TextIO
+from typing import TextIO
 
 from ballscrew_msgs.msg import BallScrewState, Finding, PointResult
 
-REGIMES = {PointResult.REGIME_BOUNDARY: 'boundary', PointResult.REGIME_MIXED: 'mixed',
-           PointResult.REGIME_HYDRODYNAMIC: 'hydrodynamic'}
+REGIMES = {
+    PointResult.REGIME_BOUNDARY: 'boundary',
+    PointResult.REGIME_MIXED: 'mixed',
+    PointResult.REGIME_HYDRODYNAMIC: 'hydrodynamic',
+}
 ZONES = {BallScrewState.ZONE_OPTIMAL: 'optimal', BallScrewState.ZONE_OUTSIDE: 'outside'}
 GATES = {BallScrewState.GATE_STANDSTILL: 'standstill', BallScrewState.GATE_LIGHT_LOAD: 'light'}
-CAUSES = {Finding.CODE_RCS_HIGH: 'RCS high', Finding.CODE_EFFICIENCY_LOW: 'efficiency low',
-          Finding.CODE_OUT_OF_RANGE: 'out of range', Finding.CODE_INPUT_LOST: 'input lost'}
+CAUSES = {
+    Finding.CODE_RCS_HIGH: 'RCS high',
+    Finding.CODE_EFFICIENCY_LOW: 'efficiency low',
+    Finding.CODE_OUT_OF_RANGE: 'out of range',
+    Finding.CODE_INPUT_LOST: 'input lost',
+}
 BAR_WIDTH = 12
 PLAIN_PERIOD = 1.0  # [s] between plain lines
 # Cells left out on a narrow terminal, the first one first: bar, oil, load, film ratio, regime, ...
@@ -36,7 +44,8 @@ def state_cells(state: BallScrewState) -> list[str]:
         f'Lambda {_number(math.nan if standstill else result.film_ratio, 4, 2)}',
         f'RCS {_number(math.nan if standstill else result.rcs, 6, 4)}',
         f'{_zone(state):15}',
-        _warning(state)]
+        _warning(state),
+    ]
 
 
 def progress_bar(part: float, left: float) -> str:

@@ -6,11 +6,13 @@ import dataclasses
 import math
 from typing import Any
 
+from ballscrew_monitor.conversions import SECOND
 from ballscrew_msgs.msg import BallScrewState, Finding, OutOfZone
 
-from ballscrew_monitor.conversions import SECOND
-
-RELATIONS = {Finding.CODE_RCS_HIGH: ('RCS', '>='), Finding.CODE_EFFICIENCY_LOW: ('efficiency', '<')}
+RELATIONS = {
+    Finding.CODE_RCS_HIGH: ('RCS', '>='),
+    Finding.CODE_EFFICIENCY_LOW: ('efficiency', '<'),
+}
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -38,8 +40,8 @@ class Summary:
     """
     Totals of one axis.
 
-    Stamps of the first and last state [ns]; number of states and of judged speed samples [-]; times
-    [s]; energy [J]; events in order.
+    Stamps of the first and last state [ns]; number of states and of judged speed samples [-];
+    times [s]; energy [J]; events in order.
 
     """
 
@@ -61,17 +63,25 @@ class Summary:
 
     def to_json(self) -> dict[str, Any]:
         """Return plain data for JSON; NaN is null, times of events are relative [s]."""
-        record = {_with_unit(field.name): _plain(getattr(self, field.name))
-                  for field in dataclasses.fields(self) if field.name != 'events'}
+        record = {
+            _with_unit(field.name): _plain(getattr(self, field.name))
+            for field in dataclasses.fields(self)
+            if field.name != 'events'
+        }
         record['events'] = [self._event_json(event) for event in self.events]
         return record
 
     def _event_json(self, event: EventRecord) -> dict[str, Any]:
-        return {'event_id': event.event_id, 'start_s': self.since_first(event.start),
-                'duration_s': event.duration, 'active': event.active,
-                'cause': f'{event.quantity} {event.relation} limit',
-                'worst_value': _plain(event.worst_value), 'limit': _plain(event.limit),
-                'advice': event.advice}
+        return {
+            'event_id': event.event_id,
+            'start_s': self.since_first(event.start),
+            'duration_s': event.duration,
+            'active': event.active,
+            'cause': f'{event.quantity} {event.relation} limit',
+            'worst_value': _plain(event.worst_value),
+            'limit': _plain(event.limit),
+            'advice': event.advice,
+        }
 
     def since_first(self, stamp: int) -> float:
         """Return a stamp [ns] as time since the first state [s]."""
@@ -86,7 +96,8 @@ class Summary:
             'regime      ' + self._shares('boundary', 'mixed', 'hydrodynamic'),
             'zone        ' + self._shares('optimal', 'outside', 'unjudged'),
             f'events      {len(self.events) or "none"}',
-            *(self._event_line(event) for event in self.events)]
+            *(self._event_line(event) for event in self.events),
+        ]
 
     def _shares(self, *names: str) -> str:
         parts = []
@@ -99,9 +110,11 @@ class Summary:
     def _event_line(self, event: EventRecord) -> str:
         end = 'still on' if event.active else f'{self.since_first(event.end):5.1f} s'
         advice = f'; {event.advice}' if event.advice else ''
-        return (f'  {event.event_id:2d}  {self.since_first(event.start):5.1f} s to {end}  '
-                f'{event.quantity} {event.relation} {event.limit:g}, '
-                f'worst {event.worst_value:.3g}{advice}')
+        return (
+            f'  {event.event_id:2d}  {self.since_first(event.start):5.1f} s to {end}  '
+            f'{event.quantity} {event.relation} {event.limit:g}, '
+            f'worst {event.worst_value:.3g}{advice}'
+        )
 
 
 class Summarizer:
@@ -131,12 +144,18 @@ class Summarizer:
         if self._last is None:
             return None
         totals = self._last.totals
-        names = [field.name for field in dataclasses.fields(Summary) if hasattr(totals, field.name)]
+        names = [
+            field.name for field in dataclasses.fields(Summary) if hasattr(totals, field.name)
+        ]
         return Summary(
-            axis=self._last.axis, first=self._first_stamp, last=stamp_of(self._last),
-            states=self._states, judged=self._last.judged,
+            axis=self._last.axis,
+            first=self._first_stamp,
+            last=stamp_of(self._last),
+            states=self._states,
+            judged=self._last.judged,
             events=tuple(self._events[key] for key in sorted(self._events)),
-            **{name: getattr(totals, name) for name in names})
+            **{name: getattr(totals, name) for name in names},
+        )
 
 
 def stamp_of(message: Any) -> int:
@@ -147,15 +166,24 @@ def stamp_of(message: Any) -> int:
 def _event_record(message: OutOfZone) -> EventRecord:
     quantity, relation = RELATIONS.get(message.cause.code, ('other', 'beyond'))
     return EventRecord(
-        event_id=message.event_id, start=message.start.sec * SECOND + message.start.nanosec,
-        duration=message.duration, active=message.active, quantity=quantity, relation=relation,
-        worst_value=message.worst_value, limit=message.cause.limit, advice=message.advice)
+        event_id=message.event_id,
+        start=message.start.sec * SECOND + message.start.nanosec,
+        duration=message.duration,
+        active=message.active,
+        quantity=quantity,
+        relation=relation,
+        worst_value=message.worst_value,
+        limit=message.cause.limit,
+        advice=message.advice,
+    )
 
 
 def _with_unit(name: str) -> str:
     if name in ('first', 'last'):
         return f'{name}_stamp_ns'
-    return f'{name}_s' if name.endswith('_time') else {'energy_lost': 'energy_lost_J'}.get(name, name)
+    return (
+        f'{name}_s' if name.endswith('_time') else {'energy_lost': 'energy_lost_J'}.get(name, name)
+    )
 
 
 def _plain(value: Any) -> Any:

@@ -5,11 +5,10 @@
 import array
 import dataclasses
 
+from ballscrew_monitor.summary import stamp_of
 from ballscrew_msgs.msg import BallScrewState, PointResult
 import numpy as np
 from numpy.typing import NDArray
-
-from ballscrew_monitor.summary import stamp_of
 
 Array = NDArray[np.float64]
 
@@ -53,8 +52,17 @@ class Trace:
 class Tracer:
     """Collects the states of one axis."""
 
-    COLUMNS = ('speed', 'axial_load', 'opposing_load', 'temperature', 'efficiency', 'rcs',
-               'film_ratio', 'zone', 'level')
+    COLUMNS = (
+        'speed',
+        'axial_load',
+        'opposing_load',
+        'temperature',
+        'efficiency',
+        'rcs',
+        'film_ratio',
+        'zone',
+        'level',
+    )
 
     def __init__(self) -> None:
         """Begin with nothing."""
@@ -70,8 +78,12 @@ class Tracer:
             self._columns[name].append(value)
         if self._limits is None:
             self._axis, self._tier = state.axis, state.result.tier
-        self._limits = Limits(rcs=state.rcs_limit, efficiency=state.efficiency_limit,
-                              light_load=state.light_load_limit, standstill=state.standstill_limit)
+        self._limits = Limits(
+            rcs=state.rcs_limit,
+            efficiency=state.efficiency_limit,
+            light_load=state.light_load_limit,
+            standstill=state.standstill_limit,
+        )
 
     def result(self) -> Trace | None:
         """Return the columns, None without a state."""
@@ -79,9 +91,12 @@ class Tracer:
             return None
         stamps = np.array(self._stamps, dtype=np.int64)
         return Trace(
-            axis=self._axis, tier=self._tier, limits=self._limits,
+            axis=self._axis,
+            tier=self._tier,
+            limits=self._limits,
             time=(stamps - stamps[0]) * 1e-9,
-            **{name: np.array(column) for name, column in self._columns.items()})
+            **{name: np.array(column) for name, column in self._columns.items()},
+        )
 
 
 def _row(state: BallScrewState) -> tuple[float, ...]:
@@ -89,6 +104,14 @@ def _row(state: BallScrewState) -> tuple[float, ...]:
     along = -1.0 if point.speed < 0.0 else 1.0
     still = BallScrewState.GATE_STANDSTILL in gates
     unjudged = still or BallScrewState.GATE_LIGHT_LOAD in gates
-    return (point.speed, point.axial_load, -along * point.axial_load, point.temperature,
-            np.nan if unjudged else result.efficiency, np.nan if still else result.rcs,
-            np.nan if still else result.film_ratio, state.zone, state.level)
+    return (
+        point.speed,
+        point.axial_load,
+        -along * point.axial_load,
+        point.temperature,
+        np.nan if unjudged else result.efficiency,
+        np.nan if still else result.rcs,
+        np.nan if still else result.film_ratio,
+        state.zone,
+        state.level,
+    )

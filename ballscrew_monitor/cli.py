@@ -1,0 +1,160 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+The `ballscrew` command.
+
+Subcommands that need ROS import it in their handlers, so that the offline ones start fast.
+
+"""
+
+import argparse
+import json
+from pathlib import Path
+import sys
+from typing import Any
+
+from ballscrew_monitor import errors
+from surrogate.cli import add_commands
+from surrogate.parameters import InputError
+from surrogate.surface import SurfaceError
+
+BAG, PARAMS, OUT = Path('bags/nominal_cycle'), Path('config/nominal_cycle.yaml'), Path('out')
+BAD_INPUT, INTERRUPTED = 2, 130
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run the command line; return the exit code."""
+    args = _parser().parse_args(arguments)
+    try:
+        return int(args.handler(args))
+    except (errors.InputError, InputError, SurfaceError) as error:
+        print(f'ballscrew: {error}', file=sys.stderr)
+        return BAD_INPUT
+    except BrokenPipeError:
+        # The reader, such as `head`, has seen enough; nothing may be written at exit either.
+        sys.stdout = None
+        return 1
+    except KeyboardInterrupt:
+        print('ballscrew: interrupted', file=sys.stderr)
+        return INTERRUPTED
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog='ballscrew',
+        description='Lubrication and efficiency of ball screws: model, surface '
+        'files, and the monitor at work on a recorded cycle.',
+    )
+    subparsers = parser.add_subparsers(required=True, metavar='COMMAND')
+    _add_run(
+        subparsers.add_parser(
+            'run', help='play a bag into the real node over DDS and record what it says'
+        )
+    )
+    _add_replay(
+        subparsers.add_parser('replay', help='judge a bag without DDS, faster than real time')
+    )
+    _add_play(subparsers.add_parser('play', help='play a bag over DDS, with /clock'))
+    add_commands(subparsers)
+    return parser
+
+
+def _add_run(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument('--bag', type=Path, default=BAG, help='bag to play (default %(default)s)')
+    parser.add_argument(
+        '--params',
+        type=Path,
+        default=PARAMS,
+        metavar='FILE',
+        help='parameters of the node (default %(default)s)',
+    )
+    parser.add_argument(
+        '--out',
+        type=Path,
+        default=OUT,
+        metavar='DIR',
+        help='directory for recording, picture and log (default %(default)s)',
+    )
+    parser.add_argument(
+        '--rate', type=float, default=1.0, help='bag time over wall time (default 1)'
+    )
+    parser.set_defaults(handler=_run)
+
+
+def _add_replay(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument('bag', type=Path, metavar='BAG', help='bag directory or MCAP file')
+    parser.add_argument(
+        '--params',
+        type=Path,
+        default=PARAMS,
+        metavar='FILE',
+        help='parameters of the node (default %(default)s)',
+    )
+    parser.add_argument('--json', action='store_true', help='print JSON')
+    parser.set_defaults(handler=_replay)
+
+
+def _add_play(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument('bag', type=Path, metavar='BAG', help='bag directory or MCAP file')
+    parser.add_argument(
+        '--rate', type=float, default=1.0, help='bag time over wall time (default 1)'
+    )
+    parser.add_argument(
+        '--wait',
+        type=float,
+        default=10.0,
+        metavar='SECONDS',
+        help='longest wait for a subscriber of every topic (default 10)',
+    )
+    parser.set_defaults(handler=_play)
+
+
+def _run(args: argparse.Namespace) -> int:
+    from ballscrew_monitor.run import plan, run
+
+    return run(plan(args.bag, args.params, args.out, args.rate))
+
+
+def _replay(args: argparse.Namespace) -> int:
+    from ballscrew_monitor import parameters
+    from ballscrew_monitor.bag import Bag
+    from ballscrew_monitor.replay import replay
+    from ballscrew_monitor.summary import Summarizer
+
+    values = parameters.read_file(args.params)
+    summarizers = {axis: Summarizer() for axis in values['axes']}
+    for judged in replay(Bag(args.bag), values):
+        summarizers[judged.state.axis].add_state(judged.state)
+        if judged.event is not None:
+            summarizers[judged.state.axis].add_event(judged.event)
+    results = {axis: made.result() for axis, made in summarizers.items()}
+    if args.json:
+        print(
+            json.dumps(
+                {axis: result and result.to_json() for axis, result in results.items()},
+                indent=2,
+                allow_nan=False,
+            )
+        )
+        return 0
+    for axis, result in results.items():
+        _print_summary(axis, result)
+    return 0
+
+
+def _print_summary(axis: str, result: Any) -> None:
+    if result is None:
+        print(f'axis {axis}: no state')
+        return
+    print(f'axis {axis}: {result.judged} speed samples judged')
+    print('\n'.join(f'  {line}' for line in result.lines()))
+
+
+def _play(args: argparse.Namespace) -> int:
+    from ballscrew_monitor.playback import playback
+
+    return playback(args.bag, rate=args.rate, patience=args.wait)
+
+
+if __name__ == '__main__':
+    sys.exit(main())

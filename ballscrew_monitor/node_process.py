@@ -1,0 +1,102 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The monitor node as a child process that never outlives its parent."""
+
+import ctypes
+import os
+from pathlib import Path
+import signal
+import subprocess
+import sys
+from typing import Any
+
+PATIENCE = ((signal.SIGINT, 8.0), (signal.SIGTERM, 3.0), (signal.SIGKILL, 5.0))  # [s] after each
+PR_SET_PDEATHSIG = 1
+# Set by the ROS wheels for their own process; a child finds its libraries itself.
+WHEEL_VARIABLES = ('LD_LIBRARY_PATH', '_ROS_WHEELS_BOOTSTRAP_COMPLETE')
+
+
+class NodeProcess:
+    """The node, its log in a file; use it as a context manager, then it is gone at the end."""
+
+    def __init__(self, params: Path, log: Path, *, domain: int) -> None:
+        """Start the node on simulated time in `domain`; call this from the main thread."""
+        self.log = log
+        command = [
+            sys.executable,
+            '-m',
+            'ballscrew_monitor.node',
+            '--ros-args',
+            '--params-file',
+            str(params),
+            '-p',
+            'use_sim_time:=true',
+        ]
+        libc = ctypes.CDLL(None)
+        with log.open('wb') as stream:
+            self._process = subprocess.Popen(
+                command,
+                stdin=subprocess.DEVNULL,
+                stdout=stream,
+                stderr=subprocess.STDOUT,
+                env=child_environment(domain),
+                start_new_session=True,
+                # The kernel kills the child when this process dies, whatever kills it.
+                preexec_fn=lambda: libc.prctl(PR_SET_PDEATHSIG, signal.SIGKILL),
+            )
+
+    def __enter__(self) -> 'NodeProcess':
+        """Return the process itself."""
+        return self
+
+    def __exit__(self, *unused: Any) -> None:
+        """Stop the node."""
+        self.stop()
+
+    @property
+    def returncode(self) -> int | None:
+        """Exit code, negative for a signal; None while it runs."""
+        return self._process.poll()
+
+    @property
+    def pid(self) -> int:
+        """Process id, which is that of its session too."""
+        return self._process.pid
+
+    def stop(self) -> int:
+        """End the node and all it started: asked, then told, then killed; return its code."""
+        for number, patience in PATIENCE:
+            if self._process.poll() is not None:
+                break
+            self._signal(number)
+            try:
+                self._process.wait(patience)
+            except subprocess.TimeoutExpired:
+                continue
+        self._signal(signal.SIGKILL)  # what is left of its group
+        return self._process.wait()
+
+    def last_words(self) -> str:
+        """Return the last line of the log, empty if there is none."""
+        lines = self.log.read_text(errors='replace').strip().splitlines()
+        return lines[-1].strip() if lines else ''
+
+    def _signal(self, number: signal.Signals) -> None:
+        try:
+            os.killpg(self._process.pid, number)
+        except ProcessLookupError:
+            pass
+
+
+def child_environment(domain: int) -> dict[str, str]:
+    """Return the environment of a child process in `domain`."""
+    made = dict(os.environ)
+    if '_ROS_WHEELS_BOOTSTRAP_COMPLETE' in made:
+        for name in WHEEL_VARIABLES:
+            made.pop(name, None)
+    return made | ros_environment(domain) | {'PYTHONUNBUFFERED': '1'}
+
+
+def ros_environment(domain: int) -> dict[str, str]:
+    """Return the variables that put a ROS process into `domain`, on this machine only."""
+    return {'ROS_DOMAIN_ID': str(domain), 'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST'}

@@ -1,0 +1,65 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What is left of a run: the summary on the terminal and the picture, both from the recording."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ballscrew_monitor.bag import Bag
+from ballscrew_monitor.parameters import NODE_NAME
+from ballscrew_monitor.replay import absolute
+from ballscrew_monitor.summary import Summarizer, Summary
+from ballscrew_monitor.trace import Trace, Tracer
+from ballscrew_msgs.msg import BallScrewState, OutOfZone
+from rclpy.serialization import deserialize_message
+
+if TYPE_CHECKING:
+    from ballscrew_monitor.run import Plan
+    from ballscrew_monitor.supervision import Outcome
+
+
+def read_outputs(bag: Bag, axis: str) -> tuple[Summary | None, Trace | None]:
+    """Return the summary and the columns of `axis` in a recording; None without a state."""
+    state, event = (absolute(f'{NODE_NAME}/{axis}/{name}') for name in ('state', 'out_of_zone'))
+    summarizer, tracer = Summarizer(), Tracer()
+    for message in bag.messages({state, event} & set(bag.topics)):
+        if message.topic == state:
+            decoded = deserialize_message(message.data, BallScrewState)
+            summarizer.add_state(decoded)
+            tracer.add_state(decoded)
+        else:
+            summarizer.add_event(deserialize_message(message.data, OutOfZone))
+    return summarizer.result(), tracer.result()
+
+
+def report(plan: Plan, outcome: Outcome) -> None:
+    """Print the summary of every axis and write its picture."""
+    recorded = Bag(outcome.recording)
+    files: list[Path] = []
+    for axis in plan.axes:
+        summary, trace = read_outputs(recorded, axis.name)
+        if summary is None or trace is None:
+            print(f'axis {axis.name}: the node published no state')
+            continue
+        path = plan.out / ('cycle.png' if len(plan.axes) == 1 else f'cycle_{axis.name}.png')
+        # Imported here: it takes longer than everything else of the program.
+        from ballscrew_monitor.cycle_plot import draw
+
+        draw(trace, summary, axis.surface, path)
+        files.append(path)
+        print(
+            f'\naxis {axis.name}, screw {axis.surface.screw_name}, oil {axis.surface.oil_name}, '
+            f'{axis.surface.tier.replace("_", "-")} model'
+        )
+        print(
+            f'  samples     {plan.expected[axis.name]} sent, '
+            f'{outcome.judged[axis.name]} judged, {summary.states} states recorded, '
+            f'at most {1e3 * outcome.lateness:.0f} ms late'
+        )
+        print('\n'.join(f'  {line}' for line in summary.lines()))
+    print(
+        f'\n{outcome.recording} ({outcome.recording.stat().st_size / 1e6:.1f} MB), '
+        f'{", ".join(str(file) for file in [*files, plan.out / "node.log"])}'
+    )

@@ -1,0 +1,146 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+The main job: the real node supervises a recorded cycle, over real DDS, in real time.
+
+The node runs as a child process on simulated time; this process plays the bag into it, records
+what goes in and what comes out, shows the state, and checks in the end that every speed message
+was judged. All of it happens in a ROS domain of its own that is seen on this machine only.
+
+"""
+
+from collections.abc import Iterator, Sequence
+import contextlib
+import dataclasses
+import fcntl
+import os
+from pathlib import Path
+import signal
+import sys
+import threading
+from typing import Any
+
+from ballscrew_monitor import parameters
+from ballscrew_monitor.axis import Axis, build_axis
+from ballscrew_monitor.bag import Bag
+from ballscrew_monitor.bag_writer import BagWriter
+from ballscrew_monitor.domain import free_domain
+from ballscrew_monitor.errors import InputError
+from ballscrew_monitor.node_process import NodeProcess, ros_environment
+from ballscrew_monitor.replay import input_topics, speed_messages
+from ballscrew_monitor.report import report
+from ballscrew_monitor.supervision import Failure, Outcome, Supervision
+
+RECORDING, LOG, LOCK = 'cycle', 'node.log', '.lock'
+DONE, FAILED, SIGNALLED = 0, 1, 128  # exit codes; a signal adds its number
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Plan:
+    """A checked run: what is played, how fast, with which parameters, and where it is written."""
+
+    bag: Bag
+    params: Path
+    values: dict[str, Any]
+    axes: Sequence[Axis]
+    expected: dict[str, int]  # speed messages by axis
+    rate: float
+    out: Path
+
+
+def plan(bag: Path, params: Path, out: Path, rate: float) -> Plan:
+    """Return a checked plan; raises InputError before anything is started or written."""
+    if not 0.0 < rate <= 1000.0:
+        raise InputError(f'rate is {rate:g}, allowed is above 0 to 1000')
+    values = parameters.read_file(params)
+    axes = [build_axis(name, values) for name in values['axes']]
+    opened = Bag(bag)
+    if any(file.resolve() == (out / f'{RECORDING}.mcap').resolve() for file in opened.files):
+        raise InputError(
+            f'bag {bag} would be overwritten by the recording in {out}, '
+            'another output directory must be given'
+        )
+    opened.require(input_topics(values))
+    return Plan(
+        bag=opened,
+        params=params,
+        values=values,
+        axes=axes,
+        rate=rate,
+        out=out,
+        expected=speed_messages(opened, axes),
+    )
+
+
+def run(made: Plan) -> int:
+    """Carry out the plan; return the exit code."""
+    stop = threading.Event()
+    with _exclusive(made.out), interrupts(stop) as interrupted:
+        print(
+            f'bag {made.bag.path}: {made.bag.duration:.1f} s, at {made.rate:g}x; '
+            f'parameters {made.params}',
+            flush=True,
+        )
+        outcome = _supervise(made, stop)
+    if interrupted:
+        print(f'ballscrew: interrupted, recorded so far: {outcome.recording}', file=sys.stderr)
+        return SIGNALLED + interrupted[0]
+    for sentence in outcome.failures:
+        print(f'ballscrew: {sentence}', file=sys.stderr)
+    report(made, outcome)
+    return FAILED if outcome.failures else DONE
+
+
+def _supervise(made: Plan, stop: threading.Event) -> Outcome:
+    with free_domain() as domain, contextlib.ExitStack() as stack:
+        os.environ |= ros_environment(domain)
+        node = stack.enter_context(NodeProcess(made.params, made.out / LOG, domain=domain))
+        print(
+            f'node ballscrew_monitor: process {node.pid}, ROS_DOMAIN_ID={domain} '
+            'ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST',
+            flush=True,
+        )
+        writer = stack.enter_context(BagWriter(made.out, RECORDING))
+        supervision = stack.enter_context(Supervision(made, node, writer, domain))
+        try:
+            return supervision.carry_out(stop)
+        except Failure as failure:
+            return supervision.outcome(str(failure))
+
+
+@contextlib.contextmanager
+def interrupts(stop: threading.Event) -> Iterator[list[int]]:
+    """Collect SIGINT, SIGTERM and SIGHUP in a list and set `stop`, instead of dying of them."""
+    received: list[int] = []
+
+    def take(number: int, frame: Any) -> None:
+        received.append(number)
+        stop.set()
+
+    before = {
+        number: signal.signal(number, take)
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+    }
+    try:
+        yield received
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+@contextlib.contextmanager
+def _exclusive(out: Path) -> Iterator[None]:
+    """Make the output directory and keep other runs out of it."""
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+        stream = (out / LOCK).open('w')
+    except OSError as error:
+        raise InputError(f'output directory {out} cannot be written: {error.strerror}') from None
+    with stream:
+        try:
+            fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            raise InputError(
+                f'output directory {out} is in use by another run, another one must be given'
+            ) from None
+        yield
