@@ -1,0 +1,127 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Stamps of the set-up: what is done again, and what an interruption leaves."""
+
+from collections.abc import Callable
+import importlib.util
+from pathlib import Path
+import sys
+from types import ModuleType
+
+import pytest
+
+SCRIPT = Path(__file__).resolve().parents[2] / 'scripts' / 'set_up.py'
+
+SetUp = Callable[..., list[str]]
+
+
+@pytest.fixture
+def module(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
+    """Return the script as a module that works on an empty tree."""
+    specification = importlib.util.spec_from_file_location('set_up', SCRIPT)
+    assert specification is not None
+    assert specification.loader is not None
+    loaded = importlib.util.module_from_spec(specification)
+    monkeypatch.setitem(sys.modules, 'set_up', loaded)
+    specification.loader.exec_module(loaded)
+    monkeypatch.setattr(loaded, 'TREE', tmp_path)
+    monkeypatch.setattr(loaded, 'PYTHON', Path(sys.executable))
+    monkeypatch.setattr(loaded, 'STAMPS', tmp_path / 'set_up.json')
+    monkeypatch.setattr(loaded, 'LOG', tmp_path / 'log' / 'set_up.log')
+    return loaded
+
+
+@pytest.fixture
+def set_up(module: ModuleType, monkeypatch: pytest.MonkeyPatch) -> SetUp:
+    """Return a function that sets up by three steps and returns the exit code and what it did."""
+
+    def run(*, raises: dict[str, BaseException] | None = None, **keys: str) -> list[str]:
+        done: list[str] = []
+
+        def work(name: str) -> Callable[[], None]:
+            def act() -> None:
+                done.append(name)
+                if raises and name in raises:
+                    raise raises[name]
+
+            return act
+
+        monkeypatch.setattr(
+            module,
+            'steps',
+            lambda: [
+                module.Step(
+                    name=name,
+                    text=name,
+                    key=keys.get(name, 'same'),
+                    work=work(name),
+                    made=keys.get(name) != 'lost',
+                )
+                for name in ('environment', 'interfaces', 'bag')
+            ],
+        )
+        return [str(module.main()), *done]
+
+    return run
+
+
+def test_second_call_does_nothing(set_up: SetUp) -> None:
+    """Neither pip nor cmake."""
+    assert set_up() == ['0', 'environment', 'interfaces', 'bag']
+    assert set_up() == ['0']
+
+
+def test_change_repeats_its_step(set_up: SetUp) -> None:
+    """Only that one; what a step makes may also just be gone."""
+    set_up()
+    assert set_up(interfaces='changed') == ['0', 'interfaces']
+    assert set_up(interfaces='changed', bag='lost') == ['0', 'bag']
+
+
+def test_new_environment_is_filled_again(set_up: SetUp) -> None:
+    """All that was in the old one is gone."""
+    set_up()
+    assert set_up(environment='changed') == ['0', 'environment', 'interfaces', 'bag']
+
+
+def test_interruption_is_made_good(set_up: SetUp, capsys: pytest.CaptureFixture[str]) -> None:
+    """The next call repeats the step that was at work, also in a change."""
+    assert set_up(raises={'interfaces': KeyboardInterrupt()}) == [
+        '130',
+        'environment',
+        'interfaces',
+    ]
+    assert capsys.readouterr().err == '\nset-up: interrupted; the next call goes on from here\n'
+    assert set_up() == ['0', 'interfaces', 'bag']
+    set_up(interfaces='changed', raises={'interfaces': KeyboardInterrupt()})
+    assert set_up() == ['0', 'interfaces']
+
+
+def test_failure_is_one_sentence(
+    module: ModuleType, set_up: SetUp, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """With the end of the log above it."""
+    assert set_up(raises={'bag': module.Failure('pip failed with exit code 1')})[0] == '1'
+    assert capsys.readouterr().err.endswith(
+        'set-up: pip failed with exit code 1; the whole output is in log/set_up.log\n'
+    )
+
+
+def test_failing_command_is_named(module: ModuleType) -> None:
+    """Its output is in the log."""
+    module.LOG.parent.mkdir()
+    with pytest.raises(module.Failure, match=r'^python\S* failed with exit code 3$'):
+        module.run(sys.executable, '-c', 'print("why"); raise SystemExit(3)')
+    assert module.LOG.read_text().splitlines()[-1] == 'why'
+
+
+def test_key_follows_names_and_contents(module: ModuleType, tmp_path: Path) -> None:
+    """A file that is renamed, changed or added is noticed."""
+    first, second = tmp_path / 'a', tmp_path / 'b'
+    first.write_text('x')
+    keys = [module.digest('step', files=[first])]
+    second.write_text('x')
+    keys += [module.digest('step', files=[second]), module.digest('step', files=[first, second])]
+    first.write_text('y')
+    keys.append(module.digest('step', files=[first]))
+    assert len(set(keys)) == 4

@@ -1,0 +1,229 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Conventions that no linter knows: units, headers, versions, manifests and what is collected."""
+
+import ast
+from importlib.metadata import requires
+from pathlib import Path
+import re
+import subprocess
+import sys
+from xml.etree import ElementTree
+
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
+import pytest
+
+TREE = Path(__file__).resolve().parent.parent
+FOLDERS = ('ballscrew_monitor', 'bags', 'bench', 'docs', 'launch', 'scripts', 'surrogate', 'test')
+SOURCES = sorted(path for name in FOLDERS for path in (TREE / name).rglob('*.py'))
+PACKAGES = [
+    path
+    for path in SOURCES
+    if path.is_relative_to(TREE / 'ballscrew_monitor') or path.is_relative_to(TREE / 'surrogate')
+]
+TEXTS = SOURCES + sorted(
+    path
+    for pattern in ('*', '.ci/*', 'config/*', 'docs/*.md', 'msg_defs/*/*', 'scripts/*')
+    for path in TREE.glob(pattern)
+    if path.is_file() and path not in SOURCES
+)
+HEADER = """\
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+# The last word of the name of a quantity that has a unit.
+QUANTITIES = {
+    'age',
+    'angle',
+    'damping',
+    'density',
+    'duration',
+    'efficiency',
+    'energy',
+    'film',
+    'force',
+    'lead',
+    'load',
+    'mass',
+    'modulus',
+    'period',
+    'power',
+    'preload',
+    'pressure',
+    'radius',
+    'rate',
+    'rcs',
+    'roughness',
+    'speed',
+    'stamp',
+    'temperature',
+    'thickness',
+    'time',
+    'torque',
+    'viscosity',
+}
+UNIT = re.compile(r'\[[^\]]+\]|[Dd]imensionless')
+UNIT_BESIDE = re.compile(r'#.*\[[^\]]+\]')
+MISSPELT = re.compile(r'\[(?:Nm|N\.m|N\*m|rpm|RPM|sec|C|°C|deg C|Pas|Pa\.s|Celsius|Kelvin)\]')
+# Python packages by the names that a ROS machine knows them by.
+ROSDEP = {
+    'matplotlib': 'python3-matplotlib',
+    'numpy': 'python3-numpy',
+    'scipy': 'python3-scipy',
+    'yaml': 'python3-yaml',
+}
+OPTIONAL = {'mcap'}  # for bags only, by the extra of that name
+
+
+def name_of(path: Path) -> str:
+    """Return the path within the tree."""
+    return str(path.relative_to(TREE))
+
+
+def public(body: list[ast.stmt]) -> list[ast.FunctionDef | ast.ClassDef]:
+    """Return the public functions and classes of a module or class, methods included."""
+    found: list[ast.FunctionDef | ast.ClassDef] = []
+    for node in body:
+        if isinstance(node, ast.FunctionDef | ast.ClassDef) and not node.name.startswith('_'):
+            found += [node, *(public(node.body) if isinstance(node, ast.ClassDef) else [])]
+    return found
+
+
+def quantities(node: ast.FunctionDef | ast.ClassDef) -> list[str]:
+    """Return the names of the float parameters or fields that are quantities."""
+    if isinstance(node, ast.FunctionDef):
+        given = [(arg.arg, arg.annotation) for arg in (*node.args.args, *node.args.kwonlyargs)]
+    else:
+        given = [
+            (part.target.id, part.annotation)
+            for part in node.body
+            if isinstance(part, ast.AnnAssign) and isinstance(part.target, ast.Name)
+        ]
+    return [
+        name
+        for name, annotation in given
+        if annotation
+        and re.match(r'float|Array|NDArray', ast.unparse(annotation))
+        and name.split('_')[-1] in QUANTITIES
+    ]
+
+
+def says_unit(node: ast.FunctionDef | ast.ClassDef, text: str) -> bool:
+    """Tell whether a unit is in the docstring, or in a comment beside the fields of a class."""
+    if UNIT.search(ast.get_docstring(node) or ''):
+        return True
+    segment = ast.get_source_segment(text, node) or ''
+    return isinstance(node, ast.ClassDef) and bool(UNIT_BESIDE.search(segment))
+
+
+@pytest.mark.parametrize('path', PACKAGES, ids=name_of)
+def test_docstrings_say_units(path: Path) -> None:
+    """A public function or class with a physical quantity says its [unit]."""
+    text = path.read_text()
+    for node in public(ast.parse(text).body):
+        named = quantities(node)
+        assert not named or says_unit(node, text), f'{node.name}: no [unit] for {named}'
+
+
+@pytest.mark.parametrize('path', PACKAGES, ids=name_of)
+def test_units_are_spelt_as_everywhere(path: Path) -> None:
+    """One spelling for one unit: N m, rev/min, s, degC, Pa s."""
+    tree = ast.parse(path.read_text())
+    for node in (tree, *public(tree.body)):
+        assert not MISSPELT.findall(ast.get_docstring(node) or '')
+
+
+@pytest.mark.parametrize('path', [*SOURCES, TREE / 'setup.py'], ids=name_of)
+def test_sources_carry_copyright_and_licence(path: Path) -> None:
+    """Two lines, the same everywhere."""
+    text = path.read_text()
+    assert text.startswith(HEADER) or text.split('\n', 1)[1].startswith(HEADER)
+
+
+@pytest.mark.parametrize('path', TEXTS, ids=name_of)
+def test_no_file_knows_the_machine_it_was_written_on(path: Path) -> None:
+    """No path into someone's home or scratch space."""
+    assert not re.findall(r'(?<![\w.])/(?:home|root|tmp|work|Users)/\w+', path.read_text())
+
+
+def version_in(name: str, pattern: str) -> str:
+    """Return what a pattern finds first in a file."""
+    match = re.search(pattern, (TREE / name).read_text(), re.MULTILINE)
+    assert match, f'no version in {name}'
+    return match[1]
+
+
+def test_version_is_the_same_everywhere() -> None:
+    """One number for both packages."""
+    assert (
+        len(
+            {
+                version_in('package.xml', r'<version>(.*)</version>'),
+                version_in('msg_defs/package.xml', r'<version>(.*)</version>'),
+                version_in('setup.py', r"version='(.*)'"),
+                version_in('CHANGELOG.rst', r'^(\d+\.\d+\.\d+) \('),
+            }
+        )
+        == 1
+    )
+
+
+def test_pins_meet_all_requirements() -> None:
+    """What setup.py asks for, with all extras, is pinned to a version that it allows."""
+    lines = (TREE / 'constraints.txt').read_text().splitlines()
+    pins = dict(line.split('==') for line in lines if not line.startswith('#'))
+    pinned = {canonicalize_name(name): version for name, version in pins.items()}
+    for requirement in map(Requirement, requires('ballscrew-monitor') or []):
+        version = pinned[canonicalize_name(requirement.name)]
+        assert requirement.specifier.contains(version), f'{requirement}: {version} is pinned'
+
+
+def test_manifest_names_what_is_imported() -> None:
+    """Every package that is imported is depended on, and none that is not."""
+    manifest = ElementTree.parse(TREE / 'package.xml')
+    declared = {element.text for element in manifest.iter('exec_depend')}
+    shipped = [*PACKAGES, *TREE.glob('launch/*.py')]
+    imported = {
+        name.split('.')[0]
+        for path in shipped
+        for node in ast.walk(ast.parse(path.read_text()))
+        for name in (
+            [alias.name for alias in node.names]
+            if isinstance(node, ast.Import)
+            else [node.module or '']
+            if isinstance(node, ast.ImportFrom)
+            else []
+        )
+    }
+    own = {'ballscrew_monitor', 'surrogate'} | OPTIONAL | set(sys.stdlib_module_names)
+    needed = {ROSDEP.get(name, name) for name in imported - own}
+    assert needed <= declared
+    # A message type may be used by its name only.
+    text = ''.join(path.read_text() for path in [*shipped, *TREE.glob('config/*.yaml')])
+    assert not {name for name in declared - needed if f'{name}/' not in text}
+
+
+def test_every_file_of_tests_is_collected() -> None:
+    """Each holds a test, under a name that pytest looks for, and no test hides another."""
+    for path in sorted((TREE / 'test').rglob('*.py')):
+        names = [
+            node.name
+            for node in ast.walk(ast.parse(path.read_text()))
+            if isinstance(node, ast.FunctionDef) and node.name.startswith('test')
+        ]
+        assert len(names) == len(set(names)), f'{path.name}: a test hides another of its name'
+        assert path.name == 'conftest.py' or (path.name.startswith('test_') and names), path.name
+
+
+def test_only_sources_are_in_the_repository() -> None:
+    """Nothing that is made, nothing large."""
+    listed = subprocess.run(
+        ['git', 'ls-files', '-z'], cwd=TREE, capture_output=True, text=True, check=False
+    ).stdout.split('\0')
+    if listed == ['']:
+        pytest.skip('not a git work tree')
+    tracked = [TREE / name for name in listed if (TREE / name).is_file()]
+    large = [name_of(path) for path in tracked if path.stat().st_size > 2_000_000]
+    assert not large
+    assert not [name_of(path) for path in tracked if path.suffix in {'.mcap', '.pyc', '.so'}]

@@ -1,0 +1,99 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Who imports whom: `surrogate` never ROS, the node of `surrogate` the lookup alone.
+
+Once as the sources say it, once as a fresh process does it.
+
+"""
+
+import ast
+from collections.abc import Iterator
+import os
+from pathlib import Path
+import subprocess
+import sys
+
+import pytest
+
+TREE = Path(__file__).resolve().parent.parent
+MODULES = {
+    package: sorted((TREE / package).rglob('*.py'))
+    for package in ('surrogate', 'ballscrew_monitor')
+}
+# What the offline half stands on, and where it is forbidden to be heavy.
+NUMERICAL = {'matplotlib', 'numpy', 'scipy', 'yaml'}
+LOOKUP = {'surrogate', 'surrogate.surface'}
+# Modules that the lookup is made of: numpy and plain arithmetic.
+LOOKUP_PARTS = LOOKUP | {'surrogate.hermite', 'surrogate.surface_file', 'surrogate.torque'}
+
+
+def name_of(path: Path) -> str:
+    """Return the dotted name of a module."""
+    parts = path.relative_to(TREE).with_suffix('').parts
+    return '.'.join(part for part in parts if part != '__init__')
+
+
+def imports(path: Path) -> Iterator[str]:
+    """Yield every absolute import of a module, wherever it stands."""
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            assert not node.level, f'{path.name} imports relatively'
+            # A name may be a module: `from surrogate import surface`.
+            assert node.module
+            deeper = [f'{node.module}.{alias.name}' for alias in node.names]
+            known = [name for name in deeper if (TREE / f'{name.replace(".", "/")}.py').exists()]
+            yield from known or [node.module]
+
+
+def loaded_by(statement: str) -> set[str]:
+    """Return the names of the modules that a fresh process holds after a statement."""
+    inherited = {'LD_LIBRARY_PATH', '_ROS_WHEELS_BOOTSTRAP_COMPLETE'}
+    done = subprocess.run(
+        [sys.executable, '-c', f'{statement}; import sys; print(*sys.modules)'],
+        env={name: value for name, value in os.environ.items() if name not in inherited},
+        check=True,
+        stdout=subprocess.PIPE,
+        text=True,
+        timeout=60,
+    )
+    return set(done.stdout.split())
+
+
+@pytest.mark.parametrize('path', MODULES['surrogate'], ids=name_of)
+def test_surrogate_imports_numerical_libraries_and_itself(path: Path) -> None:
+    """No ROS, nothing of the online half."""
+    allowed = NUMERICAL | {'surrogate'} | set(sys.stdlib_module_names)
+    assert {name.split('.')[0] for name in imports(path)} <= allowed
+
+
+@pytest.mark.parametrize('path', MODULES['ballscrew_monitor'], ids=name_of)
+def test_online_half_imports_the_lookup_alone(path: Path) -> None:
+    """Only the command line, which is both halves, hands over to the offline one."""
+    allowed = LOOKUP | (
+        {'surrogate.cli', 'surrogate.parameters'} if path.name == 'cli.py' else set()
+    )
+    assert {name for name in imports(path) if name.split('.')[0] == 'surrogate'} <= allowed
+
+
+def test_surrogate_loads_no_ros() -> None:
+    """As seen by a process that imports all of it."""
+    loaded = loaded_by(f'import {", ".join(map(name_of, MODULES["surrogate"]))}')
+    assert not [name for name in loaded if name == 'rclpy' or name.split('.')[0].endswith('_msgs')]
+    assert 'ballscrew_monitor' not in loaded
+
+
+def test_lookup_loads_numpy_alone() -> None:
+    """Light enough for any process."""
+    loaded = loaded_by('import surrogate.surface')
+    assert {name for name in loaded if name.split('.')[0] == 'surrogate'} <= LOOKUP_PARTS
+    assert not loaded & {'matplotlib', 'rclpy', 'scipy', 'yaml'}
+
+
+def test_node_loads_the_lookup_alone() -> None:
+    """The process that watches the machine holds nothing of the solver, plots or recordings."""
+    loaded = loaded_by('import ballscrew_monitor.node')
+    assert {name for name in loaded if name.split('.')[0] == 'surrogate'} <= LOOKUP_PARTS
+    assert not loaded & {'matplotlib', 'mcap', 'scipy'}
