@@ -11,9 +11,10 @@ takes a few hundred lookups, so it is done on request and at the start of an eve
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
 import dataclasses
 import math
-from typing import Callable, Iterable, TYPE_CHECKING
+from typing import TYPE_CHECKING
 
 from ballscrew_monitor.conversions import axial_load, opposing_load, signed_speed
 from ballscrew_monitor.estimate import estimate, Point, Validity
@@ -47,8 +48,10 @@ class Advice:
 
 def advise(point: Point, surface: Surface, limits: Limits) -> Advice:
     """Return the nearest optimal speed and load of `point`, its direction kept."""
-    return Advice(target_speed=optimal_speed(point, surface, limits),
-                  target_load=optimal_load(point, surface, limits))
+    return Advice(
+        target_speed=optimal_speed(point, surface, limits),
+        target_load=optimal_load(point, surface, limits),
+    )
 
 
 def optimal_speed(point: Point, surface: Surface, limits: Limits) -> float:
@@ -64,8 +67,9 @@ def optimal_speed(point: Point, surface: Surface, limits: Limits) -> float:
         moved = dataclasses.replace(point, speed=signed_speed(speed, point.direction))
         return _optimal(moved, surface, limits, light=_light(moved, limits))
 
-    return signed_speed(_nearest(abs(point.speed), (min(s, fastest) for s in grid), optimal),
-                        point.direction)
+    return signed_speed(
+        _nearest(abs(point.speed), (min(s, fastest) for s in grid), optimal), point.direction
+    )
 
 
 def optimal_load(point: Point, surface: Surface, limits: Limits) -> float:
@@ -106,8 +110,9 @@ def _nearest(here: float, grid: Iterable[float], optimal: Callable[[float], bool
     places = sorted(grid)
     below = [here] + [place for place in reversed(places) if place < here]
     above = [here] + [place for place in places if place > here]
-    found = [place for place in (_first(below, optimal), _first(above, optimal))
-             if place is not None]
+    found = [
+        place for place in (_first(below, optimal), _first(above, optimal)) if place is not None
+    ]
     return min(found, key=lambda place: abs(place - here), default=NAN)
 
 

@@ -2,17 +2,25 @@
 # SPDX-License-Identifier: Apache-2.0
 """From parameter values to one ready axis: its surface, its inputs and its monitor."""
 
+from collections.abc import Mapping
 import dataclasses
-from typing import Any, Mapping
-
-from surrogate.surface import shipped_surface, Surface, SurfaceError
+from typing import Any
 
 from ballscrew_monitor.conversions import (
-    kelvin, load_scaling, nanoseconds, Scaling, speed_scaling, temperature_scaling, torque_scaling)
+    kelvin,
+    load_scaling,
+    nanoseconds,
+    Scaling,
+    speed_scaling,
+    temperature_scaling,
+    torque_scaling,
+)
 from ballscrew_monitor.errors import InputError
 from ballscrew_monitor.inputs import Input, make_input, Source
 from ballscrew_monitor.judgement import Limits
-from ballscrew_monitor.monitor import Monitor, Settings
+from ballscrew_monitor.monitor import Monitor
+from ballscrew_monitor.state import Settings
+from surrogate.surface import shipped_surface, Surface, SurfaceError
 
 OPTIONAL = (Source.TEMPERATURE, Source.TORQUE)
 
@@ -42,9 +50,13 @@ class Axis:
 def build_axis(name: str, values: Mapping[str, Any]) -> Axis:
     """Return the axis `name` made of parameter `values` by full name; raises InputError."""
     surface = load_surface(name, values)
-    return Axis(name=name, surface=surface, inputs=_inputs_of(name, values, surface.lead),
-                monitor=Monitor(surface, settings_of(name, values, surface.preload)),
-                max_future=nanoseconds(values[f'{name}.max_future']))
+    return Axis(
+        name=name,
+        surface=surface,
+        inputs=_inputs_of(name, values, surface.lead),
+        monitor=Monitor(surface, settings_of(name, values, surface.preload)),
+        max_future=nanoseconds(values[f'{name}.max_future']),
+    )
 
 
 def load_surface(name: str, values: Mapping[str, Any]) -> Surface:
@@ -57,25 +69,43 @@ def load_surface(name: str, values: Mapping[str, Any]) -> Surface:
         raise InputError(f'axis {name}: {error}') from None
 
 
+def reload_surface(axis: Axis, values: Mapping[str, Any]) -> Surface:
+    """Return the surface of `axis` as its file is now; raises InputError if it does not fit."""
+    surface = load_surface(axis.name, values)
+    if surface.lead != axis.surface.lead:  # the speeds are scaled with it
+        raise InputError(
+            f'axis {axis.name}: the new surface is of a lead of {surface.lead:g} m, '
+            f'the old one of {axis.surface.lead:g} m'
+        )
+    return surface
+
+
 def settings_of(name: str, values: Mapping[str, Any], preload: float) -> Settings:
     """Return what the monitor is told; `preload` [N] is what the light load is a part of."""
     return Settings(
-        axis=name, limits=_limits_of(name, values, preload),
-        timeouts={source: nanoseconds(values[f'{name}.{source.name.lower()}.timeout'])
-                  for source in Source if _is_configured(name, values, source)},
+        axis=name,
+        limits=_limits_of(name, values, preload),
+        timeouts={
+            source: nanoseconds(values[f'{name}.{source.name.lower()}.timeout'])
+            for source in Source
+            if _is_configured(name, values, source)
+        },
         default_temperature=kelvin(values[f'{name}.temperature.default']),
-        publish_period=nanoseconds(values[f'{name}.publish_period']))
+        publish_period=nanoseconds(values[f'{name}.publish_period']),
+    )
 
 
 def _limits_of(name: str, values: Mapping[str, Any], preload: float) -> Limits:
     prefix = f'{name}.limits.'
     return Limits(
-        rcs=values[prefix + 'rcs'], efficiency=values[prefix + 'efficiency'],
+        rcs=values[prefix + 'rcs'],
+        efficiency=values[prefix + 'efficiency'],
         light_load=values[prefix + 'light_load_fraction'] * preload,
         standstill_speed=values[prefix + 'standstill_speed'],
         raise_delay=nanoseconds(values[prefix + 'raise_delay']),
         clear_delay=nanoseconds(values[prefix + 'clear_delay']),
-        hysteresis=values[prefix + 'hysteresis'])
+        hysteresis=values[prefix + 'hysteresis'],
+    )
 
 
 def _is_configured(name: str, values: Mapping[str, Any], source: Source) -> bool:
@@ -84,8 +114,11 @@ def _is_configured(name: str, values: Mapping[str, Any], source: Source) -> bool
 
 def _inputs_of(name: str, values: Mapping[str, Any], lead: float) -> tuple[Input, ...]:
     """Return the inputs in the order in which equal stamps are taken."""
-    return tuple(_input_of(name, values, source, lead) for source in Source
-                 if _is_configured(name, values, source))
+    return tuple(
+        _input_of(name, values, source, lead)
+        for source in Source
+        if _is_configured(name, values, source)
+    )
 
 
 def _input_of(name: str, values: Mapping[str, Any], source: Source, lead: float) -> Input:
@@ -93,9 +126,13 @@ def _input_of(name: str, values: Mapping[str, Any], source: Source, lead: float)
     if not values[f'{prefix}.topic']:
         raise InputError(f'parameter {prefix}.topic is empty, it must name a topic')
     try:
-        return make_input(source, topic=values[f'{prefix}.topic'],
-                          type_name=values[f'{prefix}.type'], field=values[f'{prefix}.field'],
-                          scaling=_scaling_of(name, values, source, lead))
+        return make_input(
+            source,
+            topic=values[f'{prefix}.topic'],
+            type_name=values[f'{prefix}.type'],
+            field=values[f'{prefix}.field'],
+            scaling=_scaling_of(name, values, source, lead),
+        )
     except InputError as error:
         raise InputError(f'parameters {prefix}: {error}') from None
 

@@ -21,7 +21,12 @@ ZERO_CELSIUS = 273.15  # [K]
 SECOND = 1_000_000_000  # [ns]
 
 ROTARY_SPEED_UNITS = {'rad/s': 1.0, 'rev/min': TURN / 60.0}  # [rad/s]
-LINEAR_SPEED_UNITS = {'m/s': 1.0, 'mm/s': 1e-3, 'mm/min': 1e-3 / 60.0, 'm/min': 1.0 / 60.0}  # [m/s]
+LINEAR_SPEED_UNITS = {
+    'm/s': 1.0,
+    'mm/s': 1e-3,
+    'mm/min': 1e-3 / 60.0,
+    'm/min': 1.0 / 60.0,
+}  # [m/s]
 LOAD_UNITS = {'N': 1.0, 'kN': 1e3}  # [N]
 TEMPERATURE_UNITS = {'degC': ZERO_CELSIUS, 'K': 0.0}  # zero of the unit [K]
 TORQUE_UNITS = {'N m': 1.0}  # [N m]
@@ -56,8 +61,9 @@ class Scaling:
         return value * self.factor + self.shift
 
 
-def speed_scaling(unit: str, *, scale: float, offset: float, lead: float,
-                  handedness: str) -> Scaling:
+def speed_scaling(
+    unit: str, *, scale: float, offset: float, lead: float, handedness: str
+) -> Scaling:
     """
     Return the line from a speed in `unit` to the screw speed [rad/s], machine frame.
 

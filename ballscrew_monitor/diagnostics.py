@@ -9,18 +9,16 @@ numbers are values, with the unit in brackets.
 
 """
 
+from collections.abc import Mapping
 import math
-from typing import Mapping
-
-from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
-
-from surrogate.surface import Surface
 
 from ballscrew_monitor.conversions import celsius, seconds
 from ballscrew_monitor.estimate import Validity
 from ballscrew_monitor.inputs import Health, InputState, Source
 from ballscrew_monitor.judgement import Code, Gate, Level
-from ballscrew_monitor.monitor import Event, State
+from ballscrew_monitor.state import Event, State
+from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
+from surrogate.surface import Surface
 
 OK, WARN = DiagnosticStatus.OK, DiagnosticStatus.WARN
 ERROR, STALE = DiagnosticStatus.ERROR, DiagnosticStatus.STALE
@@ -40,26 +38,43 @@ _NOT_JUDGED = {
     Validity.NO_INPUT: 'not judged: an input is missing',
     Validity.NO_SURFACE: 'not judged: no surface',
 }
-_CAUSES = {Code.RCS_HIGH: 'asperities carry too much',
-           Code.EFFICIENCY_LOW: 'too much power is lost'}
-_INPUT_WORDS = {InputState.STALE: 'is stale', InputState.MISSING: 'was never received',
-                InputState.BAD: 'is not usable', InputState.UNKNOWN: 'is unknown'}
+_CAUSES = {
+    Code.RCS_HIGH: 'asperities carry too much',
+    Code.EFFICIENCY_LOW: 'too much power is lost',
+}
+_INPUT_WORDS = {
+    InputState.STALE: 'is stale',
+    InputState.MISSING: 'was never received',
+    InputState.BAD: 'is not usable',
+    InputState.UNKNOWN: 'is unknown',
+}
 
 
 def blank(node: str, axis: str) -> list[DiagnosticStatus]:
     """Return the statuses of an axis of which nothing is known."""
-    return [DiagnosticStatus(name=f'{node}: {axis}: {part}', level=ERROR, message=NOT_SET)
-            for part in PARTS]
+    return [
+        DiagnosticStatus(name=f'{node}: {axis}: {part}', level=ERROR, message=NOT_SET)
+        for part in PARTS
+    ]
 
 
 def failed(node: str, axis: str, reason: str) -> list[DiagnosticStatus]:
     """Return the statuses of an axis that cannot work for `reason`."""
-    return [DiagnosticStatus(name=f'{node}: {axis}: {part}', level=ERROR, message=reason)
-            for part in PARTS]
+    return [
+        DiagnosticStatus(name=f'{node}: {axis}: {part}', level=ERROR, message=reason)
+        for part in PARTS
+    ]
 
 
-def statuses(node: str, axis: str, state: State | None, event: Event, surface: Surface, *,
-             publishers: Mapping[Source, int] | None) -> list[DiagnosticStatus]:
+def statuses(
+    node: str,
+    axis: str,
+    state: State | None,
+    event: Event,
+    surface: Surface,
+    *,
+    publishers: Mapping[Source, int] | None,
+) -> list[DiagnosticStatus]:
     """
     Return the three statuses of a configured axis, `state` its last one if there is one.
 
@@ -71,8 +86,12 @@ def statuses(node: str, axis: str, state: State | None, event: Event, surface: S
         status.hardware_id = surface.screw_name
     made[2].level, made[2].message = OK, f'{surface.tier} surface loaded'
     made[2].values = _values(_surface_values(surface))
-    made[1].values = _values([(f'{source.name.capitalize()} publishers [-]', count)
-                              for source, count in (publishers or {}).items()])
+    made[1].values = _values(
+        [
+            (f'{source.name.capitalize()} publishers [-]', count)
+            for source, count in (publishers or {}).items()
+        ]
+    )
     if state is None or publishers is None:
         for status in made[:2]:
             status.level = STALE
@@ -107,8 +126,11 @@ def _lubrication(state: State, event: Event) -> Summary:
 
 
 def _inputs(inputs: tuple[Health, ...]) -> Summary:
-    faults = [f'{health.source.name.lower()} {_INPUT_WORDS[health.state]}'
-              for health in inputs if health.state in _INPUT_WORDS]
+    faults = [
+        f'{health.source.name.lower()} {_INPUT_WORDS[health.state]}'
+        for health in inputs
+        if health.state in _INPUT_WORDS
+    ]
     return (STALE, ', '.join(faults)) if faults else (OK, 'all inputs arrive')
 
 
@@ -116,41 +138,63 @@ def _lubrication_values(state: State) -> list[tuple[str, object]]:
     point, result, totals = state.point, state.estimate, state.totals
     film_ratio = math.nan if result.numbers is None else result.numbers.film_ratio
     return [
-        ('Level', state.level.name), ('Zone', state.verdict.zone.name),
-        ('Validity', result.validity.name), ('Reason', result.reason),
-        ('Regime', result.regime.name), ('Contact', result.contact_state.name),
-        ('Event', state.event_id), ('Speed [rad/s]', point.speed),
+        ('Level', state.level.name),
+        ('Zone', state.verdict.zone.name),
+        ('Validity', result.validity.name),
+        ('Reason', result.reason),
+        ('Regime', result.regime.name),
+        ('Contact', result.contact_state.name),
+        ('Event', state.event_id),
+        ('Speed [rad/s]', point.speed),
         ('Axial load [N]', point.axial_load),
         ('Oil temperature [degC]', celsius(point.temperature)),
-        ('Efficiency [-]', result.efficiency), ('Efficiency limit [-]', state.limits.efficiency),
-        ('RCS [-]', result.rcs), ('RCS limit [-]', state.limits.rcs),
-        ('Film ratio [-]', film_ratio), ('Judged [-]', state.judged),
+        ('Efficiency [-]', result.efficiency),
+        ('Efficiency limit [-]', state.limits.efficiency),
+        ('RCS [-]', result.rcs),
+        ('RCS limit [-]', state.limits.rcs),
+        ('Film ratio [-]', film_ratio),
+        ('Judged [-]', state.judged),
         ('Running time [s]', seconds(totals.running_time)),
         ('Time outside [s]', seconds(totals.outside_time)),
-        ('Energy lost [J]', totals.energy_lost)]
+        ('Energy lost [J]', totals.energy_lost),
+    ]
 
 
 def _input_values(inputs: tuple[Health, ...]) -> list[tuple[str, object]]:
     values: list[tuple[str, object]] = []
     for health in inputs:
         name = health.source.name.capitalize()
-        values += [(f'{name} state', health.state.name), (f'{name} age [s]', health.age),
-                   (f'{name} rate [Hz]', health.rate), (f'{name} received [-]', health.received),
-                   (f'{name} dropped [-]', health.dropped),
-                   (f'{name} stamps', health.stamp_source.name)]
+        values += [
+            (f'{name} state', health.state.name),
+            (f'{name} age [s]', health.age),
+            (f'{name} rate [Hz]', health.rate),
+            (f'{name} received [-]', health.received),
+            (f'{name} dropped [-]', health.dropped),
+            (f'{name} stamps', health.stamp_source.name),
+        ]
     return values
 
 
 def _surface_values(surface: Surface) -> list[tuple[str, object]]:
-    ranges = (('Speed', 'rad/s', surface.speed_range), ('Opposing load', 'N', surface.load_range),
-              ('Oil temperature', 'degC',
-               tuple(celsius(limit) for limit in surface.temperature_range)))
-    return [('Screw', surface.screw_name), ('Oil', surface.oil_name), ('Tier', surface.tier),
-            ('SHA-256', surface.sha256)] + [
-        (f'{name} {end} [{unit}]', value) for name, unit, pair in ranges
-        for end, value in zip(('min', 'max'), pair)]
+    ranges = (
+        ('Speed', 'rad/s', surface.speed_range),
+        ('Opposing load', 'N', surface.load_range),
+        ('Oil temperature', 'degC', tuple(celsius(limit) for limit in surface.temperature_range)),
+    )
+    return [
+        ('Screw', surface.screw_name),
+        ('Oil', surface.oil_name),
+        ('Tier', surface.tier),
+        ('SHA-256', surface.sha256),
+    ] + [
+        (f'{name} {end} [{unit}]', value)
+        for name, unit, pair in ranges
+        for end, value in zip(('min', 'max'), pair)
+    ]
 
 
 def _values(pairs: list[tuple[str, object]]) -> list[KeyValue]:
-    return [KeyValue(key=key, value=f'{value:.6g}' if isinstance(value, float) else str(value))
-            for key, value in pairs]
+    return [
+        KeyValue(key=key, value=f'{value:.6g}' if isinstance(value, float) else str(value))
+        for key, value in pairs
+    ]

@@ -10,7 +10,13 @@ import math
 from typing import TYPE_CHECKING
 
 from ballscrew_monitor.conversions import (
-    celsius, Direction, machine_nut, machine_torque, Nut, opposing_load)
+    celsius,
+    Direction,
+    machine_nut,
+    machine_torque,
+    Nut,
+    opposing_load,
+)
 
 if TYPE_CHECKING:
     from surrogate.surface import Surface, SurfacePoint
@@ -132,38 +138,52 @@ def estimate(point: Point, surface: Surface, *, rcs_limit: float) -> Estimate:
     if not _complete(point):
         return Estimate(validity=Validity.NO_INPUT, reason=_missing(point))
     if point.direction is Direction.UNKNOWN:
-        return Estimate(validity=Validity.UNKNOWN, reason='the direction of motion is unknown, '
-                        'the screw has not moved yet')
+        return Estimate(
+            validity=Validity.UNKNOWN,
+            reason='the direction of motion is unknown, the screw has not moved yet',
+        )
     load = opposing_load(point.axial_load, point.direction)
     numbers = surface.lookup(abs(point.speed), load, point.temperature)
-    if numbers.validity != Validity.VALID:
-        validity = Validity(int(numbers.validity))
+    validity = Validity(int(numbers.validity))
+    if validity is not Validity.VALID:
         return Estimate(validity=validity, reason=_outside(validity, point, load, surface))
     return Estimate(
-        validity=Validity.VALID, numbers=numbers, rcs=numbers.rcs, efficiency=numbers.efficiency,
+        validity=Validity.VALID,
+        numbers=numbers,
+        rcs=numbers.rcs,
+        efficiency=numbers.efficiency,
         machine_torque=machine_torque(numbers.driving_torque, point.direction),
         worst_nut=machine_nut(numbers.worst_nut, point.axial_load),
         regime=regime_of(numbers.film_ratio),
-        contact_state=contact_state_of(numbers.rcs, limit=rcs_limit))
+        contact_state=contact_state_of(numbers.rcs, limit=rcs_limit),
+    )
 
 
 def _inputs(point: Point) -> tuple[tuple[str, float, PointSource], ...]:
-    return (('speed', point.speed, point.speed_source),
-            ('load', point.axial_load, point.axial_load_source),
-            ('temperature', point.temperature, point.temperature_source))
+    return (
+        ('speed', point.speed, point.speed_source),
+        ('load', point.axial_load, point.axial_load_source),
+        ('temperature', point.temperature, point.temperature_source),
+    )
 
 
 def _complete(point: Point) -> bool:
     """Tell whether every number is there and none is only held; a held one is never judged."""
     held = PointSource.HELD
-    return (math.isfinite(point.speed + point.axial_load + point.temperature)
-            and point.speed_source is not held and point.axial_load_source is not held
-            and point.temperature_source is not held)
+    return (
+        math.isfinite(point.speed + point.axial_load + point.temperature)
+        and point.speed_source is not held
+        and point.axial_load_source is not held
+        and point.temperature_source is not held
+    )
 
 
 def _missing(point: Point) -> str:
-    lost = [name for name, value, source in _inputs(point)
-            if not math.isfinite(value) or source is PointSource.HELD]
+    lost = [
+        name
+        for name, value, source in _inputs(point)
+        if not math.isfinite(value) or source is PointSource.HELD
+    ]
     if not lost:  # finite numbers with an infinite sum
         return 'an input is beyond any range'
     return f'no valid sample of {" and ".join(lost)}'
@@ -181,8 +201,10 @@ def _outside(validity: Validity, point: Point, load: float, surface: Surface) ->
         return f'opposing load {load:.4g} N is outside the surface, {low:.4g} to {high:.4g} N'
     if validity is Validity.TEMPERATURE_OUT_OF_RANGE:
         low, high = (celsius(limit) for limit in surface.temperature_range)
-        return (f'oil temperature {celsius(point.temperature):.4g} degC is outside the surface, '
-                f'{low:.4g} to {high:.4g} degC')
+        return (
+            f'oil temperature {celsius(point.temperature):.4g} degC is outside the surface, '
+            f'{low:.4g} to {high:.4g} degC'
+        )
     if validity is Validity.MASKED:
         return 'the model did not converge near this point'
     return 'the surface gives no reason'

@@ -89,8 +89,12 @@ class Limits:
         for name in ('light_load', 'raise_delay', 'clear_delay'):
             value = getattr(self, name)
             _check(name, value, 0.0 <= value < math.inf, 'at least 0')
-        _check('standstill_speed', self.standstill_speed,
-               0.0 < self.standstill_speed < math.inf, 'above 0')
+        _check(
+            'standstill_speed',
+            self.standstill_speed,
+            0.0 < self.standstill_speed < math.inf,
+            'above 0',
+        )
         _check('hysteresis', self.hysteresis, 0.0 <= self.hysteresis < 1.0, 'from 0 to below 1')
 
     @property
@@ -136,10 +140,12 @@ class Verdict:
 def gates_of(point: Point, limits: Limits) -> tuple[Gate, ...]:
     """Return the gates that are shut at a point; numbers that are unknown or held shut none."""
     gates = []
-    if (abs(point.speed) < limits.standstill_speed
-            and point.speed_source is not PointSource.HELD):
+    if abs(point.speed) < limits.standstill_speed and point.speed_source is not PointSource.HELD:
         gates.append(Gate.STANDSTILL)
-    if abs(point.axial_load) < limits.light_load and point.axial_load_source is not PointSource.HELD:
+    if (
+        abs(point.axial_load) < limits.light_load
+        and point.axial_load_source is not PointSource.HELD
+    ):
         gates.append(Gate.LIGHT_LOAD)
     return tuple(gates)
 
@@ -164,7 +170,8 @@ def judge(point: Point, estimate: Estimate, limits: Limits) -> Verdict:
     if findings:
         return Verdict(zone=Zone.OUTSIDE, gates=gates, findings=findings)
     clear = estimate.rcs < limits.rcs_to_clear and (
-        light or estimate.efficiency >= limits.efficiency_to_clear)
+        light or estimate.efficiency >= limits.efficiency_to_clear
+    )
     return Verdict(zone=Zone.OPTIMAL, gates=gates, clear=clear)
 
 
@@ -172,22 +179,37 @@ def violations(estimate: Estimate, limits: Limits, *, light: bool) -> tuple[Find
     """Return a finding for each criterion that is not met; efficiency is left out if `light`."""
     findings = []
     if estimate.rcs >= limits.rcs:
-        findings.append(Finding(
-            code=Code.RCS_HIGH, severity=Severity.WARN, value=estimate.rcs, limit=limits.rcs,
-            text=f'asperities carry too much: RCS {estimate.rcs:.3g}, limit {limits.rcs:.3g}'))
+        findings.append(
+            Finding(
+                code=Code.RCS_HIGH,
+                severity=Severity.WARN,
+                value=estimate.rcs,
+                limit=limits.rcs,
+                text=f'asperities carry too much: RCS {estimate.rcs:.3g}, limit {limits.rcs:.3g}',
+            )
+        )
     if not light and estimate.efficiency < limits.efficiency:
-        findings.append(Finding(
-            code=Code.EFFICIENCY_LOW, severity=Severity.WARN, value=estimate.efficiency,
-            limit=limits.efficiency, text='too much power is lost: efficiency '
-            f'{estimate.efficiency:.3g}, limit {limits.efficiency:.3g}'))
+        findings.append(
+            Finding(
+                code=Code.EFFICIENCY_LOW,
+                severity=Severity.WARN,
+                value=estimate.efficiency,
+                limit=limits.efficiency,
+                text='too much power is lost: efficiency '
+                f'{estimate.efficiency:.3g}, limit {limits.efficiency:.3g}',
+            )
+        )
     return tuple(findings)
 
 
 def _unjudged(estimate: Estimate) -> Finding:
     if estimate.validity is Validity.NO_INPUT:
         return Finding(code=Code.INPUT_LOST, severity=Severity.ERROR, text=estimate.reason)
-    return Finding(code=Code.OUT_OF_RANGE, severity=Severity.WARN,
-                   text=estimate.reason or 'the surface holds no number here')
+    return Finding(
+        code=Code.OUT_OF_RANGE,
+        severity=Severity.WARN,
+        text=estimate.reason or 'the surface holds no number here',
+    )
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -231,8 +253,7 @@ def hold(memory: Hold, verdict: Verdict, stamp: int, limits: Limits, *, max_gap:
     return memory if memory.clearing is None else dataclasses.replace(memory, clearing=None)
 
 
-def _towards_ok(memory: Hold, verdict: Verdict, stamp: int, limits: Limits,
-                max_gap: int) -> Hold:
+def _towards_ok(memory: Hold, verdict: Verdict, stamp: int, limits: Limits, max_gap: int) -> Hold:
     if memory.level is Level.OK or (memory.level is Level.WARN and not verdict.clear):
         return memory if memory.raising is memory.clearing is None else _drop_runs(memory)
     run = _extend(memory.clearing, stamp, max_gap)

@@ -11,26 +11,42 @@ anything else as garbage when their checks are off.
 import math
 from typing import Any
 
-from ballscrew_msgs.msg import (
-    BallScrewState, Finding, InputHealth, OperatingPoint, OutOfZone, PointResult, SurfaceInfo,
-    WindowStatistics)
-from builtin_interfaces.msg import Time
-
-from surrogate.surface import Surface
-
 from ballscrew_monitor import inputs, judgement, tally
-from ballscrew_monitor.conversions import (
-    celsius, Direction, direction_of, kelvin, SECOND, seconds)
+from ballscrew_monitor.conversions import celsius, Direction, direction_of, kelvin, SECOND, seconds
 from ballscrew_monitor.estimate import Estimate, Point
 from ballscrew_monitor.judgement import Limits
-from ballscrew_monitor.monitor import Event, SHOWN, State
+from ballscrew_monitor.monitor import SHOWN
+from ballscrew_monitor.state import Event, State
+from ballscrew_msgs.msg import (
+    BallScrewState,
+    Finding,
+    InputHealth,
+    OperatingPoint,
+    OutOfZone,
+    PointResult,
+    SurfaceInfo,
+    WindowStatistics,
+)
+from builtin_interfaces.msg import Time
+from surrogate.surface import Surface
 
 TIERS = {'closed_form': PointResult.TIER_CLOSED_FORM, 'full': PointResult.TIER_FULL}
 NAN = math.nan
 # The numbers of a surface that a PointResult repeats under the same name.
-NUMBERS = ('friction_torque', 'driving_torque', 'asperity_share', 'film_ratio', 'central_film',
-           'minimum_film', 'friction_coefficient', 'max_pressure', 'efficiency_error', 'rcs_error',
-           'efficiency_std', 'rcs_std')
+NUMBERS = (
+    'friction_torque',
+    'driving_torque',
+    'asperity_share',
+    'film_ratio',
+    'central_film',
+    'minimum_film',
+    'friction_coefficient',
+    'max_pressure',
+    'efficiency_error',
+    'rcs_error',
+    'efficiency_std',
+    'rcs_std',
+)
 
 
 def fill_time(message: Time, stamp: int) -> None:
@@ -63,8 +79,12 @@ def read_point(message: OperatingPoint, *, default_temperature: float) -> Point:
     if message.speed == 0.0 and message.direction in tuple(Direction):
         direction = Direction(message.direction)
     missing = math.isnan(message.temperature)
-    return Point(speed=message.speed, axial_load=message.axial_load, direction=direction,
-                 temperature=default_temperature if missing else kelvin(message.temperature))
+    return Point(
+        speed=message.speed,
+        axial_load=message.axial_load,
+        direction=direction,
+        temperature=default_temperature if missing else kelvin(message.temperature),
+    )
 
 
 def fill_result(message: PointResult, result: Estimate, tier: int) -> None:
@@ -87,9 +107,15 @@ def fill_result(message: PointResult, result: Estimate, tier: int) -> None:
 def finding_message(finding: judgement.Finding) -> Finding:
     """Return a finding as a message."""
     return Finding(
-        code=int(finding.code), severity=int(finding.severity), value=float(finding.value),
-        limit=float(finding.limit), unit=finding.unit, text=finding.text,
-        target_speed=float(finding.target_speed), target_load=float(finding.target_load))
+        code=int(finding.code),
+        severity=int(finding.severity),
+        value=float(finding.value),
+        limit=float(finding.limit),
+        unit=finding.unit,
+        text=finding.text,
+        target_speed=float(finding.target_speed),
+        target_load=float(finding.target_load),
+    )
 
 
 def fill_window(message: WindowStatistics, window: tally.WindowStatistics) -> None:
@@ -115,8 +141,15 @@ def fill_health(message: InputHealth, health: inputs.Health) -> None:
 
 def fill_totals(message: Any, totals: tally.Totals) -> None:
     """Fill in the totals."""
-    for name in ('running_time', 'unjudged_time', 'boundary_time', 'mixed_time',
-                 'hydrodynamic_time', 'optimal_time', 'outside_time'):
+    for name in (
+        'running_time',
+        'unjudged_time',
+        'boundary_time',
+        'mixed_time',
+        'hydrodynamic_time',
+        'optimal_time',
+        'outside_time',
+    ):
         setattr(message, name, seconds(getattr(totals, name)))
     message.revolutions = float(totals.revolutions)
     message.energy_lost = float(totals.energy_lost)
@@ -165,31 +198,44 @@ def _fill_judgement(message: BallScrewState, state: State) -> None:
 def out_of_zone_message(axis: str, event: Event) -> OutOfZone:
     """Return an event as a message; event 0 is inactive and says that there has been none."""
     message = OutOfZone(
-        axis=axis, event_id=event.id, active=event.active,
-        duration=seconds(event.stamp - event.start), worst_value=float(event.worst_value),
-        cause=finding_message(event.cause), advice=event.advice.text)
+        axis=axis,
+        event_id=event.id,
+        active=event.active,
+        duration=seconds(event.stamp - event.start),
+        worst_value=float(event.worst_value),
+        cause=finding_message(event.cause),
+        advice=event.advice.text,
+    )
     message.header.frame_id = axis
     fill_time(message.header.stamp, event.stamp)
     fill_time(message.start, event.start)
     return message
 
 
-def surface_info_message(axis: str, surface: Surface, limits: Limits, *, stamp: int,
-                         default_temperature: float) -> SurfaceInfo:
+def surface_info_message(
+    axis: str, surface: Surface, limits: Limits, *, stamp: int, default_temperature: float
+) -> SurfaceInfo:
     """Return what a surface is, `stamp` [ns], `default_temperature` [K]."""
     errors = surface.errors
     message = SurfaceInfo(
-        axis=axis, screw=surface.screw_name, oil=surface.oil_name, tier=TIERS[surface.tier],
-        sha256=surface.sha256, rcs_limit=limits.rcs, efficiency_limit=limits.efficiency,
-        error_field=list(errors), error_max=[float(error[0]) for error in errors.values()],
+        axis=axis,
+        screw=surface.screw_name,
+        oil=surface.oil_name,
+        tier=TIERS[surface.tier],
+        sha256=surface.sha256,
+        rcs_limit=limits.rcs,
+        efficiency_limit=limits.efficiency,
+        error_field=list(errors),
+        error_max=[float(error[0]) for error in errors.values()],
         error_p95=[float(error[1]) for error in errors.values()],
-        default_temperature=celsius(default_temperature))
+        default_temperature=celsius(default_temperature),
+    )
     message.header.frame_id = axis
     fill_time(message.header.stamp, stamp)
-    for name, (low, high) in (('speed', surface.speed_range),
-                              ('axial_load', surface.load_range)):
+    for name, (low, high) in (('speed', surface.speed_range), ('axial_load', surface.load_range)):
         setattr(message, f'{name}_min', float(low))
         setattr(message, f'{name}_max', float(high))
     message.temperature_min, message.temperature_max = (
-        celsius(float(limit)) for limit in surface.temperature_range)
+        celsius(float(limit)) for limit in surface.temperature_range
+    )
     return message

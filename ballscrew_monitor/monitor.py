@@ -14,16 +14,15 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from typing import Mapping, TYPE_CHECKING
+from typing import TYPE_CHECKING
 
-from ballscrew_monitor.advice import advise, Advice
+from ballscrew_monitor.advice import advise
 from ballscrew_monitor.conversions import Direction, direction_of, SECOND
-from ballscrew_monitor.estimate import Estimate, estimate, Point, PointSource, Validity
-from ballscrew_monitor.inputs import (
-    Health, InputState, Refusal, Sample, Source, Tracker, Why)
-from ballscrew_monitor.judgement import (
-    Code, Finding, Hold, hold, judge, Level, Limits, Severity, Verdict, Zone)
-from ballscrew_monitor.tally import Account, moment, Totals, Window, WindowStatistics
+from ballscrew_monitor.estimate import Estimate, estimate, Point, PointSource
+from ballscrew_monitor.inputs import InputState, Refusal, Sample, Source, Tracker, Why
+from ballscrew_monitor.judgement import Code, Hold, hold, judge, Level, Verdict, Zone
+from ballscrew_monitor.state import Event, Settings, State
+from ballscrew_monitor.tally import Account, moment, Window
 
 if TYPE_CHECKING:
     from surrogate.surface import Surface
@@ -31,66 +30,6 @@ if TYPE_CHECKING:
 NAN = math.nan
 SHOWN = (Source.SPEED, Source.LOAD, Source.TEMPERATURE, Source.TORQUE)  # in a state
 BACKWARD_JUMP = SECOND  # [ns] a longer step back of one input is a clock that was set back
-
-
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Settings:
-    """
-    What a monitor is told.
-
-    `timeouts` [ns] of the configured inputs only: an input without one has no topic.
-    `default_temperature` [K] is used without a temperature topic, `publish_period` [ns] thins out
-    the states, 0 keeps all.
-
-    """
-
-    axis: str
-    limits: Limits
-    timeouts: Mapping[Source, int]
-    default_temperature: float
-    publish_period: int = 0
-
-
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Event:
-    """One stay outside the optimal zone; stamps [ns], event 0 is none yet."""
-
-    id: int = 0
-    active: bool = False
-    stamp: int = 0
-    start: int = 0
-    worst_value: float = NAN
-    cause: Finding = Finding(code=Code.UNKNOWN, severity=Severity.UNKNOWN)
-    advice: Advice = Advice()
-
-
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class State:
-    """
-    Judgement of one axis at one instant.
-
-    `event` is that which began or ended at this state, else None; `event_id` is that of the
-    active event or of the last one. Torques [N m] in the machine frame.
-
-    """
-
-    axis: str
-    stamp: int
-    point: Point
-    estimate: Estimate
-    verdict: Verdict
-    level: Level
-    level_since: int
-    event_id: int
-    event: Event | None
-    limits: Limits
-    window: WindowStatistics
-    inputs: tuple[Health, ...]
-    totals: Totals
-    judged: int
-    measured_torque: float
-    torque_residual: float
-    surface_id: str
 
 
 class Monitor:
@@ -109,8 +48,13 @@ class Monitor:
         self._window = Window()
         self._account = Account()
         self._inputs = {
-            source: Tracker(source, configured=source in settings.timeouts,
-                            timeout=settings.timeouts.get(source, 0)) for source in SHOWN}
+            source: Tracker(
+                source,
+                configured=source in settings.timeouts,
+                timeout=settings.timeouts.get(source, 0),
+            )
+            for source in SHOWN
+        }
 
     @property
     def level(self) -> Level:
@@ -200,11 +144,17 @@ class Monitor:
         if moving and speed_source is PointSource.MEASURED:
             self._direction = direction_of(speed)
         return Point(
-            speed=speed, axial_load=load, temperature=temperature, motor_torque=torque,
-            speed_source=speed_source, axial_load_source=load_source,
+            speed=speed,
+            axial_load=load,
+            temperature=temperature,
+            motor_torque=torque,
+            speed_source=speed_source,
+            axial_load_source=load_source,
             temperature_source=temperature_source,
-            motor_torque_source=torque_source, direction=self._direction,
-            direction_held=not moving and self._direction is not Direction.UNKNOWN)
+            motor_torque_source=torque_source,
+            direction=self._direction,
+            direction_held=not moving and self._direction is not Direction.UNKNOWN,
+        )
 
     def _value(self, source: Source, stamp: int) -> tuple[float, PointSource]:
         """Return the last value and its standing; one that was followed by a bad one is held."""
@@ -217,8 +167,9 @@ class Monitor:
         good = tracker.state(stamp) is InputState.OK
         return tracker.last.value, PointSource.MEASURED if good else PointSource.HELD
 
-    def _advance(self, stamp: int, point: Point, result: Estimate,
-                 verdict: Verdict) -> State | None:
+    def _advance(
+        self, stamp: int, point: Point, result: Estimate, verdict: Verdict
+    ) -> State | None:
         """Hold the level, follow the event, and return the state when it is due."""
         before = self._hold
         self._hold = hold(before, verdict, stamp, self.settings.limits, max_gap=self._max_gap)
@@ -240,8 +191,9 @@ class Monitor:
             return
         run = self._hold.raising
         if self._pending is None or (run is not None and run.start == stamp):
-            self._pending = Event(start=stamp, cause=verdict.findings[0],
-                                  worst_value=verdict.findings[0].value)
+            self._pending = Event(
+                start=stamp, cause=verdict.findings[0], worst_value=verdict.findings[0].value
+            )
         self._pending = _worsen(self._pending, result)
 
     def _edge(self, before: Level, stamp: int, point: Point) -> Event | None:
@@ -249,10 +201,19 @@ class Monitor:
         level = self._hold.level
         if level is Level.WARN and before is not Level.WARN and self._pending is not None:
             advice = advise(point, self.surface, self.settings.limits)
-            cause = dataclasses.replace(self._pending.cause, target_speed=advice.target_speed,
-                                        target_load=advice.target_load)
-            self.event = dataclasses.replace(self._pending, id=self.event.id + 1, active=True,
-                                             stamp=stamp, cause=cause, advice=advice)
+            cause = dataclasses.replace(
+                self._pending.cause,
+                target_speed=advice.target_speed,
+                target_load=advice.target_load,
+            )
+            self.event = dataclasses.replace(
+                self._pending,
+                id=self.event.id + 1,
+                active=True,
+                stamp=stamp,
+                cause=cause,
+                advice=advice,
+            )
             self._pending = None
             return self.event
         if level is not Level.WARN and self.event.active:
@@ -267,18 +228,31 @@ class Monitor:
             return True
         return stamp // period != self._last_published // period
 
-    def _state(self, stamp: int, point: Point, result: Estimate, verdict: Verdict,
-               edge: Event | None) -> State:
+    def _state(
+        self, stamp: int, point: Point, result: Estimate, verdict: Verdict, edge: Event | None
+    ) -> State:
         torque = point.motor_torque
         if point.motor_torque_source is not PointSource.MEASURED:
             torque = NAN
         return State(
-            axis=self.settings.axis, stamp=stamp, point=point, estimate=result, verdict=verdict,
-            level=self._hold.level, level_since=self._hold.since, event_id=self.event.id,
-            event=edge, limits=self.settings.limits, window=self._window.take(),
+            axis=self.settings.axis,
+            stamp=stamp,
+            point=point,
+            estimate=result,
+            verdict=verdict,
+            level=self._hold.level,
+            level_since=self._hold.since,
+            event_id=self.event.id,
+            event=edge,
+            limits=self.settings.limits,
+            window=self._window.take(),
             inputs=tuple(tracker.health(stamp) for tracker in self._inputs.values()),
-            totals=self._account.totals(), judged=self._judged, measured_torque=torque,
-            torque_residual=torque - result.machine_torque, surface_id=self._surface_id)
+            totals=self._account.totals(),
+            judged=self._judged,
+            measured_torque=torque,
+            torque_residual=torque - result.machine_torque,
+            surface_id=self._surface_id,
+        )
 
     def _jump_back(self, stamp: int) -> None:
         """
@@ -302,8 +276,7 @@ class Monitor:
     def _move_times(self, shift: int) -> None:
         self._hold = Hold(level=self._hold.level, since=max(0, self._hold.since + shift))
         if self.event.active:
-            self.event = dataclasses.replace(
-                self.event, start=max(0, self.event.start + shift))
+            self.event = dataclasses.replace(self.event, start=max(0, self.event.start + shift))
 
 
 def _worsen(event: Event, result: Estimate) -> Event:

@@ -2,66 +2,46 @@
 # SPDX-License-Identifier: Apache-2.0
 """The lifecycle node: declare, subscribe, call the monitor, publish. It decides nothing itself."""
 
-import dataclasses
+from collections.abc import Callable
 import functools
 import signal
 import sys
 import traceback
-from typing import Any, Callable
+from typing import Any
 
-from ballscrew_msgs.msg import BallScrewState, OutOfZone, PointResult, SurfaceInfo
+from ballscrew_monitor import diagnostics, parameters
+from ballscrew_monitor.axis import Axis, build_axis, reload_surface
+from ballscrew_monitor.conversions import nanoseconds
+from ballscrew_monitor.errors import InputError
+from ballscrew_monitor.inputs import Input
+from ballscrew_monitor.parameter_store import ParameterStore
+from ballscrew_monitor.state import State
+from ballscrew_monitor.station import STATE_QOS, Station
 from ballscrew_msgs.srv import EvaluateOperatingPoint
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
-from rcl_interfaces.msg import SetParametersResult
 import rclpy
 from rclpy.clock import Clock, ClockType
 from rclpy.exceptions import ParameterException
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
-from rclpy.parameter import Parameter
-from rclpy.qos import (
-    QoSDurabilityPolicy, QoSHistoryPolicy, QoSProfile, QoSReliabilityPolicy)
+from rclpy.qos import QoSDurabilityPolicy, QoSHistoryPolicy, QoSProfile, QoSReliabilityPolicy
 from rclpy.signals import SignalHandlerOptions
 from std_srvs.srv import Trigger
 
-from ballscrew_monitor import diagnostics, parameters
-from ballscrew_monitor.axis import Axis, build_axis, load_surface
-from ballscrew_monitor.conversions import nanoseconds
-from ballscrew_monitor.errors import InputError
-from ballscrew_monitor.estimate import estimate
-from ballscrew_monitor.inputs import Input, Source
-from ballscrew_monitor.judgement import Level
-from ballscrew_monitor.messages import (
-    fill_result, out_of_zone_message, read_point, StateWriter, surface_info_message, TIERS)
-from ballscrew_monitor.monitor import State
-
 SUCCESS, FAILURE = TransitionCallbackReturn.SUCCESS, TransitionCallbackReturn.FAILURE
 INPUT_QOS = QoSProfile(
-    history=QoSHistoryPolicy.KEEP_LAST, depth=200, reliability=QoSReliabilityPolicy.BEST_EFFORT,
-    durability=QoSDurabilityPolicy.VOLATILE)
-STATE_QOS = QoSProfile(depth=10, reliability=QoSReliabilityPolicy.RELIABLE)
-LATCHED_QOS = QoSProfile(depth=1, reliability=QoSReliabilityPolicy.RELIABLE,
-                         durability=QoSDurabilityPolicy.TRANSIENT_LOCAL)
+    history=QoSHistoryPolicy.KEEP_LAST,
+    depth=200,
+    reliability=QoSReliabilityPolicy.BEST_EFFORT,
+    durability=QoSDurabilityPolicy.VOLATILE,
+)
 NEWS_INTERVAL = nanoseconds(0.1)  # [ns] shortest time between two diagnostics sent for a change
 POLL = 0.2  # [s] longest wait before a signal is noticed
 
 
-@dataclasses.dataclass(kw_only=True, slots=True)
-class Station:
-    """One axis and what the node needs to speak for it."""
-
-    axis: Axis
-    writer: StateWriter
-    state_publisher: Any
-    event_publisher: Any
-    info_publisher: Any
-    subscriptions: dict[Source, Any] = dataclasses.field(default_factory=dict)
-    last: State | None = None
-    said: tuple[diagnostics.Summary, ...] = ()
-
-
 def _reported(transition: Callable[..., Any]) -> Callable[..., Any]:
     """Log an exception in a transition; rclpy swallows it and goes to error processing."""
+
     @functools.wraps(transition)
     def report(self: LifecycleNode, state: LifecycleState) -> Any:
         try:
@@ -69,6 +49,7 @@ def _reported(transition: Callable[..., Any]) -> Callable[..., Any]:
         except Exception:
             self.get_logger().error(traceback.format_exc())
             raise
+
     return report
 
 
@@ -81,16 +62,19 @@ class BallscrewMonitor(LifecycleNode):
         self._stations: dict[str, Station] = {}
         self._active = False
         self._finalized = False
-        self._reason = ''  # why the last configure failed
+        self._reason = 'not configured'
         self._inputs: list[Any] = []
         self._tick_timer: Any = None
         self._last_grid = -1
         self._steady = Clock(clock_type=ClockType.STEADY_TIME)
         self._news_time = 0
-        self._declare()
+        self._store = ParameterStore(self, self._on_parameters)
+        self._values = self._store.values
         self._diagnostics = self.create_publisher(DiagnosticArray, '/diagnostics', STATE_QOS)
-        self.create_timer(self._values['diagnostics_period'], self._publish_diagnostics,
-                          clock=self._steady)
+        # On the steady clock: it speaks while a simulated one stands.
+        self.create_timer(
+            self._values['diagnostics_period'], self._publish_diagnostics, clock=self._steady
+        )
         self.create_service(EvaluateOperatingPoint, '~/evaluate', self._on_evaluate)
         self.create_service(Trigger, '~/reload_surface', self._on_reload)
         self.create_service(Trigger, '~/reset_totals', self._on_reset)
@@ -106,73 +90,24 @@ class BallscrewMonitor(LifecycleNode):
         if not self._finalized:
             self.trigger_shutdown()
 
-    # Parameters
-
-    def _declare(self) -> None:
-        # Private to rclpy; without it rclpy refuses bad values itself, in its own words.
-        self._given = {name: _plain(given.value) for name, given in
-                       getattr(self, '_parameter_overrides', {}).items()}
-        self._values: dict[str, Any] = {}
-        self._declare_rows({row.name: row for row in parameters.NODE_ROWS})
-        self._rows = parameters.table(self._values['axes'])
-        for name in self._given:  # a slip of the pen must not pass for the default
-            if name.partition('.')[0] in self._values['axes'] and name not in self._rows:
-                raise InputError(f'parameter {name} is unknown')
-        self._declare_rows(self._rows)
-        self.add_on_set_parameters_callback(self._check_parameters)
-        self.add_post_set_parameters_callback(self._take_parameters)
-
-    def _declare_rows(self, rows: dict[str, parameters.Row]) -> None:
-        for name, row in rows.items():
-            if name in self._values:
-                continue
-            if name in self._given:
-                row.check(name, self._given[name])
-            default = parameters.default_of(name, row)
-            self._values[name] = _plain(
-                self.declare_parameter(name, default, row.descriptor()).value)
-
-    def _check_parameters(self, changed: list[Parameter]) -> SetParametersResult:
-        try:
-            for parameter in changed:
-                self._check_parameter(parameter)
-        except InputError as error:
-            return SetParametersResult(successful=False, reason=str(error))
-        return SetParametersResult(successful=True)
-
-    def _check_parameter(self, parameter: Parameter) -> None:
-        row = self._rows.get(parameter.name)
-        if row is None:
-            return
-        row.check(parameter.name, _plain(parameter.value))
-        if row.change is parameters.Change.UNCONFIGURED and self._stations:
-            raise InputError(f'parameter {parameter.name} changes only while the node is '
-                             'unconfigured, clean it up first')
-
-    def _take_parameters(self, changed: list[Parameter]) -> None:
-        self._values |= {parameter.name: _plain(parameter.value) for parameter in changed
-                         if parameter.name in self._rows}
-        touched = {parameter.name.partition('.')[0] for parameter in changed}
-        for name, station in self._stations.items():
-            if name in touched:
-                station.axis.adapt(self._values)
-                self._publish_info(station)
-
-    # Lifecycle
+    def _on_parameters(self, groups: set[str]) -> None:
+        for name in groups & self._stations.keys():
+            self._stations[name].axis.adapt(self._values)
+            self._stations[name].publish_info()
 
     @_reported
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Load the surfaces and compile the inputs; on failure stay unconfigured, with a reason."""
+        """Load the surfaces, compile the inputs; on failure stay unconfigured, with a reason."""
         try:
             axes = [build_axis(name, self._values) for name in self._values['axes']]
             self._check_topics(axes)
         except InputError as error:
-            self._reason = str(error)
-            self.get_logger().error(f'not configured: {error}')
+            self._reason = f'not configured: {error}'
+            self.get_logger().error(self._reason)
             self._publish_diagnostics()
             return FAILURE
-        self._reason = ''
-        self._stations = {axis.name: self._make_station(axis) for axis in axes}
+        self._stations = {axis.name: Station(self, axis) for axis in axes}
+        self._store.locked = True
         self._publish_diagnostics()
         return super().on_configure(state)
 
@@ -183,19 +118,14 @@ class BallscrewMonitor(LifecycleNode):
                 try:
                     topic = self.resolve_topic_name(source.topic)
                 except RuntimeError:
-                    raise InputError(f'parameter {axis.name}.{source.source.name.lower()}.topic '
-                                     f'is {source.topic!r}, no topic name') from None
+                    raise InputError(
+                        f'parameter {axis.name}.{source.source.name.lower()}.topic '
+                        f'is {source.topic!r}, no topic name'
+                    ) from None
                 if types.setdefault(topic, source.type_name) != source.type_name:
-                    raise InputError(f'topic {topic} is configured as {types[topic]} and as '
-                                     f'{source.type_name}')
-
-    def _make_station(self, axis: Axis) -> Station:
-        make = self.create_lifecycle_publisher
-        return Station(
-            axis=axis, writer=StateWriter(axis.name, TIERS[axis.surface.tier]),
-            state_publisher=make(BallScrewState, f'~/{axis.name}/state', STATE_QOS),
-            event_publisher=make(OutOfZone, f'~/{axis.name}/out_of_zone', LATCHED_QOS),
-            info_publisher=make(SurfaceInfo, f'~/{axis.name}/surface_info', LATCHED_QOS))
+                    raise InputError(
+                        f'topic {topic} is configured as {types[topic]} and as {source.type_name}'
+                    )
 
     @_reported
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
@@ -203,8 +133,8 @@ class BallscrewMonitor(LifecycleNode):
         result = super().on_activate(state)
         self._active = True
         for station in self._stations.values():
-            self._publish_info(station)
-            self._publish_event(station)
+            station.publish_info()
+            station.publish_event()
         self._subscribe()
         self._tick_timer = self.create_timer(self._values['tick_period'], self._on_tick)
         self._publish_diagnostics()
@@ -216,11 +146,15 @@ class BallscrewMonitor(LifecycleNode):
         for station in self._stations.values():
             for source in station.axis.inputs:
                 readers.setdefault(self.resolve_topic_name(source.topic), []).append(
-                    (station, source))
+                    (station, source)
+                )
         for topic, those in readers.items():
             subscription = self.create_subscription(
-                those[0][1].message_type, topic, functools.partial(self._on_message, those),
-                INPUT_QOS)
+                those[0][1].message_type,
+                topic,
+                functools.partial(self._on_message, those),
+                INPUT_QOS,
+            )
             self._inputs.append(subscription)
             for station, source in those:
                 station.subscriptions[source.source] = subscription
@@ -236,21 +170,19 @@ class BallscrewMonitor(LifecycleNode):
     @_reported
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Forget the axes."""
-        self._clear()
+        self._clear('not configured')
         return SUCCESS
 
     @_reported
     def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Stop and forget the axes."""
         self._finalized = True
-        self._clear()
+        self._clear('shut down')
         return SUCCESS
 
     def on_error(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Fall back to unconfigured after an exception in a transition."""
-        self._reason = 'a transition failed unexpectedly'
-        self.get_logger().error(self._reason)
-        self._clear()
+        self._clear('not configured: a transition failed unexpectedly')
         return SUCCESS
 
     def _stop(self) -> None:
@@ -264,25 +196,21 @@ class BallscrewMonitor(LifecycleNode):
             self.destroy_timer(self._tick_timer)
             self._tick_timer = None
 
-    def _clear(self) -> None:
+    def _clear(self, reason: str) -> None:
         self._stop()
         for station in self._stations.values():
-            for publisher in (station.state_publisher, station.event_publisher,
-                              station.info_publisher):
-                self.destroy_lifecycle_publisher(publisher)
+            station.close()
         self._stations = {}
+        self._store.locked = False
+        self._reason = reason
         self._publish_diagnostics()
-
-    # Data
 
     def _on_message(self, readers: list[tuple[Station, Input]], message: Any) -> None:
         now = self.get_clock().now().nanoseconds
         for station, source in readers:
             axis = station.axis
             event = source.read(message, now=now, max_future=axis.max_future)
-            state = axis.monitor.update(event)
-            if state is not None:
-                self._publish_state(station, state)
+            self._publish(station, axis.monitor.update(event))
 
     def _on_tick(self) -> None:
         """Tick on the grid of stamps, each grid point once."""
@@ -292,54 +220,20 @@ class BallscrewMonitor(LifecycleNode):
             return
         self._last_grid = grid
         for station in self._stations.values():
-            state = station.axis.monitor.tick(grid)
-            if state is not None:
-                self._publish_state(station, state)
+            self._publish(station, station.axis.monitor.tick(grid))
 
-    def _publish_state(self, station: Station, state: State) -> None:
-        station.last = state
-        station.state_publisher.publish(station.writer.write(state))
-        if state.event is not None:
-            self._publish_event(station)
-            self._log_event(station)
-        summaries = diagnostics.summaries(state, station.axis.monitor.event)
-        if summaries != station.said:
-            self._tell_news(station, summaries)
-
-    def _tell_news(self, station: Station, summaries: tuple[diagnostics.Summary, ...]) -> None:
-        """Publish diagnostics for a change, but not in a flood; the timer sends what is left."""
-        now = self._steady.now().nanoseconds
-        if now - self._news_time < NEWS_INTERVAL:
+    def _publish(self, station: Station, state: State | None) -> None:
+        """Publish a state, and diagnostics for what it changes, though these not in a flood."""
+        if state is None:
             return
-        self._news_time = now
-        before, station.said = station.said, summaries
-        if not before or before[1] != summaries[1]:
-            level, text = summaries[1]
-            # Two calls: rclpy ties one severity to one place in the code.
-            if level == diagnostics.OK:
-                self.get_logger().info(f'axis {station.axis.name}: {text}')
-            else:
-                self.get_logger().warning(f'axis {station.axis.name}: {text}')
-        self._publish_diagnostics()
-
-    def _publish_event(self, station: Station) -> None:
-        axis = station.axis
-        station.event_publisher.publish(out_of_zone_message(axis.name, axis.monitor.event))
-
-    def _log_event(self, station: Station) -> None:
-        event, name = station.axis.monitor.event, station.axis.name
-        if event.active:
-            advice = f'; {event.advice.text}' if event.advice.text else ''
-            self.get_logger().warning(f'axis {name}: event {event.id}: {event.cause.text}{advice}')
-        elif station.axis.monitor.level is Level.OK:
-            self.get_logger().info(f'axis {name}: event {event.id} is over')
-
-    def _publish_info(self, station: Station) -> None:
-        axis = station.axis
-        settings = axis.monitor.settings
-        station.info_publisher.publish(surface_info_message(
-            axis.name, axis.surface, settings.limits, stamp=self.get_clock().now().nanoseconds,
-            default_temperature=settings.default_temperature))
+        station.publish_state(state)
+        if not station.has_news():
+            return
+        now = self._steady.now().nanoseconds
+        if now - self._news_time >= NEWS_INTERVAL:  # else the next state or the timer sends it
+            self._news_time = now
+            station.say_news()
+            self._publish_diagnostics()
 
     def _publish_diagnostics(self) -> None:
         message = DiagnosticArray(status=self._statuses())
@@ -347,23 +241,13 @@ class BallscrewMonitor(LifecycleNode):
         self._diagnostics.publish(message)
 
     def _statuses(self) -> list[DiagnosticStatus]:
-        node, made = self.get_name(), []
+        made = []
         for name in self._values['axes']:
-            station = self._stations.get(name)
-            if station is not None:
-                matched = {source: subscription.get_publisher_count()
-                           for source, subscription in station.subscriptions.items()}
-                made += diagnostics.statuses(
-                    node, name, station.last, station.axis.monitor.event, station.axis.surface,
-                    publishers=matched if self._active else None)
-            elif self._reason:
-                made += diagnostics.failed(node, name, f'not configured: {self._reason}')
+            if name in self._stations:
+                made += self._stations[name].statuses(active=self._active)
             else:
-                reason = 'shut down' if self._finalized else 'not configured'
-                made += diagnostics.failed(node, name, reason)
+                made += diagnostics.failed(self.get_name(), name, self._reason)
         return made
-
-    # Services
 
     def _on_evaluate(self, request: Any, response: Any) -> Any:
         """Answer what the surface says of the points."""
@@ -376,29 +260,22 @@ class BallscrewMonitor(LifecycleNode):
             response.message = f'{len(request.points)} points are too many, allowed are {most}'
         else:
             response.success = True
-            response.results = [self._evaluate(station.axis, point) for point in request.points]
+            response.results = [station.evaluate(point) for point in request.points]
         return response
-
-    def _evaluate(self, axis: Axis, point: Any) -> PointResult:
-        settings = axis.monitor.settings
-        result = PointResult()
-        fill_result(result, estimate(
-            read_point(point, default_temperature=settings.default_temperature), axis.surface,
-            rcs_limit=settings.limits.rcs), TIERS[axis.surface.tier])
-        return result
 
     def _on_reload(self, request: Any, response: Any) -> Any:
         """Swap every surface for the file as it is now, if all of them verify."""
         try:
-            surfaces = {name: load_surface(name, self._values) for name in self._stations}
+            surfaces = {
+                name: reload_surface(station.axis, self._values)
+                for name, station in self._stations.items()
+            }
         except InputError as error:
             response.message = f'kept the old surface: {error}'
             self.get_logger().error(response.message)
             return response
         for name, station in self._stations.items():
-            station.axis.use_surface(surfaces[name], self._values)
-            station.writer.tier = TIERS[surfaces[name].tier]
-            self._publish_info(station)
+            station.use_surface(surfaces[name], self._values)
         return self._answer(response, 'reloaded the surface')
 
     def _on_reset(self, request: Any, response: Any) -> Any:
@@ -412,7 +289,7 @@ class BallscrewMonitor(LifecycleNode):
         now = self.get_clock().now().nanoseconds
         for station in self._stations.values():
             if station.axis.monitor.acknowledge(now) is not None:
-                self._publish_event(station)
+                station.publish_event()
         return self._answer(response, 'acknowledged')
 
     def _answer(self, response: Any, what: str) -> Any:
@@ -420,11 +297,6 @@ class BallscrewMonitor(LifecycleNode):
         names = ', '.join(self._stations)
         response.message = f'{what} of {names}' if names else 'the node is not configured'
         return response
-
-
-def _plain(value: Any) -> Any:
-    """Return a parameter value as plain Python: rclpy hands out some lists as other sequences."""
-    return value if value is None or isinstance(value, (bool, str, float, int)) else list(value)
 
 
 def main(args: list[str] | None = None) -> int:

@@ -88,9 +88,13 @@ class Window:
     def take(self) -> WindowStatistics:
         """Return the statistics and begin anew."""
         taken = WindowStatistics(
-            count=self._speed.count, speed=self._speed.extremes(),
-            axial_load=self._load.extremes(), efficiency=self._efficiency.extremes(),
-            rcs=self._rcs.extremes(), film_ratio=self._film_ratio.extremes())
+            count=self._speed.count,
+            speed=self._speed.extremes(),
+            axial_load=self._load.extremes(),
+            efficiency=self._efficiency.extremes(),
+            rcs=self._rcs.extremes(),
+            film_ratio=self._film_ratio.extremes(),
+        )
         if taken.count:
             self._clear()
         return taken
@@ -126,8 +130,13 @@ def moment(stamp: int, point: Point, estimate: Estimate, verdict: Verdict) -> Mo
     """Return what the totals need to know of the sample at `stamp` [ns]."""
     speed = 0.0 if Gate.STANDSTILL in verdict.gates else abs(point.speed)
     power = 0.0 if estimate.numbers is None else estimate.numbers.friction_torque * speed
-    return Moment(stamp=stamp, speed=speed, power_lost=power if math.isfinite(power) else 0.0,
-                  regime=estimate.regime, zone=verdict.zone)
+    return Moment(
+        stamp=stamp,
+        speed=speed,
+        power_lost=power if math.isfinite(power) else 0.0,
+        regime=estimate.regime,
+        zone=verdict.zone,
+    )
 
 
 class Account:
@@ -167,9 +176,13 @@ class Account:
     def totals(self) -> Totals:
         """Return the sums."""
         return Totals(
-            running_time=self._running, unjudged_time=self._unjudged,
+            running_time=self._running,
+            unjudged_time=self._unjudged,
             boundary_time=self._in_regime[Regime.BOUNDARY],
             mixed_time=self._in_regime[Regime.MIXED],
             hydrodynamic_time=self._in_regime[Regime.HYDRODYNAMIC],
-            optimal_time=self._in_zone[Zone.OPTIMAL], outside_time=self._in_zone[Zone.OUTSIDE],
-            revolutions=self._angle / TURN, energy_lost=self._energy)
+            optimal_time=self._in_zone[Zone.OPTIMAL],
+            outside_time=self._in_zone[Zone.OUTSIDE],
+            revolutions=self._angle / TURN,
+            energy_lost=self._energy,
+        )

@@ -17,7 +17,8 @@ from ballscrew_monitor.conversions import direction_of, SECOND
 from ballscrew_monitor.estimate import Point, PointSource, Validity
 from ballscrew_monitor.inputs import Source
 from ballscrew_monitor.judgement import Limits
-from ballscrew_monitor.monitor import Monitor, Settings
+from ballscrew_monitor.monitor import Monitor
+from ballscrew_monitor.state import Settings
 from ballscrew_msgs.msg import BallScrewState
 from diagnostic_msgs.msg import DiagnosticArray
 from domain_coordinator import domain_id
@@ -67,7 +68,7 @@ class Numbers:
 
 
 class ConstantSurface:
-    """The same numbers everywhere in its range; each may be changed or be a function of a point."""
+    """The same numbers everywhere in its range; each may be a function of speed and load."""
 
     sha256 = '0123456789abcdef' * 4
     tier = 'closed_form'
@@ -94,38 +95,60 @@ class ConstantSurface:
             return Numbers(validity=Validity.LOAD_OUT_OF_RANGE)
         if not self.temperature_range[0] <= temperature <= self.temperature_range[1]:
             return Numbers(validity=Validity.TEMPERATURE_OUT_OF_RANGE)
-        return Numbers(**{
-            name: value(speed, opposing_load) if callable(value) else value
-            for name, value in self.numbers.items()})
+        return Numbers(
+            **{
+                name: value(speed, opposing_load) if callable(value) else value
+                for name, value in self.numbers.items()
+            }
+        )
 
 
 def make_limits(**changes):
     """Return limits whose numbers are exact in binary, changed as asked."""
-    values = {'rcs': 0.25, 'efficiency': 0.75, 'light_load': 256.0, 'standstill_speed': 0.5,
-              'raise_delay': SECOND // 2, 'clear_delay': SECOND, 'hysteresis': 0.5}
+    values = {
+        'rcs': 0.25,
+        'efficiency': 0.75,
+        'light_load': 256.0,
+        'standstill_speed': 0.5,
+        'raise_delay': SECOND // 2,
+        'clear_delay': SECOND,
+        'hysteresis': 0.5,
+    }
     return Limits(**(values | changes))
 
 
 def make_point(speed=10.0, axial_load=-1000.0, temperature=313.15, **changes):
     """Return a measured point, moving in the direction of its speed."""
-    values = {'speed_source': PointSource.MEASURED, 'axial_load_source': PointSource.MEASURED,
-              'temperature_source': PointSource.MEASURED, 'direction': direction_of(speed)}
-    return Point(speed=speed, axial_load=axial_load, temperature=temperature,
-                 **(values | changes))
+    values = {
+        'speed_source': PointSource.MEASURED,
+        'axial_load_source': PointSource.MEASURED,
+        'temperature_source': PointSource.MEASURED,
+        'direction': direction_of(speed),
+    }
+    return Point(speed=speed, axial_load=axial_load, temperature=temperature, **(values | changes))
 
 
 def make_monitor(surface=None, limits=None, **changes):
     """Return a monitor of axis x whose speed and load have 0.5 s timeout."""
-    values = {'axis': 'x', 'limits': limits or make_limits(), 'default_temperature': 313.15,
-              'timeouts': {Source.SPEED: SECOND // 2, Source.LOAD: SECOND // 2}}
+    values = {
+        'axis': 'x',
+        'limits': limits or make_limits(),
+        'default_temperature': 313.15,
+        'timeouts': {Source.SPEED: SECOND // 2, Source.LOAD: SECOND // 2},
+    }
     return Monitor(surface or ConstantSurface(), Settings(**(values | changes)))
 
 
 @pytest.fixture(scope='session')
 def core():
     """Make the parts that tests of the core are built from."""
-    return types.SimpleNamespace(surface=ConstantSurface, numbers=Numbers, limits=make_limits,
-                                 point=make_point, monitor=make_monitor)
+    return types.SimpleNamespace(
+        surface=ConstantSurface,
+        numbers=Numbers,
+        limits=make_limits,
+        point=make_point,
+        monitor=make_monitor,
+    )
 
 
 class NodeProcess:
@@ -139,8 +162,9 @@ class NodeProcess:
         self.process = None
         self.context = rclpy.Context()
         rclpy.init(context=self.context, domain_id=domain)
-        self.node = rclpy.create_node('tester', context=self.context, enable_rosout=False,
-                                      start_parameter_services=False)
+        self.node = rclpy.create_node(
+            'tester', context=self.context, enable_rosout=False, start_parameter_services=False
+        )
         self.executor = SingleThreadedExecutor(context=self.context)
         self.executor.add_node(self.node)
         self.stamp = self.node.get_clock().now().nanoseconds
@@ -150,8 +174,11 @@ class NodeProcess:
         command = [sys.executable, '-m', 'ballscrew_monitor.node', '--ros-args', *arguments]
         for name, value in ({'diagnostics_period': 0.1} | parameters).items():
             command += ['-p', f'{name.replace("__", ".")}:={value}']
-        environment = {name: value for name, value in os.environ.items()
-                       if name not in ('LD_LIBRARY_PATH', '_ROS_WHEELS_BOOTSTRAP_COMPLETE')}
+        environment = {
+            name: value
+            for name, value in os.environ.items()
+            if name not in ('LD_LIBRARY_PATH', '_ROS_WHEELS_BOOTSTRAP_COMPLETE')
+        }
         environment |= {'ROS_DOMAIN_ID': str(self.domain), 'PYTHONPATH': str(ROOT)}
         with open(self.output, 'w') as output:
             self.process = subprocess.Popen(command, env=environment, stdout=output, stderr=output)
@@ -188,10 +215,13 @@ class NodeProcess:
 
     def set_parameters(self, **values):
         """Set parameters as one; return the result."""
-        parameters = [Parameter(name.replace('__', '.'), value=value).to_parameter_msg()
-                      for name, value in values.items()]
-        return self.call(SetParametersAtomically, 'set_parameters_atomically',
-                         parameters=parameters).result
+        parameters = [
+            Parameter(name.replace('__', '.'), value=value).to_parameter_msg()
+            for name, value in values.items()
+        ]
+        return self.call(
+            SetParametersAtomically, 'set_parameters_atomically', parameters=parameters
+        ).result
 
     def transition(self, label):
         """Ask for a lifecycle transition; return whether it succeeded."""
@@ -209,9 +239,19 @@ class NodeProcess:
         loads = self.node.create_publisher(WrenchStamped, load_topic, 100)
         told = self.listen(DiagnosticArray, '/diagnostics')
         # A best-effort sample is lost unless both sides know of each other.
-        self.until(lambda: told and {'Speed publishers [-]', 'Load publishers [-]'} <= {
-            pair.key for status in told[-1].status for pair in status.values
-            if pair.value == '1'}, 'the match with the inputs of the node')
+        self.until(
+            lambda: (
+                told
+                and {'Speed publishers [-]', 'Load publishers [-]'}
+                <= {
+                    pair.key
+                    for status in told[-1].status
+                    for pair in status.values
+                    if pair.value == '1'
+                }
+            ),
+            'the match with the inputs of the node',
+        )
 
         def publish(speed, force=-1000.0, *, step=SECOND // 100, joint='x_axis'):
             self.stamp += step
@@ -222,6 +262,7 @@ class NodeProcess:
             load.wrench.force.x = force
             loads.publish(load)
             speeds.publish(joints)
+
         return publish
 
     def stop(self, number=signal.SIGINT):

@@ -53,8 +53,9 @@ def test_to_leave_the_efficiency_unjudged_is_no_advice(core):
 
 
 def test_a_light_load_may_become_lighter(core):
-    surface = core.surface(rcs=lambda speed, load: 1.0 if abs(load) > 100.0 else 0.0,
-                           efficiency=0.5)
+    surface = core.surface(
+        rcs=lambda speed, load: 1.0 if abs(load) > 100.0 else 0.0, efficiency=0.5
+    )
     found = optimal_load(core.point(axial_load=200.0), surface, core.limits())
     assert found == pytest.approx(100.0, rel=1e-4)
 
@@ -70,4 +71,5 @@ def test_advice_as_a_sentence(core):
 def test_an_optimal_point_is_its_own_advice(core):
     point = core.point(speed=7.0, axial_load=-600.0)
     assert advise(point, core.surface(), core.limits()) == Advice(
-        target_speed=7.0, target_load=-600.0)
+        target_speed=7.0, target_load=-600.0
+    )

@@ -16,7 +16,8 @@ from surrogate.surface import shipped_surface
 
 def build(**changes):
     values = parameters.defaults(['x']) | {
-        f'x.{name.replace("__", ".")}': value for name, value in changes.items()}
+        f'x.{name.replace("__", ".")}': value for name, value in changes.items()
+    }
     return build_axis('x', values)
 
 
@@ -36,23 +37,31 @@ def test_a_topic_makes_an_input():
     assert axis.monitor.settings.timeouts[Source.TEMPERATURE] == 30 * SECOND
 
 
-@pytest.mark.parametrize(('unit', 'value', 'expected'), [
-    ('rad/s', 3.0, -3.0), ('mm/s', 10.0, 2.0 * math.pi)])
+@pytest.mark.parametrize(
+    ('unit', 'value', 'expected'), [('rad/s', 3.0, -3.0), ('mm/s', 10.0, 2.0 * math.pi)]
+)
 def test_units_and_handedness_reach_the_input(unit, value, expected):
-    axis = build(handedness='left', speed__unit=unit, speed__type='std_msgs/msg/Float64',
-                 speed__field='data')
+    axis = build(
+        handedness='left',
+        speed__unit=unit,
+        speed__type='std_msgs/msg/Float64',
+        speed__field='data',
+    )
     sample = axis.inputs[-1].read(Float64(data=value), now=5, max_future=0)
     assert sample.value == pytest.approx(expected)
 
 
-@pytest.mark.parametrize(('changes', 'match'), [
-    ({'speed__topic': ''}, 'parameter x.speed.topic is empty'),
-    ({'speed__field': 'velocity'}, "parameters x.speed: field 'velocity' .* not a number"),
-    ({'load__type': 'a/b'}, "parameters x.load: message type 'a/b'"),
-    ({'surface': '/no/such/file.npz'}, 'axis x: .*/no/such/file.npz'),
-    ({'screw': 'other'}, "axis x: .*'other'"),
-    ({'oil': 'olive'}, "axis x: .*'olive'"),
-])
+@pytest.mark.parametrize(
+    ('changes', 'match'),
+    [
+        ({'speed__topic': ''}, 'parameter x.speed.topic is empty'),
+        ({'speed__field': 'velocity'}, "parameters x.speed: field 'velocity' .* not a number"),
+        ({'load__type': 'a/b'}, "parameters x.load: message type 'a/b'"),
+        ({'surface': '/no/such/file.npz'}, 'axis x: .*/no/such/file.npz'),
+        ({'screw': 'other'}, "axis x: .*'other'"),
+        ({'oil': 'olive'}, "axis x: .*'olive'"),
+    ],
+)
 def test_an_axis_that_cannot_work_is_refused(changes, match):
     with pytest.raises(InputError, match=match):
         build(**changes)

@@ -5,10 +5,24 @@
 import math
 
 from ballscrew_monitor.conversions import (
-    axial_load, Direction, direction_of, load_scaling, machine_nut, machine_torque, nanoseconds,
-    Nut, opposing_load, seconds, signed_speed, speed_scaling, temperature_scaling, torque_scaling)
+    axial_load,
+    Direction,
+    direction_of,
+    load_scaling,
+    machine_nut,
+    machine_torque,
+    nanoseconds,
+    Nut,
+    opposing_load,
+    seconds,
+    signed_speed,
+    speed_scaling,
+    temperature_scaling,
+    torque_scaling,
+)
 from ballscrew_monitor.errors import InputError
-from hypothesis import given, strategies as st
+from hypothesis import given
+from hypothesis import strategies as st
 import pytest
 
 POSITIVE, NEGATIVE = Direction.POSITIVE, Direction.NEGATIVE
@@ -21,14 +35,17 @@ def speed(unit, value, *, handedness='right', lead=0.01, **changes):
     return scaling(value)
 
 
-@pytest.mark.parametrize(('unit', 'value', 'expected'), [
-    ('rad/s', 12.5, 12.5),
-    ('rev/min', 600.0, 20.0 * math.pi),
-    ('m/s', 0.01, 2.0 * math.pi),  # one lead in a second
-    ('mm/s', 10.0, 2.0 * math.pi),
-    ('mm/min', 600.0, 2.0 * math.pi),
-    ('m/min', 0.6, 2.0 * math.pi),
-])
+@pytest.mark.parametrize(
+    ('unit', 'value', 'expected'),
+    [
+        ('rad/s', 12.5, 12.5),
+        ('rev/min', 600.0, 20.0 * math.pi),
+        ('m/s', 0.01, 2.0 * math.pi),  # one lead in a second
+        ('mm/s', 10.0, 2.0 * math.pi),
+        ('mm/min', 600.0, 2.0 * math.pi),
+        ('m/min', 0.6, 2.0 * math.pi),
+    ],
+)
 def test_speed_units(unit, value, expected):
     assert speed(unit, value) == pytest.approx(expected, rel=1e-15)
     assert speed(unit, -value) == -speed(unit, value)
@@ -51,22 +68,30 @@ def test_torque_is_along_the_screw():
     assert torque_scaling('N m', handedness='left', **PLAIN)(2.0) == -2.0
 
 
-@pytest.mark.parametrize(('call', 'match'), [
-    (lambda: speed('furlong/day', 1.0), "speed unit 'furlong/day' is unknown.*rad/s"),
-    (lambda: speed('rad/s', 1.0, handedness='both'), "handedness 'both' is unknown"),
-    (lambda: load_scaling('lbf', **PLAIN), "load unit 'lbf' is unknown, allowed are N, kN"),
-    (lambda: temperature_scaling('degF', **PLAIN), "temperature unit 'degF'"),
-    (lambda: torque_scaling('N', handedness='right', **PLAIN), "torque unit 'N'"),
-])
+@pytest.mark.parametrize(
+    ('call', 'match'),
+    [
+        (lambda: speed('furlong/day', 1.0), "speed unit 'furlong/day' is unknown.*rad/s"),
+        (lambda: speed('rad/s', 1.0, handedness='both'), "handedness 'both' is unknown"),
+        (lambda: load_scaling('lbf', **PLAIN), "load unit 'lbf' is unknown, allowed are N, kN"),
+        (lambda: temperature_scaling('degF', **PLAIN), "temperature unit 'degF'"),
+        (lambda: torque_scaling('N', handedness='right', **PLAIN), "torque unit 'N'"),
+    ],
+)
 def test_unknown_units_are_refused(call, match):
     with pytest.raises(InputError, match=match):
         call()
 
 
-@pytest.mark.parametrize(('force', 'direction', 'expected'), [
-    (100.0, POSITIVE, -100.0), (-100.0, POSITIVE, 100.0),
-    (100.0, NEGATIVE, 100.0), (-100.0, NEGATIVE, -100.0),
-])
+@pytest.mark.parametrize(
+    ('force', 'direction', 'expected'),
+    [
+        (100.0, POSITIVE, -100.0),
+        (-100.0, POSITIVE, 100.0),
+        (100.0, NEGATIVE, 100.0),
+        (-100.0, NEGATIVE, -100.0),
+    ],
+)
 def test_opposing_load_in_four_quadrants(force, direction, expected):
     assert opposing_load(force, direction) == expected
     assert axial_load(expected, direction) == force
@@ -88,11 +113,18 @@ def test_torque_along_the_motion_turns_with_it():
     assert machine_torque(2.0, NEGATIVE) == -2.0
 
 
-@pytest.mark.parametrize(('nut', 'force', 'expected'), [
-    (1, 5.0, Nut.POSITIVE), (2, 5.0, Nut.NEGATIVE),
-    (1, -5.0, Nut.NEGATIVE), (2, -5.0, Nut.POSITIVE),
-    (1, 0.0, Nut.UNKNOWN), (0, 5.0, Nut.UNKNOWN), (1, math.nan, Nut.UNKNOWN),
-])
+@pytest.mark.parametrize(
+    ('nut', 'force', 'expected'),
+    [
+        (1, 5.0, Nut.POSITIVE),
+        (2, 5.0, Nut.NEGATIVE),
+        (1, -5.0, Nut.NEGATIVE),
+        (2, -5.0, Nut.POSITIVE),
+        (1, 0.0, Nut.UNKNOWN),
+        (0, 5.0, Nut.UNKNOWN),
+        (1, math.nan, Nut.UNKNOWN),
+    ],
+)
 def test_nut_that_the_load_presses(nut, force, expected):
     assert machine_nut(nut, force) is expected
 

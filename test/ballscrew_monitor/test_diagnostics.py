@@ -6,7 +6,7 @@ from ballscrew_monitor import diagnostics
 from ballscrew_monitor.conversions import SECOND
 from ballscrew_monitor.diagnostics import ERROR, OK, STALE, WARN
 from ballscrew_monitor.inputs import Refusal, Sample, Source, Why
-from ballscrew_monitor.monitor import Event
+from ballscrew_monitor.state import Event
 import pytest
 
 START = 1000 * SECOND
@@ -22,8 +22,14 @@ def after(core, *events, surface=None, **limits):
     monitor, state = core.monitor(surface, core.limits(**(delays | limits))), None
     for event in events:
         state = monitor.update(event) or state
-    made = diagnostics.statuses('node', 'x', state, monitor.event, monitor.surface,
-                                publishers={Source.SPEED: 1, Source.LOAD: 0})
+    made = diagnostics.statuses(
+        'node',
+        'x',
+        state,
+        monitor.event,
+        monitor.surface,
+        publishers={Source.SPEED: 1, Source.LOAD: 0},
+    )
     return {status.name.rpartition(' ')[2]: status for status in made}
 
 
@@ -37,13 +43,16 @@ def test_a_status_begins_as_an_error():
 
 def test_names():
     assert [status.name for status in diagnostics.blank('ballscrew_monitor', 'x')] == [
-        'ballscrew_monitor: x: Lubrication', 'ballscrew_monitor: x: Inputs',
-        'ballscrew_monitor: x: Surface']
+        'ballscrew_monitor: x: Lubrication',
+        'ballscrew_monitor: x: Inputs',
+        'ballscrew_monitor: x: Surface',
+    ]
 
 
 def test_a_failure_is_an_error_everywhere():
     assert {(status.level, status.message) for status in diagnostics.failed('n', 'x', 'why')} == {
-        (ERROR, 'why')}
+        (ERROR, 'why')
+    }
 
 
 def test_all_is_well(core):
@@ -53,12 +62,15 @@ def test_all_is_well(core):
     assert {status.hardware_id for status in made.values()} == {'constant'}
 
 
-@pytest.mark.parametrize(('events', 'level', 'message'), [
-    ([SPEED], STALE, 'not judged: an input is missing'),
-    ([LOAD, sample(Source.SPEED, 0.1)], OK, 'standstill'),
-    ([LOAD, sample(Source.SPEED, 1e3)], WARN, 'not judged: speed above the surface'),
-    ([sample(Source.LOAD, 1e5), SPEED], WARN, 'not judged: load outside the surface'),
-])
+@pytest.mark.parametrize(
+    ('events', 'level', 'message'),
+    [
+        ([SPEED], STALE, 'not judged: an input is missing'),
+        ([LOAD, sample(Source.SPEED, 0.1)], OK, 'standstill'),
+        ([LOAD, sample(Source.SPEED, 1e3)], WARN, 'not judged: speed above the surface'),
+        ([sample(Source.LOAD, 1e5), SPEED], WARN, 'not judged: load outside the surface'),
+    ],
+)
 def test_lubrication_that_is_not_judged(core, events, level, message):
     status = after(core, *events)['Lubrication']
     assert (status.level, status.message) == (level, message)
@@ -75,7 +87,9 @@ def test_a_warning_names_its_cause_and_stands_while_inputs_are_lost(core):
     for events in ([LOAD, SPEED], [LOAD, SPEED, late]):
         status = after(core, *events, surface=surface)['Lubrication']
         assert (status.level, status.message) == (
-            WARN, 'outside the optimal zone: asperities carry too much')
+            WARN,
+            'outside the optimal zone: asperities carry too much',
+        )
 
 
 def test_inputs_name_what_is_wrong(core):
@@ -86,9 +100,13 @@ def test_inputs_name_what_is_wrong(core):
     assert after(core, LOAD, late)['Inputs'].message == 'load is stale'
 
 
-@pytest.mark.parametrize(('publishers', 'message'), [
-    ({Source.SPEED: 1}, 'nothing has been judged yet'),
-    (None, 'the node is inactive, nothing is judged')])
+@pytest.mark.parametrize(
+    ('publishers', 'message'),
+    [
+        ({Source.SPEED: 1}, 'nothing has been judged yet'),
+        (None, 'the node is inactive, nothing is judged'),
+    ],
+)
 def test_without_a_state_there_is_no_news(core, publishers, message):
     made = diagnostics.statuses('n', 'x', None, Event(), core.surface(), publishers=publishers)
     assert [(status.level, status.message) for status in made[:2]] == [(STALE, message)] * 2

@@ -8,9 +8,20 @@ from ballscrew_monitor.conversions import SECOND
 from ballscrew_monitor.errors import InputError
 from ballscrew_monitor.estimate import estimate, PointSource
 from ballscrew_monitor.judgement import (
-    Code, Gate, gates_of, hold, Hold, judge, Level, Severity, Verdict, Zone)
+    Code,
+    Gate,
+    gates_of,
+    Hold,
+    hold,
+    judge,
+    Level,
+    Severity,
+    Verdict,
+    Zone,
+)
 from ballscrew_msgs.msg import BallScrewState, Finding
-from hypothesis import given, strategies as st
+from hypothesis import given
+from hypothesis import strategies as st
 import pytest
 
 GAP = SECOND // 2
@@ -31,29 +42,37 @@ def codes(verdict):
     return [finding.code for finding in verdict.findings]
 
 
-@pytest.mark.parametrize(('rcs', 'efficiency', 'expected'), [
-    (0.25, 0.75, [Code.RCS_HIGH]),
-    (below(0.25), 0.75, []),
-    (below(0.25), below(0.75), [Code.EFFICIENCY_LOW]),
-    (0.25, below(0.75), [Code.RCS_HIGH, Code.EFFICIENCY_LOW]),
-    (0.0, 1.0, []), (1.0, 0.0, [Code.RCS_HIGH, Code.EFFICIENCY_LOW]),
-])
+@pytest.mark.parametrize(
+    ('rcs', 'efficiency', 'expected'),
+    [
+        (0.25, 0.75, [Code.RCS_HIGH]),
+        (below(0.25), 0.75, []),
+        (below(0.25), below(0.75), [Code.EFFICIENCY_LOW]),
+        (0.25, below(0.75), [Code.RCS_HIGH, Code.EFFICIENCY_LOW]),
+        (0.0, 1.0, []),
+        (1.0, 0.0, [Code.RCS_HIGH, Code.EFFICIENCY_LOW]),
+    ],
+)
 def test_zone_on_its_limits(core, rcs, efficiency, expected):
     verdict = judged(core, rcs=rcs, efficiency=efficiency)
     assert codes(verdict) == expected
     assert verdict.zone is (Zone.OUTSIDE if expected else Zone.OPTIMAL)
 
 
-@pytest.mark.parametrize(('rcs', 'efficiency', 'clear'), [
-    (0.125, 0.875, False), (below(0.125), 0.875, True), (below(0.125), below(0.875), False)])
+@pytest.mark.parametrize(
+    ('rcs', 'efficiency', 'clear'),
+    [(0.125, 0.875, False), (below(0.125), 0.875, True), (below(0.125), below(0.875), False)],
+)
 def test_hysteresis_on_its_limits(core, rcs, efficiency, clear):
     verdict = judged(core, rcs=rcs, efficiency=efficiency)
     assert verdict.zone is Zone.OPTIMAL
     assert verdict.clear is clear
 
 
-@pytest.mark.parametrize(('force', 'light'), [
-    (256.0, False), (-256.0, False), (below(256.0), True), (-below(256.0), True), (0.0, True)])
+@pytest.mark.parametrize(
+    ('force', 'light'),
+    [(256.0, False), (-256.0, False), (below(256.0), True), (-below(256.0), True), (0.0, True)],
+)
 def test_light_load_on_its_limit(core, force, light):
     verdict = judged(core, point=core.point(axial_load=force), efficiency=0.0)
     assert (Gate.LIGHT_LOAD in verdict.gates) is light
@@ -64,8 +83,9 @@ def test_a_light_load_does_not_excuse_rcs(core):
     assert codes(judged(core, point=core.point(axial_load=0.0), rcs=0.25)) == [Code.RCS_HIGH]
 
 
-@pytest.mark.parametrize(('speed', 'still'), [
-    (0.5, False), (-0.5, False), (below(0.5), True), (-below(0.5), True)])
+@pytest.mark.parametrize(
+    ('speed', 'still'), [(0.5, False), (-0.5, False), (below(0.5), True), (-below(0.5), True)]
+)
 def test_standstill_on_its_limit(core, speed, still):
     verdict = judged(core, point=core.point(speed=speed), rcs=1.0)
     assert (Gate.STANDSTILL in verdict.gates) is still
@@ -73,9 +93,15 @@ def test_standstill_on_its_limit(core, speed, still):
 
 
 def test_numbers_that_are_unknown_or_held_shut_no_gate(core):
-    for point in (core.point(speed=math.nan, axial_load=math.nan),
-                  core.point(speed=0.0, axial_load=0.0, speed_source=PointSource.HELD,
-                             axial_load_source=PointSource.HELD)):
+    for point in (
+        core.point(speed=math.nan, axial_load=math.nan),
+        core.point(
+            speed=0.0,
+            axial_load=0.0,
+            speed_source=PointSource.HELD,
+            axial_load_source=PointSource.HELD,
+        ),
+    ):
         assert gates_of(point, core.limits()) == ()
 
 
@@ -90,7 +116,8 @@ def test_what_cannot_be_judged_is_unknown_and_says_why(core):
 
 def test_a_lost_input_is_told_at_standstill_too(core):
     assert codes(judged(core, point=core.point(speed=0.0, axial_load=math.nan))) == [
-        Code.INPUT_LOST]
+        Code.INPUT_LOST
+    ]
 
 
 def test_a_creeping_screw_below_the_surface_is_no_finding(core):
@@ -118,12 +145,18 @@ def test_bands_are_exhaustive(core, rcs, efficiency):
     assert not verdict.clear or verdict.zone is Zone.OPTIMAL
 
 
-@pytest.mark.parametrize(('changes', 'match'), [
-    ({'rcs': 0.0}, 'limit rcs is 0.0, it must be between 0 and 1'), ({'rcs': 1.0}, 'rcs'),
-    ({'efficiency': math.nan}, 'efficiency is nan'), ({'light_load': -1.0}, 'light_load'),
-    ({'standstill_speed': 0.0}, 'standstill_speed is 0.0, it must be above 0'),
-    ({'raise_delay': -1}, 'raise_delay'), ({'hysteresis': 1.0}, 'from 0 to below 1'),
-])
+@pytest.mark.parametrize(
+    ('changes', 'match'),
+    [
+        ({'rcs': 0.0}, 'limit rcs is 0.0, it must be between 0 and 1'),
+        ({'rcs': 1.0}, 'rcs'),
+        ({'efficiency': math.nan}, 'efficiency is nan'),
+        ({'light_load': -1.0}, 'light_load'),
+        ({'standstill_speed': 0.0}, 'standstill_speed is 0.0, it must be above 0'),
+        ({'raise_delay': -1}, 'raise_delay'),
+        ({'hysteresis': 1.0}, 'from 0 to below 1'),
+    ],
+)
 def test_limits_without_meaning_are_refused(core, changes, match):
     with pytest.raises(InputError, match=match):
         core.limits(**changes)
@@ -153,7 +186,8 @@ def test_a_warning_is_raised_when_the_delay_is_exactly_over(core):
 
 def test_a_warning_is_cleared_when_the_delay_is_exactly_over(core):
     assert levels(core.limits(), [INSIDE] * 101, memory=WARNING) == (
-        [Level.WARN] * 100 + [Level.OK])
+        [Level.WARN] * 100 + [Level.OK]
+    )
 
 
 def test_without_delays_a_single_sample_decides(core):
@@ -203,8 +237,10 @@ def test_unknown_neither_raises_nor_clears(core, verdicts):
             assert after.level is (Level.WARN if verdict is OUTSIDE else Level.OK)
 
 
-@given(verdicts=st.lists(st.sampled_from([INSIDE, INSIDE, INSIDE, BAND]), max_size=300),
-       holes=st.sets(st.integers(0, 299), max_size=3))
+@given(
+    verdicts=st.lists(st.sampled_from([INSIDE, INSIDE, INSIDE, BAND]), max_size=300),
+    holes=st.sets(st.integers(0, 299), max_size=3),
+)
 def test_making_samples_unknown_never_clears_a_warning_sooner(core, verdicts, holes):
     spoiled = [UNKNOWN if i in holes else verdict for i, verdict in enumerate(verdicts)]
     whole = levels(core.limits(), verdicts, memory=WARNING)
@@ -219,9 +255,16 @@ def test_unknown_is_never_reached_again(core, verdicts):
     assert seen == [Level.UNKNOWN] * (len(seen) - len(known)) + known
 
 
-@pytest.mark.parametrize(('enumeration', 'message', 'prefix'), [
-    (Level, BallScrewState, 'LEVEL_'), (Zone, BallScrewState, 'ZONE_'),
-    (Gate, BallScrewState, 'GATE_'), (Code, Finding, 'CODE_'), (Severity, Finding, 'SEVERITY_')])
+@pytest.mark.parametrize(
+    ('enumeration', 'message', 'prefix'),
+    [
+        (Level, BallScrewState, 'LEVEL_'),
+        (Zone, BallScrewState, 'ZONE_'),
+        (Gate, BallScrewState, 'GATE_'),
+        (Code, Finding, 'CODE_'),
+        (Severity, Finding, 'SEVERITY_'),
+    ],
+)
 def test_enumerations_have_the_numbers_of_the_messages(enumeration, message, prefix):
     for member in enumeration:
         assert getattr(message, f'{prefix}{member.name}') == member

@@ -8,10 +8,22 @@ from ballscrew_monitor.conversions import Direction, SECOND
 from ballscrew_monitor.estimate import estimate
 from ballscrew_monitor.inputs import Sample, Source
 from ballscrew_monitor.messages import (
-    fill_result, NUMBERS, out_of_zone_message, read_point, StateWriter, surface_info_message)
-from ballscrew_monitor.monitor import Event
+    fill_result,
+    NUMBERS,
+    out_of_zone_message,
+    read_point,
+    StateWriter,
+    surface_info_message,
+)
+from ballscrew_monitor.state import Event
 from ballscrew_msgs.msg import (
-    BallScrewState, Finding, InputHealth, OperatingPoint, OutOfZone, PointResult)
+    BallScrewState,
+    Finding,
+    InputHealth,
+    OperatingPoint,
+    OutOfZone,
+    PointResult,
+)
 import pytest
 from rclpy.serialization import deserialize_message, serialize_message
 
@@ -40,8 +52,10 @@ def test_a_state_as_a_message(core):
     assert math.isnan(message.point.motor_torque)
     assert message.point.direction == OperatingPoint.DIRECTION_NEGATIVE
     assert message.point.temperature_source == OperatingPoint.SOURCE_DEFAULT
-    assert (message.level, message.zone) == (BallScrewState.LEVEL_WARN,
-                                             BallScrewState.ZONE_OUTSIDE)
+    assert (message.level, message.zone) == (
+        BallScrewState.LEVEL_WARN,
+        BallScrewState.ZONE_OUTSIDE,
+    )
     assert (message.event_id, message.judged) == (1, 1)
     assert [finding.code for finding in message.findings] == [Finding.CODE_RCS_HIGH]
     assert list(message.active_gates) == []
@@ -55,12 +69,18 @@ def test_a_result_as_a_message(core):
     state, _ = one_state(core)
     result = StateWriter('x', PointResult.TIER_FULL).write(state).result
     assert (result.validity, result.tier, result.reason) == (
-        PointResult.VALIDITY_VALID, PointResult.TIER_FULL, '')
+        PointResult.VALIDITY_VALID,
+        PointResult.TIER_FULL,
+        '',
+    )
     for name in ('efficiency', 'rcs', *NUMBERS):
         assert getattr(result, name) == getattr(state.estimate.numbers, name) or (
-            name.endswith('_std') and math.isnan(getattr(result, name)))
-    assert (result.worst_nut, result.worst_side) == (PointResult.NUT_POSITIVE,
-                                                     PointResult.SIDE_NUT)
+            name.endswith('_std') and math.isnan(getattr(result, name))
+        )
+    assert (result.worst_nut, result.worst_side) == (
+        PointResult.NUT_POSITIVE,
+        PointResult.SIDE_NUT,
+    )
     assert result.regime == PointResult.REGIME_HYDRODYNAMIC
 
 
@@ -80,8 +100,9 @@ def test_a_used_message_keeps_nothing_of_the_state_before(core):
 def test_every_number_of_a_result_is_written(core):
     written = PointResult()
     fill_result(written, estimate(core.point(), core.surface(), rcs_limit=0.25), 1)
-    names = {name for name, kind in PointResult.get_fields_and_field_types().items()
-             if kind == 'double'}
+    names = {
+        name for name, kind in PointResult.get_fields_and_field_types().items() if kind == 'double'
+    }
     assert names == {'efficiency', 'rcs', *NUMBERS}
 
 
@@ -102,19 +123,32 @@ def test_the_first_event_message_says_that_there_was_none():
 
 
 def test_a_surface_as_a_message(core):
-    message = over_the_wire(surface_info_message(
-        'x', core.surface(), core.limits(), stamp=STAMP, default_temperature=313.15))
+    message = over_the_wire(
+        surface_info_message(
+            'x', core.surface(), core.limits(), stamp=STAMP, default_temperature=313.15
+        )
+    )
     assert (message.screw, message.oil, message.tier) == ('constant', 'water', 1)
     assert (message.speed_min, message.axial_load_max) == (0.1, 4000.0)
     assert message.temperature_max == pytest.approx(80.0)
     assert (message.error_field, list(message.error_max), list(message.error_p95)) == (
-        ['rcs'], [2e-3], [1e-3])
+        ['rcs'],
+        [2e-3],
+        [1e-3],
+    )
     assert message.default_temperature == pytest.approx(40.0)
 
 
-@pytest.mark.parametrize(('speed', 'stated', 'direction'), [
-    (5.0, 2, Direction.POSITIVE), (-5.0, 0, Direction.NEGATIVE), (0.0, 2, Direction.NEGATIVE),
-    (0.0, 7, Direction.UNKNOWN), (NAN, 1, Direction.UNKNOWN)])
+@pytest.mark.parametrize(
+    ('speed', 'stated', 'direction'),
+    [
+        (5.0, 2, Direction.POSITIVE),
+        (-5.0, 0, Direction.NEGATIVE),
+        (0.0, 2, Direction.NEGATIVE),
+        (0.0, 7, Direction.UNKNOWN),
+        (NAN, 1, Direction.UNKNOWN),
+    ],
+)
 def test_a_requested_point(speed, stated, direction):
     message = OperatingPoint(speed=speed, axial_load=3.0, temperature=NAN, direction=stated)
     point = read_point(message, default_temperature=300.0)

@@ -9,8 +9,10 @@ from ballscrew_monitor.conversions import Direction, SECOND
 from ballscrew_monitor.estimate import PointSource, Validity
 from ballscrew_monitor.inputs import InputState, Refusal, Sample, Source, Why
 from ballscrew_monitor.judgement import Code, Gate, Level, Zone
-from ballscrew_monitor.monitor import BACKWARD_JUMP, Event
-from hypothesis import given, strategies as st
+from ballscrew_monitor.monitor import BACKWARD_JUMP
+from ballscrew_monitor.state import Event
+from hypothesis import given
+from hypothesis import strategies as st
 import pytest
 
 STEP = SECOND // 100
@@ -29,16 +31,19 @@ def load(value, stamp):
 
 def feed(monitor, events):
     """Return the states that the events give."""
-    states = [monitor.tick(event[1]) if isinstance(event, tuple) else monitor.update(event)
-              for event in events]
+    states = [
+        monitor.tick(event[1]) if isinstance(event, tuple) else monitor.update(event)
+        for event in events
+    ]
     return [state for state in states if state is not None]
 
 
 def motion(value, *, start=START, count=1, force=-1000.0, step=STEP):
     """Return pairs of a load and a speed sample."""
     stamps = [start + i * step for i in range(count)]
-    return [make(number, stamp) for stamp in stamps
-            for make, number in ((load, force), (speed, value))]
+    return [
+        make(number, stamp) for stamp in stamps for make, number in ((load, force), (speed, value))
+    ]
 
 
 def test_every_speed_sample_is_judged_once(core):
@@ -199,8 +204,9 @@ def test_an_event_begins_and_ends_with_its_facts(core):
 
 def test_the_worst_value_counts_from_the_first_sample_outside(core):
     rcs = iter([0.5, 0.9, 0.4, 0.3] + [0.3] * 100)
-    monitor = core.monitor(core.surface(rcs=lambda speed, load: next(rcs)),
-                           core.limits(raise_delay=3 * STEP))
+    monitor = core.monitor(
+        core.surface(rcs=lambda speed, load: next(rcs)), core.limits(raise_delay=3 * STEP)
+    )
     surface, numbers = monitor.surface, monitor.surface.numbers
     feed(monitor, motion(10.0, count=3))
     assert monitor.event == Event()
@@ -223,8 +229,12 @@ def test_the_worst_efficiency_is_the_smallest(core):
 
 def test_a_stay_too_short_is_no_event(core):
     monitor = slow_is_bad(core)
-    feed(monitor, motion(10.0, count=50) + motion(40.0, start=START + SECOND // 2, count=3)
-         + motion(10.0, start=START + SECOND, count=50))
+    feed(
+        monitor,
+        motion(10.0, count=50)
+        + motion(40.0, start=START + SECOND // 2, count=3)
+        + motion(10.0, start=START + SECOND, count=50),
+    )
     assert monitor.event == Event()
     feed(monitor, motion(10.0, start=START + SECOND + SECOND // 2))
     assert (monitor.event.id, monitor.event.start) == (1, START + SECOND)
@@ -245,7 +255,11 @@ def test_states_are_thinned_to_a_grid_but_edges_are_not(core):
     monitor = slow_is_bad(core, publish_period=SECOND)
     states = feed(monitor, motion(40.0, start=START + STEP, count=299))
     assert [state.stamp for state in states] == [
-        START + STEP, START + SECOND, START + SECOND + STEP, START + 2 * SECOND]
+        START + STEP,
+        START + SECOND,
+        START + SECOND + STEP,
+        START + 2 * SECOND,
+    ]
     assert states[2].level is Level.OK
     assert [state.window.count for state in states] == [1, 99, 1, 99]
     assert sum(state.window.count for state in states) == states[-1].judged
@@ -295,16 +309,19 @@ def test_new_limits_hold_from_the_next_sample(core):
     monitor = core.monitor(core.surface(rcs=0.5), core.limits(raise_delay=0))
     assert feed(monitor, motion(10.0))[-1].verdict.zone is Zone.OUTSIDE
     monitor.settings = dataclasses.replace(
-        monitor.settings, limits=core.limits(rcs=0.625, raise_delay=0))
+        monitor.settings, limits=core.limits(rcs=0.625, raise_delay=0)
+    )
     assert feed(monitor, motion(10.0, start=START + STEP))[-1].verdict.zone is Zone.OPTIMAL
 
 
 stamps = st.integers(0, 40).map(lambda i: START + i * SECOND // 10)
 values = st.sampled_from([0.0, 0.2, 5.0, -5.0, 40.0, -40.0, 500.0, math.nan])
 events = st.one_of(
-    st.builds(speed, values, stamps), st.builds(load, values.map(lambda v: 50.0 * v), stamps),
+    st.builds(speed, values, stamps),
+    st.builds(load, values.map(lambda v: 50.0 * v), stamps),
     st.builds(Refusal, source=st.sampled_from(Source), why=st.sampled_from(Why)),
-    stamps.map(lambda stamp: (TICK, stamp)))
+    stamps.map(lambda stamp: (TICK, stamp)),
+)
 
 
 def by_text(states):
@@ -330,7 +347,8 @@ def test_the_level_changes_on_judged_speed_samples_only(core, stream):
         if monitor.level is not before:
             assert state.estimate.validity is Validity.VALID
             assert monitor.level is (
-                Level.WARN if state.verdict.zone is Zone.OUTSIDE else Level.OK)
+                Level.WARN if state.verdict.zone is Zone.OUTSIDE else Level.OK
+            )
 
 
 @given(st.lists(events, max_size=60))

@@ -24,8 +24,12 @@ AHEAD = {'x__max_future': 3600.0}
 
 def levels(heard, part='Inputs'):
     """Return the levels and messages that a diagnostic status went through."""
-    found = [(status.level, status.message) for message in heard for status in message.status
-             if status.name == f'ballscrew_monitor: x: {part}']
+    found = [
+        (status.level, status.message)
+        for message in heard
+        for status in message.status
+        if status.name == f'ballscrew_monitor: x: {part}'
+    ]
     return [now for now, before in zip(found, [None, *found], strict=False) if now != before]
 
 
@@ -47,7 +51,8 @@ def test_each_sample_becomes_a_state_of_its_own_stamp(node):
     judged = [state for state in states if state.judged]
     assert [state.judged for state in judged] == list(range(1, 21))
     assert [state.header.stamp.sec * 10**9 + state.header.stamp.nanosec for state in judged] == [
-        first + (i + 1) * 10_000_000 for i in range(20)]
+        first + (i + 1) * 10_000_000 for i in range(20)
+    ]
     expected = Surface.load(shipped_surface()).lookup(FAST, 1000.0, 313.15)
     last = judged[-1]
     assert last.result.validity == PointResult.VALIDITY_VALID
@@ -90,7 +95,8 @@ def test_silence_is_told_on_the_tick_and_clears_nothing(node):
     assert states[-1].level == BallScrewState.LEVEL_WARN
     silent = node.until(
         lambda: states[-1].point.speed_source == OperatingPoint.SOURCE_HELD and states[-1],
-        'a state on the tick')
+        'a state on the tick',
+    )
     assert silent.result.validity == PointResult.VALIDITY_NO_INPUT
     assert silent.level == BallScrewState.LEVEL_WARN
     assert silent.header.stamp.nanosec % 100_000_000 == 0
@@ -120,10 +126,11 @@ def test_limits_change_live_and_bad_ones_are_refused(node):
     assert (states[-1].efficiency_limit, states[-1].rcs_limit) == (0.99, 0.02)
     assert states[-1].zone == BallScrewState.ZONE_OUTSIDE
     for values, reason in (
-            ({'x__limits__rcs': 0.03, 'x__limits__efficiency': 2.0}, 'out of range'),
-            ({'x__limits__rcs': 1}, 'Wrong parameter type'),
-            ({'axes': ['y']}, 'read-only'),
-            ({'x__handedness': 'left'}, 'changes only while the node is unconfigured')):
+        ({'x__limits__rcs': 0.03, 'x__limits__efficiency': 2.0}, 'out of range'),
+        ({'x__limits__rcs': 1}, 'Wrong parameter type'),
+        ({'axes': ['y']}, 'read-only'),
+        ({'x__handedness': 'left'}, 'changes only while the node is unconfigured'),
+    ):
         result = node.set_parameters(**values)
         assert not result.successful
         assert reason in result.reason
@@ -135,8 +142,9 @@ def test_parameters_are_described(node):
     node.start(autostart='false')
     names = node.call(ListParameters, 'list_parameters').result.names
     assert {'axes', 'x.limits.rcs', 'x.speed.topic'} <= set(names)
-    (found,) = node.call(DescribeParameters, 'describe_parameters',
-                         names=['x.limits.standstill_speed']).descriptors
+    (found,) = node.call(
+        DescribeParameters, 'describe_parameters', names=['x.limits.standstill_speed']
+    ).descriptors
     assert found.description.endswith('[rad/s]')
     assert found.floating_point_range[0].from_value == 1e-3
 
@@ -149,8 +157,11 @@ def test_the_lifecycle_from_outside(node):
     node.until(lambda: levels(told)[-1:] == [(DiagnosticStatus.ERROR, 'not configured')])
     assert node.set_parameters(x__handedness='left').successful
     assert node.transition('configure')
-    node.until(lambda: levels(told)[-1] == (
-        DiagnosticStatus.STALE, 'the node is inactive, nothing is judged'))
+    node.until(
+        lambda: (
+            levels(told)[-1] == (DiagnosticStatus.STALE, 'the node is inactive, nothing is judged')
+        )
+    )
     assert node.node.count_subscribers('joint_states') == 0
     assert node.transition('activate')
     states = node.states()
@@ -172,13 +183,16 @@ def test_the_lifecycle_from_outside(node):
     assert node.stop() == 0
 
 
-@pytest.mark.parametrize(('name', 'value', 'reason'), [
-    ('x__surface', '/no/such/file.npz', '/no/such/file.npz'),
-    ('x__oil', 'olive', "'olive'"),
-    ('x__speed__field', 'velocity', 'not a number'),
-    ('x__load__topic', '"no topic"', 'no topic name'),
-    ('x__load__topic', 'joint_states', 'is configured as'),
-])
+@pytest.mark.parametrize(
+    ('name', 'value', 'reason'),
+    [
+        ('x__surface', '/no/such/file.npz', '/no/such/file.npz'),
+        ('x__oil', 'olive', "'olive'"),
+        ('x__speed__field', 'velocity', 'not a number'),
+        ('x__load__topic', '"no topic"', 'no topic name'),
+        ('x__load__topic', 'joint_states', 'is configured as'),
+    ],
+)
 def test_a_failed_configure_leaves_the_node_alive_with_the_reason(node, name, value, reason):
     arguments = ('-p', f'{name.replace("__", ".")}:={value}')
     node.start(*arguments)
@@ -192,13 +206,19 @@ def test_a_failed_configure_leaves_the_node_alive_with_the_reason(node, name, va
     assert node.stop(signal.SIGTERM) == 0
 
 
-@pytest.mark.parametrize(('argument', 'sentence'), [
-    ('x.limits.rcs:=7.0', 'parameter x.limits.rcs is 7.0 -, allowed is 1e-06 to 0.999 -'),
-    ('x.limits.rcs:=1', 'parameter x.limits.rcs is 1, it must be a number with a decimal point'),
-    ('x.limits.rsc:=0.1', 'parameter x.limits.rsc is unknown'),
-    ('x.speed.unit:=rpm', "parameter x.speed.unit is 'rpm', allowed is one of"),
-    ("axes:=['X']", "parameter axes holds 'X'"),
-])
+@pytest.mark.parametrize(
+    ('argument', 'sentence'),
+    [
+        ('x.limits.rcs:=7.0', 'parameter x.limits.rcs is 7.0 -, allowed is 1e-06 to 0.999 -'),
+        (
+            'x.limits.rcs:=1',
+            'parameter x.limits.rcs is 1, it must be a number with a decimal point',
+        ),
+        ('x.limits.rsc:=0.1', 'parameter x.limits.rsc is unknown'),
+        ('x.speed.unit:=rpm', "parameter x.speed.unit is 'rpm', allowed is one of"),
+        ("axes:=['X']", "parameter axes holds 'X'"),
+    ],
+)
 def test_a_bad_parameter_at_start_is_one_sentence_and_exit_code_2(node, argument, sentence):
     node.start('-p', argument)
     assert node.process.wait(30.0) == 2
@@ -224,20 +244,29 @@ def test_evaluate_answers_for_many_points_at_once(node):
     node.start()
     node.until(lambda: node.node.count_publishers(f'{node.name}/x/state'))
     node.until(lambda: node.lifecycle() == 'active')
-    points = [OperatingPoint(speed=speed, axial_load=-1000.0, temperature=temperature)
-              for speed in (FAST, -FAST, 1e4) for temperature in (math.nan, 60.0)]
+    points = [
+        OperatingPoint(speed=speed, axial_load=-1000.0, temperature=temperature)
+        for speed in (FAST, -FAST, 1e4)
+        for temperature in (math.nan, 60.0)
+    ]
     answer = node.call(EvaluateOperatingPoint, 'evaluate', axis='x', points=points)
     assert (answer.success, answer.message) == (True, '')
     surface = Surface.load(shipped_surface())
-    expected = [surface.lookup(FAST, load, temperature).efficiency
-                for load in (1000.0, -1000.0) for temperature in (313.15, 333.15)]
+    expected = [
+        surface.lookup(FAST, load, temperature).efficiency
+        for load in (1000.0, -1000.0)
+        for temperature in (313.15, 333.15)
+    ]
     assert [result.efficiency for result in answer.results[:4]] == expected
     assert answer.results[4].validity == PointResult.VALIDITY_SPEED_ABOVE_RANGE
     full = [OperatingPoint(speed=FAST, temperature=40.0)] * 10_000
-    assert len(node.call(EvaluateOperatingPoint, 'evaluate', axis='x',
-                         points=full).results) == 10_000
-    for axis, asked, message in (('x', [*full, full[0]], '10001 points are too many'),
-                                 ('q', [], "axis 'q' is unknown, known are: x")):
+    assert (
+        len(node.call(EvaluateOperatingPoint, 'evaluate', axis='x', points=full).results) == 10_000
+    )
+    for axis, asked, message in (
+        ('x', [*full, full[0]], '10001 points are too many'),
+        ('q', [], "axis 'q' is unknown, known are: x"),
+    ):
         answer = node.call(EvaluateOperatingPoint, 'evaluate', axis=axis, points=asked)
         assert not answer.success
         assert message in answer.message
@@ -286,8 +315,9 @@ def test_a_stamp_from_the_future_is_refused_and_counted(node):
     states = node.states()
     publish = node.machine()
     publish(FAST, step=3600 * 10**9)
-    refused = node.until(lambda: states and states[-1].inputs[0].dropped and states[-1],
-                         'the refusal')
+    refused = node.until(
+        lambda: states and states[-1].inputs[0].dropped and states[-1], 'the refusal'
+    )
     assert (refused.judged, refused.inputs[0].received) == (0, 1)
 
 
@@ -309,6 +339,7 @@ def test_sim_time_is_the_clock_of_everything(node):
         message.clock.sec, message.clock.nanosec = seconds, next(ticks) % 100 * 10_000_000
         clocks.publish(message)
         return states[-1].header.stamp.sec == seconds
+
     node.until(lambda: clock(60), 'a tick on simulated time')
     assert states[-1].result.validity == PointResult.VALIDITY_NO_INPUT
     publish(FAST, step=20 * 10**9)  # at 70 s

@@ -7,7 +7,7 @@ import pathlib
 
 from ballscrew_monitor import parameters
 from ballscrew_monitor.errors import InputError
-from ballscrew_monitor.parameters import Change
+from ballscrew_monitor.parameter_table import AXIS_ROWS, Change
 import pytest
 import yaml
 
@@ -38,26 +38,31 @@ def test_every_parameter_is_described(name):
         assert descriptor.floating_point_range[0].to_value == row.high
 
 
-@pytest.mark.parametrize(('name', 'value', 'match'), [
-    ('x.limits.rcs', 2.0, r'parameter x.limits.rcs is 2.0 -, allowed is 1e-06 to 0.999 -'),
-    ('x.limits.rcs', math.nan, 'x.limits.rcs is nan'),
-    ('x.limits.rcs', 1, 'is 1, it must be a number with a decimal point'),
-    ('x.limits.rcs', '0.1', "is '0.1', it must be a number"),
-    ('x.speed.timeout', 0.0, 'allowed is 0.001 to 3600 s'),
-    ('x.speed.scale', 0.0, 'allowed is -1e.12 to 1e.12, not 0'),
-    ('x.speed.unit', 'rpm', "is 'rpm', allowed is one of rad/s, rev/min"),
-    ('x.handedness', 'Right', 'allowed is one of right, left'),
-    ('autostart', 1, 'it must be true or false'),
-    ('axes', 'x', 'it must be a list of texts'), ('axes', [1], 'it must be a list of texts'),
-    ('x.no_such', 1.0, 'parameter x.no_such is unknown'),
-])
+@pytest.mark.parametrize(
+    ('name', 'value', 'match'),
+    [
+        ('x.limits.rcs', 2.0, r'parameter x.limits.rcs is 2.0 -, allowed is 1e-06 to 0.999 -'),
+        ('x.limits.rcs', math.nan, 'x.limits.rcs is nan'),
+        ('x.limits.rcs', 1, 'is 1, it must be a number with a decimal point'),
+        ('x.limits.rcs', '0.1', "is '0.1', it must be a number"),
+        ('x.speed.timeout', 0.0, 'allowed is 0.001 to 3600 s'),
+        ('x.speed.scale', 0.0, 'allowed is -1e.12 to 1e.12, not 0'),
+        ('x.speed.unit', 'rpm', "is 'rpm', allowed is one of rad/s, rev/min"),
+        ('x.handedness', 'Right', 'allowed is one of right, left'),
+        ('autostart', 1, 'it must be true or false'),
+        ('axes', 'x', 'it must be a list of texts'),
+        ('axes', [1], 'it must be a list of texts'),
+        ('x.no_such', 1.0, 'parameter x.no_such is unknown'),
+    ],
+)
 def test_bad_values_are_refused(name, value, match):
     with pytest.raises(InputError, match=match):
         parameters.check(ROWS, {name: value})
 
 
-@pytest.mark.parametrize('name', [
-    name for name, row in ROWS.items() if isinstance(row.default, float)])
+@pytest.mark.parametrize(
+    'name', [name for name, row in ROWS.items() if isinstance(row.default, float)]
+)
 def test_ends_of_a_range_belong_to_it(name):
     row = ROWS[name]
     for end, outward in ((row.low, -math.inf), (row.high, math.inf)):
@@ -66,9 +71,16 @@ def test_ends_of_a_range_belong_to_it(name):
             row.check(name, math.nextafter(end, outward))
 
 
-@pytest.mark.parametrize(('axes', 'match'), [
-    ([], 'axes is empty'), (['X'], "holds 'X'"), (['x.y'], "holds 'x.y'"), ([''], "holds ''"),
-    (['x', 'x'], 'names an axis twice: x, x')])
+@pytest.mark.parametrize(
+    ('axes', 'match'),
+    [
+        ([], 'axes is empty'),
+        (['X'], "holds 'X'"),
+        (['x.y'], "holds 'x.y'"),
+        ([''], "holds ''"),
+        (['x', 'x'], 'names an axis twice: x, x'),
+    ],
+)
 def test_bad_axes_are_refused(axes, match):
     with pytest.raises(InputError, match=match):
         parameters.table(axes)
@@ -78,7 +90,7 @@ def test_each_axis_has_parameters_of_its_own():
     values = parameters.defaults(['x', 'y2'])
     assert values['axes'] == ['x', 'y2']
     assert values['y2.speed.field'] == 'velocity[y2_axis]'
-    assert sum(name.startswith('x.') for name in values) == len(parameters.AXIS_ROWS)
+    assert sum(name.startswith('x.') for name in values) == len(AXIS_ROWS)
 
 
 def test_the_example_file_is_the_one_made_from_the_table():
@@ -103,20 +115,28 @@ def test_the_table_for_the_readme_has_a_line_for_each_parameter():
 
 
 def test_later_sections_win_and_other_nodes_do_not_count(tmp_path):
-    path = written(tmp_path, '/**: {ros__parameters: {use_sim_time: true, x: {oil: a}}}\n'
-                   'other: {ros__parameters: {x: {oil: b}}}\n'
-                   'ballscrew_monitor: {ros__parameters: {x.oil: c}}\n')
+    path = written(
+        tmp_path,
+        '/**: {ros__parameters: {use_sim_time: true, x: {oil: a}}}\n'
+        'other: {ros__parameters: {x: {oil: b}}}\n'
+        'ballscrew_monitor: {ros__parameters: {x.oil: c}}\n',
+    )
     assert parameters.read_file(path)['x.oil'] == 'c'
 
 
-@pytest.mark.parametrize(('text', 'match'), [
-    ('- 1', 'no ROS parameter file'), ('a: 1', 'no ROS parameter file'), ('', 'no ROS parameter'),
-    ('a: [', 'cannot be read'),
-    ('/**: {ros__parameters: {x: {oli: a}}}', 'parameter x.oli is unknown'),
-    ('/**: {ros__parameters: {y: {oil: a}}}', 'parameter y.oil is unknown'),
-    ('/**: {ros__parameters: {axes: x}}', 'it must be a list of texts'),
-    ('/**: {ros__parameters: {x: {limits: {rcs: 1}}}}', 'a number with a decimal point'),
-])
+@pytest.mark.parametrize(
+    ('text', 'match'),
+    [
+        ('- 1', 'no ROS parameter file'),
+        ('a: 1', 'no ROS parameter file'),
+        ('', 'no ROS parameter'),
+        ('a: [', 'cannot be read'),
+        ('/**: {ros__parameters: {x: {oli: a}}}', 'parameter x.oli is unknown'),
+        ('/**: {ros__parameters: {y: {oil: a}}}', 'parameter y.oil is unknown'),
+        ('/**: {ros__parameters: {axes: x}}', 'it must be a list of texts'),
+        ('/**: {ros__parameters: {x: {limits: {rcs: 1}}}}', 'a number with a decimal point'),
+    ],
+)
 def test_bad_files_are_refused(tmp_path, text, match):
     with pytest.raises(InputError, match=match):
         parameters.read_file(written(tmp_path, text))

@@ -8,7 +8,8 @@ from ballscrew_monitor.conversions import SECOND, TURN
 from ballscrew_monitor.estimate import estimate
 from ballscrew_monitor.judgement import judge
 from ballscrew_monitor.tally import Account, Extremes, moment, Totals, Window
-from hypothesis import given, strategies as st
+from hypothesis import given
+from hypothesis import strategies as st
 import pytest
 
 GAP = SECOND // 2
@@ -28,7 +29,7 @@ def test_an_empty_window_has_no_numbers():
 def test_a_window_holds_what_was_judged_and_is_emptied_when_taken(core):
     window = Window()
     for speed in (10.0, -30.0, 20.0):
-        window.add(*seen(core, core.point(speed=speed), rcs=speed ** 2 / 1e4))
+        window.add(*seen(core, core.point(speed=speed), rcs=speed**2 / 1e4))
     window.add(*seen(core, core.point(speed=0.2)))
     window.add(*seen(core, core.point(speed=1e3)))
     taken = window.take()
@@ -56,13 +57,23 @@ def add_up(core, stream):
 
 
 def test_each_sample_lasts_until_the_next(core):
-    totals = add_up(core, [
-        (0, core.point(speed=TURN), {'rcs': 0.5, 'film_ratio': 0.5}),
-        (GAP, core.point(speed=-2.0 * TURN), {'film_ratio': 2.0}),
-        (2 * GAP, core.point(speed=5.0), {})])
+    totals = add_up(
+        core,
+        [
+            (0, core.point(speed=TURN), {'rcs': 0.5, 'film_ratio': 0.5}),
+            (GAP, core.point(speed=-2.0 * TURN), {'film_ratio': 2.0}),
+            (2 * GAP, core.point(speed=5.0), {}),
+        ],
+    )
     assert totals == Totals(
-        running_time=2 * GAP, boundary_time=GAP, outside_time=GAP, mixed_time=GAP,
-        optimal_time=GAP, revolutions=1.5, energy_lost=pytest.approx(1.5 * TURN * 0.125))
+        running_time=2 * GAP,
+        boundary_time=GAP,
+        outside_time=GAP,
+        mixed_time=GAP,
+        optimal_time=GAP,
+        revolutions=1.5,
+        energy_lost=pytest.approx(1.5 * TURN * 0.125),
+    )
 
 
 def test_a_gap_and_a_standstill_add_nothing(core):
