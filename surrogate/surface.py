@@ -10,9 +10,7 @@ keeps the kinks at zero load and at the unloading load. Needs numpy only and nev
 """
 
 from bisect import bisect_right
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-import enum
+from collections.abc import Mapping
 import math
 from operator import mul
 from pathlib import Path
@@ -20,7 +18,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from surrogate import surface_file, torque
+from surrogate import surface_file
 from surrogate.hermite import (
     Array,
     extend_patch_weights,
@@ -30,156 +28,20 @@ from surrogate.hermite import (
     patch_weights,
 )
 from surrogate.surface_file import SurfaceData, SurfaceError
+from surrogate.surface_point import FIELDS, LOGARITHMIC, SurfacePoint, Validity
 
-__all__ = ['shipped_surface', 'Surface', 'SurfaceError', 'SurfacePoint', 'Validity']
+__all__ = ['FIELDS', 'shipped_surface', 'Surface', 'SurfaceError', 'SurfacePoint', 'Validity']
 
-FIELDS = (
-    'friction_torque',
-    'rcs',
-    'asperity_share',
-    'film_ratio',
-    'central_film',
-    'minimum_film',
-    'friction_coefficient',
-    'max_pressure',
-)
-"""Interpolated fields in table order."""
-LOGARITHMIC = ('film_ratio', 'central_film', 'minimum_film')
 Place = tuple[int, float, float]
 """Cell, its width and the fraction of it at which a value lies."""
-NOTHING = (math.nan,) * len(FIELDS)
 SHIPPED = Path(__file__).parent / 'data' / 'surfaces'
-
-
-class Validity(enum.IntEnum):
-    """Whether a point could be looked up; numbers as in ballscrew_msgs/PointResult."""
-
-    UNKNOWN = 0
-    VALID = 1
-    SPEED_BELOW_RANGE = 2
-    SPEED_ABOVE_RANGE = 3
-    LOAD_OUT_OF_RANGE = 4
-    TEMPERATURE_OUT_OF_RANGE = 5
-    MASKED = 6
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class SurfacePoint:
-    """
-    What the surface says of one point; every number is NaN unless `validity` is VALID.
-
-    Opposing load [N] and lead [m] belong to the question; `values` are in the order of `FIELDS`,
-    `errors` the measured interpolation errors of the cell, of torque [N m] and RCS [-].
-
-    """
-
-    validity: Validity
-    opposing_load: float
-    lead: float
-    values: Sequence[float] = NOTHING
-    worst_contact: int = -1
-    errors: Sequence[float] = NOTHING
-
-    @property
-    def friction_torque(self) -> float:
-        """Torque lost to friction [N m]."""
-        return self.values[0]
-
-    @property
-    def rcs(self) -> float:
-        """RCS of the worst contact [-]; a patch may pass its corners by a hair, this may not."""
-        return _share(self.values[1])
-
-    @property
-    def asperity_share(self) -> float:
-        """Share of the load on asperities in the worst contact [-]."""
-        return _share(self.values[2])
-
-    @property
-    def film_ratio(self) -> float:
-        """Film ratio Lambda of the thinnest contact [-]."""
-        return math.exp(self.values[3])
-
-    @property
-    def central_film(self) -> float:
-        """Central film of the thinnest contact [m]."""
-        return math.exp(self.values[4])
-
-    @property
-    def minimum_film(self) -> float:
-        """Minimum film of the thinnest contact [m]."""
-        return math.exp(self.values[5])
-
-    @property
-    def friction_coefficient(self) -> float:
-        """Load-weighted mean coefficient of sliding friction [-]."""
-        return self.values[6]
-
-    @property
-    def max_pressure(self) -> float:
-        """Largest Hertz pressure [Pa]."""
-        return self.values[7]
-
-    @property
-    def worst_nut(self) -> int:
-        """Nut of the worst contact: 1 pressed by the load, 2 relieved, 0 unknown."""
-        return self.worst_contact // 2 + 1
-
-    @property
-    def worst_side(self) -> int:
-        """Side of the worst contact: 1 screw, 2 nut, 0 unknown."""
-        return self.worst_contact % 2 + 1 if self.worst_contact >= 0 else 0
-
-    @property
-    def friction_torque_error(self) -> float:
-        """Measured interpolation error of the torque in this cell [N m]."""
-        return self.errors[0]
-
-    @property
-    def rcs_error(self) -> float:
-        """Measured interpolation error of RCS in this cell [-]."""
-        return self.errors[1]
-
-    @property
-    def rcs_std(self) -> float:
-        """Standard deviation of RCS over roughness draws [-]; NaN without draws."""
-        return math.nan
-
-    @property
-    def efficiency_std(self) -> float:
-        """Standard deviation of the efficiency over roughness draws [-]; NaN without draws."""
-        return math.nan
-
-    @property
-    def efficiency(self) -> float:
-        """Transmission efficiency [-]; NaN unless valid."""
-        if self.validity is not Validity.VALID:
-            return math.nan
-        return torque.efficiency(self.friction_torque, self.opposing_load, self.lead)
-
-    @property
-    def driving_torque(self) -> float:
-        """Torque on the screw [N m], positive along the motion."""
-        return float(torque.driving_torque(self.friction_torque, self.opposing_load, self.lead))
-
-    @property
-    def back_driving(self) -> bool:
-        """Whether the load drives the screw and yields more than friction takes."""
-        return torque.is_back_driving(self.friction_torque, self.opposing_load, self.lead)
-
-    @property
-    def efficiency_error(self) -> float:
-        """Interpolation error of the efficiency [-], to first order in that of the torque."""
-        return self.errors[0] * torque.efficiency_slope(
-            self.values[0], self.opposing_load, self.lead
-        )
 
 
 class Surface:
     """A verified surface, ready for lookup; build it with `load` or from `SurfaceData`."""
 
     def __init__(self, data: SurfaceData) -> None:
-        """Tabulate values and slopes; raises SurfaceError for an unknown tier."""
+        """Tabulate values and slopes."""
         self.header: Mapping[str, Any] = data.header
         self.sha256 = data.sha256
         self._axes = (data.speed_coordinate, data.load, data.temperature)
@@ -354,11 +216,6 @@ class Surface:
 
     def _empty(self, validity: Validity, opposing_load: float) -> SurfacePoint:
         return SurfacePoint(validity=validity, opposing_load=opposing_load, lead=self._lead)
-
-
-def _share(value: float) -> float:
-    """Return `value` between 0 and 1; NaN stays NaN."""
-    return 0.0 if value < 0.0 else 1.0 if value > 1.0 else value
 
 
 def _transform(name: str, values: Array) -> Array:

@@ -21,6 +21,7 @@ import zlib
 
 import numpy as np
 from numpy.typing import NDArray
+from surrogate.surface_point import FIELDS
 
 Array = NDArray[np.float64]
 
@@ -180,6 +181,8 @@ def _check_shapes(path: str | Path, data: SurfaceData) -> None:
         and all(values.shape == nodes for values in data.fields.values())
         and all(values.shape == cells for values in data.errors.values())
         and data.header.get('tier') in TIERS
+        and set(FIELDS) <= set(data.fields)
+        and set(FIELDS) <= set(data.errors)
     )
     if not sound:
         raise SurfaceError(f'{path}: damaged surface, axes, fields and tier do not fit together')

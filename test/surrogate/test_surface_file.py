@@ -106,10 +106,19 @@ def test_a_changed_header_is_refused(tmp_path: Path, changes, sentence):
         read(path)
 
 
-def test_a_hash_over_broken_arrays_does_not_save_them(tmp_path: Path, surface_data: SurfaceData):
+@pytest.mark.parametrize(
+    'change',
+    [
+        lambda data: {'load': data.load[::-1].copy()},
+        lambda data: {'fields': {k: v for k, v in data.fields.items() if k != 'rcs'}},
+        lambda data: {'mask': data.mask[1:]},
+        lambda data: {'header': {**data.header, 'tier': 'guess'}},
+    ],
+)
+def test_a_hash_over_broken_parts_does_not_save_them(tmp_path: Path, surface_data, change):
     """A file that verifies but whose parts do not fit is refused too."""
     path = tmp_path / 'broken.npz'
-    write(path, replace(surface_data, load=surface_data.load[::-1].copy()))
+    write(path, replace(surface_data, **change(surface_data)))
     with pytest.raises(SurfaceError, match='axes, fields and tier do not fit together'):
         read(path)
 
