@@ -13,8 +13,9 @@ FOLDERS = ('ballscrew_monitor', 'bags', 'bench', 'docs', 'launch', 'scripts', 's
 
 @pytest.mark.flake8
 @pytest.mark.linter
-def test_flake8() -> None:
+def test_flake8(capsys: pytest.CaptureFixture[str]) -> None:
     """No finding: the text of a finding is what the assertion shows."""
     paths = [str(TREE / name) for name in ('setup.py', *FOLDERS) if (TREE / name).exists()]
     code, findings = main_with_errors(argv=paths)
+    capsys.readouterr()
     assert code == 0, '\n'.join(findings)
