@@ -34,10 +34,9 @@ def closed_form_record(
     screw: Screw, lubricant: Lubricant, point: OperatingPoint
 ) -> dict[str, Any]:
     """
-    Solve one point in the closed-form tier and return it in SI units, JSON types, NaN where
-    unknown.
+    Solve one point in the closed-form tier and return it as plain numbers.
 
-    Four quadrants: the speed's sign is the direction of motion, the load opposes the motion when
+    SI units, NaN where unknown. Four quadrants: the speed's sign is the direction of motion, the load opposes the motion when
     both have one sign.
 
     """

@@ -130,12 +130,12 @@ class Surface:
 
     @property
     def cells(self) -> tuple[int, int, int]:
-        """Number of cells along speed, load and temperature."""
+        """Return the number of cells along speed, load and temperature."""
         return tuple(len(axis) - 1 for axis in self._lists)  # type: ignore[return-value]
 
     @property
     def masked_cells(self) -> int:
-        """Number of cells that answer MASKED."""
+        """Return the number of cells that answer MASKED."""
         return int(np.count_nonzero(~self._open_cells))
 
     def onset_speed(self, opposing_load: float, temperature: float) -> float:
@@ -202,7 +202,9 @@ class Surface:
         if not self._open_cells[cell]:
             return self._empty(Validity.MASKED, opposing_load)
         i, j, k = self._rows[0][cell[0]], self._rows[1][cell[1]], self._rows[2][cell[2]]
-        corners = self._table[i : i + 2, j : j + 2, k : k + 2].reshape(32, -1)
+        # Bounds with names: the two formatters disagree about spaces beside the colon of sums.
+        x, y, z = i + 2, j + 2, k + 2
+        corners = self._table[i:x, j:y, k:z].reshape(32, -1)
         weights = extend_patch_weights(hermite_weights(fast[1], fast[2]), patch)
         nearest = (cell[0] + (fast[2] > 0.5), cell[1] + (load[2] > 0.5), cell[2] + (heat[2] > 0.5))
         return SurfacePoint(

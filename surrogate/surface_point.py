@@ -115,12 +115,12 @@ class SurfacePoint:
 
     @property
     def rcs_std(self) -> float:
-        """Standard deviation of RCS over roughness draws [-]; NaN without draws."""
+        """Return the standard deviation of RCS over roughness draws [-]; NaN without draws."""
         return math.nan
 
     @property
     def efficiency_std(self) -> float:
-        """Standard deviation of the efficiency over roughness draws [-]; NaN without draws."""
+        """Return the standard deviation of efficiency over draws [-]; NaN without draws."""
         return math.nan
 
     @property

@@ -25,7 +25,12 @@ MODULES = {
 NUMERICAL = {'matplotlib', 'numpy', 'scipy', 'yaml'}
 LOOKUP = {'surrogate', 'surrogate.surface'}
 # Modules that the lookup is made of: numpy and plain arithmetic.
-LOOKUP_PARTS = LOOKUP | {'surrogate.hermite', 'surrogate.surface_file', 'surrogate.torque'}
+LOOKUP_PARTS = LOOKUP | {
+    'surrogate.hermite',
+    'surrogate.surface_file',
+    'surrogate.surface_point',
+    'surrogate.torque',
+}
 
 
 def name_of(path: Path) -> str:

@@ -26,7 +26,7 @@ def interpolate(nodes, values, x, breaks=NONE):
     row = first_rows(nodes, breaks)[cell]
     width = nodes[cell + 1] - nodes[cell]
     weights = hermite_weights(width, (x - nodes[cell]) / width)
-    return float(np.dot(weights, table[row : row + 2].ravel()))
+    return float(np.dot(weights, table[[row, row + 1]].ravel()))
 
 
 @given(

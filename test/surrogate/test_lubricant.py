@@ -44,7 +44,7 @@ def test_a_warmer_oil_is_thinner_lighter_and_softer(kelvin):
 
 
 def test_roelands_is_barus_for_small_pressure():
-    """d ln(eta)/dp at p = 0 is alpha, whatever the viscosity."""
+    """Slope d ln(eta)/dp at p = 0 is alpha, whatever the viscosity."""
     rise = np.log(viscosity_roelands_1966(1.0e3, 0.06, 2e-8) / 0.06)
     assert rise / 1.0e3 == pytest.approx(2e-8, rel=1e-4)
     assert viscosity_roelands_1966(0.0, 0.06, 2e-8) == pytest.approx(0.06, rel=1e-15)
@@ -62,7 +62,7 @@ def test_roelands_printed_value():
 
 @given(st.floats(1e-6, 1e6))
 def test_eyring_is_newtonian_when_slow_and_never_above(rate):
-    """tau <= eta gamma, with equality in the limit of small stress."""
+    """Stress <= eta gamma, with equality in the limit of small stress."""
     stress = float(shear_stress_eyring_1936(0.06, rate, 5e6))
     assert stress <= 0.06 * rate * (1 + 1e-12)
     if 0.06 * rate < 5e4:
