@@ -205,7 +205,7 @@ def records() -> list[Record]:
 
 
 def _joint_records(motion: Motion, random: np.random.Generator) -> list[Record]:
-    """Encoder: the angle in whole counts, the speed from the counts of one drive cycle."""
+    """Measure by encoder: angle in whole counts, speed from the counts of one drive cycle."""
     time = np.arange(PERIOD, motion.time[-1], PERIOD)
     count = 2 * math.pi / COUNTS
     # Cogging and the servo loop: a small share of the speed and a little at rest.
@@ -220,7 +220,7 @@ def _joint_records(motion: Motion, random: np.random.Generator) -> list[Record]:
 
 
 def _load_records(motion: Motion, random: np.random.Generator) -> list[Record]:
-    """Strain gauges between nut and table: 4 N of noise, steps of 0.5 N."""
+    """Measure by strain gauges at the nut: 4 N of noise, steps of 0.5 N."""
     time = np.arange(PERIOD, motion.time[-1], PERIOD) - LOAD_PHASE
     load = _at(motion, 'load', time) + random.normal(0.0, 4.0, time.size)
     load = np.round(load / 0.5) * 0.5
@@ -231,7 +231,7 @@ def _load_records(motion: Motion, random: np.random.Generator) -> list[Record]:
 
 
 def _oil_records(motion: Motion, random: np.random.Generator) -> list[Record]:
-    """Resistance thermometer in the return line: 0.05 degC of noise, steps of 0.1 degC."""
+    """Measure the oil in its return line: 0.05 degC of noise, steps of 0.1 degC."""
     time = np.arange(0.0, motion.time[-1], 1.0)
     oil = np.round(_at(motion, 'oil', time) + random.normal(0.0, 0.05, time.size), 1)
     return [

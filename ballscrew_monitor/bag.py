@@ -20,6 +20,7 @@ from ballscrew_monitor.errors import InputError
 from mcap.exceptions import McapError
 from mcap.reader import make_reader, McapReader
 import yaml
+from zstandard import ZstdError
 
 # What the reader is known to raise for a file that is not as it should be.
 DAMAGE = (
@@ -33,6 +34,8 @@ DAMAGE = (
     struct.error,
     MemoryError,
     OverflowError,
+    RuntimeError,
+    ZstdError,
 )
 
 
@@ -72,7 +75,7 @@ class Bag:
 
     @property
     def duration(self) -> float:
-        """Time from the first to the last message [s]."""
+        """Return the time from the first to the last message [s]."""
         return (self.end_time - self.start_time) * 1e-9
 
     def require(self, topics: Mapping[str, str]) -> None:

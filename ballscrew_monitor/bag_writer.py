@@ -36,7 +36,7 @@ class Offer(enum.Enum):
 
     @property
     def profile(self) -> dict[str, Any]:
-        """The profile in the words of rosbag2, metadata version 9."""
+        """Return the profile in the words of rosbag2, metadata version 9."""
         reliability, durability, depth = self.value
         return {
             'history': 'keep_last',
@@ -130,7 +130,7 @@ class BagWriter:
 
     @property
     def total(self) -> int:
-        """Number of messages written."""
+        """Return the number of messages written."""
         return sum(self._counts.values())
 
     def close(self) -> None:

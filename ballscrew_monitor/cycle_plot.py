@@ -7,6 +7,7 @@ import math
 import os
 from pathlib import Path
 
+from ballscrew_monitor.cycle_trace import Trace
 from ballscrew_monitor.operating_map import (
     BLUE,
     BOX,
@@ -19,7 +20,6 @@ from ballscrew_monitor.operating_map import (
     RPM,
 )
 from ballscrew_monitor.summary import EventRecord, Summary
-from ballscrew_monitor.trace import Trace
 from ballscrew_msgs.msg import BallScrewState
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -89,7 +89,7 @@ def _draw_path(axes: Axes, trace: Trace, summary: Summary) -> None:
 def _mark_event(
     axes: Axes, trace: Trace, speed: Array, event: EventRecord, summary: Summary
 ) -> None:
-    """Number the event where it spends most of its time: at the median of its points outside."""
+    """Write the number of the event at the median of its points outside."""
     begin, end = summary.since_first(event.start), summary.since_first(event.end)
     inside = (
         (trace.time >= begin)

@@ -5,6 +5,7 @@
 import ctypes
 import os
 from pathlib import Path
+import resource
 import signal
 import subprocess
 import sys
@@ -55,12 +56,12 @@ class NodeProcess:
 
     @property
     def returncode(self) -> int | None:
-        """Exit code, negative for a signal; None while it runs."""
+        """Return the exit code, negative for a signal; None while it runs."""
         return self._process.poll()
 
     @property
     def pid(self) -> int:
-        """Process id, which is that of its session too."""
+        """Return the process id, which is that of its session too."""
         return self._process.pid
 
     def stop(self) -> int:
@@ -75,6 +76,12 @@ class NodeProcess:
                 continue
         self._signal(signal.SIGKILL)  # what is left of its group
         return self._process.wait()
+
+    @property
+    def cpu_time(self) -> float:
+        """Return the processor time of the children of this process that have ended [s]."""
+        used = resource.getrusage(resource.RUSAGE_CHILDREN)
+        return used.ru_utime + used.ru_stime
 
     def last_words(self) -> str:
         """Return the last line of the log, empty if there is none."""

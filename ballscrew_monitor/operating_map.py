@@ -14,7 +14,7 @@ import math
 from typing import Any
 
 from ballscrew_monitor.conversions import kelvin
-from ballscrew_monitor.trace import Limits, Trace
+from ballscrew_monitor.cycle_trace import Limits, Trace
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch

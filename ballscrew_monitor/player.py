@@ -71,17 +71,17 @@ class Player:
 
     @property
     def now(self) -> int:
-        """The time that `/clock` shows [ns]."""
+        """Return the time that `/clock` shows [ns]."""
         return self._now
 
     @property
     def elapsed(self) -> float:
-        """Bag time played so far [s]."""
+        """Return the bag time played so far [s]."""
         return (self._now - self._bag.start_time) / SECOND
 
     @property
     def sent(self) -> Counter[str]:
-        """Number of messages sent so far, by topic."""
+        """Return the number of messages sent so far, by topic."""
         return self._sent
 
     def unmatched(self, wanted: int = 1) -> list[str]:

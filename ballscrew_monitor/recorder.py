@@ -57,7 +57,7 @@ class Recorder:
 
     @property
     def matched(self) -> bool:
-        """Whether every topic has a publisher."""
+        """Tell whether every topic has a publisher."""
         return all(
             self._node.count_publishers(subscription.topic_name)
             for subscription in self._subscriptions

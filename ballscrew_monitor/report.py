@@ -8,16 +8,19 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ballscrew_monitor.bag import Bag
+from ballscrew_monitor.cycle_trace import Trace, Tracer
 from ballscrew_monitor.parameters import NODE_NAME
 from ballscrew_monitor.replay import absolute
 from ballscrew_monitor.summary import Summarizer, Summary
-from ballscrew_monitor.trace import Trace, Tracer
 from ballscrew_msgs.msg import BallScrewState, OutOfZone
 from rclpy.serialization import deserialize_message
 
 if TYPE_CHECKING:
+    from ballscrew_monitor.axis import Axis
     from ballscrew_monitor.run import Plan
     from ballscrew_monitor.supervision import Outcome
+
+LOG = 'node.log'
 
 
 def read_outputs(bag: Bag, axis: str) -> tuple[Summary | None, Trace | None]:
@@ -35,31 +38,38 @@ def read_outputs(bag: Bag, axis: str) -> tuple[Summary | None, Trace | None]:
 
 
 def report(plan: Plan, outcome: Outcome) -> None:
-    """Print the summary of every axis and write its picture."""
+    """Print the summary of every axis, write its picture, and name the files."""
     recorded = Bag(outcome.recording)
-    files: list[Path] = []
-    for axis in plan.axes:
-        summary, trace = read_outputs(recorded, axis.name)
-        if summary is None or trace is None:
-            print(f'axis {axis.name}: the node published no state')
-            continue
-        path = plan.out / ('cycle.png' if len(plan.axes) == 1 else f'cycle_{axis.name}.png')
-        # Imported here: it takes longer than everything else of the program.
-        from ballscrew_monitor.cycle_plot import draw
-
-        draw(trace, summary, axis.surface, path)
-        files.append(path)
-        print(
-            f'\naxis {axis.name}, screw {axis.surface.screw_name}, oil {axis.surface.oil_name}, '
-            f'{axis.surface.tier.replace("_", "-")} model'
-        )
-        print(
-            f'  samples     {plan.expected[axis.name]} sent, '
-            f'{outcome.judged[axis.name]} judged, {summary.states} states recorded, '
-            f'at most {1e3 * outcome.lateness:.0f} ms late'
-        )
-        print('\n'.join(f'  {line}' for line in summary.lines()))
+    pictures = [_report_axis(plan, outcome, axis, recorded) for axis in plan.axes]
+    files = [picture for picture in pictures if picture is not None] + [plan.out / LOG]
     print(
-        f'\n{outcome.recording} ({outcome.recording.stat().st_size / 1e6:.1f} MB), '
-        f'{", ".join(str(file) for file in [*files, plan.out / "node.log"])}'
+        f'\nnode        {outcome.cpu_time:.1f} s of processor time, its start included; '
+        f'messages sent at most {1e3 * outcome.lateness:.0f} ms late'
     )
+    print(
+        f'files       {outcome.recording} ({outcome.recording.stat().st_size / 1e6:.1f} MB), '
+        + ', '.join(str(file) for file in files)
+    )
+
+
+def _report_axis(plan: Plan, outcome: Outcome, axis: Axis, recorded: Bag) -> Path | None:
+    """Print the summary of an axis and write its picture; return where, None without a state."""
+    print(
+        f'\naxis {axis.name}: screw {axis.surface.screw_name}, oil {axis.surface.oil_name}, '
+        f'{axis.surface.tier.replace("_", "-")} model'
+    )
+    sent = outcome.sent[absolute(axis.inputs[-1].topic)]
+    summary, trace = read_outputs(recorded, axis.name)
+    print(
+        f'samples     {sent} sent, {outcome.judged[axis.name]} judged, '
+        f'{summary.states if summary else 0} states recorded'
+    )
+    if summary is None or trace is None:
+        return None
+    print('\n'.join(summary.lines()))
+    path = plan.out / ('cycle.png' if len(plan.axes) == 1 else f'cycle_{axis.name}.png')
+    # Imported here: it takes longer than everything else of the program.
+    from ballscrew_monitor.cycle_plot import draw
+
+    draw(trace, summary, axis.surface, path)
+    return path

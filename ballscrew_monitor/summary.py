@@ -31,7 +31,7 @@ class EventRecord:
 
     @property
     def end(self) -> int:
-        """When it ended, or how far it is known [ns]."""
+        """Return when it ended, or how far it is known [ns]."""
         return self.start + round(self.duration * SECOND)
 
 

@@ -46,12 +46,19 @@ class Failure(Exception):
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Outcome:
-    """What a run came to: messages sent by topic, judged by axis, and sentences on what failed."""
+    """
+    What a run came to.
+
+    Messages sent by topic and judged by axis; longest time by which a message was sent late and
+    processor time of the node [s]; sentences on what failed.
+
+    """
 
     recording: Path
     sent: Counter[str]
     judged: dict[str, int]
     lateness: float
+    cpu_time: float
     failures: tuple[str, ...]
 
 
@@ -124,6 +131,7 @@ class Supervision:
             failures=failures,
             judged={axis: self._judged(axis) for axis in self._plan.expected},
             lateness=self._played.lateness if self._played else 0.0,
+            cpu_time=self._process.cpu_time,
         )
 
     def _topics(self) -> list[Topic]:

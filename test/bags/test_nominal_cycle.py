@@ -1,0 +1,156 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The generated cycle: its bytes, its physics, and what the monitor says of it."""
+
+import hashlib
+from pathlib import Path
+import subprocess
+import sys
+
+from ballscrew_monitor.bag import Bag
+from ballscrew_monitor.judgement import Code, Gate, Level, Zone
+from ballscrew_monitor.parameters import read_file
+from ballscrew_monitor.replay import replay
+from ballscrew_monitor.summary import stamp_of, Summarizer
+from geometry_msgs.msg import WrenchStamped
+import numpy as np
+import pytest
+from rclpy.serialization import deserialize_message
+from sensor_msgs.msg import JointState, Temperature
+import yaml
+
+ROOT = Path(__file__).resolve().parents[2]
+EXPECTED = yaml.safe_load((ROOT / 'bags' / 'nominal_cycle.expected.yaml').read_text())
+TYPES = {
+    '/joint_states': JointState,
+    '/axial_load': WrenchStamped,
+    '/oil_temperature': Temperature,
+}
+CAUSES = {Code.RCS_HIGH: 'RCS', Code.EFFICIENCY_LOW: 'efficiency'}
+REGIMES = ('UNKNOWN', 'BOUNDARY', 'MIXED', 'HYDRODYNAMIC')
+
+
+@pytest.fixture(scope='module')
+def messages(nominal_bag):
+    """Return the decoded messages by topic."""
+    found = {topic: [] for topic in TYPES}
+    for message in Bag(nominal_bag).messages():
+        found[message.topic].append(deserialize_message(message.data, TYPES[message.topic]))
+    return found
+
+
+@pytest.fixture(scope='module')
+def judged(nominal_bag):
+    """Return the rows of the replay and its summary."""
+    summarizer, rows = Summarizer(), []
+    for state, event in replay(Bag(nominal_bag), read_file(ROOT / 'config/nominal_cycle.yaml')):
+        summarizer.add_state(state)
+        if event is not None:
+            summarizer.add_event(event)
+        gates = [Gate(gate).name for gate in state.active_gates]
+        rows.append(
+            {
+                'stamp': stamp_of(state),
+                'zone': Zone(state.zone).name,
+                'level': Level(state.level).name,
+                'regime': REGIMES[state.result.regime],
+                'gates': gates,
+            }
+        )
+    return rows, summarizer.result()
+
+
+def digest(directory):
+    return {
+        path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in directory.iterdir()
+    }
+
+
+def test_the_same_source_gives_the_same_bytes(nominal_bag, tmp_path):
+    command = [
+        sys.executable,
+        ROOT / 'bags' / 'nominal_cycle.py',
+        '--out',
+        tmp_path / 'nominal_cycle',
+    ]
+    subprocess.run(command, check=True, cwd=ROOT, capture_output=True)
+    assert digest(tmp_path / 'nominal_cycle') == digest(nominal_bag)
+
+
+def test_a_failure_leaves_the_old_bag_and_nothing_else(nominal_cycle, tmp_path, monkeypatch):
+    nominal_cycle.generate(tmp_path / 'bag')
+    before = digest(tmp_path / 'bag')
+    monkeypatch.setattr(nominal_cycle, 'records', lambda: 1 / 0)
+    with pytest.raises(ZeroDivisionError):
+        nominal_cycle.generate(tmp_path / 'bag')
+    assert digest(tmp_path / 'bag') == before
+    assert [path.name for path in tmp_path.iterdir()] == ['bag']
+
+
+def test_every_message_is_what_ros_reads(messages):
+    assert {topic: len(found) for topic, found in messages.items()} == EXPECTED['counts']
+    first = messages['/joint_states'][0]
+    assert (list(first.name), first.header.frame_id) == (['x_axis'], 'x_axis')
+    assert len(first.position) == len(first.velocity) == 1
+    assert len(first.effort) == 0
+    stamps = np.array([stamp_of(message) for message in messages['/joint_states']])
+    assert set(np.diff(stamps)) == {10_000_000}
+
+
+def test_it_stays_inside_the_surface_and_the_machine(messages):
+    speed = np.array([message.velocity[0] for message in messages['/joint_states']])
+    angle = np.array([message.position[0] for message in messages['/joint_states']])
+    load = np.array([message.wrench.force.x for message in messages['/axial_load']])
+    oil = np.array([message.temperature for message in messages['/oil_temperature']])
+    assert 210.0 < np.abs(speed).max() < 229.0
+    assert 3000.0 < np.abs(load).max() < 3900.0
+    assert 24.0 < oil.min() < 26.0 < 44.0 < oil.max() < 46.0
+    travel = angle / (2 * np.pi) * 0.010
+    assert -0.05 < travel.min() < travel.max() < 0.8
+    # The angle is the integral of the speed.
+    assert np.allclose(np.cumsum(speed) * 0.01, angle, atol=3.0)
+
+
+def test_acceleration_and_jerk_are_those_of_a_drive(nominal_cycle):
+    motion = nominal_cycle.simulate()
+    velocity = motion.speed * nominal_cycle.LEAD / (2 * np.pi)
+    acceleration = np.diff(velocity) / nominal_cycle.FINE_STEP
+    jerk = np.diff(acceleration) / nominal_cycle.FINE_STEP
+    assert np.abs(acceleration).max() <= nominal_cycle.ACCELERATION * (1 + 1e-6)
+    most = 2 * nominal_cycle.ACCELERATION / nominal_cycle.JERK_TIME
+    assert np.abs(jerk).max() <= most * (1 + 1e-6)
+
+
+def test_the_warnings_are_the_expected_ones(judged):
+    events = judged[1].events
+    assert len(events) == len(EXPECTED['events'])
+    for event, expected in zip(events, EXPECTED['events'], strict=True):
+        assert event.quantity == CAUSES[Code[expected['cause']]], expected['name']
+        assert not event.active
+        found = {
+            'start': judged[1].since_first(event.start),
+            'end': judged[1].since_first(event.end),
+            'worst_value': event.worst_value,
+        }
+        for name, value in found.items():
+            low, high = expected[name]
+            assert low <= value <= high, (expected['name'], name, value)
+
+
+@pytest.mark.parametrize('phase', EXPECTED['phases'], ids=lambda phase: phase['name'])
+def test_the_phases_are_judged_as_expected(judged, phase):
+    rows, summary = judged
+    low, high = phase['time']
+    inside = [row for row in rows if low <= summary.since_first(row['stamp']) <= high]
+    assert len(inside) > 15
+    for quantity in ('zone', 'regime', 'gates', 'level'):
+        if quantity in phase:
+            wrong = [row for row in inside if row[quantity] != phase[quantity]]
+            assert not wrong, (quantity, wrong[0])
+
+
+def test_the_totals_are_the_expected_ones(judged):
+    summary = judged[1]
+    assert summary.judged == EXPECTED['counts']['/joint_states']
+    for name, (low, high) in EXPECTED['totals'].items():
+        assert low <= getattr(summary, name) <= high, (name, getattr(summary, name))

@@ -1,0 +1,104 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The command: exit codes, sentences, and what is imported when."""
+
+import json
+from pathlib import Path
+import subprocess
+import sys
+
+from ballscrew_monitor import cli
+from ballscrew_monitor.errors import InputError
+from ballscrew_monitor.node_process import child_environment
+import pytest
+from surrogate.parameters import InputError as SheetError
+from surrogate.surface import SurfaceError
+
+ROOT = Path(__file__).resolve().parents[2]
+PARAMS = ROOT / 'config' / 'nominal_cycle.yaml'
+
+
+def test_a_replay_prints_the_summary(short_bag, capsys):
+    assert cli.main(['replay', str(short_bag), '--params', str(PARAMS)]) == 0
+    out = capsys.readouterr().out
+    assert out.startswith('axis x: 300 speed samples judged\n  in motion ')
+    assert '  events      1\n' in out
+
+
+def test_a_replay_prints_json(short_bag, capsys):
+    assert cli.main(['replay', str(short_bag), '--params', str(PARAMS), '--json']) == 0
+    record = json.loads(capsys.readouterr().out)
+    assert record['x']['judged'] == 300
+    assert record['x']['events'][0]['cause'] == 'RCS >= limit'
+
+
+@pytest.mark.parametrize('error', [InputError, SheetError, SurfaceError])
+def test_bad_input_is_a_sentence_and_exit_code_2(error, monkeypatch, capsys):
+    def refuse(args):
+        raise error('oil: viscosity is -1 Pa s, allowed is above 0')
+
+    monkeypatch.setattr(cli, '_replay', refuse)
+    assert cli.main(['replay', 'x']) == 2
+    captured = capsys.readouterr()
+    assert captured.err == 'ballscrew: oil: viscosity is -1 Pa s, allowed is above 0\n'
+    assert captured.out == ''
+
+
+def test_an_interrupt_is_exit_code_130(monkeypatch, capsys):
+    def interrupt(args):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(cli, '_replay', interrupt)
+    assert cli.main(['replay', 'x']) == 130
+    assert capsys.readouterr().err == 'ballscrew: interrupted\n'
+
+
+def test_a_bag_that_does_not_exist(capsys):
+    assert cli.main(['replay', '/nowhere', '--params', str(PARAMS)]) == 2
+    assert capsys.readouterr().err == (
+        'ballscrew: bag /nowhere does not exist, it must be a bag directory or an MCAP file\n'
+    )
+
+
+def test_every_command_is_listed(capsys):
+    with pytest.raises(SystemExit) as caught:
+        cli.main(['--help'])
+    assert caught.value.code == 0
+    out = capsys.readouterr().out
+    for command in ('run', 'replay', 'play', 'point', 'surface'):
+        assert f'    {command} ' in out
+
+
+def test_offline_commands_import_no_ros():
+    script = (
+        'import sys\n'
+        'from ballscrew_monitor.cli import main\n'
+        "code = main(['point', '--speed-rpm', '600', '--load-N', '1000'])\n"
+        "print(code, [name for name in sys.modules if name.split('.')[0] in\n"
+        "      ('rclpy', 'ballscrew_msgs', 'mcap', 'matplotlib')])\n"
+    )
+    done = subprocess.run(
+        [sys.executable, '-c', script],
+        cwd=ROOT,
+        env=child_environment(0),
+        check=True,
+        capture_output=True,
+        text=True,
+    )
+    assert done.stdout.splitlines()[-1] == '0 []'
+
+
+def test_a_reader_that_has_seen_enough_is_no_crash(short_bag):
+    process = subprocess.Popen(
+        [sys.executable, '-m', 'ballscrew_monitor.cli', 'replay', short_bag, '--params', PARAMS],
+        cwd=ROOT,
+        env=child_environment(0),
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    process.stdout.close()
+    errors = process.stderr.read()
+    process.stderr.close()
+    process.wait()
+    assert 'Traceback' not in errors

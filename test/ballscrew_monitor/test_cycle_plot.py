@@ -1,0 +1,43 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The picture appears whole or not at all; what it shows is for the eye."""
+
+import struct
+
+from ballscrew_monitor import cycle_plot
+from ballscrew_monitor.axis import load_surface
+from ballscrew_monitor.bag import Bag
+from ballscrew_monitor.cycle_trace import Tracer
+from ballscrew_monitor.parameters import defaults
+from ballscrew_monitor.replay import replay
+from ballscrew_monitor.summary import Summarizer
+import pytest
+
+
+@pytest.fixture(scope='module')
+def drawn(short_bag):
+    """Return what is needed to draw the short bag."""
+    values = defaults(['x']) | {'x.temperature.topic': 'oil_temperature'}
+    summarizer, tracer = Summarizer(), Tracer()
+    for state, event in replay(Bag(short_bag), values):
+        summarizer.add_state(state)
+        tracer.add_state(state)
+        if event is not None:
+            summarizer.add_event(event)
+    return tracer.result(), summarizer.result(), load_surface('x', values)
+
+
+def test_it_is_a_png_of_the_stated_size(drawn, tmp_path):
+    cycle_plot.draw(*drawn, tmp_path / 'cycle.png')
+    data = (tmp_path / 'cycle.png').read_bytes()
+    assert data.startswith(b'\x89PNG')
+    size = struct.unpack('>II', data[16:24])
+    assert size == tuple(round(side * cycle_plot.DPI) for side in cycle_plot.SIZE)
+    assert [path.name for path in tmp_path.iterdir()] == ['cycle.png']
+
+
+def test_a_failure_leaves_no_picture(drawn, tmp_path, monkeypatch):
+    monkeypatch.setattr(cycle_plot, 'draw_map', lambda *arguments: 1 / 0)
+    with pytest.raises(ZeroDivisionError):
+        cycle_plot.draw(*drawn, tmp_path / 'cycle.png')
+    assert not list(tmp_path.iterdir())

@@ -1,0 +1,54 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The nominal cycle as a bag made by its generator, and a short piece of it."""
+
+import importlib.util
+from pathlib import Path
+
+from ballscrew_monitor.bag import Bag
+from ballscrew_monitor.bag_writer import BagWriter, Offer, Topic
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+
+
+@pytest.fixture(scope='session')
+def nominal_cycle():
+    """Return the generator as a module."""
+    path = ROOT / 'bags' / 'nominal_cycle.py'
+    spec = importlib.util.spec_from_file_location('nominal_cycle', path)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.fixture(scope='session')
+def nominal_bag(nominal_cycle, tmp_path_factory):
+    """Return the directory of the whole cycle."""
+    directory = tmp_path_factory.mktemp('bags') / 'nominal_cycle'
+    nominal_cycle.generate(directory)
+    return directory
+
+
+@pytest.fixture(scope='session')
+def short_bag(nominal_bag, tmp_path_factory):
+    """Return the directory of 3 s of it: the end of homing, a standstill and a rapid."""
+    directory = tmp_path_factory.mktemp('bags') / 'short'
+    cut(Bag(nominal_bag), directory, 5.95, 8.95)
+    return directory
+
+
+def cut(bag, directory, begin, end, *, topics=None):
+    """Write the messages of `bag` from `begin` to `end` [s] to a bag of their own."""
+    low, high = (bag.start_time + round(at * 1e9) for at in (begin, end))
+    with BagWriter(directory, directory.name) as writer:
+        for name, info in bag.topics.items():
+            writer.add_topic(Topic(name=name, type_name=info.type_name, offer=Offer.SENSOR))
+        for message in bag.messages(topics):
+            if low <= message.log_time < high:
+                writer.write(
+                    message.topic,
+                    message.data,
+                    log_time=message.log_time,
+                    publish_time=message.publish_time,
+                )
