@@ -37,7 +37,7 @@ class Advice:
 
     @property
     def text(self) -> str:
-        """The advice as a sentence, empty if there is none."""
+        """Return the advice as a sentence, empty if there is none."""
         parts = []
         if math.isfinite(self.target_speed):
             parts.append(f'at this load run at {self.target_speed:.4g} rad/s')

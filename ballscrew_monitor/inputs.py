@@ -178,6 +178,10 @@ class Tracker:
         self.refused = False
         self._stamps.clear()
 
+    def is_ahead(self, stamp: int) -> bool:
+        """Tell whether the last sample is newer than `stamp` [ns]."""
+        return self.last is not None and self.last.stamp > stamp
+
     def state(self, now: int) -> InputState:
         """Return the state at `now` [ns]; a sample exactly as old as the timeout is still good."""
         if not self.configured:

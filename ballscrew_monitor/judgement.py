@@ -99,12 +99,12 @@ class Limits:
 
     @property
     def rcs_to_clear(self) -> float:
-        """RCS [-] below which a warning may clear."""
+        """Return the RCS [-] below which a warning may clear."""
         return self.rcs * (1.0 - self.hysteresis)
 
     @property
     def efficiency_to_clear(self) -> float:
-        """Efficiency [-] from which a warning may clear."""
+        """Return the efficiency [-] from which a warning may clear."""
         return self.efficiency + (1.0 - self.efficiency) * self.hysteresis
 
 

@@ -199,7 +199,7 @@ def out_of_zone_message(axis: str, event: Event) -> OutOfZone:
     """Return an event as a message; event 0 is inactive and says that there has been none."""
     message = OutOfZone(
         axis=axis,
-        event_id=event.id,
+        event_id=event.number,
         active=event.active,
         duration=seconds(event.stamp - event.start),
         worst_value=float(event.worst_value),

@@ -44,6 +44,7 @@ class Monitor:
         self._hold = Hold()
         self._pending: Event | None = None  # an event that is not raised yet
         self._direction = Direction.UNKNOWN
+        self._last_tick = 0
         self._last_published: int | None = None
         self._window = Window()
         self._account = Account()
@@ -58,7 +59,7 @@ class Monitor:
 
     @property
     def level(self) -> Level:
-        """The held level."""
+        """Return the held level."""
         return self._hold.level
 
     def update(self, event: Sample | Refusal) -> State | None:
@@ -86,8 +87,10 @@ class Monitor:
     def tick(self, now: int) -> State | None:
         """Return a state at the grid stamp `now` [ns] if the speed is missing or stale."""
         tracker = self._inputs[Source.SPEED]
-        if tracker.last is not None and tracker.last.stamp - now > BACKWARD_JUMP:
+        # Both the clock and the speed: stamps may run ahead of the clock, as far as is allowed.
+        if self._last_tick - now > BACKWARD_JUMP and tracker.is_ahead(now + BACKWARD_JUMP):
             self._jump_back(now)
+        self._last_tick = now
         if tracker.last is not None and now - tracker.last.stamp <= tracker.timeout:
             return None
         point = self._point(now)
@@ -208,7 +211,7 @@ class Monitor:
             )
             self.event = dataclasses.replace(
                 self._pending,
-                id=self.event.id + 1,
+                number=self.event.number + 1,
                 active=True,
                 stamp=stamp,
                 cause=cause,
@@ -242,7 +245,7 @@ class Monitor:
             verdict=verdict,
             level=self._hold.level,
             level_since=self._hold.since,
-            event_id=self.event.id,
+            event_id=self.event.number,
             event=edge,
             limits=self.settings.limits,
             window=self._window.take(),
@@ -270,7 +273,7 @@ class Monitor:
         self._last_published = None
         self._direction = Direction.UNKNOWN
         for tracker in self._inputs.values():
-            if tracker.last is not None and tracker.last.stamp - stamp > BACKWARD_JUMP:
+            if tracker.is_ahead(stamp + BACKWARD_JUMP):
                 tracker.forget()
 
     def _move_times(self, shift: int) -> None:

@@ -52,7 +52,7 @@ class Row:
 
     @property
     def allowed(self) -> str:
-        """What is allowed, in words; empty if anything of the type is."""
+        """Return what is allowed, in words; empty if anything of the type is."""
         if self.choices:
             return 'one of ' + ', '.join(self.choices)
         if not isinstance(self.default, float):

@@ -37,7 +37,7 @@ class Settings:
 class Event:
     """One stay outside the optimal zone; stamps [ns], event 0 is none yet."""
 
-    id: int = 0
+    number: int = 0
     active: bool = False
     stamp: int = 0
     start: int = 0

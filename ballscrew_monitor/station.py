@@ -132,7 +132,7 @@ class Station:
         if event.active:
             advice = f'; {event.advice.text}' if event.advice.text else ''
             self._node.get_logger().warning(
-                f'axis {name}: event {event.id}: {event.cause.text}{advice}'
+                f'axis {name}: event {event.number}: {event.cause.text}{advice}'
             )
         elif self.axis.monitor.level is Level.OK:
-            self._node.get_logger().info(f'axis {name}: event {event.id} is over')
+            self._node.get_logger().info(f'axis {name}: event {event.number} is over')

@@ -92,7 +92,8 @@ def main(rate: float = 100.0, duration: float = 20.0) -> None:
 
 def measure(machine: Machine, pid: int, rate: float, duration: float) -> None:
     """Warm up, measure, print."""
-    machine.run(rate, WARM_UP)
+    while not machine.judged:
+        machine.run(rate, WARM_UP)
     before, judged = processor_time(pid), machine.judged
     machine.times.clear()
     begin = time.monotonic()

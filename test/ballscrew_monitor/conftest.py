@@ -167,7 +167,7 @@ class NodeProcess:
         )
         self.executor = SingleThreadedExecutor(context=self.context)
         self.executor.add_node(self.node)
-        self.stamp = self.node.get_clock().now().nanoseconds
+        self.stamp = 0
 
     def start(self, *arguments, **parameters):
         """Start the node; parameters of axis x are named with `__` for a dot."""
@@ -192,6 +192,10 @@ class NodeProcess:
                 return result
             self.executor.spin_once(timeout_sec=0.02)
         raise AssertionError(f'{what} did not come, the node said:\n{self.output.read_text()}')
+
+    def now(self):
+        """Return the time [ns] on the clock of the machine."""
+        return self.node.get_clock().now().nanoseconds
 
     def listen(self, kind, topic, qos=10):
         """Return the list to which messages of `topic` are appended."""
@@ -234,7 +238,12 @@ class NodeProcess:
         return self.call(GetState, 'get_state').current_state.label
 
     def machine(self, speed_topic='joint_states', load_topic='axial_load'):
-        """Return a function that publishes a speed [rad/s] and a force [N], 10 ms later each."""
+        """
+        Return a function that publishes a speed [rad/s] and a force [N], 10 ms later each.
+
+        The stamps run ahead of the clock, so that a slow machine makes no sample stale.
+
+        """
         speeds = self.node.create_publisher(JointState, speed_topic, 100)
         loads = self.node.create_publisher(WrenchStamped, load_topic, 100)
         told = self.listen(DiagnosticArray, '/diagnostics')
@@ -252,6 +261,8 @@ class NodeProcess:
             ),
             'the match with the inputs of the node',
         )
+
+        self.stamp = self.now() + 100 * SECOND
 
         def publish(speed, force=-1000.0, *, step=SECOND // 100, joint='x_axis'):
             self.stamp += step

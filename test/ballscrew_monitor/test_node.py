@@ -90,7 +90,7 @@ def test_silence_is_told_on_the_tick_and_clears_nothing(node):
     node.start(x__speed__timeout=0.2, x__limits__raise_delay=0.0)
     states, told = node.states(), node.listen(DiagnosticArray, '/diagnostics')
     publish = node.machine()
-    node.stamp = node.node.get_clock().now().nanoseconds - 10_000_000
+    node.stamp = node.now() - 10_000_000
     feed(node, publish, states, SLOW, 1)
     assert states[-1].level == BallScrewState.LEVEL_WARN
     silent = node.until(

@@ -1,0 +1,53 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Start the monitor as a lifecycle node.
+
+With `autostart:=true` the node configures and activates itself; with `false` a lifecycle manager
+does so. `params_file` may be left out: every parameter has a default.
+
+"""
+
+# ruff takes `launch` for the folder of that name, and not for the package.
+# ruff: noqa: I001
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument, OpaqueFunction
+from launch.substitutions import LaunchConfiguration
+from launch_ros.actions import LifecycleNode
+from launch_ros.parameter_descriptions import ParameterValue
+
+ARGUMENTS = (
+    ('params_file', '', 'Parameter file; empty: the defaults.'),
+    ('namespace', '', 'Namespace of the node.'),
+    ('use_sim_time', 'false', 'Take the time from /clock.'),
+    ('log_level', 'info', 'debug, info, warn, error or fatal.'),
+    ('autostart', 'true', 'Configure and activate at start.'),
+)
+
+
+def make_node(context):
+    """Return the node; a parameter file counts only if one is named."""
+    file = LaunchConfiguration('params_file').perform(context)
+    switches = {
+        name: ParameterValue(LaunchConfiguration(name), value_type=bool)
+        for name in ('use_sim_time', 'autostart')
+    }
+    node = LifecycleNode(
+        package='ballscrew_monitor',
+        executable='ballscrew_monitor',
+        name='ballscrew_monitor',
+        namespace=LaunchConfiguration('namespace'),
+        output='screen',
+        parameters=[*([file] if file else []), switches],
+        arguments=['--ros-args', '--log-level', LaunchConfiguration('log_level')],
+    )
+    return [node]
+
+
+def generate_launch_description():
+    """Return the arguments and the node."""
+    declared = [
+        DeclareLaunchArgument(name, default_value=default, description=text)
+        for name, default, text in ARGUMENTS
+    ]
+    return LaunchDescription([*declared, OpaqueFunction(function=make_node)])
