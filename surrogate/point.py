@@ -36,8 +36,8 @@ def closed_form_record(
     """
     Solve one point in the closed-form tier and return it as plain numbers.
 
-    SI units, NaN where unknown. Four quadrants: the speed's sign is the direction of motion, the load opposes the motion when
-    both have one sign.
+    SI units, NaN where unknown. Four quadrants: the speed's sign is the direction of motion, the
+    load opposes the motion when both have one sign.
 
     """
     started = time.perf_counter()
