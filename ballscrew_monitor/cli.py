@@ -9,6 +9,7 @@ Subcommands that need ROS import it in their handlers, so that the offline ones 
 
 import argparse
 import json
+import os
 from pathlib import Path
 import sys
 from typing import Any
@@ -19,7 +20,7 @@ from surrogate.parameters import InputError
 from surrogate.surface import SurfaceError
 
 BAG, PARAMS, OUT = Path('bags/nominal_cycle'), Path('config/nominal_cycle.yaml'), Path('out')
-BAD_INPUT, INTERRUPTED = 2, 130
+FAILED, BAD_INPUT, INTERRUPTED = 1, 2, 130
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -32,8 +33,11 @@ def main(arguments: list[str] | None = None) -> int:
         return BAD_INPUT
     except BrokenPipeError:
         # The reader, such as `head`, has seen enough; nothing may be written at exit either.
-        sys.stdout = None
-        return 1
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return FAILED
+    except OSError as error:
+        print(f'ballscrew: {error}', file=sys.stderr)
+        return FAILED
     except KeyboardInterrupt:
         print('ballscrew: interrupted', file=sys.stderr)
         return INTERRUPTED

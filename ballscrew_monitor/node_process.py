@@ -25,6 +25,7 @@ class NodeProcess:
         self.log = log
         command = [
             sys.executable,
+            '-P',  # this very code, whatever lies in the working directory
             '-m',
             'ballscrew_monitor.node',
             '--ros-args',
@@ -40,7 +41,7 @@ class NodeProcess:
                 stdin=subprocess.DEVNULL,
                 stdout=stream,
                 stderr=subprocess.STDOUT,
-                env=child_environment(domain),
+                env=child_environment(domain) | {'PYTHONPATH': _path_to_this_code()},
                 start_new_session=True,
                 # The kernel kills the child when this process dies, whatever kills it.
                 preexec_fn=lambda: libc.prctl(PR_SET_PDEATHSIG, signal.SIGKILL),
@@ -93,6 +94,11 @@ class NodeProcess:
             os.killpg(self._process.pid, number)
         except ProcessLookupError:
             pass
+
+
+def _path_to_this_code() -> str:
+    package = Path(__file__).resolve().parents[1]
+    return os.pathsep.join(filter(None, (str(package), os.environ.get('PYTHONPATH', ''))))
 
 
 def child_environment(domain: int) -> dict[str, str]:

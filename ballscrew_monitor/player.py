@@ -61,13 +61,14 @@ class Player:
         self._bag, self._rate = bag, rate
         self._sent: Counter[str] = Counter()
         self._now = bag.start_time
-        self._clock = node.create_publisher(Clock, '/clock', CLOCK_QOS)
         self._publishers = {
             topic: node.create_publisher(
                 message_class(bag.topics[topic].type_name), topic, DATA_QOS
             )
             for topic in (bag.topics if topics is None else topics)
         }
+        # Made last: who hears it has heard of the others.
+        self._clock = node.create_publisher(Clock, '/clock', CLOCK_QOS)
 
     @property
     def now(self) -> int:
@@ -100,6 +101,10 @@ class Player:
             if stop.wait(MATCH_POLL):
                 break
         return missing
+
+    def show_begin(self) -> None:
+        """Publish the time at which the bag begins, so that a listener may answer to it."""
+        self._tick(self._bag.start_time)
 
     def play(self, stop: threading.Event) -> Played:
         """Publish the bag until its end or until `stop` is set; raises InputError on damage."""

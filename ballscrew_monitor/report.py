@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from ballscrew_monitor.bag import Bag
 from ballscrew_monitor.cycle_trace import Trace, Tracer
-from ballscrew_monitor.parameters import NODE_NAME
+from ballscrew_monitor.outputs import output
 from ballscrew_monitor.replay import absolute
 from ballscrew_monitor.summary import Summarizer, Summary
 from ballscrew_msgs.msg import BallScrewState, OutOfZone
@@ -17,15 +17,15 @@ from rclpy.serialization import deserialize_message
 
 if TYPE_CHECKING:
     from ballscrew_monitor.axis import Axis
+    from ballscrew_monitor.outcome import Outcome
     from ballscrew_monitor.run import Plan
-    from ballscrew_monitor.supervision import Outcome
 
 LOG = 'node.log'
 
 
 def read_outputs(bag: Bag, axis: str) -> tuple[Summary | None, Trace | None]:
     """Return the summary and the columns of `axis` in a recording; None without a state."""
-    state, event = (absolute(f'{NODE_NAME}/{axis}/{name}') for name in ('state', 'out_of_zone'))
+    state, event = output(axis, 'state'), output(axis, 'out_of_zone')
     summarizer, tracer = Summarizer(), Tracer()
     for message in bag.messages({state, event} & set(bag.topics)):
         if message.topic == state:

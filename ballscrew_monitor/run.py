@@ -27,9 +27,10 @@ from ballscrew_monitor.bag_writer import BagWriter
 from ballscrew_monitor.domain import free_domain
 from ballscrew_monitor.errors import InputError
 from ballscrew_monitor.node_process import NodeProcess, ros_environment
+from ballscrew_monitor.outcome import Outcome
 from ballscrew_monitor.replay import input_topics, speed_messages
 from ballscrew_monitor.report import LOG, report
-from ballscrew_monitor.supervision import Failure, Outcome, Supervision
+from ballscrew_monitor.supervision import Failure, Supervision
 
 RECORDING, LOCK = 'cycle', '.lock'
 DONE, FAILED, SIGNALLED = 0, 1, 128  # exit codes; a signal adds its number

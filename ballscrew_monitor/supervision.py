@@ -9,20 +9,18 @@ active, and announces its subscriptions after that.
 
 """
 
-from collections import Counter
-import dataclasses
-from pathlib import Path
 import sys
 import threading
 import time
 from typing import Any, TYPE_CHECKING
 
-from ballscrew_monitor.bag_writer import BagWriter, Offer, Topic
+from ballscrew_monitor.bag_writer import BagWriter
 from ballscrew_monitor.node_process import NodeProcess
-from ballscrew_monitor.parameters import NODE_NAME
+from ballscrew_monitor.outcome import losses, Outcome
+from ballscrew_monitor.outputs import output, recorded_topics
 from ballscrew_monitor.player import Played, Player
 from ballscrew_monitor.recorder import Recorder
-from ballscrew_monitor.replay import absolute, input_topics
+from ballscrew_monitor.replay import input_topics
 from ballscrew_monitor.status import progress_bar, state_cells, StatusLine
 from ballscrew_msgs.msg import BallScrewState
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
@@ -42,24 +40,6 @@ POLL = 0.05  # [s] longest wait for a message
 
 class Failure(Exception):
     """Why the run cannot go on, as a sentence."""
-
-
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Outcome:
-    """
-    What a run came to.
-
-    Messages sent by topic and judged by axis; longest time by which a message was sent late and
-    processor time of the node [s]; sentences on what failed.
-
-    """
-
-    recording: Path
-    sent: Counter[str]
-    judged: dict[str, int]
-    lateness: float
-    cpu_time: float
-    failures: tuple[str, ...]
 
 
 class Supervision:
@@ -90,7 +70,11 @@ class Supervision:
             self._node, plan.bag, rate=plan.rate, topics=list(input_topics(plan.values))
         )
         self._recorder = Recorder(
-            self._node, writer, self._topics(), lambda: self._player.now, self._listeners()
+            self._node,
+            writer,
+            recorded_topics(plan.values),
+            lambda: self._player.now,
+            self._listeners(),
         )
 
     def __enter__(self) -> 'Supervision':
@@ -113,7 +97,7 @@ class Supervision:
         thread.start()
         try:
             self._watch(thread)
-        except Failure:
+        except BaseException:
             stop.set()
             raise
         finally:
@@ -121,7 +105,10 @@ class Supervision:
         if self._broken is not None:
             raise self._broken
         self._stop_node()
-        return self.outcome(*([] if stop.is_set() else self._losses()))
+        if stop.is_set():
+            return self.outcome()
+        states = {axis: self._state(axis) for axis in self._states}
+        return self.outcome(*losses(states, self._plan.expected, rate=self._plan.rate))
 
     def outcome(self, *failures: str) -> Outcome:
         """Return what the run has come to so far."""
@@ -134,48 +121,13 @@ class Supervision:
             cpu_time=self._process.cpu_time,
         )
 
-    def _topics(self) -> list[Topic]:
-        """Return what is recorded; latched topics last, see `_wait_until_ready`."""
-        axes = self._plan.values['axes']
-        inputs = [
-            Topic(name=name, type_name=kind, offer=Offer.SENSOR)
-            for name, kind in input_topics(self._plan.values).items()
-        ]
-        states = [
-            Topic(
-                name=_output(axis, 'state'),
-                offer=Offer.RELIABLE,
-                type_name='ballscrew_msgs/msg/BallScrewState',
-            )
-            for axis in axes
-        ]
-        latched = [
-            Topic(
-                name=_output(axis, name),
-                offer=Offer.LATCHED,
-                type_name=f'ballscrew_msgs/msg/{kind}',
-            )
-            for name, kind in (('out_of_zone', 'OutOfZone'), ('surface_info', 'SurfaceInfo'))
-            for axis in axes
-        ]
-        return [
-            *inputs,
-            *states,
-            Topic(
-                name='/diagnostics',
-                offer=Offer.RELIABLE,
-                type_name='diagnostic_msgs/msg/DiagnosticArray',
-            ),
-            *latched,
-        ]
-
     def _listeners(self) -> dict[str, Any]:
         found: dict[str, Any] = {'/diagnostics': self._on_diagnostics}
         for axis in self._plan.values['axes']:
-            found[_output(axis, 'state')] = lambda data, axis=axis: self._states.update(
+            found[output(axis, 'state')] = lambda data, axis=axis: self._states.update(
                 {axis: data}
             )
-            found[_output(axis, 'surface_info')] = lambda data, axis=axis: self._active.add(axis)
+            found[output(axis, 'surface_info')] = lambda data, axis=axis: self._active.add(axis)
         return found
 
     def _on_diagnostics(self, data: bytes) -> None:
@@ -188,19 +140,24 @@ class Supervision:
         """
         Wait until the node is active and everybody knows everybody.
 
-        DDS announces the readers of a process in the order in which they were made, so a node that
-        sends its latched surface_info here knows the readers of all its other topics too.
+        DDS announces the readers, and the writers, of a process in the order in which they were
+        made. So a node that sends its latched surface_info here knows the readers of all its other
+        topics too; and one that answers to `/clock`, the last writer of the player, with a state
+        knows the writers of its inputs.
 
         """
         deadline = time.monotonic() + START_PATIENCE
+        axes = self._plan.expected.keys()
         while not stop.is_set():
             self._executor.spin_once(timeout_sec=POLL)
             self._check_node()
             if self._reason:
                 raise Failure(f'the node is {self._reason}')
             # Two subscribers of each input: the node and the recorder.
-            if self._active == set(self._plan.expected) and not self._player.unmatched(2):
-                return
+            if self._active == axes and not self._player.unmatched(2):
+                if self._states.keys() == axes:
+                    return
+                self._player.show_begin()
             if time.monotonic() > deadline:
                 raise Failure(
                     f'the node did not become active within {START_PATIENCE:g} s'
@@ -272,34 +229,3 @@ class Supervision:
     def _last_words(self) -> str:
         words = self._process.last_words()
         return f'; {self._process.log} ends with: {words}' if words else ''
-
-    def _losses(self) -> list[str]:
-        """Return a sentence for each axis of which a speed message was not judged."""
-        found = []
-        for axis, expected in self._plan.expected.items():
-            judged = self._judged(axis)
-            if judged == expected:
-                continue
-            received = self._received(axis)
-            found.append(
-                f'axis {axis}: {judged} of {expected} speed messages were judged; '
-                f'{max(expected - received, 0)} did not reach the node, which left out '
-                f'{max(received - judged, 0)}'
-                + (
-                    f'; at {self._plan.rate:g}x messages may be lost, a lower rate helps'
-                    if self._plan.rate > 1.0
-                    else ''
-                )
-            )
-        return found
-
-    def _received(self, axis: str) -> int:
-        if axis not in self._states:
-            return 0
-        return int(
-            next(health.received for health in self._state(axis).inputs if health.name == 'speed')
-        )
-
-
-def _output(axis: str, name: str) -> str:
-    return absolute(f'{NODE_NAME}/{axis}/{name}')

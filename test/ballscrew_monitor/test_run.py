@@ -133,6 +133,20 @@ def test_an_interrupt_ends_everything_in_order(nominal_bag, tmp_path):
     assert recorded.topics[STATE].count >= 1
 
 
+def test_a_reader_that_goes_away_ends_it(nominal_bag, tmp_path):
+    with start('--bag', nominal_bag, '--params', PARAMS, '--out', tmp_path / 'out') as process:
+        for line in process.stdout:
+            if line.startswith('['):
+                break
+        [node] = children(process.pid)
+        process.stdout.close()
+        errors = process.stderr.read()
+        process.wait(DEADLINE)
+    assert (process.returncode, errors) == (1, '')
+    assert not is_alive(node)
+    Bag(tmp_path / 'out').verify()
+
+
 def test_a_node_that_dies_is_a_failure(nominal_bag, tmp_path):
     with start('--bag', nominal_bag, '--params', PARAMS, '--out', tmp_path / 'out') as process:
         for line in process.stdout:
