@@ -9,7 +9,6 @@ Once as the sources say it, once as a fresh process does it.
 
 import ast
 from collections.abc import Iterator
-import os
 from pathlib import Path
 import subprocess
 import sys
@@ -55,10 +54,8 @@ def imports(path: Path) -> Iterator[str]:
 
 def loaded_by(statement: str) -> set[str]:
     """Return the names of the modules that a fresh process holds after a statement."""
-    inherited = {'LD_LIBRARY_PATH', '_ROS_WHEELS_BOOTSTRAP_COMPLETE'}
     done = subprocess.run(
         [sys.executable, '-c', f'{statement}; import sys; print(*sys.modules)'],
-        env={name: value for name, value in os.environ.items() if name not in inherited},
         check=True,
         stdout=subprocess.PIPE,
         text=True,
