@@ -9,7 +9,7 @@ ARGS ?=
 unexport _ROS_WHEELS_BOOTSTRAP_COMPLETE LD_LIBRARY_PATH PYTHONPATH PYTHONHOME VIRTUAL_ENV
 unexport AMENT_PREFIX_PATH CMAKE_PREFIX_PATH COLCON_PREFIX_PATH RMW_IMPLEMENTATION
 
-.PHONY: set-up run test format clean fresh-test help
+.PHONY: set-up run test format bench fresh-test clean help
 
 set-up:
 	@sh scripts/set_up.sh
@@ -23,6 +23,9 @@ test: set-up
 format: set-up
 	@.venv/bin/ruff check --quiet --fix-only
 	@.venv/bin/ruff format --quiet
+
+bench: set-up
+	@for file in bench/*.py; do echo "== $$file"; .venv/bin/python $$file || exit; done
 
 fresh-test:
 	@exec sh scripts/fresh_test.sh
@@ -38,6 +41,7 @@ help:
 	@echo '                RATE=4 plays four times faster'
 	@echo 'make test       the checks and the tests; ARGS is handed to pytest'
 	@echo 'make format     put imports and code in the form that the checks ask for'
+	@echo 'make bench      measure the lookup and the node'
 	@echo 'make fresh-test clone the last commit and run both there'
 	@echo 'make clean      remove everything that is made'
 	@echo 'PYTHON=python3.12 chooses the Python that .venv is made of'

@@ -77,7 +77,7 @@ setup(
     extras_require={
         'wheels': ROS_WHEELS,
         'plot': ['matplotlib>=3.6'],
-        'bags': ['mcap>=1.1'],
+        'bags': ['mcap>=1.1', 'zstandard>=0.20'],
         'test': ['hypothesis>=6.90', 'pytest>=7.4', 'pytest-timeout>=2.2', *LINTERS],
     },
     zip_safe=False,

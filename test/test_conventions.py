@@ -73,7 +73,7 @@ ROSDEP = {
     'scipy': 'python3-scipy',
     'yaml': 'python3-yaml',
 }
-OPTIONAL = {'mcap'}  # for bags only, by the extra of that name
+OPTIONAL = {'mcap', 'zstandard'}  # for bags only, by the extra of that name
 
 
 def name_of(path: Path) -> str:
