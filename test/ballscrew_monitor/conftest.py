@@ -14,14 +14,15 @@ import types
 import warnings
 
 from ballscrew_monitor.conversions import direction_of, SECOND
+from ballscrew_monitor.domain import free_domain
 from ballscrew_monitor.estimate import Point, PointSource, Validity
 from ballscrew_monitor.inputs import Source
 from ballscrew_monitor.judgement import Limits
 from ballscrew_monitor.monitor import Monitor
+from ballscrew_monitor.node_process import child_environment
 from ballscrew_monitor.state import Settings
 from ballscrew_msgs.msg import BallScrewState
 from diagnostic_msgs.msg import DiagnosticArray
-from domain_coordinator import domain_id
 from geometry_msgs.msg import WrenchStamped
 from lifecycle_msgs.srv import ChangeState, GetState
 import pytest
@@ -174,12 +175,7 @@ class NodeProcess:
         command = [sys.executable, '-m', 'ballscrew_monitor.node', '--ros-args', *arguments]
         for name, value in ({'diagnostics_period': 0.1} | parameters).items():
             command += ['-p', f'{name.replace("__", ".")}:={value}']
-        environment = {
-            name: value
-            for name, value in os.environ.items()
-            if name not in ('LD_LIBRARY_PATH', '_ROS_WHEELS_BOOTSTRAP_COMPLETE')
-        }
-        environment |= {'ROS_DOMAIN_ID': str(self.domain), 'PYTHONPATH': str(ROOT)}
+        environment = child_environment(self.domain) | {'PYTHONPATH': str(ROOT)}
         with open(self.output, 'w') as output:
             self.process = subprocess.Popen(command, env=environment, stdout=output, stderr=output)
 
@@ -294,7 +290,7 @@ class NodeProcess:
 @pytest.fixture
 def node(tmp_path):
     """Make a node process that is not started yet, in a DDS domain of its own."""
-    with domain_id() as domain:
+    with free_domain() as domain:
         process = NodeProcess(domain, tmp_path)
         try:
             yield process

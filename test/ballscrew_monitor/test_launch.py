@@ -1,0 +1,67 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+The launch file, with stand-ins for the launch packages, which are not in the wheels.
+
+They record what they are called with, so this shows what the file asks for and not that launch
+does it.
+
+"""
+
+import pathlib
+import runpy
+import sys
+import types
+from unittest import mock
+
+import pytest
+
+FILE = pathlib.Path(__file__).resolve().parents[2] / 'launch' / 'ballscrew_monitor.launch.py'
+NAMES = (
+    'launch',
+    'launch.actions',
+    'launch.substitutions',
+    'launch_ros',
+    'launch_ros.actions',
+    'launch_ros.parameter_descriptions',
+)
+
+
+@pytest.fixture
+def launched(monkeypatch):
+    """Return a function that runs the file with some arguments; it gives arguments and node."""
+    given = {}
+    recorder = mock.MagicMock()
+    recorder.DeclareLaunchArgument.side_effect = lambda name, **facts: (name, facts)
+    recorder.OpaqueFunction.side_effect = lambda *, function: function(None)
+    recorder.LaunchConfiguration.side_effect = lambda name: types.SimpleNamespace(
+        name=name, perform=lambda context: given[name]
+    )
+    recorder.LaunchDescription.side_effect = list
+    for name in NAMES:
+        monkeypatch.setitem(sys.modules, name, recorder)
+
+    def run(**arguments):
+        given.update(arguments)
+        *declared, nodes = runpy.run_path(str(FILE))['generate_launch_description']()
+        assert len(nodes) == 1
+        return dict(declared), recorder.LifecycleNode.call_args.kwargs
+
+    return run
+
+
+def test_arguments_have_defaults_and_descriptions(launched):
+    declared, _ = launched(params_file='')
+    assert list(declared) == ['params_file', 'namespace', 'use_sim_time', 'log_level', 'autostart']
+    for facts in declared.values():
+        assert facts['description'].endswith('.')
+        assert isinstance(facts['default_value'], str)
+
+
+@pytest.mark.parametrize(('file', 'files'), [('', []), ('mine.yaml', ['mine.yaml'])])
+def test_the_node_is_the_one_of_the_package(launched, file, files):
+    _, node = launched(params_file=file)
+    assert {node[name] for name in ('package', 'executable', 'name')} == {'ballscrew_monitor'}
+    *given, switches = node['parameters']
+    assert given == files
+    assert set(switches) == {'use_sim_time', 'autostart'}
