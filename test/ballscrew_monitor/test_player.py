@@ -13,7 +13,7 @@ from ballscrew_monitor.bag import Bag
 from ballscrew_monitor.domain import free_domain
 from ballscrew_monitor.errors import InputError
 from ballscrew_monitor.inputs import message_class
-from ballscrew_monitor.node_process import child_environment
+from ballscrew_monitor.node_process import child_environment, ros_environment
 from ballscrew_monitor.player import Player
 import pytest
 import rclpy
@@ -64,9 +64,8 @@ class Listener:
 def domain(monkeypatch):
     """Return a free domain, set in the environment."""
     with free_domain() as number:
-        for name, value in child_environment(number).items():
-            if name.startswith('ROS_'):
-                monkeypatch.setenv(name, value)
+        for name, value in ros_environment(number).items():
+            monkeypatch.setenv(name, value)
         yield number
 
 

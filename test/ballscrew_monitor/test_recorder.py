@@ -10,7 +10,7 @@ import time
 from ballscrew_monitor.bag import Bag
 from ballscrew_monitor.bag_writer import BagWriter, Offer, Topic
 from ballscrew_monitor.domain import free_domain
-from ballscrew_monitor.node_process import child_environment
+from ballscrew_monitor.node_process import child_environment, ros_environment
 from ballscrew_monitor.recorder import Recorder
 import pytest
 import rclpy
@@ -24,9 +24,8 @@ DEADLINE = 60.0  # [s]
 def spinner(monkeypatch):
     """Return a node in a free domain, a way to spin it, and the domain."""
     with free_domain() as domain:
-        for name, value in child_environment(domain).items():
-            if name.startswith('ROS_'):
-                monkeypatch.setenv(name, value)
+        for name, value in ros_environment(domain).items():
+            monkeypatch.setenv(name, value)
         context = rclpy.Context()
         rclpy.init(context=context, domain_id=domain)
         node = rclpy.create_node('recorder', context=context)

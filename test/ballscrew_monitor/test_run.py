@@ -15,7 +15,7 @@ import time
 from ballscrew_monitor import supervision
 from ballscrew_monitor.bag import Bag
 from ballscrew_monitor.errors import InputError
-from ballscrew_monitor.node_process import child_environment
+from ballscrew_monitor.node_process import child_environment, ros_environment
 from ballscrew_monitor.parameters import read_file
 from ballscrew_monitor.replay import replay
 from ballscrew_monitor.run import plan, run
@@ -58,9 +58,9 @@ def children(pid):
 
 @pytest.fixture(scope='module')
 def finished(short_bag, tmp_path_factory):
-    """Return the directory, the output and the exit code of a run at twice the speed."""
+    """Return the directory, the output and the exit code of a run."""
     out = tmp_path_factory.mktemp('run') / 'out'
-    with start('--bag', short_bag, '--params', PARAMS, '--out', out, '--rate', 2) as process:
+    with start('--bag', short_bag, '--params', PARAMS, '--out', out) as process:
         text, errors = process.communicate(timeout=DEADLINE)
     return out, text, errors, process.returncode
 
@@ -161,12 +161,11 @@ def test_a_node_that_dies_is_a_failure(nominal_bag, tmp_path):
 
 
 def test_what_is_not_judged_is_a_failure(short_bag, tmp_path, monkeypatch, capsys):
-    for name in child_environment(0):
-        if name.startswith('ROS_'):
-            monkeypatch.setenv(name, '')
-    monkeypatch.setattr(supervision, 'SETTLE_PATIENCE', 0.1)
+    for name, value in ros_environment(0).items():
+        monkeypatch.setenv(name, value)  # so that they are put back
+    monkeypatch.setattr(supervision, 'SETTLE_PATIENCE', 1.0)
     monkeypatch.setattr(supervision, 'RUN_ON_PATIENCE', 0.1)
-    made = plan(short_bag, PARAMS, tmp_path, 4.0)
+    made = plan(short_bag, PARAMS, tmp_path, 1.0)
     assert run(dataclasses.replace(made, expected={'x': made.expected['x'] + 1})) == 1
     assert 'axis x: 300 of 301 speed messages were judged' in capsys.readouterr().err
     assert [thread.name for thread in threading.enumerate() if thread.name == 'player'] == []
