@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A surface of constants for exact tests of the core, and the node in a process of its own."""
 
+import contextlib
 import dataclasses
 import math
 import os
@@ -161,6 +162,7 @@ class NodeProcess:
         self.domain = domain
         self.output = folder / 'node.log'
         self.process = None
+        self.clients = {}
         self.context = rclpy.Context()
         rclpy.init(context=self.context, domain_id=domain)
         self.node = rclpy.create_node(
@@ -179,9 +181,9 @@ class NodeProcess:
         with open(self.output, 'w') as output:
             self.process = subprocess.Popen(command, env=environment, stdout=output, stderr=output)
 
-    def until(self, condition, what='the condition'):
+    def until(self, condition, what='the condition', *, deadline=DEADLINE):
         """Spin until `condition` gives something true, and return that."""
-        end = time.monotonic() + DEADLINE
+        end = time.monotonic() + deadline
         while time.monotonic() < end:
             result = condition()
             if result:
@@ -205,13 +207,27 @@ class NodeProcess:
         return self.listen(BallScrewState, f'{self.name}/{axis}/state', qos)
 
     def call(self, kind, service, **request):
-        """Return the answer of a service of the node."""
-        client = self.node.create_client(kind, f'{self.name}/{service}')
+        """
+        Return the answer of a service of the node.
+
+        The first answer to a new client is lost when the node does not know the client yet, so
+        the request is repeated; it must do no harm twice.
+
+        """
+        if service not in self.clients:
+            self.clients[service] = self.node.create_client(kind, f'{self.name}/{service}')
+        client = self.clients[service]
         self.until(client.service_is_ready, service)
-        future = client.call_async(kind.Request(**request))
-        self.until(future.done, f'the answer of {service}')
-        self.node.destroy_client(client)
-        return future.result()
+        futures = []
+
+        def answer():
+            return [future.result() for future in futures if future.done()]
+
+        for patience in (2.0, 5.0, DEADLINE):
+            futures.append(client.call_async(kind.Request(**request)))
+            with contextlib.suppress(AssertionError):
+                return self.until(answer, deadline=patience)[0]
+        raise AssertionError(f'{service} did not answer')
 
     def set_parameters(self, **values):
         """Set parameters as one; return the result."""
@@ -226,6 +242,9 @@ class NodeProcess:
     def transition(self, label):
         """Ask for a lifecycle transition; return whether it succeeded."""
         request = ChangeState.Request()
+        # Twice is not once for a transition: a label that does not exist makes us known.
+        request.transition.label = 'none'
+        self.call(ChangeState, 'change_state', transition=request.transition)
         request.transition.label = label
         return self.call(ChangeState, 'change_state', transition=request.transition).success
 
@@ -278,10 +297,13 @@ class NodeProcess:
         return self.process.wait(DEADLINE)
 
     def close(self):
-        """End what is left."""
+        """End what is left; a node that is killed leaves its shared memory behind."""
         if self.process is not None and self.process.poll() is None:
-            self.process.kill()
-            self.process.wait()
+            self.process.terminate()
+            try:
+                self.process.wait(DEADLINE)
+            finally:
+                self.process.kill()
         self.executor.shutdown()
         self.node.destroy_node()
         rclpy.shutdown(context=self.context)
