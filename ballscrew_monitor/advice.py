@@ -1,11 +1,13 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-The nearest optimal speed and load of a point that is not optimal.
+The nearest speed and load at which the warning of a point would clear.
 
-The surface is scanned along one axis at a time with the other two quantities kept, and the border
-of the nearest optimal stretch is bisected. A stretch narrower than the scan can be missed. This
-takes a few hundred lookups, so it is done on request and at the start of an event only.
+To be just optimal is not enough: the advised point keeps the hysteresis, or whoever follows the
+advice would be warned for ever. The surface is scanned along one axis at a time with the other
+two quantities kept, and the border of the nearest good stretch is bisected. A stretch narrower
+than the scan can be missed. This takes a few hundred lookups, so it is done at the start of an
+event only.
 
 """
 
@@ -18,7 +20,7 @@ from typing import TYPE_CHECKING
 
 from ballscrew_monitor.conversions import axial_load, opposing_load, signed_speed
 from ballscrew_monitor.estimate import estimate, Point, Validity
-from ballscrew_monitor.judgement import Limits, violations
+from ballscrew_monitor.judgement import clears, Limits
 
 if TYPE_CHECKING:
     from surrogate.surface import Surface
@@ -30,7 +32,7 @@ NAN = math.nan
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Advice:
-    """Nearest optimal speed [rad/s] and load [N], machine frame, NaN if there is none."""
+    """Nearest good speed [rad/s] and load [N], machine frame, NaN if there is none."""
 
     target_speed: float = NAN
     target_load: float = NAN
@@ -47,7 +49,7 @@ class Advice:
 
 
 def advise(point: Point, surface: Surface, limits: Limits) -> Advice:
-    """Return the nearest optimal speed and load of `point`, its direction kept."""
+    """Return the nearest speed and load that clear at `point`, its direction kept."""
     return Advice(
         target_speed=optimal_speed(point, surface, limits),
         target_load=optimal_load(point, surface, limits),
@@ -55,7 +57,7 @@ def advise(point: Point, surface: Surface, limits: Limits) -> Advice:
 
 
 def optimal_speed(point: Point, surface: Surface, limits: Limits) -> float:
-    """Return the nearest optimal screw speed [rad/s] at this load; NaN if there is none."""
+    """Return the nearest screw speed [rad/s] that clears at this load; NaN if there is none."""
     slowest, fastest = surface.speed_range
     slowest = max(slowest, limits.standstill_speed)
     if not slowest < fastest:
@@ -63,18 +65,18 @@ def optimal_speed(point: Point, surface: Surface, limits: Limits) -> float:
     ratio = fastest / slowest
     grid = (slowest * ratio ** (i / (SCAN_POINTS - 1)) for i in range(SCAN_POINTS))
 
-    def optimal(speed: float) -> bool:
+    def good(speed: float) -> bool:
         moved = dataclasses.replace(point, speed=signed_speed(speed, point.direction))
-        return _optimal(moved, surface, limits, light=_light(moved, limits))
+        return _good(moved, surface, limits, light=_light(moved, limits))
 
     return signed_speed(
-        _nearest(abs(point.speed), (min(s, fastest) for s in grid), optimal), point.direction
+        _nearest(abs(point.speed), (min(s, fastest) for s in grid), good), point.direction
     )
 
 
 def optimal_load(point: Point, surface: Surface, limits: Limits) -> float:
     """
-    Return the nearest optimal axial load [N] at this speed; NaN if there is none.
+    Return the nearest axial load [N] that clears at this speed; NaN if there is none.
 
     A load under the light limit is advised only where the load is that light already: to
     leave the efficiency unjudged is no improvement.
@@ -84,44 +86,44 @@ def optimal_load(point: Point, surface: Surface, limits: Limits) -> float:
     was_light = _light(point, limits)
     grid = (low + (high - low) * i / (SCAN_POINTS - 1) for i in range(SCAN_POINTS))
 
-    def optimal(load: float) -> bool:
+    def good(load: float) -> bool:
         moved = dataclasses.replace(point, axial_load=axial_load(load, point.direction))
-        return _optimal(moved, surface, limits, light=was_light and _light(moved, limits))
+        return _good(moved, surface, limits, light=was_light and _light(moved, limits))
 
     here = opposing_load(point.axial_load, point.direction)
-    return axial_load(_nearest(here, grid, optimal), point.direction)
+    return axial_load(_nearest(here, grid, good), point.direction)
 
 
 def _light(point: Point, limits: Limits) -> bool:
     return abs(point.axial_load) < limits.light_load
 
 
-def _optimal(point: Point, surface: Surface, limits: Limits, *, light: bool) -> bool:
+def _good(point: Point, surface: Surface, limits: Limits, *, light: bool) -> bool:
     result = estimate(point, surface, rcs_limit=limits.rcs)
     if result.validity is not Validity.VALID or math.isnan(result.rcs + result.efficiency):
         return False
-    return not violations(result, limits, light=light)
+    return clears(result, limits, light=light)
 
 
-def _nearest(here: float, grid: Iterable[float], optimal: Callable[[float], bool]) -> float:
-    """Return the optimal place nearest to `here` by scan and bisection; NaN if there is none."""
-    if optimal(here):
+def _nearest(here: float, grid: Iterable[float], is_good: Callable[[float], bool]) -> float:
+    """Return the good place nearest to `here` by scan and bisection; NaN if there is none."""
+    if is_good(here):
         return here
     places = sorted(grid)
     below = [here] + [place for place in reversed(places) if place < here]
     above = [here] + [place for place in places if place > here]
     found = [
-        place for place in (_first(below, optimal), _first(above, optimal)) if place is not None
+        place for place in (_first(below, is_good), _first(above, is_good)) if place is not None
     ]
     return min(found, key=lambda place: abs(place - here), default=NAN)
 
 
-def _first(places: list[float], optimal: Callable[[float], bool]) -> float | None:
-    """Return the optimal end of the first border along `places`, the first of which is not."""
+def _first(places: list[float], is_good: Callable[[float], bool]) -> float | None:
+    """Return the good end of the first border along `places`, the first of which is not."""
     for bad, good in zip(places, places[1:]):
-        if optimal(good):
+        if is_good(good):
             for _ in range(HALVINGS):
                 middle = 0.5 * (bad + good)
-                bad, good = (bad, middle) if optimal(middle) else (middle, good)
+                bad, good = (bad, middle) if is_good(middle) else (middle, good)
             return good
     return None

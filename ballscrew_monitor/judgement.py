@@ -169,10 +169,14 @@ def judge(point: Point, estimate: Estimate, limits: Limits) -> Verdict:
     findings = violations(estimate, limits, light=light)
     if findings:
         return Verdict(zone=Zone.OUTSIDE, gates=gates, findings=findings)
-    clear = estimate.rcs < limits.rcs_to_clear and (
+    return Verdict(zone=Zone.OPTIMAL, gates=gates, clear=clears(estimate, limits, light=light))
+
+
+def clears(estimate: Estimate, limits: Limits, *, light: bool) -> bool:
+    """Tell whether an estimate counts towards clearing; efficiency is left out if `light`."""
+    return estimate.rcs < limits.rcs_to_clear and (
         light or estimate.efficiency >= limits.efficiency_to_clear
     )
-    return Verdict(zone=Zone.OPTIMAL, gates=gates, clear=clear)
 
 
 def violations(estimate: Estimate, limits: Limits, *, light: bool) -> tuple[Finding, ...]:

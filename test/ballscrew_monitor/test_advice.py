@@ -1,10 +1,13 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The nearest optimal speed and load."""
+"""The nearest speed and load that clear a warning."""
 
+import dataclasses
 import math
 
 from ballscrew_monitor.advice import Advice, advise, optimal_load, optimal_speed
+from ballscrew_monitor.estimate import estimate
+from ballscrew_monitor.judgement import judge
 import pytest
 
 
@@ -73,3 +76,33 @@ def test_an_optimal_point_is_its_own_advice(core):
     assert advise(point, core.surface(), core.limits()) == Advice(
         target_speed=7.0, target_load=-600.0
     )
+
+
+@pytest.mark.parametrize('sign', [1.0, -1.0])
+@pytest.mark.parametrize(
+    ('name', 'sensitive'),
+    [
+        ('rcs', lambda speed, load: 2.0**-speed),
+        ('efficiency', lambda speed, load: 1.0 - 0.5**speed),
+        ('rcs', lambda speed, load: min(1.0, abs(load) / 4000.0)),
+        ('efficiency', lambda speed, load: abs(load) / 4000.0),
+    ],
+)
+def test_who_follows_the_advice_clears_the_warning(core, sign, name, sensitive):
+    surface, limits = core.surface(**{name: sensitive}), core.limits(light_load=1.0)
+    load = sign * (2000.0 if name == 'rcs' else 1000.0)
+    point = core.point(speed=sign * 1.5, axial_load=load)
+    advice = advise(point, surface, limits)
+    followed = [
+        dataclasses.replace(point, **{field: target})
+        for field, target in (('speed', advice.target_speed), ('axial_load', advice.target_load))
+        if math.isfinite(target)
+    ]
+    assert followed
+    for there in followed:
+        assert judge(there, estimate(there, surface, rcs_limit=limits.rcs), limits).clear
+
+
+def test_what_only_meets_the_limit_is_no_advice(core):
+    surface = core.surface(rcs=lambda speed, load: 1.0 if speed < 30.0 else 0.2)
+    assert math.isnan(optimal_speed(core.point(speed=5.0), surface, core.limits()))
