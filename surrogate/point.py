@@ -105,8 +105,9 @@ def _comparators(
     screw: Screw, point: OperatingPoint, loaded_screw: closed_form.ContactResult
 ) -> dict[str, Any]:
     """Return what the classical formulas say of the same point."""
-    loaded, relieved = (float(force) for force in nut_forces(point.load, screw.preload))
-    angle, load = helix_angle(screw), abs(point.load)
+    angle, load = helix_angle(screw), point.opposing_load
+    forces = [float(force) for force in nut_forces(load, screw.preload)]
+    opposing, assisting = forces if load >= 0 else forces[::-1]
     film = math.nan
     if point.speed:
         film = float(
@@ -115,15 +116,16 @@ def _comparators(
             )
         )
     driving = torque.torque_constant_friction(
-        loaded, relieved, screw.pitch_radius, angle, CONSTANT_FRICTION
+        opposing, assisting, screw.pitch_radius, angle, CONSTANT_FRICTION
     )
-    ideal = load * screw.lead / (2 * math.pi)
+    friction = driving - torque.driving_torque(0.0, load, screw.lead)
     return {
         'constant_friction_coefficient': CONSTANT_FRICTION,
         'constant_friction_torque_Nm': driving,
-        'constant_friction_efficiency': ideal / driving if driving > 0 else 0.0,
+        'constant_friction_efficiency': torque.efficiency(friction, load, screw.lead),
         'catalogue_drag_torque_Nm': torque.drag_torque_catalogue(screw.preload, screw.lead, angle),
         'central_film_nijenbanning_m': film,
+        'reason': '' if film > 0 else 'no film at rest or without load',
     }
 
 
@@ -153,20 +155,14 @@ def _warnings(
             f'temperature: {point.temperature - ZERO_CELSIUS:.4g} degC, the oil sheet '
             f'covers {low - ZERO_CELSIUS:g} to {high - ZERO_CELSIUS:g} degC'
         )
-    g = result.contacts[0].film_groups
-    for formula in FORMULAS:
-        phrases = outside_range(formula, g) if point.speed else ()
+    for formula in FORMULAS if point.speed else ():
+        phrases = {
+            phrase: None
+            for contact in result.contacts
+            for phrase in outside_range(formula, contact.film_groups)
+        }
         warnings += [f'{formula} outside its range: {phrase}' for phrase in phrases]
     return warnings
-
-
-def to_json(record: Any) -> Any:
-    """Return `record` with every number that is not finite as None, which JSON calls null."""
-    if isinstance(record, Mapping):
-        return {key: to_json(value) for key, value in record.items()}
-    if isinstance(record, list):
-        return [to_json(value) for value in record]
-    return None if isinstance(record, float) and not math.isfinite(record) else record
 
 
 def page(record: Mapping[str, Any]) -> str:

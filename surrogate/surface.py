@@ -34,6 +34,8 @@ __all__ = ['FIELDS', 'shipped_surface', 'Surface', 'SurfaceError', 'SurfacePoint
 
 Place = tuple[int, float, float]
 """Cell, its width and the fraction of it at which a value lies."""
+ROUNDING = 1e-9
+"""Largest error of a mapped speed [-]."""
 SHIPPED = Path(__file__).parent / 'data' / 'surfaces'
 
 
@@ -104,11 +106,6 @@ class Surface:
         return self._lead
 
     @property
-    def unloading_load(self) -> float:
-        """Axial load at which the relieved nut carries nothing [N]: 2^(3/2) preload."""
-        return 2.0**1.5 * self.preload
-
-    @property
     def reference_temperature(self) -> float:
         """Temperature at which the oil's datasheet holds [K]."""
         return float(self.header['inputs']['lubricant']['reference_temperature'])
@@ -145,11 +142,6 @@ class Surface:
             return math.nan
         return math.exp(self._log_onset(load, heat, self._patch(load, heat)))
 
-    def speed_nodes(self, opposing_load: float, temperature: float) -> list[float]:
-        """Return the node speeds [rad/s] at a load [N] and a temperature [K] inside the range."""
-        onset = self.onset_speed(opposing_load, temperature)
-        return [] if math.isnan(onset) else [onset * math.exp(s) for s in self._lists[0]]
-
     def lookup(self, speed: float, opposing_load: float, temperature: float) -> SurfacePoint:
         """
         Look up |w| [rad/s], opposing load [N] (positive opposes the motion), temperature [K].
@@ -171,7 +163,13 @@ class Surface:
             )
         patch = self._patch(load, heat)
         s = math.log(speed) - self._log_onset(load, heat, patch)
-        return self._interpolate(self._place_speed(s), load, heat, patch, opposing_load)
+        fast = self._place_speed(s)
+        if fast is None:
+            slow = s < self._lists[0][0]
+            return self._empty(
+                Validity.SPEED_BELOW_RANGE if slow else Validity.SPEED_ABOVE_RANGE, opposing_load
+            )
+        return self._interpolate(fast, load, heat, patch, opposing_load)
 
     def _place(self, axis: int, value: float) -> Place | None:
         """Return cell, width and fraction of `value`, or None outside."""
@@ -182,10 +180,11 @@ class Surface:
         width = nodes[cell + 1] - nodes[cell]
         return cell, width, (value - nodes[cell]) / width
 
-    def _place_speed(self, s: float) -> Place:
+    def _place_speed(self, s: float) -> Place | None:
         """Place a speed coordinate; the mapping rounds, so an end may be passed by a rounding."""
         nodes = self._lists[0]
-        return self._place(0, min(max(s, nodes[0]), nodes[-1]))  # type: ignore[return-value]
+        inside = min(max(s, nodes[0]), nodes[-1])
+        return self._place(0, inside) if abs(inside - s) < ROUNDING else None
 
     def _patch(self, load: Place, heat: Place) -> list[float]:
         return patch_weights(hermite_weights(load[1], load[2]), hermite_weights(heat[1], heat[2]))

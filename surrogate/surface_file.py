@@ -12,6 +12,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 import hashlib
 import json
+import math
 import os
 from pathlib import Path
 import tempfile
@@ -117,7 +118,7 @@ def read(path: str | Path) -> SurfaceData:
             f'{path}: damaged surface, content hash {data.sha256[:16]} differs '
             f'from the stated {str(stated)[:16]}'
         )
-    _check_shapes(path, data)
+    _check(path, data)
     return data
 
 
@@ -169,23 +170,53 @@ def _assemble(
     )
 
 
-def _check_shapes(path: str | Path, data: SurfaceData) -> None:
+def _check(path: str | Path, data: SurfaceData) -> None:
     """Refuse a file that verifies but was written by a program that broke the format."""
+    try:
+        sound = _has_sound_arrays(data) and _has_sound_header(data)
+    except DAMAGE:
+        sound = False
+    if not sound:
+        raise SurfaceError(
+            f'{path}: damaged surface, its header, axes and fields do not fit together'
+        )
+
+
+def _has_sound_arrays(data: SurfaceData) -> bool:
     axes = (data.speed_coordinate, data.load, data.temperature)
     nodes = tuple(len(axis) for axis in axes)
     cells = tuple(count - 1 for count in nodes)
-    sound = (
+    return (
         all(axis.ndim == 1 and len(axis) > 1 and bool(np.all(np.diff(axis) > 0)) for axis in axes)
         and data.log_onset.shape == nodes[1:]
+        and bool(np.all(np.isfinite(data.log_onset)))
         and data.mask.shape == data.worst_contact.shape == nodes
-        and all(values.shape == nodes for values in data.fields.values())
-        and all(values.shape == cells for values in data.errors.values())
-        and data.header.get('tier') in TIERS
+        and data.mask.dtype == bool
+        and data.worst_contact.dtype == np.uint8
         and set(FIELDS) <= set(data.fields)
         and set(FIELDS) <= set(data.errors)
+        and all(values.shape == cells for values in data.errors.values())
+        and all(values.shape == nodes for values in data.fields.values())
+        and all(np.all(np.isfinite(values[~data.mask])) for values in data.fields.values())
     )
-    if not sound:
-        raise SurfaceError(f'{path}: damaged surface, axes, fields and tier do not fit together')
+
+
+def _has_sound_header(data: SurfaceData) -> bool:
+    """Tell whether the lookup finds what it needs, and no more speeds than there are nodes."""
+    screw, oil = (data.header['inputs'][kind] for kind in ('screw', 'lubricant'))
+    names = (screw['name'], oil['name'])
+    numbers = (screw['lead'], screw['preload'], oil['reference_temperature'])
+    slowest, fastest = (math.log(speed) for speed in data.header['settings']['speed_range'])
+    s, rounding = data.speed_coordinate, 1e-9
+    return (
+        data.header['tier'] in TIERS
+        and all(isinstance(name, str) for name in names)
+        and all(math.isfinite(number) for number in numbers)
+        and set(data.header['load_breaks']) <= set(data.load.tolist())
+        and slowest < fastest
+        and s[0] + data.log_onset.max() <= slowest + rounding
+        and fastest - rounding <= s[-1] + data.log_onset.min()
+    )
 
 
 def _arrays(data: SurfaceData) -> Iterator[tuple[str, NDArray[Any]]]:

@@ -35,8 +35,9 @@ def efficiency(friction_torque: float, opposing_load: float, lead: float) -> flo
     if opposing_load > 0:
         return ideal / (ideal + friction_torque)
     if opposing_load < 0:
-        return max(0.0, (ideal - friction_torque) / ideal)
-    return 0.0
+        left = (ideal - friction_torque) / ideal
+        return 0.0 if left < 0 else left
+    return 0.0 if opposing_load == 0 else math.nan
 
 
 def efficiency_slope(friction_torque: float, opposing_load: float, lead: float) -> float:
@@ -58,8 +59,8 @@ def is_back_driving(friction_torque: float, opposing_load: float, lead: float) -
 
 
 def torque_constant_friction(
-    loaded_force: float,
-    relieved_force: float,
+    opposing_force: float,
+    assisting_force: float,
     pitch_radius: float,
     helix_angle: float,
     friction_coefficient: float,
@@ -67,13 +68,15 @@ def torque_constant_friction(
     """
     Return the driving torque [N m] of a double nut with one constant friction coefficient [-].
 
-    M = r_m [F_L tan(alpha + rho) - F_R tan(alpha - rho)], rho = atan(mu), nut forces [N], radius
+    M = r_m [F_o tan(alpha + rho) - F_a tan(alpha - rho)], rho = atan(mu), forces [N] of the nut
+    that opposes the motion (the loaded one when the load does) and of the other, radius
     [m], angle [rad]: the constant-friction model of Pan and others.
 
     """
     rho = math.atan(friction_coefficient)
     return pitch_radius * (
-        loaded_force * math.tan(helix_angle + rho) - relieved_force * math.tan(helix_angle - rho)
+        opposing_force * math.tan(helix_angle + rho)
+        - assisting_force * math.tan(helix_angle - rho)
     )
 
 

@@ -167,6 +167,38 @@ def test_check_finds_a_wrong_surface(tmp_path: Path, capsys):
     assert 'FAILED' in capsys.readouterr().out
 
 
+def test_a_surface_without_answers_fails_its_check(tmp_path: Path, capsys):
+    """A map that is masked everywhere has no error, and is not good for that."""
+    from dataclasses import replace
+
+    data = read(shipped_surface())
+    path = tmp_path / 'masked.npz'
+    write(path, replace(data, mask=np.ones_like(data.mask)))
+    assert run('surface', 'check', str(path)) == 1
+    assert '20 without an answer' in capsys.readouterr().out
+
+
+def test_info_is_strict_json_even_without_errors(tmp_path: Path, capsys):
+    """Errors that were not measured are null."""
+    from dataclasses import replace
+
+    data = read(shipped_surface())
+    path = tmp_path / 'unmeasured.npz'
+    errors = {name: np.full_like(values, np.nan) for name, values in data.errors.items()}
+    write(path, replace(data, errors=errors))
+    assert run('surface', 'info', str(path), '--json') == 0
+    assert json.loads(capsys.readouterr().out)['errors']['rcs'] == {'max': None, 'p95': None}
+
+
+def test_comparator_knows_the_quadrant(capsys):
+    """With the load driving, constant friction yields less than against it, and a brake torque."""
+    against = record(capsys, '--speed-rpm', '600', '--load-N', '1000')['comparators']
+    driven = record(capsys, '--speed-rpm', '600', '--load-N', '-1000')['comparators']
+    assert driven['constant_friction_efficiency'] == pytest.approx(0.895, abs=1e-3)
+    assert against['constant_friction_efficiency'] == pytest.approx(0.905, abs=1e-3)
+    assert driven['constant_friction_torque_Nm'] < 0 < against['constant_friction_torque_Nm']
+
+
 def test_check_without_time_is_a_failure(capsys):
     """Nothing solved is nothing shown."""
     assert run('surface', 'check', '--max-seconds', '0') == 1

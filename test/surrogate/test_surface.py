@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 from surrogate import closed_form, torque
+from surrogate.load_sharing import UNLOADING_RATIO
 from surrogate.surface import FIELDS, shipped_surface, Surface, SurfaceError, Validity
 from surrogate.surface_file import SurfaceData, write
 
@@ -132,7 +133,7 @@ def test_limits_of_the_ranges_belong_to_the_surface():
 
 def test_kinks_are_kept(surface):
     """At the unloading load the pressure goes on, and the slope of the torque jumps."""
-    w, kelvin, load = 60.0, 313.15, surface.unloading_load
+    w, kelvin, load = 60.0, 313.15, UNLOADING_RATIO * surface.preload
     left, right = (
         (
             surface.lookup(w, load + side, kelvin).friction_torque

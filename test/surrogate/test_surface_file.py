@@ -106,20 +106,40 @@ def test_a_changed_header_is_refused(tmp_path: Path, changes, sentence):
         read(path)
 
 
+def settings_with(data: SurfaceData, **changes) -> dict:
+    """Return the change of the header that changes settings."""
+    return {'header': {**data.header, 'settings': {**data.header['settings'], **changes}}}
+
+
+def unmasked_hole(data: SurfaceData) -> dict:
+    """Return fields with a NaN that no mask tells of."""
+    rcs = data.fields['rcs'].copy()
+    rcs[3, 3, 3] = np.nan
+    return {'fields': {**data.fields, 'rcs': rcs}}
+
+
 @pytest.mark.parametrize(
     'change',
     [
         lambda data: {'load': data.load[::-1].copy()},
         lambda data: {'fields': {k: v for k, v in data.fields.items() if k != 'rcs'}},
         lambda data: {'mask': data.mask[1:]},
+        lambda data: {'mask': data.mask.astype(np.uint8)},
+        unmasked_hole,
         lambda data: {'header': {**data.header, 'tier': 'guess'}},
+        lambda data: {'header': {k: v for k, v in data.header.items() if k != 'settings'}},
+        lambda data: {'header': {**data.header, 'inputs': {}}},
+        lambda data: {'header': {**data.header, 'load_breaks': [1.0]}},
+        lambda data: settings_with(data, speed_range=[0.0, 100.0]),
+        lambda data: settings_with(data, speed_range=[1.0, 1e9]),
+        lambda data: settings_with(data, speed_range='all'),
     ],
 )
 def test_a_hash_over_broken_parts_does_not_save_them(tmp_path: Path, surface_data, change):
     """A file that verifies but whose parts do not fit is refused too."""
     path = tmp_path / 'broken.npz'
     write(path, replace(surface_data, **change(surface_data)))
-    with pytest.raises(SurfaceError, match='axes, fields and tier do not fit together'):
+    with pytest.raises(SurfaceError, match='header, axes and fields do not fit together'):
         read(path)
 
 

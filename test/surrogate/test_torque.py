@@ -34,7 +34,8 @@ def test_constant_friction_table(table):
 
     single = torque_constant_friction(1.0, 0.0, 0.016, angle, mu)
     assert LEAD / (2 * math.pi) / single == pytest.approx(float(row['eta_drive']), abs=1e-3)
-    back = math.tan(angle - math.atan(mu)) / math.tan(angle)
+    # The load drives: the pressed nut assists the motion.
+    back = -torque_constant_friction(0.0, 1.0, 0.016, angle, mu) / (LEAD / (2 * math.pi))
     assert back == pytest.approx(float(row['eta_backdrive']), abs=1e-3)
     drag = torque_constant_friction(preload, preload, 0.016, angle, mu)
     assert drag == pytest.approx(float(row['drag_torque_Nm']), abs=1e-3)
@@ -73,6 +74,13 @@ def test_slope_is_the_derivative(friction, load, sign):
         assert efficiency_slope(friction, load, LEAD) == pytest.approx(
             (low - high) / (2 * step), rel=1e-3
         )
+
+
+def test_what_is_unknown_stays_unknown():
+    """A NaN torque or load gives a NaN efficiency, in either quadrant."""
+    for load in (1000.0, -1000.0):
+        assert math.isnan(efficiency(math.nan, load, LEAD))
+    assert math.isnan(efficiency(0.1, math.nan, LEAD))
 
 
 def test_zero_load_has_efficiency_zero():
