@@ -32,10 +32,10 @@ class ParameterStore:
         self._given = {name: _plain(parameter.value) for name, parameter in given.items()}
         self._declare(node, {row.name: row for row in NODE_ROWS})
         self._rows = parameters.table(self.values['axes'])
-        for name in self._given:  # a slip of the pen must not pass for the default
-            if name.partition('.')[0] in self.values['axes'] and name not in self._rows:
-                raise InputError(f'parameter {name} is unknown')
         self._declare(node, self._rows)
+        for name in self._given:  # a slip of the pen must not pass for the default
+            if name not in self._rows and not parameters.is_of_ros(name):
+                raise InputError(f'parameter {name} is unknown')
         node.add_on_set_parameters_callback(self._check)
         node.add_post_set_parameters_callback(self._take)
 

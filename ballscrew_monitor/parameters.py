@@ -16,6 +16,8 @@ from ballscrew_monitor.errors import InputError
 from ballscrew_monitor.parameter_table import AXIS_ROWS, NODE_ROWS, Row
 
 NODE_NAME = 'ballscrew_monitor'
+# Parameters, or first parts of their names, that any node may be given; they are not of the table.
+ROS_NAMES = frozenset({'qos_overrides', 'start_type_description_service', 'use_sim_time'})
 _AXIS_NAME = re.compile(r'[a-z][a-z0-9_]*')
 
 
@@ -55,6 +57,11 @@ def defaults(axes: list[str]) -> dict[str, Any]:
     return {name: default_of(name, row) for name, row in table(axes).items()} | {'axes': axes}
 
 
+def is_of_ros(name: str) -> bool:
+    """Tell whether a parameter is one of any ROS node, and not of this one."""
+    return name.partition('.')[0] in ROS_NAMES
+
+
 def check(rows: Mapping[str, Row], values: Mapping[str, Any]) -> None:
     """Raise InputError for the first parameter that is unknown or has a bad value."""
     for name, value in values.items():
@@ -71,19 +78,27 @@ def read_file(path: str | pathlib.Path, node: str = NODE_NAME) -> dict[str, Any]
     parameter that is unknown or bad.
 
     """
-    given: dict[str, Any] = {}
-    for key, section in _sections(path).items():
-        if key.lstrip('/') in ('**', node, f'**/{node}'):
-            given |= _flatten(section.get('ros__parameters', {}))
-    # Every node has this one; it is not of the table.
-    given.pop('use_sim_time', None)
-    axes = given.get('axes', NODE_ROWS[0].default)
-    NODE_ROWS[0].check('axes', axes)
     try:
+        given = _given(_sections(path), node)
+        axes = given.get('axes', NODE_ROWS[0].default)
+        NODE_ROWS[0].check('axes', axes)
         check(table(axes), given)
     except InputError as error:
         raise InputError(f'{path}: {error}') from None
     return defaults(axes) | given
+
+
+def _given(sections: Mapping[str, Any], node: str) -> dict[str, Any]:
+    given: dict[str, Any] = {}
+    for key, section in sections.items():
+        if key.lstrip('/') in ('**', node, f'**/{node}'):
+            values = section.get('ros__parameters')
+            if not isinstance(values, dict):
+                raise InputError(
+                    f'{key} holds no parameters, they must stand below ros__parameters'
+                )
+            given |= _flatten(values)
+    return {name: value for name, value in given.items() if not is_of_ros(name)}
 
 
 def _sections(path: str | pathlib.Path) -> dict[str, Any]:
@@ -93,13 +108,11 @@ def _sections(path: str | pathlib.Path) -> dict[str, Any]:
         sections = yaml.safe_load(pathlib.Path(path).read_text())
     except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
         reason = ' '.join(str(error).split())
-        raise InputError(f'{path}: the parameter file cannot be read: {reason}') from None
+        raise InputError(f'the parameter file cannot be read: {reason}') from None
     if not isinstance(sections, dict) or not all(
-        isinstance(section, dict) for section in sections.values()
+        isinstance(key, str) and isinstance(section, dict) for key, section in sections.items()
     ):
-        raise InputError(
-            f'{path}: no ROS parameter file, it must be node names with ros__parameters below'
-        )
+        raise InputError('no ROS parameter file, it must be node names with ros__parameters below')
     return sections
 
 

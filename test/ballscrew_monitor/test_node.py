@@ -139,7 +139,8 @@ def test_limits_change_live_and_bad_ones_are_refused(node):
 
 
 def test_parameters_are_described(node):
-    node.start(autostart='false')
+    arguments = ('-p', 'start_type_description_service:=false')  # of any node, and no slip
+    node.start(*arguments, autostart='false')
     names = node.call(ListParameters, 'list_parameters').result.names
     assert {'axes', 'x.limits.rcs', 'x.speed.topic'} <= set(names)
     (found,) = node.call(
@@ -215,6 +216,9 @@ def test_a_failed_configure_leaves_the_node_alive_with_the_reason(node, name, va
             'parameter x.limits.rcs is 1, it must be a number with a decimal point',
         ),
         ('x.limits.rsc:=0.1', 'parameter x.limits.rsc is unknown'),
+        ('diagnostic_period:=2.0', 'parameter diagnostic_period is unknown'),
+        ("axis:=['y']", 'parameter axis is unknown'),
+        ('y.screw:=nominal', 'parameter y.screw is unknown'),
         ('x.speed.unit:=rpm', "parameter x.speed.unit is 'rpm', allowed is one of"),
         ("axes:=['X']", "parameter axes holds 'X'"),
     ],

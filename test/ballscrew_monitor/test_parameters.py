@@ -4,6 +4,7 @@
 
 import math
 import pathlib
+import re
 
 from ballscrew_monitor import parameters
 from ballscrew_monitor.errors import InputError
@@ -117,7 +118,8 @@ def test_the_table_for_the_readme_has_a_line_for_each_parameter():
 def test_later_sections_win_and_other_nodes_do_not_count(tmp_path):
     path = written(
         tmp_path,
-        '/**: {ros__parameters: {use_sim_time: true, x: {oil: a}}}\n'
+        '/**: {ros__parameters: {use_sim_time: true, qos_overrides: {/parameter_events: '
+        '{publisher: {depth: 9}}}, x: {oil: a}}}\n'
         'other: {ros__parameters: {x: {oil: b}}}\n'
         'ballscrew_monitor: {ros__parameters: {x.oil: c}}\n',
     )
@@ -135,11 +137,17 @@ def test_later_sections_win_and_other_nodes_do_not_count(tmp_path):
         ('/**: {ros__parameters: {y: {oil: a}}}', 'parameter y.oil is unknown'),
         ('/**: {ros__parameters: {axes: x}}', 'it must be a list of texts'),
         ('/**: {ros__parameters: {x: {limits: {rcs: 1}}}}', 'a number with a decimal point'),
+        ('/**: {ros__parameters: }', 'holds no parameters, they must stand below'),
+        ('/**: {ros__parameters: [1.0]}', 'holds no parameters'),
+        ('ballscrew_monitor: {x: {oil: a}}', 'ballscrew_monitor holds no parameters'),
+        ('1: {ros__parameters: {x: {oil: a}}}', 'no ROS parameter file'),
     ],
 )
-def test_bad_files_are_refused(tmp_path, text, match):
-    with pytest.raises(InputError, match=match):
-        parameters.read_file(written(tmp_path, text))
+def test_bad_files_are_refused_by_their_name(tmp_path, text, match):
+    path = written(tmp_path, text)
+    with pytest.raises(InputError, match=f'^{re.escape(str(path))}: .*{match}') as caught:
+        parameters.read_file(path)
+    assert '\n' not in str(caught.value)
 
 
 def test_a_missing_file_is_refused(tmp_path):
