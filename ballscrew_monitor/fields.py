@@ -18,9 +18,10 @@ from typing import Any
 from ballscrew_monitor.errors import InputError
 
 _SEGMENT = re.compile(r'([A-Za-z]\w*)(?:\[([^\[\]]+)\])?')
+_DOT = re.compile(r'\.(?![^\[\]]*\])')  # one between brackets belongs to the name of a joint
 _ARRAY = re.compile(r'(?:sequence<(?P<sequence>.+?)(?:, \d+)?>|(?P<array>.+)\[\d+\])')
 _NUMBERS = frozenset(
-    ['float', 'double', 'octet', 'byte', 'char', 'long double']
+    ['float', 'double', 'octet']
     + [f'{sign}int{bits}' for sign in ('', 'u') for bits in (8, 16, 32, 64)]
 )
 
@@ -48,14 +49,14 @@ def compile_field(path: str, message_type: Any) -> Callable[[Any], float | None]
     """
     steps: list[Step] = []
     kind = message_type
-    for segment in path.split('.'):
+    for segment in _DOT.split(path):
         if isinstance(kind, str):
             raise InputError(f'field {path!r}: {segment!r} is asked of a {kind}')
         new_steps, kind = _compile_segment(path, segment, kind)
         steps += new_steps
     if not isinstance(kind, str) or kind not in _NUMBERS:
         raise InputError(f'field {path!r} of {_name(message_type)} is {_name(kind)}, not a number')
-    return _chain(steps)
+    return _chain([*steps, _item(0)] if kind == 'octet' else steps)  # that is bytes in Python
 
 
 def _compile_segment(path: str, segment: str, kind: Any) -> tuple[list[Step], Any]:

@@ -9,7 +9,19 @@ from ballscrew_monitor.fields import compile_field, message_class
 from geometry_msgs.msg import WrenchStamped
 import pytest
 from sensor_msgs.msg import Imu, JointState
-from std_msgs.msg import Float64, Float64MultiArray, Int32
+from std_msgs.msg import (
+    Byte,
+    ByteMultiArray,
+    Char,
+    Float32,
+    Float64,
+    Float64MultiArray,
+    Int8,
+    Int32,
+    Int64,
+    UInt8,
+    UInt64,
+)
 
 
 def joints(*names, velocity=()):
@@ -30,6 +42,24 @@ def test_paths_that_lead_to_a_number():
 def test_an_integer_becomes_a_float():
     value = compile_field('data', Int32)(Int32(data=7))
     assert (value, type(value)) == (7.0, float)
+
+
+@pytest.mark.parametrize('number', [0, 7, 53, 255])
+def test_a_byte_becomes_a_float(number):
+    byte = bytes([number])
+    assert compile_field('data', Byte)(Byte(data=byte)) == number
+    assert compile_field('data[1]', ByteMultiArray)(ByteMultiArray(data=[b'x', byte])) == number
+    assert compile_field('data', Char)(Char(data=number)) == number
+
+
+@pytest.mark.parametrize('kind', [Byte, Char, Float32, Float64, Int8, Int64, UInt8, UInt64])
+def test_every_type_of_number_is_read(kind):
+    assert compile_field('data', kind)(kind()) == 0.0
+
+
+def test_a_joint_may_have_a_dot_in_its_name():
+    read = compile_field('velocity[robot.x]', JointState)
+    assert read(joints('robot', 'robot.x', velocity=[1.0, 2.0])) == 2.0
 
 
 def test_joints_are_found_by_name_wherever_they_stand():
