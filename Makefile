@@ -31,7 +31,7 @@ fresh-test:
 	@exec sh scripts/fresh_test.sh
 
 clean:
-	rm -rf .venv build install log out bags/*/ *.egg-info
+	rm -rf .venv build install log out bags/nominal_cycle *.egg-info
 	rm -rf .hypothesis .mypy_cache .pytest_cache .ruff_cache .benchmarks
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
 

@@ -4,7 +4,9 @@
 
 import array
 import dataclasses
+import math
 
+from ballscrew_monitor.conversions import Direction, opposing_load
 from ballscrew_monitor.summary import stamp_of
 from ballscrew_msgs.msg import BallScrewState, PointResult
 import numpy as np
@@ -29,8 +31,9 @@ class Trace:
     One row for each state.
 
     time [s] from the first state; speed [rad/s] and axial_load [N] in the machine frame,
-    opposing_load [N] positive against the motion; temperature [degC]; efficiency [-], NaN where it
-    is not judged; rcs and film_ratio [-], NaN at standstill; zone and level as in BallScrewState.
+    opposing_load [N] positive against the motion, the last one at standstill and NaN before the
+    first one; temperature [degC]; efficiency [-], NaN where it is not judged; rcs and film_ratio
+    [-], NaN at standstill; zone and level as in BallScrewState.
 
     """
 
@@ -101,17 +104,18 @@ class Tracer:
 
 def _row(state: BallScrewState) -> tuple[float, ...]:
     point, result, gates = state.point, state.result, set(state.active_gates)
-    along = -1.0 if point.speed < 0.0 else 1.0
+    direction = Direction(point.direction)
+    known = direction is not Direction.UNKNOWN
     still = BallScrewState.GATE_STANDSTILL in gates
     unjudged = still or BallScrewState.GATE_LIGHT_LOAD in gates
     return (
         point.speed,
         point.axial_load,
-        -along * point.axial_load,
+        opposing_load(point.axial_load, direction) if known else math.nan,
         point.temperature,
-        np.nan if unjudged else result.efficiency,
-        np.nan if still else result.rcs,
-        np.nan if still else result.film_ratio,
+        math.nan if unjudged else result.efficiency,
+        math.nan if still else result.rcs,
+        math.nan if still else result.film_ratio,
         state.zone,
         state.level,
     )

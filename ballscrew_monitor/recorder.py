@@ -55,14 +55,6 @@ class Recorder:
             self._subscribe(topic, listeners.get(topic.name)) for topic in topics
         ]
 
-    @property
-    def matched(self) -> bool:
-        """Tell whether every topic has a publisher."""
-        return all(
-            self._node.count_publishers(subscription.topic_name)
-            for subscription in self._subscriptions
-        )
-
     def close(self) -> None:
         """Stop to record; the bag is left to its owner."""
         for subscription in self._subscriptions:

@@ -3,8 +3,9 @@
 """
 Replays a bag through the same pure pipeline as the node, without DDS, faster than real time.
 
-Samples are taken in the order of their stamps, equal stamps in the fixed order of the sources;
-ticks fall on the same grid of stamps as online.
+Samples are taken in the order of their stamps, equal stamps in the fixed order of the sources.
+Log times stand for the clock of the node: ticks fall on the same grid of it as online, whatever the
+stamps say, and are taken after the samples of equal stamp.
 
 """
 
@@ -17,13 +18,15 @@ from ballscrew_monitor.axis import Axis, build_axis
 from ballscrew_monitor.bag import Bag, Message
 from ballscrew_monitor.conversions import nanoseconds
 from ballscrew_monitor.errors import InputError
-from ballscrew_monitor.inputs import Input, Refusal, Sample
+from ballscrew_monitor.inputs import Input, Refusal, Sample, Source
 from ballscrew_monitor.messages import out_of_zone_message, StateWriter, TIERS
 from ballscrew_monitor.monitor import State
 from ballscrew_msgs.msg import BallScrewState, OutOfZone
 from rclpy.serialization import deserialize_message
 
 REORDER = nanoseconds(1.0)  # [ns] log time over which samples are put into the order of stamps
+LONGEST_HOLE = nanoseconds(60.0)  # [ns] between two messages that is filled with ticks
+AFTER_SAMPLES = max(Source) + 1  # place of a tick among the sources
 
 
 class Judged(NamedTuple):
@@ -86,28 +89,25 @@ def replay(bag: Bag, values: Mapping[str, Any]) -> Iterator[Judged]:
 
 
 class _Entry(NamedTuple):
-    """A sample or refusal with its place in the order; `number` settles the rest."""
+    """A sample, refusal or tick (None) and its place in the order; `number` settles the rest."""
 
     stamp: int
     source: int
     number: int
     log_time: int
     axis: int
-    event: Sample | Refusal
+    event: Sample | Refusal | None
 
 
 def _run(bag: Bag, axes: list[Axis], period: int) -> Iterator[list[Judged]]:
     writers = [StateWriter(axis.name, TIERS[axis.surface.tier]) for axis in axes]
-    grid = None
-    for entry in _ordered(_read(bag, axes)):
-        if grid is None or entry.stamp < grid - period:
-            grid = entry.stamp - entry.stamp % period + period
-        while grid < entry.stamp:
+    for entry in _ordered(_with_ticks(_read(bag, axes), period)):
+        if entry.event is None:
             for axis, writer in zip(axes, writers, strict=True):
-                yield _judged(writer, axis.name, axis.monitor.tick(grid))
-            grid += period
-        axis = axes[entry.axis]
-        yield _judged(writers[entry.axis], axis.name, axis.monitor.update(entry.event))
+                yield _judged(writer, axis.name, axis.monitor.tick(entry.stamp))
+        else:
+            axis = axes[entry.axis]
+            yield _judged(writers[entry.axis], axis.name, axis.monitor.update(entry.event))
 
 
 def _judged(writer: StateWriter, axis: str, state: State | None) -> list[Judged]:
@@ -129,6 +129,24 @@ def _read(bag: Bag, axes: list[Axis]) -> Iterator[_Entry]:
             event = source.read(decoded, now=message.log_time, max_future=axis.max_future)
             stamp = event.stamp if isinstance(event, Sample) else message.log_time
             yield _Entry(stamp, event.source, next(numbers), message.log_time, number, event)
+
+
+def _with_ticks(entries: Iterator[_Entry], period: int) -> Iterator[_Entry]:
+    """
+    Put a tick at every multiple of `period` [ns] of log time between the entries.
+
+    After the longest hole no further tick says anything new, so that one wrong log time does not
+    make them endless.
+
+    """
+    grid = None
+    for entry in entries:
+        now = entry.log_time
+        if grid is not None:
+            for tick in range(grid, min(now, grid + LONGEST_HOLE), period):
+                yield _Entry(tick, AFTER_SAMPLES, 0, tick, 0, None)
+        grid = max(grid or 0, -(-now // period) * period)
+        yield entry
 
 
 def _decode(message: Message, message_type: Any) -> Any:

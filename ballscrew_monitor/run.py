@@ -38,19 +38,29 @@ DONE, FAILED, SIGNALLED = 0, 1, 128  # exit codes; a signal adds its number
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Plan:
-    """A checked run: what is played, how fast, with which parameters, and where it is written."""
+    """
+    A checked run: what is played, with which parameters, and where it is written.
+
+    `expected` counts the speed messages by axis, `rate` is bag time over wall time [-].
+
+    """
 
     bag: Bag
     params: Path
     values: dict[str, Any]
     axes: Sequence[Axis]
-    expected: dict[str, int]  # speed messages by axis
+    expected: dict[str, int]
     rate: float
     out: Path
 
 
 def plan(bag: Path, params: Path, out: Path, rate: float) -> Plan:
-    """Return a checked plan; raises InputError before anything is started or written."""
+    """
+    Return a checked plan for bag time over wall time `rate` [-].
+
+    Raises InputError before anything is started or written.
+
+    """
     if not 0.0 < rate <= 1000.0:
         raise InputError(f'rate is {rate:g}, allowed is above 0 to 1000')
     values = parameters.read_file(params)

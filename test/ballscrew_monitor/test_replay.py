@@ -11,7 +11,7 @@ from ballscrew_monitor.bag import Bag
 from ballscrew_monitor.bag_writer import BagWriter, Offer, Topic
 from ballscrew_monitor.errors import InputError
 from ballscrew_monitor.inputs import InputState
-from ballscrew_monitor.replay import input_topics, replay, speed_messages
+from ballscrew_monitor.replay import input_topics, LONGEST_HOLE, replay, speed_messages
 from ballscrew_monitor.summary import stamp_of
 from geometry_msgs.msg import WrenchStamped
 import pytest
@@ -100,6 +100,33 @@ def test_the_end_of_the_data_is_seen_on_the_grid_of_ticks(tmp_path):
     # The speed is stale after 0.5 s: ticks from 0.6 s after the second on, every 0.1 s.
     ticks = [BEGIN + 100_000_000 * number for number in range(6, 11)]
     assert states == [(begin, InputState.OK), *((tick, InputState.STALE) for tick in ticks)]
+
+
+def test_stamps_on_another_clock_do_not_move_the_ticks(tmp_path):
+    times = [BEGIN + 10_000_000 * number for number in range(40)]
+    bag = write(
+        tmp_path,
+        *((time, load_message(time, -1000.0)) for time in times),
+        *(
+            (time, speed_message(10**9 if number == 20 else time, 100.0))
+            for number, time in enumerate(times)
+        ),
+    )
+    states = [stamp_of(state) for state, _ in replay(bag, parameters.defaults(['x']))]
+    assert sorted(states) == [10**9, *times[:20], *times[21:]]
+
+
+@pytest.mark.parametrize('far', [1, 10**19])
+def test_a_hole_is_not_filled_with_ticks_for_ever(tmp_path, far):
+    bag = write(
+        tmp_path,
+        (BEGIN, load_message(BEGIN, -1000.0)),
+        (BEGIN, speed_message(BEGIN, 100.0)),
+        (far, load_message(BEGIN, -1000.0)),
+    )
+    states = [stamp_of(state) for state, _ in replay(bag, parameters.defaults(['x']))]
+    assert BEGIN in states
+    assert len(states) <= 1 + LONGEST_HOLE // 100_000_000
 
 
 def test_the_same_bag_gives_the_same_states(short_bag, values):
