@@ -27,17 +27,20 @@ OPTIONAL = (Source.TEMPERATURE, Source.TORQUE)
 
 @dataclasses.dataclass(kw_only=True, slots=True)
 class Axis:
-    """One axis at work; `max_future` [ns], `default_temperature` [K]."""
+    """One axis at work."""
 
     name: str
     surface: Surface
     inputs: tuple[Input, ...]
     monitor: Monitor
-    max_future: int
+
+    @property
+    def max_future(self) -> int:
+        """Return how far a stamp may be ahead of the clock [ns]."""
+        return self.monitor.settings.max_future
 
     def adapt(self, values: Mapping[str, Any]) -> None:
         """Take over the parameters that may change at any time."""
-        self.max_future = nanoseconds(values[f'{self.name}.max_future'])
         self.monitor.settings = settings_of(self.name, values, self.surface.preload)
 
     def use_surface(self, surface: Surface, values: Mapping[str, Any]) -> None:
@@ -55,7 +58,6 @@ def build_axis(name: str, values: Mapping[str, Any]) -> Axis:
         surface=surface,
         inputs=_inputs_of(name, values, surface.lead),
         monitor=Monitor(surface, settings_of(name, values, surface.preload)),
-        max_future=nanoseconds(values[f'{name}.max_future']),
     )
 
 
@@ -92,6 +94,7 @@ def settings_of(name: str, values: Mapping[str, Any], preload: float) -> Setting
         },
         default_temperature=kelvin(values[f'{name}.temperature.default']),
         publish_period=nanoseconds(values[f'{name}.publish_period']),
+        max_future=nanoseconds(values[f'{name}.max_future']),
     )
 
 

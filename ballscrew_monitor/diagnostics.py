@@ -38,6 +38,7 @@ _NOT_JUDGED = {
     Validity.NO_INPUT: 'not judged: an input is missing',
     Validity.NO_SURFACE: 'not judged: no surface',
 }
+_OF_STANDSTILL = (Validity.UNKNOWN, Validity.SPEED_BELOW_RANGE)  # nothing wrong with these there
 _CAUSES = {
     Code.RCS_HIGH: 'asperities carry too much',
     Code.EFFICIENCY_LOW: 'too much power is lost',
@@ -116,13 +117,12 @@ def _lubrication(state: State, event: Event) -> Summary:
     validity = state.estimate.validity
     if validity is Validity.NO_INPUT:
         return STALE, _NOT_JUDGED[validity]
-    if Gate.STANDSTILL in state.verdict.gates:
-        return OK, 'standstill'
-    if validity is not Validity.VALID:
+    still = Gate.STANDSTILL in state.verdict.gates
+    if validity is not Validity.VALID and not (still and validity in _OF_STANDSTILL):
         return WARN, _NOT_JUDGED[validity]
     if state.level is Level.OK:
-        return OK, 'optimal'
-    return WARN, 'not judged for long enough yet'
+        return OK, 'standstill' if still else 'optimal'
+    return WARN, f'{"standstill, " if still else ""}not judged for long enough yet'
 
 
 def _inputs(inputs: tuple[Health, ...]) -> Summary:
@@ -131,7 +131,12 @@ def _inputs(inputs: tuple[Health, ...]) -> Summary:
         for health in inputs
         if health.state in _INPUT_WORDS
     ]
-    return (STALE, ', '.join(faults)) if faults else (OK, 'all inputs arrive')
+    if faults:
+        return STALE, ', '.join(faults)
+    slow = [health.source.name.lower() for health in inputs if health.slow]
+    if slow:
+        return WARN, f'{" and ".join(slow)} slower than the timeout'
+    return OK, 'all inputs arrive'
 
 
 def _lubrication_values(state: State) -> list[tuple[str, object]]:

@@ -13,6 +13,7 @@ from ballscrew_monitor.conversions import Scaling, SECOND, seconds
 from ballscrew_monitor.fields import compile_field, message_class
 
 RATE_SAMPLES = 20  # samples over which the rate is averaged
+SLOW_GAPS = 2  # gaps above the timeout in a row from which on the input is slow, not interrupted
 
 
 class Source(enum.IntEnum):
@@ -130,7 +131,12 @@ def _stamp(message: Any) -> int:
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Health:
-    """State of one input at one instant; age [s], rate [Hz], both NaN while unknown."""
+    """
+    State of one input at one instant.
+
+    age [s] and rate [Hz], both NaN while unknown; a `slow` input is stale between its samples.
+
+    """
 
     source: Source
     state: InputState
@@ -139,6 +145,7 @@ class Health:
     rate: float
     received: int
     dropped: int
+    slow: bool = False
 
 
 class Tracker:
@@ -154,11 +161,14 @@ class Tracker:
         self.refused = False  # the last message was refused
         self.last: Sample | None = None
         self._stamps: collections.deque[int] = collections.deque(maxlen=RATE_SAMPLES)
+        self._long_gaps = 0  # in a row
 
     def accept(self, sample: Sample) -> None:
         """Take a good sample."""
         self.received += 1
         self.refused = False
+        gap = 0 if self.last is None else sample.stamp - self.last.stamp
+        self._long_gaps = self._long_gaps + 1 if gap > self.timeout else 0
         self.last = sample
         self._stamps.append(sample.stamp)
 
@@ -177,10 +187,21 @@ class Tracker:
         self.last = None
         self.refused = False
         self._stamps.clear()
+        self._long_gaps = 0
 
     def is_ahead(self, stamp: int) -> bool:
         """Tell whether the last sample is newer than `stamp` [ns]."""
         return self.last is not None and self.last.stamp > stamp
+
+    @property
+    def slow(self) -> bool:
+        """Tell whether the input comes less often than its timeout asks for."""
+        return self._long_gaps >= SLOW_GAPS
+
+    @property
+    def slow_period(self) -> int:
+        """Return the last period [ns] of a slow input, 0 for any other."""
+        return self._stamps[-1] - self._stamps[-2] if self.slow else 0
 
     def state(self, now: int) -> InputState:
         """Return the state at `now` [ns]; a sample exactly as old as the timeout is still good."""
@@ -203,6 +224,7 @@ class Tracker:
             age=math.nan if last is None else max(0.0, seconds(now - last.stamp)),
             received=self.received,
             dropped=self.dropped,
+            slow=self.slow,
         )
 
     def _rate(self) -> float:

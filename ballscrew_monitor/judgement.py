@@ -172,6 +172,13 @@ def judge(point: Point, estimate: Estimate, limits: Limits) -> Verdict:
     return Verdict(zone=Zone.OPTIMAL, gates=gates, clear=clears(estimate, limits, light=light))
 
 
+def is_judged(estimate: Estimate, verdict: Verdict) -> bool:
+    """Tell whether a sample led to a verdict; that nothing applies at standstill is one too."""
+    if verdict.zone is not Zone.UNKNOWN:
+        return True
+    return Gate.STANDSTILL in verdict.gates and estimate.validity is not Validity.NO_INPUT
+
+
 def clears(estimate: Estimate, limits: Limits, *, light: bool) -> bool:
     """Tell whether an estimate counts towards clearing; efficiency is left out if `light`."""
     return estimate.rcs < limits.rcs_to_clear and (
@@ -234,21 +241,24 @@ class Hold:
     clearing: Run | None = None
 
 
-def hold(memory: Hold, verdict: Verdict, stamp: int, limits: Limits, *, max_gap: int) -> Hold:
+def hold(
+    memory: Hold, verdict: Verdict, stamp: int, limits: Limits, *, max_gap: int, period: int = 0
+) -> Hold:
     """
     Return the held level after one more verdict at `stamp` [ns].
 
     WARN is raised by samples outside for `raise_delay` without an optimal one between them; a
     sample that cannot be judged neither adds nor takes away, a hole of more than `max_gap` [ns]
-    starts anew. OK needs samples that count towards clearing for `clear_delay` and nothing else
-    between them: a sample that cannot be judged starts that anew. So an unknown never brings OK
-    nearer and never sends a warning away.
+    and of more than the `period` [ns] of a slow input starts anew. OK needs samples that count
+    towards clearing for `clear_delay` and nothing else between them: a sample that cannot be
+    judged and any hole start that anew. So an unknown never brings OK nearer and never sends a
+    warning away.
 
     """
     if verdict.zone is Zone.OUTSIDE:
         if memory.level is Level.WARN:
             return memory if memory.clearing is None else _drop_runs(memory)
-        run = _extend(memory.raising, stamp, max_gap)
+        run = _extend(memory.raising, stamp, max(max_gap, period))
         if stamp - run.start >= limits.raise_delay:
             return Hold(level=Level.WARN, since=stamp)
         return Hold(level=memory.level, since=memory.since, raising=run)

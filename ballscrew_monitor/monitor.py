@@ -20,7 +20,7 @@ from ballscrew_monitor.advice import advise
 from ballscrew_monitor.conversions import Direction, direction_of, SECOND
 from ballscrew_monitor.estimate import Estimate, estimate, Point, PointSource
 from ballscrew_monitor.inputs import InputState, Refusal, Sample, Source, Tracker, Why
-from ballscrew_monitor.judgement import Code, Hold, hold, judge, Level, Verdict, Zone
+from ballscrew_monitor.judgement import Hold, hold, is_judged, judge, Level, Verdict, Zone
 from ballscrew_monitor.state import Event, Settings, State
 from ballscrew_monitor.tally import Account, moment, Window
 
@@ -91,6 +91,7 @@ class Monitor:
         if self._last_tick - now > BACKWARD_JUMP and tracker.is_ahead(now + BACKWARD_JUMP):
             self._jump_back(now)
         self._last_tick = now
+        self._forget_the_future(now)
         if tracker.last is not None and now - tracker.last.stamp <= tracker.timeout:
             return None
         point = self._point(now)
@@ -121,10 +122,10 @@ class Monitor:
         self._account.reset()
 
     def _judge_speed(self, stamp: int) -> State | None:
-        self._judged += 1
         point = self._point(stamp)
         result = self._estimate(point)
         verdict = judge(point, result, self.settings.limits)
+        self._judged += is_judged(result, verdict)
         self._account.add(moment(stamp, point, result, verdict), max_gap=self._max_gap)
         self._window.add(point, result, verdict)
         return self._advance(stamp, point, result, verdict)
@@ -175,7 +176,8 @@ class Monitor:
     ) -> State | None:
         """Hold the level, follow the event, and return the state when it is due."""
         before = self._hold
-        self._hold = hold(before, verdict, stamp, self.settings.limits, max_gap=self._max_gap)
+        gaps = {'max_gap': self._max_gap, 'period': self._inputs[Source.SPEED].slow_period}
+        self._hold = hold(before, verdict, stamp, self.settings.limits, **gaps)
         self._follow(stamp, result, verdict)
         edge = self._edge(before.level, stamp, point)
         if not self._due(stamp) and edge is None and self._hold.level is before.level:
@@ -190,14 +192,14 @@ class Monitor:
         if verdict.zone is not Zone.OUTSIDE:
             return
         if self.event.active:
-            self.event = _worsen(self.event, result)
+            self.event = self.event.worsened(result)
             return
         run = self._hold.raising
         if self._pending is None or (run is not None and run.start == stamp):
             self._pending = Event(
                 start=stamp, cause=verdict.findings[0], worst_value=verdict.findings[0].value
             )
-        self._pending = _worsen(self._pending, result)
+        self._pending = self._pending.worsened(result)
 
     def _edge(self, before: Level, stamp: int, point: Point) -> Event | None:
         """Return the event that the change of the level begins or ends, if any."""
@@ -257,6 +259,20 @@ class Monitor:
             surface_id=self._surface_id,
         )
 
+    def _forget_the_future(self, now: int) -> None:
+        """
+        Forget samples that lie further ahead of `now` [ns] than is allowed.
+
+        They were taken while the clock stood at zero, and would not go stale for as long.
+
+        """
+        limit = now + self.settings.max_future + BACKWARD_JUMP
+        for tracker in self._inputs.values():
+            if now and tracker.is_ahead(limit):
+                if tracker.source is Source.SPEED:
+                    self._jump_back(now)
+                tracker.forget()
+
     def _jump_back(self, stamp: int) -> None:
         """
         Begin a new time line at `stamp` [ns], which is that of a speed sample or of a tick.
@@ -280,12 +296,3 @@ class Monitor:
         self._hold = Hold(level=self._hold.level, since=max(0, self._hold.since + shift))
         if self.event.active:
             self.event = dataclasses.replace(self.event, start=max(0, self.event.start + shift))
-
-
-def _worsen(event: Event, result: Estimate) -> Event:
-    """Return the event with its worst value after one more sample outside."""
-    if event.cause.code is Code.RCS_HIGH:
-        worst = max(event.worst_value, result.rcs)
-    else:
-        worst = min(event.worst_value, result.efficiency)
-    return event if worst == event.worst_value else dataclasses.replace(event, worst_value=worst)

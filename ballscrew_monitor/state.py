@@ -22,7 +22,7 @@ class Settings:
 
     `timeouts` [ns] of the configured inputs only: an input without one has no topic.
     `default_temperature` [K] is used without a temperature topic, `publish_period` [ns] thins out
-    the states, 0 keeps all.
+    the states, 0 keeps all; a stamp may be `max_future` [ns] ahead of the clock.
 
     """
 
@@ -31,6 +31,7 @@ class Settings:
     timeouts: Mapping[Source, int]
     default_temperature: float
     publish_period: int = 0
+    max_future: int = 0
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -44,6 +45,14 @@ class Event:
     worst_value: float = NAN
     cause: Finding = Finding(code=Code.UNKNOWN, severity=Severity.UNKNOWN)
     advice: Advice = Advice()
+
+    def worsened(self, estimate: Estimate) -> 'Event':
+        """Return the event with its worst value after one more sample outside."""
+        if self.cause.code is Code.RCS_HIGH:
+            worst = max(self.worst_value, estimate.rcs)
+        else:
+            worst = min(self.worst_value, estimate.efficiency)
+        return self if worst == self.worst_value else dataclasses.replace(self, worst_value=worst)
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)

@@ -34,6 +34,7 @@ def after(core, *events, surface=None, **limits):
 
 
 LOAD, SPEED = sample(Source.LOAD, -1000.0), sample(Source.SPEED, 10.0)
+HEAVY, STILL = sample(Source.LOAD, 1e5), sample(Source.SPEED, 0.1)
 
 
 def test_a_status_begins_as_an_error():
@@ -66,7 +67,9 @@ def test_all_is_well(core):
     ('events', 'level', 'message'),
     [
         ([SPEED], STALE, 'not judged: an input is missing'),
-        ([LOAD, sample(Source.SPEED, 0.1)], OK, 'standstill'),
+        ([LOAD, STILL], WARN, 'standstill, not judged for long enough yet'),
+        ([LOAD, SPEED, STILL], OK, 'standstill'),
+        ([LOAD, SPEED, HEAVY, STILL], WARN, 'not judged: load outside the surface'),
         ([LOAD, sample(Source.SPEED, 1e3)], WARN, 'not judged: speed above the surface'),
         ([sample(Source.LOAD, 1e5), SPEED], WARN, 'not judged: load outside the surface'),
     ],
@@ -98,6 +101,16 @@ def test_inputs_name_what_is_wrong(core):
     assert (bad.level, bad.message) == (STALE, 'load is not usable')
     late = sample(Source.SPEED, 10.0, START + 10 * SECOND)
     assert after(core, LOAD, late)['Inputs'].message == 'load is stale'
+
+
+def test_an_input_slower_than_its_timeout_is_told(core):
+    speeds = [sample(Source.SPEED, 10.0, START + i * SECOND) for i in range(3)]
+    loads = [sample(Source.LOAD, -1000.0, speed.stamp) for speed in speeds]
+    pairs = [event for pair in zip(loads, speeds, strict=True) for event in pair]
+    status = after(core, *pairs[:4])['Inputs']
+    assert (status.level, status.message) == (OK, 'all inputs arrive')
+    status = after(core, *pairs)['Inputs']
+    assert (status.level, status.message) == (WARN, 'speed and load slower than the timeout')
 
 
 @pytest.mark.parametrize(

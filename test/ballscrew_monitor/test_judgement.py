@@ -223,6 +223,15 @@ def test_a_hole_longer_than_the_gap_starts_the_raising_anew(core):
     assert levels(limits, near, memory=FINE, step=GAP + 1)[-1] is Level.OK
 
 
+def test_a_hole_of_a_slow_input_does_not(core):
+    limits, period = core.limits(), 3 * GAP
+    run = hold(FINE, OUTSIDE, 0, limits, max_gap=GAP, period=period)
+    assert hold(run, OUTSIDE, period, limits, max_gap=GAP, period=period).level is Level.WARN
+    assert hold(run, OUTSIDE, period + 1, limits, max_gap=GAP, period=period).level is Level.OK
+    run = hold(WARNING, INSIDE, 0, limits, max_gap=GAP, period=period)
+    assert hold(run, INSIDE, period, limits, max_gap=GAP, period=period).level is Level.WARN
+
+
 zones = st.lists(st.sampled_from([OUTSIDE, INSIDE, BAND, UNKNOWN]), max_size=300)
 
 

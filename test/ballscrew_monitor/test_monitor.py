@@ -52,6 +52,18 @@ def test_every_speed_sample_is_judged_once(core):
     assert [state.stamp for state in states] == [START + i * STEP for i in range(5)]
 
 
+def test_only_samples_that_led_to_a_verdict_count_as_judged(core):
+    monitor = core.monitor()
+    counts = [monitor.update(speed(0.1, START)).judged]  # no load yet
+    for i, (value, force) in enumerate(
+        [(0.1, -1e3), (10.0, -1e3), (1e3, -1e3), (10.0, 1e5), (0.1, 1e5), (-10.0, 0.0)]
+    ):
+        counts.append(feed(monitor, motion(value, start=START + i * STEP, force=force))[-1].judged)
+    assert counts == [0, 1, 2, 2, 2, 3, 4]
+    assert monitor.update(Refusal(source=Source.LOAD, why=Why.NOT_A_NUMBER)) is None
+    assert monitor.update(speed(10.0, START + SECOND)).judged == 4
+
+
 def test_other_samples_are_kept_and_not_judged(core):
     monitor = core.monitor()
     assert monitor.update(load(5.0, START)) is None
@@ -65,7 +77,7 @@ def test_before_the_load_arrives_nothing_can_be_judged(core):
     assert state.estimate.validity is Validity.NO_INPUT
     assert state.verdict.findings[0].code is Code.INPUT_LOST
     assert math.isnan(state.point.axial_load)
-    assert (state.level, state.judged) == (Level.UNKNOWN, 1)
+    assert (state.level, state.judged) == (Level.UNKNOWN, 0)
 
 
 def test_a_load_exactly_as_old_as_its_timeout_is_judged(core):
@@ -289,10 +301,77 @@ def test_a_tick_of_an_earlier_time_forgets_the_future(core):
 
 
 def test_stamps_that_run_ahead_of_the_clock_are_no_jump(core):
-    monitor = slow_is_bad(core)
+    monitor = slow_is_bad(core, max_future=START)
     for i in range(51):
         feed(monitor, [*motion(10.0, start=START + i * STEP), (TICK, START // 2 + i * STEP)])
     assert monitor.level is Level.WARN
+
+
+@pytest.mark.parametrize('early', [Source.SPEED, Source.LOAD])
+def test_a_sample_taken_before_the_clock_began_goes_stale_too(core, early):
+    """A clock at zero refuses no stamp, so one may lie any distance ahead."""
+    monitor = core.monitor(max_future=SECOND)
+    feed(monitor, [(TICK, 0), load(-1000.0, START), speed(10.0, START)])
+    here = START // 2
+    state = monitor.tick(here)
+    assert state.estimate.validity is Validity.NO_INPUT
+    late = [event for event in motion(10.0, start=here) if event.source is not early]
+    feed(monitor, [*late, (TICK, here)])
+    states = feed(monitor, [speed(10.0, here + STEP)])
+    if early is Source.LOAD:
+        assert states[-1].inputs[1].state is InputState.MISSING
+    else:
+        assert states[-1].verdict.zone is Zone.OPTIMAL
+
+
+def test_a_load_alone_from_before_the_clock_began_is_forgotten(core):
+    monitor = core.monitor(max_future=SECOND)
+    feed(monitor, [(TICK, 0), load(-1000.0, START)])
+    here = START // 2
+    assert feed(monitor, [speed(10.0, here)])[-1].verdict.zone is Zone.OPTIMAL
+    monitor.tick(here)
+    assert monitor.update(speed(10.0, here + STEP)).inputs[1].state is InputState.MISSING
+
+
+def test_stamps_as_far_ahead_as_is_allowed_are_kept(core):
+    monitor = core.monitor(max_future=SECOND)
+    feed(monitor, [(TICK, START), *motion(10.0, start=START + SECOND), (TICK, START)])
+    state = monitor.update(speed(10.0, START + SECOND))
+    assert state.verdict.zone is Zone.OPTIMAL
+
+
+@pytest.mark.parametrize('period', [TIMEOUT + SECOND // 10, 2 * TIMEOUT])
+def test_a_speed_slower_than_its_timeout_is_warned_of(core, period):
+    monitor = slow_is_bad(core)
+    for i in range(5):
+        feed(monitor, motion(10.0, start=START + i * period))
+        feed(monitor, [(TICK, START + (i + 1) * period - 1)])
+    assert monitor.level is Level.WARN
+    # The first hole may be an interruption; from the second on the input is slow.
+    assert monitor.event.start == START + period
+
+
+def test_a_slow_speed_that_stands_in_between_is_outside_anew(core):
+    monitor = slow_is_bad(core)
+    for i in range(20):
+        feed(monitor, motion(0.0 if i % 2 else 10.0, start=START + i * SECOND))
+    assert monitor.level is Level.UNKNOWN
+
+
+def test_one_hole_between_two_short_stays_outside_is_no_warning(core):
+    monitor = slow_is_bad(core)
+    feed(monitor, motion(10.0, count=20) + motion(10.0, start=START + 60 * SECOND, count=20))
+    assert monitor.level is Level.UNKNOWN
+
+
+def test_a_slow_speed_never_brings_ok(core):
+    monitor = slow_is_bad(core)
+    state = feed(monitor, motion(40.0, count=20, step=SECOND))[-1]
+    assert state.inputs[0].slow
+    assert monitor.level is Level.UNKNOWN
+    state = feed(monitor, motion(40.0, start=START + 20 * SECOND, count=102))[-1]
+    assert not state.inputs[0].slow
+    assert monitor.level is Level.OK
 
 
 def test_a_load_of_an_earlier_time_line_leaves_the_filters_alone(core):
@@ -349,7 +428,11 @@ def test_the_level_changes_on_judged_speed_samples_only(core, stream):
         before = monitor.level
         state = (feed(monitor, [event]) or [None])[0]
         if isinstance(event, Sample) and event.source is Source.SPEED and state is not None:
-            judged += 1
+            judged += (
+                state.verdict.zone is not Zone.UNKNOWN
+                or state.verdict.gates[:1] == (Gate.STANDSTILL,)
+                and state.estimate.validity is not Validity.NO_INPUT
+            )
             assert state.judged == judged
         if monitor.level is not before:
             assert state.estimate.validity is Validity.VALID
