@@ -50,7 +50,7 @@ def add_commands(subparsers: Any) -> None:
         required=True,
         metavar='F',
         dest='load',
-        help='axial load [N], opposes the motion when it has the sign of the speed',
+        help='axial load [N]; it opposes the motion when it has the sign of the speed',
     )
     point.add_argument(
         '--temperature-degC',
@@ -140,18 +140,31 @@ def _build(args: argparse.Namespace) -> int:
     screw, lubricant = load_screw(args.screw), load_lubricant(args.oil)
     settings = default_settings(screw)
     if args.speed_range:
-        low, high = args.speed_range
+        low, high = _range('--speed-range', 'rpm', args.speed_range, lowest=0.0)
         settings = replace(settings, speed_range=(low * math.pi / 30, high * math.pi / 30))
     if args.load_range:
-        settings = replace(settings, load_range=tuple(args.load_range))
+        settings = replace(settings, load_range=_range('--load-range', 'N', args.load_range))
     if args.temperature_range:
-        low, high = args.temperature_range
+        low, high = _range('--temperature-range', 'degC', args.temperature_range)
         settings = replace(settings, temperature_range=(low + ZERO_CELSIUS, high + ZERO_CELSIUS))
     out = args.out or Path(f'{screw.name}_{lubricant.name}.npz')
     data = build_closed_form(screw, lubricant, settings, progress=_show_progress)
     write(out, data)
     print(f'{out}: {data.mask.size} nodes, sha256 {data.sha256}')
     return 0
+
+
+def _range(
+    name: str, unit: str, ends: list[float], lowest: float = -math.inf
+) -> tuple[float, float]:
+    """Return a checked range in the unit in which it was typed."""
+    low, high = ends
+    if not (math.isfinite(low) and math.isfinite(high) and lowest < low < high):
+        above = f'above {lowest:g}, ' if math.isfinite(lowest) else ''
+        raise InputError(
+            f'{name} is {low:g} to {high:g} {unit}, allowed is {above}the low end first'
+        )
+    return low, high
 
 
 def _show_progress(done: int, total: int) -> None:
@@ -221,6 +234,8 @@ def _check(args: argparse.Namespace) -> int:
     path = args.file or shipped_surface()
     if args.points < 1:
         raise InputError(f'--points is {args.points}, allowed is 1 or more')
+    if not 0.0 < args.max_seconds < math.inf:
+        raise InputError(f'--max-seconds is {args.max_seconds:g} s, allowed is above 0')
     data = read(path)
     surface = Surface(data)
     screw, lubricant = _inputs(data)

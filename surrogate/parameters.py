@@ -11,6 +11,7 @@ range; loading, checking and error sentences all derive from that declaration.
 from dataclasses import dataclass, field, fields, MISSING
 import math
 from pathlib import Path
+import re
 from typing import Any, TypeVar
 
 import yaml
@@ -19,6 +20,9 @@ DATA = Path(__file__).parent / 'data'
 ZERO_CELSIUS = 273.15
 
 Sheet = TypeVar('Sheet')
+NAME = (r'[A-Za-z0-9][A-Za-z0-9_.-]*', 'letters, digits and _ . - (it becomes a file name)')
+VISCOSITY_MISMATCH = 2.0
+"""Largest factor between the dynamic viscosity and kinematic viscosity times density [-]."""
 
 
 class InputError(ValueError):
@@ -53,9 +57,9 @@ def count(low: int, high: int) -> Any:
     )
 
 
-def text() -> Any:
-    """Declare a mandatory text that is not empty."""
-    return field(metadata={'text': True})
+def text(pattern: str = r'(?s).*\S.*', allowed: str = 'a text that is not empty') -> Any:
+    """Declare a mandatory text that matches `pattern`, which `allowed` puts in words."""
+    return field(metadata={'text': pattern, 'allowed': allowed})
 
 
 def block(cls: type) -> Any:
@@ -128,7 +132,7 @@ class Screw(Checked):
 
     """
 
-    name: str = text()
+    name: str = text(*NAME)
     source: str = text()
     pitch_radius: float = quantity('mm', 1e-3, 1.0, 500.0)
     lead: float = quantity('mm', 1e-3, 0.5, 200.0)
@@ -155,6 +159,11 @@ class Screw(Checked):
                 f'screw: ball_diameter_mm is {self.ball_diameter * 1e3:g} mm, allowed is less '
                 f'than pitch_radius_mm ({self.pitch_radius * 1e3:g} mm)'
             )
+        if self.preload > self.static_rating:
+            raise InputError(
+                f'screw: preload_N is {self.preload:g} N, allowed is up to static_rating_kN '
+                f'({self.static_rating * 1e-3:g} kN)'
+            )
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -168,7 +177,7 @@ class Lubricant(Checked):
 
     """
 
-    name: str = text()
+    name: str = text(*NAME)
     source: str = text()
     reference_temperature: float = quantity('degC', 1.0, -50.0, 200.0, shift=ZERO_CELSIUS)
     viscosity: float = quantity('Pa_s', 1.0, 1e-4, 100.0)
@@ -190,6 +199,7 @@ class Lubricant(Checked):
                 f'{self.kinematic_viscosity_100 * 1e6:g} mm2/s, allowed is less than '
                 f'kinematic_viscosity_40_mm2_s ({self.kinematic_viscosity_40 * 1e6:g} mm2/s)'
             )
+        self._check_viscosity()
         if not (
             self.minimum_temperature <= self.reference_temperature <= self.maximum_temperature
         ):
@@ -198,6 +208,24 @@ class Lubricant(Checked):
                 f'{self.reference_temperature - ZERO_CELSIUS:g} degC, allowed is '
                 f'{self.minimum_temperature - ZERO_CELSIUS:g} to '
                 f'{self.maximum_temperature - ZERO_CELSIUS:g} degC (the range of the sheet)'
+            )
+
+    def _check_viscosity(self) -> None:
+        """Refuse the commonest slip, mPa s typed as Pa s, where the sheet itself shows it."""
+        anchors = {
+            40 + ZERO_CELSIUS: self.kinematic_viscosity_40,
+            100 + ZERO_CELSIUS: self.kinematic_viscosity_100,
+        }
+        kinematic = anchors.get(self.reference_temperature)
+        if kinematic is None:
+            return
+        expected = kinematic * self.density
+        factor = max(self.viscosity / expected, expected / self.viscosity)
+        if factor > VISCOSITY_MISMATCH:
+            raise InputError(
+                f'lubricant: viscosity_Pa_s is {self.viscosity:g} Pa s, allowed is '
+                f'{expected / VISCOSITY_MISMATCH:.3g} to {expected * VISCOSITY_MISMATCH:.3g} Pa s '
+                '(kinematic viscosity times density of this sheet, within a factor of two)'
             )
 
 
@@ -231,10 +259,24 @@ def load_lubricant(name_or_path: str) -> Lubricant:
     return _load(Lubricant, name_or_path, 'lubricants')
 
 
+class _StrictLoader(yaml.SafeLoader):
+    """YAML in which a key that stands twice is a mistake and not an overwriting."""
+
+    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
+        """Return the mapping; raises YAMLError for a key that stands twice."""
+        mapping = super().construct_mapping(node, deep)
+        if len(mapping) < len(node.value):
+            keys = [key.value for key, _ in node.value]
+            twice = next(key for key in keys if keys.count(key) > 1)
+            raise yaml.YAMLError(f'key {twice} stands twice')
+        return mapping
+
+
 def _load(cls: type[Sheet], name_or_path: str, folder: str) -> Sheet:
     path = _find(name_or_path, folder)
     try:
-        content = yaml.safe_load(path.read_text(encoding='utf-8'))
+        # A safe loader: it makes plain values only.
+        content = yaml.load(path.read_text(encoding='utf-8'), _StrictLoader)
     except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
         reason = ' '.join(str(error).split())
         raise InputError(f'{path}: cannot be read as YAML, {reason}') from None
@@ -294,8 +336,8 @@ def _value(spec: Any, raw: Any, where: str) -> Any:
     if 'block' in rules:
         return _from_mapping(rules['block'], raw, f'{where}: {key}')
     if 'text' in rules:
-        if not isinstance(raw, str) or not raw.strip():
-            raise InputError(f'{where}: {key} is {raw!r}, allowed is a text that is not empty')
+        if not isinstance(raw, str) or not re.fullmatch(rules['text'], raw.strip()):
+            raise InputError(f'{where}: {key} is {raw!r}, allowed is {rules["allowed"]}')
         return raw.strip()
     if isinstance(raw, bool) or not isinstance(raw, (int, float)):
         hint = ' (write 1.0e-8, not 1e-8)' if isinstance(raw, str) else ''

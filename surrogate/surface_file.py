@@ -89,6 +89,8 @@ def write(path: str | Path, data: SurfaceData) -> None:
     head = {**data.header, 'sha256': data.sha256, 'provenance': data.provenance}
     arrays = dict(_arrays(data))
     arrays['header'] = np.frombuffer(_canonical(head), dtype=np.uint8)
+    if path.exists() and not path.is_file():
+        raise SurfaceError(f'{path}: the surface cannot be written, it is not a regular file')
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.NamedTemporaryFile(dir=path.parent, suffix='.npz', delete=False) as file:
@@ -131,9 +133,10 @@ def _read_arrays(path: Path) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
         with path.open('rb') as file, np.load(file, allow_pickle=False) as archive:
             arrays = {name: archive[name] for name in archive.files}
         header = json.loads(arrays.pop('header').tobytes())
-    except DAMAGE as error:
-        reason = ' '.join(str(error).split())
-        raise SurfaceError(f'{path}: damaged or not a surface file, {reason}') from None
+    except DAMAGE:
+        raise SurfaceError(
+            f'{path}: damaged or not a surface file (an .npz that `surface build` wrote)'
+        ) from None
     except AttributeError:
         raise SurfaceError(f'{path}: not a surface file (.npz with a header)') from None
     if not isinstance(header, dict) or header.get('format') != FORMAT:

@@ -200,9 +200,27 @@ def test_comparator_knows_the_quadrant(capsys):
 
 
 def test_check_without_time_is_a_failure(capsys):
-    """Nothing solved is nothing shown."""
-    assert run('surface', 'check', '--max-seconds', '0') == 1
+    """Nothing solved is nothing shown; a time that is none is refused."""
+    assert run('surface', 'check', '--max-seconds', '1e-9') == 1
     assert '0 of 20 points' in capsys.readouterr().out
+    for text in ('0', '-1', 'nan', 'inf'):
+        with pytest.raises(InputError, match='--max-seconds is .* allowed is above 0'):
+            run('surface', 'check', '--max-seconds', text)
+
+
+@pytest.mark.parametrize(
+    ('words', 'sentence'),
+    [
+        (['--speed-range', '100', '10'], '--speed-range is 100 to 10 rpm, allowed is above 0'),
+        (['--speed-range', '0', '10'], '--speed-range is 0 to 10 rpm, allowed is above 0'),
+        (['--load-range', '5', '5'], '--load-range is 5 to 5 N, allowed is the low end first'),
+        (['--temperature-range', '50', 'nan'], '--temperature-range is 50 to nan degC'),
+    ],
+)
+def test_a_range_is_refused_in_the_unit_it_was_typed_in(words, sentence):
+    """The user reads the numbers that the user typed."""
+    with pytest.raises(InputError, match=sentence):
+        run('surface', 'build', *words)
 
 
 def test_bad_files_reach_the_user_as_sentences(tmp_path: Path):

@@ -96,6 +96,9 @@ MISTAKES = [
     ('ball_diameter_mm: 5.953', 'ball_diameter_mm: 16.5', 'allowed is less than pitch_radius_mm'),
     ('raceway:', 'raceway: 3\nunused:', 'unknown key unused'),
     ('name: nominal', 'name: [', 'cannot be read as YAML'),
+    ('name: nominal', 'name: ../nominal', "name is '../nominal', allowed is letters, digits"),
+    ('lead_mm: 10.0', 'lead_mm: 10.0\nlead_mm: 12.0', 'key lead_mm stands twice'),
+    ('preload_N: 990.0', 'preload_N: 99000.0', 'preload_N is 99000 N, allowed is up to static'),
 ]
 
 
@@ -132,6 +135,12 @@ def test_an_oil_that_thickens_when_warm_is_refused(oil):
     """The two viscosities must fall with temperature."""
     with pytest.raises(InputError, match='kinematic_viscosity_100_mm2_s is 70 mm2/s'):
         replace(oil, kinematic_viscosity_100=70e-6)
+
+
+def test_a_viscosity_in_the_wrong_unit_is_refused(oil):
+    """60 Pa s contradicts 68 mm2/s times 870 kg/m3 in the same sheet."""
+    with pytest.raises(InputError, match=r'viscosity_Pa_s is 60 Pa s, allowed is 0.0296 to 0.118'):
+        replace(oil, viscosity=60.0)
 
 
 def test_the_reference_temperature_lies_inside_the_sheet(oil):

@@ -169,6 +169,13 @@ def test_a_missing_file_is_one_sentence(tmp_path: Path):
         read(tmp_path / 'none.npz')
 
 
+def test_a_device_is_not_written_over(surface_data: SurfaceData):
+    """A target that is no regular file stays what it is."""
+    with pytest.raises(SurfaceError, match='it is not a regular file'):
+        write('/dev/null', surface_data)
+    assert Path('/dev/null').is_char_device()
+
+
 def test_a_failed_write_leaves_the_old_file(
     tmp_path: Path, surface_data: SurfaceData, monkeypatch
 ):
