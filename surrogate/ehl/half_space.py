@@ -1,0 +1,281 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Deformation of the elastic half-space: influence of a pressed rectangle and its fast convolution.
+
+Arrays have x along the first axis and y along the second. A symmetric half-space carries the half y >= 0 in
+columns 1 on and keeps column 0 for the mirror image at y = -dy; otherwise all columns are nodes. The
+pressure is zero in the last row, in the first row and in the last column (and in the first column if
+not symmetric), as on every contact grid here, so that lengths of about twice the grid are enough.
+
+"""
+
+from typing import NamedTuple
+
+from numba import njit
+import numpy as np
+from numpy.typing import DTypeLike, NDArray
+from surrogate.ehl._fft import Fft, fft_forward, fft_inverse, good_length, make_fft
+
+Array = NDArray[np.floating]
+LANES = 16
+"""Pairs of rows that one transform along y takes at a time."""
+
+
+class HalfSpace(NamedTuple):
+    """
+    Spectrum, tables and work space of a convolution; `symbol` in natural order.
+
+    Tables of y and x, spectrum in the order of the transforms (two planes), scratch (real, imaginary) of
+    both transforms, and whether the half y >= 0 stands for all.
+
+    """
+
+    y: Fft
+    x: Fft
+    spectrum: Array
+    tile: Array
+    columns: Array
+    symmetric: bool
+    near: Array
+
+
+def influence_love_1929(x: Array, y: Array, dx: float, dy: float) -> Array:
+    """
+    Return the integral of 1/r over a dx by dy rectangle at the origin, seen from (x, y) [length].
+
+    Sum over the corners of a asinh(b/|a|) + b asinh(a/|b|): Love, Phil. Trans. A 228 (1929) 377.
+
+    """
+    def corner(a: Array, b: Array) -> Array:
+        size_a, size_b = np.abs(a), np.abs(b)
+        return np.asarray(a * np.arcsinh(b / np.where(size_a > 0, size_a, 1))
+                          + b * np.arcsinh(a / np.where(size_b > 0, size_b, 1)))
+
+    west, east, south, north = x - dx / 2, x + dx / 2, y - dy / 2, y + dy / 2
+    return corner(east, north) - corner(east, south) - corner(west, north) + corner(west, south)
+
+
+def make_half_space(nx: int, ny: int, dx: float, dy: float, *, symmetric: bool, scale: float = 1.0,
+                    dtype: DTypeLike = np.float64) -> HalfSpace:
+    """Prepare `scale` times the influence of all nodes of an (nx, ny) array on each other."""
+    length_x = good_length(2 * nx - 3)
+    length_y = good_length(4 * (ny - 1) - 5 if symmetric else 2 * ny - 3)
+    lag_x, lag_y = _lags(length_x) * dx, _lags(length_y) * dy
+    kernel = scale * influence_love_1929(lag_x[:, None], lag_y[None, :], dx, dy)
+    symbol = np.fft.rfft2(kernel).real
+    x, y = make_fft(length_x, dtype), make_fft(length_y, dtype)
+    spectrum = _pack(symbol / (length_x * length_y), symmetric)
+    ordered = np.empty_like(spectrum)
+    ordered[:, x.place] = spectrum
+    columns = spectrum.shape[2]
+    return HalfSpace(
+        y=y, x=x, spectrum=ordered.astype(dtype), symmetric=symmetric,
+        tile=np.zeros((2, length_y, LANES), dtype), near=_near_kernel(symbol).astype(dtype),
+        columns=np.zeros((2, length_x, columns), dtype))
+
+
+def _lags(length: int) -> Array:
+    index = np.arange(length)
+    return np.minimum(index, length - index).astype(float)
+
+
+def _pack(symbol: Array, symmetric: bool) -> Array:
+    """Return the planes: (G, unused) or, for two real columns a, b in one, (Ga + Gb)/2, (Ga - Gb)/2."""
+    if not symmetric:
+        return symbol[None]
+    half = (symbol.shape[1] + 1) // 2
+    first, second = symbol[:, :half], np.zeros_like(symbol[:, :half])
+    second[:, :symbol.shape[1] - half] = symbol[:, half:]
+    return np.stack([first + second, first - second]) / 2
+
+
+def _near_kernel(symbol: Array) -> Array:
+    """
+    Return k00, k10, k01, k11 of the 3x3 kernel with the symbol of the full one at high frequency.
+
+    It equals the symbol at (pi/2, pi/2), (pi, pi/2), (pi/2, pi) and (pi, pi). A truncated kernel
+    would be indefinite on elongated cells.
+
+    """
+    nx, ny = symbol.shape[0], 2 * (symbol.shape[1] - 1)
+    quarter_x, quarter_y = round(nx / 4), round(ny / 4)
+    both, fast_x = symbol[quarter_x, quarter_y], symbol[nx // 2, quarter_y]
+    fast_y, fastest = symbol[quarter_x, ny // 2], symbol[nx // 2, ny // 2]
+    k10, k01 = (both - fast_x) / 2, (both - fast_y) / 2
+    return np.array([both, k10, k01, (fastest - both + 2 * k10 + 2 * k01) / 4])
+
+
+@njit(cache=True)
+def deform(space, pressure, out):
+    """Convolve: out = influence * pressure, with the mirror column where symmetric."""
+    if space.symmetric:
+        _rows_to_spectrum_even(space, pressure)
+        fft_forward(space.columns[0], space.columns[1], space.x.cos, space.x.sin)
+        _multiply_even(space)
+        fft_inverse(space.columns[0], space.columns[1], space.x.cos, space.x.sin)
+        _spectrum_to_rows_even(space, out)
+    else:
+        _rows_to_spectrum(space, pressure)
+        fft_forward(space.columns[0], space.columns[1], space.x.cos, space.x.sin)
+        _multiply(space)
+        fft_inverse(space.columns[0], space.columns[1], space.x.cos, space.x.sin)
+        _spectrum_to_rows(space, out)
+
+
+@njit(cache=True)
+def _multiply(space):
+    re, im, factor = space.columns[0], space.columns[1], space.spectrum[0]
+    for i in range(re.shape[0]):
+        for j in range(re.shape[1]):
+            re[i, j] *= factor[i, j]
+            im[i, j] *= factor[i, j]
+
+
+@njit(cache=True)
+def _multiply_even(space):
+    """Treat two real columns as one complex: Z(k) mean + conj Z(-k) half difference."""
+    re, im = space.columns[0], space.columns[1]
+    mean, half = space.spectrum[0], space.spectrum[1]
+    place = space.x.place
+    size = place.size
+    for k in range(size // 2 + 1):
+        a, b = place[k], place[(size - k) % size]
+        for j in range(re.shape[1]):
+            ar, ai, br, bi = re[a, j], im[a, j], re[b, j], im[b, j]
+            m, h = mean[a, j], half[a, j]
+            re[a, j], im[a, j] = m * ar + h * br, m * ai - h * bi
+            if a != b:
+                re[b, j], im[b, j] = m * br + h * ar, m * bi - h * ai
+
+
+@njit(cache=True)
+def _load_tile(tile, values, start, symmetric):
+    """Copy 2 LANES rows into the lanes, zero beyond, mirrored when symmetric."""
+    nx, ny = values.shape
+    length, lanes = tile.shape[1], tile.shape[2]
+    first = 1 if symmetric else 0
+    used = ny - first
+    for part in range(2):
+        plane = tile[part]
+        for lane in range(lanes):
+            i = start + part * lanes + lane
+            if i < nx:
+                for j in range(used):
+                    plane[j, lane] = values[i, first + j]
+            else:
+                for j in range(used):
+                    plane[j, lane] = 0
+        for j in range(used, length):
+            for lane in range(lanes):
+                plane[j, lane] = 0
+        if symmetric:
+            for j in range(1, used):
+                for lane in range(lanes):
+                    plane[length - j, lane] = plane[j, lane]
+
+
+@njit(cache=True)
+def _store_tile(tile, values, start, symmetric):
+    nx, ny = values.shape
+    lanes = tile.shape[2]
+    first = 1 if symmetric else 0
+    for part in range(2):
+        plane = tile[part]
+        for lane in range(lanes):
+            i = start + part * lanes + lane
+            if i < nx:
+                for j in range(ny - first):
+                    values[i, first + j] = plane[j, lane]
+                if symmetric:
+                    values[i, 0] = values[i, 2]
+
+
+@njit(cache=True)
+def _rows_to_spectrum_even(space, values):
+    """Transform even rows, two in one: both spectra are real."""
+    tile, re, im = space.tile, space.columns[0], space.columns[1]
+    half, place, lanes = re.shape[1], space.y.place, tile.shape[2]
+    frequencies = place.size // 2 + 1
+    nx = values.shape[0]
+    for start in range(0, nx, 2 * lanes):
+        _load_tile(tile, values, start, True)
+        fft_forward(tile[0], tile[1], space.y.cos, space.y.sin)
+        for part in range(2):
+            plane = tile[part]
+            for lane in range(min(lanes, nx - start - part * lanes)):
+                i = start + part * lanes + lane
+                for k in range(half):
+                    re[i, k] = plane[place[k], lane]
+                for k in range(half, frequencies):
+                    im[i, k - half] = plane[place[k], lane]
+                for k in range(frequencies - half, half):
+                    im[i, k] = 0
+    re[nx:] = 0
+    im[nx:] = 0
+
+
+@njit(cache=True)
+def _spectrum_to_rows_even(space, values):
+    tile, re, im = space.tile, space.columns[0], space.columns[1]
+    half, place, lanes = re.shape[1], space.y.place, tile.shape[2]
+    size = place.size
+    frequencies = size // 2 + 1
+    nx = values.shape[0]
+    for start in range(0, nx, 2 * lanes):
+        for part in range(2):
+            plane = tile[part]
+            for lane in range(min(lanes, nx - start - part * lanes)):
+                i = start + part * lanes + lane
+                for k in range(half):
+                    plane[place[k], lane] = re[i, k]
+                for k in range(half, frequencies):
+                    plane[place[k], lane] = im[i, k - half]
+            for k in range(1, size // 2):
+                a, b = place[size - k], place[k]
+                for lane in range(lanes):
+                    plane[a, lane] = plane[b, lane]
+        fft_inverse(tile[0], tile[1], space.y.cos, space.y.sin)
+        _store_tile(tile, values, start, True)
+
+
+@njit(cache=True)
+def _rows_to_spectrum(space, values):
+    """Transform real rows, two in one complex row, and part their spectra."""
+    tile, re, im = space.tile, space.columns[0], space.columns[1]
+    place, lanes = space.y.place, tile.shape[2]
+    size, half = place.size, re.dtype.type(0.5)
+    nx = values.shape[0]
+    for start in range(0, nx, 2 * lanes):
+        _load_tile(tile, values, start, False)
+        fft_forward(tile[0], tile[1], space.y.cos, space.y.sin)
+        for lane in range(min(lanes, nx - start)):
+            i, n = start + lane, start + lanes + lane
+            for k in range(size // 2 + 1):
+                a, b = place[k], place[(size - k) % size]
+                ar, ai = tile[0, a, lane], tile[1, a, lane]
+                br, bi = tile[0, b, lane], tile[1, b, lane]
+                re[i, k], im[i, k] = half * (ar + br), half * (ai - bi)
+                if n < nx:
+                    re[n, k], im[n, k] = half * (ai + bi), half * (br - ar)
+    re[nx:] = 0
+    im[nx:] = 0
+
+
+@njit(cache=True)
+def _spectrum_to_rows(space, values):
+    tile, re, im = space.tile, space.columns[0], space.columns[1]
+    place, lanes = space.y.place, tile.shape[2]
+    size = place.size
+    nx = values.shape[0]
+    for start in range(0, nx, 2 * lanes):
+        for lane in range(min(lanes, nx - start)):
+            i, n = start + lane, start + lanes + lane
+            for k in range(size // 2 + 1):
+                a, b = place[k], place[(size - k) % size]
+                ar, ai = re[i, k], im[i, k]
+                br, bi = (re[n, k], im[n, k]) if n < nx else (0 * ar, 0 * ai)
+                tile[0, b, lane], tile[1, b, lane] = ar + bi, br - ai
+                tile[0, a, lane], tile[1, a, lane] = ar - bi, ai + br
+        fft_inverse(tile[0], tile[1], space.y.cos, space.y.sin)
+        _store_tile(tile, values, start, False)
