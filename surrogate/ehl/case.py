@@ -130,7 +130,7 @@ class Case:
         """Order of the upstream wedge on the finest grid."""
         if self.settings.wedge_order is not None:
             return float(self.settings.wedge_order)
-        if amplitude == 0.0:
+        if amplitude == 0.0 or speed == 0.0:
             return 2.0
         coarseness = grid.dx / self.inlet_length(speed)
         return 1.0 + float(np.clip((UNRESOLVED - coarseness) / (UNRESOLVED - RESOLVED), 0, 1))

@@ -94,7 +94,7 @@ class Settings:
     film_floor: float = 3e-9
     flux_tolerance: float = 1e-4
     load_tolerance: float = 1e-6
-    gap_tolerance: float = 1e-3
+    gap_tolerance: float = 1e-4
     newton_limit: int = 40
     time_cap: float = 60.0
     error_estimate: bool = True

@@ -63,7 +63,7 @@ class Limits:
 
     flux: float = 1e-4
     load: float = 1e-6
-    gap: float = 1e-3
+    gap: float = 1e-4
     krylov: float = 0.02
     newton: int = 40
     step: float = 0.3

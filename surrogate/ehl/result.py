@@ -104,11 +104,15 @@ def _rolling_tail(case: Case) -> float:
 
 
 def state_from_solution(case: Case, grid: Grid, start: ContactSolution) -> State:
-    """Return the fields of another solution on `grid`, pressures scaled to the load."""
+    """Return the fields of another solution on `grid`; without speed all pressure is on asperities."""
     old = Grid(x=start.x / start.semi_axis_x, y=start.y / start.semi_axis_x, symmetric=False,
                compliance=grid.compliance)
     height = start.semi_axis_x ** 2 / start.contact.radius_x
     state = State(film_pressure=start.film_pressure / start.hertz_pressure,
                   asperity_pressure=start.asperity_pressure / start.hertz_pressure,
                   approach=-start.approach / height)
-    return transfer(state, old, grid)
+    state = transfer(state, old, grid)
+    if case.condition.entrainment_speed:
+        return state
+    return State(film_pressure=np.zeros(grid.shape), approach=state.approach,
+                 asperity_pressure=state.film_pressure + state.asperity_pressure)

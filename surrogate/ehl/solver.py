@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 import math
 import time
 
+import numpy as np
 from surrogate.ehl.case import Array, Case, make_case, STIFF
 from surrogate.ehl.grid import Grid, State, transfer
 from surrogate.ehl.model import (
@@ -31,6 +32,10 @@ from surrogate.geometry import Contact
 
 FINEST_CUT = 1 / 64
 """Shortest step of a continuation path, as a share of it [-]."""
+EDGE_SHARE = 2e-3
+"""Share of the load on the last rows inside outlet and sides that a domain may have [-]."""
+WARM_NEWTON = 25
+"""Most Newton iterations of one step from a neighbouring solution [-]."""
 PARTING = 1.5
 """Smooth film over the roughness rms at which a rough path starts [-]."""
 
@@ -156,11 +161,13 @@ class _Run:
             outcome.converged) else outcome
 
     def _slowing(self, grid: Grid, heights: Array, fast: float, slow: float,
-                 amplitude: float) -> Callable[[float], Problem]:
+                 amplitude: float, smooth_order: float = 1.0) -> Callable[[float], Problem]:
         """Return the path in the logarithm of speed."""
+        settings = self.case.settings
         def problem(t: float) -> Problem:
             speed = slow if t == 1.0 else fast * (slow / fast) ** t
-            order = self.case.order(grid, speed, amplitude) if amplitude else 1.0
+            order = self.case.order(grid, speed, amplitude) if amplitude else (
+                settings.wedge_order or smooth_order)
             return self.case.problem(grid, speed, heights, order)
 
         return problem
@@ -198,9 +205,16 @@ class _Run:
         if rough:
             heights = heights - case.rough_heights(grid)
         speed = case.condition.entrainment_speed
-        problem = case.problem(grid, speed, heights, case.order(grid, speed, float(rough)))
-        state = state_from_solution(case, grid, start)
-        outcome = self.solve(grid, problem, state, self.limits(rough=rough, final=True))
+        limits = self.limits(rough=rough, final=True)
+        limits = replace(limits, newton=min(limits.newton, WARM_NEWTON))
+        state, amplitude = state_from_solution(case, grid, start), float(rough)
+        last = start.condition.entrainment_speed
+        if not (speed and last):
+            problem = case.problem(grid, speed, heights, case.order(grid, speed, amplitude))
+            outcome = self.solve(grid, problem, state, limits)
+        else:
+            path = self._slowing(grid, heights, last, speed, amplitude, smooth_order=2.0)
+            outcome = self.march(grid, state, path, limits)
         return (grid, outcome) if outcome.converged else None
 
 
@@ -240,7 +254,7 @@ def _status(run: _Run, grid: Grid, outcome: Outcome) -> Status:
         return Status.GRID_TOO_COARSE
     if not outcome.converged:
         return Status.CONTINUATION_FAILED if case.roughness is not None else Status.STALLED
-    if _touches_edge(outcome):
+    if _touches_edge(case, grid, outcome):
         return Status.DOMAIN_TOO_SMALL
     return Status.CONVERGED
 
@@ -255,7 +269,11 @@ def _is_coarse(run: _Run, grid: Grid, outcome: Outcome) -> bool:
     return not (first.converged and bool(first.contact.any()))
 
 
-def _touches_edge(outcome: Outcome) -> bool:
+def _touches_edge(case: Case, grid: Grid, outcome: Outcome) -> bool:
+    """Tell whether the last rows of nodes inside the outlet and the sides carry part of the load."""
     pressure = outcome.state.film_pressure + outcome.state.asperity_pressure
-    edge = max(pressure[-2].max(), pressure[:, -2].max())
-    return bool(edge > 0.02 * pressure.max())
+    edge = np.zeros(grid.shape)
+    edge[-2], edge[:, -2] = pressure[-2], pressure[:, -2]
+    if not grid.symmetric:
+        edge[:, 1] = pressure[:, 1]
+    return grid.integral(edge) > EDGE_SHARE * case.load

@@ -5,6 +5,7 @@
 import csv
 from pathlib import Path
 
+import numpy as np
 import pytest
 from surrogate.ehl import Condition, ContactLubricant
 from surrogate.geometry import Contact
@@ -43,3 +44,20 @@ def nominal():
     """Return contact and oil of the nominal ball on screw contact."""
     return (Contact(radius_x=2.589e-3, radius_y=77.39e-3, reduced_modulus=226.4e9),
             ContactLubricant(viscosity=0.06, pressure_viscosity=2.0e-8))
+
+
+@pytest.fixture(scope='session')
+def raceway():
+    """Return a height function z(x, y) of sixty waves of 30 to 120 um, 0.12 um rms, self-affine."""
+    rng = np.random.default_rng(1)
+    number = 2 * np.pi / np.exp(rng.uniform(np.log(30e-6), np.log(120e-6), 60))
+    angle, phase = rng.uniform(0, np.pi, 60), rng.uniform(0, 2 * np.pi, 60)
+    size = number ** -0.8
+    size *= 0.12e-6 / np.sqrt(0.5 * (size ** 2).sum())
+
+    def heights(x, y):
+        return sum(
+            a * np.cos(k * (np.cos(t) * x + np.sin(t) * y) + p)
+            for a, k, t, p in zip(size, number, angle, phase))
+
+    return heights
