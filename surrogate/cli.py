@@ -1,9 +1,10 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Offline subcommands: `point` and `surface build|info|check`."""
+"""Offline subcommands: `point`, `contact` and `surface build|info|check`."""
 
 import argparse
 import json
+import logging
 import math
 from pathlib import Path
 import random
@@ -12,7 +13,14 @@ import time
 from typing import Any
 
 from surrogate.parameters import (
-    InputError, load_lubricant, load_screw, Lubricant, OperatingPoint, Screw, ZERO_CELSIUS)
+    InputError,
+    load_lubricant,
+    load_screw,
+    Lubricant,
+    OperatingPoint,
+    Screw,
+    ZERO_CELSIUS,
+)
 from surrogate.surface import shipped_surface, Surface
 from surrogate.surface_file import read, SurfaceData, write
 
@@ -29,16 +37,37 @@ def add_commands(subparsers: Any) -> None:
     """Add the offline subcommands; each sets `handler`, which takes the arguments."""
     point = subparsers.add_parser('point', help='solve one operating point')
     _add_inputs(point)
-    point.add_argument('--speed-rpm', type=float, required=True, metavar='N',
-                       help='screw speed [rev/min], the sign is the direction of motion')
-    point.add_argument('--load-N', type=float, required=True, metavar='F', dest='load',
-                       help='axial load [N], opposes the motion when it has the sign of the speed')
-    point.add_argument('--temperature-degC', type=float, metavar='T', dest='temperature',
-                       help='oil temperature [degC], default that of the oil datasheet')
-    point.add_argument('--tier', choices=('closed_form',), default='closed_form',
-                       help='model: closed_form is the only one so far')
+    point.add_argument(
+        '--speed-rpm',
+        type=float,
+        required=True,
+        metavar='N',
+        help='screw speed [rev/min], the sign is the direction of motion',
+    )
+    point.add_argument(
+        '--load-N',
+        type=float,
+        required=True,
+        metavar='F',
+        dest='load',
+        help='axial load [N], opposes the motion when it has the sign of the speed',
+    )
+    point.add_argument(
+        '--temperature-degC',
+        type=float,
+        metavar='T',
+        dest='temperature',
+        help='oil temperature [degC], default that of the oil datasheet',
+    )
+    point.add_argument(
+        '--tier',
+        choices=('closed_form',),
+        default='closed_form',
+        help='model: closed_form is the only one so far',
+    )
     point.add_argument('--json', action='store_true', help='print JSON in SI units')
     point.set_defaults(handler=_point)
+    _add_contact(subparsers.add_parser('contact', help='solve one contact from a case file'))
     surface = subparsers.add_parser('surface', help='build, describe or check a surface file')
     actions = surface.add_subparsers(required=True, metavar='build|info|check')
     _add_build(actions.add_parser('build', help='build a surface file'))
@@ -47,18 +76,25 @@ def add_commands(subparsers: Any) -> None:
 
 
 def _add_inputs(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument('--screw', default='nominal', metavar='NAME|FILE',
-                        help='screw datasheet (default nominal)')
-    parser.add_argument('--oil', default='iso_vg_68', metavar='NAME|FILE',
-                        help='oil datasheet (default iso_vg_68)')
+    parser.add_argument(
+        '--screw', default='nominal', metavar='NAME|FILE', help='screw datasheet (default nominal)'
+    )
+    parser.add_argument(
+        '--oil', default='iso_vg_68', metavar='NAME|FILE', help='oil datasheet (default iso_vg_68)'
+    )
 
 
 def _add_build(parser: argparse.ArgumentParser) -> None:
     _add_inputs(parser)
     parser.add_argument('--tier', choices=('closed_form',), default='closed_form')
     for name, unit in (('speed', 'rpm'), ('load', 'N'), ('temperature', 'degC')):
-        parser.add_argument(f'--{name}-range', type=float, nargs=2, metavar=('LOW', 'HIGH'),
-                            help=f'{name} range [{unit}]')
+        parser.add_argument(
+            f'--{name}-range',
+            type=float,
+            nargs=2,
+            metavar=('LOW', 'HIGH'),
+            help=f'{name} range [{unit}]',
+        )
     parser.add_argument('--out', type=Path, help='file to write (default SCREW_OIL.npz)')
     parser.set_defaults(handler=_build)
 
@@ -73,26 +109,76 @@ def _add_check(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('file', nargs='?', type=Path, help='default: the shipped surface')
     parser.add_argument('--points', type=int, default=20, help='random points (default 20)')
     parser.add_argument('--seed', type=int, default=1, help='seed of the points (default 1)')
-    parser.add_argument('--max-seconds', type=float, default=60.0,
-                        help='stop after this time [s] and judge what was done (default 60)')
+    parser.add_argument(
+        '--max-seconds',
+        type=float,
+        default=60.0,
+        help='stop after this time [s] and judge what was done (default 60)',
+    )
     parser.set_defaults(handler=_check)
+
+
+def _add_contact(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument('case', metavar='CASE', help='case file (YAML) or shipped case')
+    parser.add_argument('--json', action='store_true', help='print JSON in SI units')
+    parser.add_argument('--plot', type=Path, metavar='DIR', help='directory for pictures (PNG)')
+    parser.set_defaults(handler=_contact)
 
 
 def _point(args: argparse.Namespace) -> int:
     from surrogate.point import closed_form_record, page, to_json
+
     screw, lubricant = load_screw(args.screw), load_lubricant(args.oil)
-    kelvin = (lubricant.reference_temperature if args.temperature is None
-              else args.temperature + ZERO_CELSIUS)
-    point = OperatingPoint(
-        speed=args.speed_rpm * math.pi / 30, load=args.load, temperature=kelvin)
+    kelvin = (
+        lubricant.reference_temperature
+        if args.temperature is None
+        else args.temperature + ZERO_CELSIUS
+    )
+    point = OperatingPoint(speed=args.speed_rpm * math.pi / 30, load=args.load, temperature=kelvin)
     record = closed_form_record(screw, lubricant, point)
     print(json.dumps(to_json(record), indent=2, allow_nan=False) if args.json else page(record))
     return 0
 
 
+def _contact(args: argparse.Namespace) -> int:
+    """Solve a case; exit code 1 when the solution is not converged."""
+    from surrogate.contact_case import load_case, solve_case
+    from surrogate.contact_record import contact_page, contact_record
+    from surrogate.point import to_json
+
+    # What was done to a surface belongs to the result, so it is said whatever the output.
+    logging.basicConfig(level=logging.INFO, format='ballscrew: %(message)s')
+    case = load_case(args.case)
+    solution, surface = solve_case(case)
+    record = contact_record(case, solution)
+    if args.json:
+        print(json.dumps(to_json(record), indent=2, allow_nan=False))
+    else:
+        print(contact_page(record, case, solution, surface))
+    if args.plot:
+        _plot(args.plot, solution, surface)
+    return 0 if solution.converged else 1
+
+
+def _plot(folder: Path, solution: Any, surface: Any) -> None:
+    """Draw the pictures of a contact; only this needs matplotlib."""
+    try:
+        from surrogate.figures_contact import draw_contact
+    except ImportError:
+        raise InputError('--plot needs matplotlib: install the extra `plot`') from None
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for path in draw_contact(folder, solution, surface):
+            print(path, file=sys.stderr)
+    except OSError as error:
+        raise InputError(f'--plot: {folder} cannot be written, {error.strerror}') from None
+
+
 def _build(args: argparse.Namespace) -> int:
     from dataclasses import replace
+
     from surrogate.build import build_closed_form, default_settings
+
     screw, lubricant = load_screw(args.screw), load_lubricant(args.oil)
     settings = default_settings(screw)
     if args.speed_range:
@@ -102,8 +188,7 @@ def _build(args: argparse.Namespace) -> int:
         settings = replace(settings, load_range=tuple(args.load_range))
     if args.temperature_range:
         low, high = args.temperature_range
-        settings = replace(settings,
-                           temperature_range=(low + ZERO_CELSIUS, high + ZERO_CELSIUS))
+        settings = replace(settings, temperature_range=(low + ZERO_CELSIUS, high + ZERO_CELSIUS))
     out = args.out or Path(f'{screw.name}_{lubricant.name}.npz')
     data = build_closed_form(screw, lubricant, settings, progress=_show_progress)
     write(out, data)
@@ -114,8 +199,12 @@ def _build(args: argparse.Namespace) -> int:
 def _show_progress(done: int, total: int) -> None:
     if sys.stderr.isatty():
         bar = '#' * (40 * done // total)
-        print(f'\r[{bar:40}] {done}/{total} slices', end='\n' if done == total else '',
-              file=sys.stderr, flush=True)
+        print(
+            f'\r[{bar:40}] {done}/{total} slices',
+            end='\n' if done == total else '',
+            file=sys.stderr,
+            flush=True,
+        )
 
 
 def _info(args: argparse.Namespace) -> int:
@@ -123,13 +212,21 @@ def _info(args: argparse.Namespace) -> int:
     surface = Surface.load(path)
     low, high = surface.speed_range
     record = {
-        'file': str(path), 'sha256': surface.sha256, 'tier': surface.tier,
-        'screw': surface.screw_name, 'oil': surface.oil_name,
-        'speed_range_rad_s': [low, high], 'load_range_N': list(surface.load_range),
-        'temperature_range_K': list(surface.temperature_range), 'cells': list(surface.cells),
+        'file': str(path),
+        'sha256': surface.sha256,
+        'tier': surface.tier,
+        'screw': surface.screw_name,
+        'oil': surface.oil_name,
+        'speed_range_rad_s': [low, high],
+        'load_range_N': list(surface.load_range),
+        'temperature_range_K': list(surface.temperature_range),
+        'cells': list(surface.cells),
         'masked_cells': surface.masked_cells,
-        'errors': {name: {'max': worst, 'p95': usual}
-                   for name, (worst, usual) in sorted(surface.errors.items())}}
+        'errors': {
+            name: {'max': worst, 'p95': usual}
+            for name, (worst, usual) in sorted(surface.errors.items())
+        },
+    }
     print(json.dumps(record, indent=2) if args.json else _info_page(record))
     return 0
 
@@ -137,19 +234,27 @@ def _info(args: argparse.Namespace) -> int:
 def _info_page(record: dict[str, Any]) -> str:
     low, high = record['speed_range_rad_s']
     cold, warm = record['temperature_range_K']
-    return '\n'.join([
-        f'{record["file"]}', f'  tier         {record["tier"]}',
-        f'  screw, oil   {record["screw"]}, {record["oil"]}',
-        f'  sha256       {record["sha256"]}',
-        f'  speed        {low * 30 / math.pi:.3g} to {high * 30 / math.pi:.4g} rev/min',
-        '  load         {:g} to {:g} N, positive opposes the motion'.format(
-            *record['load_range_N']),
-        f'  temperature  {cold - ZERO_CELSIUS:g} to {warm - ZERO_CELSIUS:g} degC',
-        '  cells        {} x {} x {}'.format(*record['cells'])
-        + f', {record["masked_cells"]} masked',
-        '  measured interpolation error                  max         p95',
-        *(f'    {name + " [" + UNITS.get(name, "-") + "]":42} {error["max"]:<10.3g}  '
-          f'{error["p95"]:.3g}' for name, error in record['errors'].items())])
+    return '\n'.join(
+        [
+            f'{record["file"]}',
+            f'  tier         {record["tier"]}',
+            f'  screw, oil   {record["screw"]}, {record["oil"]}',
+            f'  sha256       {record["sha256"]}',
+            f'  speed        {low * 30 / math.pi:.3g} to {high * 30 / math.pi:.4g} rev/min',
+            '  load         {:g} to {:g} N, positive opposes the motion'.format(
+                *record['load_range_N']
+            ),
+            f'  temperature  {cold - ZERO_CELSIUS:g} to {warm - ZERO_CELSIUS:g} degC',
+            '  cells        {} x {} x {}'.format(*record['cells'])
+            + f', {record["masked_cells"]} masked',
+            '  measured interpolation error                  max         p95',
+            *(
+                f'    {name + " [" + UNITS.get(name, "-") + "]":42} {error["max"]:<10.3g}  '
+                f'{error["p95"]:.3g}'
+                for name, error in record['errors'].items()
+            ),
+        ]
+    )
 
 
 def _check(args: argparse.Namespace) -> int:
@@ -166,25 +271,30 @@ def _check(args: argparse.Namespace) -> int:
         worst = max(worst[0], efficiency_error), max(worst[1], rcs_excess)
         done += 1
     passed = done > 0 and worst[0] <= EFFICIENCY_TOLERANCE and worst[1] <= 1.0
-    print(f'{path}: {"passed" if passed else "FAILED"}, hash verified, {done} of {args.points} '
-          f'points solved, largest error: efficiency {worst[0]:.2g} (allowed '
-          f'{EFFICIENCY_TOLERANCE}), RCS {100 * worst[1]:.0f} % of the allowed')
+    print(
+        f'{path}: {"passed" if passed else "FAILED"}, hash verified, {done} of {args.points} '
+        f'points solved, largest error: efficiency {worst[0]:.2g} (allowed '
+        f'{EFFICIENCY_TOLERANCE}), RCS {100 * worst[1]:.0f} % of the allowed'
+    )
     return 0 if passed else 1
 
 
 def _inputs(data: SurfaceData) -> tuple[Screw, Lubricant]:
     """Rebuild the datasheets from the header, so that a check needs the file alone."""
     from surrogate.parameters import Material, Roughness
+
     screw, lubricant = (dict(data.header['inputs'][kind]) for kind in ('screw', 'lubricant'))
     for name, cls in (('raceway', Material), ('ball', Material), ('roughness', Roughness)):
         screw[name] = cls(**screw[name])
     return Screw(**screw), Lubricant(**lubricant)
 
 
-def _compare(surface: Surface, screw: Screw, lubricant: Lubricant,
-             drawn: random.Random) -> tuple[float, float]:
+def _compare(
+    surface: Surface, screw: Screw, lubricant: Lubricant, drawn: random.Random
+) -> tuple[float, float]:
     """Return the error of the efficiency and that of RCS over the allowed, at a random point."""
     from surrogate import closed_form, torque
+
     slow, fast = surface.speed_range
     speed = math.exp(drawn.uniform(math.log(slow), math.log(fast)))
     load = drawn.uniform(*surface.load_range)

@@ -27,8 +27,8 @@ Plane = tuple[float, float, float]
 
 LAY_SPREAD = math.radians(20.0)
 """Range of wave directions of a surface with a lay [rad]."""
-SAMPLES_PER_WAVE = 4
-"""Points per shortest wavelength when a patch is levelled and scaled [-]."""
+SAMPLES_PER_WAVE, FEWEST_SAMPLES = 4, 41
+"""Points per shortest wavelength, and in all along a side, when a patch is levelled [-]."""
 FLAT = 1e-12
 """Rms height that counts as none [m]."""
 LOG = logging.getLogger(__name__)
@@ -226,7 +226,7 @@ def _level(surface: Surface, window: Window) -> tuple[Plane, float]:
 
 
 def _samples(waves: float) -> int:
-    return max(9, SAMPLES_PER_WAVE * math.ceil(waves) + 1)
+    return max(FEWEST_SAMPLES, SAMPLES_PER_WAVE * math.ceil(waves) + 1)
 
 
 def grid_axes(x: ArrayLike, y: ArrayLike) -> tuple[Array, Array]:

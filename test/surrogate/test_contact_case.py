@@ -1,0 +1,265 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Case files: units, defaults, one sentence for each mistake, and what they solve."""
+
+from dataclasses import replace
+import logging
+
+import numpy as np
+import pytest
+from surrogate.contact_case import case_settings, case_surface, load_case, solve_case
+from surrogate.parameters import DATA, InputError, load_screw
+from surrogate.roughness import fractal_surface, shifted, take_patch, Window
+import yaml
+
+CASES = sorted(path.stem for path in (DATA / 'cases').glob('*.yaml'))
+SMALLEST = {
+    'radius_x_mm': 2.5888,
+    'radius_y_mm': 77.389,
+    'reduced_modulus_GPa': 226.37,
+    'load_N': 27.6,
+    'entrainment_speed_m_s': 0.5,
+    'viscosity_Pa_s': 0.06,
+    'pressure_viscosity_1_GPa': 20.0,
+}
+
+
+def write(folder, **keys):
+    """Write the smallest case with `keys` changed, without those of None; return its path."""
+    content = {key: value for key, value in {**SMALLEST, **keys}.items() if value is not None}
+    path = folder / 'case.yaml'
+    path.write_text(yaml.safe_dump(content), encoding='utf-8')
+    return str(path)
+
+
+def load(folder, **keys):
+    """Return a case."""
+    return load_case(write(folder, **keys))
+
+
+def test_units_and_defaults(tmp_path):
+    """All values are SI; what is not stated is the documented default."""
+    case = load(tmp_path)
+    assert case.contact.radius_x == pytest.approx(2.5888e-3)
+    assert case.contact.reduced_modulus == pytest.approx(226.37e9)
+    assert case.lubricant.pressure_viscosity == pytest.approx(20e-9)
+    assert case.lubricant.eyring_stress == 5e6
+    assert case.lubricant.law == 'roelands_dh'
+    assert case.film_floor == 3e-9
+    assert case.slide_roll_ratio == ()
+    assert case.roughness is case.grid is case.domain is None
+    assert case_surface(case) is None
+
+
+def test_optional_keys(tmp_path):
+    """Each reaches the solver; grid and domain may be lists in the order of their keys."""
+    keys = {
+        'fluid': 'barus_incompressible',
+        'eyring_stress_MPa': 6,
+        'slide_roll_ratio': [0.01, 0.05],
+        'film_floor_nm': 1.0,
+        'grid': {'nx': 65, 'ny': 33},
+        'domain': {'inlet': -4.5, 'outlet': 1.5, 'side': 3},
+    }
+    case = load(tmp_path, **keys)
+    assert case == load(tmp_path, **{**keys, 'grid': [65, 33], 'domain': [-4.5, 1.5, 3.0]})
+    assert case.slide_roll_ratio == (0.01, 0.05)
+    assert case.lubricant.law == 'barus_incompressible'
+    settings = case_settings(case, None)
+    assert (settings.nx, settings.ny, settings.domain) == (65, 33, (-4.5, 1.5, 3.0))
+    assert settings.film_floor == pytest.approx(1e-9)
+    assert settings.meniscus_length == 0.0
+    assert load(tmp_path, slide_roll_ratio=0.02).slide_roll_ratio == (0.02,)
+
+
+@pytest.mark.parametrize('name', CASES)
+def test_shipped_cases_load(name):
+    """Each shipped case has the nominal or a published contact."""
+    case = load_case(name)
+    assert case.load > 0
+    if name.startswith('nominal'):
+        assert case.contact.radius_x == pytest.approx(2.5888e-3, rel=1e-4)
+
+
+def test_a_generated_surface_is_that_of_the_nominal_screw(tmp_path):
+    """What the case does not state comes from the nominal datasheet; the window from Hertz."""
+    case = load(tmp_path, roughness={'rms_um': 0.12, 'seed': 7})
+    nominal = load_screw('nominal').roughness
+    window = Window(length_x=2 * 40.646e-6, length_y=2 * 360.0e-6)
+    expected = take_patch(fractal_surface(nominal, 7), 'rescaled', window, nominal.rms)
+    found = case_surface(case)
+    x = np.linspace(-4e-5, 4e-5, 9)
+    np.testing.assert_allclose(found.heights(x, x), expected.heights(x, x), rtol=1e-3, atol=1e-11)
+    assert found.patch == 'rescaled'
+    settings = case_settings(case, found)
+    assert settings.nx == 129
+    assert 401 <= settings.ny <= 513
+
+
+def test_the_grid_of_a_smooth_case_follows_its_shape_and_error(tmp_path):
+    """Wide contacts get nodes across; a film with a large error is solved on a finer grid."""
+    assert case_settings(load(tmp_path), None).ny == 65
+    assert case_settings(load(tmp_path, radius_y_mm=3.0), None).ny == 257
+    domain = {'domain': [-7.0, 1.5, 2.0]}
+    coarse, _ = solve_case(load(tmp_path, **domain, grid=[257, 65]))
+    found, _ = solve_case(load(tmp_path, **domain))
+    assert coarse.film_error > 0.005 > found.film_error
+    assert found.settings.nx == 513
+    assert found.newton_iterations > coarse.newton_iterations
+
+
+def test_keys_of_a_generated_surface(tmp_path):
+    """Lay, place, window, constants and kind of patch reach the surface."""
+    case = load(
+        tmp_path,
+        roughness={
+            'rms_um': 0.2,
+            'seed': 3,
+            'lay': 'longitudinal',
+            'patch': 'cut',
+            'position_x_mm': 1.0,
+            'window_x_mm': 0.2,
+            'window_y_mm': 0.3,
+            'shortest_wavelength_um': 30,
+            'fractal_dimension': 2.5,
+            'ridges': 4,
+            'scale_ratio': 1.4,
+            'sample_length_mm': 2.0,
+            'fractal_roughness_nm': 0.01,
+        },
+    )
+    constants = replace(
+        load_screw('nominal').roughness,
+        fractal_dimension=2.5,
+        ridges=4,
+        scale_ratio=1.4,
+        sample_length=2e-3,
+        fractal_roughness=0.01e-9,
+        shortest_wavelength=30e-6,
+    )
+    draw = shifted(fractal_surface(constants, 3, lay='longitudinal'), 1e-3, 0.0)
+    expected = take_patch(draw, 'cut', Window(length_x=0.2e-3, length_y=0.3e-3), 1.0)
+    x = np.linspace(-4e-5, 4e-5, 9)
+    np.testing.assert_allclose(
+        case_surface(case).heights(x, x), expected.heights(x, x), rtol=1e-9, atol=1e-18
+    )
+
+
+def test_no_height_is_smooth(tmp_path):
+    """Rq 0 is the smooth contact."""
+    assert case_surface(load(tmp_path, roughness={'rms_um': 0})) is None
+
+
+def test_a_roughness_file_lies_beside_the_case(tmp_path):
+    """Cut as measured, or rescaled when the rms is stated; filtered at the shortest wavelength."""
+    x = np.arange(0, 2001, 1.0)
+    lines = ['x_um,z_um', *(f'{one},{0.1 * np.sin(one / 10)}' for one in x)]
+    (tmp_path / 'trace.csv').write_text('\n'.join(lines), encoding='utf-8')
+    cut = case_surface(load(tmp_path, roughness={'file': 'trace.csv'}))
+    assert (cut.patch, cut.scale) == ('cut', 1.0)
+    assert cut.shortest_wavelength == pytest.approx(2e-6)
+    keys = {'file': 'trace.csv', 'rms_um': 0.2, 'shortest_wavelength_um': 20}
+    rescaled = case_surface(load(tmp_path, roughness=keys))
+    assert rescaled.patch == 'rescaled'
+    assert rescaled.shortest_wavelength == pytest.approx(20e-6)
+    places = np.linspace(-40e-6, 40e-6, 400)
+    assert np.std(rescaled.heights(places, [0.0])) == pytest.approx(0.2e-6, rel=0.02)
+
+
+def test_a_grid_too_coarse_for_the_surface_is_said(tmp_path, caplog):
+    """One warning names the node distance and the wavelength."""
+    keys = {'roughness': {'rms_um': 0.12}, 'grid': [129, 65]}
+    case = load(tmp_path, **keys)
+    with caplog.at_level(logging.WARNING, 'surrogate.contact_case'):
+        case_settings(case, case_surface(case))
+    (line,) = caplog.messages
+    assert 'um apart along y, the shortest wavelength is 9.13 um' in line
+
+
+def test_solve_smooth_and_rough(tmp_path):
+    """A small smooth case, then with a small roughness; the surface comes back with the result."""
+    grid = {'grid': [65, 33]}
+    smooth, nothing = solve_case(load(tmp_path, **grid))
+    assert nothing is None
+    assert smooth.converged
+    assert smooth.central_film == pytest.approx(150e-9, rel=0.05)
+    rough = {'rms_um': 0.01, 'shortest_wavelength_um': 100}
+    solution, surface = solve_case(load(tmp_path, **grid, roughness=rough))
+    assert solution.converged
+    assert surface.patch == 'rescaled'
+    assert 0 < abs(solution.central_film / smooth.central_film - 1) < 0.1
+
+
+BAD = [
+    ({'viscosity_Pa_s': None}, 'missing key viscosity_Pa_s'),
+    ({'speed': 1.0}, 'unknown key speed, allowed are radius_x_mm'),
+    ({'load_kN': 1.0, 'load_N': None}, 'load_kN has a wrong unit, the key is load_N'),
+    ({'radius_x_mm': 0}, 'radius_x_mm is 0, allowed is 0.001 to 1e'),
+    ({'radius_y_mm': -3.0}, 'radius_y_mm is -3, allowed is'),
+    ({'load_N': 0.0}, 'load_N is 0, allowed is'),
+    ({'load_N': -27.6}, 'load_N is -27.6, allowed is'),
+    ({'load_N': float('nan')}, 'load_N is nan, allowed is'),
+    ({'load_N': '27.6'}, "load_N is '27.6', allowed is a number"),
+    ({'load_N': True}, 'load_N is True, allowed is a number'),
+    ({'entrainment_speed_m_s': -0.5}, 'entrainment_speed_m_s is -0.5, allowed is 0 to 1000'),
+    ({'pressure_viscosity_1_GPa': 2e-8}, 'pressure_viscosity_1_GPa is 2e-08, allowed is'),
+    ({'fluid': 'water'}, "fluid is 'water', allowed is roelands_dh or barus_incompressible"),
+    ({'fluid': ['water']}, r"fluid is \['water'\], allowed is"),
+    ({'slide_roll_ratio': [0.01, 'fast']}, "slide_roll_ratio is 'fast', allowed is a number"),
+    ({'slide_roll_ratio': [-0.1]}, 'slide_roll_ratio is -0.1, allowed is 0 to'),
+    ({'grid': 129}, 'grid: must be a mapping of keys to values, got int'),
+    ({'grid': {'nx': 129}}, 'grid: missing key ny'),
+    ({'grid': [129, 64]}, 'grid: ny is 64, allowed is an odd number'),
+    ({'grid': [129, 65.5]}, 'grid: ny is 65.5, allowed is a whole number from 17'),
+    ({'grid': [5, 65]}, 'grid: nx is 5, allowed is a whole number from 17'),
+    ({'domain': [-4.5, 1.5]}, 'domain: must be a mapping of keys to values, got list'),
+    ({'domain': [4.5, 1.5, 3]}, 'domain: inlet is 4.5, allowed is -50 to -1.1'),
+    ({'film_floor_nm': 0}, 'film_floor_nm is 0, allowed is'),
+    ({'roughness': {'seed': 1}}, 'roughness: missing key rms_um, or file for a measured surface'),
+    ({'roughness': {'rms_nm': 1}}, 'roughness: rms_nm has a wrong unit, the key is rms_um'),
+    ({'roughness': {'rms_um': -0.1}}, 'roughness: rms_um is -0.1, allowed is 0 to 10'),
+    ({'roughness': {'rms_um': 0.1, 'seed': 1.5}}, 'seed is 1.5, allowed is a whole number'),
+    ({'roughness': {'rms_um': 0.1, 'patch': 'whole'}}, "patch is 'whole', allowed is rescaled"),
+    ({'roughness': {'file': 'a.csv', 'seed': 1}}, 'seed belongs to a generated surface'),
+    ({'roughness': {'file': 'a.csv', 'patch': 'rescaled'}}, 'which needs rms_um above 0'),
+    ({'roughness': {'file': ''}}, "file is '', allowed is a text that is not empty"),
+]
+
+
+@pytest.mark.parametrize(('keys', 'sentence'), BAD)
+def test_bad_cases_are_one_sentence(tmp_path, keys, sentence):
+    """The sentence names the file, the key, the value and what is allowed."""
+    path = write(tmp_path, **keys)
+    with pytest.raises(InputError, match=sentence) as caught:
+        load_case(path)
+    assert str(caught.value).startswith(path)
+    assert '\n' not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ('rough', 'sentence'),
+    [
+        ({'file': 'absent.csv'}, 'absent.csv: there is no such file'),
+        (
+            {'rms_um': 0.1, 'shortest_wavelength_um': 500, 'sample_length_mm': 0.4},
+            'shortest wavelength is 500 um, allowed is less than the sample length',
+        ),
+    ],
+)
+def test_bad_surfaces_are_one_sentence(tmp_path, rough, sentence):
+    """What shows only when the surface is made."""
+    with pytest.raises(InputError, match=sentence):
+        case_surface(load(tmp_path, roughness=rough))
+
+
+def test_files_that_are_no_cases(tmp_path):
+    """No file, no YAML, no mapping."""
+    with pytest.raises(InputError, match=r"cases: 'absent' is neither a file nor .*nominal_rough"):
+        load_case('absent')
+    path = tmp_path / 'list.yaml'
+    path.write_text('- 1\n', encoding='utf-8')
+    with pytest.raises(InputError, match='must be a mapping of keys to values, got list'):
+        load_case(str(path))
+    path.write_text('a: [1\n', encoding='utf-8')
+    with pytest.raises(InputError, match='cannot be read as YAML'):
+        load_case(str(path))
