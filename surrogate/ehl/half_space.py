@@ -10,6 +10,7 @@ not symmetric), as on every contact grid here, so that lengths of about twice th
 
 """
 
+from functools import lru_cache
 from typing import NamedTuple
 
 from numba import njit
@@ -18,8 +19,8 @@ from numpy.typing import DTypeLike, NDArray
 from surrogate.ehl._fft import Fft, fft_forward, fft_inverse, good_length, make_fft
 
 Array = NDArray[np.floating]
-LANES = 16
-"""Pairs of rows that one transform along y takes at a time."""
+MOST_LANES = 128
+"""Pairs of rows that one transform along y takes at a time, at most."""
 
 
 class HalfSpace(NamedTuple):
@@ -61,23 +62,30 @@ def make_half_space(nx: int, ny: int, dx: float, dy: float, *, symmetric: bool, 
     """Prepare `scale` times the influence of all nodes of an (nx, ny) array on each other."""
     length_x = good_length(2 * nx - 3)
     length_y = good_length(4 * (ny - 1) - 5 if symmetric else 2 * ny - 3)
-    lag_x, lag_y = _lags(length_x) * dx, _lags(length_y) * dy
-    kernel = scale * influence_love_1929(lag_x[:, None], lag_y[None, :], dx, dy)
-    symbol = np.fft.rfft2(kernel).real
+    # The kernel is homogeneous of degree one: only the shape of a cell matters, but for a factor.
+    symbol = scale * dx * _symbol(length_x, length_y, float(f'{dy / dx:.12g}'))
     x, y = make_fft(length_x, dtype), make_fft(length_y, dtype)
     spectrum = _pack(symbol / (length_x * length_y), symmetric)
     ordered = np.empty_like(spectrum)
     ordered[:, x.place] = spectrum
     columns = spectrum.shape[2]
+    tiles = -(-nx // (2 * MOST_LANES))
+    lanes = -(-nx // (2 * tiles))
     return HalfSpace(
         y=y, x=x, spectrum=ordered.astype(dtype), symmetric=symmetric,
-        tile=np.zeros((2, length_y, LANES), dtype), near=_near_kernel(symbol).astype(dtype),
+        tile=np.zeros((2, length_y, lanes), dtype), near=_near_kernel(symbol).astype(dtype),
         columns=np.zeros((2, length_x, columns), dtype))
 
 
-def _lags(length: int) -> Array:
-    index = np.arange(length)
-    return np.minimum(index, length - index).astype(float)
+@lru_cache(maxsize=32)
+def _symbol(length_x: int, length_y: int, aspect: float) -> Array:
+    """Return the spectrum of the kernel between cells of size 1 by `aspect`."""
+    lag_x, lag_y = np.arange(length_x // 2 + 1), aspect * np.arange(length_y // 2 + 1)
+    quarter = influence_love_1929(lag_x[:, None], lag_y[None, :], 1.0, aspect)
+    rows = np.fft.hfft(quarter, axis=1)[:, :length_y // 2 + 1]
+    symbol = np.fft.hfft(rows, axis=0)
+    symbol.flags.writeable = False
+    return symbol
 
 
 def _pack(symbol: Array, symmetric: bool) -> Array:
@@ -151,7 +159,7 @@ def _multiply_even(space):
 
 @njit(cache=True)
 def _load_tile(tile, values, start, symmetric):
-    """Copy 2 LANES rows into the lanes, zero beyond, mirrored when symmetric."""
+    """Copy two rows into each lane, zero beyond, mirrored when symmetric."""
     nx, ny = values.shape
     length, lanes = tile.shape[1], tile.shape[2]
     first = 1 if symmetric else 0

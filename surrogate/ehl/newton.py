@@ -28,8 +28,6 @@ from surrogate.ehl.half_space import deform
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
-VISCOUS = 3.0
-"""Largest change of ln(viscosity) in one step [-]."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -59,14 +57,21 @@ class Problem:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Limits:
-    """Tolerances and caps of one Newton solve."""
+    """
+    Tolerances and caps of one Newton solve.
+
+    A step may change the pressure of a film node by `step` and the logarithm of the viscosity at the Hertz
+    pressure by `viscous`, and may raise the film pressure of a contact node by `rise`.
+
+    """
 
     flux: float = 1e-4
     load: float = 1e-6
     gap: float = 1e-4
     krylov: float = 0.02
     newton: int = 40
-    step: float = 0.3
+    step: float = 0.5
+    viscous: float = 6.0
     rise: float = 0.3
     deadline: float = math.inf
 
@@ -172,7 +177,7 @@ def _step(grid: Grid, problem: Problem, state: State, now: _Evaluation,
                                     limits.rise)
         asperity_change[contact] += film_change[contact] - limited
         film_change[contact] = limited
-    share = min(1.0, min(limits.step, _viscous_step(problem)) / max(free, 1e-30))
+    share = min(1.0, min(limits.step, limits.viscous / _stiffening(problem)) / max(free, 1e-30))
     asperity_pressure = state.asperity_pressure + share * asperity_change
     if share == 1.0:
         asperity_pressure[~contact] = 0.0
@@ -182,10 +187,10 @@ def _step(grid: Grid, problem: Problem, state: State, now: _Evaluation,
         approach=state.approach + share * approach), used
 
 
-def _viscous_step(problem: Problem) -> float:
-    """Return the change of pressure that changes the viscosity at the Hertz pressure by e^VISCOUS."""
+def _stiffening(problem: Problem) -> float:
+    """Return the slope of ln(viscosity) at the Hertz pressure."""
     slope = fluid_at(1.0, problem.pressure_scale, problem.growth, problem.exponent, 0.0)[1]
-    return VISCOUS / max(float(slope), 1e-30)
+    return max(float(slope), 1e-30)
 
 
 def _limit_on_contact(problem: Problem, pressure: Array, change: Array, rise: float) -> Array:

@@ -52,12 +52,13 @@ class _Run:
 
     def limits(self, *, rough: bool, final: bool) -> Limits:
         """Return the tolerances of a smooth or rough solve, on the way or at the end."""
-        settings = self.case.settings
+        settings, stiff = self.case.settings, self.case.fluid_numbers(0.0)[0] > STIFF
+        steps = (1.0, 12.0, 1.0) if rough else (0.5, 3.0 if stiff else 6.0, 0.3)
         return Limits(
             flux=settings.flux_tolerance if final else max(1e-2, settings.flux_tolerance),
             load=settings.load_tolerance, gap=settings.gap_tolerance,
-            krylov=0.003 if rough or self.case.fluid_numbers(0.0)[0] > STIFF else 0.02, newton=settings.newton_limit,
-            step=0.5 if rough else 0.3, rise=1.0 if rough else 0.3, deadline=self.deadline)
+            krylov=0.01 if rough or stiff else 0.05, newton=settings.newton_limit,
+            step=steps[0], viscous=steps[1], rise=steps[2], deadline=self.deadline)
 
     def solve(self, grid: Grid, problem: Problem, state: State, limits: Limits) -> Outcome:
         """Solve on one grid and count."""
