@@ -163,14 +163,14 @@ class ContactCase(Checked):
 
     @property
     def contact(self) -> Contact:
-        """The bodies."""
+        """Radii and modulus of the bodies."""
         return Contact(
             radius_x=self.radius_x, radius_y=self.radius_y, reduced_modulus=self.reduced_modulus
         )
 
     @property
     def lubricant(self) -> ContactLubricant:
-        """The oil."""
+        """Oil at the temperature of the contact."""
         return ContactLubricant(
             viscosity=self.viscosity,
             pressure_viscosity=self.pressure_viscosity,

@@ -104,7 +104,7 @@ def contact_page(
         (
             'central film',
             f'{1e9 * record["central_film_m"]:.2f} nm'
-            + ('' if math.isnan(error) else f', grid error about {100 * error:.2g} %'),
+            + ('' if surface or math.isnan(error) else f', grid error about {100 * error:.2g} %'),
         ),
         ('minimum film', f'{1e9 * record["minimum_film_m"]:.2f} nm'),
         ('largest pressure', f'{1e-9 * record["max_pressure_Pa"]:.4f} GPa'),

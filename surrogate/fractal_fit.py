@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 
 LAGS = 24
 """Largest number of distances of a fit [-]."""
-SHORTEST_LAG, LONGEST_LAG, LONGEST_SHARE = 0.25, 50.0, 0.1
+SHORTEST_LAG, LONGEST_LAG, LONGEST_SHARE = 0.25, 25.0, 0.1
 """Distances of a fit: from and to in shortest waves [-], at most this share of the profile [-]."""
 DIMENSIONS = (2.01, 2.99)
 """Range of the fractal dimension [-]."""

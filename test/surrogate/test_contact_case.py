@@ -2,16 +2,27 @@
 # SPDX-License-Identifier: Apache-2.0
 """Case files: units, defaults, one sentence for each mistake, and what they solve."""
 
-from dataclasses import replace
+from dataclasses import fields, replace
 import logging
+from pathlib import Path
 
 import numpy as np
 import pytest
-from surrogate.contact_case import case_settings, case_surface, load_case, solve_case
+from surrogate.contact_case import (
+    case_settings,
+    case_surface,
+    CaseDomain,
+    CaseGrid,
+    CaseRoughness,
+    ContactCase,
+    load_case,
+    solve_case,
+)
 from surrogate.parameters import DATA, InputError, load_screw
 from surrogate.roughness import fractal_surface, shifted, take_patch, Window
 import yaml
 
+PAGE = Path(__file__).parents[2] / 'docs' / 'contact.md'
 CASES = sorted(path.stem for path in (DATA / 'cases').glob('*.yaml'))
 SMALLEST = {
     'radius_x_mm': 2.5888,
@@ -70,6 +81,16 @@ def test_optional_keys(tmp_path):
     assert settings.film_floor == pytest.approx(1e-9)
     assert settings.meniscus_length == 0.0
     assert load(tmp_path, slide_roll_ratio=0.02).slide_roll_ratio == (0.02,)
+
+
+@pytest.mark.parametrize('cls', [ContactCase, CaseRoughness, CaseGrid, CaseDomain])
+def test_the_page_of_the_command_names_every_key(cls):
+    """A key that is added without a word about it fails here."""
+    page = PAGE.read_text(encoding='utf-8')
+    for spec in fields(cls):
+        unit = spec.metadata.get('unit')
+        key = f'{spec.name}_{unit}' if unit else spec.name
+        assert f'`{key}`' in page, key
 
 
 @pytest.mark.parametrize('name', CASES)
