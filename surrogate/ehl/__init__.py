@@ -9,7 +9,8 @@ one grid; case scales a contact, solver finds the way to it, result returns to S
 """
 
 from surrogate.ehl.model import Condition, ContactLubricant, ContactSolution, Settings, Status
+from surrogate.ehl.result import punctured_nodes
 from surrogate.ehl.solver import solve_contact
 
 __all__ = ['Condition', 'ContactLubricant', 'ContactSolution', 'Settings', 'Status',
-           'solve_contact']
+           'punctured_nodes', 'solve_contact']

@@ -24,6 +24,11 @@ def central_film(grid: Grid, gap: Array) -> float:
     return float(here + 0.5 * s * (east - west) + 0.5 * s * s * (east - 2 * here + west))
 
 
+def punctured_nodes(solution: ContactSolution) -> NDArray[np.bool_]:
+    """Return the nodes whose film is at the floor: there asperities touch."""
+    return solution.film <= PUNCTURED * solution.settings.film_floor
+
+
 def make_solution(case: Case, grid: Grid, outcome: Outcome, status: Status, *, half: tuple[float, float],
                   newton: int, krylov: int, wall_time: float) -> ContactSolution:
     """Return the result of a solve in SI units on the full width."""
