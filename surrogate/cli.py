@@ -4,7 +4,6 @@
 
 import argparse
 import json
-import logging
 import math
 from pathlib import Path
 import random
@@ -12,6 +11,7 @@ import sys
 import time
 from typing import Any
 
+from surrogate.contact_command import add_contact_command
 from surrogate.parameters import (
     InputError,
     load_lubricant,
@@ -67,7 +67,7 @@ def add_commands(subparsers: Any) -> None:
     )
     point.add_argument('--json', action='store_true', help='print JSON in SI units')
     point.set_defaults(handler=_point)
-    _add_contact(subparsers.add_parser('contact', help='solve one contact from a case file'))
+    add_contact_command(subparsers)
     surface = subparsers.add_parser('surface', help='build, describe or check a surface file')
     actions = surface.add_subparsers(required=True, metavar='build|info|check')
     _add_build(actions.add_parser('build', help='build a surface file'))
@@ -118,13 +118,6 @@ def _add_check(parser: argparse.ArgumentParser) -> None:
     parser.set_defaults(handler=_check)
 
 
-def _add_contact(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument('case', metavar='CASE', help='case file (YAML) or shipped case')
-    parser.add_argument('--json', action='store_true', help='print JSON in SI units')
-    parser.add_argument('--plot', type=Path, metavar='DIR', help='directory for pictures (PNG)')
-    parser.set_defaults(handler=_contact)
-
-
 def _point(args: argparse.Namespace) -> int:
     from surrogate.point import closed_form_record, page, to_json
 
@@ -138,40 +131,6 @@ def _point(args: argparse.Namespace) -> int:
     record = closed_form_record(screw, lubricant, point)
     print(json.dumps(to_json(record), indent=2, allow_nan=False) if args.json else page(record))
     return 0
-
-
-def _contact(args: argparse.Namespace) -> int:
-    """Solve a case; exit code 1 when the solution is not converged."""
-    from surrogate.contact_case import load_case, solve_case
-    from surrogate.contact_record import contact_page, contact_record
-    from surrogate.point import to_json
-
-    # What was done to a surface belongs to the result, so it is said whatever the output.
-    logging.basicConfig(level=logging.INFO, format='ballscrew: %(message)s')
-    case = load_case(args.case)
-    solution, surface = solve_case(case)
-    record = contact_record(case, solution)
-    if args.json:
-        print(json.dumps(to_json(record), indent=2, allow_nan=False))
-    else:
-        print(contact_page(record, case, solution, surface))
-    if args.plot:
-        _plot(args.plot, solution, surface)
-    return 0 if solution.converged else 1
-
-
-def _plot(folder: Path, solution: Any, surface: Any) -> None:
-    """Draw the pictures of a contact; only this needs matplotlib."""
-    try:
-        from surrogate.figures_contact import draw_contact
-    except ImportError:
-        raise InputError('--plot needs matplotlib: install the extra `plot`') from None
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        for path in draw_contact(folder, solution, surface):
-            print(path, file=sys.stderr)
-    except OSError as error:
-        raise InputError(f'--plot: {folder} cannot be written, {error.strerror}') from None
 
 
 def _build(args: argparse.Namespace) -> int:

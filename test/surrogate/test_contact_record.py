@@ -10,8 +10,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from surrogate.contact_case import CaseDomain, CaseGrid, CaseRoughness, load_case, solve_case
+from surrogate.contact_case import CaseDomain, CaseGrid, CaseRoughness, load_case
 from surrogate.contact_record import contact_page, contact_record, friction_coefficient
+from surrogate.contact_solve import solve_case
 from surrogate.point import to_json
 
 TABLE = Path(__file__).parents[1] / 'reference' / 'ehl_dimensional.csv'

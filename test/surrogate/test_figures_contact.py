@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from surrogate.contact_case import CaseGrid, CaseRoughness, load_case, solve_case
+from surrogate.contact_case import CaseGrid, CaseRoughness, load_case
+from surrogate.contact_solve import solve_case
 
 figures = pytest.importorskip('surrogate.figures_contact')
 GRID = CaseGrid(nx=65, ny=33)
