@@ -6,53 +6,23 @@ from collections.abc import Mapping
 import math
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
 from surrogate.contact_case import ContactCase
+from surrogate.contact_friction import slide_roll_friction
 from surrogate.ehl import ContactSolution
-from surrogate.ehl.result import PUNCTURED
-from surrogate.lubricant import shear_stress_eyring_1936, viscosity_roelands_1966
 from surrogate.roughness import Surface
-
-Array = NDArray[np.float64]
 
 ASPERITY_FRICTION = 0.1
 """Boundary friction coefficient of a case without roughness [-], for dry contacts."""
-STEEPEST = 600.0
-"""Largest exponent of the Barus law [-], to stay within floating point."""
 
 
 def friction_coefficient(
     solution: ContactSolution, slide_roll_ratio: float, asperity_friction: float
 ) -> float:
-    """
-    Return the friction over the load [-] for slip along x at `slide_roll_ratio` [-].
-
-    tau = mu_a p on the punctured nodes, elsewhere tau0 asinh(eta(p) |slip| / (tau0 h)) with the
-    local pressure and film, over the pressurised area. Zero without slip.
-
-    """
+    """Return the friction over the load [-] for uniform slip along x; zero without slip."""
     if slide_roll_ratio == 0.0:
         return 0.0
-    slip = slide_roll_ratio * solution.condition.entrainment_speed
-    pressure = solution.pressure
-    punctured = solution.film <= PUNCTURED * solution.settings.film_floor
-    rate = slip / np.where(punctured, solution.settings.film_floor, solution.film)
-    film = shear_stress_eyring_1936(
-        _viscosity(solution, pressure), rate, solution.lubricant.eyring_stress
-    )
-    traction = np.where(punctured, asperity_friction * pressure, np.where(pressure > 0, film, 0.0))
-    area = (solution.x[1] - solution.x[0]) * (solution.y[1] - solution.y[0])
-    return float(traction.sum() * area / solution.condition.load)
-
-
-def _viscosity(solution: ContactSolution, pressure: Array) -> Array:
-    """Return the local viscosity [Pa s] by the law of the solution."""
-    lubricant = solution.lubricant
-    if lubricant.law == 'roelands_dh':
-        return viscosity_roelands_1966(pressure, lubricant.viscosity, lubricant.pressure_viscosity)
-    growth = np.minimum(lubricant.pressure_viscosity * pressure, STEEPEST)
-    return np.asarray(lubricant.viscosity * np.exp(growth))
+    found = slide_roll_friction(solution, slide_roll_ratio, asperity_friction=asperity_friction)
+    return found.coefficient
 
 
 def contact_record(case: ContactCase, solution: ContactSolution) -> dict[str, Any]:

@@ -114,14 +114,6 @@ def test_a_dry_contact_has_boundary_friction():
     assert record['friction_coefficient'] == pytest.approx([0.0, 0.13], rel=1e-6)
 
 
-def test_barus_friction_stays_finite():
-    """The exponent of an unlimited law is capped."""
-    solution, _ = solve_case(SMALL)
-    law = replace(solution.lubricant, law='barus_incompressible', pressure_viscosity=1e-7)
-    pressed = replace(solution, lubricant=law, film_pressure=20 * solution.film_pressure)
-    assert math.isfinite(friction_coefficient(pressed, 0.01, 0.1))
-
-
 def test_the_page_says_everything_a_person_asks():
     """Workshop units, one line each, the status last."""
     solution, surface = solve_case(SMALL)
