@@ -22,6 +22,9 @@ Array = NDArray[np.floating]
 MOST_LANES = 128
 """Pairs of rows that one transform along y takes at a time, at most."""
 
+BLOCK = 8
+"""Lanes that are turned from rows into columns together."""
+
 
 class HalfSpace(NamedTuple):
     """
@@ -165,15 +168,14 @@ def _load_tile(tile, values, start, symmetric):
     first = 1 if symmetric else 0
     used = ny - first
     for part in range(2):
-        plane = tile[part]
-        for lane in range(lanes):
-            i = start + part * lanes + lane
-            if i < nx:
-                for j in range(used):
-                    plane[j, lane] = values[i, first + j]
-            else:
-                for j in range(used):
-                    plane[j, lane] = 0
+        plane, offset = tile[part], start + part * lanes
+        rows = max(0, min(lanes, nx - offset))
+        for lane in range(rows):
+            for j in range(used):
+                plane[j, lane] = values[offset + lane, first + j]
+        for j in range(used):
+            for lane in range(rows, lanes):
+                plane[j, lane] = 0
         for j in range(used, length):
             for lane in range(lanes):
                 plane[j, lane] = 0
@@ -185,18 +187,19 @@ def _load_tile(tile, values, start, symmetric):
 
 @njit(cache=True)
 def _store_tile(tile, values, start, symmetric):
+    """Copy the lanes back into rows, with the mirror column when symmetric."""
     nx, ny = values.shape
     lanes = tile.shape[2]
     first = 1 if symmetric else 0
     for part in range(2):
-        plane = tile[part]
-        for lane in range(lanes):
-            i = start + part * lanes + lane
-            if i < nx:
-                for j in range(ny - first):
-                    values[i, first + j] = plane[j, lane]
-                if symmetric:
-                    values[i, 0] = values[i, 2]
+        plane, offset = tile[part], start + part * lanes
+        rows = max(0, min(lanes, nx - offset))
+        for lane in range(rows):
+            for j in range(ny - first):
+                values[offset + lane, first + j] = plane[j, lane]
+    if symmetric:
+        for i in range(nx):
+            values[i, 0] = values[i, 2]
 
 
 @njit(cache=True)
@@ -204,41 +207,37 @@ def _rows_to_spectrum_even(space, values):
     """Transform even rows, two in one: both spectra are real."""
     tile, re, im = space.tile, space.columns[0], space.columns[1]
     half, place, lanes = re.shape[1], space.y.place, tile.shape[2]
-    frequencies = place.size // 2 + 1
-    nx = values.shape[0]
+    frequencies, nx = place.size // 2 + 1, values.shape[0]
     for start in range(0, nx, 2 * lanes):
         _load_tile(tile, values, start, True)
         fft_forward(tile[0], tile[1], space.y.cos, space.y.sin)
         for part in range(2):
-            plane = tile[part]
-            for lane in range(min(lanes, nx - start - part * lanes)):
-                i = start + part * lanes + lane
+            plane, offset = tile[part], start + part * lanes
+            for lane in range(min(lanes, nx - offset)):
                 for k in range(half):
-                    re[i, k] = plane[place[k], lane]
+                    re[offset + lane, k] = plane[place[k], lane]
                 for k in range(half, frequencies):
-                    im[i, k - half] = plane[place[k], lane]
-                for k in range(frequencies - half, half):
-                    im[i, k] = 0
+                    im[offset + lane, k - half] = plane[place[k], lane]
+    im[:nx, frequencies - half:] = 0
     re[nx:] = 0
     im[nx:] = 0
 
 
 @njit(cache=True)
 def _spectrum_to_rows_even(space, values):
+    """Undo `_rows_to_spectrum_even`."""
     tile, re, im = space.tile, space.columns[0], space.columns[1]
     half, place, lanes = re.shape[1], space.y.place, tile.shape[2]
-    size = place.size
+    size, nx = place.size, values.shape[0]
     frequencies = size // 2 + 1
-    nx = values.shape[0]
     for start in range(0, nx, 2 * lanes):
         for part in range(2):
-            plane = tile[part]
-            for lane in range(min(lanes, nx - start - part * lanes)):
-                i = start + part * lanes + lane
+            plane, offset = tile[part], start + part * lanes
+            for lane in range(min(lanes, nx - offset)):
                 for k in range(half):
-                    plane[place[k], lane] = re[i, k]
+                    plane[place[k], lane] = re[offset + lane, k]
                 for k in range(half, frequencies):
-                    plane[place[k], lane] = im[i, k - half]
+                    plane[place[k], lane] = im[offset + lane, k - half]
             for k in range(1, size // 2):
                 a, b = place[size - k], place[k]
                 for lane in range(lanes):
@@ -252,38 +251,48 @@ def _rows_to_spectrum(space, values):
     """Transform real rows, two in one complex row, and part their spectra."""
     tile, re, im = space.tile, space.columns[0], space.columns[1]
     place, lanes = space.y.place, tile.shape[2]
-    size, half = place.size, re.dtype.type(0.5)
-    nx = values.shape[0]
+    size, half, nx = place.size, re.dtype.type(0.5), values.shape[0]
     for start in range(0, nx, 2 * lanes):
         _load_tile(tile, values, start, False)
         fft_forward(tile[0], tile[1], space.y.cos, space.y.sin)
-        for lane in range(min(lanes, nx - start)):
-            i, n = start + lane, start + lanes + lane
+        real, imaginary, second = tile[0], tile[1], start + lanes
+        for block in range(0, min(lanes, nx - start), BLOCK):
+            stop = min(block + BLOCK, lanes, nx - start)
+            stop_second = min(stop, nx - second)
             for k in range(size // 2 + 1):
                 a, b = place[k], place[(size - k) % size]
-                ar, ai = tile[0, a, lane], tile[1, a, lane]
-                br, bi = tile[0, b, lane], tile[1, b, lane]
-                re[i, k], im[i, k] = half * (ar + br), half * (ai - bi)
-                if n < nx:
-                    re[n, k], im[n, k] = half * (ai + bi), half * (br - ar)
+                for lane in range(block, stop):
+                    re[start + lane, k] = half * (real[a, lane] + real[b, lane])
+                    im[start + lane, k] = half * (imaginary[a, lane] - imaginary[b, lane])
+                for lane in range(block, stop_second):
+                    re[second + lane, k] = half * (imaginary[a, lane] + imaginary[b, lane])
+                    im[second + lane, k] = half * (real[b, lane] - real[a, lane])
     re[nx:] = 0
     im[nx:] = 0
 
 
 @njit(cache=True)
 def _spectrum_to_rows(space, values):
+    """Undo `_rows_to_spectrum`."""
     tile, re, im = space.tile, space.columns[0], space.columns[1]
     place, lanes = space.y.place, tile.shape[2]
-    size = place.size
-    nx = values.shape[0]
+    size, nx = place.size, values.shape[0]
     for start in range(0, nx, 2 * lanes):
-        for lane in range(min(lanes, nx - start)):
-            i, n = start + lane, start + lanes + lane
+        real, imaginary, second = tile[0], tile[1], start + lanes
+        for block in range(0, min(lanes, nx - start), BLOCK):
+            stop = min(block + BLOCK, lanes, nx - start)
+            stop_second = min(stop, nx - second)
             for k in range(size // 2 + 1):
                 a, b = place[k], place[(size - k) % size]
-                ar, ai = re[i, k], im[i, k]
-                br, bi = (re[n, k], im[n, k]) if n < nx else (0 * ar, 0 * ai)
-                tile[0, b, lane], tile[1, b, lane] = ar + bi, br - ai
-                tile[0, a, lane], tile[1, a, lane] = ar - bi, ai + br
+                for lane in range(block, stop_second):
+                    i, n = start + lane, second + lane
+                    real[b, lane] = re[i, k] + im[n, k]
+                    imaginary[b, lane] = re[n, k] - im[i, k]
+                    real[a, lane] = re[i, k] - im[n, k]
+                    imaginary[a, lane] = im[i, k] + re[n, k]
+                for lane in range(max(block, stop_second), stop):
+                    i = start + lane
+                    real[b, lane], imaginary[b, lane] = re[i, k], -im[i, k]
+                    real[a, lane], imaginary[a, lane] = re[i, k], im[i, k]
         fft_inverse(tile[0], tile[1], space.y.cos, space.y.sin)
         _store_tile(tile, values, start, False)

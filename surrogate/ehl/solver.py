@@ -71,9 +71,10 @@ class _Run:
               first: float = 1.0) -> Outcome:
         """Follow `path` from 0, where `state` holds, to 1, in steps that are halved on failure."""
         place, step = 0.0, first
+        loose = replace(limits, flux=max(1e-2, limits.flux), gap=max(1e-2, limits.gap))
         while True:
             target = 1.0 if place + step > 1 - 1e-9 else place + step
-            outcome = self.solve(grid, path(target), state, limits)
+            outcome = self.solve(grid, path(target), state, limits if target == 1.0 else loose)
             if outcome.converged:
                 place, state, step = target, outcome.state, min(2 * step, 1 - target)
                 if place == 1.0:
@@ -126,7 +127,7 @@ class _Run:
 
     def _half_grid(self, grid: Grid, problem: Problem, speed: float, start: Outcome) -> Outcome:
         """Solve the last but one grid as the finest is solved and note its film."""
-        if not self.case.settings.error_estimate:
+        if not self.case.settings.error_estimate or self.case.roughness is not None:
             return start
         limits = replace(self.limits(rough=False, final=True), flux=1e-3, newton=15)
         order = self.case.order(grid, speed, 0.0)
