@@ -9,13 +9,14 @@ estimated error of a smooth film.
 """
 
 from dataclasses import replace
+from functools import cache
 import logging
 import math
 
 from surrogate.contact_case import CaseRoughness, CONSTANTS, ContactCase
-from surrogate.ehl import ContactSolution, Settings, solve_contact
+from surrogate.ehl import Condition, ContactLubricant, ContactSolution, Settings, solve_contact
 from surrogate.ehl.case import make_case
-from surrogate.geometry import ellipticity, hertz
+from surrogate.geometry import Contact, ellipticity, hertz
 from surrogate.measured_surface import MeasuredSurface
 from surrogate.parameters import load_screw
 from surrogate.profile_import import read_surface
@@ -50,6 +51,7 @@ def solve_case(case: ContactCase) -> tuple[ContactSolution, Surface | None]:
     """
     surface = case_surface(case)
     settings = case_settings(case, surface)
+    _compile_kernels()
     solution = _solve(case, surface, settings)
     if surface is None and case.grid is None and solution.film_error > FILM_ERROR:
         fine = replace(settings, nx=FINE_NX, ny=max(settings.ny, FINE_NY))
@@ -59,6 +61,17 @@ def solve_case(case: ContactCase) -> tuple[ContactSolution, Surface | None]:
             both = {name: getattr(solution, name) + getattr(finer, name) for name in counts}
             return replace(finer, **both), None
     return solution, surface
+
+
+@cache
+def _compile_kernels() -> None:
+    """Solve a tiny contact, so that compiling at first use counts against no time cap."""
+    solve_contact(
+        Contact(radius_x=0.01, radius_y=0.01, reduced_modulus=2e11),
+        ContactLubricant(viscosity=0.04, pressure_viscosity=2e-8),
+        Condition(load=1.0, entrainment_speed=1.0),
+        settings=Settings(nx=17, ny=17, domain=(-2.0, 1.5, 1.5), time_cap=1e6),
+    )
 
 
 def _solve(case: ContactCase, surface: Surface | None, settings: Settings) -> ContactSolution:
