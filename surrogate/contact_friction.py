@@ -1,7 +1,8 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Friction over a solved contact: Eyring film where it carries, boundary friction where it is punctured.
+Friction over a solved contact: Eyring film where it carries, boundary friction where it is
+punctured.
 
 The traction on a surface opposes its slip against the other. It is mu_a p on punctured nodes and
 tau0 asinh(eta(p) |slip| / (tau0 h)) elsewhere in the pressurised area.
@@ -13,7 +14,6 @@ from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-
 from surrogate.ehl import ContactLubricant, ContactSolution, punctured_nodes
 from surrogate.lubricant import shear_stress_eyring_1936, viscosity_roelands_1966
 from surrogate.parameters import InputError
@@ -26,9 +26,9 @@ class ContactFriction:
     """
     Friction on the surface whose slip against the other is given.
 
-    Forces along x and y [N], moment about the normal through the centre, from x to y [N m], lost power [W];
-    mean traction against the slip over the load [-] and its parts from film and asperities [-];
-    traction magnitude on the grid [Pa].
+    Forces along x and y [N], moment about the normal through the centre, from x to y [N m], lost
+    power [W]; mean traction against the slip over the load [-] and its parts from film and
+    asperities [-]; traction magnitude on the grid [Pa].
 
     """
 
@@ -56,9 +56,9 @@ def contact_friction(solution: ContactSolution, *, slip_x: ArrayLike, slip_y: Ar
     """
     Integrate the friction of a contact with a slip field.
 
-    Slip [m/s] of the surface along x and y, numbers or arrays on the grid; boundary coefficient [-]; `film`
-    shears the local or the central film; |slip| is sqrt(slip^2 + `slip_floor`^2) [m/s] where a
-    direction is needed. Raises InputError for slip that does not fit the grid.
+    Slip [m/s] of the surface along x and y, numbers or arrays on the grid; boundary coefficient
+    [-]; `film` shears the local or the central film; |slip| is sqrt(slip^2 + `slip_floor`^2) [m/s]
+    where a direction is needed. Raises InputError for slip that does not fit the grid.
 
     """
     vx, vy = _on_grid(solution, slip_x, 'slip_x'), _on_grid(solution, slip_y, 'slip_y')
@@ -86,7 +86,8 @@ def slide_roll_friction(solution: ContactSolution, slide_roll_ratio: float, *,
     """
     Integrate the friction under uniform sliding along x.
 
-    `slide_roll_ratio` is (u1 - u2) over the entrainment speed (u1 + u2)/2 [-]; the result holds for surface 1.
+    `slide_roll_ratio` is (u1 - u2) over the entrainment speed (u1 + u2)/2 [-]; the result holds
+    for surface 1.
 
     """
     slip = slide_roll_ratio * solution.condition.entrainment_speed

@@ -3,8 +3,8 @@
 """
 Mixed elastohydrodynamic point contact: smooth, rough and dry in one solver.
 
-half_space (deformation) and _reynolds (film) are joined by newton with _krylov and _line (linear solver) on
-one grid; case scales a contact, solver finds the way to it, result returns to SI units.
+half_space (deformation) and _reynolds (film) are joined by newton with _krylov and _line (linear
+solver) on one grid; case scales a contact, solver finds the way to it, result returns to SI units.
 
 """
 

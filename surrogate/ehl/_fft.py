@@ -3,9 +3,9 @@
 """
 Fourier transforms of many columns at once, compiled, in place, one thread.
 
-Real and imaginary parts are separate arrays of shape (length, columns); every inner loop runs over the
-columns and vectorises. The forward transform leaves its output in digit-reversed order and the inverse
-takes it from there, so a convolution needs no reordering. Lengths are 2^k or 3 * 2^k.
+Real and imaginary parts are separate arrays of shape (length, columns); every inner loop runs over
+the columns and vectorises. The forward transform leaves its output in digit-reversed order and the
+inverse takes it from there, so a convolution needs no reordering. Lengths are 2^k or 3 * 2^k.
 
 """
 
@@ -62,8 +62,8 @@ def _places(length: int) -> NDArray[np.int64]:
     return place
 
 
-@njit(cache=True)
-def fft_forward(re, im, cos, sin):
+@njit(cache=True, error_model='numpy')
+def fft_forward(re: Array, im: Array, cos: Array, sin: Array) -> None:
     """Transform the columns; the output is digit-reversed."""
     size = re.shape[0]
     length = size
@@ -77,8 +77,8 @@ def fft_forward(re, im, cos, sin):
         _butterfly_2(re, im)
 
 
-@njit(cache=True)
-def fft_inverse(re, im, cos, sin):
+@njit(cache=True, error_model='numpy')
+def fft_inverse(re: Array, im: Array, cos: Array, sin: Array) -> None:
     """Invert `fft_forward` but for the factor 1/length, from digit-reversed input."""
     size = re.shape[0]
     length = 1
@@ -93,8 +93,8 @@ def fft_inverse(re, im, cos, sin):
         _inverse_3(re, im, size, cos, sin)
 
 
-@njit(cache=True)
-def _butterfly_2(re, im):
+@njit(cache=True, error_model='numpy')
+def _butterfly_2(re: Array, im: Array) -> None:
     size, columns = re.shape
     for a in range(0, size, 2):
         b = a + 1
@@ -105,8 +105,8 @@ def _butterfly_2(re, im):
             re[b, j], im[b, j] = x - u, y - v
 
 
-@njit(cache=True)
-def _forward_4(re, im, length, cos, sin):
+@njit(cache=True, error_model='numpy')
+def _forward_4(re: Array, im: Array, length: int, cos: Array, sin: Array) -> None:
     size, columns = re.shape
     quarter, step = length // 4, size // length
     for k in range(quarter):
@@ -129,8 +129,8 @@ def _forward_4(re, im, length, cos, sin):
                 re[d, j], im[d, j] = xr * c3 - xi * s3, xr * s3 + xi * c3
 
 
-@njit(cache=True)
-def _inverse_4(re, im, length, cos, sin):
+@njit(cache=True, error_model='numpy')
+def _inverse_4(re: Array, im: Array, length: int, cos: Array, sin: Array) -> None:
     size, columns = re.shape
     quarter, step = length // 4, size // length
     for k in range(quarter):
@@ -153,8 +153,8 @@ def _inverse_4(re, im, length, cos, sin):
                 re[d, j], im[d, j] = mr + ni, mi - nr
 
 
-@njit(cache=True)
-def _forward_3(re, im, length, cos, sin):
+@njit(cache=True, error_model='numpy')
+def _forward_3(re: Array, im: Array, length: int, cos: Array, sin: Array) -> None:
     size, columns = re.shape
     third, step = length // 3, size // length
     half, root = cos[0] * 0.5, -sin[third * step]
@@ -175,8 +175,8 @@ def _forward_3(re, im, length, cos, sin):
                 re[c, j], im[c, j] = xr * c2 - xi * s2, xr * s2 + xi * c2
 
 
-@njit(cache=True)
-def _inverse_3(re, im, length, cos, sin):
+@njit(cache=True, error_model='numpy')
+def _inverse_3(re: Array, im: Array, length: int, cos: Array, sin: Array) -> None:
     size, columns = re.shape
     third, step = length // 3, size // length
     half, root = cos[0] * 0.5, -sin[third * step]

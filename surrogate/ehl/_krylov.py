@@ -3,9 +3,9 @@
 """
 Right-preconditioned GMRES for one Newton step, compiled as a whole.
 
-Unknowns, in one vector: total pressure on all nodes, film pressure on the contact nodes, approach. Rows:
-Reynolds on all nodes, gap on the contact nodes, load. Where there is no contact the change of film
-pressure is that of the total pressure.
+Unknowns, in one vector: total pressure on all nodes, film pressure on the contact nodes, approach.
+Rows: Reynolds on all nodes, gap on the contact nodes, load. Where there is no contact the change
+of film pressure is that of the total pressure.
 
 """
 
@@ -16,9 +16,10 @@ from numba import njit
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.ehl._line import line_factors, mirror, solve_film_lines, solve_lines
-from surrogate.ehl.half_space import deform
+from surrogate.ehl.half_space import deform, HalfSpace
 
 Array = NDArray[np.floating]
+Mask = NDArray[np.bool_]
 CHUNK = 32
 """Partial sums of a dot product."""
 
@@ -52,8 +53,8 @@ def make_workspace(nx: int, ny: int, krylov: int, dtype: type) -> Workspace:
         border=np.zeros(longest, dtype))
 
 
-@njit(cache=True)
-def dot(a, b):
+@njit(cache=True, error_model='numpy')
+def dot(a: Array, b: Array) -> np.floating:
     """Sum a b over `CHUNK` partial sums, which vectorises without reordering rights."""
     size, zero = a.size, a.dtype.type(0)
     partial = np.zeros(CHUNK, a.dtype)
@@ -69,8 +70,8 @@ def dot(a, b):
     return total
 
 
-@njit(cache=True)
-def stencil(by_pressure, by_gap, film, lift, out):
+@njit(cache=True, error_model='numpy')
+def stencil(by_pressure: Array, by_gap: Array, film: Array, lift: Array, out: Array) -> None:
     """Apply the Reynolds planes to changes of film pressure and gap."""
     nx, ny = film.shape
     for i in range(1, nx - 1):
@@ -92,8 +93,8 @@ def stencil(by_pressure, by_gap, film, lift, out):
                               + by_gap[5, i, j] * lift[i - 2, j])
 
 
-@njit(cache=True)
-def load_of(total, weights):
+@njit(cache=True, error_model='numpy')
+def load_of(total: Array, weights: Array) -> np.floating:
     """Integrate a field with the quadrature weights of the columns."""
     result = weights.dtype.type(0)
     columns = np.zeros(weights.size, total.dtype)
@@ -105,8 +106,9 @@ def load_of(total, weights):
     return result
 
 
-@njit(cache=True)
-def apply_operator(space, work, nodes, contact, weights, inverse, x, out):
+@njit(cache=True, error_model='numpy')
+def apply_operator(space: HalfSpace, work: Workspace, nodes: NDArray[np.int64], contact: Mask,
+                   weights: Array, inverse: np.floating, x: Array, out: Array) -> None:
     """Multiply the full Jacobian: out = J x."""
     nx, ny = work.total.shape
     size, count = nx * ny, nodes.size
@@ -127,8 +129,9 @@ def apply_operator(space, work, nodes, contact, weights, inverse, x, out):
     out[size + count] = load_of(total, weights)
 
 
-@njit(cache=True)
-def apply_lines(space, work, nodes, contact, steps, x, out):
+@njit(cache=True, error_model='numpy')
+def apply_lines(space: HalfSpace, work: Workspace, nodes: NDArray[np.int64], contact: Mask, steps:
+                int, x: Array, out: Array) -> None:
     """Precondition all but the border of load and approach."""
     nx, ny = work.total.shape
     size, count = nx * ny, nodes.size
@@ -155,8 +158,9 @@ def apply_lines(space, work, nodes, contact, steps, x, out):
         out[size + k] = flat[nodes[k]]
 
 
-@njit(cache=True)
-def precondition(space, work, nodes, contact, weights, steps, border, x, out):
+@njit(cache=True, error_model='numpy')
+def precondition(space: HalfSpace, work: Workspace, nodes: NDArray[np.int64], contact: Mask,
+                 weights: Array, steps: int, border: Array, x: Array, out: Array) -> None:
     """Apply the lines and eliminate the border: load row and approach column."""
     nx, ny = work.total.shape
     size, count = nx * ny, nodes.size
@@ -168,13 +172,15 @@ def precondition(space, work, nodes, contact, weights, steps, border, x, out):
     out[size + count] = approach
 
 
-@njit(cache=True)
-def solve_newton_step(space, work, nodes, contact, weights, inverse, steps, tolerance, limit, x):
+@njit(cache=True, error_model='numpy')
+def solve_newton_step(space: HalfSpace, work: Workspace, nodes: NDArray[np.int64], contact: Mask,
+                      weights: Array, inverse: np.floating, steps: int, tolerance: float,
+                      limit: int, x: Array) -> tuple[int, float]:
     """
     Solve J x = rhs (in basis[0]) by GMRES; return iterations and the relative residual.
 
-    The planes of J are in `work`; this factors the lines, builds the basis by modified Gram-Schmidt and
-    leaves the solution in `x`.
+    The planes of J are in `work`; this factors the lines, builds the basis by modified Gram-
+    Schmidt and leaves the solution in `x`.
 
     """
     nx, ny = work.total.shape

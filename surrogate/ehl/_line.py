@@ -3,23 +3,30 @@
 """
 Line preconditioner: all lines along x at once, the inner loops run across them; compiled.
 
-The elastic influence is replaced by its fitted 3x3 near kernel, so that a line is a matrix with bands -3 to
-+1; neighbouring lines are coupled by Jacobi steps. Contact rows hold the near kernel itself. The
-unknown is the total pressure; on contact nodes the film pressure follows from a second line system.
+The elastic influence is replaced by its fitted 3x3 near kernel, so that a line is a matrix with
+bands -3 to +1; neighbouring lines are coupled by Jacobi steps. Contact rows hold the near kernel
+itself. The unknown is the total pressure; on contact nodes the film pressure follows from a second
+line system.
 
 """
 
 from numba import njit
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.floating]
+Mask = NDArray[np.bool_]
 
 
-@njit(cache=True)
-def line_factors(by_pressure, by_gap, contact, near, inverse, bands, sides, film_bands):
+@njit(cache=True, error_model='numpy')
+def line_factors(by_pressure: Array, by_gap: Array, contact: Mask, near: Array,
+                 inverse: np.floating, bands: Array, sides: Array, film_bands: Array) -> None:
     """
     Factor all lines.
 
-    Total pressure: planes l3, l2, l1, 1/d, u1 in `bands`; coupling to both neighbours at -3, -2, -1, +1
-    in `sides` 0 to 3 and at 0 to the south and north in 4 and 5. Film pressure on contact nodes: planes
-    l1, 1/d, u1 in `film_bands`. Contact rows are multiplied by `inverse`.
+    Total pressure: planes l3, l2, l1, 1/d, u1 in `bands`; coupling to both neighbours at -3, -2,
+    -1, +1 in `sides` 0 to 3 and at 0 to the south and north in 4 and 5. Film pressure on contact
+    nodes: planes l1, 1/d, u1 in `film_bands`. Contact rows are multiplied by `inverse`.
 
     """
     nx, ny = contact.shape
@@ -76,15 +83,16 @@ def line_factors(by_pressure, by_gap, contact, near, inverse, bands, sides, film
             film_bands[1, i, j] = one / d0
 
 
-@njit(cache=True)
-def mirror(values):
+@njit(cache=True, error_model='numpy')
+def mirror(values: Array) -> None:
     """Fill the mirror column of a symmetric field."""
     for i in range(values.shape[0]):
         values[i, 0] = values[i, 2]
 
 
-@njit(cache=True)
-def solve_lines(bands, sides, rhs, steps, symmetric, work, value):
+@njit(cache=True, error_model='numpy')
+def solve_lines(bands: Array, sides: Array, rhs: Array, steps: int, symmetric: bool, work: Array,
+                value: Array) -> None:
     """Apply `steps` line-Jacobi steps from zero to the system of the total pressure."""
     nx, ny = rhs.shape
     pair = work[1]
@@ -127,8 +135,9 @@ def solve_lines(bands, sides, rhs, steps, symmetric, work, value):
                     pair[i, j] = value[i, j - 1] + value[i, j + 1]
 
 
-@njit(cache=True)
-def solve_film_lines(by_pressure, film_bands, contact, rhs, total, steps, symmetric, work, value):
+@njit(cache=True, error_model='numpy')
+def solve_film_lines(by_pressure: Array, film_bands: Array, contact: Mask, rhs: Array, total:
+                     Array, steps: int, symmetric: bool, work: Array, value: Array) -> None:
     """Film pressure on contact nodes from their Reynolds rows; elsewhere it is the total."""
     nx, ny = rhs.shape
     zero = rhs.dtype.type(0)

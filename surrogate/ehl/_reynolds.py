@@ -1,17 +1,23 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Discrete Reynolds equation with its exact linearisation, and the sets of its free boundaries; compiled.
+Discrete Reynolds equation with its exact linearisation, and the sets of its free boundaries;
+compiled.
 
-Arrays have x along the first axis. Everything is in Hertz units: pressure over the Hertz pressure, film
-over a^2/Rx, x over a; fluxes are multiplied by dx. Stencil planes: 0 centre, 1 west, 2 east, 3
-south, 4 north, 5 second west.
+Arrays have x along the first axis. Everything is in Hertz units: pressure over the Hertz pressure,
+film over a^2/Rx, x over a; fluxes are multiplied by dx. Stencil planes: 0 centre, 1 west, 2 east,
+3 south, 4 north, 5 second west.
 
 """
 
 import math
 
 from numba import njit
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
 
 DENSITY_PRESSURE = 5.9e8
 """Pressure constant of the Dowson-Higginson density [Pa]."""
@@ -19,14 +25,15 @@ ROELANDS_PRESSURE = 1.96e8
 """Reference pressure of the Roelands law [Pa]."""
 
 
-@njit(cache=True)
-def fluid_at(pressure, scale, growth, exponent, gain):
+@njit(cache=True, error_model='numpy')
+def fluid_at(pressure: float, scale: float, growth: float, exponent: float,
+             gain: float) -> tuple[float, float, float, float]:
     """
     Return ln(eta/eta0), its slope, density ratio, its slope, at `pressure` * `scale` [Pa].
 
-    ln(eta/eta0) = growth [(1 + p/p0)^exponent - 1]: Roelands, and Barus with the exponent 1. Density
-    1 + gain p/(p + 5.9e8 Pa): with the gain 0.34 Dowson-Higginson as Venner and Lubrecht (2000) write
-    it, which films depend on by 0.6 % against 0.6/1.7 GPa; incompressible with 0.
+    ln(eta/eta0) = growth [(1 + p/p0)^exponent - 1]: Roelands, and Barus with the exponent 1.
+    Density 1 + gain p/(p + 5.9e8 Pa): with the gain 0.34 Dowson-Higginson as Venner and Lubrecht
+    (2000) write it, which films depend on by 0.6 % against 0.6/1.7 GPa; incompressible with 0.
 
     """
     base = 1.0 + pressure * scale / ROELANDS_PRESSURE
@@ -38,10 +45,12 @@ def fluid_at(pressure, scale, growth, exponent, gain):
             gain * DENSITY_PRESSURE * scale / (room * room))
 
 
-@njit(cache=True)
-def film_properties(pressure, gap, contact, floor, scale, growth, exponent, gain, mobility, out):
+@njit(cache=True, error_model='numpy')
+def film_properties(pressure: Array, gap: Array, contact: Mask, floor: float, scale: float, growth:
+                    float, exponent: float, gain: float, mobility: float, out: Array) -> None:
     """
-    Fill planes: 0 flow factor, 1 and 2 its slopes in pressure and film, 3 density, 4 slope, 5 film.
+    Fill planes: 0 flow factor, 1 and 2 its slopes in pressure and film, 3 density, 4 slope, 5
+    film.
 
     The flow factor is `mobility` rho h^3 / eta; the film never falls below the floor, and does not
     react to the gap on contact nodes. Plane 6 is 1 where it reacts, 0 elsewhere.
@@ -73,14 +82,15 @@ def film_properties(pressure, gap, contact, floor, scale, growth, exponent, gain
             out[6, i, j] = free
 
 
-@njit(cache=True)
-def reynolds_rows(pressure, film, aspect, order, inlet, residual, by_pressure, by_gap):
+@njit(cache=True, error_model='numpy')
+def reynolds_rows(pressure: Array, film: Array, aspect: float, order: float, inlet: Array,
+                  residual: Array, by_pressure: Array, by_gap: Array) -> None:
     """
     Assemble F = -div(flow grad p) dx + d(rho h)/dx dx and its planes dF/dp, dF/dh.
 
-    Faces take the mean flow factor of two nodes, `aspect` is (dx/dy)^2. The upstream wedge has order 1 to 2
-    (a blend between). Just outside the first row the pressure is `inlet` times that inside it.
-    Border rows get zero planes.
+    Faces take the mean flow factor of two nodes, `aspect` is (dx/dy)^2. The upstream wedge has
+    order 1 to 2 (a blend between). Just outside the first row the pressure is `inlet` times that
+    inside it. Border rows get zero planes.
 
     """
     nx, ny = pressure.shape
@@ -125,8 +135,9 @@ def reynolds_rows(pressure, film, aspect, order, inlet, residual, by_pressure, b
             by_gap[5, i, j] = w2 * density[n, j] * free[n, j]
 
 
-@njit(cache=True)
-def contact_set(asperity, gap, floor, stiffness, symmetric, contact):
+@njit(cache=True, error_model='numpy')
+def contact_set(asperity: Array, gap: Array, floor: float, stiffness: float, symmetric: bool,
+                contact: Mask) -> int:
     """Mark nodes with pa * stiffness > h - floor; return their number."""
     nx, ny = gap.shape
     count = 0
@@ -141,14 +152,16 @@ def contact_set(asperity, gap, floor, stiffness, symmetric, contact):
     return count
 
 
-@njit(cache=True)
-def free_boundary_rows(pressure, film, dry, stiffness, weights, residual, by_pressure, by_gap,
-                       cavitated):
+@njit(cache=True, error_model='numpy')
+def free_boundary_rows(pressure: Array, film: Array, dry: bool, stiffness: float, weights: Array,
+                       residual: Array, by_pressure: Array, by_gap: Array,
+                       cavitated: Mask) -> float:
     """
-    Replace the rows of the cavitated set by dp = -p and scale all rows; return sum |F|/h of the others.
+    Replace the rows of the cavitated set by dp = -p and scale all rows; return sum |F|/h of the
+    others.
 
-    Cavitated where p times the size of the row is below F, everywhere when dry. That size counts the film,
-    too: the flow factor of a stiff fluid vanishes inside the contact.
+    Cavitated where p times the size of the row is below F, everywhere when dry. That size counts
+    the film, too: the flow factor of a stiff fluid vanishes inside the contact.
 
     """
     nx, ny = pressure.shape

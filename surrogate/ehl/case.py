@@ -26,10 +26,12 @@ STIFF = 0.8
 COARSEST = 33
 """Levels are halved down to about this many nodes along x [-]."""
 COARSE_STEP = 0.25
-"""Largest node distance of a coarse level, over the semi-axis [-]."""
+"""Largest node distance of a coarse level over the semi-axis or the width of a thick film [-]."""
 COARSEST_ACROSS = 17
 RESOLVED, UNRESOLVED = 0.3, 0.9
-"""Node distance over the inlet length up to which a rough film keeps, and from which it loses order 2."""
+"""Node distance over the inlet length up to which touching films keep order 2 and from which 1."""
+TOUCHING = 2.0
+"""Film by formula over the floor below which smooth surfaces are taken to touch [-]."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -91,8 +93,9 @@ class Case:
         """Return the cascade of grids, coarsest first."""
         nx, ny = self.settings.nx, self.settings.ny
         levels = [(nx, ny)]
-        width = self.domain[1] - self.domain[0]
-        while nx > COARSEST + 8 and 2 * width / nx < COARSE_STEP:
+        width, speed = self.domain[1] - self.domain[0], self.condition.entrainment_speed
+        thick = math.sqrt(2 * self.film_estimate(speed)) if speed else 0.0
+        while nx > COARSEST + 8 and 2 * width / nx < COARSE_STEP * max(1.0, thick):
             nx, ny = nx // 4 * 2 + 1, max(ny // 4 * 2 + 1, COARSEST_ACROSS)
             levels.insert(0, (nx, ny))
         return levels
@@ -126,12 +129,26 @@ class Case:
         film = max(self.film_estimate(speed), self.floor)
         return float((0.75 * film / math.sqrt(2)) ** (2 / 3))
 
-    def order(self, grid: Grid, speed: float, amplitude: float) -> float:
-        """Order of the upstream wedge on the finest grid."""
+    @property
+    def blends(self) -> bool:
+        """Whether the surfaces touch: a thin film takes order 1 where the grid misses it."""
+        speed = self.condition.entrainment_speed
+        return self.roughness is not None or (
+            speed > 0 and self.film_estimate(speed) < TOUCHING * self.floor)
+
+    def coarseness(self, settings: Settings, speed: float) -> float:
+        """Return the node distance of the finest grid over the inlet length [-]."""
+        dx = (self.domain[1] - self.domain[0]) / (settings.nx - 1)
+        return dx / self.inlet_length(speed)
+
+    def order(self, grid: Grid, speed: float) -> float:
+        """Order of the upstream wedge at the end of the way."""
         if self.settings.wedge_order is not None:
             return float(self.settings.wedge_order)
-        if amplitude == 0.0 or speed == 0.0:
+        if not self.blends or speed == 0.0:
             return 2.0
+        if self.roughness is None:
+            return 1.0  # all of a smooth contact touches at once, which order 2 does not survive
         coarseness = grid.dx / self.inlet_length(speed)
         return 1.0 + float(np.clip((UNRESOLVED - coarseness) / (UNRESOLVED - RESOLVED), 0, 1))
 
@@ -153,8 +170,8 @@ class Case:
         """
         Return the exponent of viscosity in pressure and the gain of density.
 
-        Barus is Roelands with exponent 1; a softness of 1 takes any law back to exponent SOFT and the
-        density of Dowson and Higginson, from where a stiff law is reached in steps.
+        Barus is Roelands with exponent 1; a softness of 1 takes any law back to exponent SOFT and
+        the density of Dowson and Higginson, from where a stiff law is reached in steps.
 
         """
         exponent, gain = 1.0, 0.0
@@ -167,7 +184,10 @@ class Case:
                 gain + softness * (DOWSON_HIGGINSON - gain))
 
     def inlet(self, grid: Grid) -> Array:
-        """Return p outside the inlet over p inside, per column: p ~ x / h^2 of the rigid paraboloid."""
+        """
+        Return p outside the inlet over p inside, per column: p ~ x / h^2 of the rigid paraboloid.
+
+        """
         if not self.open_inlet:
             return np.zeros(grid.y.size)
         heights = self.shape_heights(grid)
@@ -209,13 +229,15 @@ def _production_domain(case: Case) -> tuple[float, float, float]:
     """
     Return inlet, outlet and side over the semi-axes: with the open inlet, films within 0.3 %.
 
-    The pressure in front of the contact falls off over the inlet length of the film; across, the more
-    slowly the rounder the contact.
+    The pressure in front of the contact falls off over the inlet length of the film; across, the
+    more slowly the rounder the contact.
 
     """
     speed = case.condition.entrainment_speed
     if not speed:
         return -1.4, 1.4, 1.3
     reach = (6 * case.film_estimate(speed)) ** (2 / 3)
-    side = 1.2 + 0.08 * reach ** 2 + reach / case.ellipticity ** 2
-    return (-min(2.0 + 0.9 * reach, 12.0), 1.25 + min(0.03 * reach ** 2, 1.2), min(side, 4.0))
+    thick = math.sqrt(2 * case.film_estimate(speed))
+    side = 1.2 + min(0.08 * reach ** 2 + reach / case.ellipticity ** 2, 1.0 + 1.2 * thick)
+    return (-(2.0 + min(0.9 * reach, 4.0 + 3.0 * thick)),
+            1.25 + min(0.03 * reach ** 2, 0.6 * thick), side)

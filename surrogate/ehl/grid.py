@@ -3,8 +3,9 @@
 """
 Grids of one contact in Hertz units, and the transfer of states between them.
 
-Lengths along x and y over the semi-axis a along x, heights over a^2/Rx, pressures over the Hertz pressure. A
-symmetric grid holds the half y >= 0 in columns 1 on and the mirror image of column 2 in column 0.
+Lengths along x and y over the semi-axis a along x, heights over a^2/Rx, pressures over the Hertz
+pressure. A symmetric grid holds the half y >= 0 in columns 1 on and the mirror image of column 2
+in column 0.
 
 """
 

@@ -3,10 +3,11 @@
 """
 Deformation of the elastic half-space: influence of a pressed rectangle and its fast convolution.
 
-Arrays have x along the first axis and y along the second. A symmetric half-space carries the half y >= 0 in
-columns 1 on and keeps column 0 for the mirror image at y = -dy; otherwise all columns are nodes. The
-pressure is zero in the last row, in the first row and in the last column (and in the first column if
-not symmetric), as on every contact grid here, so that lengths of about twice the grid are enough.
+Arrays have x along the first axis and y along the second. A symmetric half-space carries the half
+y >= 0 in columns 1 on and keeps column 0 for the mirror image at y = -dy; otherwise all columns
+are nodes. The pressure is zero in the last row, in the first row and in the last column (and in
+the first column if not symmetric), as on every contact grid here, so that lengths of about twice
+the grid are enough.
 
 """
 
@@ -30,8 +31,8 @@ class HalfSpace(NamedTuple):
     """
     Spectrum, tables and work space of a convolution; `symbol` in natural order.
 
-    Tables of y and x, spectrum in the order of the transforms (two planes), scratch (real, imaginary) of
-    both transforms, and whether the half y >= 0 stands for all.
+    Tables of y and x, spectrum in the order of the transforms (two planes), scratch (real,
+    imaginary) of both transforms, and whether the half y >= 0 stands for all.
 
     """
 
@@ -83,7 +84,7 @@ def make_half_space(nx: int, ny: int, dx: float, dy: float, *, symmetric: bool, 
 @lru_cache(maxsize=32)
 def _symbol(length_x: int, length_y: int, aspect: float) -> Array:
     """Return the spectrum of the kernel between cells of size 1 by `aspect`."""
-    lag_x, lag_y = np.arange(length_x // 2 + 1), aspect * np.arange(length_y // 2 + 1)
+    lag_x, lag_y = 1.0 * np.arange(length_x // 2 + 1), aspect * np.arange(length_y // 2 + 1)
     quarter = influence_love_1929(lag_x[:, None], lag_y[None, :], 1.0, aspect)
     rows = np.fft.hfft(quarter, axis=1)[:, :length_y // 2 + 1]
     symbol = np.fft.hfft(rows, axis=0)
@@ -92,7 +93,10 @@ def _symbol(length_x: int, length_y: int, aspect: float) -> Array:
 
 
 def _pack(symbol: Array, symmetric: bool) -> Array:
-    """Return the planes: (G, unused) or, for two real columns a, b in one, (Ga + Gb)/2, (Ga - Gb)/2."""
+    """
+    Return the planes: (G, unused) or, for two real columns a, b in one, (Ga + Gb)/2, (Ga - Gb)/2.
+
+    """
     if not symmetric:
         return symbol[None]
     half = (symbol.shape[1] + 1) // 2
@@ -117,8 +121,8 @@ def _near_kernel(symbol: Array) -> Array:
     return np.array([both, k10, k01, (fastest - both + 2 * k10 + 2 * k01) / 4])
 
 
-@njit(cache=True)
-def deform(space, pressure, out):
+@njit(cache=True, error_model='numpy')
+def deform(space: HalfSpace, pressure: Array, out: Array) -> None:
     """Convolve: out = influence * pressure, with the mirror column where symmetric."""
     if space.symmetric:
         _rows_to_spectrum_even(space, pressure)
@@ -134,8 +138,8 @@ def deform(space, pressure, out):
         _spectrum_to_rows(space, out)
 
 
-@njit(cache=True)
-def _multiply(space):
+@njit(cache=True, error_model='numpy')
+def _multiply(space: HalfSpace) -> None:
     re, im, factor = space.columns[0], space.columns[1], space.spectrum[0]
     for i in range(re.shape[0]):
         for j in range(re.shape[1]):
@@ -143,8 +147,8 @@ def _multiply(space):
             im[i, j] *= factor[i, j]
 
 
-@njit(cache=True)
-def _multiply_even(space):
+@njit(cache=True, error_model='numpy')
+def _multiply_even(space: HalfSpace) -> None:
     """Treat two real columns as one complex: Z(k) mean + conj Z(-k) half difference."""
     re, im = space.columns[0], space.columns[1]
     mean, half = space.spectrum[0], space.spectrum[1]
@@ -160,8 +164,8 @@ def _multiply_even(space):
                 re[b, j], im[b, j] = m * br + h * ar, m * bi - h * ai
 
 
-@njit(cache=True)
-def _load_tile(tile, values, start, symmetric):
+@njit(cache=True, error_model='numpy')
+def _load_tile(tile: Array, values: Array, start: int, symmetric: bool) -> None:
     """Copy two rows into each lane, zero beyond, mirrored when symmetric."""
     nx, ny = values.shape
     length, lanes = tile.shape[1], tile.shape[2]
@@ -185,8 +189,8 @@ def _load_tile(tile, values, start, symmetric):
                     plane[length - j, lane] = plane[j, lane]
 
 
-@njit(cache=True)
-def _store_tile(tile, values, start, symmetric):
+@njit(cache=True, error_model='numpy')
+def _store_tile(tile: Array, values: Array, start: int, symmetric: bool) -> None:
     """Copy the lanes back into rows, with the mirror column when symmetric."""
     nx, ny = values.shape
     lanes = tile.shape[2]
@@ -202,8 +206,8 @@ def _store_tile(tile, values, start, symmetric):
             values[i, 0] = values[i, 2]
 
 
-@njit(cache=True)
-def _rows_to_spectrum_even(space, values):
+@njit(cache=True, error_model='numpy')
+def _rows_to_spectrum_even(space: HalfSpace, values: Array) -> None:
     """Transform even rows, two in one: both spectra are real."""
     tile, re, im = space.tile, space.columns[0], space.columns[1]
     half, place, lanes = re.shape[1], space.y.place, tile.shape[2]
@@ -223,8 +227,8 @@ def _rows_to_spectrum_even(space, values):
     im[nx:] = 0
 
 
-@njit(cache=True)
-def _spectrum_to_rows_even(space, values):
+@njit(cache=True, error_model='numpy')
+def _spectrum_to_rows_even(space: HalfSpace, values: Array) -> None:
     """Undo `_rows_to_spectrum_even`."""
     tile, re, im = space.tile, space.columns[0], space.columns[1]
     half, place, lanes = re.shape[1], space.y.place, tile.shape[2]
@@ -246,8 +250,8 @@ def _spectrum_to_rows_even(space, values):
         _store_tile(tile, values, start, True)
 
 
-@njit(cache=True)
-def _rows_to_spectrum(space, values):
+@njit(cache=True, error_model='numpy')
+def _rows_to_spectrum(space: HalfSpace, values: Array) -> None:
     """Transform real rows, two in one complex row, and part their spectra."""
     tile, re, im = space.tile, space.columns[0], space.columns[1]
     place, lanes = space.y.place, tile.shape[2]
@@ -271,8 +275,8 @@ def _rows_to_spectrum(space, values):
     im[nx:] = 0
 
 
-@njit(cache=True)
-def _spectrum_to_rows(space, values):
+@njit(cache=True, error_model='numpy')
+def _spectrum_to_rows(space: HalfSpace, values: Array) -> None:
     """Undo `_rows_to_spectrum`."""
     tile, re, im = space.tile, space.columns[0], space.columns[1]
     place, lanes = space.y.place, tile.shape[2]

@@ -17,7 +17,7 @@ Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 Law = Literal['roelands_dh', 'barus_incompressible']
 Roughness = Array | Callable[[Array, Array], Array]
-"""Heights [m] on the solution grid, shape (nx, ny), or a function z(x, y) of places [m]; + is material."""
+"""Heights [m], material positive: an array on the solution grid or a function of x and y [m]."""
 LARGEST_GRID = 2049
 
 
@@ -25,13 +25,14 @@ class Status(Enum):
     """How a solve ended, in a sentence."""
 
     NOT_SOLVED = 'Nothing was solved.'
-    CONVERGED = 'Converged: flux, load and contact conditions hold and no node lies below the floor.'
+    CONVERGED = (
+        'Converged: flux, load and contact conditions hold and no node lies below the floor.')
     STALLED = 'The iteration ended before flux, load and contact errors were small.'
     CONTINUATION_FAILED = (
         'The path from an easier case was cut so fine that it was given up before the case.')
     OUT_OF_TIME = 'The time cap was reached before convergence.'
     GRID_TOO_COARSE = (
-        'The grid is too coarse for the film: a smooth surface would falsely touch; refine along x.')
+        'The grid is too coarse for the film: a smooth surface would touch; refine along x.')
     DOMAIN_TOO_SMALL = 'The pressure reaches the side or the outlet of the domain: widen it.'
 
 
@@ -56,12 +57,16 @@ class ContactLubricant:
         _require('pressure_viscosity', self.pressure_viscosity, '1/Pa', 1e-10, 1e-7)
         _require('eyring_stress', self.eyring_stress, 'Pa', 1e4, 1e9)
         if self.law not in ('roelands_dh', 'barus_incompressible'):
-            raise InputError(f'law is {self.law!r}, allowed is roelands_dh or barus_incompressible')
+            raise InputError(
+                f'law is {self.law!r}, allowed is roelands_dh or barus_incompressible')
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Condition:
-    """Normal load [N] and entrainment speed [m/s], the mean of both surfaces; 0 is the dry contact."""
+    """
+    Normal load [N] and entrainment speed [m/s], the mean of both surfaces; 0 is the dry contact.
+
+    """
 
     load: float
     entrainment_speed: float
@@ -77,13 +82,14 @@ class Settings:
     """
     How to solve.
 
-    Nodes along and across the track, both odd; `domain` = inlet, outlet and side over the semi-axes of the
-    Hertz ellipse (-4.5, 1.5, 3 means x from -4.5 a to 1.5 a, |y| < 3 b), None for the production rule;
-    `open_inlet` continues the pressure beyond the inlet as the rigid isoviscous solution does (None: on
-    the production domain only); film floor [m]; relative tolerances of flux, load and contact gap; cap of
-    Newton iterations of one solve [-] and of the whole call [s]; `error_estimate` also solves the half
-    grid; order of the upstream wedge, 1 or 2 (None: 2 when smooth, falling to 1 where a rough film is
-    too thin for the grid); distance of the inlet meniscus from the centre [m], for the rolling tail.
+    Nodes along and across the track, both odd; `domain` = inlet, outlet and side over the semi-
+    axes of the Hertz ellipse (-4.5, 1.5, 3 means x from -4.5 a to 1.5 a, |y| < 3 b), None for the
+    production rule; `open_inlet` continues the pressure beyond the inlet as the rigid isoviscous
+    solution does (None: on the production domain only); film floor [m]; relative tolerances of
+    flux, load and contact gap; cap of Newton iterations of one solve [-] and of the whole call
+    [s]; `error_estimate` also solves the half grid; order of the upstream wedge, 1 or 2 (None: 2
+    when smooth, falling to 1 where a rough film is too thin for the grid); distance of the inlet
+    meniscus from the centre [m], for the rolling tail.
 
     """
 
@@ -123,15 +129,17 @@ class Settings:
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ContactSolution:
     """
-    Fields, sums and quality of one solved contact; arrays (nx, ny), x first; pressures are zero on the border.
+    Fields, sums and quality of one solved contact; arrays (nx, ny), x first; pressures are zero on
+    the border.
 
-    Film and asperity pressure [Pa], film [m] (the true gap), places [m], masks of nodes where asperities
-    carry and where the film has ruptured; central and global minimum film [m]; both extrapolated from
-    the half grid [m] and the estimated relative error of the central film [-], NaN without estimate; largest
-    total pressure, Hertz pressure [Pa], semi-axes and approach [m]; `rcs`, share of the load on
-    punctured nodes [-], `asperity_share`, integral of pa over the load [-]; relative load error, `residual`, sum over
-    a line of the flux imbalance over the local flow, contact gap error over the floor [-]; rolling force on each surface [N] from
-    the domain and from the tail between inlet and meniscus; iterations, wall time [s].
+    Film and asperity pressure [Pa], film [m] (the true gap), places [m], masks of nodes where
+    asperities carry and where the film has ruptured; central and global minimum film [m]; both
+    extrapolated from the half grid [m] and the estimated relative error of the central film [-],
+    NaN without estimate; largest total pressure, Hertz pressure [Pa], semi-axes and approach [m];
+    `rcs`, share of the load on punctured nodes [-], `asperity_share`, integral of pa over the load
+    [-]; relative load error, `residual`, sum over a line of the flux imbalance over the local
+    flow, contact gap error over the floor [-]; rolling force on each surface [N] from the domain
+    and from the tail between inlet and meniscus; iterations, wall time [s].
 
     """
 

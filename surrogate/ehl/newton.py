@@ -3,8 +3,9 @@
 """
 Semismooth Newton on one grid: film, cavitated and contact nodes in one system.
 
-Film: Reynolds' equation for pf with the film max(h, floor) everywhere; pf >= 0, F >= 0, pf F = 0. Contact:
-pa >= 0, h >= floor, pa (h - floor) = 0. Load: the integral of pf + pa. Speed zero leaves the film out.
+Film: Reynolds' equation for pf with the film max(h, floor) everywhere; pf >= 0, F >= 0, pf F = 0.
+Contact: pa >= 0, h >= floor, pa (h - floor) = 0. Load: the integral of pf + pa. Speed zero leaves
+the film out.
 
 """
 
@@ -28,6 +29,8 @@ from surrogate.ehl.half_space import deform
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
+HOPELESS = 5
+"""Linear solves cut at their limit after which an iteration is given up [-]."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -35,9 +38,9 @@ class Problem:
     """
     Equations on one grid, in Hertz units.
 
-    Heights of the undeformed gap, film floor, load, pressed width along y; dry or not; mobility (flow factor over rho h^3/eta, times
-    dx), the numbers of the fluid laws, order of the wedge (1 to 2), pressure just outside the
-    inlet over that inside per column.
+    Heights of the undeformed gap, film floor, load, pressed width along y; dry or not; mobility
+    (flow factor over rho h^3/eta, times dx), the numbers of the fluid laws, order of the wedge (1
+    to 2), pressure just outside the inlet over that inside per column.
 
     """
 
@@ -60,8 +63,8 @@ class Limits:
     """
     Tolerances and caps of one Newton solve.
 
-    A step may change the pressure of a film node by `step` and the logarithm of the viscosity at the Hertz
-    pressure by `viscous`, and may raise the film pressure of a contact node by `rise`.
+    A step may change the pressure of a film node by `step` and the logarithm of the viscosity at
+    the Hertz pressure by `viscous`, and may raise the film pressure of a contact node by `rise`.
 
     """
 
@@ -108,17 +111,19 @@ class _Evaluation:
 
 def solve_grid(grid: Grid, problem: Problem, start: State, limits: Limits) -> Outcome:
     """Iterate from `start` until all three errors are small, or say what is left."""
-    state, krylov, count = start, 0, 0
+    state, krylov, count, hopeless = start, 0, 0, 0
     while True:
         now = _evaluate(grid, problem, state)
         converged = _is_converged(now, problem, limits)
         late = time.perf_counter() > limits.deadline
         finite = math.isfinite(now.flux_error) and math.isfinite(now.load_rest)
-        if converged or late or not finite or count >= limits.newton:
+        if (converged or late or not finite or count >= limits.newton
+                or hopeless >= HOPELESS):
             break
         state, used = _step(grid, problem, state, now, limits)
         krylov += used
         count += 1
+        hopeless += used == KRYLOV_LIMIT
     return Outcome(
         state=state, gap=now.gap, contact=now.contact, cavitated=now.cavitated,
         converged=converged, out_of_time=late and not converged, flux_error=now.flux_error,
@@ -197,8 +202,8 @@ def _limit_on_contact(problem: Problem, pressure: Array, change: Array, rise: fl
     """
     Limit the change of film pressure where the viscosity law would throw it about.
 
-    As for the diode in circuit simulation: a fall is followed in the logarithm of the viscosity, a rise
-    is capped; the asperity pressure takes the rest, so that elasticity is untouched.
+    As for the diode in circuit simulation: a fall is followed in the logarithm of the viscosity, a
+    rise is capped; the asperity pressure takes the rest, so that elasticity is untouched.
 
     """
     base = 1.0 + pressure * problem.pressure_scale / ROELANDS_PRESSURE

@@ -29,8 +29,9 @@ def punctured_nodes(solution: ContactSolution) -> NDArray[np.bool_]:
     return solution.film <= PUNCTURED * solution.settings.film_floor
 
 
-def make_solution(case: Case, grid: Grid, outcome: Outcome, status: Status, *, half: tuple[float, float],
-                  newton: int, krylov: int, wall_time: float) -> ContactSolution:
+def make_solution(case: Case, grid: Grid, outcome: Outcome, status: Status, *,
+                  half: tuple[float, float], newton: int, krylov: int,
+                  wall_time: float) -> ContactSolution:
     """Return the result of a solve in SI units on the full width."""
     state, height = outcome.state, case.height_unit
     pressure = case.hertz_pressure
@@ -80,7 +81,10 @@ def _two_grid(film: float, half_film: float) -> tuple[float, float]:
 
 
 def _rolling(grid: Grid, gap: Array, pressure: Array, inlet: Array) -> float:
-    """Return the integral of (h/2) dp/dx; outside the first row the pressure is that of the inlet."""
+    """
+    Return the integral of (h/2) dp/dx; outside the first row the pressure is that of the inlet.
+
+    """
     rise = np.diff(pressure, axis=0)
     rise[0] -= inlet * pressure[1]
     return grid.integral(0.25 * (gap[1:] + gap[:-1]) * rise / grid.dx)
@@ -90,8 +94,8 @@ def _rolling_tail(case: Case) -> float:
     """
     Return the rolling force [N] between the meniscus and the inlet edge of the domain.
 
-    Integral of 6 eta0 us / h over the width of the domain with the undeformed gap: in closed form along
-    y, by quadrature along x.
+    Integral of 6 eta0 us / h over the width of the domain with the undeformed gap: in closed form
+    along y, by quadrature along x.
 
     """
     contact, a = case.contact, case.semi_axis_x
@@ -109,7 +113,10 @@ def _rolling_tail(case: Case) -> float:
 
 
 def state_from_solution(case: Case, grid: Grid, start: ContactSolution) -> State:
-    """Return the fields of another solution on `grid`; without speed all pressure is on asperities."""
+    """
+    Return the fields of another solution on `grid`; without speed all pressure is on asperities.
+
+    """
     old = Grid(x=start.x / start.semi_axis_x, y=start.y / start.semi_axis_x, symmetric=False,
                compliance=grid.compliance)
     height = start.semi_axis_x ** 2 / start.contact.radius_x

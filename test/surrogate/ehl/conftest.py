@@ -48,7 +48,10 @@ def nominal():
 
 @pytest.fixture(scope='session')
 def raceway():
-    """Return a height function z(x, y) of sixty waves of 30 to 120 um, 0.12 um rms, self-affine."""
+    """
+    Return a height function z(x, y) of sixty waves of 30 to 120 um, 0.12 um rms, self-affine.
+
+    """
     rng = np.random.default_rng(1)
     number = 2 * np.pi / np.exp(rng.uniform(np.log(30e-6), np.log(120e-6), 60))
     angle, phase = rng.uniform(0, np.pi, 60), rng.uniform(0, 2 * np.pi, 60)

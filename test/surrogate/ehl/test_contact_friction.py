@@ -34,6 +34,7 @@ def test_friction_table(reference_rows):
             Condition(load=number['load_N'], entrainment_speed=number['speed_m_s']),
             settings=Settings(nx=nx, ny=ny, domain=(-4.5, 1.5, 2.0 if ellipse else 3.0),
                               error_estimate=False))
+        assert found.converged, found.status.value
         for which in '12':
             friction = slide_roll_friction(found, number[f'srr_{which}'])
             assert friction.coefficient == pytest.approx(number[f'mu_{which}'], rel=0.03)

@@ -89,7 +89,10 @@ def test_warm_start_gives_the_cold_answer(solved, nominal):
     (27.6, 0.5, 77.39e-3), (27.6, 0.05, 77.39e-3), (5.0, 0.5, 77.39e-3), (100.0, 0.5, 10e-3),
     (20.0, 0.5, 3e-3)])
 def test_production_domain_cuts_nothing_off(nominal, load, speed, radius_y):
-    """The film is within 0.5 % of that on a domain of 12 half-widths with the same node distance."""
+    """
+    The film is within 0.5 % of that on a domain of 12 half-widths with the same node distance.
+
+    """
     contact = replace(nominal[0], radius_y=radius_y)
     case = Condition(load=load, entrainment_speed=speed)
     found = solve_contact(contact, nominal[1], case,
