@@ -11,7 +11,11 @@ from surrogate.ehl.grid import Grid, make_grid, State
 from surrogate.ehl.half_space import deform
 from surrogate.ehl.model import Condition, ContactLubricant, Roughness, Settings
 from surrogate.ehl.newton import Problem
-from surrogate.film_formulas import central_film_nijenbanning_1994, groups
+from surrogate.film_formulas import (
+    central_film_hamrock_dowson_1977,
+    central_film_nijenbanning_1994,
+    groups,
+)
 from surrogate.geometry import Contact, hertz
 from surrogate.lubricant import ROELANDS_OFFSET, ROELANDS_PRESSURE
 from surrogate.parameters import InputError
@@ -71,10 +75,18 @@ class Case:
         return 2 * math.pi / 3 * self.ellipticity
 
     def film_estimate(self, speed: float) -> float:
-        """Central film by formula, in Hertz units."""
+        """
+        Return the central film by formula, in Hertz units.
+
+        The fit over all regimes, but not far above that of the piezoviscous-elastic one: its rigid
+        branch explodes below its range of loads.
+
+        """
         g = groups(self.contact, self.condition.load, speed, self.lubricant.viscosity,
                    self.lubricant.pressure_viscosity)
-        return float(central_film_nijenbanning_1994(self.contact, g)) / self.height_unit
+        film = min(float(central_film_nijenbanning_1994(self.contact, g)),
+                   1.5 * float(central_film_hamrock_dowson_1977(self.contact, g)))
+        return film / self.height_unit
 
     def speed_of_film(self, film: float) -> float:
         """Speed [m/s] whose smooth film is about `film` [Hertz units], by formula."""
@@ -238,6 +250,6 @@ def _production_domain(case: Case) -> tuple[float, float, float]:
         return -1.4, 1.4, 1.3
     reach = (6 * case.film_estimate(speed)) ** (2 / 3)
     thick = math.sqrt(2 * case.film_estimate(speed))
-    side = 1.2 + min(0.08 * reach ** 2 + reach / case.ellipticity ** 2, 1.0 + 1.2 * thick)
+    side = 1.2 + min(0.08 * reach ** 2 + reach / case.ellipticity ** 2, 1.0 + 2.0 * thick)
     return (-(2.0 + min(0.9 * reach, 4.0 + 3.0 * thick)),
-            1.25 + min(0.03 * reach ** 2, 0.6 * thick), side)
+            1.25 + min(0.03 * reach ** 2, 0.9 * thick), side)

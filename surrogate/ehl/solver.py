@@ -8,12 +8,13 @@ import time
 
 import numpy as np
 from surrogate.ehl.case import Case, make_case, UNRESOLVED
-from surrogate.ehl.grid import Grid
+from surrogate.ehl.grid import Grid, transfer
 from surrogate.ehl.model import (
     check_contact,
     Condition,
     ContactLubricant,
     ContactSolution,
+    LARGEST_GRID,
     Roughness,
     Settings,
     Status,
@@ -97,15 +98,18 @@ def _status(search: Search, grid: Grid, outcome: Outcome) -> Status:
 
 
 def _is_coarse(search: Search, grid: Grid, outcome: Outcome) -> bool:
-    """Tell whether smooth contact comes from the second-order wedge: order 1 has none."""
+    """Tell whether contact of a smooth surface is made up by the grid: twice as fine it has none."""
     case, speed = search.case, search.case.condition.entrainment_speed
     if case.blends:
         return False
-    if not outcome.converged:
+    nx, ny = 2 * case.settings.nx - 1, 2 * case.settings.ny - 1
+    if not outcome.converged or nx > LARGEST_GRID:
         return True
-    problem = case.problem(grid, speed, case.shape_heights(grid), 1.0)
-    first = search.solve(grid, problem, outcome.state, search.limits(rough=False, final=False))
-    return not (first.converged and bool(first.contact.any()))
+    finer = case.grid(nx, ny, symmetric=True)
+    problem = case.problem(finer, speed, case.shape_heights(finer), case.order(finer, speed))
+    found = search.solve(finer, problem, transfer(outcome.state, grid, finer),
+                         search.limits(rough=False, final=False))
+    return not (found.converged and bool(found.contact.any()))
 
 
 def _touches_edge(case: Case, grid: Grid, outcome: Outcome) -> bool:
