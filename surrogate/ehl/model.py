@@ -32,7 +32,7 @@ class Status(Enum):
         'The path from an easier case was cut so fine that it was given up before the case.')
     OUT_OF_TIME = 'The time cap was reached before convergence.'
     GRID_TOO_COARSE = (
-        'The grid is too coarse for the film: a smooth surface would touch; refine along x.')
+        'The grid is too coarse for the film: a smooth surface would touch; refine it.')
     DOMAIN_TOO_SMALL = 'The pressure reaches the side or the outlet of the domain: widen it.'
 
 
@@ -87,7 +87,9 @@ class Settings:
     production rule; `open_inlet` continues the pressure beyond the inlet as the rigid isoviscous
     solution does (None: on the production domain only); film floor [m]; relative tolerances of
     flux, load and contact gap; cap of Newton iterations of one solve [-] and of the whole call
-    [s]; `error_estimate` also solves the half grid; order of the upstream wedge, 1 or 2 (None: 2
+    [s]; `error_estimate` also solves the half grid; `refine` solves
+    a smooth contact that touches on grids up to four times as fine (the result then has more
+    nodes than asked for); order of the upstream wedge, 1 or 2 (None: 2
     when smooth, falling to 1 where a rough film is too thin for the grid); distance of the inlet
     meniscus from the centre [m], for the rolling tail.
 
@@ -104,6 +106,7 @@ class Settings:
     newton_limit: int = 40
     time_cap: float = 60.0
     error_estimate: bool = True
+    refine: bool = True
     wedge_order: int | None = None
     meniscus_length: float = 1e-3
 

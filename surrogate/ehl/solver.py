@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Solve one lubricated, mixed or dry contact and judge what was found."""
 
+from dataclasses import replace
 from functools import lru_cache
 import math
 import time
@@ -20,11 +21,13 @@ from surrogate.ehl.model import (
     Status,
 )
 from surrogate.ehl.newton import Outcome
-from surrogate.ehl.result import make_solution
+from surrogate.ehl.result import central_film, make_solution
 from surrogate.ehl.search import Found, Search
 from surrogate.geometry import Contact
 
 PRODUCTION = Settings()
+REFINEMENTS = 2
+"""Grids, each twice as fine, that contact of a smooth surface must outlive [-]."""
 EDGE_SHARE = 2e-3
 """Share of the load on the last rows inside outlet and sides that a domain may have [-]."""
 
@@ -46,8 +49,8 @@ def solve_contact(contact: Contact, lubricant: ContactLubricant, condition: Cond
     began = time.perf_counter()
     case = make_case(contact, lubricant, condition, settings, roughness)
     search = Search(case=case, deadline=began + settings.time_cap)
-    grid, outcome = _find(search, start)
-    status = _status(search, grid, outcome)
+    grid, outcome, confirmed = _confirm(search, *_find(search, start))
+    status = _status(search, grid, outcome) if confirmed else Status.GRID_TOO_COARSE
     return make_solution(
         case, grid, outcome, status, half=search.half, newton=search.newton,
         krylov=search.krylov, wall_time=time.perf_counter() - began)
@@ -82,13 +85,13 @@ def _find(search: Search, start: ContactSolution | None) -> Found:
 
 
 def _status(search: Search, grid: Grid, outcome: Outcome) -> Status:
-    """Judge an outcome; contact of a smooth surface must not come from its grid."""
+    """Judge an outcome."""
     case = search.case
     if outcome.out_of_time:
         return Status.OUT_OF_TIME
     smooth = case.roughness is None and case.condition.entrainment_speed > 0
     refused = not outcome.converged and outcome.newton == 0
-    if smooth and (refused or outcome.contact.any() and _is_coarse(search, grid, outcome)):
+    if smooth and (refused or not outcome.converged and outcome.contact.any()):
         return Status.GRID_TOO_COARSE
     if not outcome.converged:
         return Status.CONTINUATION_FAILED if case.roughness is not None else Status.STALLED
@@ -97,19 +100,49 @@ def _status(search: Search, grid: Grid, outcome: Outcome) -> Status:
     return Status.CONVERGED
 
 
-def _is_coarse(search: Search, grid: Grid, outcome: Outcome) -> bool:
-    """Tell whether contact of a smooth surface is made up by the grid: twice as fine it has none."""
-    case, speed = search.case, search.case.condition.entrainment_speed
-    if case.blends:
-        return False
-    nx, ny = 2 * case.settings.nx - 1, 2 * case.settings.ny - 1
-    if not outcome.converged or nx > LARGEST_GRID:
-        return True
-    finer = case.grid(nx, ny, symmetric=True)
-    problem = case.problem(finer, speed, case.shape_heights(finer), case.order(finer, speed))
-    found = search.solve(finer, problem, transfer(outcome.state, grid, finer),
-                         search.limits(rough=False, final=False))
-    return not (found.converged and bool(found.contact.any()))
+def _confirm(search: Search, grid: Grid, outcome: Outcome) -> tuple[Grid, Outcome, bool]:
+    """
+    Solve a smooth contact that touches on finer grids, until it does not or is confirmed.
+
+    Second-order films of a coarse grid dip to the floor where a finer one has none. Returns grid,
+    outcome and whether the contact, if any, was there on both finer grids.
+
+    """
+    case, settings = search.case, search.case.settings
+    speed = case.condition.entrainment_speed
+    if case.roughness is not None or not speed or case.blends or outcome.out_of_time:
+        return grid, outcome, True
+    for _ in range(REFINEMENTS if settings.refine else 0):
+        nx, ny = 2 * settings.nx - 1, 2 * settings.ny - 1
+        refused = outcome.newton == 0 and not outcome.converged
+        if not (refused or outcome.contact.any()):
+            return grid, outcome, True
+        if max(nx, ny) > LARGEST_GRID:
+            return grid, outcome, False
+        settings = replace(settings, nx=nx, ny=ny)
+        finer, found = _finer(search, replace(case, settings=settings), grid, outcome)
+        if not found.converged:
+            return grid, outcome, False
+        grid, outcome = finer, found
+    return grid, outcome, settings.refine or not outcome.contact.any()
+
+
+def _finer(search: Search, case: Case, grid: Grid, outcome: Outcome) -> Found:
+    """Solve on a finer grid, from the coarser one or else from cold."""
+    speed, settings = case.condition.entrainment_speed, case.settings
+    finer = case.grid(settings.nx, settings.ny, symmetric=True)
+    if outcome.converged:
+        problem = case.problem(finer, speed, case.shape_heights(finer), case.order(finer, speed))
+        found = search.solve(finer, problem, transfer(outcome.state, grid, finer),
+                             search.limits(rough=False, final=True))
+        search.half = central_film(grid, outcome.gap), float(outcome.gap.min())
+        if found.converged:
+            return finer, found
+    other = Search(case=case, deadline=search.deadline)
+    finer, found = other.smooth(speed, final=True)
+    search.half = other.half
+    search.newton, search.krylov = search.newton + other.newton, search.krylov + other.krylov
+    return finer, found
 
 
 def _touches_edge(case: Case, grid: Grid, outcome: Outcome) -> bool:

@@ -82,13 +82,26 @@ def test_smooth_contact_that_the_grid_makes_up_is_refused(moes_case):
     """M = 1000 on 33 nodes touches with the second-order wedge although its film is far above."""
     contact, oil, condition, unit = moes_case(1000.0, 10.0, 'roelands_dh')
     found = solve_contact(contact, oil, condition, settings=Settings(
-        nx=33, ny=33, domain=(-2.5, 1.5, 2.0)))
+        nx=33, ny=33, domain=(-2.5, 1.5, 2.0), refine=False))
     assert found.status is Status.GRID_TOO_COARSE
     fine = solve_contact(contact, oil, condition, settings=Settings(
         nx=257, ny=257, domain=(-2.5, 1.5, 2.0)))
     assert fine.converged
     assert fine.rcs == 0.0
     assert fine.minimum_film > 0.9 * unit
+
+
+def test_contact_that_a_finer_grid_dispels_is_refined_or_refused(nominal):
+    """At 111 N the rim of an 11 nm film dips to the floor on the production grid, not on finer."""
+    contact, oil = nominal
+    oil = replace(oil, viscosity=0.0179, pressure_viscosity=1.69e-8)
+    condition = Condition(load=111.0, entrainment_speed=0.0566)
+    coarse = solve_contact(contact, oil, condition, settings=Settings(refine=False))
+    fine = solve_contact(contact, oil, condition)
+    assert coarse.status is Status.GRID_TOO_COARSE
+    assert fine.converged, fine.status.value
+    assert fine.rcs == 0.0
+    assert fine.film.shape[0] > coarse.film.shape[0]
 
 
 def test_contact_at_the_edge_of_the_domain_is_refused(nominal):
