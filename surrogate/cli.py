@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Offline subcommands: `point` and `surface build|info|check`."""
+"""Offline subcommands: `point`, `contact` and `surface build|info|check`."""
 
 import argparse
 import json
@@ -11,6 +11,7 @@ import sys
 import time
 from typing import Any
 
+from surrogate.contact_command import add_contact_command
 from surrogate.parameters import (
     InputError,
     load_lubricant,
@@ -67,6 +68,7 @@ def add_commands(subparsers: Any) -> None:
     )
     point.add_argument('--json', action='store_true', help='print JSON in SI units')
     point.set_defaults(handler=_point)
+    add_contact_command(subparsers)
     surface = subparsers.add_parser('surface', help='build, describe or check a surface file')
     actions = surface.add_subparsers(required=True, metavar='build|info|check')
     _add_build(actions.add_parser('build', help='build a surface file'))

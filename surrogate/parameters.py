@@ -1,92 +1,44 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Datasheets: checked, frozen, in SI units inside and in unit-suffixed keys on file.
+Screw, oil, roughness and operating point: checked, frozen, SI inside, unit-suffixed keys on file.
 
-Every quantity is declared once, with the key it has on file, the factor to SI and its allowed
-range; loading, checking and error sentences all derive from that declaration.
+Temperatures are kelvin inside and degC on file.
 
 """
 
-from dataclasses import dataclass, field, fields, MISSING
+from dataclasses import dataclass
 import math
-from pathlib import Path
-import re
-from typing import Any, TypeVar
 
-import yaml
+from surrogate.datasheet import (
+    block,
+    Checked,
+    count,
+    DATA,
+    find_sheet,
+    InputError,
+    quantity,
+    read_sheet,
+    text,
+)
 
-DATA = Path(__file__).parent / 'data'
+__all__ = [
+    'DATA',
+    'InputError',
+    'load_lubricant',
+    'load_screw',
+    'Lubricant',
+    'Material',
+    'OperatingPoint',
+    'Roughness',
+    'Screw',
+    'ZERO_CELSIUS',
+]
+
 ZERO_CELSIUS = 273.15
-
-Sheet = TypeVar('Sheet')
 NAME = (r'[A-Za-z0-9][A-Za-z0-9_.-]*', 'letters, digits and _ . - (it becomes a file name)')
 VISCOSITY_MISMATCH = 2.0
 """Largest factor between the dynamic viscosity and kinematic viscosity times density [-]."""
-
-
-class InputError(ValueError):
-    """One sentence about an input: what, where, value, unit, allowed."""
-
-
-def quantity(
-    unit: str,
-    factor: float,
-    low: float,
-    high: float,
-    *,
-    shift: float = 0.0,
-    default: Any = MISSING,
-) -> Any:
-    """
-    Declare a number: SI = (file + shift) * factor, allowed range in file units.
-
-    The key on file is the name of the field with the unit as its suffix.
-
-    """
-    return field(
-        default=default,
-        metadata={'unit': unit, 'factor': factor, 'shift': shift, 'low': low, 'high': high},
-    )
-
-
-def count(low: int, high: int) -> Any:
-    """Declare a whole number and its range."""
-    return field(
-        metadata={'unit': '', 'factor': 1, 'shift': 0, 'low': low, 'high': high, 'whole': True}
-    )
-
-
-def text(pattern: str = r'(?s).*\S.*', allowed: str = 'a text that is not empty') -> Any:
-    """Declare a mandatory text that matches `pattern`, which `allowed` puts in words."""
-    return field(metadata={'text': pattern, 'allowed': allowed})
-
-
-def block(cls: type) -> Any:
-    """Declare a nested block of quantities."""
-    return field(metadata={'block': cls})
-
-
-def _key(spec: Any) -> str:
-    """Return the key on file of a declared field."""
-    unit = spec.metadata.get('unit')
-    return f'{spec.name}_{unit}' if unit else str(spec.name)
-
-
-class Checked:
-    """Base of all datasheets: every declared quantity is finite and inside its range."""
-
-    __slots__ = ()
-
-    def __post_init__(self) -> None:
-        """Raise InputError for a number outside its declared range."""
-        for spec in fields(self):  # type: ignore[arg-type]
-            if 'low' in spec.metadata:
-                _check_range(
-                    type(self).__name__.lower(),
-                    spec,
-                    getattr(self, spec.name) / spec.metadata['factor'] - spec.metadata['shift'],
-                )
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -251,112 +203,9 @@ class OperatingPoint(Checked):
 
 def load_screw(name_or_path: str) -> Screw:
     """Load a screw by shipped name or file; raises InputError."""
-    return _load(Screw, name_or_path, 'screws')
+    return read_sheet(Screw, find_sheet(name_or_path, 'screws'))
 
 
 def load_lubricant(name_or_path: str) -> Lubricant:
     """Load an oil by shipped name or file; raises InputError."""
-    return _load(Lubricant, name_or_path, 'lubricants')
-
-
-class _StrictLoader(yaml.SafeLoader):
-    """YAML in which a key that stands twice is a mistake and not an overwriting."""
-
-    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
-        """Return the mapping; raises YAMLError for a key that stands twice."""
-        mapping = super().construct_mapping(node, deep)
-        if len(mapping) < len(node.value):
-            keys = [key.value for key, _ in node.value]
-            twice = next(key for key in keys if keys.count(key) > 1)
-            raise yaml.YAMLError(f'key {twice} stands twice')
-        return mapping
-
-
-def _load(cls: type[Sheet], name_or_path: str, folder: str) -> Sheet:
-    path = _find(name_or_path, folder)
-    try:
-        # A safe loader: it makes plain values only.
-        content = yaml.load(path.read_text(encoding='utf-8'), _StrictLoader)
-    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
-        reason = ' '.join(str(error).split())
-        raise InputError(f'{path}: cannot be read as YAML, {reason}') from None
-    return _from_mapping(cls, content, str(path))
-
-
-def _find(name_or_path: str, folder: str) -> Path:
-    shipped = sorted(path.stem for path in (DATA / folder).glob('*.yaml'))
-    if name_or_path in shipped:
-        return DATA / folder / f'{name_or_path}.yaml'
-    path = Path(name_or_path)
-    if path.is_file():
-        return path
-    raise InputError(
-        f'{folder}: {name_or_path!r} is neither a file nor one of the shipped '
-        f'datasheets ({", ".join(shipped)})'
-    )
-
-
-def _from_mapping(cls: type[Sheet], content: Any, where: str) -> Sheet:
-    if not isinstance(content, dict):
-        raise InputError(
-            f'{where}: must be a mapping of keys to values, got {type(content).__name__}'
-        )
-    specs = {_key(spec): spec for spec in fields(cls)}  # type: ignore[arg-type]
-    _check_keys(specs, content, where)
-    values = {specs[key].name: _value(specs[key], raw, where) for key, raw in content.items()}
-    try:
-        return cls(**values)
-    except InputError as error:
-        raise InputError(f'{where}: {error}') from None
-
-
-def _check_keys(specs: dict[str, Any], content: dict[Any, Any], where: str) -> None:
-    for key in content:
-        if key not in specs:
-            raise InputError(f'{where}: {_unknown_key(str(key), specs)}')
-    missing = [
-        key for key, spec in specs.items() if key not in content and spec.default is MISSING
-    ]
-    if missing:
-        raise InputError(
-            f'{where}: missing key {", ".join(missing)} (all of {", ".join(specs)} belong here)'
-        )
-
-
-def _unknown_key(key: str, specs: dict[str, Any]) -> str:
-    """Tell a wrong unit suffix from an unknown name."""
-    for known, spec in specs.items():
-        if spec.metadata.get('unit') and (key == spec.name or key.startswith(f'{spec.name}_')):
-            return f'{key} has a wrong unit, the key is {known}'
-    return f'unknown key {key}, allowed are {", ".join(specs)}'
-
-
-def _value(spec: Any, raw: Any, where: str) -> Any:
-    key, rules = _key(spec), spec.metadata
-    if 'block' in rules:
-        return _from_mapping(rules['block'], raw, f'{where}: {key}')
-    if 'text' in rules:
-        if not isinstance(raw, str) or not re.fullmatch(rules['text'], raw.strip()):
-            raise InputError(f'{where}: {key} is {raw!r}, allowed is {rules["allowed"]}')
-        return raw.strip()
-    if isinstance(raw, bool) or not isinstance(raw, (int, float)):
-        hint = ' (write 1.0e-8, not 1e-8)' if isinstance(raw, str) else ''
-        raise InputError(
-            f'{where}: {key} is {raw!r}, allowed is a number '
-            f'from {rules["low"]:g} to {rules["high"]:g}{hint}'
-        )
-    _check_range(where, spec, raw)
-    return raw if rules.get('whole') else (raw + rules['shift']) * rules['factor']
-
-
-def _check_range(where: str, spec: Any, value: float) -> None:
-    """Compare in file units; a rounding of the conversion must not refuse the limit itself."""
-    rules = spec.metadata
-    low, high, whole = rules['low'], rules['high'], rules.get('whole', False)
-    slack = 1e-12 * max(abs(low), abs(high))
-    inside = math.isfinite(value) and low - slack <= value <= high + slack
-    if not inside or (whole and value != int(value)):
-        kind = 'a whole number from ' if whole else ''
-        raise InputError(
-            f'{where}: {_key(spec)} is {value:g}, allowed is {kind}{low:g} to {high:g}'
-        )
+    return read_sheet(Lubricant, find_sheet(name_or_path, 'lubricants'))

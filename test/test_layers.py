@@ -21,7 +21,7 @@ MODULES = {
     for package in ('surrogate', 'ballscrew_monitor')
 }
 # What the offline half stands on, and where it is forbidden to be heavy.
-NUMERICAL = {'matplotlib', 'numpy', 'scipy', 'yaml'}
+NUMERICAL = {'matplotlib', 'numba', 'numpy', 'scipy', 'SurfaceTopography', 'yaml'}
 LOOKUP = {'surrogate', 'surrogate.surface'}
 
 

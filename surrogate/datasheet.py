@@ -1,0 +1,235 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+How a datasheet is declared, checked and read.
+
+Every quantity is declared once, as a field with the unit on file, the factor to SI and the allowed
+range; keys, checks and error sentences all derive from that declaration.
+
+"""
+
+from dataclasses import field, fields, MISSING
+import math
+from pathlib import Path
+import re
+from typing import Any, TypeVar
+
+import yaml
+
+DATA = Path(__file__).parent / 'data'
+
+Sheet = TypeVar('Sheet')
+
+
+class InputError(ValueError):
+    """One sentence about an input: what, where, value, unit, allowed."""
+
+
+def quantity(
+    unit: str,
+    factor: float,
+    low: float,
+    high: float,
+    *,
+    shift: float = 0.0,
+    default: Any = MISSING,
+) -> Any:
+    """
+    Declare a number: SI = (file + shift) * factor, allowed range in file units.
+
+    The key on file is the name of the field with the unit as its suffix.
+
+    """
+    return field(
+        default=default,
+        metadata={'unit': unit, 'factor': factor, 'shift': shift, 'low': low, 'high': high},
+    )
+
+
+def count(low: int, high: int, *, default: Any = MISSING) -> Any:
+    """Declare a whole number and its range."""
+    return field(
+        default=default,
+        metadata={'unit': '', 'factor': 1, 'shift': 0, 'low': low, 'high': high, 'whole': True},
+    )
+
+
+def quantities(unit: str, factor: float, low: float, high: float) -> Any:
+    """Declare a list of numbers, empty by default; one number alone is a list too."""
+    return field(
+        default=(),
+        metadata={
+            'unit': unit,
+            'factor': factor,
+            'shift': 0.0,
+            'low': low,
+            'high': high,
+            'many': True,
+        },
+    )
+
+
+def text(
+    pattern: str = r'(?s).*\S.*',
+    allowed: str = 'a text that is not empty',
+    *,
+    default: Any = MISSING,
+) -> Any:
+    """Declare a text that matches `pattern`, which `allowed` puts in words."""
+    return field(default=default, metadata={'text': pattern, 'allowed': allowed})
+
+
+def choice(*allowed: str, default: Any = MISSING) -> Any:
+    """Declare a word out of those allowed."""
+    return field(default=default, metadata={'choice': allowed})
+
+
+def block(cls: type, *, default: Any = MISSING) -> Any:
+    """Declare a nested block of quantities; a list of all its values in order will do too."""
+    return field(default=default, metadata={'block': cls})
+
+
+def _key(spec: Any) -> str:
+    """Return the key on file of a declared field."""
+    unit = spec.metadata.get('unit')
+    return f'{spec.name}_{unit}' if unit else str(spec.name)
+
+
+class Checked:
+    """Base of all datasheets: every declared quantity is finite and inside its range."""
+
+    __slots__ = ()
+
+    def __post_init__(self) -> None:
+        """Raise InputError for a number outside its declared range; None is absent."""
+        for spec in fields(self):  # type: ignore[arg-type]
+            value = getattr(self, spec.name)
+            if 'low' in spec.metadata and value is not None:
+                for number in value if 'many' in spec.metadata else (value,):
+                    _check_range(
+                        type(self).__name__.lower(),
+                        spec,
+                        number / spec.metadata['factor'] - spec.metadata['shift'],
+                    )
+
+
+class _StrictLoader(yaml.SafeLoader):
+    """YAML in which a key that stands twice is a mistake and not an overwriting."""
+
+    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
+        """Return the mapping; raises YAMLError for a key that stands twice."""
+        mapping = super().construct_mapping(node, deep)
+        if len(mapping) < len(node.value):
+            keys = [key.value for key, _ in node.value]
+            twice = next(key for key in keys if keys.count(key) > 1)
+            raise yaml.YAMLError(f'key {twice} stands twice')
+        return mapping
+
+
+def read_sheet(cls: type[Sheet], path: Path) -> Sheet:
+    """Read a YAML file whose keys are those that `cls` declares; raises InputError."""
+    try:
+        # A safe loader: it makes plain values only.
+        content = yaml.load(path.read_text(encoding='utf-8'), _StrictLoader)
+    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
+        reason = ' '.join(str(error).split())
+        raise InputError(f'{path}: cannot be read as YAML, {reason}') from None
+    return _from_mapping(cls, content, str(path))
+
+
+def find_sheet(name_or_path: str, folder: str) -> Path:
+    """Return the path of a shipped datasheet or of a file; raises InputError."""
+    shipped = sorted(path.stem for path in (DATA / folder).glob('*.yaml'))
+    if name_or_path in shipped:
+        return DATA / folder / f'{name_or_path}.yaml'
+    path = Path(name_or_path)
+    if path.is_file():
+        return path
+    raise InputError(
+        f'{folder}: {name_or_path!r} is neither a file nor one of the shipped '
+        f'datasheets ({", ".join(shipped)})'
+    )
+
+
+def _from_mapping(cls: type[Sheet], content: Any, where: str) -> Sheet:
+    if not isinstance(content, dict):
+        raise InputError(
+            f'{where}: must be a mapping of keys to values, got {type(content).__name__}'
+        )
+    specs = {_key(spec): spec for spec in fields(cls)}  # type: ignore[arg-type]
+    _check_keys(specs, content, where)
+    values = {specs[key].name: _value(specs[key], raw, where) for key, raw in content.items()}
+    try:
+        return cls(**values)
+    except InputError as error:
+        raise InputError(f'{where}: {error}') from None
+
+
+def _check_keys(specs: dict[str, Any], content: dict[Any, Any], where: str) -> None:
+    for key in content:
+        if key not in specs:
+            raise InputError(f'{where}: {_unknown_key(str(key), specs)}')
+    missing = [
+        key for key, spec in specs.items() if key not in content and spec.default is MISSING
+    ]
+    if missing:
+        raise InputError(
+            f'{where}: missing key {", ".join(missing)} (all of {", ".join(specs)} belong here)'
+        )
+
+
+def _unknown_key(key: str, specs: dict[str, Any]) -> str:
+    """Tell a wrong unit suffix from an unknown name."""
+    for known, spec in specs.items():
+        if spec.metadata.get('unit') and (key == spec.name or key.startswith(f'{spec.name}_')):
+            return f'{key} has a wrong unit, the key is {known}'
+    return f'unknown key {key}, allowed are {", ".join(specs)}'
+
+
+def _value(spec: Any, raw: Any, where: str) -> Any:
+    key, rules = _key(spec), spec.metadata
+    if 'block' in rules:
+        keys = [_key(one) for one in fields(rules['block'])]
+        if isinstance(raw, list) and len(raw) == len(keys):
+            raw = dict(zip(keys, raw, strict=True))
+        return _from_mapping(rules['block'], raw, f'{where}: {key}')
+    if 'text' in rules:
+        if not isinstance(raw, str) or not re.fullmatch(rules['text'], raw.strip()):
+            raise InputError(f'{where}: {key} is {raw!r}, allowed is {rules["allowed"]}')
+        return raw.strip()
+    if 'choice' in rules:
+        if raw not in rules['choice']:
+            raise InputError(
+                f'{where}: {key} is {raw!r}, allowed is {" or ".join(rules["choice"])}'
+            )
+        return raw
+    if 'many' in rules:
+        return tuple(
+            _number(spec, one, where) for one in (raw if isinstance(raw, list) else [raw])
+        )
+    return _number(spec, raw, where)
+
+
+def _number(spec: Any, raw: Any, where: str) -> Any:
+    key, rules = _key(spec), spec.metadata
+    if isinstance(raw, bool) or not isinstance(raw, (int, float)):
+        hint = ' (write 1.0e-8, not 1e-8)' if isinstance(raw, str) else ''
+        raise InputError(
+            f'{where}: {key} is {raw!r}, allowed is a number '
+            f'from {rules["low"]:g} to {rules["high"]:g}{hint}'
+        )
+    _check_range(where, spec, raw)
+    return raw if rules.get('whole') else (raw + rules['shift']) * rules['factor']
+
+
+def _check_range(where: str, spec: Any, value: float) -> None:
+    """Compare in file units; a rounding of the conversion must not refuse the limit itself."""
+    rules = spec.metadata
+    low, high, whole = rules['low'], rules['high'], rules.get('whole', False)
+    slack = 1e-12 * max(abs(low), abs(high))
+    inside = math.isfinite(value) and low - slack <= value <= high + slack
+    if not inside or (whole and value != int(value)):
+        kind = 'a whole number from ' if whole else ''
+        raise InputError(
+            f'{where}: {_key(spec)} is {value:g}, allowed is {kind}{low:g} to {high:g}'
+        )

@@ -1,0 +1,299 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""One contact case in Hertz units: scales, domain, grids, equations at any speed and roughness."""
+
+from dataclasses import dataclass
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+from surrogate.ehl.grid import Grid, make_grid, State
+from surrogate.ehl.half_space import deform
+from surrogate.ehl.model import Condition, ContactLubricant, Roughness, Settings
+from surrogate.ehl.newton import Problem
+from surrogate.film_formulas import (
+    central_film_hamrock_dowson_1977,
+    central_film_nijenbanning_1994,
+    groups,
+)
+from surrogate.geometry import Contact, hertz
+from surrogate.lubricant import ROELANDS_OFFSET, ROELANDS_PRESSURE
+from surrogate.parameters import InputError
+
+Array = NDArray[np.float64]
+DOWSON_HIGGINSON = 0.34
+"""Gain of density at infinite pressure [-]."""
+SOFT = 0.6
+"""Exponent of viscosity that converges from Hertz's pressure [-]."""
+STIFF = 0.8
+"""Exponent from which the way leads over a softer law [-]."""
+COARSEST = 33
+"""Levels are halved down to about this many nodes along x [-]."""
+COARSE_STEP = 0.25
+"""Largest node distance of a coarse level over the semi-axis or the width of a thick film [-]."""
+COARSEST_ACROSS = 17
+RESOLVED, UNRESOLVED = 0.3, 0.9
+"""Node distance over the inlet length up to which touching films keep order 2 and from which 1."""
+TOUCHING = 2.0
+"""Film by formula over the floor below which smooth surfaces are taken to touch [-]."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Case:
+    """
+    What to solve, with its scales.
+
+    Semi-axes [m], Hertz pressure [Pa], height unit a^2/Rx [m], domain over the semi-axis a.
+
+    """
+
+    contact: Contact
+    lubricant: ContactLubricant
+    condition: Condition
+    settings: Settings
+    roughness: Roughness | None
+    semi_axis_x: float
+    semi_axis_y: float
+    hertz_pressure: float
+    height_unit: float
+    domain: tuple[float, float, float]
+    open_inlet: bool
+
+    @property
+    def ellipticity(self) -> float:
+        """Semi-axis along y over that along x [-]."""
+        return self.semi_axis_y / self.semi_axis_x
+
+    @property
+    def floor(self) -> float:
+        """Film floor in Hertz units."""
+        return self.settings.film_floor / self.height_unit
+
+    @property
+    def load(self) -> float:
+        """Load in Hertz units."""
+        return 2 * math.pi / 3 * self.ellipticity
+
+    def film_estimate(self, speed: float) -> float:
+        """
+        Return the central film by formula, in Hertz units.
+
+        The fit over all regimes, but not far above that of the piezoviscous-elastic one: its rigid
+        branch explodes below its range of loads.
+
+        """
+        g = groups(
+            self.contact,
+            self.condition.load,
+            speed,
+            self.lubricant.viscosity,
+            self.lubricant.pressure_viscosity,
+        )
+        film = min(
+            float(central_film_nijenbanning_1994(self.contact, g)),
+            1.5 * float(central_film_hamrock_dowson_1977(self.contact, g)),
+        )
+        return film / self.height_unit
+
+    def speed_of_film(self, film: float) -> float:
+        """Speed [m/s] whose smooth film is about `film` [Hertz units], by formula."""
+        trial = 1.0
+        for _ in range(8):
+            trial *= (film / self.film_estimate(trial)) ** 1.4
+        return trial
+
+    def grid(self, nx: int, ny: int, *, symmetric: bool) -> Grid:
+        """Return a grid of this case."""
+        compliance = (
+            2
+            * self.hertz_pressure
+            * self.contact.radius_x
+            / (math.pi * self.contact.reduced_modulus * self.semi_axis_x)
+        )
+        return make_grid(nx, ny, self.domain, symmetric=symmetric, compliance=compliance)
+
+    def levels(self) -> list[tuple[int, int]]:
+        """Return the cascade of grids, coarsest first."""
+        nx, ny = self.settings.nx, self.settings.ny
+        levels = [(nx, ny)]
+        width, speed = self.domain[1] - self.domain[0], self.condition.entrainment_speed
+        thick = math.sqrt(2 * self.film_estimate(speed)) if speed else 0.0
+        while nx > COARSEST + 8 and 2 * width / nx < COARSE_STEP * max(1.0, thick):
+            nx, ny = nx // 4 * 2 + 1, max(ny // 4 * 2 + 1, COARSEST_ACROSS)
+            levels.insert(0, (nx, ny))
+        return levels
+
+    def shape_heights(self, grid: Grid) -> Array:
+        """Return the smooth undeformed gap."""
+        ratio = self.contact.radius_x / self.contact.radius_y
+        return 0.5 * grid.x[:, None] ** 2 + 0.5 * ratio * grid.y[None, :] ** 2
+
+    def rough_heights(self, grid: Grid) -> Array:
+        """Return the roughness on a full grid."""
+        unit, shape = self.semi_axis_x, grid.shape
+        if callable(self.roughness):
+            places = np.meshgrid(grid.x * unit, grid.y * unit, indexing='ij')
+            heights = np.asarray(self.roughness(*places), dtype=float)
+        else:
+            heights = np.asarray(self.roughness, dtype=float)
+        if heights.shape != shape:
+            raise InputError(f'roughness has shape {heights.shape}, the grid has {shape}')
+        if not np.isfinite(heights).all():
+            raise InputError('roughness holds a height that is not finite')
+        return heights / self.height_unit
+
+    def inlet_length(self, speed: float) -> float:
+        """
+        Length over which the gap in front of the Hertz zone grows by the film, in Hertz units.
+
+        Gap (4 sqrt(2)/3) s^(3/2) at the distance s: the pressure builds up there.
+
+        """
+        film = max(self.film_estimate(speed), self.floor)
+        return float((0.75 * film / math.sqrt(2)) ** (2 / 3))
+
+    @property
+    def blends(self) -> bool:
+        """Whether the surfaces touch: a thin film takes order 1 where the grid misses it."""
+        speed = self.condition.entrainment_speed
+        return self.roughness is not None or (
+            speed > 0 and self.film_estimate(speed) < TOUCHING * self.floor
+        )
+
+    def coarseness(self, settings: Settings, speed: float) -> float:
+        """Return the node distance of the finest grid over the inlet length [-]."""
+        dx = (self.domain[1] - self.domain[0]) / (settings.nx - 1)
+        return dx / self.inlet_length(speed)
+
+    def order(self, grid: Grid, speed: float) -> float:
+        """Order of the upstream wedge at the end of the way."""
+        if self.settings.wedge_order is not None:
+            return float(self.settings.wedge_order)
+        if not self.blends or speed == 0.0:
+            return 2.0
+        if self.roughness is None:
+            return 1.0  # all of a smooth contact touches at once, which order 2 does not survive
+        coarseness = grid.dx / self.inlet_length(speed)
+        return 1.0 + float(np.clip((UNRESOLVED - coarseness) / (UNRESOLVED - RESOLVED), 0, 1))
+
+    def problem(
+        self, grid: Grid, speed: float, heights: Array, order: float, softness: float = 0.0
+    ) -> Problem:
+        """Return the equations on a grid at a speed [m/s]; `softness` as in `fluid_numbers`."""
+        lubricant, a = self.lubricant, self.semi_axis_x
+        exponent, gain = self.fluid_numbers(softness)
+        shear = 12 * lubricant.viscosity * speed * a / (self.hertz_pressure * self.height_unit**2)
+        return Problem(
+            heights=heights,
+            floor=self.floor,
+            load=self.load,
+            width=2 * self.ellipticity,
+            dry=speed == 0.0,
+            mobility=1 / (shear * grid.dx) if speed else 0.0,
+            pressure_scale=self.hertz_pressure,
+            exponent=exponent,
+            density_gain=gain,
+            growth=lubricant.pressure_viscosity * ROELANDS_PRESSURE / exponent,
+            order=order,
+            inlet=self.inlet(grid),
+        )
+
+    def fluid_numbers(self, softness: float) -> tuple[float, float]:
+        """
+        Return the exponent of viscosity in pressure and the gain of density.
+
+        Barus is Roelands with exponent 1; a softness of 1 takes any law back to exponent SOFT and
+        the density of Dowson and Higginson, from where a stiff law is reached in steps.
+
+        """
+        exponent, gain = 1.0, 0.0
+        if self.lubricant.law == 'roelands_dh':
+            growth = math.log(self.lubricant.viscosity) + ROELANDS_OFFSET
+            gain = DOWSON_HIGGINSON
+            exponent = self.lubricant.pressure_viscosity * ROELANDS_PRESSURE / growth
+        soft = min(SOFT, exponent)
+        return (
+            exponent + softness * (soft - exponent),
+            gain + softness * (DOWSON_HIGGINSON - gain),
+        )
+
+    def inlet(self, grid: Grid) -> Array:
+        """
+        Return p outside the inlet over p inside, per column: p ~ x / h^2 of the rigid paraboloid.
+
+        """
+        if not self.open_inlet:
+            return np.zeros(grid.y.size)
+        heights = self.shape_heights(grid)
+        return grid.x[0] / grid.x[1] * (heights[1] / heights[0]) ** 2
+
+    def hertz_state(self, grid: Grid, speed: float) -> State:
+        """Return Hertz's pressure at the approach that leaves the film of the formula."""
+        round_x, round_y = grid.x[:, None], grid.y[None, :] / self.ellipticity
+        pressure = np.sqrt(np.maximum(1 - round_x**2 - round_y**2, 0))
+        lift = np.empty(grid.shape)
+        deform(grid.space, pressure, lift)
+        i, j = np.argmin(np.abs(grid.x)), np.argmin(np.abs(grid.y))
+        film = self.film_estimate(speed) if speed else self.floor
+        nothing = np.zeros(grid.shape)
+        return State(
+            film_pressure=pressure if speed else nothing,
+            asperity_pressure=nothing if speed else pressure,
+            approach=float(film - lift[i, j]),
+        )
+
+
+def make_case(
+    contact: Contact,
+    lubricant: ContactLubricant,
+    condition: Condition,
+    settings: Settings,
+    roughness: Roughness | None,
+) -> Case:
+    """Scale a case by its Hertz contact."""
+    dry = hertz(contact, condition.load)
+    a = float(dry.semi_axis_x)
+    case = Case(
+        contact=contact,
+        lubricant=lubricant,
+        condition=condition,
+        settings=settings,
+        roughness=roughness,
+        semi_axis_x=a,
+        semi_axis_y=float(dry.semi_axis_y),
+        hertz_pressure=float(dry.max_pressure),
+        height_unit=a * a / contact.radius_x,
+        domain=(0.0, 0.0, 0.0),
+        open_inlet=False,
+    )
+    domain = settings.domain or _production_domain(case)
+    open_inlet = settings.domain is None if settings.open_inlet is None else settings.open_inlet
+    k = case.ellipticity
+    return Case(
+        **{
+            **{name: getattr(case, name) for name in Case.__slots__},
+            'domain': (domain[0], domain[1], domain[2] * k),
+            'open_inlet': open_inlet,
+        }
+    )
+
+
+def _production_domain(case: Case) -> tuple[float, float, float]:
+    """
+    Return inlet, outlet and side over the semi-axes: with the open inlet, films within 0.3 %.
+
+    The pressure in front of the contact falls off over the inlet length of the film; across, the
+    more slowly the rounder the contact.
+
+    """
+    speed = case.condition.entrainment_speed
+    if not speed:
+        return -1.4, 1.4, 1.3
+    reach = (6 * case.film_estimate(speed)) ** (2 / 3)
+    thick = math.sqrt(2 * case.film_estimate(speed))
+    side = 1.2 + min(0.08 * reach**2 + reach / case.ellipticity**2, 1.0 + 2.0 * thick)
+    return (
+        -(2.0 + min(0.9 * reach, 4.0 + 3.0 * thick)),
+        1.25 + min(0.03 * reach**2, 0.9 * thick),
+        side,
+    )

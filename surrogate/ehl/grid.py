@@ -1,0 +1,138 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Grids of one contact in Hertz units, and the transfer of states between them.
+
+Lengths along x and y over the semi-axis a along x, heights over a^2/Rx, pressures over the Hertz
+pressure. A symmetric grid holds the half y >= 0 in columns 1 on and the mirror image of column 2
+in column 0.
+
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import map_coordinates
+from surrogate.ehl._krylov import make_workspace, Workspace
+from surrogate.ehl.half_space import HalfSpace, make_half_space
+
+Array = NDArray[np.float64]
+KRYLOV_TYPE = np.float32
+"""Precision of the linear solver; residuals are always in double precision."""
+KRYLOV_LIMIT = 120
+"""Most iterations of one linear solve [-]."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Grid:
+    """Nodes x (nx) and y (array columns, mirror column included), elastic scale."""
+
+    x: Array
+    y: Array
+    symmetric: bool
+    compliance: float
+
+    @property
+    def dx(self) -> float:
+        """Node distance along x."""
+        return float(self.x[1] - self.x[0])
+
+    @property
+    def dy(self) -> float:
+        """Node distance along y."""
+        return float(self.y[1] - self.y[0])
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Shape of an array."""
+        return self.x.size, self.y.size
+
+    @cached_property
+    def weights(self) -> Array:
+        """Area that a node of each column stands for, mirror images included."""
+        weights = np.full(self.y.size, self.dx * self.dy)
+        if self.symmetric:
+            weights[2:] *= 2
+            weights[0] = 0
+        return weights
+
+    @cached_property
+    def space(self) -> HalfSpace:
+        """Half-space in double precision."""
+        return make_half_space(
+            *self.shape, self.dx, self.dy, symmetric=self.symmetric, scale=self.compliance
+        )
+
+    @cached_property
+    def krylov_space(self) -> HalfSpace:
+        """Half-space in the precision of the linear solver."""
+        return make_half_space(
+            *self.shape,
+            self.dx,
+            self.dy,
+            symmetric=self.symmetric,
+            scale=self.compliance,
+            dtype=KRYLOV_TYPE,
+        )
+
+    @cached_property
+    def workspace(self) -> Workspace:
+        """Arrays of the linear solver."""
+        return make_workspace(*self.shape, KRYLOV_LIMIT, KRYLOV_TYPE)
+
+    @cached_property
+    def stiffness(self) -> float:
+        """Short-wave deflection under unit pressure: the scale between pressures and gaps."""
+        return float(self.space.near[0])
+
+    def integral(self, field: Array) -> float:
+        """Integrate a field."""
+        return float(field.sum(axis=0) @ self.weights)
+
+
+def make_grid(
+    nx: int, ny: int, domain: tuple[float, float, float], *, symmetric: bool, compliance: float
+) -> Grid:
+    """
+    Return nx by ny nodes on [x_in, x_out] x [-y_side, y_side], all over the semi-axis a.
+
+    ny counts the nodes of the full width and is odd when symmetric.
+
+    """
+    x_in, x_out, side = domain
+    x, y = np.linspace(x_in, x_out, nx), np.linspace(-side, side, ny)
+    return Grid(
+        x=x, y=y[ny // 2 - 1 :] if symmetric else y, symmetric=symmetric, compliance=compliance
+    )
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class State:
+    """Film and asperity pressure and approach, in Hertz units."""
+
+    film_pressure: Array
+    asperity_pressure: Array
+    approach: float
+
+
+def transfer(state: State, old: Grid, new: Grid) -> State:
+    """Interpolate a state bilinearly; zero outside the old grid."""
+    return State(
+        film_pressure=_resample(state.film_pressure, old, new),
+        asperity_pressure=_resample(state.asperity_pressure, old, new),
+        approach=state.approach,
+    )
+
+
+def _resample(field: Array, old: Grid, new: Grid) -> Array:
+    y = np.abs(new.y) if old.symmetric else new.y
+    rows, columns = (new.x - old.x[0]) / old.dx, (y - old.y[0]) / old.dy
+    places = np.stack(np.meshgrid(rows, columns, indexing='ij'))
+    values = np.asarray(map_coordinates(field, places, order=1, mode='constant', cval=0.0))
+    values[0] = values[-1] = 0.0
+    values[:, -1] = 0.0
+    if not new.symmetric:
+        values[:, 0] = 0.0
+    return values

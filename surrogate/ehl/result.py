@@ -1,0 +1,162 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""From a grid solution in Hertz units to the result in SI, and back for a warm start."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+from surrogate.ehl.case import Case
+from surrogate.ehl.grid import Grid, State, transfer
+from surrogate.ehl.model import ContactSolution, Status
+from surrogate.ehl.newton import Outcome
+
+Array = NDArray[np.float64]
+PUNCTURED = 1.001
+"""Film over the floor below which a node counts as punctured [-]."""
+
+
+def central_film(grid: Grid, gap: Array) -> float:
+    """Return the film at x = 0, y = 0 by a parabola through three nodes along x."""
+    i, j = int(np.argmin(np.abs(grid.x))), int(np.argmin(np.abs(grid.y)))
+    s = -grid.x[i] / grid.dx
+    west, here, east = gap[i - 1 : i + 2, j]
+    return float(here + 0.5 * s * (east - west) + 0.5 * s * s * (east - 2 * here + west))
+
+
+def punctured_nodes(solution: ContactSolution) -> NDArray[np.bool_]:
+    """Return the nodes whose film is at the floor: there asperities touch."""
+    return solution.film <= PUNCTURED * solution.settings.film_floor
+
+
+def make_solution(
+    case: Case,
+    grid: Grid,
+    outcome: Outcome,
+    status: Status,
+    *,
+    half: tuple[float, float],
+    newton: int,
+    krylov: int,
+    wall_time: float,
+) -> ContactSolution:
+    """Return the result of a solve in SI units on the full width."""
+    state, height = outcome.state, case.height_unit
+    pressure = case.hertz_pressure
+    total = state.film_pressure + state.asperity_pressure
+    punctured = outcome.gap <= PUNCTURED * case.floor
+    film = central_film(grid, outcome.gap)
+    extrapolated, error = _two_grid(film, half[0])
+    lowest = float(outcome.gap.min())
+    area = case.semi_axis_x**2
+    force = _rolling(grid, outcome.gap, state.film_pressure, case.inlet(grid)) * pressure * height
+    return ContactSolution(
+        contact=case.contact,
+        lubricant=case.lubricant,
+        condition=case.condition,
+        settings=case.settings,
+        status=status,
+        film_pressure=_full(grid, state.film_pressure) * pressure,
+        asperity_pressure=_full(grid, state.asperity_pressure) * pressure,
+        film=_full(grid, outcome.gap) * height,
+        x=grid.x * case.semi_axis_x,
+        y=_full_y(grid) * case.semi_axis_x,
+        contact_mask=_full(grid, outcome.contact),
+        cavitation_mask=_full(grid, outcome.cavitated),
+        central_film=film * height,
+        minimum_film=lowest * height,
+        extrapolated_film=extrapolated * height,
+        extrapolated_minimum=_two_grid(lowest, half[1])[0] * height,
+        film_error=error,
+        max_pressure=float(total.max()) * pressure,
+        hertz_pressure=pressure,
+        semi_axis_x=case.semi_axis_x,
+        semi_axis_y=case.semi_axis_y,
+        approach=-state.approach * height,
+        rcs=grid.integral(np.where(punctured, total, 0.0)) / case.load,
+        asperity_share=grid.integral(state.asperity_pressure) / case.load,
+        load_error=outcome.load_error,
+        residual=outcome.flux_error,
+        gap_error=outcome.gap_error,
+        rolling_force=force * area / case.semi_axis_x,
+        rolling_tail=_rolling_tail(case),
+        newton_iterations=newton,
+        krylov_iterations=krylov,
+        wall_time=wall_time,
+    )
+
+
+def _full(grid: Grid, field: NDArray) -> NDArray:
+    """Return a field on the full width."""
+    if not grid.symmetric:
+        return field.copy()
+    return np.concatenate([field[:, :1:-1], field[:, 1:]], axis=1)
+
+
+def _full_y(grid: Grid) -> Array:
+    return np.concatenate([-grid.y[:1:-1], grid.y[1:]]) if grid.symmetric else grid.y.copy()
+
+
+def _two_grid(film: float, half_film: float) -> tuple[float, float]:
+    """Return the extrapolated film and the relative error of `film`, both for order 2."""
+    step = (film - half_film) / 3
+    return film + step, abs(step / film)
+
+
+def _rolling(grid: Grid, gap: Array, pressure: Array, inlet: Array) -> float:
+    """
+    Return the integral of (h/2) dp/dx; outside the first row the pressure is that of the inlet.
+
+    """
+    rise = np.diff(pressure, axis=0)
+    rise[0] -= inlet * pressure[1]
+    return grid.integral(0.25 * (gap[1:] + gap[:-1]) * rise / grid.dx)
+
+
+def _rolling_tail(case: Case) -> float:
+    """
+    Return the rolling force [N] between the meniscus and the inlet edge of the domain.
+
+    Integral of 6 eta0 us / h over the width of the domain with the undeformed gap: in closed form
+    along y, by quadrature along x.
+
+    """
+    contact, a = case.contact, case.semi_axis_x
+    start, side = -case.domain[0] * a, case.domain[2] * a
+    if case.settings.meniscus_length <= start or not case.condition.entrainment_speed:
+        return 0.0
+    nodes, weights = np.polynomial.legendre.leggauss(24)
+    span = math.log(case.settings.meniscus_length / start)
+    x = start * np.exp(span * (nodes + 1) / 2)
+    depth = x**2 / (2 * contact.radius_x)
+    root = np.sqrt(2 * contact.radius_y * depth)
+    across = 2 * np.arctan(side / root) * root / depth
+    integral = float((weights * across * x).sum()) * span / 2
+    return 6 * case.lubricant.viscosity * case.condition.entrainment_speed * integral
+
+
+def state_from_solution(case: Case, grid: Grid, start: ContactSolution) -> State:
+    """
+    Return the fields of another solution on `grid`; without speed all pressure is on asperities.
+
+    """
+    old = Grid(
+        x=start.x / start.semi_axis_x,
+        y=start.y / start.semi_axis_x,
+        symmetric=False,
+        compliance=grid.compliance,
+    )
+    height = start.semi_axis_x**2 / start.contact.radius_x
+    state = State(
+        film_pressure=start.film_pressure / start.hertz_pressure,
+        asperity_pressure=start.asperity_pressure / start.hertz_pressure,
+        approach=-start.approach / height,
+    )
+    state = transfer(state, old, grid)
+    if case.condition.entrainment_speed:
+        return state
+    return State(
+        film_pressure=np.zeros(grid.shape),
+        approach=state.approach,
+        asperity_pressure=state.film_pressure + state.asperity_pressure,
+    )

@@ -1,0 +1,272 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Ways to a solution of one contact: from Hertz, from coarser grids, easier cases and neighbours.
+
+Cold: a cascade of grids from Hertz's pressure, first-order wedge below the finest; if that fails,
+from a faster speed downwards. Rough or nearly dry: the smooth film at a speed that parts the
+surfaces, then the roughness grows, then the speed falls. Every path is cut in halves where a step
+fails.
+
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+import math
+
+import numpy as np
+from surrogate.ehl.case import Array, Case, STIFF
+from surrogate.ehl.grid import Grid, State, transfer
+from surrogate.ehl.model import ContactSolution
+from surrogate.ehl.newton import Limits, Outcome, Problem, solve_grid
+from surrogate.ehl.result import central_film, state_from_solution
+
+Found = tuple[Grid, Outcome]
+FINEST_CUT = 1 / 64
+"""Shortest step of a continuation path, as a share of it [-]."""
+WARM_NEWTON = 25
+"""Most Newton iterations of one step from a neighbouring solution [-]."""
+PARTING = 1.5
+"""Smooth film over the roughness rms at which a rough path starts [-]."""
+
+
+@dataclass(slots=True)
+class Search:
+    """Counters of one call and what it has found."""
+
+    case: Case
+    deadline: float
+    newton: int = 0
+    krylov: int = 0
+    half: tuple[float, float] = (math.nan, math.nan)
+
+    def limits(self, *, rough: bool, final: bool) -> Limits:
+        """Return the tolerances of a smooth or rough solve, on the way or at the end."""
+        settings, stiff = self.case.settings, self.case.fluid_numbers(0.0)[0] > STIFF
+        steps = (1.0, 12.0, 1.0) if rough else (0.5, 3.0 if stiff else 6.0, 0.3)
+        return Limits(
+            flux=settings.flux_tolerance if final else max(1e-2, settings.flux_tolerance),
+            load=settings.load_tolerance,
+            gap=settings.gap_tolerance,
+            krylov=0.01 if rough or stiff else 0.05,
+            newton=settings.newton_limit,
+            step=steps[0],
+            viscous=steps[1],
+            rise=steps[2],
+            deadline=self.deadline,
+        )
+
+    def solve(self, grid: Grid, problem: Problem, state: State, limits: Limits) -> Outcome:
+        """Solve on one grid and count."""
+        outcome = solve_grid(grid, problem, state, limits)
+        self.newton += outcome.newton
+        self.krylov += outcome.krylov
+        return outcome
+
+    def march(
+        self,
+        grid: Grid,
+        state: State,
+        path: Callable[[float], Problem],
+        limits: Limits,
+        first: float = 1.0,
+    ) -> Outcome:
+        """Follow `path` from 0, where `state` holds, to 1, in steps that are halved on failure."""
+        place, step = 0.0, first
+        loose = replace(
+            limits,
+            flux=max(1e-2, limits.flux),
+            gap=max(1e-2, limits.gap),
+            newton=min(limits.newton, WARM_NEWTON),
+        )
+        while True:
+            target = 1.0 if place + step > 1 - 1e-9 else place + step
+            outcome = self.solve(grid, path(target), state, limits if target == 1.0 else loose)
+            if outcome.converged:
+                place, state, step = target, outcome.state, min(2 * step, 1 - target)
+                if place == 1.0:
+                    return outcome
+            else:
+                step /= 2
+                if step < FINEST_CUT or outcome.out_of_time:
+                    return outcome
+
+    def smooth(self, speed: float, *, final: bool) -> Found:
+        """Solve the smooth contact from cold through the cascade."""
+        levels = self.case.levels()
+        grid, outcome = self._cascade(speed, levels[:-1])
+        fine = self.case.grid(*levels[-1], symmetric=True)
+        heights = self.case.shape_heights(fine)
+        limits = self.limits(rough=False, final=final)
+        state = (
+            transfer(outcome.state, grid, fine) if grid and outcome and outcome.converged else None
+        )
+        first = self.case.problem(fine, speed, heights, 1.0)
+        if state is None:
+            outcome = self._from_hertz(fine, speed, limits)
+            if not outcome.converged:
+                return fine, outcome
+            state = outcome.state
+        order = self.case.order(fine, speed)
+        outcome = self.solve(fine, replace(first, order=order), state, limits)
+        if not outcome.converged and not outcome.out_of_time:
+            easier = self.solve(fine, first, state, limits)
+            if easier.converged:
+                outcome = self.march(
+                    fine,
+                    easier.state,
+                    lambda t: replace(first, order=1.0 + t * (order - 1.0)),
+                    limits,
+                    0.5,
+                )
+        return fine, outcome
+
+    def _cascade(
+        self, speed: float, levels: list[tuple[int, int]]
+    ) -> tuple[Grid | None, Outcome | None]:
+        """Solve the coarser grids at first order; on the last also at the final order."""
+        grid: Grid | None = None
+        outcome: Outcome | None = None
+        limits = self.limits(rough=False, final=False)
+        for place, shape in enumerate(levels):
+            finer = self.case.grid(*shape, symmetric=True)
+            problem = self.case.problem(finer, speed, self.case.shape_heights(finer), 1.0)
+            if outcome is not None and outcome.converged and grid is not None:
+                outcome = self.solve(finer, problem, transfer(outcome.state, grid, finer), limits)
+            else:
+                outcome = self._from_hertz(finer, speed, limits)
+            grid = finer
+            if place == len(levels) - 1 and outcome.converged:
+                outcome = self._half_grid(grid, problem, speed, outcome)
+        return grid, outcome
+
+    def _half_grid(self, grid: Grid, problem: Problem, speed: float, start: Outcome) -> Outcome:
+        """Solve the last but one grid as the finest is solved and note its film."""
+        if not self.case.settings.error_estimate or self.case.blends:
+            return start
+        limits = replace(self.limits(rough=False, final=True), flux=1e-3, newton=15)
+        order = self.case.order(grid, speed)
+        outcome = self.solve(grid, replace(problem, order=order), start.state, limits)
+        if not outcome.converged or (outcome.contact.any() and not problem.dry):
+            return start
+        self.half = central_film(grid, outcome.gap), float(outcome.gap.min())
+        return outcome
+
+    def _from_hertz(self, grid: Grid, speed: float, limits: Limits) -> Outcome:
+        """Start from Hertz's pressure at this speed or, failing that, at a faster one."""
+        heights = self.case.shape_heights(grid)
+        if speed and self.case.fluid_numbers(0.0)[0] > STIFF:
+            return self._from_soft(grid, speed, heights, limits)
+        for factor in (1.0, 4.0, 16.0, 64.0, 256.0):
+            start = speed * factor
+            outcome = self.solve(
+                grid,
+                self.case.problem(grid, start, heights, 1.0),
+                self.case.hertz_state(grid, start),
+                limits,
+            )
+            if outcome.converged or outcome.out_of_time or speed == 0.0:
+                break
+        if not outcome.converged or factor == 1.0:
+            return outcome
+        return self.march(
+            grid,
+            outcome.state,
+            self._slowing(grid, heights, start, speed, 1.0),
+            limits,
+            1 / math.log2(2 * factor),
+        )
+
+    def _from_soft(self, grid: Grid, speed: float, heights: Array, limits: Limits) -> Outcome:
+        """Start with a softer fluid and stiffen it."""
+
+        def stiffening(t: float) -> Problem:
+            return self.case.problem(grid, speed, heights, 1.0, 1.0 - t)
+
+        outcome = self.solve(grid, stiffening(0.0), self.case.hertz_state(grid, speed), limits)
+        return (
+            self.march(grid, outcome.state, stiffening, limits, 0.5)
+            if (outcome.converged)
+            else outcome
+        )
+
+    def _slowing(
+        self, grid: Grid, heights: Array, fast: float, slow: float, order: float | None = None
+    ) -> Callable[[float], Problem]:
+        """Return the path in the logarithm of speed, at an order or at that of the finest grid."""
+
+        def problem(t: float) -> Problem:
+            speed = slow if t == 1.0 else fast * (slow / fast) ** t
+            return self.case.problem(grid, speed, heights, order or self.case.order(grid, speed))
+
+        return problem
+
+    def thin(self) -> Found:
+        """
+        Solve a rough contact, or a smooth one whose film is near the floor, from cold.
+
+        The smooth film at a speed that parts the surfaces comes first, then the roughness grows to
+        its height, then the speed falls.
+
+        """
+        case, settings = self.case, self.case.settings
+        speed, smooth = case.condition.entrainment_speed, case.roughness is None
+        grid = case.grid(settings.nx, settings.ny, symmetric=smooth)
+        rough = np.zeros(grid.shape) if smooth else case.rough_heights(grid)
+        start = max(speed, case.speed_of_film(self._parting(grid, rough))) if speed else 0.0
+        half, outcome = self.smooth(start, final=False)
+        if not outcome.converged:
+            return half, outcome
+        limits, shape = self.limits(rough=True, final=True), case.shape_heights(grid)
+        state = transfer(outcome.state, half, grid)
+        if not smooth:
+            outcome = self.march(
+                grid,
+                state,
+                lambda t: case.problem(grid, start, shape - t * rough, case.order(grid, start)),
+                limits,
+                0.5,
+            )
+        if not outcome.converged or start == speed:
+            return grid, outcome
+        path = self._slowing(grid, shape - rough, start, speed)
+        return grid, self.march(
+            grid, outcome.state, path, limits, min(1.0, 0.5 / math.log(start / speed))
+        )
+
+    def _parting(self, grid: Grid, rough: Array) -> float:
+        """Return a smooth film that the roughness hardly pierces."""
+        k = self.case.ellipticity
+        inside = grid.x[:, None] ** 2 + (grid.y[None, :] / k) ** 2 < 1
+        return max(PARTING * float(rough[inside].std()), 2 * self.case.floor)
+
+    def warm(self, start: ContactSolution) -> Found | None:
+        """Solve from a neighbouring solution, in steps if need be; None if that fails."""
+        case, settings = self.case, self.case.settings
+        rough = case.roughness is not None
+        grid = case.grid(settings.nx, settings.ny, symmetric=not rough)
+        heights = case.shape_heights(grid)
+        if rough:
+            heights = heights - case.rough_heights(grid)
+        speed, last = case.condition.entrainment_speed, start.condition.entrainment_speed
+        limits = self.limits(rough=case.blends, final=True)
+        limits = replace(limits, newton=min(limits.newton, WARM_NEWTON))
+        state = state_from_solution(case, grid, start)
+        if speed and last:
+            path = self._slowing(grid, heights, last, speed)
+            outcome = self.march(grid, state, path, limits)
+        else:
+            problem = case.problem(grid, speed, heights, case.order(grid, speed))
+            outcome = self.solve(grid, problem, state, limits)
+        return (grid, outcome) if outcome.converged else None
+
+    def refuse(self) -> Found:
+        """Return Hertz's state on the finest grid without any iteration."""
+        case, settings = self.case, self.case.settings
+        grid, speed = (
+            case.grid(settings.nx, settings.ny, symmetric=True),
+            (case.condition.entrainment_speed),
+        )
+        problem = case.problem(grid, speed, case.shape_heights(grid), 1.0)
+        limits = replace(self.limits(rough=False, final=True), newton=0)
+        return grid, self.solve(grid, problem, case.hertz_state(grid, speed), limits)

@@ -1,0 +1,281 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Rough raceways: a fractal surface in metres, and the patches of it that a contact sees.
+
+A surface is a fixed sum of plane waves, so that one draw is the same whatever load, speed, grid or
+domain looks at it. Its shortest wavelength never follows a grid. Heights are positive out of the
+material.
+
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+import logging
+import math
+from typing import Any, ClassVar, get_args, Literal, Protocol, TypeVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from surrogate.parameters import InputError, Roughness
+
+Array = NDArray[np.float64]
+Lay = Literal['isotropic', 'longitudinal', 'transverse']
+Patch = Literal['rescaled', 'cut']
+Draws = Literal['seeds', 'positions']
+Plane = tuple[float, float, float]
+
+LAY_SPREAD = math.radians(20.0)
+"""Range of wave directions of a surface with a lay [rad]."""
+SAMPLES_PER_WAVE, FEWEST_SAMPLES = 4, 41
+"""Points per shortest wavelength, and in all along a side, when a patch is levelled [-]."""
+FLAT = 1e-12
+"""Rms height that counts as none [m]."""
+LOG = logging.getLogger(__name__)
+
+
+class Surface(Protocol):
+    """
+    What a contact needs of a rough surface, fractal or measured: heights in metres anywhere.
+
+    Heights are those of the raw surface less `plane` (offset [m], slopes [-]), times `scale` [-],
+    the factor of the rescaling, 1 for a patch as it was cut. `patch` is None before one was taken.
+
+    """
+
+    __dataclass_fields__: ClassVar[dict[str, Any]]
+
+    @property
+    def plane(self) -> Plane:
+        """Return the mean plane: offset [m] and slopes [-]."""
+
+    @property
+    def scale(self) -> float:
+        """Return the factor of the rescaling [-]."""
+
+    @property
+    def patch(self) -> Patch | None:
+        """Return the kind of the patch."""
+
+    @property
+    def shortest_wavelength(self) -> float:
+        """Return the shortest wavelength that the surface holds [m]."""
+
+    def heights(self, x: ArrayLike, y: ArrayLike) -> Array:
+        """Return heights [m], shape (nx, ny), on the grid of `x` and `y` [m] (see `grid_axes`)."""
+
+
+AnySurface = TypeVar('AnySurface', bound=Surface)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Window:
+    """Rectangle about the contact centre where a patch is levelled and scaled, sides [m]."""
+
+    length_x: float
+    length_y: float
+
+    def __post_init__(self) -> None:
+        """Check the sides."""
+        for name in ('length_x', 'length_y'):
+            if not 0 < getattr(self, name) < math.inf:
+                raise InputError(
+                    f'window: {name} is {getattr(self, name):g} m, allowed is above 0'
+                )
+
+
+@dataclass(frozen=True, kw_only=True)
+class FractalSurface:
+    """
+    Sum of plane waves less a plane: z = scale (sum a [cos phi - cos(kx x + ky y + phi)] - plane).
+
+    Amplitudes [m], wave numbers [rad/m], phases [rad]; plane, scale and patch as in `Surface`.
+
+    """
+
+    amplitude: Array
+    wave_number_x: Array
+    wave_number_y: Array
+    phase: Array
+    plane: Plane = (0.0, 0.0, 0.0)
+    scale: float = 1.0
+    patch: Patch | None = None
+
+    @property
+    def shortest_wavelength(self) -> float:
+        """Shortest wavelength of the sum [m]."""
+        return float(2 * math.pi / np.max(np.hypot(self.wave_number_x, self.wave_number_y)))
+
+    def heights(self, x: ArrayLike, y: ArrayLike) -> Array:
+        """Return heights [m], shape (nx, ny), on the grid of `x` and `y` [m] (see `grid_axes`)."""
+        x, y = grid_axes(x, y)
+        along = np.exp(1j * np.outer(x, self.wave_number_x))
+        across = np.exp(1j * np.outer(self.wave_number_y, y))
+        weight = self.amplitude * np.exp(1j * self.phase)
+        waves = np.sum(weight.real) - ((along * weight) @ across).real
+        return np.asarray(self.scale * (waves - on_plane(self.plane, x, y)))
+
+
+def fractal_surface(roughness: Roughness, seed: int, *, lay: Lay = 'isotropic') -> FractalSurface:
+    """
+    Return one draw of the Weierstrass-Mandelbrot surface, its phases [rad] from `seed`.
+
+    z = L (G/L)^(D-2) sqrt(ln g / M) sum_m sum_n g^((D-3)n) {cos phi_mn - cos[2 pi g^n r/L
+    cos(theta - pi m/M) + phi_mn]}, n to int(log(L/Ls)/log g): Yan, Komvopoulos, J. Appl. Phys. 84
+    (1998) 3617. A lay puts the M directions into a fan. A smaller Ls adds waves and changes none.
+
+    """
+    number, amplitude = wave_spectrum(roughness)
+    direction = wave_directions(roughness.ridges, lay)
+    phase = np.random.default_rng(seed).uniform(0, 2 * math.pi, (len(number), len(direction)))
+    return FractalSurface(
+        amplitude=np.repeat(amplitude, len(direction)),
+        wave_number_x=np.outer(number, np.cos(direction)).ravel(),
+        wave_number_y=np.outer(number, np.sin(direction)).ravel(),
+        phase=phase.ravel(),
+    )
+
+
+def wave_spectrum(roughness: Roughness) -> tuple[Array, Array]:
+    """Return wave numbers [rad/m] and the amplitude of one wave at each [m]."""
+    g, length = roughness.scale_ratio, roughness.sample_length
+    shortest = roughness.shortest_wavelength
+    if not shortest < length:
+        raise InputError(
+            f'roughness: shortest wavelength is {1e6 * shortest:g} um, allowed is less than the '
+            f'sample length ({1e6 * length:g} um)'
+        )
+    # The rounding of a logarithm must not cost the last wave.
+    order = np.arange(int(math.log(length / shortest) / math.log(g) + 1e-9) + 1)
+    dimension = roughness.fractal_dimension
+    height = length * (roughness.fractal_roughness / length) ** (dimension - 2)
+    one_ridge = math.sqrt(math.log(g) / roughness.ridges)
+    number = np.asarray(2 * math.pi / length * g**order)
+    return number, height * one_ridge * g ** ((dimension - 3) * order)
+
+
+def wave_directions(ridges: int, lay: Lay) -> Array:
+    """Return the directions of the waves [rad]; a lay along x has its waves along y."""
+    if lay not in get_args(Lay):
+        raise InputError(f'lay is {lay!r}, allowed is isotropic, longitudinal or transverse')
+    if lay == 'isotropic':
+        return math.pi * np.arange(1, ridges + 1) / ridges
+    centre = 0.5 * math.pi if lay == 'longitudinal' else 0.0
+    return centre + LAY_SPREAD * (np.arange(ridges) / max(ridges - 1, 1) - 0.5)
+
+
+def theoretical_rms(roughness: Roughness) -> float:
+    """
+    Return Rq of the fractal surface [m], the mean over draws.
+
+    Rq^2 = 0.5 ln g L^2 (G/L)^(2(D-2)) [1 - g^(-2(3-D)(n_max+1))]/[1 - g^(-2(3-D))].
+
+    """
+    _, amplitude = wave_spectrum(roughness)
+    return math.sqrt(0.5 * roughness.ridges * float(np.sum(amplitude**2)))
+
+
+def shifted(surface: FractalSurface, x: float, y: float) -> FractalSurface:
+    """Return the surface with its place (x, y) [m] moved to the contact centre."""
+    phase = surface.phase + surface.wave_number_x * x + surface.wave_number_y * y
+    lift = float(np.sum(surface.amplitude * (np.cos(surface.phase) - np.cos(phase))))
+    offset, slope_x, slope_y = surface.plane
+    offset += slope_x * x + slope_y * y - lift
+    return replace(surface, phase=phase, plane=(offset, slope_x, slope_y))
+
+
+def take_patch(surface: AnySurface, kind: Patch, window: Window, rms: float) -> AnySurface:
+    """
+    Return the surface as a contact sees it, levelled over `window`.
+
+    `rescaled`: scaled once to `rms` [m] over the window, as the published study has it. `cut`: at
+    the height that it has. The window belongs to the draw: take a patch once, never per load. The
+    factor is kept in `scale` [-] and logged.
+
+    """
+    if kind not in get_args(Patch):
+        raise InputError(f'patch is {kind!r}, allowed is rescaled or cut')
+    plane, found = _level(replace(surface, plane=(0.0, 0.0, 0.0), scale=1.0), window)
+    if not found > FLAT:
+        raise InputError('roughness: the surface is flat over the window of the patch')
+    scale = rms / found if kind == 'rescaled' else 1.0
+    LOG.info(
+        'patch %s: rms %.4g um over %.4g x %.4g mm, times %.4g',
+        kind,
+        1e6 * found,
+        1e3 * window.length_x,
+        1e3 * window.length_y,
+        scale,
+    )
+    return replace(surface, plane=plane, scale=scale, patch=kind)
+
+
+def _level(surface: Surface, window: Window) -> tuple[Plane, float]:
+    """Return the mean plane of a surface over the window and its rms height [m] above it."""
+    x, y = (
+        np.linspace(-side / 2, side / 2, _samples(side / surface.shortest_wavelength))
+        for side in (window.length_x, window.length_y)
+    )
+    heights = surface.heights(x, y)
+    plane = (
+        float(heights.mean()),
+        float((x @ heights.mean(axis=1)) / (x @ x)),
+        float((y @ heights.mean(axis=0)) / (y @ y)),
+    )
+    return plane, float(np.std(heights - on_plane(plane, x, y)))
+
+
+def _samples(waves: float) -> int:
+    return max(FEWEST_SAMPLES, SAMPLES_PER_WAVE * math.ceil(waves) + 1)
+
+
+def grid_axes(x: ArrayLike, y: ArrayLike) -> tuple[Array, Array]:
+    """Return the axes of a grid from axes, or from the two arrays of a grid, first index x."""
+    x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
+    return np.atleast_1d(x[:, 0] if x.ndim == 2 else x), np.atleast_1d(y[0] if y.ndim == 2 else y)
+
+
+def on_plane(plane: Plane, x: Array, y: Array) -> Array:
+    """Return the heights of a plane [m] on the grid of `x` and `y` [m]."""
+    return np.asarray(plane[0] + plane[1] * x[:, None] + plane[2] * y[None, :])
+
+
+def ensemble(
+    roughness: Roughness,
+    count: int,
+    kind: Patch,
+    window: Window,
+    *,
+    by: Draws = 'seeds',
+    seed: int = 0,
+    lay: Lay = 'isotropic',
+) -> Iterator[FractalSurface]:
+    """
+    Yield `count` patches of one kind, for the mean and the scatter of a result.
+
+    By `seeds`: draws seed, seed + 1, ... at the centre. By `positions`: places of the one draw
+    `seed`, random over its sample length less the window.
+
+    """
+    if by not in get_args(Draws):
+        raise InputError(f'draws by {by!r}, allowed is seeds or positions')
+    if by == 'seeds':
+        draws = (fractal_surface(roughness, seed + one, lay=lay) for one in range(count))
+    else:
+        surface = fractal_surface(roughness, seed, lay=lay)
+        draws = (shifted(surface, *place) for place in _places(roughness, count, window, seed))
+    for draw in draws:
+        yield take_patch(draw, kind, window, roughness.rms)
+
+
+def _places(
+    roughness: Roughness, count: int, window: Window, seed: int
+) -> Iterator[tuple[float, float]]:
+    free = roughness.sample_length - np.array([window.length_x, window.length_y])
+    if np.any(free < 0):
+        raise InputError(
+            f'window: its longer side is {1e3 * max(window.length_x, window.length_y):g} mm, '
+            f'allowed is the sample length ({1e3 * roughness.sample_length:g} mm) at most'
+        )
+    for x, y in np.random.default_rng([seed, 1]).uniform(-0.5, 0.5, (count, 2)) * free:
+        yield float(x), float(y)

@@ -1,0 +1,174 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Bad input is one sentence, everything else a status; nothing is silently wrong."""
+
+from dataclasses import FrozenInstanceError, replace
+import math
+
+import numpy as np
+import pytest
+from surrogate.ehl import Condition, ContactLubricant, Settings, solve_contact, Status
+from surrogate.geometry import Contact
+from surrogate.parameters import InputError
+
+NOMINAL = Condition(load=27.6, entrainment_speed=0.5)
+SMALL = Settings(nx=33, ny=33)
+
+
+@pytest.mark.parametrize(
+    'change',
+    [
+        {'load': 0.0},
+        {'load': -1.0},
+        {'load': math.nan},
+        {'entrainment_speed': -0.1},
+        {'entrainment_speed': math.inf},
+        {'load': '27'},
+    ],
+)
+def test_impossible_conditions_are_refused(change):
+    """Loads must be positive, speeds not negative, both finite numbers."""
+    with pytest.raises(InputError, match=next(iter(change))):
+        replace(NOMINAL, **change)
+
+
+@pytest.mark.parametrize(
+    'change',
+    [{'radius_x': -1e-3}, {'radius_y': 0.0}, {'reduced_modulus': math.nan}, {'radius_y': 99.0}],
+)
+def test_impossible_contacts_are_refused(nominal, change):
+    """Radii and modulus must be positive and of one world."""
+    with pytest.raises(InputError, match='radius|modulus'):
+        solve_contact(replace(nominal[0], **change), nominal[1], NOMINAL)
+
+
+@pytest.mark.parametrize(
+    'change',
+    [
+        {'viscosity': 0.0},
+        {'pressure_viscosity': -1e-8},
+        {'eyring_stress': math.nan},
+        {'law': 'water'},
+    ],
+)
+def test_impossible_oils_are_refused(nominal, change):
+    """Numbers in range and one of the two laws."""
+    with pytest.raises(InputError, match=next(iter(change))):
+        replace(nominal[1], **change)
+
+
+@pytest.mark.parametrize(
+    'change',
+    [
+        {'nx': 64},
+        {'ny': 5},
+        {'nx': 64.5},
+        {'domain': (-0.5, 1.5, 2.0)},
+        {'domain': (-2.0, 1.5)},
+        {'film_floor': 0.0},
+        {'time_cap': -1.0},
+        {'wedge_order': 3},
+    ],
+)
+def test_impossible_settings_are_refused(change):
+    """Odd grids, domains that hold the contact, positive floor and cap."""
+    with pytest.raises(InputError, match=next(iter(change))):
+        Settings(**change)
+
+
+@pytest.mark.parametrize('heights', [np.zeros((3, 3)), np.full((33, 33), np.nan)])
+def test_roughness_that_does_not_fit_is_refused(nominal, heights):
+    """Its shape is that of the grid and all heights are finite."""
+    with pytest.raises(InputError, match='roughness'):
+        solve_contact(*nominal, NOMINAL, roughness=heights, settings=SMALL)
+
+
+def test_results_are_frozen_and_statuses_are_sentences(nominal):
+    """No field can be set; every status ends with a full stop."""
+    found = solve_contact(*nominal, NOMINAL, settings=SMALL)
+    with pytest.raises(FrozenInstanceError):
+        found.rcs = 0.5
+    assert all(status.value.endswith('.') and ' ' in status.value for status in Status)
+
+
+def test_no_time_is_a_status(nominal):
+    """A cap of a microsecond ends before convergence and says so."""
+    found = solve_contact(*nominal, NOMINAL, settings=Settings(time_cap=1e-3))
+    assert found.status is Status.OUT_OF_TIME
+    assert not found.converged
+
+
+def test_no_iterations_is_a_status(nominal):
+    """One Newton iteration is not enough and is not called so."""
+    found = solve_contact(*nominal, NOMINAL, settings=replace(SMALL, newton_limit=1))
+    assert found.status is Status.STALLED
+
+
+def test_smooth_contact_that_the_grid_makes_up_is_refused(moes_case):
+    """M = 1000 on 33 nodes touches with the second-order wedge although its film is far above."""
+    contact, oil, condition, unit = moes_case(1000.0, 10.0, 'roelands_dh')
+    found = solve_contact(
+        contact,
+        oil,
+        condition,
+        settings=Settings(nx=33, ny=33, domain=(-2.5, 1.5, 2.0), refine=False),
+    )
+    assert found.status is Status.GRID_TOO_COARSE
+    fine = solve_contact(
+        contact, oil, condition, settings=Settings(nx=257, ny=257, domain=(-2.5, 1.5, 2.0))
+    )
+    assert fine.converged
+    assert fine.rcs == 0.0
+    assert fine.minimum_film > 0.9 * unit
+
+
+def test_contact_that_a_finer_grid_dispels_is_refined_or_refused(nominal):
+    """At 111 N the rim of an 11 nm film dips to the floor on the production grid, not on finer."""
+    contact, oil = nominal
+    oil = replace(oil, viscosity=0.0179, pressure_viscosity=1.69e-8)
+    condition = Condition(load=111.0, entrainment_speed=0.0566)
+    coarse = solve_contact(contact, oil, condition, settings=Settings(refine=False))
+    fine = solve_contact(contact, oil, condition)
+    assert coarse.status is Status.GRID_TOO_COARSE
+    assert fine.converged, fine.status.value
+    assert fine.rcs == 0.0
+    assert fine.film.shape[0] > coarse.film.shape[0]
+
+
+def test_contact_at_the_edge_of_the_domain_is_refused(nominal):
+    """Waves that carry the ball beyond the side of the grid are seen."""
+    found = solve_contact(
+        *nominal,
+        replace(NOMINAL, entrainment_speed=0.0),
+        settings=Settings(nx=65, ny=65, domain=(-1.4, 1.4, 1.06)),
+        roughness=lambda x, y: 1e-6 * np.cos(np.pi * y / 0.45e-3) * -1 + 0 * x,
+    )
+    assert found.status is Status.DOMAIN_TOO_SMALL
+
+
+def test_a_film_below_the_floor_is_real_contact(nominal):
+    """
+    A tenth of a millimetre per second: the smooth film is far below the floor, most load is dry.
+
+    """
+    found = solve_contact(
+        *nominal, Condition(load=27.6, entrainment_speed=1e-5), settings=Settings(film_floor=10e-9)
+    )
+    assert found.status in (Status.CONVERGED, Status.GRID_TOO_COARSE)
+    if found.converged:
+        assert found.rcs > 0.9
+
+
+def test_the_long_axis_works_or_says_no():
+    """Entrainment along the long axis of the ellipse."""
+    contact = Contact(radius_x=75e-3, radius_y=3e-3, reduced_modulus=226.4e9)
+    oil = ContactLubricant(viscosity=0.06, pressure_viscosity=2e-8)
+    found = solve_contact(
+        contact,
+        oil,
+        Condition(load=10.0, entrainment_speed=2.0),
+        settings=Settings(nx=129, ny=129),
+    )
+    assert found.converged, found.status.value
+    assert found.semi_axis_x > 5 * found.semi_axis_y
+    assert 0 < found.minimum_film < found.central_film
