@@ -36,7 +36,7 @@ class Status(Enum):
     GRID_TOO_COARSE = (
         'The grid is too coarse for the film: a smooth surface would touch; refine it.'
     )
-    DOMAIN_TOO_SMALL = 'The pressure reaches the side or the outlet of the domain: widen it.'
+    DOMAIN_TOO_SMALL = 'Pressure or contact reaches the edge of the domain: widen it.'
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -17,11 +17,12 @@ PUNCTURED = 1.001
 
 
 def central_film(grid: Grid, gap: Array) -> float:
-    """Return the film at x = 0, y = 0 by a parabola through three nodes along x."""
+    """Return the film at x = 0, y = 0 by a parabola through three nodes along x, within them."""
     i, j = int(np.argmin(np.abs(grid.x))), int(np.argmin(np.abs(grid.y)))
     s = -grid.x[i] / grid.dx
     west, here, east = gap[i - 1 : i + 2, j]
-    return float(here + 0.5 * s * (east - west) + 0.5 * s * s * (east - 2 * here + west))
+    film = here + 0.5 * s * (east - west) + 0.5 * s * s * (east - 2 * here + west)
+    return float(np.clip(film, min(west, here, east), max(west, here, east)))
 
 
 def punctured_nodes(solution: ContactSolution) -> NDArray[np.bool_]:

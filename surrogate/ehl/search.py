@@ -206,7 +206,7 @@ class Search:
         Solve a rough contact, or a smooth one whose film is near the floor, from cold.
 
         The smooth film at a speed that parts the surfaces comes first, then the roughness grows to
-        its height, then the speed falls.
+        its height, then the speed falls; if that fails, the dry contact is wetted.
 
         """
         case, settings = self.case, self.case.settings
@@ -230,9 +230,20 @@ class Search:
         if not outcome.converged or start == speed:
             return grid, outcome
         path = self._slowing(grid, shape - rough, start, speed)
-        return grid, self.march(
+        outcome = self.march(
             grid, outcome.state, path, limits, min(1.0, 0.5 / math.log(start / speed))
         )
+        if outcome.converged or outcome.out_of_time:
+            return grid, outcome
+        dry = self.march(
+            grid,
+            case.hertz_state(grid, 0.0),
+            lambda t: case.problem(grid, 0.0, shape - t * rough, 2.0),
+            limits,
+            0.5,
+        )
+        wet = self.solve(grid, path(1.0), dry.state, limits) if dry.converged else outcome
+        return grid, wet if wet.converged else outcome
 
     def _parting(self, grid: Grid, rough: Array) -> float:
         """Return a smooth film that the roughness hardly pierces."""

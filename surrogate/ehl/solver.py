@@ -116,7 +116,8 @@ def _status(search: Search, grid: Grid, outcome: Outcome) -> Status:
         return Status.GRID_TOO_COARSE
     if not outcome.converged:
         return Status.CONTINUATION_FAILED if case.roughness is not None else Status.STALLED
-    if _touches_edge(case, grid, outcome):
+    below = outcome.gap.min() < (1 - 2 * case.settings.gap_tolerance) * case.floor
+    if below or _touches_edge(case, grid, outcome):  # only border nodes can lie below
         return Status.DOMAIN_TOO_SMALL
     return Status.CONVERGED
 
