@@ -32,9 +32,9 @@ def nominal_bag(nominal_cycle, tmp_path_factory):
 
 @pytest.fixture(scope='session')
 def short_bag(nominal_bag, tmp_path_factory):
-    """Return the directory of 3 s of it: standing still until every input is there, homing."""
+    """Return the directory of its first 3 s: a standstill, and homing with its warning."""
     directory = tmp_path_factory.mktemp('bags') / 'short'
-    cut(Bag(nominal_bag), directory, 0.95, 3.95)
+    cut(Bag(nominal_bag), directory, 0.0, 3.005)
     return directory
 
 
