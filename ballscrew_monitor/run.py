@@ -13,6 +13,7 @@ from collections.abc import Iterator, Sequence
 import contextlib
 import dataclasses
 import fcntl
+import importlib.util
 import os
 from pathlib import Path
 import signal
@@ -61,6 +62,8 @@ def plan(bag: Path, params: Path, out: Path, rate: float) -> Plan:
     Raises InputError before anything is started or written.
 
     """
+    if importlib.util.find_spec('matplotlib') is None:  # asked early, imported late: it is slow
+        raise ModuleNotFoundError('no picture without matplotlib', name='matplotlib')
     if not 0.0 < rate <= 1000.0:
         raise InputError(f'rate is {rate:g}, allowed is above 0 to 1000')
     values = parameters.read_file(params)
