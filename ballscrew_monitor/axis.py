@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """From parameter values to one ready axis: its surface, its inputs and its monitor."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping
 import dataclasses
 from typing import Any
 
@@ -59,6 +59,24 @@ def build_axis(name: str, values: Mapping[str, Any]) -> Axis:
         inputs=_inputs_of(name, values, surface.lead),
         monitor=Monitor(surface, settings_of(name, values, surface.preload)),
     )
+
+
+def check_topics(axes: Iterable[Axis], resolve: Callable[[str], str]) -> None:
+    """Raise InputError for a name that `resolve` refuses, and for a topic of two types."""
+    types: dict[str, str] = {}
+    for axis in axes:
+        for source in axis.inputs:
+            try:
+                topic = resolve(source.topic)
+            except RuntimeError:
+                raise InputError(
+                    f'parameter {axis.name}.{source.source.name.lower()}.topic '
+                    f'is {source.topic!r}, no topic name'
+                ) from None
+            if types.setdefault(topic, source.type_name) != source.type_name:
+                raise InputError(
+                    f'topic {topic} is configured as {types[topic]} and as {source.type_name}'
+                )
 
 
 def load_surface(name: str, values: Mapping[str, Any]) -> Surface:

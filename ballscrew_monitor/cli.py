@@ -21,6 +21,14 @@ from surrogate.surface import SurfaceError
 
 BAG, PARAMS, OUT = Path('bags/nominal_cycle'), Path('config/nominal_cycle.yaml'), Path('out')
 FAILED, BAD_INPUT, INTERRUPTED = 1, 2, 130
+# What some commands need beyond the rest, and how to get it.
+NEEDED = {
+    'mcap': 'pip install mcap zstandard',
+    'zstandard': 'pip install mcap zstandard',
+    'matplotlib': 'pip install matplotlib',
+    'rclpy': 'source the set-up file of ROS 2',
+    'ballscrew_msgs': 'source the set-up file of the workspace in which it was built',
+}
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -31,6 +39,15 @@ def main(arguments: list[str] | None = None) -> int:
     except (errors.InputError, InputError, SurfaceError) as error:
         print(f'ballscrew: {error}', file=sys.stderr)
         return BAD_INPUT
+    except ImportError as error:
+        package = (error.name or '').split('.')[0]
+        if package not in NEEDED:
+            raise
+        print(
+            f'ballscrew: {package} is not installed, this command needs it: {NEEDED[package]}',
+            file=sys.stderr,
+        )
+        return FAILED
     except BrokenPipeError:
         # The reader, such as `head`, has seen enough; nothing may be written at exit either.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -57,10 +57,9 @@ def draw(trace: Trace, summary: Summary, surface: Surface, path: Path) -> None:
     FigureCanvasAgg(figure)
     upper, lower = figure.subfigures(2, 1, height_ratios=(1.0, 1.15), squeeze=False)[:, 0]
     axes = upper.subplots()
-    mean = draw_map(axes, trace, surface)
+    mean, others = draw_map(axes, trace, surface)
     _draw_path(axes, trace, summary)
-    spread = trace.temperature[np.isfinite(trace.temperature)]
-    _finish_map(axes, trace, mean, others=bool(np.ptp(spread) > 2.0))
+    _finish_map(axes, trace, mean, others=others)
     axes.set_title(
         f'Ball screw axis {trace.axis}: cycle on the operating map\n'
         f'screw {surface.screw_name}, oil {surface.oil_name}, '

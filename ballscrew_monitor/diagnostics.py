@@ -24,6 +24,7 @@ OK, WARN = DiagnosticStatus.OK, DiagnosticStatus.WARN
 ERROR, STALE = DiagnosticStatus.ERROR, DiagnosticStatus.STALE
 NOT_SET = 'no message was set'
 NOTHING_YET = 'nothing has been judged yet'
+CLOCK_STANDS = 'the clock stands still, nothing is seen to go stale'
 INACTIVE = 'the node is inactive, nothing is judged'
 PARTS = ('Lubrication', 'Inputs', 'Surface')
 Summary = tuple[bytes, str]  # level and message of a status
@@ -75,11 +76,13 @@ def statuses(
     surface: Surface,
     *,
     publishers: Mapping[Source, int] | None,
+    clock_stands: bool = False,
 ) -> list[DiagnosticStatus]:
     """
     Return the three statuses of a configured axis, `state` its last one if there is one.
 
     `publishers` says how many publishers each input is matched with; None: the node is inactive.
+    While the clock stands no state tells that an input is dead, so nothing but a warning is held.
 
     """
     made = blank(node, axis)
@@ -100,6 +103,9 @@ def statuses(
         return made
     for status, (level, message) in zip(made, summaries(state, event)):
         status.level, status.message = level, message
+    if clock_stands:
+        for status in made[state.level is Level.WARN : 2]:
+            status.level, status.message = STALE, CLOCK_STANDS
     made[0].values = _values(_lubrication_values(state))
     made[1].values = [*made[1].values, *_values(_input_values(state.inputs))]
     return made

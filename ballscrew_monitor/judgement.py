@@ -172,11 +172,9 @@ def judge(point: Point, estimate: Estimate, limits: Limits) -> Verdict:
     return Verdict(zone=Zone.OPTIMAL, gates=gates, clear=clears(estimate, limits, light=light))
 
 
-def is_judged(estimate: Estimate, verdict: Verdict) -> bool:
-    """Tell whether a sample led to a verdict; that nothing applies at standstill is one too."""
-    if verdict.zone is not Zone.UNKNOWN:
-        return True
-    return Gate.STANDSTILL in verdict.gates and estimate.validity is not Validity.NO_INPUT
+def is_judged(verdict: Verdict) -> bool:
+    """Tell whether a verdict was possible; that nothing applies at standstill is one too."""
+    return verdict.zone is not Zone.UNKNOWN or Gate.STANDSTILL in verdict.gates
 
 
 def clears(estimate: Estimate, limits: Limits, *, light: bool) -> bool:

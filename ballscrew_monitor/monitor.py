@@ -125,7 +125,7 @@ class Monitor:
         point = self._point(stamp)
         result = self._estimate(point)
         verdict = judge(point, result, self.settings.limits)
-        self._judged += is_judged(result, verdict)
+        self._judged += is_judged(verdict)
         self._account.add(moment(stamp, point, result, verdict), max_gap=self._max_gap)
         self._window.add(point, result, verdict)
         return self._advance(stamp, point, result, verdict)

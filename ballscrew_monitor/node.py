@@ -10,11 +10,12 @@ import traceback
 from typing import Any
 
 from ballscrew_monitor import diagnostics, parameters
-from ballscrew_monitor.axis import Axis, build_axis, reload_surface
+from ballscrew_monitor.axis import build_axis, check_topics, reload_surface
 from ballscrew_monitor.conversions import nanoseconds
 from ballscrew_monitor.errors import InputError
 from ballscrew_monitor.inputs import Input
 from ballscrew_monitor.parameter_store import ParameterStore
+from ballscrew_monitor.pulse import Pulse
 from ballscrew_monitor.state import State
 from ballscrew_monitor.station import STATE_QOS, Station
 from ballscrew_msgs.srv import EvaluateOperatingPoint
@@ -65,11 +66,11 @@ class BallscrewMonitor(LifecycleNode):
         self._reason = 'not configured'
         self._inputs: list[Any] = []
         self._tick_timer: Any = None
-        self._last_grid = -1
         self._steady = Clock(clock_type=ClockType.STEADY_TIME)
         self._news_time = 0
         self._store = ParameterStore(self, self._on_parameters)
         self._values = self._store.values
+        self._pulse = Pulse(nanoseconds(self._values['tick_period']))
         self._diagnostics = self.create_publisher(DiagnosticArray, '/diagnostics', STATE_QOS)
         # On the steady clock: it speaks while a simulated one stands.
         self.create_timer(
@@ -100,7 +101,7 @@ class BallscrewMonitor(LifecycleNode):
         """Load the surfaces, compile the inputs; on failure stay unconfigured, with a reason."""
         try:
             axes = [build_axis(name, self._values) for name in self._values['axes']]
-            self._check_topics(axes)
+            check_topics(axes, self.resolve_topic_name)
         except InputError as error:
             self._reason = f'not configured: {error}'
             self.get_logger().error(self._reason)
@@ -111,22 +112,6 @@ class BallscrewMonitor(LifecycleNode):
         self._publish_diagnostics()
         return super().on_configure(state)
 
-    def _check_topics(self, axes: list[Axis]) -> None:
-        types: dict[str, str] = {}
-        for axis in axes:
-            for source in axis.inputs:
-                try:
-                    topic = self.resolve_topic_name(source.topic)
-                except RuntimeError:
-                    raise InputError(
-                        f'parameter {axis.name}.{source.source.name.lower()}.topic '
-                        f'is {source.topic!r}, no topic name'
-                    ) from None
-                if types.setdefault(topic, source.type_name) != source.type_name:
-                    raise InputError(
-                        f'topic {topic} is configured as {types[topic]} and as {source.type_name}'
-                    )
-
     @_reported
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Subscribe and begin to judge."""
@@ -136,9 +121,20 @@ class BallscrewMonitor(LifecycleNode):
             station.publish_info()
             station.publish_event()
         self._subscribe()
-        self._tick_timer = self.create_timer(self._values['tick_period'], self._on_tick)
+        self._tick_timer = self.create_timer(
+            self._values['tick_period'], self._on_tick, clock=self._tick_clock()
+        )
         self._publish_diagnostics()
         return result
+
+    def _tick_clock(self) -> Clock:
+        """
+        Return what the ticks are timed by: simulated time at its own rate, or the steady clock.
+
+        A timer on the system clock stops when that is set back, for as long as it was set back.
+
+        """
+        return self.get_clock() if self.get_parameter('use_sim_time').value else self._steady
 
     def _subscribe(self) -> None:
         """Subscribe once to each topic, however many inputs read it."""
@@ -206,6 +202,7 @@ class BallscrewMonitor(LifecycleNode):
         self._publish_diagnostics()
 
     def _on_message(self, readers: list[tuple[Station, Input]], message: Any) -> None:
+        self._pulse.take_input()
         now = self.get_clock().now().nanoseconds
         for station, source in readers:
             axis = station.axis
@@ -213,12 +210,11 @@ class BallscrewMonitor(LifecycleNode):
             self._publish(station, axis.monitor.update(event))
 
     def _on_tick(self) -> None:
-        """Tick on the grid of stamps, each grid point once."""
+        """Tick on the grid of stamps, when that is due."""
         now = self.get_clock().now().nanoseconds
-        grid = now - now % nanoseconds(self._values['tick_period'])
-        if grid == self._last_grid:
+        grid = self._pulse.tick(now, self._steady.now().nanoseconds)
+        if grid is None:
             return
-        self._last_grid = grid
         for station in self._stations.values():
             self._publish(station, station.axis.monitor.tick(grid))
 
@@ -236,35 +232,36 @@ class BallscrewMonitor(LifecycleNode):
             self._publish_diagnostics()
 
     def _publish_diagnostics(self) -> None:
-        message = DiagnosticArray(status=self._statuses())
-        message.header.stamp = self.get_clock().now().to_msg()
+        now = self.get_clock().now()
+        stood = self._pulse.stood(now.nanoseconds, self._steady.now().nanoseconds)
+        message = DiagnosticArray(status=self._statuses(stood))
+        message.header.stamp = now.to_msg()
         self._diagnostics.publish(message)
 
-    def _statuses(self) -> list[DiagnosticStatus]:
+    def _statuses(self, stood: int) -> list[DiagnosticStatus]:
         made = []
         for name in self._values['axes']:
             if name in self._stations:
-                made += self._stations[name].statuses(active=self._active)
+                made += self._stations[name].statuses(active=self._active, stood=stood)
             else:
                 made += diagnostics.failed(self.get_name(), name, self._reason)
         return made
 
     def _on_evaluate(self, request: Any, response: Any) -> Any:
-        """Answer what the surface says of the points."""
+        """Answer what the surface says of the points; nothing is judged meanwhile."""
+        begin = self._steady.now().nanoseconds
         station = self._stations.get(request.axis)
-        most = EvaluateOperatingPoint.Request.MAX_POINTS
         if station is None:
             known = ', '.join(self._stations) or 'none, the node is not configured'
             response.message = f'axis {request.axis!r} is unknown, known are: {known}'
-        elif len(request.points) > most:
-            response.message = f'{len(request.points)} points are too many, allowed are {most}'
         else:
-            response.success = True
-            response.results = [station.evaluate(point) for point in request.points]
+            station.evaluate(request.points, response)
+        self._pulse.be_busy(begin, self._steady.now().nanoseconds)
         return response
 
     def _on_reload(self, request: Any, response: Any) -> Any:
         """Swap every surface for the file as it is now, if all of them verify."""
+        begin = self._steady.now().nanoseconds
         try:
             surfaces = {
                 name: reload_surface(station.axis, self._values)
@@ -276,6 +273,7 @@ class BallscrewMonitor(LifecycleNode):
             return response
         for name, station in self._stations.items():
             station.use_surface(surfaces[name], self._values)
+        self._pulse.be_busy(begin, self._steady.now().nanoseconds)
         return self._answer(response, 'reloaded the surface')
 
     def _on_reset(self, request: Any, response: Any) -> Any:

@@ -68,8 +68,8 @@ def sample(surface: Surface, trace: Trace, temperature: float) -> Field:
     return Field(speed=speed * RPM, load=load, **columns)
 
 
-def draw_map(axes: Axes, trace: Trace, surface: Surface) -> float:
-    """Draw the map; return its temperature [degC]."""
+def draw_map(axes: Axes, trace: Trace, surface: Surface) -> tuple[float, bool]:
+    """Draw the map; return its temperature [degC] and whether there are borders at others."""
     moving = np.abs(trace.speed) >= trace.limits.standstill
     oil = trace.temperature[moving & np.isfinite(trace.temperature)]
     # Without any motion the datasheet's temperature is as good as another.
@@ -84,7 +84,7 @@ def draw_map(axes: Axes, trace: Trace, surface: Surface) -> float:
     for degrees in others:
         _draw_border(axes, sample(surface, trace, degrees), trace.limits, degrees)
     _label(axes, field)
-    return mean
+    return mean, bool(others)
 
 
 def _load_span(surface: Surface, trace: Trace) -> tuple[float, float]:

@@ -3,11 +3,19 @@
 """What a run came to, and the words for what was lost in it."""
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 import dataclasses
 from pathlib import Path
 
-from ballscrew_msgs.msg import BallScrewState
+from ballscrew_msgs.msg import BallScrewState, InputHealth, PointResult
+
+# Why a sample was not judged, where the sentence in the state names a number of its own.
+REASONS = {
+    PointResult.VALIDITY_SPEED_BELOW_RANGE: 'speed below the surface',
+    PointResult.VALIDITY_SPEED_ABOVE_RANGE: 'speed above the surface',
+    PointResult.VALIDITY_LOAD_OUT_OF_RANGE: 'load outside the surface',
+    PointResult.VALIDITY_TEMPERATURE_OUT_OF_RANGE: 'oil temperature outside the surface',
+}
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -15,44 +23,83 @@ class Outcome:
     """
     What a run came to.
 
-    Messages sent by topic and judged by axis; longest time by which a message was sent late and
-    processor time of the node [s]; sentences on what failed.
+    Messages sent by topic, messages recorded, and the last state by axis; longest time by which a
+    message was sent late and processor time of the node [s]; sentences on what failed.
 
     """
 
     recording: Path
     sent: Counter[str]
-    judged: dict[str, int]
+    recorded: int
+    states: Mapping[str, BallScrewState]
     lateness: float
     cpu_time: float
     failures: tuple[str, ...]
 
+    def judged(self, axis: str) -> int:
+        """Return how many speed samples of `axis` were judged."""
+        return int(self.states[axis].judged) if axis in self.states else 0
 
-def losses(
-    states: Mapping[str, BallScrewState], expected: Mapping[str, int], *, rate: float
-) -> list[str]:
+    def speed(self, axis: str) -> InputHealth:
+        """Return the health of the speed of `axis` at last."""
+        return speed_health(self.states[axis]) if axis in self.states else InputHealth()
+
+
+def speed_health(state: BallScrewState) -> InputHealth:
+    """Return what a state says of its speed input."""
+    return next(health for health in state.inputs if health.name == 'speed')
+
+
+def unjudged(states: Iterable[BallScrewState]) -> Counter[str]:
     """
-    Return a sentence for each axis of which a speed message was not judged.
+    Return how many of the states of one axis hold a speed sample without a verdict, by reason.
 
-    `states` are the last ones, `expected` the number of speed messages that were sent.
+    A gate at standstill is a verdict if all inputs are there; a state of a tick holds no sample.
 
     """
-    found = []
-    for axis, count in expected.items():
-        judged = int(states[axis].judged) if axis in states else 0
-        if judged != count:
-            received = _received(states[axis]) if axis in states else 0
-            found.append(
-                f'axis {axis}: {judged} of {count} speed messages were judged; '
-                f'{max(count - received, 0)} did not reach the node, which left out '
-                f'{max(received - judged, 0)}' + _hint(rate)
-            )
-    return found
+    return Counter(
+        REASONS.get(state.result.validity) or state.result.reason or 'the model gives no number'
+        for state in states
+        if state.zone == BallScrewState.ZONE_UNKNOWN
+        and not _is_gated(state)
+        and speed_health(state).state == InputHealth.STATE_OK
+    )
 
 
-def _received(state: BallScrewState) -> int:
-    return int(next(health.received for health in state.inputs if health.name == 'speed'))
+def _is_gated(state: BallScrewState) -> bool:
+    return (
+        BallScrewState.GATE_STANDSTILL in state.active_gates
+        and state.result.validity != PointResult.VALIDITY_NO_INPUT
+    )
 
 
-def _hint(rate: float) -> str:
-    return f'; at {rate:g}x messages may be lost, a lower rate helps' if rate > 1.0 else ''
+def loss(
+    outcome: Outcome,
+    axis: str,
+    *,
+    sent: int,
+    expected: int,
+    unjudged: Mapping[str, int],
+    rate: float,
+) -> str:
+    """
+    Return the sentence on the speed messages of `axis` that were not judged, empty without any.
+
+    `sent` messages of the topic of the speed, `expected` of them with the speed of this axis, were
+    sent at `rate` [-], bag time over wall time; `unjudged` are those in the recording, by reason.
+
+    """
+    judged, health = outcome.judged(axis), outcome.speed(axis)
+    if judged == expected:
+        return ''
+    lost = max(sent - health.received, 0)
+    # Messages that speak of other joints only are dropped too, as they should be.
+    refused = max(health.dropped - max(sent - expected, 0), 0)
+    parts = [f'{lost} did not reach the node'] if lost else []
+    parts += [f'the node refused {refused}'] if refused else []
+    parts += [f'{count} had no verdict ({reason})' for reason, count in unjudged.items()]
+    return (
+        f'axis {axis}: {judged} of {expected} speed messages were judged; '
+        + (', '.join(parts) or 'the recording does not say why')
+        + (f'; at {rate:g}x messages may be lost, a lower rate helps' if rate > 1 and lost else '')
+    )

@@ -4,8 +4,8 @@
 Replays a bag through the same pure pipeline as the node, without DDS, faster than real time.
 
 Samples are taken in the order of their stamps, equal stamps in the fixed order of the sources.
-Log times stand for the clock of the node: ticks fall on the same grid of it as online, whatever the
-stamps say, and are taken after the samples of equal stamp.
+Log times stand for the clock of the node: ticks fall on the same grid of it as online, whatever
+the stamps say, and are taken after the samples of equal stamp.
 
 """
 

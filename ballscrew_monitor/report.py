@@ -4,11 +4,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ballscrew_monitor.bag import Bag
 from ballscrew_monitor.cycle_trace import Trace, Tracer
+from ballscrew_monitor.outcome import loss, unjudged
 from ballscrew_monitor.outputs import output
 from ballscrew_monitor.replay import absolute
 from ballscrew_monitor.summary import Summarizer, Summary
@@ -37,11 +39,36 @@ def read_outputs(bag: Bag, axis: str) -> tuple[Summary | None, Trace | None]:
     return summarizer.result(), tracer.result()
 
 
+def losses(plan: Plan, outcome: Outcome) -> tuple[str, ...]:
+    """Return a sentence for each axis of which a speed message was not judged."""
+    sentences = (
+        loss(
+            outcome,
+            axis.name,
+            sent=_sent(outcome, axis),
+            expected=plan.expected[axis.name],
+            unjudged=unjudged(_states(outcome, axis)),
+            rate=plan.rate,
+        )
+        for axis in plan.axes
+        if outcome.judged(axis.name) != plan.expected[axis.name]
+    )
+    return tuple(sentences)
+
+
+def picture(plan: Plan, axis: Axis) -> Path:
+    """Return where the picture of an axis is written."""
+    return plan.out / ('cycle.png' if len(plan.axes) == 1 else f'cycle_{axis.name}.png')
+
+
 def report(plan: Plan, outcome: Outcome) -> None:
     """Print the summary of every axis, write its picture, and name the files."""
+    if not outcome.recorded:
+        print(f'files       {plan.out / LOG}; nothing was recorded')
+        return
     recorded = Bag(outcome.recording)
     pictures = [_report_axis(plan, outcome, axis, recorded) for axis in plan.axes]
-    files = [picture for picture in pictures if picture is not None] + [plan.out / LOG]
+    files = [path for path in pictures if path is not None] + [plan.out / LOG]
     print(
         f'\nnode        {outcome.cpu_time:.1f} s of processor time, its start included; '
         f'messages sent at most {1e3 * outcome.lateness:.0f} ms late'
@@ -58,18 +85,29 @@ def _report_axis(plan: Plan, outcome: Outcome, axis: Axis, recorded: Bag) -> Pat
         f'\naxis {axis.name}: screw {axis.surface.screw_name}, oil {axis.surface.oil_name}, '
         f'{axis.surface.tier.replace("_", "-")} model'
     )
-    sent = outcome.sent[absolute(axis.inputs[-1].topic)]
     summary, trace = read_outputs(recorded, axis.name)
     print(
-        f'samples     {sent} sent, {outcome.judged[axis.name]} judged, '
+        f'samples     {_sent(outcome, axis)} sent, {outcome.judged(axis.name)} judged, '
         f'{summary.states if summary else 0} states recorded'
     )
     if summary is None or trace is None:
         return None
     print('\n'.join(summary.lines()))
-    path = plan.out / ('cycle.png' if len(plan.axes) == 1 else f'cycle_{axis.name}.png')
+    path = picture(plan, axis)
     # Imported here: it takes longer than everything else of the program.
     from ballscrew_monitor.cycle_plot import draw
 
     draw(trace, summary, axis.surface, path)
     return path
+
+
+def _sent(outcome: Outcome, axis: Axis) -> int:
+    return outcome.sent[absolute(axis.inputs[-1].topic)]
+
+
+def _states(outcome: Outcome, axis: Axis) -> Iterator[BallScrewState]:
+    """Yield the recorded states of an axis."""
+    if not outcome.recorded:
+        return
+    for message in Bag(outcome.recording).messages({output(axis.name, 'state')}):
+        yield deserialize_message(message.data, BallScrewState)

@@ -13,6 +13,7 @@ from collections.abc import Iterator, Sequence
 import contextlib
 import dataclasses
 import fcntl
+import importlib.util
 import os
 from pathlib import Path
 import signal
@@ -29,7 +30,7 @@ from ballscrew_monitor.errors import InputError
 from ballscrew_monitor.node_process import NodeProcess, ros_environment
 from ballscrew_monitor.outcome import Outcome
 from ballscrew_monitor.replay import input_topics, speed_messages
-from ballscrew_monitor.report import LOG, report
+from ballscrew_monitor.report import LOG, losses, picture, report
 from ballscrew_monitor.supervision import Failure, Supervision
 
 RECORDING, LOCK = 'cycle', '.lock'
@@ -61,6 +62,8 @@ def plan(bag: Path, params: Path, out: Path, rate: float) -> Plan:
     Raises InputError before anything is started or written.
 
     """
+    if importlib.util.find_spec('matplotlib') is None:  # asked early, imported late: it is slow
+        raise ModuleNotFoundError('no picture without matplotlib', name='matplotlib')
     if not 0.0 < rate <= 1000.0:
         raise InputError(f'rate is {rate:g}, allowed is above 0 to 1000')
     values = parameters.read_file(params)
@@ -92,14 +95,22 @@ def run(made: Plan) -> int:
             f'parameters {made.params}',
             flush=True,
         )
+        _remove_pictures(made)
         outcome = _supervise(made, stop)
     if interrupted:
         print(f'ballscrew: interrupted, recorded so far: {outcome.recording}', file=sys.stderr)
         return SIGNALLED + interrupted[0]
-    for sentence in outcome.failures:
+    failures = outcome.failures or losses(made, outcome)
+    for sentence in failures:
         print(f'ballscrew: {sentence}', file=sys.stderr)
     report(made, outcome)
-    return FAILED if outcome.failures else DONE
+    return FAILED if failures else DONE
+
+
+def _remove_pictures(made: Plan) -> None:
+    """Remove the pictures of an earlier run, which the recording of this one would belie."""
+    for axis in made.axes:
+        picture(made, axis).unlink(missing_ok=True)
 
 
 def _supervise(made: Plan, stop: threading.Event) -> Outcome:

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the node keeps of one axis: the axis, its publishers, and what it last said."""
 
+from collections.abc import Sequence
 from typing import Any
 
 from ballscrew_monitor import diagnostics
@@ -19,6 +20,7 @@ from ballscrew_monitor.messages import (
 )
 from ballscrew_monitor.state import State
 from ballscrew_msgs.msg import BallScrewState, OperatingPoint, OutOfZone, PointResult, SurfaceInfo
+from ballscrew_msgs.srv import EvaluateOperatingPoint
 from diagnostic_msgs.msg import DiagnosticStatus
 from rclpy.lifecycle import LifecycleNode
 from rclpy.qos import QoSDurabilityPolicy, QoSProfile, QoSReliabilityPolicy
@@ -83,8 +85,16 @@ class Station:
         self._writer.tier = TIERS[surface.tier]
         self.publish_info()
 
-    def evaluate(self, point: OperatingPoint) -> PointResult:
-        """Return what the surface says of a point."""
+    def evaluate(self, points: Sequence[OperatingPoint], response: Any) -> None:
+        """Fill the response with what the surface says of the points, if they are not too many."""
+        most = EvaluateOperatingPoint.Request.MAX_POINTS
+        if len(points) > most:
+            response.message = f'{len(points)} points are too many, allowed are {most}'
+            return
+        response.success = True
+        response.results = [self._evaluate(point) for point in points]
+
+    def _evaluate(self, point: OperatingPoint) -> PointResult:
         settings, result = self.axis.monitor.settings, PointResult()
         asked = read_point(point, default_temperature=settings.default_temperature)
         answer = estimate(asked, self.axis.surface, rcs_limit=settings.limits.rcs)
@@ -109,8 +119,8 @@ class Station:
         else:
             self._node.get_logger().warning(f'axis {self.axis.name}: {text}')
 
-    def statuses(self, *, active: bool) -> list[DiagnosticStatus]:
-        """Return the diagnostics of the axis."""
+    def statuses(self, *, active: bool, stood: int) -> list[DiagnosticStatus]:
+        """Return the diagnostics of the axis after the clock has stood for `stood` [ns]."""
         matched = {
             source: subscription.get_publisher_count()
             for source, subscription in self.subscriptions.items()
@@ -122,6 +132,7 @@ class Station:
             self.axis.monitor.event,
             self.axis.surface,
             publishers=matched if active else None,
+            clock_stands=stood > self.axis.monitor.settings.timeouts[Source.SPEED],
         )
 
     def _summaries(self, state: State) -> tuple[diagnostics.Summary, ...]:

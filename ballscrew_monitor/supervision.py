@@ -16,11 +16,11 @@ from typing import Any, TYPE_CHECKING
 
 from ballscrew_monitor.bag_writer import BagWriter
 from ballscrew_monitor.node_process import NodeProcess
-from ballscrew_monitor.outcome import losses, Outcome
+from ballscrew_monitor.outcome import Outcome, speed_health
 from ballscrew_monitor.outputs import output, recorded_topics
 from ballscrew_monitor.player import Played, Player
 from ballscrew_monitor.recorder import Recorder
-from ballscrew_monitor.replay import input_topics
+from ballscrew_monitor.replay import absolute, input_topics
 from ballscrew_monitor.status import progress_bar, state_cells, StatusLine
 from ballscrew_msgs.msg import BallScrewState
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
@@ -105,10 +105,7 @@ class Supervision:
         if self._broken is not None:
             raise self._broken
         self._stop_node()
-        if stop.is_set():
-            return self.outcome()
-        states = {axis: self._state(axis) for axis in self._states}
-        return self.outcome(*losses(states, self._plan.expected, rate=self._plan.rate))
+        return self.outcome()
 
     def outcome(self, *failures: str) -> Outcome:
         """Return what the run has come to so far."""
@@ -116,7 +113,8 @@ class Supervision:
             recording=self._writer.path,
             sent=self._player.sent,
             failures=failures,
-            judged={axis: self._judged(axis) for axis in self._plan.expected},
+            recorded=self._writer.total,
+            states={axis: self._state(axis) for axis in self._states},
             lateness=self._played.lateness if self._played else 0.0,
             cpu_time=self._process.cpu_time,
         )
@@ -183,7 +181,7 @@ class Supervision:
                 self._check_node()
                 if status.due(now) and self._states:
                     self._show(status, now)
-                if self._player.elapsed >= self._plan.bag.duration and self._all_judged():
+                if self._player.elapsed >= self._plan.bag.duration and self._all_received():
                     self._settled.set()
         finally:
             status.close()
@@ -200,11 +198,14 @@ class Supervision:
     def _state(self, axis: str) -> BallScrewState:
         return deserialize_message(self._states[axis], BallScrewState)
 
-    def _judged(self, axis: str) -> int:
-        return int(self._state(axis).judged) if axis in self._states else 0
-
-    def _all_judged(self) -> bool:
-        return all(self._judged(axis) >= count for axis, count in self._plan.expected.items())
+    def _all_received(self) -> bool:
+        """Tell whether the states say that every speed message of the bag has been taken."""
+        return all(
+            axis.name in self._states
+            and speed_health(self._state(axis.name)).received
+            >= self._plan.bag.topics[absolute(axis.inputs[-1].topic)].count
+            for axis in self._plan.axes
+        )
 
     def _check_node(self) -> None:
         code = self._process.returncode

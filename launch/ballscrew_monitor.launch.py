@@ -4,7 +4,8 @@
 Start the monitor as a lifecycle node.
 
 With `autostart:=true` the node configures and activates itself; with `false` a lifecycle manager
-does so. `params_file` may be left out: every parameter has a default.
+does so. `params_file` may be left out: every parameter has a default. An argument that is given
+goes before the parameter file, one that is not leaves it alone.
 
 """
 
@@ -19,9 +20,9 @@ from launch_ros.parameter_descriptions import ParameterValue
 ARGUMENTS = (
     ('params_file', '', 'Parameter file; empty: the defaults.'),
     ('namespace', '', 'Namespace of the node.'),
-    ('use_sim_time', 'false', 'Take the time from /clock.'),
+    ('use_sim_time', '', 'true: take the time from /clock; empty: as the parameter file says.'),
     ('log_level', 'info', 'debug, info, warn, error or fatal.'),
-    ('autostart', 'true', 'Configure and activate at start.'),
+    ('autostart', '', 'true: configure and activate at start; empty: as the parameter file says.'),
 )
 
 
@@ -31,6 +32,7 @@ def make_node(context):
     switches = {
         name: ParameterValue(LaunchConfiguration(name), value_type=bool)
         for name in ('use_sim_time', 'autostart')
+        if LaunchConfiguration(name).perform(context)
     }
     node = LifecycleNode(
         package='ballscrew_monitor',
@@ -38,7 +40,7 @@ def make_node(context):
         name='ballscrew_monitor',
         namespace=LaunchConfiguration('namespace'),
         output='screen',
-        parameters=[*([file] if file else []), switches],
+        parameters=[*filter(None, [file, switches])],
         arguments=['--ros-args', '--log-level', LaunchConfiguration('log_level')],
     )
     return [node]

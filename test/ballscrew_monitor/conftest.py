@@ -177,7 +177,9 @@ class NodeProcess:
         command = [sys.executable, '-m', 'ballscrew_monitor.node', '--ros-args', *arguments]
         for name, value in ({'diagnostics_period': 0.1} | parameters).items():
             command += ['-p', f'{name.replace("__", ".")}:={value}']
-        environment = child_environment(self.domain) | {'PYTHONPATH': str(ROOT)}
+        paths = (str(ROOT), os.environ.get('PYTHONPATH', ''))
+        environment = child_environment(self.domain)
+        environment['PYTHONPATH'] = os.pathsep.join(filter(None, paths))
         with open(self.output, 'w') as output:
             self.process = subprocess.Popen(command, env=environment, stdout=output, stderr=output)
 

@@ -44,6 +44,38 @@ def test_bad_input_is_a_sentence_and_exit_code_2(error, monkeypatch, capsys):
     assert captured.out == ''
 
 
+@pytest.mark.parametrize(
+    ('module', 'command'),
+    [('mcap', 'replay'), ('zstandard', 'play'), ('matplotlib', 'run'), ('ballscrew_msgs', 'run')],
+)
+def test_what_is_not_installed_is_named_with_its_cure(module, command, short_bag):
+    arguments = ['--bag', str(short_bag)] if command == 'run' else [str(short_bag)]
+    script = (
+        'import sys\n'
+        'from importlib.machinery import PathFinder\n'
+        'class Blind(PathFinder):\n'
+        '    @classmethod\n'
+        '    def find_spec(cls, name, path=None, target=None):\n'
+        f'        if name.split(".")[0] != {module!r}:\n'
+        '            return PathFinder.find_spec(name, path, target)\n'
+        'sys.meta_path[sys.meta_path.index(PathFinder)] = Blind\n'
+        'from ballscrew_monitor.cli import main\n'
+        f'sys.exit(main({[command, *arguments]!r}))\n'
+    )
+    done = subprocess.run(
+        [sys.executable, '-c', script],
+        cwd=ROOT,
+        env=child_environment(0),
+        check=False,
+        capture_output=True,
+        text=True,
+    )
+    assert (done.returncode, done.stdout) == (1, '')
+    assert done.stderr == (
+        f'ballscrew: {module} is not installed, this command needs it: {cli.NEEDED[module]}\n'
+    )
+
+
 def test_an_interrupt_is_exit_code_130(monkeypatch, capsys):
     def interrupt(args):
         raise KeyboardInterrupt

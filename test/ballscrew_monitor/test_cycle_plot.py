@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The picture appears whole or not at all; what it shows is for the eye."""
 
+import dataclasses
 import struct
 
 from ballscrew_monitor import cycle_plot
@@ -11,6 +12,8 @@ from ballscrew_monitor.cycle_trace import Tracer
 from ballscrew_monitor.parameters import defaults
 from ballscrew_monitor.replay import replay
 from ballscrew_monitor.summary import Summarizer
+from matplotlib.figure import Figure
+import numpy as np
 import pytest
 
 
@@ -34,6 +37,24 @@ def test_it_is_a_png_of_the_stated_size(drawn, tmp_path):
     size = struct.unpack('>II', data[16:24])
     assert size == tuple(round(side * cycle_plot.DPI) for side in cycle_plot.SIZE)
     assert [path.name for path in tmp_path.iterdir()] == ['cycle.png']
+
+
+def test_without_any_oil_temperature_there_is_a_picture(drawn, tmp_path):
+    trace, summary, surface = drawn
+    unknown = np.full(trace.time.size, np.nan)
+    trace = dataclasses.replace(trace, temperature=unknown)
+    cycle_plot.draw(trace, summary, surface, tmp_path / 'cycle.png')
+    assert (tmp_path / 'cycle.png').read_bytes().startswith(b'\x89PNG')
+
+
+@pytest.mark.parametrize(('span', 'others'), [(3.0, False), (6.0, True)])
+def test_borders_at_other_temperatures_are_announced_when_they_are_drawn(drawn, span, others):
+    trace, _, surface = drawn
+    temperature = np.linspace(40.0 - span / 2, 40.0 + span / 2, trace.time.size)
+    speed = np.full(trace.time.size, 10.0)
+    trace = dataclasses.replace(trace, temperature=temperature, speed=speed)
+    mean, drawn_others = cycle_plot.draw_map(Figure().subplots(), trace, surface)
+    assert (mean, drawn_others) == (40.0, others)
 
 
 def test_a_failure_leaves_no_picture(drawn, tmp_path, monkeypatch):

@@ -16,7 +16,7 @@ def sample(source, value, stamp=START):
     return Sample(source=source, value=value, stamp=stamp)
 
 
-def after(core, *events, surface=None, **limits):
+def after(core, *events, surface=None, clock_stands=False, **limits):
     """Return the statuses after some events, by their part, and the monitor."""
     delays = {'raise_delay': 0, 'clear_delay': 0}
     monitor, state = core.monitor(surface, core.limits(**(delays | limits))), None
@@ -29,6 +29,7 @@ def after(core, *events, surface=None, **limits):
         monitor.event,
         monitor.surface,
         publishers={Source.SPEED: 1, Source.LOAD: 0},
+        clock_stands=clock_stands,
     )
     return {status.name.rpartition(' ')[2]: status for status in made}
 
@@ -101,6 +102,17 @@ def test_inputs_name_what_is_wrong(core):
     assert (bad.level, bad.message) == (STALE, 'load is not usable')
     late = sample(Source.SPEED, 10.0, START + 10 * SECOND)
     assert after(core, LOAD, late)['Inputs'].message == 'load is stale'
+
+
+def test_while_the_clock_stands_nothing_is_well_and_a_warning_stays(core):
+    made = after(core, LOAD, SPEED, clock_stands=True)
+    stands = (STALE, 'the clock stands still, nothing is seen to go stale')
+    for part in ('Lubrication', 'Inputs'):
+        assert (made[part].level, made[part].message) == stands
+    assert made['Surface'].level == OK
+    made = after(core, LOAD, SPEED, surface=core.surface(rcs=0.5), clock_stands=True)
+    assert made['Lubrication'].level == WARN
+    assert (made['Inputs'].level, made['Inputs'].message) == stands
 
 
 def test_an_input_slower_than_its_timeout_is_told(core):

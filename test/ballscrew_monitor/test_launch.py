@@ -30,7 +30,7 @@ NAMES = (
 @pytest.fixture
 def launched(monkeypatch):
     """Return a function that runs the file with some arguments; it gives arguments and node."""
-    given = {}
+    given = dict.fromkeys(('params_file', 'use_sim_time', 'autostart'), '')
     recorder = mock.MagicMock()
     recorder.DeclareLaunchArgument.side_effect = lambda name, **facts: (name, facts)
     recorder.OpaqueFunction.side_effect = lambda *, function: function(None)
@@ -62,6 +62,14 @@ def test_arguments_have_defaults_and_descriptions(launched):
 def test_the_node_is_the_one_of_the_package(launched, file, files):
     _, node = launched(params_file=file)
     assert {node[name] for name in ('package', 'executable', 'name')} == {'ballscrew_monitor'}
-    *given, switches = node['parameters']
-    assert given == files
-    assert set(switches) == {'use_sim_time', 'autostart'}
+    assert node['parameters'] == files
+
+
+@pytest.mark.parametrize('name', ['use_sim_time', 'autostart'])
+def test_an_argument_overrides_the_file_only_if_it_is_given(launched, name):
+    declared, _ = launched()
+    assert declared[name]['default_value'] == ''
+    _, node = launched(params_file='mine.yaml', **{name: 'false'})
+    file, switches = node['parameters']
+    assert file == 'mine.yaml'
+    assert list(switches) == [name]

@@ -54,7 +54,7 @@ def test_every_speed_sample_is_judged_once(core):
 
 def test_only_samples_that_led_to_a_verdict_count_as_judged(core):
     monitor = core.monitor()
-    counts = [monitor.update(speed(0.1, START)).judged]  # no load yet
+    counts = [monitor.update(speed(10.0, START)).judged]  # no load yet
     for i, (value, force) in enumerate(
         [(0.1, -1e3), (10.0, -1e3), (1e3, -1e3), (10.0, 1e5), (0.1, 1e5), (-10.0, 0.0)]
     ):
@@ -428,10 +428,8 @@ def test_the_level_changes_on_judged_speed_samples_only(core, stream):
         before = monitor.level
         state = (feed(monitor, [event]) or [None])[0]
         if isinstance(event, Sample) and event.source is Source.SPEED and state is not None:
-            judged += (
-                state.verdict.zone is not Zone.UNKNOWN
-                or state.verdict.gates[:1] == (Gate.STANDSTILL,)
-                and state.estimate.validity is not Validity.NO_INPUT
+            judged += state.verdict.zone is not Zone.UNKNOWN or state.verdict.gates[:1] == (
+                Gate.STANDSTILL,
             )
             assert state.judged == judged
         if monitor.level is not before:

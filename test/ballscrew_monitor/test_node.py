@@ -6,11 +6,16 @@ import itertools
 import math
 import signal
 
+from ballscrew_monitor.domain import free_domain
+from ballscrew_monitor.node import BallscrewMonitor
 from ballscrew_msgs.msg import BallScrewState, OperatingPoint, OutOfZone, PointResult, SurfaceInfo
 from ballscrew_msgs.srv import EvaluateOperatingPoint
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 import pytest
 from rcl_interfaces.srv import DescribeParameters, ListParameters
+import rclpy
+from rclpy.clock import ClockType
+from rclpy.parameter import Parameter
 from rclpy.qos import QoSDurabilityPolicy, QoSProfile
 from rosgraph_msgs.msg import Clock
 from std_srvs.srv import Trigger
@@ -323,6 +328,70 @@ def test_a_stamp_from_the_future_is_refused_and_counted(node):
         lambda: states and states[-1].inputs[0].dropped and states[-1], 'the refusal'
     )
     assert (refused.judged, refused.inputs[0].received) == (0, 1)
+
+
+@pytest.mark.parametrize(
+    ('sim_time', 'kind'), [(False, ClockType.STEADY_TIME), (True, ClockType.ROS_TIME)]
+)
+def test_ticks_do_not_depend_on_the_system_clock(sim_time, kind):
+    """A timer on that stands still when it is set back, and nothing would go stale."""
+    with free_domain() as domain:
+        context = rclpy.Context()
+        rclpy.init(context=context, domain_id=domain)
+        overrides = [Parameter('use_sim_time', value=sim_time)]
+        node = BallscrewMonitor(context=context, parameter_overrides=overrides)
+        node.start()
+        assert node._tick_timer.clock.clock_type is kind
+        node.finish()
+        node.destroy_node()
+        rclpy.shutdown(context=context)
+
+
+def test_a_clock_that_stops_is_told(node):
+    node.start(use_sim_time='true', x__limits__clear_delay=0.0)
+    states, told = node.states(), node.listen(DiagnosticArray, '/diagnostics')
+    clocks = node.node.create_publisher(Clock, '/clock', 10)
+    publish = node.machine()
+    node.until(clocks.get_subscription_count)
+    node.stamp = 50 * 10**9
+    ticks = itertools.count()
+
+    def run():
+        message = Clock()
+        message.clock.sec, message.clock.nanosec = 50, next(ticks) % 5 * 10_000_000 + 60_000_000
+        clocks.publish(message)
+        publish(FAST, step=0)
+        return levels(told)[-1:] == [(DiagnosticStatus.OK, 'all inputs arrive')]
+
+    node.until(run, 'all inputs')
+    stands = (DiagnosticStatus.STALE, 'the clock stands still, nothing is seen to go stale')
+    node.until(lambda: levels(told)[-1] == stands, 'the end of the clock')
+    assert levels(told, 'Lubrication')[-1] == stands
+    node.until(run, 'all inputs again')
+    assert states[-1].zone == BallScrewState.ZONE_OPTIMAL
+
+
+def test_a_long_answer_makes_no_input_missing(node):
+    """What has come in meanwhile is taken before anything is called stale."""
+    node.start(x__speed__timeout=0.05, x__load__timeout=3600.0, tick_period=0.01)
+    states = node.states()
+    publish = node.machine()
+    node.stamp = node.now()
+    feed(node, publish, states, FAST, 1)
+    points = [OperatingPoint(speed=FAST, temperature=40.0)] * 10_000
+    client = node.node.create_client(EvaluateOperatingPoint, f'{node.name}/evaluate')
+    node.until(client.service_is_ready)
+    future = client.call_async(EvaluateOperatingPoint.Request(axis='x', points=points))
+
+    def answered():
+        publish(FAST, step=node.now() - node.stamp)
+        return future.done()
+
+    node.until(answered, 'the answer')
+    end = states[-1].judged + 20
+    node.until(lambda: answered() and states[-1].judged >= end)
+    stamps = [state.header.stamp.sec * 10**9 + state.header.stamp.nanosec for state in states]
+    assert stamps == sorted(stamps)
 
 
 def test_sim_time_is_the_clock_of_everything(node):

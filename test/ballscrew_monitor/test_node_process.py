@@ -4,6 +4,7 @@
 
 import os
 from pathlib import Path
+import select
 import signal
 import subprocess
 import sys
@@ -12,19 +13,43 @@ import time
 from ballscrew_monitor import node_process
 from ballscrew_monitor.domain import free_domain
 from ballscrew_monitor.node_process import child_environment, NodeProcess
+from diagnostic_msgs.msg import DiagnosticArray
 import pytest
+import rclpy
+from rclpy.executors import SingleThreadedExecutor
 
 ROOT = Path(__file__).resolve().parents[2]
 PARAMS = ROOT / 'config' / 'nominal_cycle.yaml'
 DEADLINE = 30.0  # [s]
 
 
-def wait_for(condition, what):
+def wait_for_a_sign(domain):
+    """Wait until the node says something; by then its signal handlers are in place."""
+    context, heard = rclpy.Context(), []
+    rclpy.init(context=context, domain_id=domain)
+    node = rclpy.create_node('listener', context=context)
+    node.create_subscription(DiagnosticArray, '/diagnostics', heard.append, 10)
+    executor = SingleThreadedExecutor(context=context)
+    executor.add_node(node)
     deadline = time.monotonic() + DEADLINE
-    while not (found := condition()):
-        assert time.monotonic() < deadline, what
-        time.sleep(0.01)
-    return found
+    while not heard and time.monotonic() < deadline:
+        executor.spin_once(timeout_sec=0.1)
+    executor.shutdown()
+    node.destroy_node()
+    rclpy.shutdown(context=context)
+    assert heard
+
+
+def wait_for_the_end(pid):
+    """Wait until a process, which may be the child of another one, has ended."""
+    try:
+        ending = os.pidfd_open(pid)
+    except ProcessLookupError:
+        return
+    try:
+        assert select.select([ending], [], [], DEADLINE)[0]
+    finally:
+        os.close(ending)
 
 
 def is_alive(pid):
@@ -37,22 +62,16 @@ def is_alive(pid):
 
 
 @pytest.fixture
-def node(tmp_path):
+def node(tmp_path, monkeypatch):
     """Return the node as a child, with its signal handlers in place."""
+    monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
     with free_domain() as domain:
         process = NodeProcess(PARAMS, tmp_path / 'node.log', domain=domain)
         try:
-            wait_for(lambda: 'handler' if handles_sigint(process.pid) else '', 'signal handlers')
+            wait_for_a_sign(domain)
             yield process
         finally:
             process.stop()
-
-
-def handles_sigint(pid):
-    """Tell whether the node, not only Python, has taken SIGTERM over."""
-    lines = Path(f'/proc/{pid}/status').read_text().splitlines()
-    caught = next(int(line.split()[1], 16) for line in lines if line.startswith('SigCgt'))
-    return bool(caught >> (signal.SIGTERM - 1) & 1)
 
 
 def test_it_ends_when_it_is_asked(node):
@@ -70,7 +89,8 @@ def test_it_is_killed_when_it_does_not_listen(node, monkeypatch):
     assert not is_alive(node.pid)
 
 
-def test_it_dies_with_its_parent(tmp_path):
+def test_it_dies_with_its_parent(tmp_path, monkeypatch):
+    monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
     script = (
         'import sys, pathlib\n'
         'from ballscrew_monitor.node_process import NodeProcess\n'
@@ -88,9 +108,9 @@ def test_it_dies_with_its_parent(tmp_path):
             cwd=ROOT,
         ) as parent:
             pid = int(parent.stdout.readline())
-            wait_for(lambda: handles_sigint(pid), 'signal handlers')
+            wait_for_a_sign(domain)
             parent.kill()
-            wait_for(lambda: not is_alive(pid), 'the end of the child')
+            wait_for_the_end(pid)
 
 
 def test_its_words_are_kept(tmp_path):
@@ -98,7 +118,8 @@ def test_its_words_are_kept(tmp_path):
         bad = tmp_path / 'bad.yaml'
         bad.write_text('/**/ballscrew_monitor:\n  ros__parameters:\n    axes: 3\n')
         with NodeProcess(bad, tmp_path / 'node.log', domain=domain) as node:
-            assert wait_for(lambda: node.returncode, 'the exit code') == 2
+            wait_for_the_end(node.pid)
+            assert node.returncode == 2
             assert node.last_words().startswith('ballscrew_monitor: ')
 
 

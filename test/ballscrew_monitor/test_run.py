@@ -11,8 +11,9 @@ import subprocess
 import sys
 import threading
 import time
+import types
 
-from ballscrew_monitor import supervision
+from ballscrew_monitor import node_process
 from ballscrew_monitor.bag import Bag
 from ballscrew_monitor.errors import InputError
 from ballscrew_monitor.node_process import child_environment, ros_environment
@@ -160,14 +161,44 @@ def test_a_node_that_dies_is_a_failure(nominal_bag, tmp_path):
     Bag(tmp_path / 'out').verify()
 
 
-def test_what_is_not_judged_is_a_failure(short_bag, tmp_path, monkeypatch, capsys):
+def keep_environment(monkeypatch):
+    """Have the variables that a run sets put back."""
     for name, value in ros_environment(0).items():
-        monkeypatch.setenv(name, value)  # so that they are put back
-    monkeypatch.setattr(supervision, 'SETTLE_PATIENCE', 1.0)
-    monkeypatch.setattr(supervision, 'RUN_ON_PATIENCE', 0.1)
+        monkeypatch.setenv(name, value)
+
+
+def test_a_node_that_dies_at_its_start_is_a_failure(short_bag, tmp_path, monkeypatch, capsys):
+    keep_environment(monkeypatch)
+    (tmp_path / 'cycle.png').write_bytes(b'of an earlier run')
+    made = plan(short_bag, PARAMS, tmp_path, 1.0)
+    monkeypatch.setattr(node_process, 'sys', types.SimpleNamespace(executable='false'))
+    assert run(made) == 1
+    out, err = capsys.readouterr()
+    assert err.startswith('ballscrew: the node ended with exit code 1')
+    assert out.endswith('node.log; nothing was recorded\n')
+    assert not (tmp_path / 'cycle.png').exists()
+
+
+def test_samples_without_a_verdict_are_a_failure(short_bag, tmp_path, monkeypatch, capsys):
+    keep_environment(monkeypatch)
+    params = tmp_path / 'params.yaml'
+    params.write_text(
+        '/**/ballscrew_monitor:\n  ros__parameters:\n    x:\n'
+        '      load: {offset: 9.0e+5}\n      temperature: {topic: oil_temperature}\n'
+    )
+    assert run(plan(short_bag, params, tmp_path / 'out', 1.0)) == 1
+    err = capsys.readouterr().err
+    assert re.search(r'had no verdict \(load outside the surface\)$', err, flags=re.MULTILINE)
+
+
+def test_what_is_not_judged_is_a_failure(short_bag, tmp_path, monkeypatch, capsys):
+    keep_environment(monkeypatch)
     made = plan(short_bag, PARAMS, tmp_path, 1.0)
     assert run(dataclasses.replace(made, expected={'x': made.expected['x'] + 1})) == 1
-    assert 'axis x: 300 of 301 speed messages were judged' in capsys.readouterr().err
+    assert capsys.readouterr().err == (
+        'ballscrew: axis x: 300 of 301 speed messages were judged; '
+        'the recording does not say why\n'
+    )
     assert [thread.name for thread in threading.enumerate() if thread.name == 'player'] == []
 
 
