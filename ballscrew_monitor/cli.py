@@ -19,7 +19,10 @@ from surrogate.cli import add_commands
 from surrogate.parameters import InputError
 from surrogate.surface import SurfaceError
 
-BAG, PARAMS, OUT = Path('bags/nominal_cycle'), Path('config/nominal_cycle.yaml'), Path('out')
+TREE = Path(__file__).resolve().parent.parent
+"""The repository, when the package runs from it: the defaults hold in any working directory."""
+BAG, PARAMS = TREE / 'bags' / 'nominal_cycle', TREE / 'config' / 'nominal_cycle.yaml'
+OUT = Path('out')
 FAILED, BAD_INPUT, INTERRUPTED = 1, 2, 130
 # What some commands need beyond the rest, and how to get it.
 NEEDED = {
@@ -53,7 +56,8 @@ def main(arguments: list[str] | None = None) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return FAILED
     except OSError as error:
-        print(f'ballscrew: {error}', file=sys.stderr)
+        place = error.filename or getattr(args, 'out', None) or 'the output'
+        print(f'ballscrew: {place} cannot be read or written, {error.strerror}', file=sys.stderr)
         return FAILED
     except KeyboardInterrupt:
         print('ballscrew: interrupted', file=sys.stderr)
@@ -133,6 +137,8 @@ def _add_play(parser: argparse.ArgumentParser) -> None:
 def _run(args: argparse.Namespace) -> int:
     from ballscrew_monitor.run import plan, run
 
+    # The log files of ROS belong to this run, not to the home directory.
+    os.environ.setdefault('ROS_LOG_DIR', str(args.out.resolve() / 'ros_log'))
     return run(plan(args.bag, args.params, args.out, args.rate))
 
 
@@ -157,10 +163,17 @@ def _replay(args: argparse.Namespace) -> int:
                 allow_nan=False,
             )
         )
-        return 0
-    for axis, result in results.items():
-        _print_summary(axis, result)
-    return 0
+    else:
+        for axis, result in results.items():
+            _print_summary(axis, result)
+    silent = [axis for axis, result in results.items() if result is None or not result.judged]
+    if silent:
+        print(
+            f'ballscrew: nothing was judged on axis {", ".join(silent)}: topics, fields and '
+            f'joints in {args.params} must be those of {args.bag}',
+            file=sys.stderr,
+        )
+    return FAILED if silent else 0
 
 
 def _print_summary(axis: str, result: Any) -> None:

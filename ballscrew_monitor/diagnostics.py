@@ -104,7 +104,7 @@ def statuses(
     for status, (level, message) in zip(made, summaries(state, event)):
         status.level, status.message = level, message
     if clock_stands:
-        for status in made[state.level is Level.WARN : 2]:
+        for status in made[1:2] if state.level is Level.WARN else made[:2]:
             status.level, status.message = STALE, CLOCK_STANDS
     made[0].values = _values(_lubrication_values(state))
     made[1].values = [*made[1].values, *_values(_input_values(state.inputs))]

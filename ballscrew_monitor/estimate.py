@@ -45,7 +45,7 @@ class Validity(enum.IntEnum):
     TEMPERATURE_OUT_OF_RANGE = 5
     MASKED = 6
     NO_INPUT = 7
-    NO_SURFACE = 8
+    NO_SURFACE = 8  # reserved by the message; without a surface the node is not active
 
 
 class Regime(enum.IntEnum):

@@ -51,7 +51,7 @@ class Code(enum.IntEnum):
     EFFICIENCY_LOW = 2
     OUT_OF_RANGE = 3
     INPUT_LOST = 4
-    MODEL_RANGE = 5
+    MODEL_RANGE = 5  # reserved by the message; no surface says so yet
 
 
 class Severity(enum.IntEnum):

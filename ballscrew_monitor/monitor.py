@@ -266,7 +266,8 @@ class Monitor:
         They were taken while the clock stood at zero, and would not go stale for as long.
 
         """
-        limit = now + self.settings.max_future + BACKWARD_JUMP
+        settings = self.settings
+        limit = now + settings.tick_period + settings.max_future + BACKWARD_JUMP
         for tracker in self._inputs.values():
             if now and tracker.is_ahead(limit):
                 if tracker.source is Source.SPEED:

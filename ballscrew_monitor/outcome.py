@@ -54,22 +54,15 @@ def unjudged(states: Iterable[BallScrewState]) -> Counter[str]:
     """
     Return how many of the states of one axis hold a speed sample without a verdict, by reason.
 
-    A gate at standstill is a verdict if all inputs are there; a state of a tick holds no sample.
+    Standstill is a verdict, whatever the inputs; a state of a tick holds no sample.
 
     """
     return Counter(
         REASONS.get(state.result.validity) or state.result.reason or 'the model gives no number'
         for state in states
         if state.zone == BallScrewState.ZONE_UNKNOWN
-        and not _is_gated(state)
+        and BallScrewState.GATE_STANDSTILL not in state.active_gates
         and speed_health(state).state == InputHealth.STATE_OK
-    )
-
-
-def _is_gated(state: BallScrewState) -> bool:
-    return (
-        BallScrewState.GATE_STANDSTILL in state.active_gates
-        and state.result.validity != PointResult.VALIDITY_NO_INPUT
     )
 
 

@@ -22,7 +22,8 @@ class Settings:
 
     `timeouts` [ns] of the configured inputs only: an input without one has no topic.
     `default_temperature` [K] is used without a temperature topic, `publish_period` [ns] thins out
-    the states, 0 keeps all; a stamp may be `max_future` [ns] ahead of the clock.
+    the states, 0 keeps all; a stamp may be `max_future` [ns] ahead of the clock, and that is less
+    than `tick_period` [ns] ahead of the tick.
 
     """
 
@@ -32,6 +33,7 @@ class Settings:
     default_temperature: float
     publish_period: int = 0
     max_future: int = 0
+    tick_period: int = 0
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)

@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Plays a bag into the running node, records both, and watches until everything has been judged.
+Plays a bag into the running node, records both, and watches until it has received everything.
 
 The main thread spins the recorder and looks after the node; a thread of its own keeps the time
 of the player. Readiness is seen, not guessed: the node sends its latched surface_info when it is

@@ -25,7 +25,7 @@ def test_defaults_make_an_axis_of_the_shipped_surface():
     axis = build()
     assert (axis.surface.screw_name, axis.surface.oil_name) == ('nominal', 'iso_vg_68')
     assert [source.source for source in axis.inputs] == [Source.LOAD, Source.SPEED]
-    assert axis.max_future == SECOND // 10
+    assert axis.max_future == axis.monitor.settings.tick_period == SECOND // 10
     limits = axis.monitor.settings.limits
     assert limits.light_load == 0.25 * axis.surface.preload
     assert (limits.raise_delay, limits.clear_delay) == (SECOND // 2, SECOND)

@@ -32,6 +32,31 @@ def test_a_replay_prints_json(short_bag, capsys):
     assert record['x']['events'][0]['cause'] == 'RCS >= limit'
 
 
+def test_a_replay_that_judges_nothing_is_a_failure(short_bag, tmp_path, capsys):
+    params = tmp_path / 'params.yaml'
+    text = PARAMS.read_text(encoding='utf-8')
+    params.write_text(text + "      speed: {field: 'velocity[nope]'}\n", encoding='utf-8')
+    assert cli.main(['replay', str(short_bag), '--params', str(params)]) == 1
+    assert 'nothing was judged on axis x: topics, fields and joints' in capsys.readouterr().err
+
+
+def test_defaults_hold_in_any_working_directory(short_bag, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert cli.main(['replay', str(short_bag)]) == 0
+    assert '300 speed samples judged' in capsys.readouterr().out
+
+
+def test_a_full_disk_is_named(monkeypatch, capsys):
+    def fill(args):
+        raise OSError(28, 'No space left on device')
+
+    monkeypatch.setattr(cli, '_run', fill)
+    assert cli.main(['run', '--out', 'there']) == 1
+    assert capsys.readouterr().err == (
+        'ballscrew: there cannot be read or written, No space left on device\n'
+    )
+
+
 @pytest.mark.parametrize('error', [InputError, SheetError, SurfaceError])
 def test_bad_input_is_a_sentence_and_exit_code_2(error, monkeypatch, capsys):
     def refuse(args):

@@ -334,9 +334,11 @@ def test_a_load_alone_from_before_the_clock_began_is_forgotten(core):
 
 
 def test_stamps_as_far_ahead_as_is_allowed_are_kept(core):
-    monitor = core.monitor(max_future=SECOND)
-    feed(monitor, [(TICK, START), *motion(10.0, start=START + SECOND), (TICK, START)])
-    state = monitor.update(speed(10.0, START + SECOND))
+    """A tick lies on its grid, which the clock may have left by almost a period."""
+    monitor = core.monitor(max_future=SECOND, tick_period=10 * SECOND)
+    ahead = START + 11 * SECOND
+    feed(monitor, [(TICK, START), *motion(10.0, start=ahead), (TICK, START)])
+    state = monitor.update(speed(10.0, ahead))
     assert state.verdict.zone is Zone.OPTIMAL
 
 
