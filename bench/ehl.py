@@ -1,8 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Time the contact solver: wall time, and multiples of one FFT pair of the same padded grid in the
-same run.
+Time the contact solver, in seconds and in FFT pairs of the same padded grid in the same run.
 
 Run `python bench/ehl.py [repeats]`. Each line gives the least of the repeats, wall and processor
 time (they differ on a busy machine), the FFT pair (the double precision convolution of the full

@@ -57,6 +57,7 @@ STUDY = (
     replace(BASE, name='floor 1 nm', floor_nm=1.0),
     replace(BASE, name='floor 10 nm', floor_nm=10.0),
     replace(BASE, name='wave 32 um', shortest_um=32.0, slowest=0.0049),
+    replace(BASE, name='grid 257 x 385', nx=257, ny=385, draws=2, fastest=0.21, slowest=0.03),
     replace(BASE, name='cut patch', patch='cut', slowest=0.0049),
     replace(BASE, name='load 100 N', load=100.0),
     replace(BASE, name='nut side', side='nut'),
@@ -106,7 +107,7 @@ def chain(variation: Variation, draw: int, done: set[tuple[str, int, float]]):
         ny=variation.ny,
         film_floor=variation.floor_nm * 1e-9,
         error_estimate=False,
-        time_cap=60.0,
+        time_cap=120.0,
     )
     start: ContactSolution | None = None
     for speed in SPEEDS:

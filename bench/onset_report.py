@@ -95,8 +95,16 @@ def print_table(table: dict[str, dict[int, dict[float, float]]]) -> list[tuple[s
         speeds, rcs = as_arrays(draws)
         value = onset(speeds, np.nanmean(rcs, axis=0))
         found.append((name, ratio, error))
-        print(f'| {name} | {len(rcs)} | {value:.4f} | {ratio:.2f} | {error:.2f} |')
+        print(
+            f'| {name} | {len(rcs)} | '
+            f'{_shown(value, 4)} | {_shown(ratio, 2)} | {_shown(error, 2)} |'
+        )
     return found
+
+
+def _shown(value: float, digits: int) -> str:
+    """Return a number, or a dash where the mean does not reach the limit in the range."""
+    return f'{value:.{digits}f}' if math.isfinite(value) else '-'
 
 
 def paired_ratio(

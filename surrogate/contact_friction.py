@@ -1,8 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Friction over a solved contact: Eyring film where it carries, boundary friction where it is
-punctured.
+Friction over a solved contact: Eyring where the film carries, boundary where it is punctured.
 
 The traction on a surface opposes its slip against the other. It is mu_a p on punctured nodes and
 tau0 asinh(eta(p) |slip| / (tau0 h)) elsewhere in the pressurised area.

@@ -69,11 +69,12 @@ MISSPELT = re.compile(r'\[(?:Nm|N\.m|N\*m|rpm|RPM|sec|C|°C|deg C|Pas|Pa\.s|Cels
 # Python packages by the names that a ROS machine knows them by.
 ROSDEP = {
     'matplotlib': 'python3-matplotlib',
+    'numba': 'python3-numba',
     'numpy': 'python3-numpy',
     'scipy': 'python3-scipy',
     'yaml': 'python3-yaml',
 }
-OPTIONAL = {'mcap', 'zstandard'}  # for bags only, by the extra of that name
+OPTIONAL = {'mcap', 'zstandard', 'SurfaceTopography'}  # by the extras `bags` and `areal`
 
 
 def name_of(path: Path) -> str:

@@ -25,7 +25,7 @@ CHUNK = 32
 
 
 class Workspace(NamedTuple):
-    """Arrays of the linear solver of one grid, in its precision."""
+    """Arrays of the linear solver of one grid, in its precision and in Hertz units [-]."""
 
     by_pressure: Array
     by_gap: Array
@@ -81,7 +81,7 @@ def dot(a: Array, b: Array) -> np.floating:
 
 @njit(cache=True, error_model='numpy')
 def stencil(by_pressure: Array, by_gap: Array, film: Array, lift: Array, out: Array) -> None:
-    """Apply the Reynolds planes to changes of film pressure and gap."""
+    """Apply the Reynolds planes to changes of film pressure and gap [-]."""
     nx, ny = film.shape
     for i in range(1, nx - 1):
         for j in range(1, ny - 1):

@@ -30,7 +30,7 @@ def line_factors(
     film_bands: Array,
 ) -> None:
     """
-    Factor all lines.
+    Factor all lines; everything is in Hertz units [-].
 
     Total pressure: planes l3, l2, l1, 1/d, u1 in `bands`; coupling to both neighbours at -3, -2,
     -1, +1 in `sides` 0 to 3 and at 0 to the south and north in 4 and 5. Film pressure on contact
@@ -160,7 +160,7 @@ def solve_film_lines(
     work: Array,
     value: Array,
 ) -> None:
-    """Film pressure on contact nodes from their Reynolds rows; elsewhere it is the total."""
+    """Solve for the film pressure [-] on contact nodes; elsewhere it is the total."""
     nx, ny = rhs.shape
     zero = rhs.dtype.type(0)
     work = work[0]

@@ -1,8 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Discrete Reynolds equation with its exact linearisation, and the sets of its free boundaries;
-compiled.
+Discrete Reynolds equation, its exact linearisation and its free boundaries, compiled.
 
 Arrays have x along the first axis. Everything is in Hertz units: pressure over the Hertz pressure,
 film over a^2/Rx, x over a; fluxes are multiplied by dx. Stencil planes: 0 centre, 1 west, 2 east,
@@ -64,11 +63,11 @@ def film_properties(
     out: Array,
 ) -> None:
     """
-    Fill planes: 0 flow factor, 1 and 2 its slopes in pressure and film, 3 density, 4 slope, 5
-    film.
+    Fill the planes of film properties, all in Hertz units [-].
 
-    The flow factor is `mobility` rho h^3 / eta; the film never falls below the floor, and does not
-    react to the gap on contact nodes. Plane 6 is 1 where it reacts, 0 elsewhere.
+    0 flow factor, 1 and 2 its slopes in pressure and film, 3 density, 4 slope, 5 film. The flow
+    factor is `mobility` rho h^3 / eta; the film never falls below the floor, and does not react to
+    the gap on contact nodes. Plane 6 is 1 where it reacts, 0 elsewhere.
 
     """
     nx, ny = pressure.shape
@@ -114,7 +113,7 @@ def reynolds_rows(
 
     Faces take the mean flow factor of two nodes, `aspect` is (dx/dy)^2. The upstream wedge has
     order 1 to 2 (a blend between). Just outside the first row the pressure is `inlet` times that
-    inside it. Border rows get zero planes.
+    inside it. Border rows get zero planes. Hertz units [-].
 
     """
     nx, ny = pressure.shape
@@ -200,11 +199,11 @@ def free_boundary_rows(
     cavitated: Mask,
 ) -> float:
     """
-    Replace the rows of the cavitated set by dp = -p and scale all rows; return sum |F|/h of the
-    others.
+    Replace the rows of the cavitated set by dp = -p and scale all rows.
 
-    Cavitated where p times the size of the row is below F, everywhere when dry. That size counts
-    the film, too: the flow factor of a stiff fluid vanishes inside the contact.
+    Returns the sum of |F|/h over the other rows [-]. Cavitated where p times the size of the row
+    is below F, everywhere when dry. That size counts the film, too: the flow factor of a stiff
+    fluid vanishes inside the contact.
 
     """
     nx, ny = pressure.shape

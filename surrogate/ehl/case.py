@@ -76,7 +76,7 @@ class Case:
 
     def film_estimate(self, speed: float) -> float:
         """
-        Return the central film by formula, in Hertz units.
+        Return the central film by formula, in Hertz units [-], at a speed [m/s].
 
         The fit over all regimes, but not far above that of the piezoviscous-elastic one: its rigid
         branch explodes below its range of loads.
@@ -144,7 +144,7 @@ class Case:
 
     def inlet_length(self, speed: float) -> float:
         """
-        Length over which the gap in front of the Hertz zone grows by the film, in Hertz units.
+        Length over which the gap in front of the Hertz zone grows by the film, in Hertz units [-].
 
         Gap (4 sqrt(2)/3) s^(3/2) at the distance s: the pressure builds up there.
 
@@ -166,7 +166,7 @@ class Case:
         return dx / self.inlet_length(speed)
 
     def order(self, grid: Grid, speed: float) -> float:
-        """Order of the upstream wedge at the end of the way."""
+        """Return the order of the upstream wedge at the end of the way [-], at a speed [m/s]."""
         if self.settings.wedge_order is not None:
             return float(self.settings.wedge_order)
         if not self.blends or speed == 0.0:
@@ -218,17 +218,14 @@ class Case:
         )
 
     def inlet(self, grid: Grid) -> Array:
-        """
-        Return p outside the inlet over p inside, per column: p ~ x / h^2 of the rigid paraboloid.
-
-        """
+        """Return p outside over p inside the inlet, per column: p ~ x/h^2 of a rigid body [-]."""
         if not self.open_inlet:
             return np.zeros(grid.y.size)
         heights = self.shape_heights(grid)
         return grid.x[0] / grid.x[1] * (heights[1] / heights[0]) ** 2
 
     def hertz_state(self, grid: Grid, speed: float) -> State:
-        """Return Hertz's pressure at the approach that leaves the film of the formula."""
+        """Return Hertz's pressure [-] at the approach that leaves the film of the formula."""
         round_x, round_y = grid.x[:, None], grid.y[None, :] / self.ellipticity
         pressure = np.sqrt(np.maximum(1 - round_x**2 - round_y**2, 0))
         lift = np.empty(grid.shape)

@@ -103,14 +103,13 @@ def make_grid(
     """
     x_in, x_out, side = domain
     x, y = np.linspace(x_in, x_out, nx), np.linspace(-side, side, ny)
-    return Grid(
-        x=x, y=y[ny // 2 - 1 :] if symmetric else y, symmetric=symmetric, compliance=compliance
-    )
+    first = ny // 2 - 1
+    return Grid(x=x, y=y[first:] if symmetric else y, symmetric=symmetric, compliance=compliance)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class State:
-    """Film and asperity pressure and approach, in Hertz units."""
+    """Film and asperity pressure and approach, in Hertz units [-]."""
 
     film_pressure: Array
     asperity_pressure: Array

@@ -109,10 +109,7 @@ def _symbol(length_x: int, length_y: int, aspect: float) -> Array:
 
 
 def _pack(symbol: Array, symmetric: bool) -> Array:
-    """
-    Return the planes: (G, unused) or, for two real columns a, b in one, (Ga + Gb)/2, (Ga - Gb)/2.
-
-    """
+    """Return planes (G, unused) or, for real columns a, b in one, (Ga + Gb)/2, (Ga - Gb)/2."""
     if not symmetric:
         return symbol[None]
     half = (symbol.shape[1] + 1) // 2
@@ -139,7 +136,7 @@ def _near_kernel(symbol: Array) -> Array:
 
 @njit(cache=True, error_model='numpy')
 def deform(space: HalfSpace, pressure: Array, out: Array) -> None:
-    """Convolve: out = influence * pressure, with the mirror column where symmetric."""
+    """Convolve: out = influence * pressure [-], with the mirror column where symmetric."""
     if space.symmetric:
         _rows_to_spectrum_even(space, pressure)
         fft_forward(space.columns[0], space.columns[1], space.x.cos, space.x.sin)
@@ -238,7 +235,8 @@ def _rows_to_spectrum_even(space: HalfSpace, values: Array) -> None:
                     re[offset + lane, k] = plane[place[k], lane]
                 for k in range(half, frequencies):
                     im[offset + lane, k - half] = plane[place[k], lane]
-    im[:nx, frequencies - half :] = 0
+    rest = frequencies - half
+    im[:nx, rest:] = 0
     re[nx:] = 0
     im[nx:] = 0
 

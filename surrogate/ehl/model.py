@@ -67,10 +67,7 @@ class ContactLubricant:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Condition:
-    """
-    Normal load [N] and entrainment speed [m/s], the mean of both surfaces; 0 is the dry contact.
-
-    """
+    """Normal load [N] and entrainment speed [m/s], mean of both surfaces; 0 is the dry contact."""
 
     load: float
     entrainment_speed: float
@@ -137,17 +134,17 @@ class Settings:
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ContactSolution:
     """
-    Fields, sums and quality of one solved contact; arrays (nx, ny), x first; pressures are zero on
-    the border.
+    Fields, sums and quality of one solved contact.
 
-    Film and asperity pressure [Pa], film [m] (the true gap), places [m], masks of nodes where
-    asperities carry and where the film has ruptured; central and global minimum film [m]; both
-    extrapolated from the half grid [m] and the estimated relative error of the central film [-],
-    NaN without estimate; largest total pressure, Hertz pressure [Pa], semi-axes and approach [m];
-    `rcs`, share of the load on punctured nodes [-], `asperity_share`, integral of pa over the load
-    [-]; relative load error, `residual`, sum over a line of the flux imbalance over the local
-    flow, contact gap error over the floor [-]; rolling force on each surface [N] from the domain
-    and from the tail between inlet and meniscus; iterations, wall time [s].
+    Arrays (nx, ny), x first; pressures are zero on the border. Film and asperity pressure [Pa],
+    film [m] (the true gap), places [m], masks of nodes where asperities carry and where the film
+    has ruptured; central and global minimum film [m]; both extrapolated from the half grid [m] and
+    the estimated relative error of the central film [-], NaN without estimate; largest total
+    pressure, Hertz pressure [Pa], semi-axes and approach [m]; `rcs`, share of the load on
+    punctured nodes [-], `asperity_share`, integral of pa over the load [-]; relative load error,
+    `residual`, sum over a line of the flux imbalance over the local flow, contact gap error over
+    the floor [-]; rolling force on each surface [N] from the domain and from the tail between
+    inlet and meniscus; iterations, wall time [s].
 
     """
 

@@ -36,7 +36,7 @@ HOPELESS = 5
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Problem:
     """
-    Equations on one grid, in Hertz units.
+    Equations on one grid, in Hertz units [-].
 
     Heights of the undeformed gap, film floor, load, pressed width along y; dry or not; mobility
     (flow factor over rho h^3/eta, times dx), the numbers of the fluid laws, order of the wedge (1
@@ -61,7 +61,7 @@ class Problem:
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Limits:
     """
-    Tolerances and caps of one Newton solve.
+    Tolerances [-] and caps of one Newton solve.
 
     A step may change the pressure of a film node by `step` and the logarithm of the viscosity at
     the Hertz pressure by `viscous`, and may raise the film pressure of a contact node by `rise`.
@@ -276,8 +276,9 @@ def _linear_solve(
     rhs[:size] = -now.residual.ravel()
     if released.any():
         rhs[:size] -= _film_rows(now.by_pressure, released).ravel()
-    rhs[size : size + nodes.size] = (problem.floor - now.gap.ravel()[nodes]) * inverse
-    rhs[size + nodes.size] = now.load_rest
+    border = size + nodes.size
+    rhs[size:border] = (problem.floor - now.gap.ravel()[nodes]) * inverse
+    rhs[border] = now.load_rest
     x = np.zeros(size + nodes.size + 1, KRYLOV_TYPE)
     used, _ = solve_newton_step(
         grid.krylov_space,

@@ -20,7 +20,7 @@ def central_film(grid: Grid, gap: Array) -> float:
     """Return the film at x = 0, y = 0 by a parabola through three nodes along x, within them."""
     i, j = int(np.argmin(np.abs(grid.x))), int(np.argmin(np.abs(grid.y)))
     s = -grid.x[i] / grid.dx
-    west, here, east = gap[i - 1 : i + 2, j]
+    west, here, east = gap[[i - 1, i, i + 1], j]
     film = here + 0.5 * s * (east - west) + 0.5 * s * s * (east - 2 * here + west)
     return float(np.clip(film, min(west, here, east), max(west, here, east)))
 
@@ -41,7 +41,7 @@ def make_solution(
     krylov: int,
     wall_time: float,
 ) -> ContactSolution:
-    """Return the result of a solve in SI units on the full width."""
+    """Return the result of a solve in SI units on the full width; wall time [s]."""
     state, height = outcome.state, case.height_unit
     pressure = case.hertz_pressure
     total = state.film_pressure + state.asperity_pressure
@@ -105,10 +105,7 @@ def _two_grid(film: float, half_film: float) -> tuple[float, float]:
 
 
 def _rolling(grid: Grid, gap: Array, pressure: Array, inlet: Array) -> float:
-    """
-    Return the integral of (h/2) dp/dx; outside the first row the pressure is that of the inlet.
-
-    """
+    """Return the integral of (h/2) dp/dx; before the first row p is that of the inlet."""
     rise = np.diff(pressure, axis=0)
     rise[0] -= inlet * pressure[1]
     return grid.integral(0.25 * (gap[1:] + gap[:-1]) * rise / grid.dx)
@@ -137,10 +134,7 @@ def _rolling_tail(case: Case) -> float:
 
 
 def state_from_solution(case: Case, grid: Grid, start: ContactSolution) -> State:
-    """
-    Return the fields of another solution on `grid`; without speed all pressure is on asperities.
-
-    """
+    """Return the fields of another solution on `grid`; at rest asperities carry all pressure."""
     old = Grid(
         x=start.x / start.semi_axis_x,
         y=start.y / start.semi_axis_x,

@@ -92,7 +92,7 @@ class Search:
                     return outcome
 
     def smooth(self, speed: float, *, final: bool) -> Found:
-        """Solve the smooth contact from cold through the cascade."""
+        """Solve the smooth contact at a speed [m/s] from cold through the cascade."""
         levels = self.case.levels()
         grid, outcome = self._cascade(speed, levels[:-1])
         fine = self.case.grid(*levels[-1], symmetric=True)

@@ -172,10 +172,7 @@ def _finer(search: Search, case: Case, grid: Grid, outcome: Outcome) -> Found:
 
 
 def _touches_edge(case: Case, grid: Grid, outcome: Outcome) -> bool:
-    """
-    Tell whether the last rows of nodes inside the outlet and the sides carry part of the load.
-
-    """
+    """Tell whether the last rows of nodes before outlet and sides carry part of the load."""
     pressure = outcome.state.film_pressure + outcome.state.asperity_pressure
     edge = np.zeros(grid.shape)
     edge[-2], edge[:, -2] = pressure[-2], pressure[:, -2]

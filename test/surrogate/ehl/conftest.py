@@ -64,10 +64,7 @@ def nominal():
 
 @pytest.fixture(scope='session')
 def raceway():
-    """
-    Return a height function z(x, y) of sixty waves of 30 to 120 um, 0.12 um rms, self-affine.
-
-    """
+    """Return heights z(x, y) of sixty self-affine waves of 30 to 120 um, 0.12 um rms."""
     rng = np.random.default_rng(1)
     number = 2 * np.pi / np.exp(rng.uniform(np.log(30e-6), np.log(120e-6), 60))
     angle, phase = rng.uniform(0, np.pi, 60), rng.uniform(0, 2 * np.pi, 60)

@@ -14,7 +14,7 @@ from surrogate.parameters import InputError
 
 @pytest.fixture(scope='module')
 def solved(nominal):
-    """The nominal contact at 27.6 N and 0.5 m/s."""
+    """Solve the nominal contact at 27.6 N and 0.5 m/s."""
     return solve_contact(*nominal, Condition(load=27.6, entrainment_speed=0.5))
 
 

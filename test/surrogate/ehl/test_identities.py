@@ -12,7 +12,7 @@ from surrogate.geometry import Contact, hertz
 
 @pytest.fixture(scope='module')
 def solved(nominal):
-    """The nominal contact at 27.6 N and 0.5 m/s on the production grid."""
+    """Solve the nominal contact at 27.6 N and 0.5 m/s on the production grid."""
     return solve_contact(*nominal, Condition(load=27.6, entrainment_speed=0.5))
 
 
@@ -110,10 +110,7 @@ def test_warm_start_gives_the_cold_answer(solved, nominal):
     ],
 )
 def test_production_domain_cuts_nothing_off(nominal, load, speed, radius_y):
-    """
-    The film is within 0.5 % of that on a domain of 12 half-widths with the same node distance.
-
-    """
+    """A domain of 12 half-widths, at the same node distance, moves the film by 0.5 % at most."""
     contact = replace(nominal[0], radius_y=radius_y)
     case = Condition(load=load, entrainment_speed=speed)
     found = solve_contact(

@@ -96,10 +96,7 @@ def test_dry_contact_is_that_of_an_independent_solver(nominal, raceway):
 
 
 def test_vanishing_roughness_is_the_smooth_contact(nominal, raceway):
-    """
-    A thousandth of the roughness moves the film by less than its own height, with no contact.
-
-    """
+    """A thousandth of the roughness moves the film by less than its height, without contact."""
     condition, settings = Condition(load=27.6, entrainment_speed=0.5), replace(SETTINGS, ny=65)
     smooth = solve_contact(*nominal, condition, settings=settings)
     rough = solve_contact(

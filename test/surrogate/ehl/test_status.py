@@ -147,10 +147,7 @@ def test_contact_at_the_edge_of_the_domain_is_refused(nominal):
 
 
 def test_a_film_below_the_floor_is_real_contact(nominal):
-    """
-    A tenth of a millimetre per second: the smooth film is far below the floor, most load is dry.
-
-    """
+    """At 0.1 mm/s the smooth film is far below the floor, and most of the load is dry."""
     found = solve_contact(
         *nominal, Condition(load=27.6, entrainment_speed=1e-5), settings=Settings(film_floor=10e-9)
     )
