@@ -200,8 +200,13 @@ def draw_onsets(found: list[tuple[str, float, float]], path: Path) -> None:
     axes.axvspan(1 / 1.5, 1.5, color='0.9', label='factor 1.5 about the base')
     axes.axvline(1, color='0.4', linewidth=0.8)
     axes.set_yticks(places, [name for name, _, _ in known])
-    axes.set(xscale='log', xlabel='onset speed (RCS 0.01) over that of the base case [-]')
-    axes.set_xticks([0.5, 0.7, 1, 1.5, 2, 3], ['0.5', '0.7', '1', '1.5', '2', '3'])
+    axes.set(
+        xscale='log',
+        xlabel='onset speed (RCS 0.01) over that of the base case [-]',
+        title='129 x 257 nodes; the 8 µm waves on 193 x 513',
+    )
+    ticks = (0.15, 0.2, 0.3, 0.5, 0.7, 1, 1.5, 2)
+    axes.set_xticks(ticks, [f'{tick:g}' for tick in ticks])
     axes.minorticks_off()
     axes.grid(alpha=0.3, axis='x')
     axes.legend(fontsize=8)
