@@ -14,6 +14,16 @@ from surrogate.roughness import Surface
 ASPERITY_FRICTION = 0.1
 """Boundary friction coefficient of a case without roughness [-], for dry contacts."""
 
+RESULTS = (
+    'central_film_m',
+    'minimum_film_m',
+    'max_pressure_Pa',
+    'rcs',
+    'asperity_share',
+    'rolling_force_N',
+)
+"""What a record says only of a converged solution."""
+
 
 def friction_coefficient(
     solution: ContactSolution, slide_roll_ratio: float, asperity_friction: float
@@ -33,7 +43,7 @@ def contact_record(case: ContactCase, solution: ContactSolution) -> dict[str, An
 
     """
     friction = case.roughness.asperity_friction if case.roughness else ASPERITY_FRICTION
-    return {
+    record: dict[str, Any] = {
         'status': solution.status.value,
         'converged': bool(solution.converged),
         'central_film_m': float(solution.central_film),
@@ -55,6 +65,13 @@ def contact_record(case: ContactCase, solution: ContactSolution) -> dict[str, An
         'grid': [len(solution.x), len(solution.y)],
         'wall_s': float(solution.wall_time),
     }
+    return record if solution.converged else record | _withheld(case)
+
+
+def _withheld(case: ContactCase) -> dict[str, Any]:
+    """Return NaN for what is not known without convergence; the status is the reason."""
+    unknown = [math.nan] * len(case.slide_roll_ratio)
+    return dict.fromkeys(RESULTS, math.nan) | {'friction_coefficient': unknown}
 
 
 def contact_page(

@@ -5,7 +5,6 @@
 import csv
 from dataclasses import replace
 import json
-import math
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +12,7 @@ import pytest
 from surrogate.contact_case import CaseDomain, CaseGrid, CaseRoughness, load_case
 from surrogate.contact_record import contact_page, contact_record, friction_coefficient
 from surrogate.contact_solve import solve_case
+from surrogate.ehl.model import Status
 from surrogate.plain_json import to_json
 
 TABLE = Path(__file__).parents[1] / 'reference' / 'ehl_dimensional.csv'
@@ -74,8 +74,19 @@ def test_the_record_has_the_documented_keys():
     assert record['rcs'] == record['asperity_share'] == 0.0
     assert len(record['friction_coefficient']) == 3
     assert json.loads(json.dumps(record)) == record
-    missing = contact_record(SMALL, replace(solution, central_film=math.nan))
-    assert to_json(missing)['central_film_m'] is None
+
+
+def test_what_did_not_converge_is_not_told():
+    """The last iterate of a solve that stopped is no result: null, with the status as reason."""
+    solution, _ = solve_case(SMALL)
+    record = to_json(contact_record(SMALL, replace(solution, status=Status.OUT_OF_TIME)))
+    assert list(record) == KEYS
+    assert record['converged'] is False
+    assert record['status'] == Status.OUT_OF_TIME.value
+    assert record['friction_coefficient'] == [None] * 3
+    for key in ('central_film_m', 'minimum_film_m', 'rcs', 'asperity_share', 'rolling_force_N'):
+        assert record[key] is None
+    assert record['hertz_pressure_Pa'] > 0
 
 
 @pytest.mark.parametrize(
