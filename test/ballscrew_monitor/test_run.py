@@ -74,6 +74,7 @@ def test_it_succeeds_and_leaves_its_products(finished):
         'cycle.png',
         'metadata.yaml',
         'node.log',
+        'ros_log',
     }
     assert '300 sent, 300 judged' in text
     assert re.search(r'^\[#+\.*\] 0:\d\d left .* rev/min .* RCS ', text, flags=re.MULTILINE)
