@@ -18,7 +18,7 @@ import dataclasses
 import math
 from typing import TYPE_CHECKING
 
-from ballscrew_monitor.conversions import axial_load, opposing_load, signed_speed
+from ballscrew_monitor.conversions import axial_load, opposing_load, RPM, signed_speed
 from ballscrew_monitor.estimate import estimate, Point, Validity
 from ballscrew_monitor.judgement import clears, Limits
 
@@ -42,7 +42,10 @@ class Advice:
         """Return the advice as a sentence, empty if there is none."""
         parts = []
         if math.isfinite(self.target_speed):
-            parts.append(f'at this load run at {self.target_speed:.4g} rad/s')
+            turns = self.target_speed * RPM
+            parts.append(
+                f'at this load run at {self.target_speed:.4g} rad/s ({turns:.0f} rev/min)'
+            )
         if math.isfinite(self.target_load):
             parts.append(f'at this speed load with {self.target_load:.4g} N')
         return ' or '.join(parts)

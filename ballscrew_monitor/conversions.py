@@ -20,6 +20,7 @@ TURN = 2.0 * math.pi
 ZERO_CELSIUS = 273.15  # [K]
 SECOND = 1_000_000_000  # [ns]
 
+RPM = 60.0 / TURN  # [rev/min] per [rad/s]
 ROTARY_SPEED_UNITS = {'rad/s': 1.0, 'rev/min': TURN / 60.0}  # [rad/s]
 LINEAR_SPEED_UNITS = {
     'm/s': 1.0,

@@ -7,6 +7,7 @@ import math
 import os
 from pathlib import Path
 
+from ballscrew_monitor.conversions import RPM
 from ballscrew_monitor.cycle_trace import Trace
 from ballscrew_monitor.operating_map import (
     BLUE,
@@ -17,7 +18,6 @@ from ballscrew_monitor.operating_map import (
     legend_entries,
     ORANGE,
     PURPLE,
-    RPM,
 )
 from ballscrew_monitor.summary import EventRecord, Summary
 from ballscrew_msgs.msg import BallScrewState

@@ -13,7 +13,7 @@ import dataclasses
 import math
 from typing import Any
 
-from ballscrew_monitor.conversions import kelvin
+from ballscrew_monitor.conversions import kelvin, RPM
 from ballscrew_monitor.cycle_trace import Limits, Trace
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
@@ -24,7 +24,6 @@ from surrogate.surface import Surface, Validity
 
 Array = NDArray[np.float64]
 
-RPM = 30.0 / math.pi  # [rev/min] per [rad/s]
 # Okabe and Ito: distinct for the colour-blind and in grey.
 GREEN, ORANGE, BLUE, PURPLE, GREY = '#009e73', '#d55e00', '#0072b2', '#7b3294', '#7f7f7f'
 OPTIMAL_FILL = '#dff2ea'

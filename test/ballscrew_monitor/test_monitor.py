@@ -206,7 +206,7 @@ def test_an_event_begins_and_ends_with_its_facts(core):
     assert event.stamp == edges[0].stamp == START + 2 * SECOND + SECOND // 2
     assert (event.cause.code, event.worst_value) == (Code.RCS_HIGH, 1.0)
     assert event.cause.target_speed == pytest.approx(30.0, rel=1e-5)
-    assert event.advice.text.startswith('at this load run at 30 rad/s')
+    assert event.advice.text.startswith('at this load run at 30 rad/s (286 rev/min)')
     states = feed(monitor, motion(40.0, start=START + 3 * SECOND, count=120))
     (over,) = [state.event for state in states if state.event is not None]
     assert (over.number, over.active, over.start) == (1, False, START + 2 * SECOND)
