@@ -7,9 +7,11 @@ import math
 import time
 from typing import Any
 
+import numpy as np
 from surrogate import closed_form, torque
 from surrogate.film_formulas import (
     central_film_nijenbanning_1994,
+    Groups,
     outside_range,
     rolling_force_biboulet_houpert_2010,
 )
@@ -155,14 +157,23 @@ def _warnings(
             f'temperature: {point.temperature - ZERO_CELSIUS:.4g} degC, the oil sheet '
             f'covers {low - ZERO_CELSIUS:g} to {high - ZERO_CELSIUS:g} degC'
         )
+    g = _all_groups(result.contacts)
     for formula in FORMULAS if point.speed else ():
-        phrases = {
-            phrase: None
-            for contact in result.contacts
-            for phrase in outside_range(formula, contact.film_groups)
-        }
-        warnings += [f'{formula} outside its range: {phrase}' for phrase in phrases]
+        phrases = outside_range(formula, g)
+        if phrases:
+            warnings.append(f'{formula} outside its range: {", ".join(phrases)}')
     return warnings
+
+
+def _all_groups(contacts: tuple[closed_form.ContactResult, ...]) -> Groups:
+    """Return the film groups of all contacts as one, so that a range is left only once."""
+    every = [contact.film_groups for contact in contacts]
+    return Groups(
+        speed=np.stack([g.speed for g in every]),
+        load=np.stack([g.load for g in every]),
+        material=np.stack([g.material for g in every]),
+        radius_ratio=max(g.radius_ratio for g in every),
+    )
 
 
 def page(record: Mapping[str, Any]) -> str:
