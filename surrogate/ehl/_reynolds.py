@@ -22,6 +22,8 @@ DENSITY_PRESSURE = 5.9e8
 """Pressure constant of the Dowson-Higginson density [Pa]."""
 ROELANDS_PRESSURE = 1.96e8
 """Reference pressure of the Roelands law [Pa]."""
+STIFF = 3.0
+"""Logarithm of viscosity over which the second order fades where surfaces touch [-]."""
 
 
 @njit(cache=True, error_model='numpy')
@@ -59,15 +61,14 @@ def film_properties(
     growth: float,
     exponent: float,
     gain: float,
-    mobility: float,
     out: Array,
 ) -> None:
     """
     Fill the planes of film properties, all in Hertz units [-].
 
-    0 flow factor, 1 and 2 its slopes in pressure and film, 3 density, 4 slope, 5 film. The flow
-    factor is `mobility` rho h^3 / eta; the film never falls below the floor, and does not react to
-    the gap on contact nodes. Plane 6 is 1 where it reacts, 0 elsewhere.
+    0 density, 1 its slope in pressure, 2 film, 3 logarithm of viscosity, 4 its slope, 5 fluidity.
+    The film never falls below the floor, and does not react to the gap on contact nodes: plane 6
+    is 1 where it reacts, 0 elsewhere.
 
     """
     nx, ny = pressure.shape
@@ -80,29 +81,127 @@ def film_properties(
                 log_viscosity, stiffening, density, slope = fluid_at(
                     p, scale, growth, exponent, gain
                 )
-            h, free = gap[i, j], 1.0
-            if contact[i, j]:
-                h, free = floor, 0.0
-            elif h < floor:
-                h = floor
-            flow = mobility * density * h * h * h
-            if log_viscosity != 0.0:
-                flow *= math.exp(-log_viscosity)
-            out[0, i, j] = flow
-            out[1, i, j] = flow * (slope / density - stiffening)
-            out[2, i, j] = 3.0 * flow / h * free
-            out[3, i, j] = density
-            out[4, i, j] = slope
-            out[5, i, j] = h
-            out[6, i, j] = free
+            out[0, i, j] = density
+            out[1, i, j] = slope
+            out[2, i, j] = floor if contact[i, j] else max(gap[i, j], floor)
+            out[3, i, j] = log_viscosity
+            out[4, i, j] = stiffening
+            out[5, i, j] = math.exp(-log_viscosity)
+            out[6, i, j] = 0.0 if contact[i, j] else 1.0
+
+
+@njit(cache=True, error_model='numpy', inline='always')
+def mean_fluidity(
+    log_a: float, log_b: float, fluidity_a: float, fluidity_b: float
+) -> tuple[float, float, float]:
+    """
+    Return the logarithmic mean of two fluidities and its slopes in both logarithms of viscosity.
+
+    It is the mean over the pressures between the nodes, so that a face passes what Kirchhoff's
+    pressure, the integral of dp/eta, drives: exact for exponential viscosity however steep.
+
+    """
+    r = log_b - log_a
+    if abs(r) < 0.02:
+        return (
+            fluidity_a * (1.0 - r * (0.5 - r * (1.0 / 6.0 - r / 24.0))),
+            fluidity_a * (-0.5 + r * (1.0 / 6.0 - r / 24.0)),
+            fluidity_a * (-0.5 + r * (1.0 / 3.0 - r / 8.0)),
+        )
+    mean = (fluidity_a - fluidity_b) / r
+    return mean, (mean - fluidity_a) / r, (fluidity_b - mean) / r
+
+
+@njit(cache=True, error_model='numpy', inline='always')
+def face_flow(
+    film: Array, i: int, j: int, k: int, n: int, climbs: bool, series: bool
+) -> tuple[float, float, float, float, float]:
+    """
+    Return the flow factor rho h^3/eta [-] between nodes (i, j) and (k, n) and its four slopes.
+
+    Slopes: in the pressures of both nodes, then in their gaps. In `series` h^3 is
+    2 a^2 b^2/(a + b), what a flux meets where the film goes from a to b: the thin end rules; else
+    the plain mean. The fluidity is the logarithmic mean where the pressure `climbs`; where it
+    falls along the flow that would let Newton find the edge of the rupture one power of e at a
+    time, and the plain mean serves.
+
+    """
+    fluid_a, fluid_b = film[5, i, j], film[5, k, n]
+    mean, in_a, in_b = 0.5 * (fluid_a + fluid_b), -0.5 * fluid_a, -0.5 * fluid_b
+    if climbs:
+        mean, in_a, in_b = mean_fluidity(film[3, i, j], film[3, k, n], fluid_a, fluid_b)
+    a, b = film[2, i, j], film[2, k, n]
+    cube, in_a3, in_b3 = 0.5 * (a * a * a + b * b * b), 1.5 * a * a, 1.5 * b * b
+    if series:
+        cube = 2.0 * a * a * b * b / (a + b)
+        in_a3, in_b3 = cube * (2.0 / a - 1.0 / (a + b)), cube * (2.0 / b - 1.0 / (a + b))
+    dense = 0.5 * (film[0, i, j] + film[0, k, n])
+    return (
+        dense * cube * mean,
+        cube * (0.5 * film[1, i, j] * mean + dense * in_a * film[4, i, j]),
+        cube * (0.5 * film[1, k, n] * mean + dense * in_b * film[4, k, n]),
+        dense * mean * in_a3 * film[6, i, j],
+        dense * mean * in_b3 * film[6, k, n],
+    )
+
+
+@njit(cache=True, error_model='numpy', inline='always')
+def limited_change(here: float, before: float) -> tuple[float, float, float]:
+    """
+    Return the change to the node before, limited where it is large, and its two slopes.
+
+    The change d = before - here becomes d here/(here + |d|): what is extrapolated stays positive,
+    and the inlet of a thin film may be missed by the nodes. A smooth film so found is right within
+    0.3 % where the node distance is 0.1 to 0.8 of the inlet length.
+
+    """
+    change = before - here
+    ratio = here / (here + abs(change))
+    if change > 0.0:
+        return change * ratio, 1.0 - 2.0 * ratio, ratio * ratio
+    return change * ratio, -1.0 - 2.0 * change / here * ratio * ratio, ratio * ratio
+
+
+@njit(cache=True, error_model='numpy', inline='always')
+def carried_mass(
+    film: Array, i: int, j: int, order: float, touching: bool
+) -> tuple[float, float, float, float, float]:
+    """
+    Return rho h [-] that leaves node (i, j) downstream, its slopes in p, h here, p, h before.
+
+    Order 2 extrapolates rho h from the node before, order 1 does not. Where surfaces touch the
+    extrapolation is limited, and fades where the viscosity is large: there the flow hardly depends
+    on pressure, rho h is constant along x and order 1 exact, and linear systems stay solvable.
+
+    """
+    k = max(i - 1, 0)
+    here, before = film[0, i, j] * film[2, i, j], film[0, k, j] * film[2, k, j]
+    drop, in_here, in_before = before - here, -1.0, 1.0
+    share, fading = 0.5 * (order - 1.0), 0.0
+    if touching:
+        drop, in_here, in_before = limited_change(here, before)
+        stiff = film[3, i, j] / STIFF
+        kept = 1.0 / (1.0 + stiff**4)
+        fading = 4.0 * share * kept * kept * stiff**3 / STIFF * film[4, i, j]
+        share *= kept
+    by_here, by_before = 1.0 - share * in_here, -share * in_before
+    return (
+        here - share * drop,
+        by_here * film[1, i, j] * film[2, i, j] + fading * drop,
+        by_here * film[0, i, j] * film[6, i, j],
+        by_before * film[1, k, j] * film[2, k, j],
+        by_before * film[0, k, j] * film[6, k, j],
+    )
 
 
 @njit(cache=True, error_model='numpy')
 def reynolds_rows(
     pressure: Array,
     film: Array,
+    mobility: float,
     aspect: float,
     order: float,
+    touching: bool,
     inlet: Array,
     residual: Array,
     by_pressure: Array,
@@ -111,61 +210,43 @@ def reynolds_rows(
     """
     Assemble F = -div(flow grad p) dx + d(rho h)/dx dx and its planes dF/dp, dF/dh.
 
-    Faces take the mean flow factor of two nodes, `aspect` is (dx/dy)^2. The upstream wedge has
-    order 1 to 2 (a blend between). Just outside the first row the pressure is `inlet` times that
-    inside it. Border rows get zero planes. Hertz units [-].
+    `mobility` multiplies all flow factors, `aspect` is (dx/dy)^2; `order` and `touching` as in
+    `carried_mass`. Just outside the first row the pressure is `inlet` times that inside it. Border
+    rows get zero planes. Hertz units [-].
 
     """
     nx, ny = pressure.shape
-    flow, flow_p, flow_h = film[0], film[1], film[2]
-    density, density_p, height, free = film[3], film[4], film[5], film[6]
     residual[:] = 0.0
     by_pressure[:] = 0.0
     by_gap[:] = 0.0
     for i in range(1, nx - 1):
-        extra = 0.5 * (order - 1.0) if i > 1 else 0.0
-        w0, w1, w2 = 1.0 + extra, -1.0 - 2.0 * extra, extra
-        n = max(i - 2, 0)
         for j in range(1, ny - 1):
-            p, e = pressure[i, j], flow[i, j]
-            west = (pressure[i - 1, j] if i > 1 else inlet[j] * p) - p
-            east = pressure[i + 1, j] - p
-            south, north = pressure[i, j - 1] - p, pressure[i, j + 1] - p
-            ew, ee = 0.5 * (e + flow[i - 1, j]), 0.5 * (e + flow[i + 1, j])
-            es, en = 0.5 * (e + flow[i, j - 1]), 0.5 * (e + flow[i, j + 1])
-            pull = 0.5 * (west + east + aspect * (south + north))
-            residual[i, j] = (
-                -ew * west
-                - ee * east
-                - aspect * (es * south + en * north)
-                + w0 * density[i, j] * height[i, j]
-                + w1 * density[i - 1, j] * height[i - 1, j]
-                + w2 * density[n, j] * height[n, j]
+            out, out_p, out_h, out_p1, out_h1 = carried_mass(
+                film, i, j, order if i > 1 else 1.0, touching
             )
-            by_pressure[0, i, j] = (
-                ew
-                + ee
-                + aspect * (es + en)
-                - flow_p[i, j] * pull
-                + w0 * density_p[i, j] * height[i, j]
+            come, come_p, come_h, come_p1, come_h1 = carried_mass(
+                film, i - 1, j, order if i > 2 else 1.0, touching
             )
-            by_pressure[1, i, j] = (
-                -ew - 0.5 * flow_p[i - 1, j] * west + w1 * density_p[i - 1, j] * height[i - 1, j]
-            )
-            by_pressure[2, i, j] = -ee - 0.5 * flow_p[i + 1, j] * east
-            by_pressure[3, i, j] = -aspect * (es + 0.5 * flow_p[i, j - 1] * south)
-            by_pressure[4, i, j] = -aspect * (en + 0.5 * flow_p[i, j + 1] * north)
-            by_pressure[5, i, j] = w2 * density_p[n, j] * height[n, j]
-            if i == 1:
-                by_pressure[0, i, j] -= ew * inlet[j]
-            by_gap[0, i, j] = w0 * density[i, j] * free[i, j] - flow_h[i, j] * pull
-            by_gap[1, i, j] = (
-                w1 * density[i - 1, j] * free[i - 1, j] - 0.5 * flow_h[i - 1, j] * west
-            )
-            by_gap[2, i, j] = -0.5 * flow_h[i + 1, j] * east
-            by_gap[3, i, j] = -0.5 * aspect * flow_h[i, j - 1] * south
-            by_gap[4, i, j] = -0.5 * aspect * flow_h[i, j + 1] * north
-            by_gap[5, i, j] = w2 * density[n, j] * free[n, j]
+            residual[i, j] = out - come
+            by_pressure[0, i, j], by_gap[0, i, j] = out_p, out_h
+            by_pressure[1, i, j], by_gap[1, i, j] = out_p1 - come_p, out_h1 - come_h
+            by_pressure[5, i, j], by_gap[5, i, j] = -come_p1, -come_h1
+            for plane in range(1, 5):
+                k = i + (plane == 2) - (plane == 1)
+                n = j + (plane == 4) - (plane == 3)
+                outside = inlet[j] * pressure[i, j] if k == 0 else pressure[k, n]
+                rise = outside - pressure[i, j]
+                climbs = rise < 0.0 if plane == 1 else rise > 0.0 if plane == 2 else touching
+                flow, in_p, in_p1, in_h, in_h1 = face_flow(film, i, j, k, n, climbs, touching)
+                weight = mobility * (aspect if plane > 2 else 1.0)
+                pull = weight * rise
+                residual[i, j] -= flow * pull
+                by_pressure[0, i, j] += weight * flow - in_p * pull
+                by_pressure[plane, i, j] -= weight * flow + in_p1 * pull
+                by_gap[0, i, j] -= in_h * pull
+                by_gap[plane, i, j] -= in_h1 * pull
+                if k == 0:
+                    by_pressure[0, i, j] -= weight * flow * inlet[j]
 
 
 @njit(cache=True, error_model='numpy')

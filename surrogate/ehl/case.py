@@ -32,8 +32,8 @@ COARSEST = 33
 COARSE_STEP = 0.25
 """Largest node distance of a coarse level over the semi-axis or the width of a thick film [-]."""
 COARSEST_ACROSS = 17
-RESOLVED, UNRESOLVED = 0.3, 0.9
-"""Node distance over the inlet length up to which touching films keep order 2 and from which 1."""
+UNRESOLVED = 0.9
+"""Node distance over the inlet length from which a smooth film is not looked for [-]."""
 TOUCHING = 2.0
 """Film by formula over the floor below which smooth surfaces are taken to touch [-]."""
 
@@ -153,8 +153,8 @@ class Case:
         return float((0.75 * film / math.sqrt(2)) ** (2 / 3))
 
     @property
-    def blends(self) -> bool:
-        """Whether the surfaces touch: a thin film takes order 1 where the grid misses it."""
+    def touches(self) -> bool:
+        """Whether the surfaces touch, or may."""
         speed = self.condition.entrainment_speed
         return self.roughness is not None or (
             speed > 0 and self.film_estimate(speed) < TOUCHING * self.floor
@@ -165,16 +165,10 @@ class Case:
         dx = (self.domain[1] - self.domain[0]) / (settings.nx - 1)
         return dx / self.inlet_length(speed)
 
-    def order(self, grid: Grid, speed: float) -> float:
-        """Return the order of the upstream wedge at the end of the way [-], at a speed [m/s]."""
-        if self.settings.wedge_order is not None:
-            return float(self.settings.wedge_order)
-        if not self.blends or speed == 0.0:
-            return 2.0
-        if self.roughness is None:
-            return 1.0  # all of a smooth contact touches at once, which order 2 does not survive
-        coarseness = grid.dx / self.inlet_length(speed)
-        return 1.0 + float(np.clip((UNRESOLVED - coarseness) / (UNRESOLVED - RESOLVED), 0, 1))
+    @property
+    def order(self) -> float:
+        """Order of the upstream wedge at the end of the way [-]."""
+        return float(self.settings.wedge_order or 2)
 
     def problem(
         self, grid: Grid, speed: float, heights: Array, order: float, softness: float = 0.0
@@ -195,6 +189,7 @@ class Case:
             density_gain=gain,
             growth=lubricant.pressure_viscosity * ROELANDS_PRESSURE / exponent,
             order=order,
+            touching=self.touches,
             inlet=self.inlet(grid),
         )
 

@@ -40,7 +40,8 @@ class Problem:
 
     Heights of the undeformed gap, film floor, load, pressed width along y; dry or not; mobility
     (flow factor over rho h^3/eta, times dx), the numbers of the fluid laws, order of the wedge (1
-    to 2), pressure just outside the inlet over that inside per column.
+    to 2), whether surfaces touch or may, pressure just outside the inlet over that inside per
+    column.
 
     """
 
@@ -55,6 +56,7 @@ class Problem:
     exponent: float
     density_gain: float
     order: float
+    touching: bool
     inlet: Array
 
 
@@ -169,14 +171,15 @@ def _evaluate(grid: Grid, problem: Problem, state: State) -> _Evaluation:
             problem.growth,
             problem.exponent,
             problem.density_gain,
-            problem.mobility,
             film,
         )
         reynolds_rows(
             pressure,
             film,
+            problem.mobility,
             (grid.dx / grid.dy) ** 2,
             problem.order,
+            problem.touching,
             problem.inlet,
             residual,
             by_pressure,
@@ -184,7 +187,7 @@ def _evaluate(grid: Grid, problem: Problem, state: State) -> _Evaluation:
         )
     flux = free_boundary_rows(
         pressure,
-        film[5],
+        film[2],
         problem.dry,
         grid.stiffness,
         grid.weights / (grid.dx * grid.dy),

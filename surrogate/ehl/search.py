@@ -107,7 +107,7 @@ class Search:
             if not outcome.converged:
                 return fine, outcome
             state = outcome.state
-        order = self.case.order(fine, speed)
+        order = self.case.order
         outcome = self.solve(fine, replace(first, order=order), state, limits)
         if not outcome.converged and not outcome.out_of_time:
             easier = self.solve(fine, first, state, limits)
@@ -142,10 +142,10 @@ class Search:
 
     def _half_grid(self, grid: Grid, problem: Problem, speed: float, start: Outcome) -> Outcome:
         """Solve the last but one grid as the finest is solved and note its film."""
-        if not self.case.settings.error_estimate or self.case.blends:
+        if not self.case.settings.error_estimate or self.case.touches:
             return start
         limits = replace(self.limits(rough=False, final=True), flux=1e-3, newton=15)
-        order = self.case.order(grid, speed)
+        order = self.case.order
         outcome = self.solve(grid, replace(problem, order=order), start.state, limits)
         if not outcome.converged or (outcome.contact.any() and not problem.dry):
             return start
@@ -197,7 +197,7 @@ class Search:
 
         def problem(t: float) -> Problem:
             speed = slow if t == 1.0 else fast * (slow / fast) ** t
-            return self.case.problem(grid, speed, heights, order or self.case.order(grid, speed))
+            return self.case.problem(grid, speed, heights, order or self.case.order)
 
         return problem
 
@@ -223,7 +223,7 @@ class Search:
             outcome = self.march(
                 grid,
                 state,
-                lambda t: case.problem(grid, start, shape - t * rough, case.order(grid, start)),
+                lambda t: case.problem(grid, start, shape - t * rough, case.order),
                 limits,
                 0.5,
             )
@@ -260,14 +260,14 @@ class Search:
         if rough:
             heights = heights - case.rough_heights(grid)
         speed, last = case.condition.entrainment_speed, start.condition.entrainment_speed
-        limits = self.limits(rough=case.blends, final=True)
+        limits = self.limits(rough=case.touches, final=True)
         limits = replace(limits, newton=min(limits.newton, WARM_NEWTON))
         state = state_from_solution(case, grid, start)
         if speed and last:
             path = self._slowing(grid, heights, last, speed)
             outcome = self.march(grid, state, path, limits)
         else:
-            problem = case.problem(grid, speed, heights, case.order(grid, speed))
+            problem = case.problem(grid, speed, heights, case.order)
             outcome = self.solve(grid, problem, state, limits)
         return (grid, outcome) if outcome.converged else None
 

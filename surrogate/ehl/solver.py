@@ -93,14 +93,14 @@ def prepare() -> None:
 def _find(search: Search, start: ContactSolution | None) -> Found:
     """Choose the way: refuse, warm, thin or smooth."""
     case, speed = search.case, search.case.condition.entrainment_speed
-    if not case.blends and speed and case.coarseness(case.settings, speed) > UNRESOLVED:
+    if not case.touches and speed and case.coarseness(case.settings, speed) > UNRESOLVED:
         return search.refuse()
     found = search.warm(start) if start is not None else None
     if found is not None:
         return found
     return (
         search.thin()
-        if case.blends and (speed or case.roughness is not None)
+        if case.touches and (speed or case.roughness is not None)
         else (search.smooth(speed, final=True))
     )
 
@@ -132,7 +132,7 @@ def _confirm(search: Search, grid: Grid, outcome: Outcome) -> tuple[Grid, Outcom
     """
     case, settings = search.case, search.case.settings
     speed = case.condition.entrainment_speed
-    if case.roughness is not None or not speed or case.blends or outcome.out_of_time:
+    if case.roughness is not None or not speed or case.touches or outcome.out_of_time:
         return grid, outcome, True
     for _ in range(REFINEMENTS if settings.refine else 0):
         nx, ny = 2 * settings.nx - 1, 2 * settings.ny - 1
@@ -154,7 +154,7 @@ def _finer(search: Search, case: Case, grid: Grid, outcome: Outcome) -> Found:
     speed, settings = case.condition.entrainment_speed, case.settings
     finer = case.grid(settings.nx, settings.ny, symmetric=True)
     if outcome.converged:
-        problem = case.problem(finer, speed, case.shape_heights(finer), case.order(finer, speed))
+        problem = case.problem(finer, speed, case.shape_heights(finer), case.order)
         found = search.solve(
             finer,
             problem,

@@ -122,13 +122,12 @@ def test_smooth_contact_that_the_grid_makes_up_is_refused(moes_case):
     assert fine.minimum_film > 0.9 * unit
 
 
-def test_contact_that_a_finer_grid_dispels_is_refined_or_refused(nominal):
-    """At 111 N the rim of an 11 nm film dips to the floor on the production grid, not on finer."""
-    contact, oil = nominal
-    oil = replace(oil, viscosity=0.0179, pressure_viscosity=1.69e-8)
-    condition = Condition(load=111.0, entrainment_speed=0.0566)
-    coarse = solve_contact(contact, oil, condition, settings=Settings(refine=False))
-    fine = solve_contact(contact, oil, condition)
+def test_contact_that_a_finer_grid_dispels_is_refined_or_refused(moes_case):
+    """The least film of M = 500 dips below a floor of 68.5 nm on the coarse grid, not on finer."""
+    *case, _ = moes_case(500.0, 10.0, 'roelands_dh')
+    settings = Settings(nx=65, ny=65, film_floor=68.5e-9)
+    coarse = solve_contact(*case, settings=replace(settings, refine=False))
+    fine = solve_contact(*case, settings=settings)
     assert coarse.status is Status.GRID_TOO_COARSE
     assert fine.converged, fine.status.value
     assert fine.rcs == 0.0
