@@ -22,7 +22,7 @@ DENSITY_PRESSURE = 5.9e8
 """Pressure constant of the Dowson-Higginson density [Pa]."""
 ROELANDS_PRESSURE = 1.96e8
 """Reference pressure of the Roelands law [Pa]."""
-STIFF = 3.0
+STIFF = 2.5
 """Logarithm of viscosity over which the second order fades where surfaces touch [-]."""
 
 

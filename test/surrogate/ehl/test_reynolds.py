@@ -29,7 +29,7 @@ def plain_mass(mass, logs, i, j, order, touching):
     change, share = mass[i - 1, j] - mass[i, j], 0.5 * (order - 1)
     if touching:
         change *= mass[i, j] / (mass[i, j] + abs(change))
-        share /= 1 + (logs[i, j] / 3.0) ** 4
+        share /= 1 + (logs[i, j] / 2.5) ** 4
     return mass[i, j] - share * change
 
 
