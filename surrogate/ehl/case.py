@@ -169,8 +169,14 @@ class Case:
 
     @property
     def order(self) -> float:
-        """Order of the upstream wedge at the end of the way [-]."""
-        return float(self.settings.wedge_order or 2)
+        """
+        Order of the upstream wedge at the end of the way [-].
+
+        All of a smooth contact touches at once, which order 2 does not survive.
+
+        """
+        smooth = self.touches and self.roughness is None
+        return float(self.settings.wedge_order or (1 if smooth else 2))
 
     def problem(
         self, grid: Grid, speed: float, heights: Array, order: float, softness: float = 0.0
