@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 from numpy.typing import NDArray
+from surrogate.ehl.domain import production_domain
 from surrogate.ehl.grid import Grid, make_grid, State
 from surrogate.ehl.half_space import deform
 from surrogate.ehl.model import Condition, ContactLubricant, Roughness, Settings
@@ -34,12 +35,8 @@ COARSE_STEP = 0.25
 COARSEST_ACROSS = 17
 UNRESOLVED = 0.9
 """Node distance over the inlet length from which a smooth film is not looked for [-]."""
-RIGID = 1.5
-"""Width of the pressure over the semi-axis from which bodies hardly deform [-]."""
 SPREAD = 0.25
 """Semi-axis of the first pressure over the width of a thick film [-]."""
-SUMMITS, FARTHEST = 3.0, 2.0
-"""Height of summits over the rms roughness, and farthest reach of them over a semi-axis [-]."""
 TOUCHING = 2.0
 """Film by formula over the floor below which smooth surfaces are taken to touch [-]."""
 
@@ -271,7 +268,7 @@ def make_case(
         domain=(0.0, 0.0, 0.0),
         open_inlet=False,
     )
-    domain = settings.domain or _production_domain(case)
+    domain = settings.domain or production_domain(case)
     open_inlet = settings.domain is None if settings.open_inlet is None else settings.open_inlet
     k = case.ellipticity
     return Case(
@@ -281,69 +278,3 @@ def make_case(
             'open_inlet': open_inlet,
         }
     )
-
-
-def _production_domain(case: Case) -> tuple[float, float, float]:
-    """
-    Return inlet, outlet and side over the semi-axes: with the open inlet, films within 0.3 %.
-
-    The pressure in front of the contact falls off over the inlet length of the film; across, the
-    more slowly the rounder the contact. A rough contact needs room where its summits still reach
-    the other surface, and its thin film less inlet. A film thicker than the height unit hardly
-    deforms the bodies: the load falls off as 1/y^2 across, which no domain holds; films are about
-    15 % low at 5 to 40 height units, more beyond.
-
-    """
-    speed, height = case.condition.entrainment_speed, _summit_height(case)
-    along, across = _reach_along(height), _reach_across(height, case.contact, case.ellipticity)
-    if not speed:
-        return -max(1.4, 1 + along), max(1.4, 1 + along), max(1.3, 1 + across)
-    reach = (6 * case.film_estimate(speed)) ** (2 / 3)
-    thick = math.sqrt(2 * case.film_estimate(speed))
-    rigid = max(0.0, thick - RIGID)
-    side = (
-        1.2 + min(0.08 * reach**2 + reach / case.ellipticity**2, 1.0 + 2.0 * thick) + 4.0 * rigid
-    )
-    inlet = 2.0 if case.roughness is None else 1.75
-    return (
-        -max(inlet + min(0.9 * reach, 4.0 + 3.0 * thick) + 6.0 * rigid, 1.1 + along),
-        max(1.25 + min(0.03 * reach**2, 0.9 * thick), 1 + along),
-        max(side, 1 + across),
-    )
-
-
-def _summit_height(case: Case) -> float:
-    """Return `SUMMITS` times the rms height over the Hertz rectangle, in Hertz units [-]."""
-    if case.roughness is None:
-        return 0.0
-    heights = case.roughness
-    if callable(heights):
-        places = np.linspace(-1, 1, 65)
-        x, y = np.meshgrid(places * case.semi_axis_x, places * case.semi_axis_y, indexing='ij')
-        heights = heights(x, y)
-    return SUMMITS * float(np.std(heights)) / case.height_unit
-
-
-def _reach_along(height: float) -> float:
-    """
-    Return where the dry gap along x has opened by `height`: distance outside the Hertz zone [-].
-
-    The gap beside a line contact, (x sqrt(x^2 - 1) - arcosh x)/2, is the narrowest.
-
-    """
-    places = np.linspace(1, 1 + FARTHEST, 201)
-    gap = (places * np.sqrt(places**2 - 1) - np.arccosh(places)) / 2
-    return float(np.interp(height, gap, places - 1))
-
-
-def _reach_across(height: float, contact: Contact, ellipticity: float) -> float:
-    """
-    Return the same along y, over the semi-axis along y [-].
-
-    The gap beside a circular contact, (sqrt(y^2 - 1) - (2 - y^2) arccos(1/y))/pi.
-
-    """
-    places = np.linspace(1, 1 + FARTHEST, 201)
-    gap = (np.sqrt(places**2 - 1) - (2 - places**2) * np.arccos(1 / places)) / math.pi
-    unit = ellipticity**2 * contact.radius_x / contact.radius_y
-    return float(np.interp(height, unit * gap, places - 1))

@@ -1,0 +1,56 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The domain of a contact that states none."""
+
+import numpy as np
+import pytest
+from surrogate.ehl import Condition, Settings, solve_contact, Status
+from surrogate.ehl.case import make_case
+
+SLOW = Condition(load=27.6, entrainment_speed=0.01)
+
+
+def domain(nominal, roughness=None, condition=SLOW):
+    """Return inlet, outlet and side over the semi-axes of the nominal contact."""
+    case = make_case(*nominal, condition, Settings(), roughness)
+    return np.array([*case.domain[:2], case.domain[2] / case.ellipticity])
+
+
+def bump(x0, y0, height):
+    """Return a summit of 5 um radius at a place [m]."""
+    return lambda x, y: height * np.exp(-(((x - x0) / 5e-6) ** 2) - ((y - y0) / 5e-5) ** 2)
+
+
+@pytest.mark.parametrize(
+    ('place', 'edge', 'least'),
+    [((2.4, 0), 1, 2.4), ((-2.8, 0), 0, -2.8), ((0, 1.8), 2, 1.8), ((0, -1.8), 2, 1.8)],
+)
+def test_a_summit_that_touches_outside_is_inside_the_domain(nominal, place, edge, least):
+    """Behind, before and on both sides; a summit lower than the gap there changes nothing."""
+    case = make_case(*nominal, SLOW, Settings(), None)
+    x0, y0 = place[0] * case.semi_axis_x, place[1] * case.semi_axis_y
+    found = domain(nominal, bump(x0, y0, 5e-6))
+    assert abs(found[edge]) > abs(least)
+    flat, low = domain(nominal, bump(x0, y0, 0.0)), domain(nominal, bump(x0, y0, 0.2e-6))
+    assert low == pytest.approx(flat)
+
+
+def test_heights_at_nodes_leave_the_domain_alone(nominal):
+    """An array says nothing about heights elsewhere."""
+    wall = np.full((9, 9), 1e-3)
+    assert domain(nominal, wall) == pytest.approx(domain(nominal, lambda x, y: 0 * x))
+
+
+def test_summits_behind_the_contact_are_solved(nominal):
+    """A summit at 1.6 semi-axes touches when dry; on the domain of a smooth contact it is cut."""
+    case = make_case(*nominal, SLOW, Settings(), None)
+    summit = bump(1.6 * case.semi_axis_x, 0.0, 0.4e-6)
+    dry = Condition(load=27.6, entrainment_speed=0.0)
+    settings = Settings(nx=129, ny=65)
+    found = solve_contact(*nominal, dry, settings=settings, roughness=summit)
+    assert found.converged, found.status.value
+    beyond = found.x > 1.5 * found.semi_axis_x
+    assert found.asperity_pressure[beyond].max() > 0
+    cut = Settings(nx=129, ny=65, domain=(-1.4, 1.6, 1.3))
+    lost = solve_contact(*nominal, dry, settings=cut, roughness=summit)
+    assert lost.status is Status.DOMAIN_TOO_SMALL
