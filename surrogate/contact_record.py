@@ -14,21 +14,13 @@ from surrogate.roughness import Surface
 ASPERITY_FRICTION = 0.1
 """Boundary friction coefficient of a case without roughness [-], for dry contacts."""
 
-RESULTS = (
-    'central_film_m',
-    'minimum_film_m',
-    'max_pressure_Pa',
-    'rcs',
-    'asperity_share',
-    'rolling_force_N',
-)
-"""What a record says only of a converged solution."""
-
 
 def friction_coefficient(
     solution: ContactSolution, slide_roll_ratio: float, asperity_friction: float
 ) -> float:
-    """Return the friction over the load [-] for uniform slip along x; zero without slip."""
+    """Return the friction over the load [-] for slip along x; 0 without slip, NaN if unsolved."""
+    if not solution.converged:
+        return math.nan
     if slide_roll_ratio == 0.0:
         return 0.0
     found = slide_roll_friction(solution, slide_roll_ratio, asperity_friction=asperity_friction)
@@ -64,14 +56,10 @@ def contact_record(case: ContactCase, solution: ContactSolution) -> dict[str, An
         'krylov_iterations': int(solution.krylov_iterations),
         'grid': [len(solution.x), len(solution.y)],
         'wall_s': float(solution.wall_time),
+        'central_film_error': float(solution.film_error),
+        'rcs_error': float(solution.rcs_error),
     }
-    return record if solution.converged else record | _withheld(case)
-
-
-def _withheld(case: ContactCase) -> dict[str, Any]:
-    """Return NaN for what is not known without convergence; the status is the reason."""
-    unknown = [math.nan] * len(case.slide_roll_ratio)
-    return dict.fromkeys(RESULTS, math.nan) | {'friction_coefficient': unknown}
+    return record
 
 
 def contact_page(
@@ -81,7 +69,9 @@ def contact_page(
     surface: Surface | None,
 ) -> str:
     """Return a record as a page of text in workshop units."""
-    error = solution.film_error
+    error, half = solution.film_error, ''
+    if not math.isnan(solution.rcs_error):
+        half = f', RCS on the half grid differs by {solution.rcs_error:.2g}'
     friction = [
         (f'friction, slip {100 * ratio:g} %', f'{value:.4f}')
         for ratio, value in zip(case.slide_roll_ratio, record['friction_coefficient'], strict=True)
@@ -91,7 +81,7 @@ def contact_page(
         (
             'central film',
             f'{1e9 * record["central_film_m"]:.2f} nm'
-            + ('' if surface or math.isnan(error) else f', grid error about {100 * error:.2g} %'),
+            + ('' if math.isnan(error) else f', grid error about {100 * error:.2g} %'),
         ),
         ('minimum film', f'{1e9 * record["minimum_film_m"]:.2f} nm'),
         ('largest pressure', f'{1e-9 * record["max_pressure_Pa"]:.4f} GPa'),
@@ -100,7 +90,7 @@ def contact_page(
             f'{1e-9 * record["hertz_pressure_Pa"]:.4f} GPa, semi-axes '
             f'{1e6 * record["semi_axis_x_m"]:.1f} x {1e6 * record["semi_axis_y_m"]:.1f} um',
         ),
-        ('RCS, asperity share', f'{record["rcs"]:.3g}, {record["asperity_share"]:.3g}'),
+        ('RCS, asperity share', f'{record["rcs"]:.3g}, {record["asperity_share"]:.3g}' + half),
         ('rolling force', f'{1e3 * record["rolling_force_N"]:.3g} mN on each surface'),
         *friction,
         (

@@ -33,7 +33,7 @@ SLENDER, WIDE_NY = 2.5, 257
 """Nodes across a contact with an axis ratio below that [-]: its least film lies at its sides."""
 FILM_ERROR, FINE_NX, FINE_NY = 0.005, 513, 129
 """Estimated relative error of the film above which a smooth case is refined, and to what [-]."""
-NODES_PER_WAVE = 4
+NODES_PER_WAVE = 6
 """Nodes per shortest wavelength of a rough grid that the case does not state [-]."""
 ROUGH_NX, LARGEST_DEFAULT_GRID = 129, 513
 """Fewest nodes along x, and most along a side, of such a grid [-]."""

@@ -131,18 +131,26 @@ class Case:
         return 0.5 * grid.x[:, None] ** 2 + 0.5 * ratio * grid.y[None, :] ** 2
 
     def rough_heights(self, grid: Grid) -> Array:
-        """Return the roughness on a full grid."""
+        """Return the roughness on a full grid, or on the half grid of an array."""
         unit, shape = self.semi_axis_x, grid.shape
         if callable(self.roughness):
             places = np.meshgrid(grid.x * unit, grid.y * unit, indexing='ij')
             heights = np.asarray(self.roughness(*places), dtype=float)
         else:
             heights = np.asarray(self.roughness, dtype=float)
+            if heights.shape == (2 * shape[0] - 1, 2 * shape[1] - 1):
+                heights = heights[::2, ::2]
         if heights.shape != shape:
             raise InputError(f'roughness has shape {heights.shape}, the grid has {shape}')
         if not np.isfinite(heights).all():
             raise InputError('roughness holds a height that is not finite')
         return heights / self.height_unit
+
+    def has_heights_on(self, shape: tuple[int, int]) -> bool:
+        """Tell whether heights can be had on the half grid: an array needs common nodes."""
+        nodes = (self.settings.nx, self.settings.ny)
+        common = all(n - 1 == 2 * (half - 1) for n, half in zip(nodes, shape, strict=True))
+        return self.roughness is None or callable(self.roughness) or common
 
     def inlet_length(self, speed: float) -> float:
         """

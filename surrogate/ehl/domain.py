@@ -39,7 +39,7 @@ def production_domain(case: Case) -> tuple[float, float, float]:
     thick = math.sqrt(2 * case.film_estimate(speed))
     rigid = max(0.0, thick - RIGID)
     side = min(0.08 * reach**2 + reach / case.ellipticity**2, 1.0 + 2.0 * thick)
-    inlet = 2.0 if case.roughness is None else 1.75
+    inlet = 2.1 if case.roughness is None else 1.75
     return (
         -max(inlet + min(0.9 * reach, 4.0 + 3.0 * thick) + 6.0 * rigid, 1 + before),
         max(1.25 + min(0.03 * reach**2, 0.9 * thick), 1 + behind),

@@ -88,11 +88,10 @@ class Settings:
     production rule; `open_inlet` continues the pressure beyond the inlet as the rigid isoviscous
     solution does (None: on the production domain only); film floor [m]; relative tolerances of
     flux, load and contact gap; cap of Newton iterations of one solve [-] and of the whole call
-    [s]; `error_estimate` also solves the half grid; `refine` solves
-    a smooth contact that touches on grids up to four times as fine (the result then has more
-    nodes than asked for); order of the upstream wedge, 1 or 2 (None: 2
-    when smooth, falling to 1 where a rough film is too thin for the grid); distance of the inlet
-    meniscus from the centre [m], for the rolling tail.
+    [s]; `error_estimate` also solves the half grid; `refine` solves a smooth contact that touches
+    on grids up to four times as fine (the result then has more nodes than asked for); order of the
+    upstream wedge, 1 or 2 (None: 2, but 1 where all of a smooth contact touches); distance of the
+    inlet meniscus from the centre [m], for the rolling tail.
 
     """
 
@@ -141,10 +140,12 @@ class ContactSolution:
     has ruptured; central and global minimum film [m]; both extrapolated from the half grid [m] and
     the estimated relative error of the central film [-], NaN without estimate; largest total
     pressure, Hertz pressure [Pa], semi-axes and approach [m]; `rcs`, share of the load on
-    punctured nodes [-], `asperity_share`, integral of pa over the load [-]; relative load error,
-    `residual`, sum over a line of the flux imbalance over the local flow, contact gap error over
-    the floor [-]; rolling force on each surface [N] from the domain and from the tail between
-    inlet and meniscus; iterations, wall time [s].
+    punctured nodes [-], `rcs_error`, what it differs by on the half grid [-], `asperity_share`,
+    integral of pa over the load [-]; relative load error, `residual`, sum over a line of the flux
+    imbalance over the local flow, contact gap error over the floor [-]; rolling force on each
+    surface [N] from the domain and from the tail between inlet and meniscus; iterations, wall time
+    [s]. Unless converged the films, shares, largest pressure and force are NaN and the arrays
+    those of the last iterate.
 
     """
 
@@ -171,6 +172,7 @@ class ContactSolution:
     semi_axis_y: float
     approach: float
     rcs: float
+    rcs_error: float
     asperity_share: float
     load_error: float
     residual: float

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """From a grid solution in Hertz units to the result in SI, and back for a warm start."""
 
+from dataclasses import dataclass
 import math
 
 import numpy as np
@@ -14,6 +15,15 @@ from surrogate.ehl.newton import Outcome
 Array = NDArray[np.float64]
 PUNCTURED = 1.001
 """Film over the floor below which a node counts as punctured [-]."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Half:
+    """What the half grid found: films in Hertz units and RCS [-], NaN where it was not solved."""
+
+    central_film: float = math.nan
+    minimum_film: float = math.nan
+    rcs: float = math.nan
 
 
 def central_film(grid: Grid, gap: Array) -> float:
@@ -36,7 +46,7 @@ def make_solution(
     outcome: Outcome,
     status: Status,
     *,
-    half: tuple[float, float],
+    half: Half,
     newton: int,
     krylov: int,
     wall_time: float,
@@ -44,13 +54,9 @@ def make_solution(
     """Return the result of a solve in SI units on the full width; wall time [s]."""
     state, height = outcome.state, case.height_unit
     pressure = case.hertz_pressure
-    total = state.film_pressure + state.asperity_pressure
-    punctured = outcome.gap <= PUNCTURED * case.floor
-    film = central_film(grid, outcome.gap)
-    extrapolated, error = _two_grid(film, half[0])
-    lowest = float(outcome.gap.min())
-    area = case.semi_axis_x**2
-    force = _rolling(grid, outcome.gap, state.film_pressure, case.inlet(grid)) * pressure * height
+    numbers = _numbers(case, grid, outcome, half)
+    if status is not Status.CONVERGED:
+        numbers = dict.fromkeys(numbers, math.nan)
     return ContactSolution(
         contact=case.contact,
         lubricant=case.lubricant,
@@ -64,26 +70,49 @@ def make_solution(
         y=_full_y(grid) * case.semi_axis_x,
         contact_mask=_full(grid, outcome.contact),
         cavitation_mask=_full(grid, outcome.cavitated),
-        central_film=film * height,
-        minimum_film=lowest * height,
-        extrapolated_film=extrapolated * height,
-        extrapolated_minimum=_two_grid(lowest, half[1])[0] * height,
-        film_error=error,
-        max_pressure=float(total.max()) * pressure,
         hertz_pressure=pressure,
         semi_axis_x=case.semi_axis_x,
         semi_axis_y=case.semi_axis_y,
         approach=-state.approach * height,
-        rcs=grid.integral(np.where(punctured, total, 0.0)) / case.load,
-        asperity_share=grid.integral(state.asperity_pressure) / case.load,
         load_error=outcome.load_error,
         residual=outcome.flux_error,
         gap_error=outcome.gap_error,
-        rolling_force=force * area / case.semi_axis_x,
         rolling_tail=_rolling_tail(case),
         newton_iterations=newton,
         krylov_iterations=krylov,
         wall_time=wall_time,
+        **numbers,
+    )
+
+
+def _numbers(case: Case, grid: Grid, outcome: Outcome, half: Half) -> dict[str, float]:
+    """Return what is known of a converged contact only, in SI units."""
+    height, pressure, state = case.height_unit, case.hertz_pressure, outcome.state
+    own = film_and_share(case, grid, outcome)
+    extrapolated, error = _two_grid(own.central_film, half.central_film)
+    force = _rolling(grid, outcome.gap, state.film_pressure, case.inlet(grid))
+    return {
+        'central_film': own.central_film * height,
+        'minimum_film': own.minimum_film * height,
+        'extrapolated_film': extrapolated * height,
+        'extrapolated_minimum': _two_grid(own.minimum_film, half.minimum_film)[0] * height,
+        'film_error': error,
+        'max_pressure': float((state.film_pressure + state.asperity_pressure).max()) * pressure,
+        'rcs': own.rcs,
+        'rcs_error': abs(own.rcs - half.rcs),
+        'asperity_share': grid.integral(state.asperity_pressure) / case.load,
+        'rolling_force': force * pressure * height * case.semi_axis_x,
+    }
+
+
+def film_and_share(case: Case, grid: Grid, outcome: Outcome) -> Half:
+    """Return the films [Hertz units] and the share of the load on punctured nodes [-]."""
+    total = outcome.state.film_pressure + outcome.state.asperity_pressure
+    punctured = outcome.gap <= PUNCTURED * case.floor
+    return Half(
+        central_film=central_film(grid, outcome.gap),
+        minimum_film=float(outcome.gap.min()),
+        rcs=grid.integral(np.where(punctured, total, 0.0)) / case.load,
     )
 
 

@@ -19,7 +19,7 @@ from surrogate.ehl.case import Array, Case, STIFF
 from surrogate.ehl.grid import Grid, State, transfer
 from surrogate.ehl.model import ContactSolution
 from surrogate.ehl.newton import Limits, Outcome, Problem, solve_grid
-from surrogate.ehl.result import central_film, state_from_solution
+from surrogate.ehl.result import film_and_share, Half, state_from_solution
 
 Found = tuple[Grid, Outcome]
 FINEST_CUT = 1 / 64
@@ -38,7 +38,7 @@ class Search:
     deadline: float
     newton: int = 0
     krylov: int = 0
-    half: tuple[float, float] = (math.nan, math.nan)
+    half: Half = Half()
 
     def limits(self, *, rough: bool, final: bool) -> Limits:
         """Return the tolerances of a smooth or rough solve, on the way or at the end."""
@@ -149,7 +149,7 @@ class Search:
         outcome = self.solve(grid, replace(problem, order=order), start.state, limits)
         if not outcome.converged or (outcome.contact.any() and not problem.dry):
             return start
-        self.half = central_film(grid, outcome.gap), float(outcome.gap.min())
+        self.half = film_and_share(self.case, grid, outcome)
         return outcome
 
     def _from_hertz(self, grid: Grid, speed: float, limits: Limits) -> Outcome:
@@ -270,6 +270,23 @@ class Search:
             problem = case.problem(grid, speed, heights, case.order)
             outcome = self.solve(grid, problem, state, limits)
         return (grid, outcome) if outcome.converged else None
+
+    def estimate(self, grid: Grid, outcome: Outcome) -> None:
+        """Solve the half grid from the solution, unless it was solved on the way."""
+        case, nx, ny = self.case, self.case.settings.nx, self.case.settings.ny
+        speed, shape = case.condition.entrainment_speed, (nx // 4 * 2 + 1, ny // 4 * 2 + 1)
+        known = math.isfinite(self.half.central_film) or grid.x.size != nx
+        if known or not case.settings.error_estimate or not case.has_heights_on(shape):
+            return
+        coarser = case.grid(*shape, symmetric=case.roughness is None)
+        heights = case.shape_heights(coarser)
+        if case.roughness is not None:
+            heights = heights - case.rough_heights(coarser)
+        limits = replace(self.limits(rough=case.touches, final=True), newton=WARM_NEWTON)
+        problem = case.problem(coarser, speed, heights, case.order)
+        found = self.solve(coarser, problem, transfer(outcome.state, grid, coarser), limits)
+        if found.converged:
+            self.half = film_and_share(case, coarser, found)
 
     def refuse(self) -> Found:
         """Return Hertz's state on the finest grid without any iteration."""

@@ -21,7 +21,7 @@ from surrogate.ehl.model import (
     Status,
 )
 from surrogate.ehl.newton import Outcome
-from surrogate.ehl.result import central_film, make_solution
+from surrogate.ehl.result import film_and_share, make_solution
 from surrogate.ehl.search import Found, Search
 from surrogate.geometry import Contact
 
@@ -57,6 +57,8 @@ def solve_contact(
     search = Search(case=case, deadline=began + settings.time_cap)
     grid, outcome, confirmed = _confirm(search, *_find(search, start))
     status = _status(search, grid, outcome) if confirmed else Status.GRID_TOO_COARSE
+    if status is Status.CONVERGED:
+        search.estimate(grid, outcome)
     return make_solution(
         case,
         grid,
@@ -161,7 +163,7 @@ def _finer(search: Search, case: Case, grid: Grid, outcome: Outcome) -> Found:
             transfer(outcome.state, grid, finer),
             search.limits(rough=False, final=True),
         )
-        search.half = central_film(grid, outcome.gap), float(outcome.gap.min())
+        search.half = film_and_share(case, grid, outcome)
         if found.converged:
             return finer, found
     other = Search(case=case, deadline=search.deadline)

@@ -41,6 +41,8 @@ KEYS = [
     'krylov_iterations',
     'grid',
     'wall_s',
+    'central_film_error',
+    'rcs_error',
 ]
 SMALL = replace(load_case('nominal_smooth'), grid=CaseGrid(nx=65, ny=33))
 
@@ -78,11 +80,12 @@ def test_the_record_has_the_documented_keys():
 
 def test_what_did_not_converge_is_not_told():
     """The last iterate of a solve that stopped is no result: null, with the status as reason."""
-    solution, _ = solve_case(SMALL)
-    record = to_json(contact_record(SMALL, replace(solution, status=Status.OUT_OF_TIME)))
+    case = replace(SMALL, grid=CaseGrid(nx=17, ny=17), entrainment_speed=0.02)
+    solution, _ = solve_case(case)
+    record = to_json(contact_record(case, solution))
     assert list(record) == KEYS
     assert record['converged'] is False
-    assert record['status'] == Status.OUT_OF_TIME.value
+    assert record['status'] == Status.GRID_TOO_COARSE.value
     assert record['friction_coefficient'] == [None] * 3
     for key in ('central_film_m', 'minimum_film_m', 'rcs', 'asperity_share', 'rolling_force_N'):
         assert record[key] is None

@@ -3,6 +3,7 @@
 """Rough contacts from full film to dry, and the dry limit against an independent solver."""
 
 from dataclasses import replace
+import math
 
 import numpy as np
 import pytest
@@ -126,3 +127,29 @@ def test_heights_and_function_are_the_same_roughness(chain, nominal, raceway):
         start=chain[1],
     )
     assert found.pressure == pytest.approx(chain[2].pressure, abs=1e-3 * found.max_pressure)
+
+
+def test_half_grid_says_how_far_films_and_shares_are_known(chain, nominal, raceway):
+    """Both errors are there and cover the change to a grid twice as fine."""
+    found = chain[SPEEDS.index(0.004)]
+    fine = solve_contact(
+        *nominal,
+        found.condition,
+        roughness=raceway,
+        settings=replace(SETTINGS, nx=129, ny=257, error_estimate=False),
+        start=found,
+    )
+    assert fine.converged, fine.status.value
+    assert math.isnan(fine.rcs_error)
+    assert 0 < found.film_error < 0.1
+    assert abs(fine.rcs - found.rcs) < found.rcs_error
+
+
+def test_heights_at_nodes_give_the_same_errors(chain, nominal, raceway):
+    """Every second height of an array is the half grid of the function."""
+    found = chain[SPEEDS.index(0.015)]
+    x, y = np.meshgrid(found.x, found.y, indexing='ij')
+    again = solve_contact(
+        *nominal, found.condition, roughness=raceway(x, y), settings=SETTINGS, start=found
+    )
+    assert again.rcs_error == pytest.approx(found.rcs_error, abs=1e-4)

@@ -168,3 +168,11 @@ def test_the_long_axis_works_or_says_no():
     assert found.converged, found.status.value
     assert found.semi_axis_x > 5 * found.semi_axis_y
     assert 0 < found.minimum_film < found.central_film
+
+
+def test_numbers_of_a_solve_that_did_not_converge_are_unknown(nominal):
+    """Out of time: films, shares and forces are NaN, not those of the last iterate."""
+    found = solve_contact(*nominal, NOMINAL, settings=Settings(newton_limit=1))
+    assert not found.converged
+    known = ('central_film', 'minimum_film', 'rcs', 'asperity_share', 'rolling_force')
+    assert all(math.isnan(getattr(found, name)) for name in known)
