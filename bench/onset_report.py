@@ -5,7 +5,7 @@ Figures and table of the onset study, from the rows that bench/onset.py kept.
 
 Usage: python bench/onset_report.py [docs/onset.csv] [--out docs]. The onset speed of an ensemble
 is where its mean RCS reaches 1 %; its error is the standard deviation of 400 resamples of the
-draws.
+draws. The equivalent floor is that with which the base case begins at the same speed.
 
 """
 
@@ -23,8 +23,8 @@ from surrogate.parameters import load_lubricant, load_screw
 Array = NDArray[np.float64]
 LIMIT = 0.01
 """RCS at the onset [-]."""
-USABLE = ('CONVERGED', 'DOMAIN_TOO_SMALL')
-"""Endings whose equations hold; in the second a little pressure reaches the edge of the domain."""
+FLOORS = {'floor 1 nm': 1.0, 'base': 3.0, 'floor 10 nm': 10.0}
+"""Variations that change the floor alone, and their floors [nm]."""
 RESAMPLES = 400
 
 
@@ -33,7 +33,7 @@ def read_rows(path: Path) -> dict[str, dict[int, dict[float, float]]]:
     table: dict[str, dict[int, dict[float, float]]] = {}
     with path.open(newline='') as file:
         for row in csv.DictReader(file):
-            rcs = float(row['rcs']) if row['status'] in USABLE else math.nan
+            rcs = float(row['rcs']) if row['status'] == 'CONVERGED' else math.nan
             draws = table.setdefault(row['variation'], {})
             draws.setdefault(int(row['draw']), {})[float(row['speed'])] = rcs
     return table
@@ -85,11 +85,12 @@ def print_table(table: dict[str, dict[int, dict[float, float]]]) -> list[tuple[s
 
     """
     found = []
-    base = next(iter(table.values()))
+    base = table['base']
     print(
-        '| variation | draws | onset [m/s] | over the base, same draws | standard error, factor |'
+        '| variation | draws | onset [mm/s] | over the base, same draws | standard error, factor '
+        '| equivalent floor [nm] |'
     )
-    print('|---|---|---|---|---|')
+    print('|---|---|---|---|---|---|')
     for name, draws in table.items():
         ratio, error = paired_ratio(draws, base)
         speeds, rcs = as_arrays(draws)
@@ -97,9 +98,17 @@ def print_table(table: dict[str, dict[int, dict[float, float]]]) -> list[tuple[s
         found.append((name, ratio, error))
         print(
             f'| {name} | {len(rcs)} | '
-            f'{_shown(value, 4)} | {_shown(ratio, 2)} | {_shown(error, 2)} |'
+            f'{_shown(1e3 * value, 1)} | {_shown(ratio, 2)} | {_shown(error, 2)} | '
+            f'{_shown(equivalent_floor(table, ratio), 1)} |'
         )
     return found
+
+
+def equivalent_floor(table: dict[str, dict[int, dict[float, float]]], ratio: float) -> float:
+    """Return the floor [nm] that moves the onset of the base by `ratio` [-], by log-log lines."""
+    known = [(paired_ratio(table[name], table['base'])[0], nm) for name, nm in FLOORS.items()]
+    ratios, floors = np.log(np.array(sorted(known))).T
+    return float(np.exp(np.interp(math.log(ratio), ratios, floors))) if ratio > 0 else math.nan
 
 
 def _shown(value: float, digits: int) -> str:
@@ -179,6 +188,45 @@ def draw_base(draws: dict[int, dict[float, float]], path: Path) -> None:
     figure.savefig(path, dpi=110)
 
 
+def draw_curves(table: dict[str, dict[int, dict[float, float]]], path: Path) -> None:
+    """Draw the mean RCS against speed of what changes the grid, the waves, the floor, the load."""
+    import matplotlib
+
+    matplotlib.use('Agg')
+    from matplotlib import pyplot
+
+    panels = {
+        'grid': ('base', 'grid 193 x 385', 'grid 257 x 513'),
+        'shortest wave': ('wave 31 um', 'base', 'wave 14 um', 'wave 9.1 um', 'wave 6.1 um'),
+        'film floor': tuple(FLOORS),
+        'load': ('base', 'load 100 N', 'load 400 N'),
+    }
+    figure, grid = pyplot.subplots(2, 2, figsize=(8, 6.4), layout='constrained', sharey=True)
+    for axes, (title, names) in zip(grid.flat, panels.items(), strict=True):
+        for name in names:
+            if name in table:
+                draw_mean(axes, name, table[name])
+        axes.axhline(LIMIT, color='#7B2D8E', linestyle='--', linewidth=1)
+        axes.set(xscale='log', yscale='log', ylim=(1e-4, 1.2), title=title)
+        axes.grid(alpha=0.3)
+        axes.legend(fontsize=7)
+    for axes in grid[1]:
+        axes.set_xlabel('entrainment speed [mm/s]')
+    for axes in grid[:, 0]:
+        axes.set_ylabel('mean RCS [-]')
+    figure.savefig(path, dpi=110)
+
+
+def draw_mean(axes, name: str, draws: dict[int, dict[float, float]]) -> None:
+    """Draw one mean curve; the base by what it is."""
+    base = '129 x 257, 20.6 µm, 3 nm, 27.6 N'
+    speeds, rcs = as_arrays(draws)
+    mean = np.nanmean(rcs, axis=0)
+    label = f'{base if name == "base" else name.replace("um", "µm")}, {len(rcs)} draws'
+    style = {'color': 'black', 'linewidth': 2} if name == 'base' else {'linewidth': 1.2}
+    axes.plot(1e3 * speeds, np.maximum(mean, 1e-5), '.-', label=label, **style)
+
+
 def draw_onsets(found: list[tuple[str, float, float]], path: Path) -> None:
     """Draw the onset of every variation over that of the base case."""
     import matplotlib
@@ -203,9 +251,9 @@ def draw_onsets(found: list[tuple[str, float, float]], path: Path) -> None:
     axes.set(
         xscale='log',
         xlabel='onset speed (RCS 0.01) over that of the base case [-]',
-        title='129 x 257 nodes; the 8 µm waves on 193 x 513',
+        title='nominal contact, paired draws, bars: standard error',
     )
-    ticks = (0.15, 0.2, 0.3, 0.5, 0.7, 1, 1.5, 2)
+    ticks = (0.2, 0.3, 0.5, 0.7, 1, 1.5, 2, 3, 5)
     axes.set_xticks(ticks, [f'{tick:g}' for tick in ticks])
     axes.minorticks_off()
     axes.grid(alpha=0.3, axis='x')
@@ -221,7 +269,8 @@ def main() -> None:
     args = parser.parse_args()
     table = read_rows(args.table)
     found = print_table(table)
-    draw_base(next(iter(table.values())), args.out / 'onset_draws.png')
+    draw_base(table['base'], args.out / 'onset_draws.png')
+    draw_curves(table, args.out / 'onset_curves.png')
     draw_onsets(found, args.out / 'onset_variations.png')
 
 

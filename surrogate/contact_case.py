@@ -37,7 +37,7 @@ CONSTANTS = (
     'ridges',
 )
 """Constants of a generated surface; what a case does not state is that of the nominal screw."""
-GENERATED = ('seed', 'lay', 'position_x', 'position_y') + tuple(
+GENERATED = ('seed', 'lay', 'position_x', 'position_y', 'grid_wavelength') + tuple(
     name for name in CONSTANTS if name != 'shortest_wavelength'
 )
 """What only a generated surface has."""
@@ -50,10 +50,10 @@ class CaseRoughness(Checked):
 
     Rq `rms` [m]; a generated surface has dimension D [-], G [m], sample length, shortest
     wavelength [m], scale ratio and ridges [-], lay and the place [m] that comes to the contact
-    centre. A `file` is filtered at `shortest_wavelength` [m] when that is given. The `patch` is
-    rescaled to the rms or cut, levelled over a window with sides `window_x`, `window_y` [m], by
-    default the Hertz rectangle of the case: state it in a series over loads. Boundary friction
-    coefficient [-].
+    centre; waves shorter than `grid_wavelength` [m] act as a higher film floor. A `file` is
+    filtered at `shortest_wavelength` [m] when that is given. The `patch` is rescaled to the rms or
+    cut, levelled over a window with sides `window_x`, `window_y` [m], by default the Hertz
+    rectangle of the case: state it in a series over loads. Boundary friction coefficient [-].
 
     """
 
@@ -64,6 +64,7 @@ class CaseRoughness(Checked):
     patch: Patch | None = choice('rescaled', 'cut', default=None)
     lay: Lay | None = choice('isotropic', 'longitudinal', 'transverse', default=None)
     shortest_wavelength: float | None = quantity('um', 1e-6, 0.1, 1000.0, default=None)
+    grid_wavelength: float | None = quantity('um', 1e-6, 0.1, 1000.0, default=None)
     fractal_dimension: float | None = quantity('', 1.0, 2.01, 2.99, default=None)
     fractal_roughness: float | None = quantity('nm', 1e-9, 1e-6, 1e3, default=None)
     sample_length: float | None = quantity('mm', 1e-3, 0.01, 100.0, default=None)

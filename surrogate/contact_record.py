@@ -78,6 +78,7 @@ def contact_page(
     ]
     rows = [
         ('roughness', _roughness_words(surface)),
+        ('film floor', f'{1e9 * solution.settings.film_floor:.3g} nm'),
         (
             'central film',
             f'{1e9 * record["central_film_m"]:.2f} nm'

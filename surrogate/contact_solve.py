@@ -18,7 +18,7 @@ from surrogate.ehl import Condition, ContactLubricant, ContactSolution, Settings
 from surrogate.ehl.case import make_case
 from surrogate.geometry import Contact, ellipticity, hertz
 from surrogate.measured_surface import MeasuredSurface
-from surrogate.parameters import load_screw
+from surrogate.parameters import InputError, load_screw
 from surrogate.profile_import import read_surface
 from surrogate.roughness import (
     fractal_surface,
@@ -28,6 +28,7 @@ from surrogate.roughness import (
     take_patch,
     Window,
 )
+from surrogate.subgrid import subgrid_floor, without_short_waves
 
 SLENDER, WIDE_NY = 2.5, 257
 """Nodes across a contact with an axis ratio below that [-]: its least film lies at its sides."""
@@ -42,7 +43,9 @@ LOG = logging.getLogger(__name__)
 
 def solve_case(case: ContactCase) -> tuple[ContactSolution, Surface | None]:
     """
-    Solve a case; return the solution and the rough surface as the contact saw it, None if smooth.
+    Solve a case; return the solution and the rough surface on the grid, None if smooth.
+
+    Waves shorter than the case wants on its grid raise the film floor of the solution instead.
 
     A smooth case without a stated grid is solved again on a finer one when its estimated error is
     larger than `FILM_ERROR`. Raises InputError for inputs that no contact has; anything else is a
@@ -50,8 +53,9 @@ def solve_case(case: ContactCase) -> tuple[ContactSolution, Surface | None]:
 
     """
     surface = case_surface(case)
-    settings = case_settings(case, surface)
     _compile_kernels()
+    surface, raised = _on_grid(case, surface)
+    settings = case_settings(replace(case, film_floor=case.film_floor + raised), surface)
     solution = _solve(case, surface, settings)
     if surface is None and case.grid is None and solution.film_error > FILM_ERROR:
         fine = replace(settings, nx=FINE_NX, ny=max(settings.ny, FINE_NY))
@@ -61,6 +65,21 @@ def solve_case(case: ContactCase) -> tuple[ContactSolution, Surface | None]:
             both = {name: getattr(solution, name) + getattr(finer, name) for name in counts}
             return replace(finer, **both), None
     return solution, surface
+
+
+def _on_grid(case: ContactCase, surface: Surface | None) -> tuple[Surface | None, float]:
+    """Return the surface less the waves that do not go on the grid, and their floor [m]."""
+    shortest = case.roughness.grid_wavelength if case.roughness else None
+    if shortest is None or not isinstance(surface, FractalSurface):
+        return surface, 0.0
+    raised = subgrid_floor(case.contact, case.load, surface, shortest)
+    if math.isnan(raised):
+        raise InputError(
+            f'grid_wavelength_um {1e6 * shortest:g}: the dry contact that tells what the shorter '
+            'waves hold open did not converge; solve them on the grid instead'
+        )
+    LOG.info('waves below %.3g um raise the film floor by %.3g nm', 1e6 * shortest, 1e9 * raised)
+    return without_short_waves(surface, shortest), raised
 
 
 @cache

@@ -157,3 +157,19 @@ def test_bad_surfaces_are_one_sentence(tmp_path, rough, sentence):
     """What shows only when the surface is made."""
     with pytest.raises(InputError, match=sentence):
         case_surface(load(tmp_path, roughness=rough))
+
+
+def test_waves_off_the_grid_raise_the_floor(tmp_path):
+    """The surface on the grid has longer waves only, and the solution a higher floor."""
+    rough = {'rms_um': 0.12, 'seed': 1, 'shortest_wavelength_um': 13, 'grid_wavelength_um': 20}
+    case = load(tmp_path, load_N=10.0, entrainment_speed_m_s=0.0, roughness=rough, grid=[65, 129])
+    found, surface = solve_case(case)
+    assert surface.shortest_wavelength == pytest.approx(20.55e-6, rel=1e-3)
+    assert 3.2e-9 < found.settings.film_floor < 10e-9
+    assert found.converged, found.status.value
+
+
+def test_a_measured_file_has_no_waves_to_leave_out(tmp_path):
+    """The key belongs to a generated surface."""
+    with pytest.raises(InputError, match='grid_wavelength belongs to a generated surface'):
+        load(tmp_path, roughness={'file': 'z.csv', 'grid_wavelength_um': 20})
