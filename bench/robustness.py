@@ -273,11 +273,10 @@ def rounded(value: float) -> float:
 
 
 def is_finite(found: ContactSolution) -> bool:
-    """Tell whether sums and fields are finite; the error estimate may be missing."""
-    names = (
-        'film_pressure asperity_pressure film central_film minimum_film max_pressure approach rcs '
-        'asperity_share load_error residual gap_error rolling_force rolling_tail'
-    )
+    """Tell whether fields are finite, and sums if converged; error estimates may be missing."""
+    names = 'film_pressure asperity_pressure film approach load_error residual gap_error'
+    if found.converged:
+        names += ' central_film minimum_film max_pressure rcs asperity_share rolling_force'
     return all(bool(np.isfinite(getattr(found, name)).all()) for name in names.split())
 
 
@@ -365,15 +364,19 @@ def print_groups(rows: list[Row]) -> None:
 
 
 def print_decades(rows: list[Row]) -> None:
-    """Print the counts by class of RCS; that of a case that stopped is of its last iterate."""
-    print('\n| RCS | smooth | converged | rough | converged |\n|---|---|---|---|---|')
+    """Print the counts by class of RCS, which is unknown for a case that did not converge."""
+    print('\n| RCS | smooth | rough |\n|---|---|---|')
     for low, high in zip((-1.0, *DECADES[:-1]), DECADES):
         name = '0' if high == 0 else f'to {high:g}' if high < 1 else f'above {low:g}'
-        counts = []
-        for kind in ('smooth', 'mixed'):
-            here = [row for row in rows if row.kind == kind and low < row.rcs <= high]
-            counts += [len(here), sum(row.converged for row in here)]
-        print(f'| {name} | ' + ' | '.join(map(str, counts)) + ' |')
+        here = [row for row in rows if row.converged and low < row.rcs <= high]
+        print_kinds(name, here)
+    print_kinds('unknown', [row for row in rows if not row.converged])
+
+
+def print_kinds(name: str, rows: list[Row]) -> None:
+    """Print how many rows are smooth and rough."""
+    smooth = sum(row.kind == 'smooth' for row in rows)
+    print(f'| {name} | {smooth} | {len(rows) - smooth} |')
 
 
 def print_times(rows: list[Row]) -> None:

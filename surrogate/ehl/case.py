@@ -33,8 +33,8 @@ COARSEST = 33
 COARSE_STEP = 0.25
 """Largest node distance of a coarse level over the semi-axis or the width of a thick film [-]."""
 COARSEST_ACROSS = 17
-UNRESOLVED = 0.9
-"""Node distance over the inlet length from which a smooth film is not looked for [-]."""
+COARSE, UNRESOLVED = 0.6, 1.5
+"""Node distance over the inlet length at which a smooth film needs limits, or is refused [-]."""
 SPREAD = 0.25
 """Semi-axis of the first pressure over the width of a thick film [-]."""
 TOUCHING = 2.0
@@ -176,6 +176,22 @@ class Case:
         return dx / self.inlet_length(speed)
 
     @property
+    def limits(self) -> bool:
+        """
+        Whether wedge and flow factors take what a coarse grid throws at them.
+
+        Where surfaces touch, and where the nodes miss the inlet: the plain ones dip the film at
+        the ends of the contact to a fraction, down to false contact.
+
+        """
+        speed, settings = self.condition.entrainment_speed, self.settings
+        if self.touches or not speed:
+            return self.touches
+        across = 2 * self.domain[2] / (settings.ny - 1) / self.ellipticity
+        coarseness = max(self.coarseness(settings, speed), across / self.inlet_length(speed))
+        return coarseness > COARSE
+
+    @property
     def order(self) -> float:
         """
         Order of the upstream wedge at the end of the way [-].
@@ -205,7 +221,7 @@ class Case:
             density_gain=gain,
             growth=lubricant.pressure_viscosity * ROELANDS_PRESSURE / exponent,
             order=order,
-            touching=self.touches,
+            touching=self.limits,
             inlet=self.inlet(grid),
         )
 

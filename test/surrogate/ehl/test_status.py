@@ -123,15 +123,25 @@ def test_smooth_contact_that_the_grid_makes_up_is_refused(moes_case):
 
 
 def test_contact_that_a_finer_grid_dispels_is_refined_or_refused(moes_case):
-    """The least film of M = 500 dips below a floor of 68.5 nm on the coarse grid, not on finer."""
+    """The least film of M = 500 dips below a floor of 65 nm on the coarse grid, not on finer."""
     *case, _ = moes_case(500.0, 10.0, 'roelands_dh')
-    settings = Settings(nx=65, ny=65, film_floor=68.5e-9)
+    settings = Settings(nx=81, ny=81, film_floor=65e-9)
     coarse = solve_contact(*case, settings=replace(settings, refine=False))
     fine = solve_contact(*case, settings=settings)
     assert coarse.status is Status.GRID_TOO_COARSE
     assert fine.converged, fine.status.value
     assert fine.rcs == 0.0
     assert fine.film.shape[0] > coarse.film.shape[0]
+
+
+def test_thin_film_of_a_high_load_has_no_false_dip(nominal):
+    """With plain differences the ends of the contact dip to 4 nm on the production grid."""
+    condition = Condition(load=326.0, entrainment_speed=0.078)
+    found = solve_contact(*nominal, condition)
+    fine = solve_contact(*nominal, condition, settings=Settings(nx=513, ny=129))
+    assert found.converged
+    assert found.central_film == pytest.approx(fine.central_film, rel=0.04)
+    assert found.minimum_film == pytest.approx(fine.minimum_film, rel=0.04)
 
 
 def test_contact_at_the_edge_of_the_domain_is_refused(nominal):
