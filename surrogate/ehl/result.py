@@ -13,6 +13,8 @@ from surrogate.ehl.model import ContactSolution, Status
 from surrogate.ehl.newton import Outcome
 
 Array = NDArray[np.float64]
+THICK, CUT_OFF = (1.0, 5.0, 40.0), (0.0, 0.15, 0.3)
+"""Films over a^2/Rx, and what the domain cuts off them [-]: bodies that hardly deform."""
 PUNCTURED = 1.001
 """Film over the floor below which a node counts as punctured [-]."""
 
@@ -90,6 +92,8 @@ def _numbers(case: Case, grid: Grid, outcome: Outcome, half: Half) -> dict[str, 
     height, pressure, state = case.height_unit, case.hertz_pressure, outcome.state
     own = film_and_share(case, grid, outcome)
     extrapolated, error = _two_grid(own.central_film, half.central_film)
+    cut_off = float(np.interp(own.central_film, THICK, CUT_OFF))
+    error = float(np.fmax(error, cut_off)) if cut_off else error
     force = _rolling(grid, outcome.gap, state.film_pressure, case.inlet(grid))
     return {
         'central_film': own.central_film * height,

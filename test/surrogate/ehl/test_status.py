@@ -186,3 +186,12 @@ def test_numbers_of_a_solve_that_did_not_converge_are_unknown(nominal):
     assert not found.converged
     known = ('central_film', 'minimum_film', 'rcs', 'asperity_share', 'rolling_force')
     assert all(math.isnan(getattr(found, name)) for name in known)
+
+
+def test_a_film_that_hardly_deforms_the_bodies_says_how_much_is_cut_off(nominal):
+    """The domain cannot hold the pressure of a film of many height units: 15 % and more."""
+    thick = solve_contact(*nominal, Condition(load=0.3, entrainment_speed=3.0))
+    unit = thick.semi_axis_x**2 / thick.contact.radius_x
+    assert thick.converged, thick.status.value
+    assert thick.central_film > 5 * unit
+    assert 0.15 <= thick.film_error <= 0.3
