@@ -278,18 +278,20 @@ def free_boundary_rows(
     by_pressure: Array,
     by_gap: Array,
     cavitated: Mask,
+    sizes: Array,
 ) -> float:
     """
     Replace the rows of the cavitated set by dp = -p and scale all rows.
 
     Returns the sum of |F|/h over the other rows [-]. Cavitated where p times the size of the row
     is below F, everywhere when dry. That size counts the film, too: the flow factor of a stiff
-    fluid vanishes inside the contact.
+    fluid vanishes inside the contact. `sizes` keeps it, zero on the border and where cavitated.
 
     """
     nx, ny = pressure.shape
     total = 0.0
     cavitated[:] = False
+    sizes[:] = 0.0
     for i in range(1, nx - 1):
         for j in range(1, ny - 1):
             f = residual[i, j]
@@ -301,6 +303,7 @@ def free_boundary_rows(
                 by_pressure[0, i, j] = 1.0
                 residual[i, j] = pressure[i, j]
                 continue
+            sizes[i, j] = scale
             total += abs(f) / film[i, j] * weights[j]
             factor = 1.0 / scale
             for plane in range(6):

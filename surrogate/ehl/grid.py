@@ -15,7 +15,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import map_coordinates
-from surrogate.ehl._krylov import make_workspace, Workspace
+from surrogate.ehl._level import make_workspace, Workspace
 from surrogate.ehl.half_space import HalfSpace, make_half_space
 
 Array = NDArray[np.float64]
@@ -23,6 +23,12 @@ KRYLOV_TYPE = np.float32
 """Precision of the linear solver; residuals are always in double precision."""
 KRYLOV_LIMIT = 120
 """Most iterations of one linear solve [-]."""
+LEVELS = 4
+"""Most grids of one linear solve, the finest included [-]."""
+COARSE_ROWS, COARSE_COLUMNS = 33, 10
+"""Least nodes along x and array columns of a coarser grid of the linear solver [-]."""
+SHORTEST_CELL, LONGEST_CELL = 0.5, 6.0
+"""Least and largest dy over dx of a grid with a coarser one: else lines along x do better [-]."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -80,7 +86,18 @@ class Grid:
     @cached_property
     def workspace(self) -> Workspace:
         """Arrays of the linear solver."""
-        return make_workspace(*self.shape, KRYLOV_LIMIT, KRYLOV_TYPE)
+        return make_workspace(*self.shape, KRYLOV_LIMIT, self.coarser is not None, KRYLOV_TYPE)
+
+    @cached_property
+    def coarser(self) -> 'Grid | None':
+        """Grid with half the intervals for the linear solver, where there is use of it."""
+        nx, ny = self.shape
+        even = self.symmetric and nx % 2 == 1 and ny % 2 == 0
+        large = nx // 2 + 1 >= COARSE_ROWS and ny // 2 + 1 >= COARSE_COLUMNS
+        if not (even and large and SHORTEST_CELL < self.dy / self.dx < LONGEST_CELL):
+            return None
+        y = np.concatenate([[-2 * self.dy], self.y[1::2]])
+        return Grid(x=self.x[::2], y=y, symmetric=True, compliance=self.compliance)
 
     @cached_property
     def stiffness(self) -> float:

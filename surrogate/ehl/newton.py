@@ -9,13 +9,14 @@ the film out.
 
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 import math
 import time
 
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.ehl._krylov import solve_newton_step
+from surrogate.ehl._level import Level
 from surrogate.ehl._reynolds import (
     contact_set,
     film_properties,
@@ -24,7 +25,8 @@ from surrogate.ehl._reynolds import (
     reynolds_rows,
     ROELANDS_PRESSURE,
 )
-from surrogate.ehl.grid import Grid, KRYLOV_LIMIT, KRYLOV_TYPE, State
+from surrogate.ehl._transfer import inject
+from surrogate.ehl.grid import Grid, KRYLOV_LIMIT, KRYLOV_TYPE, LEVELS, State
 from surrogate.ehl.half_space import deform
 
 Array = NDArray[np.float64]
@@ -106,6 +108,7 @@ class _Evaluation:
     residual: Array
     by_pressure: Array
     by_gap: Array
+    sizes: Array
     flux_error: float
     load_rest: float
     gap_error: float
@@ -158,9 +161,43 @@ def _evaluate(grid: Grid, problem: Problem, state: State) -> _Evaluation:
     count = contact_set(
         state.asperity_pressure, gap, problem.floor, grid.stiffness, grid.symmetric, contact
     )
-    residual = np.zeros(shape)
-    by_pressure, by_gap = np.zeros((6, *shape)), np.zeros((6, *shape))
-    film = np.empty((7, *shape))
+    residual, by_pressure, by_gap, heights = _rows(grid, problem, pressure, gap, contact)
+    sizes = np.zeros(shape)
+    flux = free_boundary_rows(
+        pressure,
+        heights,
+        problem.dry,
+        grid.stiffness,
+        grid.weights / (grid.dx * grid.dy),
+        residual,
+        by_pressure,
+        by_gap,
+        cavitated,
+        sizes,
+    )
+    gap_error = float((np.where(contact, 0.0, state.asperity_pressure) * grid.stiffness).max())
+    if count:
+        gap_error = max(gap_error, float(np.abs(gap[contact] - problem.floor).max()))
+    return _Evaluation(
+        gap=gap,
+        contact=contact,
+        cavitated=cavitated,
+        residual=residual,
+        by_pressure=by_pressure,
+        by_gap=by_gap,
+        sizes=sizes,
+        flux_error=flux * grid.dy / problem.width,
+        load_rest=problem.load - grid.integral(pressure + state.asperity_pressure),
+        gap_error=gap_error / problem.floor,
+    )
+
+
+def _rows(
+    grid: Grid, problem: Problem, pressure: Array, gap: Array, contact: Mask
+) -> tuple[Array, Array, Array, Array]:
+    """Return Reynolds' residual, its planes by pressure and by gap, and the film heights."""
+    residual, film = np.zeros(grid.shape), np.empty((7, *grid.shape))
+    by_pressure, by_gap = np.zeros((6, *grid.shape)), np.zeros((6, *grid.shape))
     if not problem.dry:
         film_properties(
             pressure,
@@ -185,31 +222,7 @@ def _evaluate(grid: Grid, problem: Problem, state: State) -> _Evaluation:
             by_pressure,
             by_gap,
         )
-    flux = free_boundary_rows(
-        pressure,
-        film[2],
-        problem.dry,
-        grid.stiffness,
-        grid.weights / (grid.dx * grid.dy),
-        residual,
-        by_pressure,
-        by_gap,
-        cavitated,
-    )
-    gap_error = float((np.where(contact, 0.0, state.asperity_pressure) * grid.stiffness).max())
-    if count:
-        gap_error = max(gap_error, float(np.abs(gap[contact] - problem.floor).max()))
-    return _Evaluation(
-        gap=gap,
-        contact=contact,
-        cavitated=cavitated,
-        residual=residual,
-        by_pressure=by_pressure,
-        by_gap=by_gap,
-        flux_error=flux * grid.dy / problem.width,
-        load_rest=problem.load - grid.integral(pressure + state.asperity_pressure),
-        gap_error=gap_error / problem.floor,
-    )
+    return residual, by_pressure, by_gap, film[2]
 
 
 def _step(
@@ -269,38 +282,71 @@ def _linear_solve(
     grid: Grid, problem: Problem, state: State, now: _Evaluation, limits: Limits
 ) -> tuple[Array, Array, float, int]:
     """Return changes of film pressure, total pressure and approach, and the iterations."""
-    work, inverse = grid.workspace, 1.0 / grid.stiffness
-    work.by_pressure[:] = now.by_pressure
-    work.by_gap[:] = now.by_gap
-    nodes = np.flatnonzero(_own_nodes(grid, now.contact))
-    size = now.gap.size
+    levels = _levels(grid, problem, state, now)
+    nodes, size = levels[0].nodes, now.gap.size
     released = np.where(now.contact, 0.0, state.asperity_pressure)
-    rhs = work.basis[0]
+    rhs = grid.workspace.basis[0]
     rhs[:size] = -now.residual.ravel()
     if released.any():
         rhs[:size] -= _film_rows(now.by_pressure, released).ravel()
     border = size + nodes.size
-    rhs[size:border] = (problem.floor - now.gap.ravel()[nodes]) * inverse
+    rhs[size:border] = (problem.floor - now.gap.ravel()[nodes]) * levels[0].inverse
     rhs[border] = now.load_rest
-    x = np.zeros(size + nodes.size + 1, KRYLOV_TYPE)
-    used, _ = solve_newton_step(
-        grid.krylov_space,
-        work,
-        nodes,
-        now.contact,
-        grid.weights.astype(KRYLOV_TYPE),
-        KRYLOV_TYPE(inverse),
-        3,
-        limits.krylov,
-        KRYLOV_LIMIT,
-        x,
-    )
+    padded = tuple(levels + levels[-1:] * (LEVELS - len(levels)))
+    used = solve_newton_step(padded, len(levels), limits.krylov, KRYLOV_LIMIT)
+    x = grid.workspace.answer[: border + 1]
     total = x[:size].astype(float).reshape(grid.shape)
     film = total + released
     film.ravel()[nodes] = x[size:-1]
     if grid.symmetric:
         total[:, 0], film[:, 0] = total[:, 2], film[:, 2]
     return film, total, float(x[-1]), used
+
+
+def _levels(grid: Grid, problem: Problem, state: State, now: _Evaluation) -> list[Level]:
+    """Return the Jacobian on the grid and, for a film without contact, on coarser ones."""
+    levels = [_level(grid, now.contact, now.by_pressure, now.by_gap, now.sizes)]
+    pressure, gap, film = state.film_pressure, now.gap, ~now.cavitated
+    if problem.dry or now.contact.any():
+        return levels
+    while grid.coarser is not None and len(levels) < LEVELS:
+        grid, problem = grid.coarser, _coarser(problem)
+        pressure, gap, film = inject(pressure), inject(gap), inject(film)
+        levels.append(_coarse_level(grid, problem, pressure, gap, film))
+    return levels
+
+
+def _level(grid: Grid, contact: Mask, by_pressure: Array, by_gap: Array, sizes: Array) -> Level:
+    work = grid.workspace
+    work.by_pressure[:], work.by_gap[:] = by_pressure, by_gap
+    return Level(
+        space=grid.krylov_space,
+        work=work,
+        nodes=np.flatnonzero(_own_nodes(grid, contact)),
+        contact=contact,
+        weights=grid.weights.astype(KRYLOV_TYPE),
+        inverse=KRYLOV_TYPE(1.0 / grid.stiffness),
+        sizes=sizes.astype(KRYLOV_TYPE),
+    )
+
+
+def _coarser(problem: Problem) -> Problem:
+    """Return the problem with twice the node distance, as far as its Jacobian goes."""
+    return replace(
+        problem, mobility=problem.mobility / 2, inlet=inject(problem.inlet[None])[0] ** 2
+    )
+
+
+def _coarse_level(grid: Grid, problem: Problem, pressure: Array, gap: Array, film: Mask) -> Level:
+    """Linearise about an injected state; nodes outside `film` are cavitated."""
+    contact = np.zeros(grid.shape, bool)
+    _, by_pressure, by_gap, _ = _rows(grid, problem, pressure, gap, contact)
+    sizes = np.where(film, np.abs(by_pressure[0]) + np.abs(by_gap[0]) * grid.stiffness, 0.0)
+    factor = np.divide(1.0, sizes, out=np.zeros(grid.shape), where=sizes > 0)
+    by_pressure *= factor
+    by_gap *= factor
+    by_pressure[0][sizes == 0] = 1.0
+    return _level(grid, contact, by_pressure, by_gap, sizes)
 
 
 def _own_nodes(grid: Grid, mask: Mask) -> Mask:

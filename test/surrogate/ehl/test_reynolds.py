@@ -145,12 +145,13 @@ def test_sets_and_row_scaling(fields):
     size = np.abs(by_p[0]) + np.abs(by_h[0]) * 2.0
     ruptured = inner & (pressure * size < rows)
     flux = np.abs(rows[inner & ~ruptured]).sum() / 0.5
-    mask = np.zeros_like(contact)
+    mask, sizes = np.zeros_like(contact), np.ones((9, 8))
     total = free_boundary_rows(
-        pressure, np.full((9, 8), 0.5), False, 2.0, np.ones(8), rows, by_p, by_h, mask
+        pressure, np.full((9, 8), 0.5), False, 2.0, np.ones(8), rows, by_p, by_h, mask, sizes
     )
     assert total == pytest.approx(flux)
     assert (mask == ruptured).all()
     assert (rows[ruptured] == pressure[ruptured]).all()
     kept = inner & ~ruptured
+    assert sizes == pytest.approx(np.where(kept, size, 0.0))
     assert (np.abs(by_p[0]) + np.abs(by_h[0]) * 2.0)[kept] == pytest.approx(1.0)
