@@ -11,7 +11,7 @@ from surrogate.ehl.domain import production_domain
 from surrogate.ehl.grid import Grid, make_grid, State
 from surrogate.ehl.half_space import deform
 from surrogate.ehl.model import Condition, ContactLubricant, Roughness, Settings
-from surrogate.ehl.newton import Problem
+from surrogate.ehl.system import Problem
 from surrogate.film_formulas import (
     central_film_hamrock_dowson_1977,
     central_film_nijenbanning_1994,

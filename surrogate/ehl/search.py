@@ -18,8 +18,9 @@ import numpy as np
 from surrogate.ehl.case import Array, Case, STIFF
 from surrogate.ehl.grid import Grid, State, transfer
 from surrogate.ehl.model import ContactSolution
-from surrogate.ehl.newton import Limits, Outcome, Problem, solve_grid
+from surrogate.ehl.newton import Limits, Outcome, solve_grid
 from surrogate.ehl.result import film_and_share, Half, state_from_solution
+from surrogate.ehl.system import Problem
 
 Found = tuple[Grid, Outcome]
 FINEST_CUT = 1 / 64

@@ -9,7 +9,8 @@ from surrogate.ehl._krylov import solve_newton_step
 from surrogate.ehl._transfer import inject, prolong, restrict
 from surrogate.ehl.case import make_case
 from surrogate.ehl.grid import KRYLOV_LIMIT, LEVELS, make_grid
-from surrogate.ehl.newton import _evaluate, _levels
+from surrogate.ehl.linear import jacobian_levels
+from surrogate.ehl.system import evaluate
 
 
 @pytest.fixture(scope='module')
@@ -59,10 +60,10 @@ def test_coarser_grids_change_the_way_not_the_solution(moes_case):
     grid, speed = case.grid(129, 129, symmetric=True), condition.entrainment_speed
     problem = case.problem(grid, speed, case.shape_heights(grid), 1.0)
     state = case.hertz_state(grid, speed)
-    now = _evaluate(grid, problem, state)
+    now = evaluate(grid, problem, state)
     answers, steps = [], []
     for count in (1, 3):
-        levels = _levels(grid, problem, state, now)
+        levels = jacobian_levels(grid, problem, state, now)
         assert len(levels) == 3
         grid.workspace.basis[0, : now.gap.size] = -now.residual.ravel()
         grid.workspace.basis[0, now.gap.size] = now.load_rest
@@ -91,4 +92,4 @@ def test_contact_is_solved_by_lines_alone(nominal):
     problem = case.problem(grid, 0.0, case.shape_heights(grid), 1.0)
     state = case.hertz_state(grid, 0.0)
     assert grid.coarser is not None
-    assert len(_levels(grid, problem, state, _evaluate(grid, problem, state))) == 1
+    assert len(jacobian_levels(grid, problem, state, evaluate(grid, problem, state))) == 1

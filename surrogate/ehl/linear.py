@@ -1,0 +1,107 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The linear system of a Newton step: rows on the grid and on coarser ones, and its solution."""
+
+from dataclasses import replace
+
+import numpy as np
+from surrogate.ehl._krylov import solve_newton_step
+from surrogate.ehl._level import Level
+from surrogate.ehl._transfer import inject
+from surrogate.ehl.grid import Grid, KRYLOV_LIMIT, KRYLOV_TYPE, LEVELS, State
+from surrogate.ehl.system import Array, Evaluation, film_rows, Mask, Problem
+
+
+def solve_linear(
+    grid: Grid, problem: Problem, state: State, now: Evaluation, tolerance: float
+) -> tuple[Array, Array, float, int]:
+    """Return changes of film pressure, total pressure and approach, and the iterations."""
+    levels = jacobian_levels(grid, problem, state, now)
+    nodes, size = levels[0].nodes, now.gap.size
+    released = np.where(now.contact, 0.0, state.asperity_pressure)
+    rhs = grid.workspace.basis[0]
+    rhs[:size] = -now.residual.ravel()
+    if released.any():
+        rhs[:size] -= _apply(now.by_pressure, released).ravel()
+    border = size + nodes.size
+    rhs[size:border] = (problem.floor - now.gap.ravel()[nodes]) * levels[0].inverse
+    rhs[border] = now.load_rest
+    padded = tuple(levels + levels[-1:] * (LEVELS - len(levels)))
+    used = solve_newton_step(padded, len(levels), tolerance, KRYLOV_LIMIT)
+    x = grid.workspace.answer[: border + 1]
+    total = x[:size].astype(float).reshape(grid.shape)
+    film = total + released
+    film.ravel()[nodes] = x[size:-1]
+    if grid.symmetric:
+        total[:, 0], film[:, 0] = total[:, 2], film[:, 2]
+    return film, total, float(x[-1]), used
+
+
+def jacobian_levels(grid: Grid, problem: Problem, state: State, now: Evaluation) -> list[Level]:
+    """Return the Jacobian on the grid and, for a film without contact, on coarser ones."""
+    levels = [_level(grid, now.contact, now.by_pressure, now.by_gap, now.sizes)]
+    pressure, gap, film = state.film_pressure, now.gap, ~now.cavitated
+    if problem.dry or now.contact.any():
+        return levels
+    while grid.coarser is not None and len(levels) < LEVELS:
+        grid, problem = grid.coarser, _coarser(problem)
+        pressure, gap, film = inject(pressure), inject(gap), inject(film)
+        levels.append(_coarse_level(grid, problem, pressure, gap, film))
+    return levels
+
+
+def _level(grid: Grid, contact: Mask, by_pressure: Array, by_gap: Array, sizes: Array) -> Level:
+    work = grid.workspace
+    work.by_pressure[:], work.by_gap[:] = by_pressure, by_gap
+    return Level(
+        space=grid.krylov_space,
+        work=work,
+        nodes=np.flatnonzero(_own_nodes(grid, contact)),
+        contact=contact,
+        weights=grid.weights.astype(KRYLOV_TYPE),
+        inverse=KRYLOV_TYPE(1.0 / grid.stiffness),
+        sizes=sizes.astype(KRYLOV_TYPE),
+    )
+
+
+def _coarser(problem: Problem) -> Problem:
+    """Return the problem with twice the node distance, as far as its Jacobian goes."""
+    return replace(
+        problem, mobility=problem.mobility / 2, inlet=inject(problem.inlet[None])[0] ** 2
+    )
+
+
+def _coarse_level(grid: Grid, problem: Problem, pressure: Array, gap: Array, film: Mask) -> Level:
+    """Linearise about an injected state; nodes outside `film` are cavitated."""
+    contact = np.zeros(grid.shape, bool)
+    _, by_pressure, by_gap, _ = film_rows(grid, problem, pressure, gap, contact)
+    sizes = np.where(film, np.abs(by_pressure[0]) + np.abs(by_gap[0]) * grid.stiffness, 0.0)
+    factor = np.divide(1.0, sizes, out=np.zeros(grid.shape), where=sizes > 0)
+    by_pressure *= factor
+    by_gap *= factor
+    by_pressure[0][sizes == 0] = 1.0
+    return _level(grid, contact, by_pressure, by_gap, sizes)
+
+
+def _own_nodes(grid: Grid, mask: Mask) -> Mask:
+    """Drop the mirror column of a mask."""
+    if not grid.symmetric:
+        return mask
+    own = mask.copy()
+    own[:, 0] = False
+    return own
+
+
+def _apply(planes: Array, field: Array) -> Array:
+    """Apply the pressure planes to a field that vanishes on the border."""
+    out = np.zeros_like(field)
+    inner = (slice(1, -1), slice(1, -1))
+    out[inner] = (
+        planes[0][inner] * field[inner]
+        + planes[1][inner] * field[:-2, 1:-1]
+        + planes[2][inner] * field[2:, 1:-1]
+        + planes[3][inner] * field[1:-1, :-2]
+        + planes[4][inner] * field[1:-1, 2:]
+    )
+    out[2:-1, 1:-1] += planes[5][2:-1, 1:-1] * field[:-3, 1:-1]
+    return out

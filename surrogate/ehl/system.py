@@ -1,0 +1,139 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+One system on one grid: Reynolds' equation, contact and load, with all their derivatives.
+
+Film: Reynolds' equation for pf with the film max(h, floor) everywhere; pf >= 0, F >= 0, pf F = 0.
+Contact: pa >= 0, h >= floor, pa (h - floor) = 0. Load: the integral of pf + pa. Speed zero leaves
+the film out.
+
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from surrogate.ehl._reynolds import contact_set, film_properties, free_boundary_rows, reynolds_rows
+from surrogate.ehl.grid import Grid, State
+from surrogate.ehl.half_space import deform
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Problem:
+    """
+    Equations on one grid, in Hertz units [-].
+
+    Heights of the undeformed gap, film floor, load, pressed width along y; dry or not; mobility
+    (flow factor over rho h^3/eta, times dx), the numbers of the fluid laws, order of the wedge (1
+    to 2), whether surfaces touch or may, pressure just outside the inlet over that inside per
+    column.
+
+    """
+
+    heights: Array
+    floor: float
+    load: float
+    width: float
+    dry: bool
+    mobility: float
+    pressure_scale: float
+    growth: float
+    exponent: float
+    density_gain: float
+    order: float
+    touching: bool
+    inlet: Array
+
+
+@dataclass(slots=True)
+class Evaluation:
+    """Gap, sets, residual and its planes at a state, and how far it is from a solution [-]."""
+
+    gap: Array
+    contact: Mask
+    cavitated: Mask
+    residual: Array
+    by_pressure: Array
+    by_gap: Array
+    sizes: Array
+    flux_error: float
+    load_rest: float
+    gap_error: float
+
+
+def evaluate(grid: Grid, problem: Problem, state: State) -> Evaluation:
+    """Evaluate all equations at a state."""
+    shape = grid.shape
+    pressure = state.film_pressure
+    gap = np.empty(shape)
+    deform(grid.space, pressure + state.asperity_pressure, gap)
+    gap += problem.heights + state.approach
+    contact, cavitated = np.zeros(shape, bool), np.zeros(shape, bool)
+    count = contact_set(
+        state.asperity_pressure, gap, problem.floor, grid.stiffness, grid.symmetric, contact
+    )
+    residual, by_pressure, by_gap, heights = film_rows(grid, problem, pressure, gap, contact)
+    sizes = np.zeros(shape)
+    flux = free_boundary_rows(
+        pressure,
+        heights,
+        problem.dry,
+        grid.stiffness,
+        grid.weights / (grid.dx * grid.dy),
+        residual,
+        by_pressure,
+        by_gap,
+        cavitated,
+        sizes,
+    )
+    gap_error = float((np.where(contact, 0.0, state.asperity_pressure) * grid.stiffness).max())
+    if count:
+        gap_error = max(gap_error, float(np.abs(gap[contact] - problem.floor).max()))
+    return Evaluation(
+        gap=gap,
+        contact=contact,
+        cavitated=cavitated,
+        residual=residual,
+        by_pressure=by_pressure,
+        by_gap=by_gap,
+        sizes=sizes,
+        flux_error=flux * grid.dy / problem.width,
+        load_rest=problem.load - grid.integral(pressure + state.asperity_pressure),
+        gap_error=gap_error / problem.floor,
+    )
+
+
+def film_rows(
+    grid: Grid, problem: Problem, pressure: Array, gap: Array, contact: Mask
+) -> tuple[Array, Array, Array, Array]:
+    """Return Reynolds' residual, its planes by pressure and by gap, and the film [-]."""
+    residual, film = np.zeros(grid.shape), np.empty((7, *grid.shape))
+    by_pressure, by_gap = np.zeros((6, *grid.shape)), np.zeros((6, *grid.shape))
+    if not problem.dry:
+        film_properties(
+            pressure,
+            gap,
+            contact,
+            problem.floor,
+            problem.pressure_scale,
+            problem.growth,
+            problem.exponent,
+            problem.density_gain,
+            film,
+        )
+        reynolds_rows(
+            pressure,
+            film,
+            problem.mobility,
+            (grid.dx / grid.dy) ** 2,
+            problem.order,
+            problem.touching,
+            problem.inlet,
+            residual,
+            by_pressure,
+            by_gap,
+        )
+    return residual, by_pressure, by_gap, film[2]
