@@ -135,7 +135,7 @@ def main(repeats):
             f'extrapolated {found.extrapolated_film / unit:.3f}'
         )
     heights, last = raceway(), None
-    for speed in (0.5, 0.35, 0.25, 0.18, 0.12):
+    for speed in (0.5, 0.35, 0.25, 0.18, 0.12, 0.05, 0.025, 0.015, 0.01, 0.007):
         condition = Condition(load=27.6, entrainment_speed=speed)
         last = report(
             f'mixed 129 x 257 {"warm" if last else "cold"}, {speed} m/s',
