@@ -207,7 +207,7 @@ def draw_curves(table: dict[str, dict[int, dict[float, float]]], path: Path) -> 
             if name in table:
                 draw_mean(axes, name, table[name])
         axes.axhline(LIMIT, color='#7B2D8E', linestyle='--', linewidth=1)
-        axes.set(xscale='log', yscale='log', ylim=(1e-4, 1.2), title=title)
+        axes.set(xscale='log', yscale='log', xlim=(1.5, 150), ylim=(1e-4, 1.2), title=title)
         axes.grid(alpha=0.3)
         axes.legend(fontsize=7)
     for axes in grid[1]:
