@@ -67,7 +67,6 @@ STUDY = (
     replace(BASE, name='window x 2', window=2.0, draws=8, slowest=0.0049),
     replace(FINE, name='load 400 N', load=400.0, ny=513),
     replace(FINE, name='grid 257 x 513', nx=257, ny=513, draws=2),
-    replace(FINE, name='wave 6.1 um', shortest_um=6.0, nx=257, ny=769, draws=2),
 )
 
 

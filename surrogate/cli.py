@@ -3,6 +3,7 @@
 """Offline subcommands: `point`, `contact` and `surface build|info|check`."""
 
 import argparse
+from collections.abc import Callable
 import json
 import math
 from pathlib import Path
@@ -62,9 +63,9 @@ def add_commands(subparsers: Any) -> None:
     )
     point.add_argument(
         '--tier',
-        choices=('closed_form',),
+        choices=('closed_form', 'full'),
         default='closed_form',
-        help='model: closed_form is the only one so far',
+        help='model: published formulas, or four solved contacts and balanced balls (seconds)',
     )
     point.add_argument('--json', action='store_true', help='print JSON in SI units')
     point.set_defaults(handler=_point)
@@ -120,7 +121,7 @@ def _add_check(parser: argparse.ArgumentParser) -> None:
 
 
 def _point(args: argparse.Namespace) -> int:
-    from surrogate.point import closed_form_record, page
+    from surrogate.point import page
 
     screw, lubricant = load_screw(args.screw), load_lubricant(args.oil)
     kelvin = (
@@ -129,9 +130,20 @@ def _point(args: argparse.Namespace) -> int:
         else args.temperature + ZERO_CELSIUS
     )
     point = OperatingPoint(speed=args.speed_rpm * math.pi / 30, load=args.load, temperature=kelvin)
-    record = closed_form_record(screw, lubricant, point)
+    record = _record_of(args.tier)(screw, lubricant, point)
     print(json.dumps(to_json(record), indent=2, allow_nan=False) if args.json else page(record))
     return 0
+
+
+def _record_of(tier: str) -> Callable[[Screw, Lubricant, OperatingPoint], dict[str, Any]]:
+    """Return what solves a point; the full model is loaded only when it is asked for."""
+    if tier == 'full':
+        from surrogate.screw_record import full_record
+
+        return full_record
+    from surrogate.point import closed_form_record
+
+    return closed_form_record
 
 
 def _build(args: argparse.Namespace) -> int:

@@ -187,7 +187,11 @@ def page(record: Mapping[str, Any]) -> str:
         ('friction torque', f'{record["friction_torque_Nm"]:.4f} N m'),
         ('driving torque', f'{record["driving_torque_Nm"]:.4f} N m'),
         ('regime', f'{record["regime"]}, Lambda {record["film_ratio"]:.2f}'),
-        ('RCS', f'{100 * record["rcs"]:.2f} % (estimate)'),
+        (
+            'RCS',
+            f'{100 * record["rcs"]:.2f} %'
+            + (' (estimate)' if record['tier'] == closed_form.TIER else ''),
+        ),
         ('central film', f'{1e9 * record["central_film_m"]:.1f} nm'),
         ('friction coefficient', f'{record["friction_coefficient"]:.4f}'),
         ('entrainment speed', f'{1e3 * record["entrainment_speed_m_s"]:.1f} mm/s'),

@@ -19,7 +19,7 @@ from surrogate.geometry import Contact
 from surrogate.parameters import InputError
 from surrogate.roughness import FractalSurface
 
-CARRIED = 0.6
+CARRIED = 0.3
 """Rise of the floor over the mean dry gap, fitted to resolved ensembles (docs/onset.md) [-]."""
 NODES_PER_WAVE, LARGEST_GRID = 6, 1025
 """Nodes per shortest wave of a dry solve [-], and most along a side."""

@@ -79,7 +79,7 @@ def test_coulomb_table(table, screw, flank):
 
 
 def by_vectors(screw, side, found, friction):
-    """Return force and moments on the ball, about its centre and about the axis, point by point."""
+    """Return force on the ball and its moments about centre and axis, point by point."""
     contact = found.screw if side == 'screw' else found.nut
     ellipse = hertz(screw_contact(screw, side), contact.normal_force)
     x, y, weight = ellipse_nodes(40, 80)

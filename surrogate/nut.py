@@ -1,0 +1,215 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+One nut of the screw in the full tier: its two contacts, solved, and the balance of its balls.
+
+A ball has a contact with the screw and one with the nut; both are solved, smooth for the film
+ratio and rough for what asperities carry. Their tractions and rolling couples balance the ball.
+
+"""
+
+from dataclasses import dataclass, field, replace
+import math
+from typing import Literal
+
+from surrogate.ball_balance import balance_ball
+from surrogate.ball_motion import BallMotion, Flank, slip_floor
+from surrogate.ball_result import BallBalance, BallContact
+from surrogate.ball_traction import solved_traction
+from surrogate.ehl import Condition, ContactLubricant, ContactSolution, Settings, solve_contact
+from surrogate.geometry import hertz, screw_contact, Side, SIDES
+from surrogate.kinematics import no_slip_rates
+from surrogate.load_sharing import normal_force, UNLOADING_RATIO
+from surrogate.lubricant import lubricant_state
+from surrogate.parameters import Lubricant, OperatingPoint, Screw
+from surrogate.roughness import fractal_surface, FractalSurface, take_patch, Window
+
+NutName = Literal['loaded', 'relieved']
+CREEP = 1e-3
+"""Screw speed of the limit of slow motion [rad/s]."""
+WINDOW_SHARE = 0.05
+"""Axial load whose Hertz rectangle is the patch of an unpreloaded screw, over its rating [-]."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ScrewSettings:
+    """
+    How to solve a screw.
+
+    Settings of the smooth and of the rough contacts; draw of the roughness, None for smooth
+    raceways; shortest wavelength on the grid [m], None for that of the datasheet.
+
+    """
+
+    smooth: Settings = field(default_factory=Settings)
+    rough: Settings = field(default_factory=lambda: Settings(nx=129, ny=257, error_estimate=False))
+    draw: int | None = 0
+    grid_wavelength: float | None = 16e-6
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ScrewContact:
+    """
+    One contact of one nut; solutions are None where it carries no load.
+
+    Smooth and rough solution, the part of the ball balance at this contact, the motion of the
+    ball, film ratio [-].
+
+    """
+
+    nut: NutName
+    side: Side
+    smooth: ContactSolution | None
+    rough: ContactSolution | None
+    ball: BallContact
+    motion: BallMotion | None
+    film_ratio: float
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Nut:
+    """One nut: its axial force [N], contacts and ball, None without load or after a failure."""
+
+    name: NutName
+    force: float
+    contacts: tuple[ScrewContact, ...]
+    ball: BallBalance | None
+    failure: str = ''
+
+
+def solve_nut(
+    screw: Screw,
+    lubricant: Lubricant,
+    point: OperatingPoint,
+    settings: ScrewSettings,
+    name: NutName,
+    force: float,
+    flank: Flank,
+) -> Nut:
+    """Solve both contacts of a nut under an axial force [N] and balance its ball."""
+    if force == 0:
+        idle = tuple(_contact(screw, name, side, None, None, None) for side in SIDES)
+        return Nut(name=name, force=force, contacts=idle, ball=None)
+    load = float(normal_force(screw, force))
+    pairs = [_solve_side(screw, lubricant, point, settings, side, load) for side in SIDES]
+    failure, ball = _failure(name, pairs), None
+    if not failure:
+        ball = _balance(screw, point, force, flank, [rough for _, rough in pairs])
+        failure = '' if ball.converged else f'{name} nut, ball: {ball.status.value}'
+    contacts = tuple(
+        _contact(screw, name, side, *pair, ball) for side, pair in zip(SIDES, pairs, strict=True)
+    )
+    return Nut(name=name, force=force, contacts=contacts, ball=ball, failure=failure)
+
+
+def _failure(name: NutName, pairs: list[tuple[ContactSolution, ContactSolution]]) -> str:
+    """Return the sentence of the first contact that did not converge, or nothing."""
+    for side, pair in zip(SIDES, pairs, strict=True):
+        for kind, found in zip(('smooth', 'rough'), pair, strict=True):
+            if not found.converged:
+                return f'{name} nut, {side}, {kind} contact: {found.status.value}'
+    return ''
+
+
+def _contact(
+    screw: Screw,
+    nut: NutName,
+    side: Side,
+    smooth: ContactSolution | None,
+    rough: ContactSolution | None,
+    ball: BallBalance | None,
+) -> ScrewContact:
+    """Return one contact with its part of the balance."""
+    part = BallContact() if ball is None else ball.screw if side == 'screw' else ball.nut
+    film = (
+        math.nan
+        if smooth is None or not smooth.condition.entrainment_speed
+        else smooth_film(smooth)
+    )
+    return ScrewContact(
+        nut=nut,
+        side=side,
+        smooth=smooth,
+        rough=rough,
+        ball=part,
+        motion=ball.motion if ball else None,
+        film_ratio=film / screw.roughness.rms,
+    )
+
+
+def smooth_film(smooth: ContactSolution) -> float:
+    """Return the central film [m], extrapolated where the half grid was solved."""
+    extrapolated = smooth.extrapolated_film
+    return smooth.central_film if math.isnan(extrapolated) else extrapolated
+
+
+def _solve_side(
+    screw: Screw,
+    lubricant: Lubricant,
+    point: OperatingPoint,
+    settings: ScrewSettings,
+    side: Side,
+    load: float,
+) -> tuple[ContactSolution, ContactSolution]:
+    """Return the smooth and the rough contact under a normal force [N]."""
+    oil = lubricant_state(lubricant, point.temperature)
+    contact = screw_contact(screw, side)
+    speed = no_slip_rates(screw).entrainment * abs(point.speed)
+    condition = Condition(load=load, entrainment_speed=speed)
+    fluid = ContactLubricant(
+        viscosity=float(oil.viscosity),
+        pressure_viscosity=float(oil.pressure_viscosity),
+        eyring_stress=oil.eyring_stress,
+    )
+    smooth = solve_contact(contact, fluid, condition, settings=settings.smooth)
+    if settings.draw is None or not smooth.converged:
+        return smooth, smooth
+    surface = raceway_patch(screw, side, settings)
+    rough = solve_contact(
+        contact, fluid, condition, roughness=surface.heights, settings=settings.rough
+    )
+    return smooth, rough
+
+
+def raceway_patch(screw: Screw, side: Side, settings: ScrewSettings) -> FractalSurface:
+    """
+    Return the draw that a contact sees, rescaled once over a window that no load moves.
+
+    The window is the Hertz rectangle under the load that relieves the other nut.
+
+    """
+    force = UNLOADING_RATIO * screw.preload or WINDOW_SHARE * screw.static_rating
+    ellipse = hertz(screw_contact(screw, side), float(normal_force(screw, force)))
+    window = Window(
+        length_x=2 * float(ellipse.semi_axis_x), length_y=2 * float(ellipse.semi_axis_y)
+    )
+    roughness = screw.roughness
+    if settings.grid_wavelength is not None:
+        longest = max(settings.grid_wavelength, roughness.shortest_wavelength)
+        roughness = replace(roughness, shortest_wavelength=longest)
+    return take_patch(
+        fractal_surface(roughness, settings.draw or 0), 'rescaled', window, roughness.rms
+    )
+
+
+def _balance(
+    screw: Screw, point: OperatingPoint, force: float, flank: Flank, rough: list[ContactSolution]
+) -> BallBalance:
+    """Balance one ball of a nut that carries an axial `force` [N]."""
+    speed = abs(point.speed) or CREEP
+    floor = slip_floor(screw, speed)
+    friction = screw.roughness.asperity_friction
+    tractions = [
+        solved_traction(found, asperity_friction=friction, slip_floor=floor) for found in rough
+    ]
+    rolling = [found.rolling_force + found.rolling_tail for found in rough]
+    return balance_ball(
+        screw,
+        speed,
+        screw_traction=tractions[0],
+        nut_traction=tractions[1],
+        axial_force=force / screw.loaded_balls_per_nut,
+        flank=flank,
+        screw_rolling_force=rolling[0],
+        nut_rolling_force=rolling[1],
+    )

@@ -1,0 +1,114 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The whole screw in the full tier: energy, quadrants, limits, roughness, failures."""
+
+from dataclasses import replace
+import math
+
+import pytest
+from surrogate import closed_form
+from surrogate.ehl import Settings
+from surrogate.nut import raceway_patch, ScrewSettings
+from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
+from surrogate.screw import solve_screw
+
+SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
+SMALL = Settings(nx=65, ny=65, error_estimate=False)
+SMOOTH = ScrewSettings(smooth=SMALL, draw=None)
+ROUGH = ScrewSettings(smooth=SMALL, rough=Settings(nx=65, ny=129, error_estimate=False))
+WARM = 313.15
+
+
+def at(rpm, load, settings=SMOOTH, screw=SCREW):
+    """Solve a point at 40 degC."""
+    point = OperatingPoint(speed=rpm * math.pi / 30, load=load, temperature=WARM)
+    return solve_screw(screw, OIL, point, settings=settings)
+
+
+@pytest.mark.parametrize('rpm', [600, -600])
+@pytest.mark.parametrize('load', [800.0, -800.0])
+def test_torque_from_loads_is_that_of_the_lost_power(rpm, load):
+    """Four quadrants: both ways to the torque agree to rounding; the sign of the load decides."""
+    found = at(rpm, load)
+    assert found.converged, found.status
+    assert found.energy_error < 1e-8
+    ideal = rpm * load / abs(rpm) * SCREW.lead / (2 * math.pi)
+    assert found.driving_torque == pytest.approx(ideal + found.friction_torque, rel=1e-8)
+    assert found.back_driving == (rpm * load < 0)
+    assert 0.9 < found.efficiency < 1
+    assert found.load_change < 0.01
+
+
+def test_preload_alone_loses_power_and_has_no_efficiency():
+    """Both nuts carry the preload; nothing drives the screw."""
+    found = at(600, 0.0)
+    assert found.normal_forces[0] == pytest.approx(found.normal_forces[1])
+    assert found.efficiency == 0
+    assert not found.back_driving
+    assert found.driving_torque == pytest.approx(found.friction_torque, rel=1e-8)
+
+
+def test_full_tier_is_near_the_formulas_at_full_film():
+    """At 600 rev/min film within 10 %, torque within 30 % of the closed-form tier."""
+    found = at(600, 500.0)
+    formula = closed_form.solve(SCREW, OIL, 600 * math.pi / 30, 500.0, WARM)
+    assert found.central_film == pytest.approx(float(formula.central_film), rel=0.1)
+    assert found.friction_torque == pytest.approx(float(formula.friction_torque), rel=0.3)
+    assert found.rcs == 0.0
+    assert found.entrainment_speed == pytest.approx(0.49657, rel=1e-4)
+
+
+def test_beyond_unloading_the_relieved_nut_is_idle():
+    """Its contacts are not solved and lose nothing; zero preload is the same at any load."""
+    found = at(600, 3.0 * SCREW.preload)
+    assert found.converged, found.status
+    assert found.normal_forces[1] == 0.0
+    assert [contact.smooth is None for contact in found.contacts] == [False, False, True, True]
+    free = at(600, 500.0, screw=replace(SCREW, preload=0.0))
+    assert free.converged, free.status
+    assert free.normal_forces[1] == 0.0
+    idle = at(600, 0.0, screw=replace(SCREW, preload=0.0))
+    assert idle.friction_torque == 0.0
+    assert idle.rcs == 0.0
+    assert math.isnan(idle.film_ratio)
+
+
+def test_rest_is_dry_and_loses_most():
+    """At speed zero all load is on asperities, and friction is above that of the film."""
+    rest, moving = at(0, 500.0, ROUGH), at(600, 500.0, ROUGH)
+    assert rest.converged, rest.status
+    assert rest.rcs == pytest.approx(1.0, abs=1e-3)
+    assert rest.film_ratio == 0.0
+    assert rest.energy_error < 1e-8
+    slow = at(5, 500.0, ROUGH)
+    assert 0 < slow.rcs < 1
+    assert moving.rcs == 0.0
+    assert slow.film_ratio < moving.film_ratio
+
+
+def test_parasitic_torque_is_added_and_never_hidden_in_friction():
+    """Constant and speed-proportional parts add to friction and driving torque."""
+    screw = replace(SCREW, parasitic_torque=0.1, parasitic_torque_rate=1e-3)
+    more, bare = at(600, 500.0, screw=screw), at(600, 500.0)
+    added = 0.1 + 1e-3 * 600 * math.pi / 30
+    assert more.friction_torque - bare.friction_torque == pytest.approx(added, rel=1e-9)
+    assert more.driving_torque - bare.driving_torque == pytest.approx(added, rel=1e-9)
+
+
+def test_a_contact_that_fails_is_named_and_leaves_no_number():
+    """The status says which; everything else is NaN."""
+    settings = ScrewSettings(smooth=Settings(newton_limit=1), draw=None)
+    found = at(600, 500.0, settings)
+    assert not found.converged
+    assert found.status.startswith('loaded nut, screw, smooth contact: ')
+    assert math.isnan(found.friction_torque)
+    assert math.isnan(found.efficiency)
+
+
+def test_the_patch_belongs_to_the_draw_not_to_the_load():
+    """One surface per draw and side, with the waves that the settings want on the grid."""
+    first, again = (raceway_patch(SCREW, 'screw', ScrewSettings(draw=3)) for _ in range(2))
+    assert first.scale == again.scale
+    assert first.shortest_wavelength == pytest.approx(20.55e-6, rel=1e-3)
+    whole = raceway_patch(SCREW, 'screw', ScrewSettings(draw=3, grid_wavelength=None))
+    assert whole.shortest_wavelength == pytest.approx(9.13e-6, rel=1e-3)
