@@ -68,7 +68,8 @@ class BallBalance:
     Contacts with screw and nut, motion (None unless converged), axial force [N] of the ball on the
     screw along the loaded flank; torque [N m] that drives the screw against this ball, positive
     along the motion, from the loads on the screw (`torque`) and from axial force and lost power
-    (`energy_torque`); Newton steps, largest imbalance over the normal force [-].
+    (`energy_torque`); Newton steps of the last attempt; largest imbalance over the normal force
+    [-].
 
     """
 

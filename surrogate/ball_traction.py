@@ -20,7 +20,8 @@ from surrogate.ehl import ContactSolution, punctured_nodes
 from surrogate.geometry import hertz, screw_contact, Side
 from surrogate.parameters import InputError, Screw
 
-RADIAL_NODES, ANGULAR_NODES = 10, 24
+RADIAL_NODES, ANGULAR_NODES = 20, 60
+"""Quadrature of the ellipse: lost power within 1e-4 of a rule twice as fine each way."""
 
 
 class Traction(Protocol):

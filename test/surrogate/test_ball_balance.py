@@ -78,17 +78,15 @@ def test_coulomb_table(table, screw, flank):
         assert loss == pytest.approx(number['loss_torque_per_ball_mNm'], rel=1e-3)
 
 
-def by_vectors(screw, side, found, friction):
-    """Return force on the ball and its moments about centre and axis, point by point."""
+def by_vectors(screw, side, found, friction, floor):
+    """Sum force and moments on the ball, about its centre and about the axis, over points."""
     contact = found.screw if side == 'screw' else found.nut
     ellipse = hertz(screw_contact(screw, side), contact.normal_force)
-    x, y, weight = ellipse_nodes(40, 80)
+    x, y, weight = ellipse_nodes(80, 240)
     normal = 1.5 / np.pi * contact.normal_force * weight * np.sqrt(1 - x * x - y * y)
     x, y = x * float(ellipse.semi_axis_x), y * float(ellipse.semi_axis_y)
     along, across = slip_field(screw, side, found.motion, x, y)
-    share = (
-        -friction * normal / np.sqrt(along**2 + across**2 + slip_floor(screw, found.speed) ** 2)
-    )
+    share = -friction * normal / np.sqrt(along**2 + across**2 + floor**2)
     e, sideways = contact_frame(side, contact.angle, found.flank)
     track, ball = np.array([1.0, 0, 0]), screw.ball_diameter / 2
     groove = conformity(screw, side) * screw.ball_diameter
@@ -106,20 +104,21 @@ def by_vectors(screw, side, found, friction):
 @given(SCREWS, FRICTION, SPEEDS, LOADS, SIGNS, SIGNS)
 def test_forces_and_moments_balance_by_vectors(screw, friction, speed, load, sense, flank):
     """A sum over other points, with cross products alone, leaves nothing over."""
-    found = coulomb(screw, sense * speed, friction, normal_force=load, flank=flank)
+    floor = 2e-5 * speed  # soft enough where the spin pole lies within the ellipse
+    found = coulomb(screw, sense * speed, friction, floor=floor, normal_force=load, flank=flank)
     assert found.converged, found.status.value
-    first, second = (by_vectors(screw, side, found, friction) for side in SIDES)
+    first, second = (by_vectors(screw, side, found, friction, floor) for side in SIDES)
     mass = math.pi / 6 * screw.ball.density * screw.ball_diameter**3
     axis, turn = axis_vector(screw), np.array(found.motion.rotation)
     orbit, arm = found.motion.orbit_rate, screw.ball_diameter / 2
     outward = np.array([0.0, -mass * orbit**2 * screw.pitch_radius, 0.0])
     gyroscopic = -orbit * np.cross(axis, 0.4 * mass * arm**2 * turn)
     whole = friction * load
-    assert first[0] + second[0] + outward == pytest.approx(np.zeros(3), abs=2e-3 * whole)
-    assert first[1] + second[1] + gyroscopic == pytest.approx(np.zeros(3), abs=2e-3 * whole * arm)
+    assert first[0] + second[0] + outward == pytest.approx(np.zeros(3), abs=5e-3 * whole)
+    assert first[1] + second[1] + gyroscopic == pytest.approx(np.zeros(3), abs=5e-3 * whole * arm)
     torque = math.copysign(1.0, speed * sense) * float(axis @ first[2])
-    assert found.torque == pytest.approx(torque, abs=2e-3 * whole * screw.pitch_radius)
-    assert found.axial_force == pytest.approx(-flank * float(axis @ first[0]), abs=1e-3 * whole)
+    assert found.torque == pytest.approx(torque, abs=5e-3 * whole * screw.pitch_radius)
+    assert found.axial_force == pytest.approx(-flank * float(axis @ first[0]), abs=5e-3 * whole)
 
 
 @FEW
@@ -147,6 +146,12 @@ def test_torque_is_load_and_lost_power(screw, friction, speed, load, sense, flan
         assert found.axial_force == pytest.approx(load, rel=1e-9)
 
 
+def lever_loss(screw, load):
+    """Return by how much of its radius the ball is narrower at the end of the ellipses [-]."""
+    ends = [float(hertz(screw_contact(screw, side), load).semi_axis_y) for side in SIDES]
+    return 2 * (max(ends) / screw.ball_diameter) ** 2
+
+
 @FEW
 @given(SCREWS, FRICTION, SPEEDS, LOADS, SIGNS, st.floats(0.0, 0.15), st.floats(0.0, 0.15))
 def test_a_free_ball_carries_no_net_traction(screw, friction, speed, load, sense, first, second):
@@ -167,8 +172,9 @@ def test_a_free_ball_carries_no_net_traction(screw, friction, speed, load, sense
         2 * screw_contact(screw, side).radius_x * force for side, force in zip(SIDES, forces)
     )
     expected = sense * couples / screw.ball_diameter
-    # Beside the couples: inertia, tilt, and a lever that is shorter off the centre line.
-    assert held == pytest.approx(expected, abs=0.01 * friction * load)
+    # Beside the couples: spin moments through the tilt, and levers that are shorter off the
+    # centre line.
+    assert held == pytest.approx(expected, abs=(0.003 + lever_loss(screw, load)) * friction * load)
 
 
 @FEW
@@ -181,12 +187,10 @@ def test_transverse_traction_tilts_the_contact_line(screw, friction, speed, load
         assert found.converged, found.status.value
         mass = math.pi / 6 * screw.ball.density * screw.ball_diameter**3
         inertia = mass * screw.pitch_radius * speed**2
-        across = abs(found.screw.traction_across)
-        assert across == pytest.approx(
-            abs(found.nut.traction_across), abs=inertia + 0.01 * friction * load
-        )
-        tilt = found.screw.angle - found.nut.angle
-        expected = 2 * across / load
+        first, second = found.screw.traction_across, found.nut.traction_across
+        uneven = inertia + (0.003 + lever_loss(screw, load)) * friction * load
+        assert first == pytest.approx(-second, abs=uneven)  # e_p of the nut is the other way
+        tilt, expected = found.screw.angle - found.nut.angle, (abs(first) + abs(second)) / load
         assert abs(tilt) == pytest.approx(expected, rel=0.02, abs=2 * inertia / load)
         assert 0.5 * (found.screw.angle + found.nut.angle) == pytest.approx(screw.contact_angle)
         tilts.append(tilt)
@@ -196,18 +200,21 @@ def test_transverse_traction_tilts_the_contact_line(screw, friction, speed, load
 @FEW
 @given(SCREWS, LOADS, SIGNS)
 def test_weak_friction_leaves_the_motion_without_gross_slip(screw, load, flank):
-    """Angles, load, orbit and helical split of the no-slip rates; spins that add up to theirs."""
+    """Angles, load, orbit and rolling of the no-slip rates; spin and helical slip add up."""
     speed, rates = 1.0, no_slip_rates(screw)
     found = coulomb(screw, speed, 1e-4, normal_force=load, flank=flank)
     assert found.converged, found.status.value
     assert found.screw.angle == pytest.approx(screw.contact_angle, abs=2e-4)
     assert found.nut.normal_force == pytest.approx(load, rel=1e-4)
-    assert found.motion.orbit_rate == pytest.approx(rates.orbit * speed, rel=4e-3)
+    loss = lever_loss(screw, load)
+    assert found.motion.orbit_rate == pytest.approx(rates.orbit * speed, rel=loss)
     total = -flank * 2 * rates.spin * speed
-    assert found.screw.spin_rate + found.nut.spin_rate == pytest.approx(total, rel=1e-3)
-    for side in SIDES:
-        _, across = slip_field(screw, side, found.motion, 0.0, 0.0)
-        assert abs(across) == pytest.approx(rates.helical_slip * speed, rel=0.2)
+    assert found.screw.spin_rate + found.nut.spin_rate == pytest.approx(total, rel=2e-3)
+    slips = [slip_field(screw, side, found.motion, 0.0, 0.0) for side in SIDES]
+    for along, _ in slips:
+        assert abs(along) <= 2 * loss * rates.entrainment * speed
+    shares = slips[0][1] - slips[1][1]
+    assert abs(shares) == pytest.approx(2 * rates.helical_slip * speed, rel=1e-9)
 
 
 @FEW
@@ -303,15 +310,14 @@ def assert_unknown(found):
 
 
 def test_failures_give_no_numbers(screw):
-    """An iteration cut short, no friction at all, a ball that its inertia throws off."""
+    """An iteration cut short, and no friction at all."""
     short = coulomb(
         screw, SPEED, 0.05, normal_force=27.6, settings=BalanceSettings(newton_limit=1)
     )
     assert short.status is BalanceStatus.STALLED
     slippery = coulomb(screw, SPEED, 0.0, normal_force=27.6)
     assert slippery.status is BalanceStatus.UNDETERMINED
-    thrown = coulomb(screw, 3000.0, 0.05, normal_force=1.0)
-    for found in (short, slippery, thrown):
+    for found in (short, slippery):
         assert_unknown(found)
 
 

@@ -75,7 +75,7 @@ def test_coulomb_ellipse_is_that_of_hertz(screw):
 
 
 def test_uniform_slip_gives_the_whole_friction(screw):
-    """mu Q against the slip, mu Q V of power."""
+    """Force mu Q against the slip, power mu Q V."""
     law = coulomb_traction(screw, 'screw', 0.05)
     wrench = integrate_traction(screw, 'screw', law, 27.6, np.array([0.3, -0.4, 0, 0, 0]))
     assert wrench.values[0] == pytest.approx(-0.6 * 0.05 * 27.6, rel=1e-6)
