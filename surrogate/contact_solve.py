@@ -18,7 +18,7 @@ from surrogate.ehl import Condition, ContactLubricant, ContactSolution, Settings
 from surrogate.ehl.case import make_case
 from surrogate.geometry import Contact, ellipticity, hertz
 from surrogate.measured_surface import MeasuredSurface
-from surrogate.parameters import InputError, load_screw
+from surrogate.parameters import load_screw
 from surrogate.profile_import import read_surface
 from surrogate.roughness import (
     fractal_surface,
@@ -72,12 +72,7 @@ def _on_grid(case: ContactCase, surface: Surface | None) -> tuple[Surface | None
     shortest = case.roughness.grid_wavelength if case.roughness else None
     if shortest is None or not isinstance(surface, FractalSurface):
         return surface, 0.0
-    raised = subgrid_floor(case.contact, case.load, surface, shortest)
-    if math.isnan(raised):
-        raise InputError(
-            f'grid_wavelength_um {1e6 * shortest:g}: the dry contact that tells what the shorter '
-            'waves hold open did not converge; solve them on the grid instead'
-        )
+    raised = subgrid_floor(surface, shortest)
     LOG.info('waves below %.3g um raise the film floor by %.3g nm', 1e6 * shortest, 1e9 * raised)
     return without_short_waves(surface, shortest), raised
 

@@ -6,29 +6,19 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from surrogate.geometry import hertz, screw_contact
 from surrogate.parameters import InputError, load_screw
-from surrogate.roughness import fractal_surface, take_patch, Window
-from surrogate.subgrid import CARRIED, dry_gap, subgrid_floor, without_short_waves
+from surrogate.roughness import fractal_surface, take_patch, theoretical_rms, Window
+from surrogate.subgrid import STANDING, subgrid_floor, wave_rms, without_short_waves
 
+ROUGHNESS = replace(load_screw('nominal').roughness, shortest_wavelength=13e-6)
 AXIS = np.linspace(-1e-4, 1e-4, 201)
 
 
 @pytest.fixture(scope='module')
-def contact():
-    """Return the nominal contact at the screw."""
-    return screw_contact(load_screw('nominal'), 'screw')
-
-
-@pytest.fixture(scope='module')
-def surface(contact):
-    """Return one draw of the nominal roughness with waves down to 13.7 um."""
-    roughness = replace(load_screw('nominal').roughness, shortest_wavelength=13e-6)
-    ellipse = hertz(contact, 100.0)
-    window = Window(
-        length_x=2 * float(ellipse.semi_axis_x), length_y=2 * float(ellipse.semi_axis_y)
-    )
-    return take_patch(fractal_surface(roughness, 1), 'rescaled', window, roughness.rms)
+def surface():
+    """Return one rescaled draw of the nominal roughness with waves down to 13.7 um."""
+    window = Window(length_x=1.2e-4, length_y=1.1e-3)
+    return take_patch(fractal_surface(ROUGHNESS, 1), 'rescaled', window, ROUGHNESS.rms)
 
 
 def test_long_waves_stay_as_they_are(surface):
@@ -48,17 +38,15 @@ def test_a_cut_that_leaves_no_wave_is_refused(surface):
         without_short_waves(surface, 5e-3)
 
 
-def test_short_waves_hold_a_gap_that_the_load_closes(contact, surface):
-    """The dry gap grows with the waves and shrinks with the load; none is left of long waves."""
-    light, heavy = (dry_gap(contact, load, surface) for load in (10.0, 40.0))
-    assert 0 < heavy < light < 30e-9
-    kept = without_short_waves(surface, 30e-6)
-    assert 0 <= dry_gap(contact, 10.0, kept) < 0.3 * light
+def test_rms_of_the_waves_is_that_of_the_formula():
+    """An unscaled surface has the theoretical Rq of its constants."""
+    assert wave_rms(fractal_surface(ROUGHNESS, 0)) == pytest.approx(theoretical_rms(ROUGHNESS))
 
 
-def test_floor_is_the_share_of_the_gap_that_is_lost(contact, surface):
-    """The difference of both gaps times the fitted share; exactly zero without shorter waves."""
+def test_floor_is_a_share_of_the_waves_that_are_lost(surface):
+    """Measured on heights; more waves lost, higher floor; exactly zero when none is."""
     kept = without_short_waves(surface, 20e-6)
-    gap = dry_gap(contact, 10.0, surface) - dry_gap(contact, 10.0, kept)
-    assert subgrid_floor(contact, 10.0, surface, 20e-6) == pytest.approx(CARRIED * gap)
-    assert subgrid_floor(contact, 10.0, kept, 20e-6) == 0.0
+    lost = surface.heights(4 * AXIS, 4 * AXIS) - kept.heights(4 * AXIS, 4 * AXIS)
+    assert subgrid_floor(surface, 20e-6) == pytest.approx(STANDING * lost.std(), rel=0.1)
+    assert subgrid_floor(surface, 30e-6) > subgrid_floor(surface, 20e-6)
+    assert subgrid_floor(surface, 13e-6) == 0.0
