@@ -23,6 +23,7 @@ from surrogate.load_sharing import normal_force, UNLOADING_RATIO
 from surrogate.lubricant import lubricant_state
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.roughness import fractal_surface, FractalSurface, take_patch, Window
+from surrogate.subgrid import subgrid_floor, without_short_waves
 
 NutName = Literal['loaded', 'relieved']
 CREEP = 1e-3
@@ -36,8 +37,9 @@ class ScrewSettings:
     """
     How to solve a screw.
 
-    Settings of the smooth and of the rough contacts; draw of the roughness, None for smooth
-    raceways; shortest wavelength on the grid [m], None for that of the datasheet.
+    Settings of the smooth and of the rough contacts, but for the film floor, which is that of the
+    datasheet; draw of the roughness, None for smooth raceways; shortest wavelength on the grid
+    [m], shorter ones raise the floor, None to solve them all.
 
     """
 
@@ -161,19 +163,32 @@ def _solve_side(
         pressure_viscosity=float(oil.pressure_viscosity),
         eyring_stress=oil.eyring_stress,
     )
-    smooth = solve_contact(contact, fluid, condition, settings=settings.smooth)
+    smooth = solve_contact(
+        contact,
+        fluid,
+        condition,
+        settings=replace(settings.smooth, film_floor=screw.roughness.film_floor),
+    )
     if settings.draw is None or not smooth.converged:
         return smooth, smooth
-    surface = raceway_patch(screw, side, settings)
+    surface = raceway_patch(screw, side, settings.draw)
+    floor = screw.roughness.film_floor
+    if settings.grid_wavelength is not None:
+        floor += subgrid_floor(surface, settings.grid_wavelength)
+        surface = without_short_waves(surface, settings.grid_wavelength)
     rough = solve_contact(
-        contact, fluid, condition, roughness=surface.heights, settings=settings.rough
+        contact,
+        fluid,
+        condition,
+        roughness=surface.heights,
+        settings=replace(settings.rough, film_floor=floor),
     )
     return smooth, rough
 
 
-def raceway_patch(screw: Screw, side: Side, settings: ScrewSettings) -> FractalSurface:
+def raceway_patch(screw: Screw, side: Side, draw: int) -> FractalSurface:
     """
-    Return the draw that a contact sees, rescaled once over a window that no load moves.
+    Return one draw of the raceway, rescaled once over a window that no load moves.
 
     The window is the Hertz rectangle under the load that relieves the other nut.
 
@@ -183,13 +198,8 @@ def raceway_patch(screw: Screw, side: Side, settings: ScrewSettings) -> FractalS
     window = Window(
         length_x=2 * float(ellipse.semi_axis_x), length_y=2 * float(ellipse.semi_axis_y)
     )
-    roughness = screw.roughness
-    if settings.grid_wavelength is not None:
-        longest = max(settings.grid_wavelength, roughness.shortest_wavelength)
-        roughness = replace(roughness, shortest_wavelength=longest)
-    return take_patch(
-        fractal_surface(roughness, settings.draw or 0), 'rescaled', window, roughness.rms
-    )
+    surface = fractal_surface(screw.roughness, draw)
+    return take_patch(surface, 'rescaled', window, screw.roughness.rms)
 
 
 def _balance(

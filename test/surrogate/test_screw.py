@@ -106,9 +106,16 @@ def test_a_contact_that_fails_is_named_and_leaves_no_number():
 
 
 def test_the_patch_belongs_to_the_draw_not_to_the_load():
-    """One surface per draw and side, with the waves that the settings want on the grid."""
-    first, again = (raceway_patch(SCREW, 'screw', ScrewSettings(draw=3)) for _ in range(2))
-    assert first.scale == again.scale
-    assert first.shortest_wavelength == pytest.approx(20.55e-6, rel=1e-3)
-    whole = raceway_patch(SCREW, 'screw', ScrewSettings(draw=3, grid_wavelength=None))
-    assert whole.shortest_wavelength == pytest.approx(9.13e-6, rel=1e-3)
+    """One surface per draw and side, with all waves of the datasheet."""
+    first, again, other = (raceway_patch(SCREW, 'screw', draw) for draw in (3, 3, 4))
+    assert first.scale == again.scale != other.scale
+    assert first.shortest_wavelength == pytest.approx(9.13e-6, rel=1e-3)
+
+
+def test_waves_off_the_grid_raise_the_floor_of_the_datasheet():
+    """The floor on the grid is that of the screw and a share of the lost waves."""
+    found = at(60, 500.0, ROUGH)
+    floors = {contact.rough.settings.film_floor for contact in found.contacts}
+    assert all(1e-10 < floor - SCREW.roughness.film_floor < 3e-9 for floor in floors)
+    whole = at(60, 500.0, replace(ROUGH, grid_wavelength=None))
+    assert whole.contacts[0].rough.settings.film_floor == SCREW.roughness.film_floor
