@@ -377,7 +377,13 @@ def test_a_long_answer_makes_no_input_missing(node):
     states = node.states()
     publish = node.machine()
     node.stamp = node.now()
-    feed(node, publish, states, FAST, 1)
+
+    def judged():
+        """Publish until a sample is judged: one alone is stale where this process waits."""
+        publish(FAST, step=node.now() - node.stamp)
+        return states and states[-1].judged
+
+    node.until(judged, 'a first judged state')
     points = [OperatingPoint(speed=FAST, temperature=40.0)] * 10_000
     client = node.node.create_client(EvaluateOperatingPoint, f'{node.name}/evaluate')
     node.until(client.service_is_ready)
