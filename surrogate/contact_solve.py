@@ -32,8 +32,8 @@ from surrogate.subgrid import subgrid_floor, without_short_waves
 
 SLENDER, WIDE_NY = 2.5, 257
 """Nodes across a contact with an axis ratio below that [-]: its least film lies at its sides."""
-FILM_ERROR, FINE_NX, FINE_NY = 0.005, 513, 129
-"""Estimated relative error of the film above which a smooth case is refined, and to what [-]."""
+FILM_ERROR, FINE_NX = 0.005, 513
+"""Estimated error of the film above which a smooth case is refined, and nodes along x then [-]."""
 NODES_PER_WAVE = 6
 """Nodes per shortest wavelength of a rough grid that the case does not state [-]."""
 ROUGH_NX, LARGEST_DEFAULT_GRID = 129, 513
@@ -58,7 +58,7 @@ def solve_case(case: ContactCase) -> tuple[ContactSolution, Surface | None]:
     settings = case_settings(replace(case, film_floor=case.film_floor + raised), surface)
     solution = _solve(case, surface, settings)
     if surface is None and case.grid is None and solution.film_error > FILM_ERROR:
-        fine = replace(settings, nx=FINE_NX, ny=max(settings.ny, FINE_NY))
+        fine = replace(settings, nx=FINE_NX, ny=2 * settings.ny - 1)
         finer = _solve(case, surface, fine)
         if finer.converged:
             counts = ('newton_iterations', 'krylov_iterations', 'wall_time')
