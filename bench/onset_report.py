@@ -41,10 +41,20 @@ def read_rows(path: Path) -> dict[str, dict[int, dict[float, float]]]:
 
 def as_arrays(draws: dict[int, dict[float, float]]) -> tuple[Array, Array]:
     """Return speeds [m/s], falling, and RCS [draw, speed] of the draws that have all speeds."""
-    most = max(len(row) for row in draws.values())
-    whole = [row for row in draws.values() if len(row) == most]
+    draws = whole_draws(draws)
+    whole = list(draws.values())
     speeds = np.array(sorted(whole[0], reverse=True))
     return speeds, np.array([[row[speed] for speed in speeds] for row in whole])
+
+
+def whole_draws(draws: dict[int, dict[float, float]]) -> dict[int, dict[float, float]]:
+    """Return the draws that converged at every speed: a mean over fewer would jump."""
+    most = max(len(row) for row in draws.values())
+    return {
+        draw: row
+        for draw, row in draws.items()
+        if len(row) == most and all(math.isfinite(rcs) for rcs in row.values())
+    }
 
 
 def onset(speeds: Array, mean: Array) -> float:
@@ -120,8 +130,7 @@ def paired_ratio(
     draws: dict[int, dict[float, float]], base: dict[int, dict[float, float]]
 ) -> tuple[float, float]:
     """Return the onset over that of the same draws of the base [-], and its error as a factor."""
-    most = max(len(row) for row in draws.values())
-    common = [draw for draw, row in draws.items() if len(row) == most and draw in base]
+    common = [draw for draw in whole_draws(draws) if draw in base]
     speeds = np.array(sorted(set(draws[common[0]]) & set(base[common[0]]), reverse=True))
     pair = [
         np.array([[rows[draw][speed] for speed in speeds] for draw in common])
@@ -262,7 +271,7 @@ def draw_onsets(found: list[tuple[str, float, float]], path: Path) -> None:
 
 
 def main() -> None:
-    """Print the table and write both figures."""
+    """Print the table and write the figures."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('table', nargs='?', type=Path, default=Path('docs/onset.csv'))
     parser.add_argument('--out', type=Path, default=Path('docs'))

@@ -132,7 +132,7 @@ def _point(args: argparse.Namespace) -> int:
     point = OperatingPoint(speed=args.speed_rpm * math.pi / 30, load=args.load, temperature=kelvin)
     record = _record_of(args.tier)(screw, lubricant, point)
     print(json.dumps(to_json(record), indent=2, allow_nan=False) if args.json else page(record))
-    return 0
+    return 0 if record.get('converged', True) else 1
 
 
 def _record_of(tier: str) -> Callable[[Screw, Lubricant, OperatingPoint], dict[str, Any]]:

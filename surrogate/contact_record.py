@@ -58,6 +58,7 @@ def contact_record(case: ContactCase, solution: ContactSolution) -> dict[str, An
         'wall_s': float(solution.wall_time),
         'central_film_error': float(solution.film_error),
         'rcs_error': float(solution.rcs_error),
+        'film_floor_m': float(solution.settings.film_floor),
     }
     return record
 

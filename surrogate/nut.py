@@ -21,15 +21,17 @@ from surrogate.geometry import hertz, screw_contact, Side, SIDES
 from surrogate.kinematics import no_slip_rates
 from surrogate.load_sharing import normal_force, UNLOADING_RATIO
 from surrogate.lubricant import lubricant_state
-from surrogate.parameters import Lubricant, OperatingPoint, Screw
+from surrogate.parameters import InputError, Lubricant, OperatingPoint, Screw, ZERO_CELSIUS
 from surrogate.roughness import fractal_surface, FractalSurface, take_patch, Window
 from surrogate.subgrid import subgrid_floor, without_short_waves
 
 NutName = Literal['loaded', 'relieved']
 CREEP = 1e-3
 """Screw speed of the limit of slow motion [rad/s]."""
+ACROSS, MOST_NODES = 2.42, 513
+"""Width of a rough domain over the semi-axis across, most nodes there by the wavelength [-]."""
 WINDOW_SHARE = 0.05
-"""Axial load whose Hertz rectangle is the patch of an unpreloaded screw, over its rating [-]."""
+"""Least axial load whose Hertz rectangle is the window of the patch, over the rating [-]."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -39,7 +41,8 @@ class ScrewSettings:
 
     Settings of the smooth and of the rough contacts, but for the film floor, which is that of the
     datasheet; draw of the roughness, None for smooth raceways; shortest wavelength on the grid
-    [m], shorter ones raise the floor, None to solve them all.
+    [m], shorter ones raise the floor, None to solve them all; nodes per such wave across the
+    track, up to `MOST_NODES`, if that is more than the rough settings have [-].
 
     """
 
@@ -47,6 +50,7 @@ class ScrewSettings:
     rough: Settings = field(default_factory=lambda: Settings(nx=129, ny=257, error_estimate=False))
     draw: int | None = 0
     grid_wavelength: float | None = 16e-6
+    nodes_per_wave: float = 6.0
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -70,7 +74,7 @@ class ScrewContact:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Nut:
-    """One nut: its axial force [N], contacts and ball, None without load or after a failure."""
+    """One nut: its axial force [N], contacts, ball (None without load or solved contacts)."""
 
     name: NutName
     force: float
@@ -123,11 +127,7 @@ def _contact(
 ) -> ScrewContact:
     """Return one contact with its part of the balance."""
     part = BallContact() if ball is None else ball.screw if side == 'screw' else ball.nut
-    film = (
-        math.nan
-        if smooth is None or not smooth.condition.entrainment_speed
-        else smooth_film(smooth)
-    )
+    film = math.nan if smooth is None else smooth_film(smooth)
     return ScrewContact(
         nut=nut,
         side=side,
@@ -140,7 +140,9 @@ def _contact(
 
 
 def smooth_film(smooth: ContactSolution) -> float:
-    """Return the central film [m], extrapolated where the half grid was solved."""
+    """Return the central film [m], extrapolated where the half grid was solved; 0 at rest."""
+    if not smooth.condition.entrainment_speed:
+        return 0.0
     extrapolated = smooth.extrapolated_film
     return smooth.central_film if math.isnan(extrapolated) else extrapolated
 
@@ -154,15 +156,10 @@ def _solve_side(
     load: float,
 ) -> tuple[ContactSolution, ContactSolution]:
     """Return the smooth and the rough contact under a normal force [N]."""
-    oil = lubricant_state(lubricant, point.temperature)
     contact = screw_contact(screw, side)
     speed = no_slip_rates(screw).entrainment * abs(point.speed)
     condition = Condition(load=load, entrainment_speed=speed)
-    fluid = ContactLubricant(
-        viscosity=float(oil.viscosity),
-        pressure_viscosity=float(oil.pressure_viscosity),
-        eyring_stress=oil.eyring_stress,
-    )
+    fluid = _fluid(lubricant, point.temperature)
     smooth = solve_contact(
         contact,
         fluid,
@@ -173,27 +170,64 @@ def _solve_side(
         return smooth, smooth
     surface = raceway_patch(screw, side, settings.draw)
     floor = screw.roughness.film_floor
-    if settings.grid_wavelength is not None:
-        floor += subgrid_floor(surface, settings.grid_wavelength)
-        surface = without_short_waves(surface, settings.grid_wavelength)
+    cut = settings.grid_wavelength
+    if cut is not None and cut < screw.roughness.sample_length:
+        floor += subgrid_floor(surface, cut)
+        surface = without_short_waves(surface, cut)
     rough = solve_contact(
         contact,
         fluid,
         condition,
         roughness=surface.heights,
-        settings=replace(settings.rough, film_floor=floor),
+        settings=replace(
+            settings.rough,
+            film_floor=floor,
+            ny=_nodes_across(settings, smooth.semi_axis_y, surface.shortest_wavelength),
+        ),
     )
     return smooth, rough
+
+
+def _fluid(lubricant: Lubricant, temperature: float) -> ContactLubricant:
+    """Return the oil at a temperature [K]; InputError where it is no liquid any more."""
+    oil = lubricant_state(lubricant, temperature)
+    try:
+        return ContactLubricant(
+            viscosity=float(oil.viscosity),
+            pressure_viscosity=float(oil.pressure_viscosity),
+            eyring_stress=oil.eyring_stress,
+        )
+    except InputError as error:
+        raise InputError(
+            f'temperature is {temperature - ZERO_CELSIUS:g} degC: {lubricant.name}: {error}'
+        ) from None
+
+
+def shortest_on_grid(screw: Screw, settings: ScrewSettings) -> float:
+    """Return the shortest wavelength that rough contacts solve [m], infinite when smooth."""
+    if settings.draw is None:
+        return math.inf
+    surface, cut = fractal_surface(screw.roughness, settings.draw), settings.grid_wavelength
+    if cut is not None and cut < screw.roughness.sample_length:
+        surface = without_short_waves(surface, cut)
+    return surface.shortest_wavelength
+
+
+def _nodes_across(settings: ScrewSettings, semi_axis: float, wave: float) -> int:
+    """Return the nodes that a semi-axis and a shortest wave [m] ask for, within the bounds."""
+    wanted = 2 * math.ceil(settings.nodes_per_wave * ACROSS * semi_axis / wave / 2) + 1
+    return max(settings.rough.ny, min(wanted, MOST_NODES))
 
 
 def raceway_patch(screw: Screw, side: Side, draw: int) -> FractalSurface:
     """
     Return one draw of the raceway, rescaled once over a window that no load moves.
 
-    The window is the Hertz rectangle under the load that relieves the other nut.
+    The window is the Hertz rectangle under the load that relieves the other nut, or under
+    `WINDOW_SHARE` of the static rating where that is larger.
 
     """
-    force = UNLOADING_RATIO * screw.preload or WINDOW_SHARE * screw.static_rating
+    force = max(UNLOADING_RATIO * screw.preload, WINDOW_SHARE * screw.static_rating)
     ellipse = hertz(screw_contact(screw, side), float(normal_force(screw, force)))
     window = Window(
         length_x=2 * float(ellipse.semi_axis_x), length_y=2 * float(ellipse.semi_axis_y)

@@ -20,7 +20,14 @@ from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.torque import driving_torque, efficiency, is_back_driving
 
 TIER = 'full'
-SOLVED = 'Solved: four contacts and the balls of both nuts.'
+SOLVED = (
+    'No load on either nut: nothing to solve.',
+    'Solved: two contacts and the balls of the loaded nut, the relieved one is idle.',
+    'Solved: four contacts and the balls of both nuts.',
+)
+"""Status by the number of nuts that carry load."""
+IDLE_SHARE = 1e-3
+"""Force of the relieved nut over that of the loaded one below which it counts as idle [-]."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -69,21 +76,32 @@ def solve_screw(
 
     """
     settings = settings or ScrewSettings()
-    forces = nut_forces(point.opposing_load, screw.preload)
+    forces = _forces(screw, point)
     ahead: Flank = 1 if point.opposing_load >= 0 else -1
     behind: Flank = -1 if point.opposing_load >= 0 else 1
     nuts = (
-        solve_nut(screw, lubricant, point, settings, 'loaded', float(forces[0]), ahead),
-        solve_nut(screw, lubricant, point, settings, 'relieved', float(forces[1]), behind),
+        solve_nut(screw, lubricant, point, settings, 'loaded', forces[0], ahead),
+        solve_nut(screw, lubricant, point, settings, 'relieved', forces[1], behind),
     )
     return _combine(screw, point, nuts)
+
+
+def _forces(screw: Screw, point: OperatingPoint) -> tuple[float, float]:
+    """Return the axial forces of both nuts [N]; a share too small to hold its balls is none."""
+    loaded, relieved = (float(force) for force in nut_forces(point.opposing_load, screw.preload))
+    if relieved < IDLE_SHARE * loaded:
+        return abs(point.opposing_load), 0.0
+    return loaded, relieved
 
 
 def _combine(screw: Screw, point: OperatingPoint, nuts: tuple[Nut, Nut]) -> ScrewSolution:
     """Add up both nuts."""
     speed, load = abs(point.speed), point.opposing_load
     found = ScrewSolution(
-        status=next((nut.failure for nut in nuts if nut.failure), SOLVED),
+        status=next(
+            (nut.failure for nut in nuts if nut.failure),
+            SOLVED[sum(nut.force > 0 for nut in nuts)],
+        ),
         converged=not any(nut.failure for nut in nuts),
         contacts=nuts[0].contacts + nuts[1].contacts,
         entrainment_speed=no_slip_rates(screw).entrainment * speed,
@@ -122,8 +140,7 @@ def _rough(found: ScrewSolution) -> list[ContactSolution]:
 def _films(found: ScrewSolution) -> list[float]:
     """Return the smooth films [m] of the contacts that carry; 0 at rest."""
     pressed = [contact.smooth for contact in found.contacts if contact.smooth is not None]
-    moving = found.entrainment_speed > 0
-    return [smooth_film(smooth) if moving else 0.0 for smooth in pressed]
+    return [smooth_film(smooth) for smooth in pressed]
 
 
 def _load_change(screw: Screw, nuts: tuple[Nut, Nut]) -> float:

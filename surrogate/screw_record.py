@@ -7,12 +7,17 @@ import time
 from typing import Any
 
 import numpy as np
-from surrogate.ball_motion import BallMotion, slip_field, slip_floor
+from surrogate.ball_motion import Array, BallMotion, slip_field, slip_floor
 from surrogate.contact_friction import contact_friction
-from surrogate.nut import ScrewContact, ScrewSettings
+from surrogate.nut import ScrewContact, ScrewSettings, shortest_on_grid
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.point import closed_form_record, regime
 from surrogate.screw import ScrewSolution, solve_screw, TIER
+
+LOAD_CHANGE = 0.02
+"""Change of a normal force by friction and inertia that is warned about [-]."""
+FEWEST_NODES = 4.0
+"""Nodes per shortest wave below which a rough contact is warned about [-]."""
 
 
 def full_record(
@@ -28,28 +33,30 @@ def full_record(
     comparators.
 
     """
-    started = time.perf_counter()
+    started, settings = time.perf_counter(), settings or ScrewSettings()
     found = solve_screw(screw, lubricant, point, settings=settings)
     formulas = closed_form_record(screw, lubricant, point)
     contacts = [_contact_record(screw, found, contact) for contact in found.contacts]
-    worst = min(contacts, key=_thickness)
+    worst = min(contacts, key=_mildness)
     return formulas | {
         'tier': TIER,
         'status': found.status,
-        'warnings': [text for text in formulas['warnings'] if 'outside its range' not in text],
+        'converged': found.converged,
+        'warnings': _warnings(formulas['warnings'], found, shortest_on_grid(screw, settings)),
         'efficiency': found.efficiency,
         'friction_torque_Nm': found.friction_torque,
         'driving_torque_Nm': found.driving_torque,
         'energy_error': found.energy_error,
+        'load_change': found.load_change,
         'back_driving': found.back_driving,
         'rcs': found.rcs,
         'asperity_share': found.asperity_share,
         'film_ratio': found.film_ratio,
         'regime': regime(found.film_ratio),
         'central_film_m': found.central_film,
-        'minimum_film_m': _least(contacts, 'minimum_film_m'),
-        'friction_coefficient': _mean_friction(contacts),
-        'max_pressure_Pa': _most(contacts, 'max_pressure_Pa'),
+        'minimum_film_m': _least(found, contacts, 'minimum_film_m'),
+        'friction_coefficient': _mean_friction(found, contacts),
+        'max_pressure_Pa': -_least(found, contacts, 'max_pressure_Pa', -1.0),
         'worst_contact': {key: worst[key] for key in ('nut', 'side')},
         'contact_angle_A_rad': contacts[0]['contact_angle_rad'],
         'contact_angle_B_rad': contacts[1]['contact_angle_rad'],
@@ -114,7 +121,7 @@ def _friction(screw: Screw, contact: ScrewContact) -> float:
     motion, rough = contact.motion, contact.rough
     if motion is None or rough is None:
         return math.nan
-    slip_x, slip_y = _slip(screw, contact, motion)
+    slip_x, slip_y = contact_slip(screw, contact, motion)
     return contact_friction(
         rough,
         slip_x=slip_x,
@@ -124,32 +131,56 @@ def _friction(screw: Screw, contact: ScrewContact) -> float:
     ).coefficient
 
 
-def _slip(
-    screw: Screw, contact: ScrewContact, motion: BallMotion
-) -> tuple[np.ndarray[Any, np.dtype[np.float64]], np.ndarray[Any, np.dtype[np.float64]]]:
+def contact_slip(screw: Screw, contact: ScrewContact, motion: BallMotion) -> tuple[Array, Array]:
+    """Return the slip along and across the track [m/s] on the nodes of a rough contact."""
     assert contact.rough is not None
     x, y = np.meshgrid(contact.rough.x, contact.rough.y, indexing='ij')
-    return slip_field(screw, contact.side, motion, x, y)
+    turn = 1 if contact.side == 'screw' else -1  # the nut's entrainment runs against t
+    return slip_field(screw, contact.side, motion, turn * x, turn * y)
 
 
-def _thickness(contact: dict[str, Any]) -> float:
-    ratio = contact['film_ratio']
-    return math.inf if math.isnan(ratio) else float(ratio)
+def _mildness(contact: dict[str, Any]) -> tuple[float, float]:
+    """Order contacts: the largest RCS first, then the smallest film ratio, unknown ones last."""
+    rcs, ratio = contact['rcs'], contact['film_ratio']
+    return (math.inf, math.inf) if math.isnan(rcs) else (-rcs, ratio)
 
 
-def _mean_friction(contacts: list[dict[str, Any]]) -> float:
-    """Return the friction coefficient over all normal forces [-]."""
+def _warnings(rated: list[str], found: ScrewSolution, wave: float) -> list[str]:
+    """Return the warnings about ratings, and those of the full model."""
+    warnings = [text for text in rated if 'outside its range' not in text]
+    if found.load_change > LOAD_CHANGE:
+        warnings.append(
+            f'balls: friction and inertia change a normal force by {100 * found.load_change:.2g} '
+            '%, the contacts were solved before that'
+        )
+    nodes = [_nodes_per_wave(contact, wave) for contact in found.contacts]
+    coarse = [node for node in nodes if node < FEWEST_NODES]
+    if coarse:
+        warnings.append(
+            f'roughness: {min(coarse):.2g} nodes per shortest wave across the track, asperity '
+            f'contact is resolved from {FEWEST_NODES:g}'
+        )
+    return warnings
+
+
+def _nodes_per_wave(contact: ScrewContact, wave: float) -> float:
+    rough = contact.rough
+    return wave / float(rough.y[1] - rough.y[0]) if rough is not None else math.inf
+
+
+def _mean_friction(found: ScrewSolution, contacts: list[dict[str, Any]]) -> float:
+    """Return the friction coefficient over all normal forces [-], NaN unless solved."""
     pressed = [contact for contact in contacts if contact['normal_force_N'] > 0]
     total = sum(contact['normal_force_N'] for contact in pressed)
     friction = sum(
         contact['normal_force_N'] * contact['friction_coefficient'] for contact in pressed
     )
-    return friction / total if total else math.nan
+    return friction / total if total and found.converged else math.nan
 
 
-def _least(contacts: list[dict[str, Any]], key: str) -> float:
-    return min((c[key] for c in contacts if not math.isnan(c[key])), default=math.nan)
-
-
-def _most(contacts: list[dict[str, Any]], key: str) -> float:
-    return max((c[key] for c in contacts if not math.isnan(c[key])), default=math.nan)
+def _least(
+    found: ScrewSolution, contacts: list[dict[str, Any]], key: str, sign: float = 1.0
+) -> float:
+    """Return the least of `sign` times a number of the contacts, NaN unless solved."""
+    known = [sign * contact[key] for contact in contacts if not math.isnan(contact[key])]
+    return min(known) if known and found.converged else math.nan

@@ -3,8 +3,9 @@
 """
 Mixed elastohydrodynamic point contact: smooth, rough and dry in one solver.
 
-half_space (deformation) and _reynolds (film) are joined by newton with _krylov and _line (linear
-solver) on one grid; case scales a contact, solver finds the way to it, result returns to SI units.
+half_space (deformation) and _reynolds (film) make the system of one grid, which newton iterates
+with linear (_krylov over _line and, on coarser grids, _level and _transfer). case scales a contact
+to its domain, search finds the way to it, solver judges it, result returns to SI units.
 
 """
 

@@ -23,7 +23,7 @@ DENSITY_PRESSURE = 5.9e8
 ROELANDS_PRESSURE = 1.96e8
 """Reference pressure of the Roelands law [Pa]."""
 STIFF = 2.5
-"""Logarithm of viscosity over which the second order fades where surfaces touch [-]."""
+"""Logarithm of viscosity over which a limited second order fades [-]."""
 
 
 @njit(cache=True, error_model='numpy')
@@ -164,21 +164,21 @@ def limited_change(here: float, before: float) -> tuple[float, float, float]:
 
 @njit(cache=True, error_model='numpy', inline='always')
 def carried_mass(
-    film: Array, i: int, j: int, order: float, touching: bool
+    film: Array, i: int, j: int, order: float, limited: bool
 ) -> tuple[float, float, float, float, float]:
     """
     Return rho h [-] that leaves node (i, j) downstream, its slopes in p, h here, p, h before.
 
-    Order 2 extrapolates rho h from the node before, order 1 does not. Where surfaces touch the
-    extrapolation is limited, and fades where the viscosity is large: there the flow hardly depends
-    on pressure, rho h is constant along x and order 1 exact, and linear systems stay solvable.
+    Order 2 extrapolates rho h from the node before, order 1 does not. A `limited` extrapolation
+    is cut where the change is large, and fades where the viscosity is: there the flow hardly
+    depends on pressure, rho h is constant along x and order 1 exact.
 
     """
     k = max(i - 1, 0)
     here, before = film[0, i, j] * film[2, i, j], film[0, k, j] * film[2, k, j]
     drop, in_here, in_before = before - here, -1.0, 1.0
     share, fading = 0.5 * (order - 1.0), 0.0
-    if touching:
+    if limited:
         drop, in_here, in_before = limited_change(here, before)
         stiff = film[3, i, j] / STIFF
         kept = 1.0 / (1.0 + stiff**4)
@@ -201,7 +201,7 @@ def reynolds_rows(
     mobility: float,
     aspect: float,
     order: float,
-    touching: bool,
+    limited: bool,
     inlet: Array,
     residual: Array,
     by_pressure: Array,
@@ -210,7 +210,7 @@ def reynolds_rows(
     """
     Assemble F = -div(flow grad p) dx + d(rho h)/dx dx and its planes dF/dp, dF/dh.
 
-    `mobility` multiplies all flow factors, `aspect` is (dx/dy)^2; `order` and `touching` as in
+    `mobility` multiplies all flow factors, `aspect` is (dx/dy)^2; `order` and `limited` as in
     `carried_mass`. Just outside the first row the pressure is `inlet` times that inside it. Border
     rows get zero planes. Hertz units [-].
 
@@ -222,10 +222,10 @@ def reynolds_rows(
     for i in range(1, nx - 1):
         for j in range(1, ny - 1):
             out, out_p, out_h, out_p1, out_h1 = carried_mass(
-                film, i, j, order if i > 1 else 1.0, touching
+                film, i, j, order if i > 1 else 1.0, limited
             )
             come, come_p, come_h, come_p1, come_h1 = carried_mass(
-                film, i - 1, j, order if i > 2 else 1.0, touching
+                film, i - 1, j, order if i > 2 else 1.0, limited
             )
             residual[i, j] = out - come
             by_pressure[0, i, j], by_gap[0, i, j] = out_p, out_h
@@ -236,8 +236,8 @@ def reynolds_rows(
                 n = j + (plane == 4) - (plane == 3)
                 outside = inlet[j] * pressure[i, j] if k == 0 else pressure[k, n]
                 rise = outside - pressure[i, j]
-                climbs = rise < 0.0 if plane == 1 else rise > 0.0 if plane == 2 else touching
-                flow, in_p, in_p1, in_h, in_h1 = face_flow(film, i, j, k, n, climbs, touching)
+                climbs = rise < 0.0 if plane == 1 else rise > 0.0 if plane == 2 else limited
+                flow, in_p, in_p1, in_h, in_h1 = face_flow(film, i, j, k, n, climbs, limited)
                 weight = mobility * (aspect if plane > 2 else 1.0)
                 pull = weight * rise
                 residual[i, j] -= flow * pull

@@ -221,7 +221,7 @@ class Case:
             density_gain=gain,
             growth=lubricant.pressure_viscosity * ROELANDS_PRESSURE / exponent,
             order=order,
-            touching=self.limits,
+            limited=self.limits,
             inlet=self.inlet(grid),
         )
 

@@ -215,7 +215,7 @@ class Search:
         grid = case.grid(settings.nx, settings.ny, symmetric=smooth)
         rough = np.zeros(grid.shape) if smooth else case.rough_heights(grid)
         start = max(speed, case.speed_of_film(self._parting(grid, rough))) if speed else 0.0
-        half, outcome = self.smooth(start, final=False)
+        half, outcome = self.smooth(start, final=smooth and start == speed)
         if not outcome.converged:
             return half, outcome
         limits, shape = self.limits(rough=True, final=True), case.shape_heights(grid)

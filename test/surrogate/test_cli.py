@@ -231,3 +231,23 @@ def test_bad_files_reach_the_user_as_sentences(tmp_path: Path):
         run('surface', 'build', '--oil', 'water')
     with pytest.raises(InputError, match='--points is 0'):
         run('surface', 'check', '--points', '0')
+
+
+def test_full_tier_is_solved_and_a_failure_is_an_exit_code(capsys, monkeypatch):
+    """1000 N at 600 rev/min by solved contacts; what did not converge returns 1."""
+    words = ('point', '--tier', 'full', '--json', '--speed-rpm', '600', '--load-N')
+    words = (*words, '1000', '--screw', 'nominal', '--oil', 'iso_vg_68')
+    assert run(*words) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found['tier'] == 'full'
+    assert found['rcs'] == 0.0
+    assert found['efficiency'] == pytest.approx(0.934, abs=5e-3)
+    failed = found | {'converged': False}
+    monkeypatch.setattr('surrogate.screw_record.full_record', lambda *inputs: failed)
+    assert run(*words) == 1
+
+
+def test_oil_that_is_no_liquid_is_named_with_its_temperature():
+    """The sentence speaks of what was typed."""
+    with pytest.raises(InputError, match=r'temperature is -40 degC: iso_vg_68: viscosity is'):
+        run(*POINT[:-1], 'full', '--speed-rpm', '60', '--load-N', '0', '--temperature-degC', '-40')

@@ -43,6 +43,7 @@ KEYS = [
     'wall_s',
     'central_film_error',
     'rcs_error',
+    'film_floor_m',
 ]
 SMALL = replace(load_case('nominal_smooth'), grid=CaseGrid(nx=65, ny=33))
 

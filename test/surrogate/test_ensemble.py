@@ -15,7 +15,9 @@ from surrogate.screw import solve_screw
 
 SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
 SMALL = Settings(nx=65, ny=65, error_estimate=False)
-SETTINGS = ScrewSettings(smooth=SMALL, rough=Settings(nx=65, ny=65, error_estimate=False))
+SETTINGS = ScrewSettings(
+    smooth=SMALL, rough=Settings(nx=65, ny=65, error_estimate=False), nodes_per_wave=1.0
+)
 SLOW = OperatingPoint(speed=5 * math.pi / 30, load=500.0, temperature=313.15)
 
 

@@ -15,7 +15,9 @@ from surrogate.screw import solve_screw
 SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
 SMALL = Settings(nx=65, ny=65, error_estimate=False)
 SMOOTH = ScrewSettings(smooth=SMALL, draw=None)
-ROUGH = ScrewSettings(smooth=SMALL, rough=Settings(nx=65, ny=129, error_estimate=False))
+ROUGH = ScrewSettings(
+    smooth=SMALL, rough=Settings(nx=65, ny=129, error_estimate=False), nodes_per_wave=3.0
+)
 WARM = 313.15
 
 
@@ -71,6 +73,23 @@ def test_beyond_unloading_the_relieved_nut_is_idle():
     assert idle.friction_torque == 0.0
     assert idle.rcs == 0.0
     assert math.isnan(idle.film_ratio)
+
+
+def test_a_nut_about_to_unload_is_idle_and_named():
+    """Its share cannot hold its balls; the other nut carries exactly the load."""
+    found = at(600, 0.9985 * 2**1.5 * SCREW.preload)
+    assert found.converged, found.status
+    assert 'relieved one is idle' in found.status
+    assert found.normal_forces[1] == 0.0
+    assert found.energy_error < 1e-8
+
+
+def test_patch_does_not_jump_where_the_preload_vanishes():
+    """The window never shrinks to nothing."""
+    scales = [
+        raceway_patch(replace(SCREW, preload=preload), 'screw', 0).scale for preload in (0.0, 1.0)
+    ]
+    assert scales[0] == scales[1]
 
 
 def test_rest_is_dry_and_loses_most():

@@ -6,16 +6,21 @@ import json
 import math
 
 import pytest
+from surrogate.ball_motion import slip_floor
+from surrogate.contact_friction import contact_friction
 from surrogate.ehl import Settings
 from surrogate.nut import ScrewSettings
 from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
 from surrogate.plain_json import to_json
 from surrogate.point import closed_form_record, page
-from surrogate.screw_record import full_record
+from surrogate.screw import solve_screw
+from surrogate.screw_record import contact_slip, full_record
 
 SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
 SMALL = Settings(nx=65, ny=65, error_estimate=False)
-SETTINGS = ScrewSettings(smooth=SMALL, rough=Settings(nx=65, ny=129, error_estimate=False))
+SETTINGS = ScrewSettings(
+    smooth=SMALL, rough=Settings(nx=65, ny=129, error_estimate=False), nodes_per_wave=3.0
+)
 
 
 def record(rpm, load, settings=SETTINGS):
@@ -42,7 +47,7 @@ def test_parts_of_the_contacts_add_up_to_the_torque():
     assert parts == pytest.approx(found['friction_torque_Nm'], rel=1e-9)
     assert found['energy_error'] < 1e-8
     assert found['rcs'] == max(c['rcs'] for c in found['contacts'])
-    worst = min(found['contacts'], key=lambda c: c['film_ratio'])
+    worst = max(found['contacts'], key=lambda c: (c['rcs'], -c['film_ratio']))
     assert found['worst_contact'] == {'nut': worst['nut'], 'side': worst['side']}
 
 
@@ -56,6 +61,31 @@ def test_friction_coefficient_lies_between_film_and_boundary():
     assert 0 < moving['friction_coefficient'] < 0.5 * rest['friction_coefficient']
 
 
+def test_friction_is_integrated_with_the_slip_of_the_balance():
+    """On screw and nut alike, the power over the slip field is that which the ball loses."""
+    point = OperatingPoint(speed=60 * math.pi / 30, load=800.0, temperature=313.15)
+    for contact in solve_screw(SCREW, OIL, point, settings=SETTINGS).contacts:
+        slip_x, slip_y = contact_slip(SCREW, contact, contact.motion)
+        found = contact_friction(
+            contact.rough,
+            slip_x=slip_x,
+            slip_y=slip_y,
+            asperity_friction=SCREW.roughness.asperity_friction,
+            slip_floor=slip_floor(SCREW, contact.motion.screw_speed),
+        )
+        assert found.power == pytest.approx(contact.ball.slip_power, rel=2e-3)
+
+
+def test_coarse_waves_and_moved_forces_are_warned_about():
+    """A grid of three nodes per wave, and a nut near unloading at high speed."""
+    _, found = record(60, 800.0)
+    assert any('nodes per shortest wave' in text for text in found['warnings'])
+    smooth = ScrewSettings(smooth=SMALL, draw=None)
+    _, found = record(3000, 2600.0, smooth)
+    assert found['load_change'] > 0.02
+    assert any(text.startswith('balls: friction') for text in found['warnings'])
+
+
 def test_idle_nut_and_failure_give_a_reason():
     """No number without a contact, and none after a solve that failed."""
     _, idle = record(600, 3.0 * SCREW.preload)
@@ -64,5 +94,8 @@ def test_idle_nut_and_failure_give_a_reason():
     failed = ScrewSettings(smooth=Settings(newton_limit=1), draw=None)
     _, none = record(600, 500.0, failed)
     assert 'smooth contact' in none['status']
-    assert to_json(none)['efficiency'] is None
+    assert none['converged'] is False
+    numbers = ('efficiency', 'friction_torque_Nm', 'rcs', 'friction_coefficient')
+    for key in (*numbers, 'minimum_film_m', 'max_pressure_Pa', 'film_ratio'):
+        assert to_json(none)[key] is None
     assert none['contacts'][0]['reason'] == none['status']

@@ -24,10 +24,10 @@ def plain_mean(a, b, climbs):
     return (np.exp(-a) - np.exp(-b)) / (b - a)
 
 
-def plain_mass(mass, logs, i, j, order, touching):
+def plain_mass(mass, logs, i, j, order, limited):
     """Return what leaves node (i, j) downstream."""
     change, share = mass[i - 1, j] - mass[i, j], 0.5 * (order - 1)
-    if touching:
+    if limited:
         change *= mass[i, j] / (mass[i, j] + abs(change))
         share /= 1 + (logs[i, j] / 2.5) ** 4
     return mass[i, j] - share * change
@@ -38,7 +38,7 @@ def plain_cube(a, b, series):
     return 2 * (a * b) ** 2 / (a + b) if series else 0.5 * (a**3 + b**3)
 
 
-def plain_rows(pressure, gap, contact, law, order, inlet, touching=True):
+def plain_rows(pressure, gap, contact, law, order, inlet, limited=True):
     """Return F of the docstring, node by node."""
     growth, exponent, gain = law
     film = np.where(contact, FLOOR, np.maximum(gap, FLOOR))
@@ -51,13 +51,13 @@ def plain_rows(pressure, gap, contact, law, order, inlet, touching=True):
             for di, dj, weight in ((-1, 0, 1), (1, 0, 1), (0, -1, ASPECT), (0, 1, ASPECT)):
                 here, there = (i, j), (i + di, j + dj)
                 outside = pressure[there] if i + di else inlet[j] * pressure[here]
-                climbs = di * (outside - pressure[here]) > 0 if di else touching
-                cube = plain_cube(film[here], film[there], touching)
+                climbs = di * (outside - pressure[here]) > 0 if di else limited
+                cube = plain_cube(film[here], film[there], limited)
                 face = MOBILITY * 0.5 * (density[here] + density[there]) * cube
                 face *= plain_mean(logs[here], logs[there], climbs)
                 rows[here] -= weight * face * (outside - pressure[here])
-            rows[i, j] += plain_mass(mass, logs, i, j, order if i > 1 else 1.0, touching)
-            come = plain_mass(mass, logs, i - 1, j, order, touching) if i > 2 else mass[i - 1, j]
+            rows[i, j] += plain_mass(mass, logs, i, j, order if i > 1 else 1.0, limited)
+            come = plain_mass(mass, logs, i - 1, j, order, limited) if i > 2 else mass[i - 1, j]
             rows[i, j] -= come
     return rows
 
@@ -74,32 +74,32 @@ def fields():
     return pressure, gap, contact, np.linspace(0, 0.9, 8)
 
 
-def assembled(pressure, gap, contact, law, order, inlet, touching=True):
+def assembled(pressure, gap, contact, law, order, inlet, limited=True):
     """Return F, dF/dp and dF/dh of the kernels."""
     film = np.empty((7, *gap.shape))
     film_properties(pressure, gap, contact, FLOOR, SCALE, *law, film)
     rows, by_p, by_h = np.empty_like(gap), np.empty((6, *gap.shape)), np.empty((6, *gap.shape))
-    reynolds_rows(pressure, film, MOBILITY, ASPECT, order, touching, inlet, rows, by_p, by_h)
+    reynolds_rows(pressure, film, MOBILITY, ASPECT, order, limited, inlet, rows, by_p, by_h)
     return rows, by_p, by_h
 
 
 @pytest.mark.parametrize('law', LAWS.values(), ids=LAWS)
 @pytest.mark.parametrize('order', [1.0, 1.3, 2.0])
-@pytest.mark.parametrize('touching', [False, True])
-def test_rows_are_the_plain_twins(fields, law, order, touching):
+@pytest.mark.parametrize('limited', [False, True])
+def test_rows_are_the_plain_twins(fields, law, order, limited):
     """Same numbers for both laws and every order of the wedge."""
     pressure, gap, contact, inlet = fields
-    rows, _, _ = assembled(pressure, gap, contact, law, order, inlet, touching)
-    twin = plain_rows(pressure, gap, contact, law, order, inlet, touching)
+    rows, _, _ = assembled(pressure, gap, contact, law, order, inlet, limited)
+    twin = plain_rows(pressure, gap, contact, law, order, inlet, limited)
     assert rows == pytest.approx(twin, rel=1e-12)
 
 
 @pytest.mark.parametrize('law', LAWS.values(), ids=LAWS)
-@pytest.mark.parametrize('touching', [False, True])
-def test_planes_are_the_derivatives(fields, law, touching):
+@pytest.mark.parametrize('limited', [False, True])
+def test_planes_are_the_derivatives(fields, law, limited):
     """Central differences of every row in every pressure and gap."""
     pressure, gap, contact, inlet = fields
-    _, by_p, by_h = assembled(pressure, gap, contact, law, 2.0, inlet, touching)
+    _, by_p, by_h = assembled(pressure, gap, contact, law, 2.0, inlet, limited)
     steps = ((0, 0), (-1, 0), (1, 0), (0, -1), (0, 1), (-2, 0))
     for field, planes in ((pressure, by_p), (gap, by_h)):
         for i, j in ((1, 3), (2, 2), (3, 3), (5, 4), (7, 6)):
@@ -112,7 +112,7 @@ def test_planes_are_the_derivatives(fields, law, touching):
                     moved = field.copy()
                     moved[place] += sign * 1e-7
                     both = (moved, gap) if field is pressure else (pressure, moved)
-                    ends.append(plain_rows(*both, contact, law, 2.0, inlet, touching)[i, j])
+                    ends.append(plain_rows(*both, contact, law, 2.0, inlet, limited)[i, j])
                 slope = (ends[0] - ends[1]) / 2e-7
                 assert planes[plane, i, j] == pytest.approx(slope, rel=1e-5, abs=1e-6)
 
