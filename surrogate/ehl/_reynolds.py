@@ -151,8 +151,8 @@ def limited_change(here: float, before: float) -> tuple[float, float, float]:
     Return the change to the node before, limited where it is large, and its two slopes.
 
     The change d = before - here becomes d here/(here + |d|): what is extrapolated stays positive,
-    and the inlet of a thin film may be missed by the nodes. A smooth film so found is right within
-    0.3 % where the node distance is 0.1 to 0.8 of the inlet length.
+    and the inlet of a thin film may be missed by the nodes. A smooth film so found, at order 2
+    throughout, is right within 0.3 % where the node distance is 0.1 to 0.8 of the inlet length.
 
     """
     change = before - here
