@@ -384,6 +384,7 @@ def test_a_long_answer_makes_no_input_missing(node):
         return states and states[-1].judged
 
     node.until(judged, 'a first judged state')
+    states.clear()  # what was called stale before it was judged
     points = [OperatingPoint(speed=FAST, temperature=40.0)] * 10_000
     client = node.node.create_client(EvaluateOperatingPoint, f'{node.name}/evaluate')
     node.until(client.service_is_ready)
@@ -393,7 +394,7 @@ def test_a_long_answer_makes_no_input_missing(node):
         publish(FAST, step=node.now() - node.stamp)
         return future.done()
 
-    node.until(answered, 'the answer')
+    node.until(lambda: answered() and states, 'the answer')
     end = states[-1].judged + 20
     node.until(lambda: answered() and states[-1].judged >= end)
     stamps = [state.header.stamp.sec * 10**9 + state.header.stamp.nanosec for state in states]
