@@ -108,12 +108,14 @@ def balance_ball(
 
 def _solve(problem: BallProblem, settings: BalanceSettings) -> _Iterate:
     """Solve with friction that sharpens in a few large stages, or else in many small ones."""
+    screw, nut = problem.tractions
+    rough = replace(problem, tractions=(screw.sample(), nut.sample()))
     for ratio in STAGE_RATIOS:
         found = _Iterate(unknowns=no_slip_unknowns(problem))
-        for floor in _floors(problem, ratio):
-            final = floor == problem.slip_floor
-            stage = replace(problem, slip_floor=floor)
-            tolerance = settings.step_tolerance if final else STAGE_TOLERANCE
+        stages = [replace(rough, slip_floor=floor) for floor in _floors(problem, ratio)]
+        for stage in (*stages, problem):
+            sharp = stage.slip_floor == problem.slip_floor
+            tolerance = settings.step_tolerance if sharp else STAGE_TOLERANCE
             found = _newton(stage, found, tolerance, settings.newton_limit)
             if found.status is not BalanceStatus.CONVERGED:
                 break

@@ -98,11 +98,15 @@ def slip_maps(screw: Screw, side: Side, x: Array, y: Array) -> tuple[Array, Arra
     15 (1921) 569, here with the helix and spin.
 
     """
-    ball, f = 0.5 * screw.ball_diameter, conformity(screw, side)
-    deformed = 4 * f * ball / (1 + 2 * f)
-    arm = ball - y * y / (2 * deformed)
+    arm = 0.5 * screw.ball_diameter - y * y / (2 * heathcote_radius(screw, side))
     none, one = np.zeros_like(x), np.ones_like(x)
     return np.array([one, none, none, y, -arm]), np.array([none, one, arm, -x, none])
+
+
+def heathcote_radius(screw: Screw, side: Side) -> float:
+    """Return the radius of the pressed surface across the track, 2 r_b r_g/(r_b + r_g) [m]."""
+    f = conformity(screw, side)
+    return 2 * f * screw.ball_diameter / (1 + 2 * f)
 
 
 def slip_field(

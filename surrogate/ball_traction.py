@@ -8,13 +8,14 @@ over the places and their exact derivatives are what the balance of the ball nee
 
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 import math
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.ball_motion import Array, slip_maps
+from surrogate._traction import sum_friction
+from surrogate.ball_motion import Array, heathcote_radius
 from surrogate.contact_friction import viscosity_of
 from surrogate.ehl import ContactSolution, punctured_nodes
 from surrogate.geometry import hertz, screw_contact, Side
@@ -22,6 +23,10 @@ from surrogate.parameters import InputError, Screw
 
 RADIAL_NODES, ANGULAR_NODES = 20, 60
 """Quadrature of the ellipse: lost power within 1e-4 of a rule twice as fine each way."""
+SAMPLE = 7
+"""Nodes of a solved contact for one of its sample [-]."""
+FEW = 2000
+"""Nodes that are not worth a sample [-]."""
 
 
 class Traction(Protocol):
@@ -45,8 +50,16 @@ class Traction(Protocol):
     def places(self, load: float) -> tuple[Array, Array]:
         """Return x along the entrainment and y across it [m] under a `load` [N]."""
 
-    def friction(self, load: float, slip: Array) -> tuple[Array, Array]:
-        """Return the force of each place [N] and its derivative [N s/m] by its `slip` [m/s]."""
+    def strengths(self, load: float) -> tuple[Array, Array, Array]:
+        """
+        Return what makes the friction force of each place, boundary + eyring asinh(rate slip).
+
+        Boundary and Eyring force [N], rate [s/m].
+
+        """
+
+    def sample(self) -> 'Traction':
+        """Return about the same friction on fewer places, for the way to a solution."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -92,9 +105,14 @@ class CoulombTraction:
         size = math.cbrt(load)
         return size * self.x, size * self.y
 
-    def friction(self, load: float, slip: Array) -> tuple[Array, Array]:
-        """Return mu N [N] of each place under `load` [N], and that it never changes with slip."""
-        return self.coefficient * load * self.share, np.zeros_like(slip)
+    def strengths(self, load: float) -> tuple[Array, Array, Array]:
+        """Return mu N [N] of each place under `load` [N], and no oil."""
+        none = np.zeros_like(self.share)
+        return self.coefficient * load * self.share, none, none
+
+    def sample(self) -> 'CoulombTraction':
+        """Return itself: a quadrature has no place too many."""
+        return self
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -126,16 +144,23 @@ class SolvedTraction:
         """Return the nodes x, y [m], the same under any `load` [N]."""
         return self.x, self.y
 
-    def friction(self, load: float, slip: Array) -> tuple[Array, Array]:
-        """
-        Return mu_a p or tau0 asinh(eta |slip|/(tau0 h)) of each node times its area [N].
+    def strengths(self, load: float) -> tuple[Array, Array, Array]:
+        """Return mu_a p and tau0 times the area of each node, scaled to `load` [N], the rate."""
+        scale = load / self.load
+        return scale * self.boundary, scale * self.eyring, self.eyring_rate
 
-        Scaled to `load` [N]; with the derivative [N s/m] by `slip` [m/s].
-
-        """
-        scale, rate = load / self.load, self.eyring_rate * slip
-        force = self.boundary + self.eyring * np.arcsinh(rate)
-        return scale * force, scale * self.eyring * self.eyring_rate / np.sqrt(1 + rate * rate)
+    def sample(self) -> 'SolvedTraction':
+        """Return every `SAMPLE`-th node, each for as many; itself where nodes are few."""
+        if self.x.size < FEW:
+            return self
+        return replace(
+            self,
+            x=self.x[::SAMPLE],
+            y=self.y[::SAMPLE],
+            boundary=SAMPLE * self.boundary[::SAMPLE],
+            eyring=SAMPLE * self.eyring[::SAMPLE],
+            eyring_rate=self.eyring_rate[::SAMPLE],
+        )
 
 
 def hertz_nodes(
@@ -180,13 +205,18 @@ def coulomb_traction(
 
 
 def solved_traction(
-    solution: ContactSolution, *, asperity_friction: float = 0.1, slip_floor: float = 1e-4
+    solution: ContactSolution,
+    *,
+    asperity_friction: float = 0.1,
+    slip_floor: float = 1e-4,
+    neglected: float = 0.0,
 ) -> SolvedTraction:
     """
     Return the friction over a solved contact, as `contact_friction` integrates it.
 
-    Boundary coefficient [-] on punctured nodes, slip floor [m/s]. Raises InputError for a solution
-    that did not converge.
+    Boundary coefficient [-] on punctured nodes, slip floor [m/s]; `neglected`, largest share of
+    the friction [-] of the weak nodes that are left out. Raises InputError for a solution that did
+    not converge.
 
     """
     if not solution.converged:
@@ -200,16 +230,26 @@ def solved_traction(
     stress = solution.lubricant.eyring_stress
     viscosity = viscosity_of(solution.lubricant, solution.film_pressure)
     rate = np.divide(viscosity, stress * solution.film, out=np.zeros_like(x), where=wet)
-    used: NDArray[np.bool_] = wet | (boundary > 0)
+    eyring = np.where(wet, stress * area, 0.0)
+    # Weak nodes bear most at a slip far above any: nothing of theirs saturates before the strong.
+    friction = boundary + eyring * np.arcsinh(rate * solution.condition.entrainment_speed)
+    used = _strongest(friction, neglected)
     return SolvedTraction(
         x=x[used],
         y=y[used],
         load=solution.condition.load,
         boundary=boundary[used],
-        eyring=np.where(wet, stress * area, 0.0)[used],
+        eyring=eyring[used],
         eyring_rate=rate[used],
         slip_floor=slip_floor,
     )
+
+
+def _strongest(friction: Array, neglected: float) -> NDArray[np.bool_]:
+    """Return the places that bear all but a share [-] of the friction."""
+    rising = np.sort(friction, axis=None)
+    weak = int(np.searchsorted(np.cumsum(rising), neglected * rising.sum()))
+    return np.asarray((friction > 0) & (friction >= rising[weak]))
 
 
 def integrate_traction(
@@ -225,40 +265,24 @@ def integrate_traction(
     """
     Integrate the friction of one contact with normal force `load` [N].
 
-    `motion` against the raceway [m/s, rad/s] as `relative_motion` gives it; `direction` of the
-    entrainment along t, 1 or -1; a slip floor [m/s] above that of the law. The traction of a place
-    is -f(|V|) V/|V|; power is lost as the sum of f V^2/|V|, apart from the forces.
+    Slip as in `slip_maps`; `motion` against the raceway [m/s, rad/s] as `relative_motion` gives
+    it; `direction` of the entrainment along t, 1 or -1; a slip floor [m/s] above that of the law.
+    The traction of a place is -f(|V|) V/|V|; power is lost as the sum of f V^2/|V|, apart from the
+    forces.
 
     """
     x, y = (direction * place for place in traction.places(load))
-    along, across = slip_maps(screw, side, x, y)
-    slip_t, slip_p = motion @ along, motion @ across
-    square = slip_t * slip_t + slip_p * slip_p
-    speed = np.sqrt(square + max(slip_floor, traction.slip_floor) ** 2)
-    force, slope = traction.friction(load, speed)
-    drag, bend = force / speed, (slope - force / speed) / speed**2
-    pull = along * slip_t + across * slip_p
-    values = -(pull @ drag)
-    by_motion = -((along * drag) @ along.T + (across * drag) @ across.T + (pull * bend) @ pull.T)
-    grown = np.zeros(5)
-    if traction.growth:
-        wide_t, wide_p = _widening(screw, side, x, y)
-        more_t, more_p = motion @ wide_t, motion @ wide_p
-        change = bend * (slip_t * more_t + slip_p * more_p)
-        grown = (wide_t * slip_t + wide_p * slip_p + along * more_t + across * more_p) @ drag
-        grown = -traction.growth * (grown + pull @ change)
-    return Wrench(
-        values=values,
-        by_motion=by_motion,
-        by_load=(values + grown) / load,
-        power=float(drag @ square),
+    values, by_motion, by_size, power = sum_friction(
+        x,
+        y,
+        *traction.strengths(load),
+        np.asarray(motion, dtype=np.float64),
+        0.5 * screw.ball_diameter,
+        heathcote_radius(screw, side),
+        max(slip_floor, traction.slip_floor),
     )
-
-
-def _widening(screw: Screw, side: Side, x: Array, y: Array) -> tuple[Array, Array]:
-    """Return the derivative of the slip maps, quadratic in the size, by its logarithm."""
-    twice, point = slip_maps(screw, side, 2 * x, 2 * y), slip_maps(screw, side, 0 * x, 0 * y)
-    return 0.5 * (twice[0] - point[0]), 0.5 * (twice[1] - point[1])
+    by_load = (values + traction.growth * by_size) / load
+    return Wrench(values=values, by_motion=by_motion, by_load=by_load, power=power)
 
 
 def _check_floor(floor: float) -> None:

@@ -8,6 +8,7 @@ ratio and rough for what asperities carry. Their tractions and rolling couples b
 
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 import math
 from typing import Literal
@@ -26,10 +27,14 @@ from surrogate.roughness import fractal_surface, FractalSurface, take_patch, Win
 from surrogate.subgrid import subgrid_floor, without_short_waves
 
 NutName = Literal['loaded', 'relieved']
+Pair = tuple[ContactSolution, ContactSolution]
+"""The same contact smooth and rough."""
 CREEP = 1e-3
 """Screw speed of the limit of slow motion [rad/s]."""
 ACROSS, MOST_NODES = 2.42, 513
 """Width of a rough domain over the semi-axis across, most nodes there by the wavelength [-]."""
+NEGLECTED_FRICTION = 3e-4
+"""Share of the friction of a contact on nodes that the balance leaves out [-]."""
 WINDOW_SHARE = 0.05
 """Least axial load whose Hertz rectangle is the window of the patch, over the rating [-]."""
 
@@ -83,21 +88,42 @@ class Nut:
     failure: str = ''
 
 
-def solve_nut(
+def solve_sides(
     screw: Screw,
     lubricant: Lubricant,
     point: OperatingPoint,
     settings: ScrewSettings,
+    force: float,
+    start: Sequence[ScrewContact] = (),
+) -> tuple[Pair, ...]:
+    """
+    Solve the contacts of a nut under an axial force [N], with the screw and with the nut.
+
+    `start` holds both contacts of a neighbouring point. No pairs for a nut without load.
+
+    """
+    if force == 0:
+        return ()
+    load = float(normal_force(screw, force))
+    known = [(found.smooth, found.rough) for found in start] or [(None, None)] * len(SIDES)
+    return tuple(
+        _solve_side(screw, lubricant, point, settings, side, load, near)
+        for side, near in zip(SIDES, known, strict=True)
+    )
+
+
+def make_nut(
+    screw: Screw,
+    point: OperatingPoint,
     name: NutName,
     force: float,
     flank: Flank,
+    pairs: tuple[Pair, ...],
 ) -> Nut:
-    """Solve both contacts of a nut under an axial force [N] and balance its ball."""
-    if force == 0:
+    """Balance the ball of a nut with an axial force [N] between its solved contacts."""
+    if not pairs:
         idle = tuple(_contact(screw, name, side, None, None, None) for side in SIDES)
         return Nut(name=name, force=force, contacts=idle, ball=None)
-    load = float(normal_force(screw, force))
-    pairs = [_solve_side(screw, lubricant, point, settings, side, load) for side in SIDES]
     failure, ball = _failure(name, pairs), None
     if not failure:
         ball = _balance(screw, point, force, flank, [rough for _, rough in pairs])
@@ -108,7 +134,7 @@ def solve_nut(
     return Nut(name=name, force=force, contacts=contacts, ball=ball, failure=failure)
 
 
-def _failure(name: NutName, pairs: list[tuple[ContactSolution, ContactSolution]]) -> str:
+def _failure(name: NutName, pairs: tuple[Pair, ...]) -> str:
     """Return the sentence of the first contact that did not converge, or nothing."""
     for side, pair in zip(SIDES, pairs, strict=True):
         for kind, found in zip(('smooth', 'rough'), pair, strict=True):
@@ -154,8 +180,9 @@ def _solve_side(
     settings: ScrewSettings,
     side: Side,
     load: float,
-) -> tuple[ContactSolution, ContactSolution]:
-    """Return the smooth and the rough contact under a normal force [N]."""
+    start: tuple[ContactSolution | None, ContactSolution | None],
+) -> Pair:
+    """Return the smooth and the rough contact under a normal force [N], from a near pair."""
     contact = screw_contact(screw, side)
     speed = no_slip_rates(screw).entrainment * abs(point.speed)
     condition = Condition(load=load, entrainment_speed=speed)
@@ -165,6 +192,7 @@ def _solve_side(
         fluid,
         condition,
         settings=replace(settings.smooth, film_floor=screw.roughness.film_floor),
+        start=start[0],
     )
     if settings.draw is None or not smooth.converged:
         return smooth, smooth
@@ -184,6 +212,7 @@ def _solve_side(
             film_floor=floor,
             ny=_nodes_across(settings, smooth.semi_axis_y, surface.shortest_wavelength),
         ),
+        start=start[1],
     )
     return smooth, rough
 
@@ -244,7 +273,10 @@ def _balance(
     floor = slip_floor(screw, speed)
     friction = screw.roughness.asperity_friction
     tractions = [
-        solved_traction(found, asperity_friction=friction, slip_floor=floor) for found in rough
+        solved_traction(
+            found, asperity_friction=friction, slip_floor=floor, neglected=NEGLECTED_FRICTION
+        )
+        for found in rough
     ]
     rolling = [found.rolling_force + found.rolling_tail for found in rough]
     return balance_ball(

@@ -15,7 +15,7 @@ from surrogate.ball_motion import Flank
 from surrogate.ehl import ContactSolution
 from surrogate.kinematics import no_slip_rates
 from surrogate.load_sharing import normal_force, nut_forces
-from surrogate.nut import Nut, ScrewContact, ScrewSettings, smooth_film, solve_nut
+from surrogate.nut import make_nut, Nut, ScrewContact, ScrewSettings, smooth_film, solve_sides
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.torque import driving_torque, efficiency, is_back_driving
 
@@ -67,21 +67,31 @@ def solve_screw(
     point: OperatingPoint,
     *,
     settings: ScrewSettings | None = None,
+    start: ScrewSolution | None = None,
 ) -> ScrewSolution:
     """
     Solve the full model at one operating point.
 
-    Speed zero is the limit of slow motion in the positive direction: all load on asperities. A
-    contact or a ball that did not converge leaves its sentence in the status and NaN elsewhere.
+    A `start` from a neighbouring point of the same screw saves time and changes nothing beyond the
+    tolerances of the contacts; rough ones of another load start from cold all the same. Speed zero
+    is the limit of slow motion in the positive direction: all load on asperities. A contact or a
+    ball that did not converge leaves its sentence in the status and NaN elsewhere.
 
     """
     settings = settings or ScrewSettings()
     forces = _forces(screw, point)
     ahead: Flank = 1 if point.opposing_load >= 0 else -1
     behind: Flank = -1 if point.opposing_load >= 0 else 1
+    near = start.contacts if start else ()
+    loaded = solve_sides(screw, lubricant, point, settings, forces[0], near[:2])
+    relieved = (
+        loaded
+        if forces[0] == forces[1]
+        else solve_sides(screw, lubricant, point, settings, forces[1], near[2:])
+    )
     nuts = (
-        solve_nut(screw, lubricant, point, settings, 'loaded', forces[0], ahead),
-        solve_nut(screw, lubricant, point, settings, 'relieved', forces[1], behind),
+        make_nut(screw, point, 'loaded', forces[0], ahead, loaded),
+        make_nut(screw, point, 'relieved', forces[1], behind, relieved),
     )
     return _combine(screw, point, nuts)
 

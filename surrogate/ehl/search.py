@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import math
 
 import numpy as np
-from surrogate.ehl.case import Array, Case, STIFF
+from surrogate.ehl.case import Array, Case, COARSEST, STIFF
 from surrogate.ehl.grid import Grid, State, transfer
 from surrogate.ehl.model import ContactSolution
 from surrogate.ehl.newton import Limits, Outcome, solve_grid
@@ -25,6 +25,10 @@ from surrogate.ehl.system import Problem
 Found = tuple[Grid, Outcome]
 FINEST_CUT = 1 / 64
 """Shortest step of a continuation path, as a share of it [-]."""
+WARM_CUT = 1 / 4
+"""Shortest step from a neighbouring solution of a rough contact, as a share of the path [-]."""
+SAME_LOAD = 0.02
+"""Largest relative difference of loads at which a rough contact starts from another [-]."""
 WARM_NEWTON = 25
 """Most Newton iterations of one step from a neighbouring solution [-]."""
 PARTING = 1.5
@@ -71,6 +75,7 @@ class Search:
         path: Callable[[float], Problem],
         limits: Limits,
         first: float = 1.0,
+        finest: float = FINEST_CUT,
     ) -> Outcome:
         """Follow `path` from 0, where `state` holds, to 1, in steps that are halved on failure."""
         place, step = 0.0, first
@@ -89,7 +94,7 @@ class Search:
                     return outcome
             else:
                 step /= 2
-                if step < FINEST_CUT or outcome.out_of_time:
+                if step < finest or outcome.out_of_time:
                     return outcome
 
     def smooth(self, speed: float, *, final: bool) -> Found:
@@ -202,6 +207,44 @@ class Search:
 
         return problem
 
+    def rough(self) -> Found:
+        """
+        Solve a rough contact from cold: all the way on the half grid, then on the finest.
+
+        Four times fewer nodes on the way; where that fails, the whole way on the finest grid.
+
+        """
+        case, shape = self.case, self._half_shape()
+        if min(shape) < COARSEST or not case.has_heights_on(shape):
+            return self.thin()
+        nx, ny = shape
+        other = Search(
+            case=replace(case, settings=replace(case.settings, nx=nx, ny=ny)),
+            deadline=self.deadline,
+        )
+        coarse, found = other.thin()
+        self.newton, self.krylov = self.newton + other.newton, self.krylov + other.krylov
+        if found.converged:
+            grid, outcome = self._refined(coarse, found)
+            if outcome.converged:
+                if case.settings.error_estimate:
+                    self.half = film_and_share(case, coarse, found)
+                return grid, outcome
+        return self.thin()
+
+    def _refined(self, coarse: Grid, found: Outcome) -> Found:
+        """Solve a rough contact on the finest grid from a coarser one."""
+        case, settings = self.case, self.case.settings
+        grid = case.grid(settings.nx, settings.ny, symmetric=False)
+        heights = case.shape_heights(grid) - case.rough_heights(grid)
+        problem = case.problem(grid, case.condition.entrainment_speed, heights, case.order)
+        state = transfer(found.state, coarse, grid)
+        return grid, self.solve(grid, problem, state, self.limits(rough=True, final=True))
+
+    def _half_shape(self) -> tuple[int, int]:
+        """Return the nodes of the half grid along and across."""
+        return self.case.settings.nx // 4 * 2 + 1, self.case.settings.ny // 4 * 2 + 1
+
     def thin(self) -> Found:
         """
         Solve a rough contact, or a smooth one whose film is near the floor, from cold.
@@ -253,9 +296,17 @@ class Search:
         return max(PARTING * float(rough[inside].std()), 2 * self.case.floor)
 
     def warm(self, start: ContactSolution) -> Found | None:
-        """Solve from a neighbouring solution, in steps if need be; None if that fails."""
+        """
+        Solve from a neighbouring solution, in steps if need be; None if that fails.
+
+        The ripples of a rough contact do not stretch with the load: it starts from none of
+        another load, and not in many steps, since from cold it takes few.
+
+        """
         case, settings = self.case, self.case.settings
         rough = case.roughness is not None
+        if rough and abs(start.condition.load / case.condition.load - 1) > SAME_LOAD:
+            return None
         grid = case.grid(settings.nx, settings.ny, symmetric=not rough)
         heights = case.shape_heights(grid)
         if rough:
@@ -266,7 +317,8 @@ class Search:
         state = state_from_solution(case, grid, start)
         if speed and last:
             path = self._slowing(grid, heights, last, speed)
-            outcome = self.march(grid, state, path, limits)
+            finest = WARM_CUT if rough else FINEST_CUT
+            outcome = self.march(grid, state, path, limits, finest=finest)
         else:
             problem = case.problem(grid, speed, heights, case.order)
             outcome = self.solve(grid, problem, state, limits)
@@ -274,9 +326,9 @@ class Search:
 
     def estimate(self, grid: Grid, outcome: Outcome) -> None:
         """Solve the half grid from the solution, unless it was solved on the way."""
-        case, nx, ny = self.case, self.case.settings.nx, self.case.settings.ny
-        speed, shape = case.condition.entrainment_speed, (nx // 4 * 2 + 1, ny // 4 * 2 + 1)
-        known = math.isfinite(self.half.central_film) or grid.x.size != nx
+        case, shape = self.case, self._half_shape()
+        speed = case.condition.entrainment_speed
+        known = math.isfinite(self.half.central_film) or grid.x.size != case.settings.nx
         if known or not case.settings.error_estimate or not case.has_heights_on(shape):
             return
         coarser = case.grid(*shape, symmetric=case.roughness is None)

@@ -100,11 +100,9 @@ def _find(search: Search, start: ContactSolution | None) -> Found:
     found = search.warm(start) if start is not None else None
     if found is not None:
         return found
-    return (
-        search.thin()
-        if case.touches and (speed or case.roughness is not None)
-        else (search.smooth(speed, final=True))
-    )
+    if case.roughness is not None:
+        return search.rough()
+    return search.thin() if case.touches and speed else search.smooth(speed, final=True)
 
 
 def _status(search: Search, grid: Grid, outcome: Outcome) -> Status:

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 import numpy as np
 import pytest
-from surrogate.ball_motion import no_slip_motion, relative_motion, slip_field
+from surrogate.ball_motion import no_slip_motion, relative_motion, slip_field, slip_maps
 from surrogate.ball_traction import (
     coulomb_traction,
     CoulombTraction,
@@ -35,6 +35,7 @@ LAWS = {
         eyring_rate=np.array([300.0, 0.0, 50.0]),
     ),
 }
+ARRAYS = ('x', 'y', 'boundary', 'eyring', 'eyring_rate')
 SLIPS, TURNS = st.floats(-0.02, 0.02), st.floats(-50.0, 50.0)
 MOTIONS = st.builds(
     lambda *numbers: np.array(numbers), SLIPS, SLIPS, st.floats(-5.0, 5.0), TURNS, SLIPS
@@ -112,6 +113,43 @@ def test_derivatives_and_power(law, motion, load, direction):
     step = 1e-5 * load
     slope = (values(motion, load + step) - values(motion, load - step)) / (2 * step)
     assert (np.abs(slope - found.by_load) <= 1e-6 * size).all()
+
+
+@given(motion=MOTIONS)
+def test_the_compiled_sums_are_those_of_the_slip_maps(motion):
+    """Forces, moments and power from the maps and the law written out; oil and dry places."""
+    law, load = LAWS['solved'], 33.0
+    along, across = slip_maps(SCREW, 'nut', *law.places(load))
+    slip = np.array([motion @ along, motion @ across])
+    speed = np.sqrt((slip**2).sum(axis=0) + law.slip_floor**2)
+    force = load / law.load * (law.boundary + law.eyring * np.arcsinh(law.eyring_rate * speed))
+    drag = -force * slip / speed
+    found = integrate_traction(SCREW, 'nut', law, load, motion)
+    assert found.values == pytest.approx(along @ drag[0] + across @ drag[1], rel=1e-9, abs=1e-15)
+    assert found.power == pytest.approx(-(drag * slip).sum(), rel=1e-9, abs=1e-18)
+
+
+@pytest.mark.parametrize('share', [1e-4, 1e-2])
+def test_weak_nodes_that_are_left_out_bear_little(solved, share):
+    """Friction in a sliding contact falls by no more than the share; many nodes are saved."""
+    whole, strong = solved_traction(solved), solved_traction(solved, neglected=share)
+    assert strong.x.size < 0.95 * whole.x.size
+    motion = np.array([0.01, 0.0, 0.0, 0.0, 0.0])
+    all_of_it = integrate_traction(SCREW, 'nut', whole, 27.6, motion).values[0]
+    most_of_it = integrate_traction(SCREW, 'nut', strong, 27.6, motion).values[0]
+    assert (1 - share) * all_of_it >= most_of_it > all_of_it
+
+
+def test_a_sample_has_about_the_friction(solved):
+    """Every seventh node stands for seven; few nodes and a quadrature stay as they are."""
+    law, motion = solved_traction(solved), np.array([0.01, 0.005, 0.0, 20.0, 0.0])
+    many = replace(law, **{name: np.tile(getattr(law, name), 9) for name in ARRAYS})
+    assert many.sample().x.size == -(-many.x.size // 7)
+    whole = integrate_traction(SCREW, 'nut', many, 27.6, motion)
+    part = integrate_traction(SCREW, 'nut', many.sample(), 27.6, motion)
+    assert part.values[:2] == pytest.approx(whole.values[:2], rel=0.02)
+    assert law.sample() is law
+    assert LAWS['coulomb'].sample() is LAWS['coulomb']
 
 
 def test_a_higher_floor_softens_the_law(screw):

@@ -50,6 +50,33 @@ def test_preload_alone_loses_power_and_has_no_efficiency():
     assert found.driving_torque == pytest.approx(found.friction_torque, rel=1e-8)
 
 
+def test_nuts_with_one_load_share_their_contacts():
+    """Without axial load both nuts have the same two contacts, each with its own ball."""
+    found = at(600, 0.0)
+    first, second, third, fourth = found.contacts
+    assert first.rough is third.rough
+    assert second.rough is fourth.rough
+    assert first.ball != third.ball
+    other = at(600, 1.0)
+    assert other.contacts[0].rough is not other.contacts[2].rough
+
+
+def test_a_warm_start_saves_work_and_changes_nothing():
+    """From a point 20 % slower, rough: the same numbers, fewer Newton iterations."""
+    near = at(20, 400.0, ROUGH)
+    point = OperatingPoint(speed=24 * math.pi / 30, load=400.0, temperature=WARM)
+    warm = solve_screw(SCREW, OIL, point, settings=ROUGH, start=near)
+    cold = at(24, 400.0, ROUGH)
+    assert warm.converged, warm.status
+    assert warm.friction_torque == pytest.approx(cold.friction_torque, rel=1e-4)
+    assert warm.rcs == pytest.approx(cold.rcs, rel=1e-3)
+    steps = [
+        sum(contact.rough.newton_iterations for contact in found.contacts)
+        for found in (warm, cold)
+    ]
+    assert steps[0] < 0.6 * steps[1]
+
+
 def test_full_tier_is_near_the_formulas_at_full_film():
     """At 600 rev/min film within 10 %, torque within 30 % of the closed-form tier."""
     found = at(600, 500.0)

@@ -8,6 +8,7 @@ import math
 import numpy as np
 import pytest
 from surrogate.ehl import Condition, Settings, solve_contact
+from surrogate.ehl.case import Case
 
 SETTINGS = Settings(nx=65, ny=129, domain=(-2.6, 1.4, 1.4), open_inlet=True, film_floor=5e-9)
 SPEEDS = (1.0, 0.5, 0.25, 0.12, 0.06, 0.03, 0.015, 0.008, 0.004, 0.002, 0.001, 0.0)
@@ -153,3 +154,29 @@ def test_heights_at_nodes_give_the_same_errors(chain, nominal, raceway):
         *nominal, found.condition, roughness=raceway(x, y), settings=SETTINGS, start=found
     )
     assert again.rcs_error == pytest.approx(found.rcs_error, abs=1e-4)
+
+
+@pytest.mark.parametrize('speed', [0.03, 0.004])
+def test_the_way_over_the_half_grid_ends_where_the_long_one_does(
+    nominal, raceway, speed, monkeypatch
+):
+    """From cold, without and with contact: the same solution, with fewer Krylov iterations."""
+    condition = Condition(load=27.6, entrainment_speed=speed)
+    short = solve_contact(*nominal, condition, roughness=raceway, settings=SETTINGS)
+    monkeypatch.setattr(Case, 'has_heights_on', lambda case, shape: False)
+    long = solve_contact(*nominal, condition, roughness=raceway, settings=SETTINGS)
+    assert short.converged, short.status
+    assert long.converged, long.status
+    assert (long.rcs > 0.01) == (speed < 0.01)
+    assert short.rcs == pytest.approx(long.rcs, rel=1e-4)
+    assert np.abs(short.film - long.film).max() < 1e-3 * long.central_film
+
+
+def test_a_start_of_another_load_is_not_taken(chain, nominal, raceway):
+    """Ripples do not stretch with the load: the solve goes its way from cold."""
+    condition = Condition(load=40.0, entrainment_speed=SPEEDS[5])
+    settings = replace(SETTINGS, error_estimate=False)
+    cold = solve_contact(*nominal, condition, roughness=raceway, settings=settings)
+    near = solve_contact(*nominal, condition, roughness=raceway, settings=settings, start=chain[5])
+    assert near.newton_iterations == cold.newton_iterations
+    assert np.array_equal(near.film, cold.film)
