@@ -13,9 +13,9 @@ from dataclasses import dataclass, replace
 import math
 
 import numpy as np
-from surrogate.nut import ScrewSettings
 from surrogate.parameters import InputError, Lubricant, OperatingPoint, Screw
 from surrogate.screw import ScrewSolution, solve_screw
+from surrogate.screw_contacts import ScrewSettings
 
 FIELDS = ('efficiency', 'friction_torque', 'rcs', 'asperity_share')
 """Numbers of a screw solution that depend on the draw."""

@@ -170,3 +170,16 @@ def rolling_force_biboulet_houpert_2010(contact: Contact, g: Groups) -> Array:
     # 1/(1 + M/6.6) written so that a contact at rest is legal.
     weight = 6.6 * U**0.75 / np.maximum(6.6 * U**0.75 + W, np.finfo(float).tiny)
     return np.asarray(elastic + (rigid - elastic) * weight)
+
+
+def film_factor_gupta_1992(*, pressure: float, loading: float, slide_roll: float) -> float:
+    """
+    Return the central film with heating by shear in the inlet over that without [-].
+
+    (1 - 13.2 (p_H/E') L^0.42) / (1 + 0.213 (1 + 2.23 S^0.83) L^0.64): Gupta, Cheng, Zhu, Forster,
+    Schrand, J. Tribol. 114 (1992) 55. Hertz `pressure` p_H/E', thermal `loading` L = eta0 beta
+    us^2/k with the relative slope of viscosity beta and the conductivity k, `slide_roll` ratio S.
+
+    """
+    drop = 1 - 13.2 * pressure * loading**0.42
+    return drop / (1 + 0.213 * (1 + 2.23 * slide_roll**0.83) * loading**0.64)

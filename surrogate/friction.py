@@ -24,6 +24,10 @@ RADIAL_NODES, ANGULAR_NODES = 12, 24
 """Quadrature of the ellipse: torque within 3e-4 of a grid four times finer each way."""
 
 
+HYSTERESIS = 3 / 32
+"""Work of Hertz's pressure on the front half of the ellipse, as a force over Q b / Rx [-]."""
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Sliding:
     """
@@ -91,3 +95,15 @@ def sliding_friction(
         torque=np.sum(traction * arm * area, axis=-1),
         friction_coefficient=np.divide(force, normal, out=np.zeros_like(force), where=normal > 0),
     )
+
+
+def hysteresis_force(loss: float, load: float, semi_axis_x: float, radius_x: float) -> float:
+    """
+    Return the rolling force on each surface by elastic hysteresis [N].
+
+    Moment 3/16 alpha Q b of a contact, b along the rolling: Johnson, Contact Mechanics (1985),
+    section 9.2, for any ellipse; it is 2 Rx times this force. `loss` is his alpha [-], normal
+    `load` [N], `semi_axis_x` b and `radius_x` Rx [m].
+
+    """
+    return HYSTERESIS * loss * load * semi_axis_x / radius_x

@@ -136,3 +136,19 @@ def hertz(contact: Contact, load: ArrayLike) -> Hertz:
         max_pressure=1.5 * load / area,
         approach=3 * load * elliprf(0, 1, k * k) * inverse_size / (math.pi * modulus),
     )
+
+
+def opposite_flank_approach(screw: Screw, side: Side, angle: float, approach: float) -> float:
+    """
+    Return how far a loaded ball comes towards the other flank of its gothic groove [m].
+
+    A tilt of the contact line to a smaller `angle` [rad] swings the ball about the centre of the
+    loaded flank; the elastic `approach` [m] moves it along the line. A third contact appears where
+    this exceeds the clearance between an unloaded ball and its flanks. Groove centres lie at the
+    nominal contact angle.
+
+    """
+    nominal, gap = screw.contact_angle, (conformity(screw, side) - 0.5) * screw.ball_diameter
+    reach = gap + approach
+    across = reach * math.sin(angle) - 2 * gap * math.sin(nominal)
+    return math.hypot(reach * math.cos(angle), across) - gap

@@ -80,7 +80,9 @@ class Screw(Checked):
     Lengths [m], angles [rad], forces [N], torques [N m]; conformities are groove radius over ball
     diameter [-]; `parasitic_torque` [N m] and `parasitic_torque_rate` [N m s/rad] stand for
     wipers, recirculation and ball-to-ball contact; `speed_limit` is D n [m rad/s] with D the pitch
-    diameter.
+    diameter; `hysteresis_loss` is the share of the elastic work of rolling that steel does not
+    give back [-]; `flank_clearance` [m] between an unloaded ball and the flanks of its groove,
+    None where not known.
 
     """
 
@@ -98,6 +100,8 @@ class Screw(Checked):
     speed_limit: float = quantity('m_rev_min', math.pi / 30, 1.0, 1000.0)
     parasitic_torque: float = quantity('Nm', 1.0, 0.0, 1e3, default=0.0)
     parasitic_torque_rate: float = quantity('Nm_s', 1.0, 0.0, 1e3, default=0.0)
+    hysteresis_loss: float = quantity('', 1.0, 0.0, 0.1, default=0.0)
+    flank_clearance: float | None = quantity('um', 1e-6, 0.0, 1000.0, default=None)
     raceway: Material = block(Material)
     ball: Material = block(Material)
     roughness: Roughness = block(Roughness)
@@ -125,7 +129,8 @@ class Lubricant(Checked):
 
     Viscosity [Pa s], pressure-viscosity [1/Pa] and density [kg/m3] hold at `reference_temperature`
     [K]; kinematic viscosities [m2/s] at 40 and 100 degC give the temperature law; `density_slope`
-    [kg/m3/K] is the loss of density per kelvin; temperatures [K] bound the datasheet.
+    [kg/m3/K] is the loss of density per kelvin; temperatures [K] bound the datasheet; thermal
+    conductivity [W/m/K], by default a usual one of mineral oils, serves inlet heating alone.
 
     """
 
@@ -141,6 +146,7 @@ class Lubricant(Checked):
     kinematic_viscosity_100: float = quantity('mm2_s', 1e-6, 1.0, 1e4)
     minimum_temperature: float = quantity('degC', 1.0, -60.0, 200.0, shift=ZERO_CELSIUS)
     maximum_temperature: float = quantity('degC', 1.0, -60.0, 250.0, shift=ZERO_CELSIUS)
+    thermal_conductivity: float = quantity('W_m_K', 1.0, 0.01, 1.0, default=0.14)
 
     def __post_init__(self) -> None:
         """Check every range, that oil thins when warm, and that the range holds the reference."""

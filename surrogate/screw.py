@@ -15,8 +15,9 @@ from surrogate.ball_motion import Flank
 from surrogate.ehl import ContactSolution
 from surrogate.kinematics import no_slip_rates
 from surrogate.load_sharing import normal_force, nut_forces
-from surrogate.nut import make_nut, Nut, ScrewContact, ScrewSettings, smooth_film, solve_sides
+from surrogate.nut import make_nut, Nut, ScrewContact
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
+from surrogate.screw_contacts import ScrewSettings, smooth_film, solve_sides
 from surrogate.torque import driving_torque, efficiency, is_back_driving
 
 TIER = 'full'
@@ -82,7 +83,7 @@ def solve_screw(
     forces = _forces(screw, point)
     ahead: Flank = 1 if point.opposing_load >= 0 else -1
     behind: Flank = -1 if point.opposing_load >= 0 else 1
-    near = start.contacts if start else ()
+    near = [(found.smooth, found.rough) for found in start.contacts] if start else []
     loaded = solve_sides(screw, lubricant, point, settings, forces[0], near[:2])
     relieved = (
         loaded

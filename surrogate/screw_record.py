@@ -9,10 +9,13 @@ from typing import Any
 import numpy as np
 from surrogate.ball_motion import Array, BallMotion, slip_field, slip_floor
 from surrogate.contact_friction import contact_friction
-from surrogate.nut import ScrewContact, ScrewSettings, shortest_on_grid
+from surrogate.geometry import opposite_flank_approach, SIDES
+from surrogate.inlet_heating import heating_factor
+from surrogate.nut import rolling_force, ScrewContact
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.point import closed_form_record, regime
 from surrogate.screw import ScrewSolution, solve_screw, TIER
+from surrogate.screw_contacts import ScrewSettings, shortest_on_grid
 
 LOAD_CHANGE = 0.02
 """Change of a normal force by friction and inertia that is warned about [-]."""
@@ -42,7 +45,10 @@ def full_record(
         'tier': TIER,
         'status': found.status,
         'converged': found.converged,
-        'warnings': _warnings(formulas['warnings'], found, shortest_on_grid(screw, settings)),
+        'warnings': [
+            *_warnings(formulas['warnings'], found, shortest_on_grid(screw, settings)),
+            *_third_contacts(screw, contacts),
+        ],
         'efficiency': found.efficiency,
         'friction_torque_Nm': found.friction_torque,
         'driving_torque_Nm': found.driving_torque,
@@ -54,6 +60,8 @@ def full_record(
         'film_ratio': found.film_ratio,
         'regime': regime(found.film_ratio),
         'central_film_m': found.central_film,
+        'inlet_heating': settings.inlet_heating,
+        'inlet_heating_factor': _heating_factor(screw, lubricant, point, found),
         'minimum_film_m': _least(found, contacts, 'minimum_film_m'),
         'friction_coefficient': _mean_friction(found, contacts),
         'max_pressure_Pa': -_least(found, contacts, 'max_pressure_Pa', -1.0),
@@ -85,7 +93,10 @@ def _contact_record(screw: Screw, found: ScrewSolution, contact: ScrewContact) -
         'rcs': rough.rcs,
         'asperity_share': rough.asperity_share,
         'friction_coefficient': _friction(screw, contact),
-        'rolling_force_N': rough.rolling_force + rough.rolling_tail,
+        'rolling_force_N': rolling_force(screw, rough),
+        'opposite_flank_approach_m': opposite_flank_approach(
+            screw, contact.side, ball.angle, rough.approach
+        ),
         'sliding_torque_Nm': screw.loaded_balls_per_nut * ball.slip_power / _speed(contact),
         'rolling_torque_Nm': screw.loaded_balls_per_nut * ball.rolling_power / _speed(contact),
     }
@@ -105,6 +116,7 @@ def _unknown(reason: str) -> dict[str, Any]:
         'asperity_share',
         'friction_coefficient',
         'rolling_force_N',
+        'opposite_flank_approach_m',
         'sliding_torque_Nm',
         'rolling_torque_Nm',
     )
@@ -161,6 +173,33 @@ def _warnings(rated: list[str], found: ScrewSolution, wave: float) -> list[str]:
             f'contact is resolved from {FEWEST_NODES:g}'
         )
     return warnings
+
+
+def _third_contacts(screw: Screw, contacts: list[dict[str, Any]]) -> list[str]:
+    """Return a warning for each contact whose ball would reach the other flank of its groove."""
+    if screw.flank_clearance is None:
+        return []
+    return [
+        f'{contact["nut"]} nut, {contact["side"]}: the ball comes '
+        f'{1e6 * contact["opposite_flank_approach_m"]:.2g} um towards the other flank, its '
+        f'clearance is {1e6 * screw.flank_clearance:g} um: a third contact, which is not solved'
+        for contact in contacts
+        if contact['opposite_flank_approach_m'] > screw.flank_clearance
+    ]
+
+
+def _heating_factor(
+    screw: Screw, lubricant: Lubricant, point: OperatingPoint, found: ScrewSolution
+) -> float:
+    """Return the least film factor of the inlet heating of both nuts [-], applied or not."""
+    speed = found.entrainment_speed
+    loads = [load for load in found.normal_forces if load > 0]
+    factors = [
+        heating_factor(screw, lubricant, side, load, speed, point.temperature)
+        for load in loads
+        for side in SIDES
+    ]
+    return min(factors, default=math.nan)
 
 
 def _nodes_per_wave(contact: ScrewContact, wave: float) -> float:

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from surrogate.ehl import Settings
 from surrogate.ensemble import FIELDS, solve_ensemble, spread
-from surrogate.nut import ScrewSettings
 from surrogate.parameters import InputError, load_lubricant, load_screw, OperatingPoint
 from surrogate.screw import solve_screw
+from surrogate.screw_contacts import ScrewSettings
 
 SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
 SMALL = Settings(nx=65, ny=65, error_estimate=False)

@@ -9,7 +9,14 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 from scipy.special import ellipe, ellipk
-from surrogate.geometry import Contact, ellipticity, hertz, reduced_modulus, screw_contact
+from surrogate.geometry import (
+    Contact,
+    ellipticity,
+    hertz,
+    opposite_flank_approach,
+    reduced_modulus,
+    screw_contact,
+)
 
 RADII = st.floats(1e-3, 0.5)
 
@@ -85,3 +92,15 @@ def test_no_load_is_no_contact():
 def test_reduced_modulus_of_steel(screw):
     """E' = E/(1 - nu^2) = 226 GPa for two equal steels, not 113."""
     assert reduced_modulus(screw.raceway, screw.ball) == pytest.approx(206e9 / 0.91, rel=1e-12)
+
+
+def test_a_ball_swings_towards_the_other_flank(screw):
+    """None at the nominal angle; (r_g - r_b) sin(2 beta) per radian of tilt, by geometry."""
+    nominal = screw.contact_angle
+    gap = (screw.conformity_nut - 0.5) * screw.ball_diameter
+    assert opposite_flank_approach(screw, 'nut', nominal, 0.0) == pytest.approx(0.0, abs=1e-15)
+    tilted = opposite_flank_approach(screw, 'nut', nominal - 1e-4, 0.0)
+    assert tilted == pytest.approx(1e-4 * gap * math.sin(2 * nominal), rel=1e-3)
+    assert opposite_flank_approach(screw, 'nut', nominal + 1e-4, 0.0) < 0
+    pressed = opposite_flank_approach(screw, 'nut', nominal - 0.2, 1e-6)
+    assert pressed > opposite_flank_approach(screw, 'nut', nominal - 0.2, 0.0)

@@ -8,9 +8,9 @@ import math
 import pytest
 from surrogate import closed_form
 from surrogate.ehl import Settings
-from surrogate.nut import raceway_patch, ScrewSettings
 from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
 from surrogate.screw import solve_screw
+from surrogate.screw_contacts import raceway_patch, ScrewSettings
 
 SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
 SMALL = Settings(nx=65, ny=65, error_estimate=False)

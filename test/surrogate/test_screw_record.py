@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A point of the full tier as a record, and the command that prints it."""
 
+from dataclasses import replace
 import json
 import math
 
@@ -9,11 +10,11 @@ import pytest
 from surrogate.ball_motion import slip_floor
 from surrogate.contact_friction import contact_friction
 from surrogate.ehl import Settings
-from surrogate.nut import ScrewSettings
 from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
 from surrogate.plain_json import to_json
 from surrogate.point import closed_form_record, page
 from surrogate.screw import solve_screw
+from surrogate.screw_contacts import ScrewSettings
 from surrogate.screw_record import contact_slip, full_record
 
 SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
@@ -99,3 +100,31 @@ def test_idle_nut_and_failure_give_a_reason():
     for key in (*numbers, 'minimum_film_m', 'max_pressure_Pa', 'film_ratio'):
         assert to_json(none)[key] is None
     assert none['contacts'][0]['reason'] == none['status']
+
+
+def test_a_third_contact_is_reported_when_it_appears():
+    """Zero clearance: the side with the smaller angle reaches its other flank; 10 um: none."""
+    point = OperatingPoint(speed=2 * math.pi, load=800.0, temperature=313.15)
+    tight = full_record(replace(SCREW, flank_clearance=0.0), OIL, point, SETTINGS)
+    warned = [text for text in tight['warnings'] if 'third contact' in text]
+    reached = [c for c in tight['contacts'] if c['opposite_flank_approach_m'] > 0]
+    assert len(warned) == len(reached) == 2
+    assert all(c['contact_angle_rad'] < SCREW.contact_angle for c in reached)
+    wide = full_record(replace(SCREW, flank_clearance=1e-5), OIL, point, SETTINGS)
+    assert not any('third contact' in text for text in wide['warnings'])
+
+
+def test_hysteresis_adds_its_couple_to_the_torque():
+    """Friction torque grows by 4 F us/w per ball and nut and the record holds the force."""
+    point = OperatingPoint(speed=20 * math.pi, load=0.0, temperature=313.15)
+    smooth = ScrewSettings(smooth=SMALL, draw=None)
+    plain = full_record(SCREW, OIL, point, smooth)
+    lossy = full_record(replace(SCREW, hysteresis_loss=0.01), OIL, point, smooth)
+    added = [
+        lossy['contacts'][k]['rolling_force_N'] - plain['contacts'][k]['rolling_force_N']
+        for k in range(4)
+    ]
+    assert min(added) > 2e-4
+    power = 2 * SCREW.loaded_balls_per_nut * plain['entrainment_speed_m_s'] * sum(added)
+    rise = lossy['friction_torque_Nm'] - plain['friction_torque_Nm']
+    assert rise == pytest.approx(power / point.speed, rel=0.02)

@@ -1,0 +1,178 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Contacts of the screw in the full tier, each solved twice: smooth for the film ratio, and rough.
+
+The rough raceway is one draw of its surface, rescaled over a window that no load moves; waves that
+the grid is too coarse for raise the film floor.
+
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+import math
+
+from surrogate.ehl import Condition, ContactLubricant, ContactSolution, Settings, solve_contact
+from surrogate.geometry import hertz, screw_contact, Side, SIDES
+from surrogate.inlet_heating import heated_speed
+from surrogate.kinematics import no_slip_rates
+from surrogate.load_sharing import normal_force, UNLOADING_RATIO
+from surrogate.lubricant import lubricant_state
+from surrogate.parameters import InputError, Lubricant, OperatingPoint, Screw, ZERO_CELSIUS
+from surrogate.roughness import fractal_surface, FractalSurface, take_patch, Window
+from surrogate.subgrid import subgrid_floor, without_short_waves
+
+Pair = tuple[ContactSolution, ContactSolution]
+"""The same contact smooth and rough."""
+Start = tuple[ContactSolution | None, ContactSolution | None]
+ACROSS, MOST_NODES = 2.42, 513
+"""Width of a rough domain over the semi-axis across, most nodes there by the wavelength [-]."""
+WINDOW_SHARE = 0.05
+"""Least axial load whose Hertz rectangle is the window of the patch, over the rating [-]."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ScrewSettings:
+    """
+    How to solve a screw.
+
+    Settings of the smooth and of the rough contacts, but for the film floor, which is that of the
+    datasheet; draw of the roughness, None for smooth raceways; shortest wavelength on the grid
+    [m], shorter ones raise the floor, None to solve them all; nodes per such wave across the
+    track, up to `MOST_NODES`, if that is more than the rough settings have [-]; `inlet_heating`
+    thins films by shear heating of the inlet.
+
+    """
+
+    smooth: Settings = field(default_factory=Settings)
+    rough: Settings = field(default_factory=lambda: Settings(nx=129, ny=257, error_estimate=False))
+    draw: int | None = 0
+    grid_wavelength: float | None = 16e-6
+    nodes_per_wave: float = 6.0
+    inlet_heating: bool = False
+
+
+def solve_sides(
+    screw: Screw,
+    lubricant: Lubricant,
+    point: OperatingPoint,
+    settings: ScrewSettings,
+    force: float,
+    start: Sequence[Start] = (),
+) -> tuple[Pair, ...]:
+    """
+    Solve the contacts of a nut under an axial force [N], with the screw and with the nut.
+
+    `start` holds both pairs of a neighbouring point. No pairs for a nut without load.
+
+    """
+    if force == 0:
+        return ()
+    load = float(normal_force(screw, force))
+    known = start or [(None, None)] * len(SIDES)
+    return tuple(
+        _solve_side(screw, lubricant, point, settings, side, load, near)
+        for side, near in zip(SIDES, known, strict=True)
+    )
+
+
+def smooth_film(smooth: ContactSolution) -> float:
+    """Return the central film [m], extrapolated where the half grid was solved; 0 at rest."""
+    if not smooth.condition.entrainment_speed:
+        return 0.0
+    extrapolated = smooth.extrapolated_film
+    return smooth.central_film if math.isnan(extrapolated) else extrapolated
+
+
+def _solve_side(
+    screw: Screw,
+    lubricant: Lubricant,
+    point: OperatingPoint,
+    settings: ScrewSettings,
+    side: Side,
+    load: float,
+    start: tuple[ContactSolution | None, ContactSolution | None],
+) -> Pair:
+    """Return the smooth and the rough contact under a normal force [N], from a near pair."""
+    contact = screw_contact(screw, side)
+    speed = no_slip_rates(screw).entrainment * abs(point.speed)
+    if settings.inlet_heating:
+        speed = heated_speed(screw, lubricant, side, load, speed, point.temperature)
+    condition = Condition(load=load, entrainment_speed=speed)
+    fluid = _fluid(lubricant, point.temperature)
+    smooth = solve_contact(
+        contact,
+        fluid,
+        condition,
+        settings=replace(settings.smooth, film_floor=screw.roughness.film_floor),
+        start=start[0],
+    )
+    if settings.draw is None or not smooth.converged:
+        return smooth, smooth
+    surface = raceway_patch(screw, side, settings.draw)
+    floor = screw.roughness.film_floor
+    cut = settings.grid_wavelength
+    if cut is not None and cut < screw.roughness.sample_length:
+        floor += subgrid_floor(surface, cut)
+        surface = without_short_waves(surface, cut)
+    rough = solve_contact(
+        contact,
+        fluid,
+        condition,
+        roughness=surface.heights,
+        settings=replace(
+            settings.rough,
+            film_floor=floor,
+            ny=_nodes_across(settings, smooth.semi_axis_y, surface.shortest_wavelength),
+        ),
+        start=start[1],
+    )
+    return smooth, rough
+
+
+def _fluid(lubricant: Lubricant, temperature: float) -> ContactLubricant:
+    """Return the oil at a temperature [K]; InputError where it is no liquid any more."""
+    oil = lubricant_state(lubricant, temperature)
+    try:
+        return ContactLubricant(
+            viscosity=float(oil.viscosity),
+            pressure_viscosity=float(oil.pressure_viscosity),
+            eyring_stress=oil.eyring_stress,
+        )
+    except InputError as error:
+        raise InputError(
+            f'temperature is {temperature - ZERO_CELSIUS:g} degC: {lubricant.name}: {error}'
+        ) from None
+
+
+def shortest_on_grid(screw: Screw, settings: ScrewSettings) -> float:
+    """Return the shortest wavelength that rough contacts solve [m], infinite when smooth."""
+    if settings.draw is None:
+        return math.inf
+    surface, cut = fractal_surface(screw.roughness, settings.draw), settings.grid_wavelength
+    if cut is not None and cut < screw.roughness.sample_length:
+        surface = without_short_waves(surface, cut)
+    return surface.shortest_wavelength
+
+
+def _nodes_across(settings: ScrewSettings, semi_axis: float, wave: float) -> int:
+    """Return the nodes that a semi-axis and a shortest wave [m] ask for, within the bounds."""
+    wanted = 2 * math.ceil(settings.nodes_per_wave * ACROSS * semi_axis / wave / 2) + 1
+    return max(settings.rough.ny, min(wanted, MOST_NODES))
+
+
+def raceway_patch(screw: Screw, side: Side, draw: int) -> FractalSurface:
+    """
+    Return one draw of the raceway, rescaled once over a window that no load moves.
+
+    The window is the Hertz rectangle under the load that relieves the other nut, or under
+    `WINDOW_SHARE` of the static rating where that is larger.
+
+    """
+    force = max(UNLOADING_RATIO * screw.preload, WINDOW_SHARE * screw.static_rating)
+    ellipse = hertz(screw_contact(screw, side), float(normal_force(screw, force)))
+    window = Window(
+        length_x=2 * float(ellipse.semi_axis_x), length_y=2 * float(ellipse.semi_axis_y)
+    )
+    surface = fractal_surface(screw.roughness, draw)
+    return take_patch(surface, 'rescaled', window, screw.roughness.rms)
