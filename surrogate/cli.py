@@ -3,7 +3,6 @@
 """Offline subcommands: `point`, `contact` and `surface build|info|check`."""
 
 import argparse
-from collections.abc import Callable
 import json
 import math
 from pathlib import Path
@@ -18,11 +17,11 @@ from surrogate.parameters import (
     load_lubricant,
     load_screw,
     Lubricant,
-    OperatingPoint,
     Screw,
     ZERO_CELSIUS,
 )
 from surrogate.plain_json import to_json
+from surrogate.point_command import add_inputs, add_point_command
 from surrogate.surface import shipped_surface, Surface
 from surrogate.surface_file import read, SurfaceData, write
 
@@ -37,38 +36,7 @@ UNITS = {'friction_torque': 'N m', 'central_film': 'm', 'minimum_film': 'm', 'ma
 
 def add_commands(subparsers: Any) -> None:
     """Add the offline subcommands; each sets `handler`, which takes the arguments."""
-    point = subparsers.add_parser('point', help='solve one operating point')
-    _add_inputs(point)
-    point.add_argument(
-        '--speed-rpm',
-        type=float,
-        required=True,
-        metavar='N',
-        help='screw speed [rev/min], the sign is the direction of motion',
-    )
-    point.add_argument(
-        '--load-N',
-        type=float,
-        required=True,
-        metavar='F',
-        dest='load',
-        help='axial load [N]; it opposes the motion when it has the sign of the speed',
-    )
-    point.add_argument(
-        '--temperature-degC',
-        type=float,
-        metavar='T',
-        dest='temperature',
-        help='oil temperature [degC], default that of the oil datasheet',
-    )
-    point.add_argument(
-        '--tier',
-        choices=('closed_form', 'full'),
-        default='closed_form',
-        help='model: published formulas, or four solved contacts and balanced balls (seconds)',
-    )
-    point.add_argument('--json', action='store_true', help='print JSON in SI units')
-    point.set_defaults(handler=_point)
+    add_point_command(subparsers)
     add_contact_command(subparsers)
     surface = subparsers.add_parser('surface', help='build, describe or check a surface file')
     actions = surface.add_subparsers(required=True, metavar='build|info|check')
@@ -77,17 +45,8 @@ def add_commands(subparsers: Any) -> None:
     _add_check(actions.add_parser('check', help='compare a surface file with fresh solves'))
 
 
-def _add_inputs(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        '--screw', default='nominal', metavar='NAME|FILE', help='screw datasheet (default nominal)'
-    )
-    parser.add_argument(
-        '--oil', default='iso_vg_68', metavar='NAME|FILE', help='oil datasheet (default iso_vg_68)'
-    )
-
-
 def _add_build(parser: argparse.ArgumentParser) -> None:
-    _add_inputs(parser)
+    add_inputs(parser)
     parser.add_argument('--tier', choices=('closed_form',), default='closed_form')
     for name, unit in (('speed', 'rpm'), ('load', 'N'), ('temperature', 'degC')):
         parser.add_argument(
@@ -118,32 +77,6 @@ def _add_check(parser: argparse.ArgumentParser) -> None:
         help='stop after this time [s] and judge what was done (default 60)',
     )
     parser.set_defaults(handler=_check)
-
-
-def _point(args: argparse.Namespace) -> int:
-    from surrogate.point import page
-
-    screw, lubricant = load_screw(args.screw), load_lubricant(args.oil)
-    kelvin = (
-        lubricant.reference_temperature
-        if args.temperature is None
-        else args.temperature + ZERO_CELSIUS
-    )
-    point = OperatingPoint(speed=args.speed_rpm * math.pi / 30, load=args.load, temperature=kelvin)
-    record = _record_of(args.tier)(screw, lubricant, point)
-    print(json.dumps(to_json(record), indent=2, allow_nan=False) if args.json else page(record))
-    return 0 if record.get('converged', True) else 1
-
-
-def _record_of(tier: str) -> Callable[[Screw, Lubricant, OperatingPoint], dict[str, Any]]:
-    """Return what solves a point; the full model is loaded only when it is asked for."""
-    if tier == 'full':
-        from surrogate.screw_record import full_record
-
-        return full_record
-    from surrogate.point import closed_form_record
-
-    return closed_form_record
 
 
 def _build(args: argparse.Namespace) -> int:

@@ -17,7 +17,14 @@ from surrogate.parameters import InputError, Lubricant, OperatingPoint, Screw
 from surrogate.screw import ScrewSolution, solve_screw
 from surrogate.screw_contacts import ScrewSettings
 
-FIELDS = ('efficiency', 'friction_torque', 'rcs', 'asperity_share')
+FIELDS = (
+    'efficiency',
+    'friction_torque',
+    'driving_torque',
+    'friction_coefficient',
+    'rcs',
+    'asperity_share',
+)
 """Numbers of a screw solution that depend on the draw."""
 
 

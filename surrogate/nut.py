@@ -12,10 +12,12 @@ from dataclasses import dataclass
 import math
 from typing import Literal
 
+import numpy as np
 from surrogate.ball_balance import balance_ball
-from surrogate.ball_motion import BallMotion, Flank, slip_floor
+from surrogate.ball_motion import Array, BallMotion, Flank, slip_field, slip_floor
 from surrogate.ball_result import BallBalance, BallContact
 from surrogate.ball_traction import solved_traction
+from surrogate.contact_friction import contact_friction
 from surrogate.ehl import ContactSolution
 from surrogate.friction import hysteresis_force
 from surrogate.geometry import Side, SIDES
@@ -35,7 +37,7 @@ class ScrewContact:
     One contact of one nut; solutions are None where it carries no load.
 
     Smooth and rough solution, the part of the ball balance at this contact, the motion of the
-    ball, film ratio [-].
+    ball, film ratio [-], mean traction against the slip over the normal force [-].
 
     """
 
@@ -46,6 +48,7 @@ class ScrewContact:
     ball: BallContact
     motion: BallMotion | None
     film_ratio: float
+    friction_coefficient: float = math.nan
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -101,14 +104,20 @@ def _contact(
     """Return one contact with its part of the balance."""
     part = BallContact() if ball is None else ball.screw if side == 'screw' else ball.nut
     film = math.nan if smooth is None else smooth_film(smooth)
+    motion = ball.motion if ball else None
     return ScrewContact(
         nut=nut,
         side=side,
         smooth=smooth,
         rough=rough,
         ball=part,
-        motion=ball.motion if ball else None,
+        motion=motion,
         film_ratio=film / screw.roughness.rms,
+        friction_coefficient=(
+            friction_coefficient(screw, rough, side, motion)
+            if rough is not None and motion is not None
+            else math.nan
+        ),
     )
 
 
@@ -144,3 +153,26 @@ def rolling_force(screw: Screw, found: ContactSolution) -> float:
         screw.hysteresis_loss, found.condition.load, found.semi_axis_x, found.contact.radius_x
     )
     return found.rolling_force + found.rolling_tail + elastic
+
+
+def friction_coefficient(
+    screw: Screw, found: ContactSolution, side: Side, motion: BallMotion
+) -> float:
+    """Return the mean traction against the slip over the load [-] at the motion of the ball."""
+    slip_x, slip_y = contact_slip(screw, found, side, motion)
+    return contact_friction(
+        found,
+        slip_x=slip_x,
+        slip_y=slip_y,
+        asperity_friction=screw.roughness.asperity_friction,
+        slip_floor=slip_floor(screw, motion.screw_speed),
+    ).coefficient
+
+
+def contact_slip(
+    screw: Screw, found: ContactSolution, side: Side, motion: BallMotion
+) -> tuple[Array, Array]:
+    """Return the slip along and across the track [m/s] on the nodes of a contact."""
+    x, y = np.meshgrid(found.x, found.y, indexing='ij')
+    turn = 1 if side == 'screw' else -1  # the nut's entrainment runs against t
+    return slip_field(screw, side, motion, turn * x, turn * y)

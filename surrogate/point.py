@@ -22,6 +22,13 @@ from surrogate.parameters import Lubricant, OperatingPoint, Screw, ZERO_CELSIUS
 CONSTANT_FRICTION = 0.005
 """Effective friction coefficient of the constant-friction comparator [-]."""
 FORMULAS = ('central_film_hamrock_dowson_1977', rolling_force_biboulet_houpert_2010.__name__)
+SPREAD_ROWS = (
+    ('efficiency', 'efficiency', 1.0, ''),
+    ('friction torque', 'friction_torque_Nm', 1.0, 'N m'),
+    ('RCS', 'rcs', 100.0, '%'),
+    ('friction coefficient', 'friction_coefficient', 1.0, ''),
+)
+"""Label, key, factor and unit of what a page says about the spread over draws."""
 STATUS = 'closed form: published formulas, an estimate that overstates asperity contact'
 
 
@@ -176,6 +183,20 @@ def _all_groups(contacts: tuple[closed_form.ContactResult, ...]) -> Groups:
     )
 
 
+def _spread_lines(ensemble: Mapping[str, Any] | None) -> list[str]:
+    """Return what draws of the roughness leave uncertain, as lines of a page."""
+    if ensemble is None:
+        return []
+    rows = [
+        f'  {label:20} {factor * part["mean"]:9.4g} +- {factor * part["error"]:.2g} {unit}'
+        f', one draw {factor * part["deviation"]:.2g}'
+        for label, key, factor, unit in SPREAD_ROWS
+        for part in [ensemble[key]]
+    ]
+    count = ensemble['draws'] - ensemble['failed']
+    return [f'  mean of {count} draws of the roughness with its standard error:', *rows, '']
+
+
 def page(record: Mapping[str, Any]) -> str:
     """Return a record as a page of text in workshop units."""
     rows = [
@@ -217,6 +238,7 @@ def page(record: Mapping[str, Any]) -> str:
             f'  compare: constant friction {compared["constant_friction_efficiency"]:.3f}, '
             f'catalogue drag {compared["catalogue_drag_torque_Nm"]:.3f} N m, Nijenbanning film '
             f'{1e9 * compared["central_film_nijenbanning_m"]:.1f} nm',
+            *_spread_lines(record.get('ensemble')),
             f'  status: {record["status"]}',
             *(f'  warning: {text}' for text in record['warnings']),
         ]

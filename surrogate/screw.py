@@ -39,7 +39,8 @@ class ScrewSolution:
     Friction torque [N m] with the parasitic part, from lost power; driving torque [N m] from the
     loads on the screw; `energy_error`, what both miss of the energy balance, over the friction
     torque [-]; efficiency [-], whether the load drives the screw; RCS and asperity share of the
-    worst contact [-], film ratio [-] and central film [m] of the thinnest; entrainment speed
+    worst contact [-], film ratio [-] and central film [m] of the thinnest; friction coefficient
+    over all normal forces [-]; entrainment speed
     [m/s], normal forces of a ball of the loaded and the relieved nut before friction [N], largest
     change of them by friction [-], for which the contacts are not solved again.
 
@@ -59,6 +60,7 @@ class ScrewSolution:
     asperity_share: float = math.nan
     film_ratio: float = math.nan
     central_film: float = math.nan
+    friction_coefficient: float = math.nan
     load_change: float = math.nan
 
 
@@ -137,6 +139,7 @@ def _combine(screw: Screw, point: OperatingPoint, nuts: tuple[Nut, Nut]) -> Scre
         efficiency=efficiency(friction, load, screw.lead),
         back_driving=is_back_driving(friction, load, screw.lead),
         load_change=_load_change(screw, nuts),
+        friction_coefficient=_mean_friction(found),
         rcs=max((rough.rcs for rough in _rough(found)), default=0.0),
         asperity_share=max((rough.asperity_share for rough in _rough(found)), default=0.0),
         film_ratio=min(films) / screw.roughness.rms if films else math.nan,
@@ -152,6 +155,14 @@ def _films(found: ScrewSolution) -> list[float]:
     """Return the smooth films [m] of the contacts that carry; 0 at rest."""
     pressed = [contact.smooth for contact in found.contacts if contact.smooth is not None]
     return [smooth_film(smooth) for smooth in pressed]
+
+
+def _mean_friction(found: ScrewSolution) -> float:
+    """Return the friction coefficient over all normal forces [-], NaN without any."""
+    pressed = [contact for contact in found.contacts if contact.rough is not None]
+    total = sum(contact.ball.normal_force for contact in pressed)
+    friction = sum(contact.ball.normal_force * contact.friction_coefficient for contact in pressed)
+    return friction / total if total else math.nan
 
 
 def _load_change(screw: Screw, nuts: tuple[Nut, Nut]) -> float:

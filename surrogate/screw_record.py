@@ -2,13 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """A point of the full tier as a record: plain numbers for JSON, beside the classical formulas."""
 
+from dataclasses import asdict
 import math
 import time
 from typing import Any
 
-import numpy as np
-from surrogate.ball_motion import Array, BallMotion, slip_field, slip_floor
-from surrogate.contact_friction import contact_friction
+from surrogate.ensemble import EnsembleSolution
 from surrogate.geometry import opposite_flank_approach, SIDES
 from surrogate.inlet_heating import heating_factor
 from surrogate.nut import rolling_force, ScrewContact
@@ -17,6 +16,8 @@ from surrogate.point import closed_form_record, regime
 from surrogate.screw import ScrewSolution, solve_screw, TIER
 from surrogate.screw_contacts import ScrewSettings, shortest_on_grid
 
+KEYS = {'friction_torque': 'friction_torque_Nm', 'driving_torque': 'driving_torque_Nm'}
+"""Keys of the record where they differ from the field."""
 LOAD_CHANGE = 0.02
 """Change of a normal force by friction and inertia that is warned about [-]."""
 FEWEST_NODES = 4.0
@@ -38,6 +39,50 @@ def full_record(
     """
     started, settings = time.perf_counter(), settings or ScrewSettings()
     found = solve_screw(screw, lubricant, point, settings=settings)
+    record = solution_record(screw, lubricant, point, found, settings)
+    return record | {'wall_s': time.perf_counter() - started}
+
+
+def ensemble_record(
+    screw: Screw,
+    lubricant: Lubricant,
+    point: OperatingPoint,
+    ensemble: EnsembleSolution,
+    settings: ScrewSettings,
+) -> dict[str, Any]:
+    """
+    Return a point over draws of the roughness as plain numbers.
+
+    Means over the draws that converged in place of the numbers of one draw, their spreads under
+    `ensemble`; contacts are those of the first draw.
+
+    """
+    record = solution_record(screw, lubricant, point, ensemble.solutions[0], settings)
+    failures = [found.status for found in ensemble.solutions if not found.converged]
+    means = {KEYS.get(name, name): spread.mean for name, spread in ensemble.spreads.items()}
+    return (
+        record
+        | means
+        | {
+            'status': failures[0] if failures else record['status'],
+            'converged': not failures,
+            'ensemble': {
+                'draws': len(ensemble.solutions),
+                'failed': ensemble.failed,
+                **{KEYS.get(name, name): asdict(part) for name, part in ensemble.spreads.items()},
+            },
+        }
+    )
+
+
+def solution_record(
+    screw: Screw,
+    lubricant: Lubricant,
+    point: OperatingPoint,
+    found: ScrewSolution,
+    settings: ScrewSettings,
+) -> dict[str, Any]:
+    """Return a solved point as plain numbers, SI units, NaN where unknown."""
     formulas = closed_form_record(screw, lubricant, point)
     contacts = [_contact_record(screw, found, contact) for contact in found.contacts]
     worst = min(contacts, key=_mildness)
@@ -63,13 +108,12 @@ def full_record(
         'inlet_heating': settings.inlet_heating,
         'inlet_heating_factor': _heating_factor(screw, lubricant, point, found),
         'minimum_film_m': _least(found, contacts, 'minimum_film_m'),
-        'friction_coefficient': _mean_friction(found, contacts),
+        'friction_coefficient': found.friction_coefficient,
         'max_pressure_Pa': -_least(found, contacts, 'max_pressure_Pa', -1.0),
         'worst_contact': {key: worst[key] for key in ('nut', 'side')},
         'contact_angle_A_rad': contacts[0]['contact_angle_rad'],
         'contact_angle_B_rad': contacts[1]['contact_angle_rad'],
         'contacts': contacts,
-        'wall_s': time.perf_counter() - started,
     }
 
 
@@ -92,7 +136,7 @@ def _contact_record(screw: Screw, found: ScrewSolution, contact: ScrewContact) -
         'film_ratio': contact.film_ratio,
         'rcs': rough.rcs,
         'asperity_share': rough.asperity_share,
-        'friction_coefficient': _friction(screw, contact),
+        'friction_coefficient': contact.friction_coefficient,
         'rolling_force_N': rolling_force(screw, rough),
         'opposite_flank_approach_m': opposite_flank_approach(
             screw, contact.side, ball.angle, rough.approach
@@ -126,29 +170,6 @@ def _unknown(reason: str) -> dict[str, Any]:
 def _speed(contact: ScrewContact) -> float:
     """Return the screw speed of the balance [rad/s]."""
     return contact.motion.screw_speed if contact.motion else math.nan
-
-
-def _friction(screw: Screw, contact: ScrewContact) -> float:
-    """Return the mean traction against the slip over the load [-], at the balanced motion."""
-    motion, rough = contact.motion, contact.rough
-    if motion is None or rough is None:
-        return math.nan
-    slip_x, slip_y = contact_slip(screw, contact, motion)
-    return contact_friction(
-        rough,
-        slip_x=slip_x,
-        slip_y=slip_y,
-        asperity_friction=screw.roughness.asperity_friction,
-        slip_floor=slip_floor(screw, motion.screw_speed),
-    ).coefficient
-
-
-def contact_slip(screw: Screw, contact: ScrewContact, motion: BallMotion) -> tuple[Array, Array]:
-    """Return the slip along and across the track [m/s] on the nodes of a rough contact."""
-    assert contact.rough is not None
-    x, y = np.meshgrid(contact.rough.x, contact.rough.y, indexing='ij')
-    turn = 1 if contact.side == 'screw' else -1  # the nut's entrainment runs against t
-    return slip_field(screw, contact.side, motion, turn * x, turn * y)
 
 
 def _mildness(contact: dict[str, Any]) -> tuple[float, float]:
@@ -205,16 +226,6 @@ def _heating_factor(
 def _nodes_per_wave(contact: ScrewContact, wave: float) -> float:
     rough = contact.rough
     return wave / float(rough.y[1] - rough.y[0]) if rough is not None else math.inf
-
-
-def _mean_friction(found: ScrewSolution, contacts: list[dict[str, Any]]) -> float:
-    """Return the friction coefficient over all normal forces [-], NaN unless solved."""
-    pressed = [contact for contact in contacts if contact['normal_force_N'] > 0]
-    total = sum(contact['normal_force_N'] for contact in pressed)
-    friction = sum(
-        contact['normal_force_N'] * contact['friction_coefficient'] for contact in pressed
-    )
-    return friction / total if total and found.converged else math.nan
 
 
 def _least(

@@ -243,8 +243,25 @@ def test_full_tier_is_solved_and_a_failure_is_an_exit_code(capsys, monkeypatch):
     assert found['rcs'] == 0.0
     assert found['efficiency'] == pytest.approx(0.934, abs=5e-3)
     failed = found | {'converged': False}
-    monkeypatch.setattr('surrogate.screw_record.full_record', lambda *inputs: failed)
+    monkeypatch.setattr('surrogate.screw_record.solution_record', lambda *inputs: failed)
     assert run(*words) == 1
+
+
+def test_options_of_the_full_tier(tmp_path: Path, capsys):
+    """Draws, inlet heating and picture reach the solve; the other tier refuses them."""
+    words = ('point', '--speed-rpm', '600', '--load-N', '0', '--json')
+    more = ('--draws', '1', '--inlet-heating', '--plot', str(tmp_path))
+    assert run(*words, '--tier', 'full', *more) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found['ensemble']['draws'] == 1
+    assert found['inlet_heating'] is True
+    assert 0.9 < found['inlet_heating_factor'] < 0.995
+    assert [file.suffix for file in tmp_path.iterdir()] == ['.png']
+    for option in (('--draws', '2'), ('--inlet-heating',), ('--plot', str(tmp_path))):
+        with pytest.raises(InputError, match=f'{option[0]} needs --tier full'):
+            run(*words, *option)
+    with pytest.raises(InputError, match='draws is 0'):
+        run(*words, '--tier', 'full', '--draws', '0')
 
 
 def test_oil_that_is_no_liquid_is_named_with_its_temperature():

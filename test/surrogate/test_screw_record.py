@@ -7,15 +7,18 @@ import json
 import math
 
 import pytest
+from surrogate import figures_point
 from surrogate.ball_motion import slip_floor
 from surrogate.contact_friction import contact_friction
 from surrogate.ehl import Settings
+from surrogate.ensemble import solve_ensemble
+from surrogate.nut import contact_slip
 from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
 from surrogate.plain_json import to_json
 from surrogate.point import closed_form_record, page
 from surrogate.screw import solve_screw
 from surrogate.screw_contacts import ScrewSettings
-from surrogate.screw_record import contact_slip, full_record
+from surrogate.screw_record import ensemble_record, full_record, solution_record
 
 SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
 SMALL = Settings(nx=65, ny=65, error_estimate=False)
@@ -66,7 +69,7 @@ def test_friction_is_integrated_with_the_slip_of_the_balance():
     """On screw and nut alike, the power over the slip field is that which the ball loses."""
     point = OperatingPoint(speed=60 * math.pi / 30, load=800.0, temperature=313.15)
     for contact in solve_screw(SCREW, OIL, point, settings=SETTINGS).contacts:
-        slip_x, slip_y = contact_slip(SCREW, contact, contact.motion)
+        slip_x, slip_y = contact_slip(SCREW, contact.rough, contact.side, contact.motion)
         found = contact_friction(
             contact.rough,
             slip_x=slip_x,
@@ -128,3 +131,39 @@ def test_hysteresis_adds_its_couple_to_the_torque():
     power = 2 * SCREW.loaded_balls_per_nut * plain['entrainment_speed_m_s'] * sum(added)
     rise = lossy['friction_torque_Nm'] - plain['friction_torque_Nm']
     assert rise == pytest.approx(power / point.speed, rel=0.02)
+
+
+def test_an_ensemble_is_its_means_and_their_spread():
+    """Top numbers are means over the draws, the spread beside them; a failed draw is counted."""
+    point = OperatingPoint(speed=0.8, load=800.0, temperature=313.15)
+    ensemble = solve_ensemble(SCREW, OIL, point, 2, settings=SETTINGS)
+    found = ensemble_record(SCREW, OIL, point, ensemble, SETTINGS)
+    shares = [one.rcs for one in ensemble.solutions]
+    assert found['rcs'] == pytest.approx(sum(shares) / 2)
+    assert found['ensemble']['rcs']['deviation'] == pytest.approx(
+        abs(shares[0] - shares[1]) / math.sqrt(2)
+    )
+    assert found['ensemble']['friction_torque_Nm']['mean'] == found['friction_torque_Nm']
+    assert found['ensemble']['draws'] == 2
+    assert 'mean of 2 draws' in page(found)
+    broken = replace(ensemble.solutions[1], converged=False, status='broken')
+    partly = replace(ensemble, solutions=(ensemble.solutions[0], broken), failed=1)
+    found = ensemble_record(SCREW, OIL, point, partly, SETTINGS)
+    assert found['converged'] is False
+    assert found['status'] == 'broken'
+    assert found['ensemble']['failed'] == 1
+
+
+def test_picture_has_a_column_per_pressed_contact(tmp_path):
+    """Two columns beyond unloading; labels with units; the file appears whole."""
+    point = OperatingPoint(speed=2.0, load=3.0 * SCREW.preload, temperature=313.15)
+    found = solve_screw(SCREW, OIL, point, settings=SETTINGS)
+    record = solution_record(SCREW, OIL, point, found, SETTINGS)
+    figure = figures_point.figure_point(SCREW, found, record)
+    titles = [axes.get_title() for axes in figure.axes if 'nut' in axes.get_title()]
+    assert len(titles) == 2
+    labels = ' '.join(axes.get_ylabel() for axes in figure.axes)
+    assert 'total pressure [GPa]' in labels
+    assert 'film [nm]' in labels
+    path = figures_point.draw_point(tmp_path, SCREW, found, record)
+    assert [file.name for file in tmp_path.iterdir()] == [path.name]
