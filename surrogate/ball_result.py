@@ -19,6 +19,7 @@ from surrogate.ball_equations import (
     wrenches,
 )
 from surrogate.ball_motion import Array, BallMotion, Flank
+from surrogate.ball_traction import Wrench
 
 
 class BalanceStatus(Enum):
@@ -115,7 +116,7 @@ def converged_balance(problem: BallProblem, unknowns: Array, iterations: int) ->
 
     """
     found, values = wrenches(problem, unknowns), problem.scales * unknowns
-    contacts = [_contact(problem, which, values) for which in (0, 1)]
+    contacts = [_contact(problem, which, values, found[which]) for which in (0, 1)]
     torque, pushed = screw_torque(problem, values, found[0].values)
     sense = math.copysign(1.0, problem.speed)
     axial_force = -problem.flank * pushed
@@ -160,9 +161,8 @@ def unloaded_balance(problem: BallProblem) -> BallBalance:
     )
 
 
-def _contact(problem: BallProblem, which: int, values: Array) -> BallContact:
-    """Return one contact at unscaled unknowns in balance."""
-    friction = wrenches(problem, values / problem.scales)[which]
+def _contact(problem: BallProblem, which: int, values: Array, friction: Wrench) -> BallContact:
+    """Return one contact at unscaled unknowns in balance, with its friction."""
     motion = motions(problem, values)[which]
     return BallContact(
         angle=float(values[(SCREW_ANGLE, NUT_ANGLE)[which]]),

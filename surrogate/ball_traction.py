@@ -25,6 +25,8 @@ RADIAL_NODES, ANGULAR_NODES = 20, 60
 """Quadrature of the ellipse: lost power within 1e-4 of a rule twice as fine each way."""
 SAMPLE = 7
 """Nodes of a solved contact for one of its sample [-]."""
+LARGEST_SLIP = 0.1
+"""Slip over the entrainment speed that no rolling ball comes near [-]."""
 FEW = 2000
 """Nodes that are not worth a sample [-]."""
 
@@ -231,8 +233,9 @@ def solved_traction(
     viscosity = viscosity_of(solution.lubricant, solution.film_pressure)
     rate = np.divide(viscosity, stress * solution.film, out=np.zeros_like(x), where=wet)
     eyring = np.where(wet, stress * area, 0.0)
-    # Weak nodes bear most at a slip far above any: nothing of theirs saturates before the strong.
-    friction = boundary + eyring * np.arcsinh(rate * solution.condition.entrainment_speed)
+    # The weaker a node, the later it saturates: its share is largest at a slip above any.
+    slip = LARGEST_SLIP * solution.condition.entrainment_speed
+    friction = boundary + eyring * np.arcsinh(rate * slip)
     used = _strongest(friction, neglected)
     return SolvedTraction(
         x=x[used],

@@ -21,12 +21,14 @@ from surrogate.contact_friction import contact_friction
 from surrogate.ehl import ContactSolution
 from surrogate.friction import hysteresis_force
 from surrogate.geometry import Side, SIDES
-from surrogate.parameters import OperatingPoint, Screw
-from surrogate.screw_contacts import Pair, smooth_film
+from surrogate.parameters import Lubricant, OperatingPoint, Screw
+from surrogate.screw_contacts import Pair, ScrewSettings, smooth_film, solve_sides
 
 NutName = Literal['loaded', 'relieved']
 CREEP = 1e-3
 """Screw speed of the limit of slow motion [rad/s]."""
+COUPLING_ROUNDS = 4
+"""Most times that contacts are solved again under the forces of the balance [-]."""
 NEGLECTED_FRICTION = 3e-4
 """Share of the friction of a contact on nodes that the balance leaves out [-]."""
 
@@ -62,6 +64,43 @@ class Nut:
     failure: str = ''
 
 
+def solve_nut(
+    screw: Screw,
+    lubricant: Lubricant,
+    point: OperatingPoint,
+    settings: ScrewSettings,
+    name: NutName,
+    force: float,
+    flank: Flank,
+    pairs: tuple[Pair, ...],
+) -> Nut:
+    """
+    Balance the ball of a nut with an axial force [N] between contacts solved without friction.
+
+    Friction and inertia move the normal forces; where by more than the tolerance of the settings,
+    contacts are solved again under the forces found, until they agree or `COUPLING_ROUNDS`.
+
+    """
+    nut = make_nut(screw, point, name, force, flank, pairs)
+    for _ in range(COUPLING_ROUNDS):
+        if not load_change(nut) > settings.coupling_tolerance:
+            break
+        first, second = (contact.ball.normal_force for contact in nut.contacts)
+        pairs = solve_sides(screw, lubricant, point, settings, (first, second))
+        nut = make_nut(screw, point, name, force, flank, pairs)
+    return nut
+
+
+def load_change(nut: Nut) -> float:
+    """Return the largest change of a normal force by friction over that solved [-], or NaN."""
+    changes = [
+        abs(contact.ball.normal_force / contact.rough.condition.load - 1)
+        for contact in nut.contacts
+        if contact.rough is not None
+    ]
+    return max(changes, default=0.0)
+
+
 def make_nut(
     screw: Screw,
     point: OperatingPoint,
@@ -76,7 +115,7 @@ def make_nut(
         return Nut(name=name, force=force, contacts=idle, ball=None)
     failure, ball = _failure(name, pairs), None
     if not failure:
-        ball = _balance(screw, point, force, flank, [rough for _, rough in pairs])
+        ball = balance_nut(screw, point, force, flank, [rough for _, rough in pairs])
         failure = '' if ball.converged else f'{name} nut, ball: {ball.status.value}'
     contacts = tuple(
         _contact(screw, name, side, *pair, ball) for side, pair in zip(SIDES, pairs, strict=True)
@@ -121,10 +160,10 @@ def _contact(
     )
 
 
-def _balance(
+def balance_nut(
     screw: Screw, point: OperatingPoint, force: float, flank: Flank, rough: list[ContactSolution]
 ) -> BallBalance:
-    """Balance one ball of a nut that carries an axial `force` [N]."""
+    """Balance one ball of a nut that carries an axial `force` [N] between two solved contacts."""
     speed = abs(point.speed) or CREEP
     floor = slip_floor(screw, speed)
     friction = screw.roughness.asperity_friction

@@ -15,7 +15,7 @@ from surrogate.ball_motion import Flank
 from surrogate.ehl import ContactSolution
 from surrogate.kinematics import no_slip_rates
 from surrogate.load_sharing import normal_force, nut_forces
-from surrogate.nut import make_nut, Nut, ScrewContact
+from surrogate.nut import load_change, Nut, ScrewContact, solve_nut
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.screw_contacts import ScrewSettings, smooth_film, solve_sides
 from surrogate.torque import driving_torque, efficiency, is_back_driving
@@ -41,8 +41,9 @@ class ScrewSolution:
     torque [-]; efficiency [-], whether the load drives the screw; RCS and asperity share of the
     worst contact [-], film ratio [-] and central film [m] of the thinnest; friction coefficient
     over all normal forces [-]; entrainment speed
-    [m/s], normal forces of a ball of the loaded and the relieved nut before friction [N], largest
-    change of them by friction [-], for which the contacts are not solved again.
+    [m/s], normal forces of a ball of the loaded and the relieved nut before friction [N];
+    `load_change`, largest difference between a normal force in balance and that under which its
+    contact was solved [-].
 
     """
 
@@ -86,15 +87,15 @@ def solve_screw(
     ahead: Flank = 1 if point.opposing_load >= 0 else -1
     behind: Flank = -1 if point.opposing_load >= 0 else 1
     near = [(found.smooth, found.rough) for found in start.contacts] if start else []
-    loaded = solve_sides(screw, lubricant, point, settings, forces[0], near[:2])
-    relieved = (
-        loaded
-        if forces[0] == forces[1]
-        else solve_sides(screw, lubricant, point, settings, forces[1], near[2:])
-    )
+    given = (screw, lubricant, point, settings)
+    loads = [float(normal_force(screw, force)) for force in forces]
+    loaded = solve_sides(*given, (loads[0], loads[0]), near[:2])
+    relieved = loaded
+    if forces[0] != forces[1]:
+        relieved = solve_sides(*given, (loads[1], loads[1]), near[2:])
     nuts = (
-        make_nut(screw, point, 'loaded', forces[0], ahead, loaded),
-        make_nut(screw, point, 'relieved', forces[1], behind, relieved),
+        solve_nut(*given, 'loaded', forces[0], ahead, loaded),
+        solve_nut(*given, 'relieved', forces[1], behind, relieved),
     )
     return _combine(screw, point, nuts)
 
@@ -138,7 +139,7 @@ def _combine(screw: Screw, point: OperatingPoint, nuts: tuple[Nut, Nut]) -> Scre
         energy_error=abs(missed) / friction if friction else 0.0,
         efficiency=efficiency(friction, load, screw.lead),
         back_driving=is_back_driving(friction, load, screw.lead),
-        load_change=_load_change(screw, nuts),
+        load_change=max(load_change(nut) for nut in nuts),
         friction_coefficient=_mean_friction(found),
         rcs=max((rough.rcs for rough in _rough(found)), default=0.0),
         asperity_share=max((rough.asperity_share for rough in _rough(found)), default=0.0),
@@ -163,14 +164,3 @@ def _mean_friction(found: ScrewSolution) -> float:
     total = sum(contact.ball.normal_force for contact in pressed)
     friction = sum(contact.ball.normal_force * contact.friction_coefficient for contact in pressed)
     return friction / total if total else math.nan
-
-
-def _load_change(screw: Screw, nuts: tuple[Nut, Nut]) -> float:
-    """Return the largest relative change of a normal force by friction [-]."""
-    changes = [
-        abs(contact.ball.normal_force / float(normal_force(screw, nut.force)) - 1)
-        for nut in nuts
-        for contact in nut.contacts
-        if nut.ball is not None
-    ]
-    return max(changes, default=0.0)

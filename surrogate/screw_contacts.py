@@ -40,7 +40,8 @@ class ScrewSettings:
     datasheet; draw of the roughness, None for smooth raceways; shortest wavelength on the grid
     [m], shorter ones raise the floor, None to solve them all; nodes per such wave across the
     track, up to `MOST_NODES`, if that is more than the rough settings have [-]; `inlet_heating`
-    thins films by shear heating of the inlet.
+    thins films by shear heating of the inlet; contacts are solved again where friction changes
+    their normal force by more than `coupling_tolerance` [-].
 
     """
 
@@ -50,6 +51,7 @@ class ScrewSettings:
     grid_wavelength: float | None = 16e-6
     nodes_per_wave: float = 6.0
     inlet_heating: bool = False
+    coupling_tolerance: float = 0.01
 
 
 def solve_sides(
@@ -57,22 +59,21 @@ def solve_sides(
     lubricant: Lubricant,
     point: OperatingPoint,
     settings: ScrewSettings,
-    force: float,
+    loads: tuple[float, float],
     start: Sequence[Start] = (),
 ) -> tuple[Pair, ...]:
     """
-    Solve the contacts of a nut under an axial force [N], with the screw and with the nut.
+    Solve the contacts of a nut under their normal forces [N], with the screw and with the nut.
 
     `start` holds both pairs of a neighbouring point. No pairs for a nut without load.
 
     """
-    if force == 0:
+    if not any(loads):
         return ()
-    load = float(normal_force(screw, force))
     known = start or [(None, None)] * len(SIDES)
     return tuple(
         _solve_side(screw, lubricant, point, settings, side, load, near)
-        for side, near in zip(SIDES, known, strict=True)
+        for side, load, near in zip(SIDES, loads, known, strict=True)
     )
 
 

@@ -84,10 +84,14 @@ def test_coarse_waves_and_moved_forces_are_warned_about():
     """A grid of three nodes per wave, and a nut near unloading at high speed."""
     _, found = record(60, 800.0)
     assert any('nodes per shortest wave' in text for text in found['warnings'])
-    smooth = ScrewSettings(smooth=SMALL, draw=None)
-    _, found = record(3000, 2600.0, smooth)
+    once = ScrewSettings(smooth=SMALL, draw=None, coupling_tolerance=math.inf)
+    _, found = record(3000, 2600.0, once)
     assert found['load_change'] > 0.02
     assert any(text.startswith('balls: friction') for text in found['warnings'])
+    _, again = record(3000, 2600.0, replace(once, coupling_tolerance=1e-3))
+    assert again['load_change'] < 1e-3
+    assert not any(text.startswith('balls: friction') for text in again['warnings'])
+    assert again['friction_torque_Nm'] != found['friction_torque_Nm']
 
 
 def test_idle_nut_and_failure_give_a_reason():

@@ -1,0 +1,112 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Unit of work of a full-tier surface: one draw at one load and temperature over falling speeds.
+
+Plain JSON in and out, so that it runs on any worker and is kept by its content. Each point starts
+from the one before it; the chain is a fixed unit, and its numbers do not depend on who solves it.
+
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, replace
+import math
+from typing import Any
+
+from surrogate.parameters import Lubricant, Material, OperatingPoint, Roughness, Screw
+from surrogate.screw import ScrewSolution, solve_screw
+from surrogate.screw_contacts import ScrewSettings
+
+WORK = 'full tier 1'
+"""Solver and version of what a chain returns; part of the key under which it is kept."""
+SENSES = {'opposing': 1.0, 'assisting': -1.0}
+
+
+def chain_inputs(
+    screw: Screw,
+    lubricant: Lubricant,
+    load: float,
+    temperature: float,
+    draw: int,
+    speeds: list[float],
+) -> dict[str, Any]:
+    """Return a chain: `load` [N] at least 0, `temperature` [K], falling `speeds` [rad/s]."""
+    return {
+        'screw': asdict(screw),
+        'lubricant': asdict(lubricant),
+        'load': load,
+        'temperature': temperature,
+        'draw': draw,
+        'speeds': speeds,
+    }
+
+
+def solve_chain(inputs: Mapping[str, Any]) -> dict[str, Any]:
+    """
+    Solve a chain, with the load against the motion and, unless it is zero, with it.
+
+    Returns lists of point records in the order of the speeds, under `opposing` and `assisting`;
+    a record has the fields of a surface, `worst_contact` (0 to 3), the least rough film over its
+    floor, whether it converged, and a status.
+
+    """
+    screw, lubricant = sheets(inputs)
+    settings = ScrewSettings(draw=inputs['draw'])
+    rows: dict[str, list[dict[str, Any]]] = {sense: [] for sense in SENSES}
+    for opposing, assisting in _points(screw, lubricant, settings, inputs):
+        rows['opposing'].append(point_record(opposing))
+        rows['assisting'].append(point_record(assisting))
+    return dict(rows)
+
+
+def sheets(inputs: Mapping[str, Any]) -> tuple[Screw, Lubricant]:
+    """Return screw and oil of what `asdict` made of them."""
+    screw, lubricant = dict(inputs['screw']), dict(inputs['lubricant'])
+    for name, cls in (('raceway', Material), ('ball', Material), ('roughness', Roughness)):
+        screw[name] = cls(**screw[name])
+    return Screw(**screw), Lubricant(**lubricant)
+
+
+def _points(
+    screw: Screw, lubricant: Lubricant, settings: ScrewSettings, inputs: Mapping[str, Any]
+) -> Iterator[tuple[ScrewSolution, ScrewSolution]]:
+    """Yield both solutions of each speed; they share their contacts and differ by the balance."""
+    last: ScrewSolution | None = None
+    for speed in inputs['speeds']:
+        point = OperatingPoint(speed=speed, load=inputs['load'], temperature=inputs['temperature'])
+        opposing = solve_screw(screw, lubricant, point, settings=settings, start=last)
+        last = opposing if opposing.converged else None
+        assisting = opposing
+        if point.load:
+            against = replace(point, load=-point.load)
+            assisting = solve_screw(screw, lubricant, against, settings=settings, start=last)
+        yield opposing, assisting
+
+
+def point_record(found: ScrewSolution) -> dict[str, Any]:
+    """Return the numbers of a solution that a surface keeps."""
+    pressed = [
+        (place, contact.rough, contact)
+        for place, contact in enumerate(found.contacts)
+        if contact.rough is not None
+    ]
+    worst = max(
+        pressed, key=lambda item: (item[1].rcs, -item[2].film_ratio), default=(0, None, None)
+    )
+    return {
+        'friction_torque': found.friction_torque,
+        'rcs': found.rcs,
+        'asperity_share': found.asperity_share,
+        'film_ratio': found.film_ratio,
+        'central_film': found.central_film,
+        'minimum_film': min((rough.minimum_film for _, rough, _ in pressed), default=math.nan),
+        'friction_coefficient': found.friction_coefficient,
+        'max_pressure': max((rough.max_pressure for _, rough, _ in pressed), default=math.nan),
+        'worst_contact': worst[0],
+        'film_over_floor': min(
+            (rough.minimum_film / rough.settings.film_floor for _, rough, _ in pressed),
+            default=math.nan,
+        ),
+        'converged': found.converged and bool(pressed),
+        'status': found.status,
+    }
