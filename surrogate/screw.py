@@ -17,7 +17,7 @@ from surrogate.kinematics import no_slip_rates
 from surrogate.load_sharing import normal_force, nut_forces
 from surrogate.nut import make_nut, Nut, ScrewContact
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
-from surrogate.screw_contacts import ScrewSettings, smooth_film, solve_sides
+from surrogate.screw_contacts import fluid_at, Pair, ScrewSettings, smooth_film, solve_sides
 from surrogate.torque import driving_torque, efficiency, is_back_driving
 
 TIER = 'full'
@@ -83,8 +83,6 @@ def solve_screw(
     """
     settings = settings or ScrewSettings()
     forces = _forces(screw, point)
-    ahead: Flank = 1 if point.opposing_load >= 0 else -1
-    behind: Flank = -1 if point.opposing_load >= 0 else 1
     near = [(found.smooth, found.rough) for found in start.contacts] if start else []
     loaded = solve_sides(screw, lubricant, point, settings, forces[0], near[:2])
     relieved = (
@@ -92,6 +90,39 @@ def solve_screw(
         if forces[0] == forces[1]
         else solve_sides(screw, lubricant, point, settings, forces[1], near[2:])
     )
+    return _balanced(screw, point, loaded, relieved)
+
+
+def rebalance_screw(
+    screw: Screw, lubricant: Lubricant, point: OperatingPoint, found: ScrewSolution
+) -> ScrewSolution:
+    """
+    Balance the balls anew on the contacts of `found`: faster than a solve by far.
+
+    For another asperity friction or parasitic torque, which no contact knows of, this is what a
+    solve gives. Another oil or speed must keep the product of viscosity and speed, which pressure
+    and film follow, nearly. The load must be the one solved.
+
+    """
+    fluid = fluid_at(lubricant, point.temperature)
+    loaded, relieved = (
+        tuple(
+            (contact.smooth, replace(contact.rough, lubricant=fluid))
+            for contact in contacts
+            if contact.smooth is not None and contact.rough is not None
+        )
+        for contacts in (found.contacts[:2], found.contacts[2:])
+    )
+    return _balanced(screw, point, loaded, relieved)
+
+
+def _balanced(
+    screw: Screw, point: OperatingPoint, loaded: tuple[Pair, ...], relieved: tuple[Pair, ...]
+) -> ScrewSolution:
+    """Balance the balls of both nuts between their solved contacts and add up."""
+    forces = _forces(screw, point)
+    ahead: Flank = 1 if point.opposing_load >= 0 else -1
+    behind: Flank = -1 if point.opposing_load >= 0 else 1
     nuts = (
         make_nut(screw, point, 'loaded', forces[0], ahead, loaded),
         make_nut(screw, point, 'relieved', forces[1], behind, relieved),
