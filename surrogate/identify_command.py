@@ -60,7 +60,12 @@ def add_identify_command(subparsers: Any, read_bag: BagReader | None = None) -> 
         default=[],
         help='identify this, too; may be repeated',
     )
-    parser.add_argument('--tier', choices=('closed_form', 'full'), default='closed_form')
+    parser.add_argument(
+        '--tier',
+        choices=('closed_form', 'full'),
+        default='closed_form',
+        help='model of the contacts, that of whoever uses the result (default %(default)s)',
+    )
     parser.add_argument(
         '--loss',
         choices=('linear', 'soft_l1'),

@@ -55,6 +55,7 @@ def identification_record(
         'temperature_K': run.mean_temperature,
         'parameters': [_estimate_record(one) for one in found.estimates],
         'correlation': {'of': list(found.correlated), 'matrix': found.correlation.tolist()},
+        'offset_force_N': found.value('torque_offset') * 2 * math.pi / screw.lead,
         'residual_rms_Nm': found.rms,
         'residual_rms_before_Nm': found.rms_before,
         'degrees_of_freedom': found.degrees_of_freedom,
@@ -93,6 +94,11 @@ def _warnings(
 ) -> list[str]:
     """Return a sentence for each thing that makes the numbers say less than they seem to."""
     warnings = [f'{one.name}: {one.reason}' for one in found.estimates if one.reason]
+    if not run.both_directions:
+        warnings.append(
+            'one direction only: a weight on the axis or a wrong zero of the torque counts as '
+            'parasitic torque'
+        )
     bounded = [
         one.name for one in found.estimates if one.reason.startswith('at its lower bound 0')
     ]
@@ -192,6 +198,7 @@ def page(record: Mapping[str, Any]) -> str:
             f'{record["points"]} points of {record["data"]}, {low:.4g} to {high:.4g} rev/min, '
             f'{record["temperature_K"] - ZERO_CELSIUS:.4g} degC',
             *(f'  {_row(one)}' for one in record['parameters']),
+            *_offset_row(record),
             f'  {"residual, rms":22} {record["residual_rms_Nm"]:.4g} N m, '
             f'{record["residual_rms_before_Nm"]:.4g} N m with the datasheet',
             f'  {"contacts":22} {least:.0f} to {most:.0f} % of the friction torque; catalogue '
@@ -201,6 +208,13 @@ def page(record: Mapping[str, Any]) -> str:
             *(f'  warning: {text}' for text in record['warnings']),
         ]
     )
+
+
+def _offset_row(record: Mapping[str, Any]) -> list[str]:
+    force = record['offset_force_N']
+    if math.isnan(force):
+        return []
+    return [f'  {"offset as a load":22} {force:.3g} N, a weight on the axis for instance']
 
 
 def _row(one: Mapping[str, Any]) -> str:

@@ -209,11 +209,22 @@ def test_the_record_is_whole_and_warns():
     assert 'points have an asperity share above 0.1' in text
     assert 'the residual is ' in text
     assert 'the load is up to 300 N' in text
+    assert 'one direction only' in text
+    assert math.isnan(record['offset_force_N'])
     assert 'parasitic_torque_rate and viscosity_factor are correlated by -0.9' in text
     low, high = record['contact_share_range']
     assert 0 < low < high < 1
     assert 'parasitic_torque_rate' in page(record)
     assert [one['unit'] for one in record['parameters']] == ['N m', 'N m s/rad', '-']
+
+
+def test_the_offset_is_told_as_a_load():
+    """0.03 N m on a lead of 10 mm are 18.8 N; nothing is said of one direction."""
+    run, contacts = recording(BOTH, offset=OFFSET)
+    record = identification_record(SCREW, run, contacts, identify(SCREW, run, contacts))
+    assert record['offset_force_N'] == pytest.approx(18.85, abs=0.01)
+    assert 'offset as a load       18.8 N' in page(record)
+    assert not [text for text in record['warnings'] if 'one direction' in text]
 
 
 def test_identified_sheets_hold_what_was_found_and_say_from_where():
