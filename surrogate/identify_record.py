@@ -99,15 +99,7 @@ def _warnings(
             'one direction only: a weight on the axis or a wrong zero of the torque counts as '
             'parasitic torque'
         )
-    bounded = [
-        one.name for one in found.estimates if one.reason.startswith('at its lower bound 0')
-    ]
-    if bounded:
-        warnings.append(
-            f'the contacts of the model take more torque than was measured: check oil, '
-            f'temperature, preload and the sign of the torque, or use the other tier than '
-            f'{contacts.tier}'
-        )
+    warnings += _at_zero(contacts, found)
     touching = int((contacts.asperity_share > CLOSED_FORM_SHARE).sum())
     if touching and contacts.tier == closed_form.TIER:
         warnings.append(
@@ -127,6 +119,16 @@ def _warnings(
             'model misses under load counts as parasitic'
         )
     return warnings + _entangled(found)
+
+
+def _at_zero(contacts: ContactModel, found: Identification) -> list[str]:
+    """Return what it means that a parasitic part met its bound."""
+    hint = f'check oil, temperature, preload and the sign of the torque, tier {contacts.tier}'
+    if found.value('parasitic_torque') == 0:
+        return [f'the contacts of the model take more torque than was measured: {hint}']
+    if found.value('parasitic_torque_rate') == 0:
+        return [f'the torque measured rises less with speed than that of the contacts: {hint}']
+    return []
 
 
 def _entangled(found: Identification) -> list[str]:
