@@ -80,7 +80,7 @@ def _parser() -> argparse.ArgumentParser:
         subparsers.add_parser('replay', help='judge a bag without DDS, faster than real time')
     )
     _add_play(subparsers.add_parser('play', help='play a bag over DDS, with /clock'))
-    add_commands(subparsers)
+    add_commands(subparsers, _read_bag)
     return parser
 
 
@@ -182,6 +182,31 @@ def _print_summary(axis: str, result: Any) -> None:
         return
     print(f'axis {axis}: {result.judged} speed samples judged')
     print('\n'.join(f'  {line}' for line in result.lines()))
+
+
+def _read_bag(args: argparse.Namespace, lead: float) -> tuple[dict[str, Any], tuple[str, ...]]:
+    """Return torque over speed out of a bag, for `identify`; the lead of the screw [m]."""
+    from ballscrew_monitor import no_load_bag
+    from ballscrew_monitor.bag import Bag
+    from ballscrew_monitor.inputs import Source
+
+    for name in ('speed_topic', 'speed_field', 'torque_field'):
+        if getattr(args, name) is None:
+            raise InputError(f'--{name.replace("_", "-")} is missing, a bag needs it')
+    scale = 1.0 if args.torque_scale is None else args.torque_scale
+    channels = {
+        Source.SPEED: no_load_bag.speed_channel(
+            args.speed_topic, args.speed_field, args.speed_unit or 'rad/s', lead
+        ),
+        Source.TORQUE: no_load_bag.torque_channel(
+            args.torque_topic or args.speed_topic, args.torque_field, scale
+        ),
+    }
+    if args.temperature_topic:
+        channels[Source.TEMPERATURE] = no_load_bag.temperature_channel(
+            args.temperature_topic, args.temperature_field or 'temperature'
+        )
+    return no_load_bag.read_no_load(Bag(args.data), channels)
 
 
 def _play(args: argparse.Namespace) -> int:

@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Offline subcommands: `point`, `contact` and `surface build|info|check`."""
+"""Offline subcommands: `point`, `contact`, `identify` and `surface build|info|check`."""
 
 import argparse
 import json
@@ -12,6 +12,7 @@ import time
 from typing import Any
 
 from surrogate.contact_command import add_contact_command
+from surrogate.identify_command import add_identify_command, BagReader
 from surrogate.parameters import (
     InputError,
     load_lubricant,
@@ -34,10 +35,16 @@ UNITS = {'friction_torque': 'N m', 'central_film': 'm', 'minimum_film': 'm', 'ma
 """Units of the fields that have one."""
 
 
-def add_commands(subparsers: Any) -> None:
-    """Add the offline subcommands; each sets `handler`, which takes the arguments."""
+def add_commands(subparsers: Any, read_bag: BagReader | None = None) -> None:
+    """
+    Add the offline subcommands; each sets `handler`, which takes the arguments.
+
+    `read_bag` is what `identify` reads a bag with.
+
+    """
     add_point_command(subparsers)
     add_contact_command(subparsers)
+    add_identify_command(subparsers, read_bag)
     surface = subparsers.add_parser('surface', help='build, describe or check a surface file')
     actions = surface.add_subparsers(required=True, metavar='build|info|check')
     _add_build(actions.add_parser('build', help='build a surface file'))

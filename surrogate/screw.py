@@ -15,9 +15,9 @@ from surrogate.ball_motion import Flank
 from surrogate.ehl import ContactSolution
 from surrogate.kinematics import no_slip_rates
 from surrogate.load_sharing import normal_force, nut_forces
-from surrogate.nut import load_change, Nut, ScrewContact, solve_nut
+from surrogate.nut import load_change, make_nut, Nut, ScrewContact, solve_nut
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
-from surrogate.screw_contacts import ScrewSettings, smooth_film, solve_sides
+from surrogate.screw_contacts import fluid_at, ScrewSettings, smooth_film, solve_sides
 from surrogate.torque import driving_torque, efficiency, is_back_driving
 
 TIER = 'full'
@@ -84,8 +84,6 @@ def solve_screw(
     """
     settings = settings or ScrewSettings()
     forces = _forces(screw, point)
-    ahead: Flank = 1 if point.opposing_load >= 0 else -1
-    behind: Flank = -1 if point.opposing_load >= 0 else 1
     near = [(found.smooth, found.rough) for found in start.contacts] if start else []
     given = (screw, lubricant, point, settings)
     loads = [float(normal_force(screw, force)) for force in forces]
@@ -93,11 +91,45 @@ def solve_screw(
     relieved = loaded
     if forces[0] != forces[1]:
         relieved = solve_sides(*given, (loads[1], loads[1]), near[2:])
+    ahead, behind = _flanks(point)
     nuts = (
         solve_nut(*given, 'loaded', forces[0], ahead, loaded),
         solve_nut(*given, 'relieved', forces[1], behind, relieved),
     )
     return _combine(screw, point, nuts)
+
+
+def rebalance_screw(
+    screw: Screw, lubricant: Lubricant, point: OperatingPoint, found: ScrewSolution
+) -> ScrewSolution:
+    """
+    Balance the balls anew on the contacts of `found`: faster than a solve by far.
+
+    For another asperity friction or parasitic torque, which no contact knows of, this is what a
+    solve gives. Another oil or speed must keep the product of viscosity and speed, which pressure
+    and film follow, nearly. The load must be the one solved.
+
+    """
+    fluid = fluid_at(lubricant, point.temperature)
+    loaded, relieved = (
+        tuple(
+            (contact.smooth, replace(contact.rough, lubricant=fluid))
+            for contact in contacts
+            if contact.smooth is not None and contact.rough is not None
+        )
+        for contacts in (found.contacts[:2], found.contacts[2:])
+    )
+    forces, (ahead, behind) = _forces(screw, point), _flanks(point)
+    nuts = (
+        make_nut(screw, point, 'loaded', forces[0], ahead, loaded),
+        make_nut(screw, point, 'relieved', forces[1], behind, relieved),
+    )
+    return _combine(screw, point, nuts)
+
+
+def _flanks(point: OperatingPoint) -> tuple[Flank, Flank]:
+    """Return the flanks of the loaded and of the relieved nut that carry."""
+    return (1, -1) if point.opposing_load >= 0 else (-1, 1)
 
 
 def _forces(screw: Screw, point: OperatingPoint) -> tuple[float, float]:

@@ -100,7 +100,7 @@ def _solve_side(
     if settings.inlet_heating:
         speed = heated_speed(screw, lubricant, side, load, speed, point.temperature)
     condition = Condition(load=load, entrainment_speed=speed)
-    fluid = _fluid(lubricant, point.temperature)
+    fluid = fluid_at(lubricant, point.temperature)
     smooth = solve_contact(
         contact,
         fluid,
@@ -131,7 +131,7 @@ def _solve_side(
     return smooth, rough
 
 
-def _fluid(lubricant: Lubricant, temperature: float) -> ContactLubricant:
+def fluid_at(lubricant: Lubricant, temperature: float) -> ContactLubricant:
     """Return the oil at a temperature [K]; InputError where it is no liquid any more."""
     oil = lubricant_state(lubricant, temperature)
     try:

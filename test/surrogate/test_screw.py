@@ -7,9 +7,10 @@ import math
 
 import pytest
 from surrogate import closed_form
+from surrogate.drag_model import thickened
 from surrogate.ehl import Settings
 from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
-from surrogate.screw import solve_screw
+from surrogate.screw import rebalance_screw, solve_screw
 from surrogate.screw_contacts import raceway_patch, ScrewSettings
 
 SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
@@ -165,3 +166,42 @@ def test_waves_off_the_grid_raise_the_floor_of_the_datasheet():
     assert all(1e-10 < floor - SCREW.roughness.film_floor < 3e-9 for floor in floors)
     whole = at(60, 500.0, replace(ROUGH, grid_wavelength=None))
     assert whole.contacts[0].rough.settings.film_floor == SCREW.roughness.film_floor
+
+
+def test_balls_are_balanced_anew_on_solved_contacts():
+    """The same point gives the same; another friction what a fresh solve gives."""
+    found = at(5, 500.0, ROUGH)
+    point = OperatingPoint(speed=5 * math.pi / 30, load=500.0, temperature=WARM)
+    again = rebalance_screw(SCREW, OIL, point, found)
+    assert again.friction_torque == found.friction_torque
+    assert again.rcs == found.rcs
+    rough = replace(SCREW, roughness=replace(SCREW.roughness, asperity_friction=0.15))
+    balanced = rebalance_screw(rough, OIL, point, found)
+    fresh = at(5, 500.0, ROUGH, screw=rough)
+    assert balanced.friction_torque == pytest.approx(fresh.friction_torque, rel=1e-9)
+    assert balanced.energy_error < 1e-8
+    assert balanced.friction_torque > 1.2 * found.friction_torque
+
+
+def test_another_oil_at_the_same_viscosity_times_speed_shears_on_the_same_film():
+    """Half the speed and twice the viscosity: within 1 % of contacts solved there."""
+    found = at(600, 0.0)
+    thick = thickened(OIL, 2.0)
+    point = OperatingPoint(speed=300 * math.pi / 30, load=0.0, temperature=WARM)
+    fresh = solve_screw(SCREW, thick, point, settings=SMOOTH)
+    balanced = rebalance_screw(SCREW, thick, point, found)
+    assert balanced.friction_torque == pytest.approx(fresh.friction_torque, rel=0.01)
+    assert found.friction_torque != pytest.approx(fresh.friction_torque, rel=0.01)
+
+
+def test_a_balance_needs_solved_contacts():
+    """None in a nut without load, and a sentence where a contact has failed."""
+    idle = at(600, 3.0 * SCREW.preload)
+    point = OperatingPoint(speed=600 * math.pi / 30, load=3.0 * SCREW.preload, temperature=WARM)
+    again = rebalance_screw(SCREW, OIL, point, idle)
+    assert again.friction_torque == idle.friction_torque
+    settings = ScrewSettings(smooth=Settings(newton_limit=1), draw=None)
+    failed = at(600, 3.0 * SCREW.preload, settings)
+    again = rebalance_screw(SCREW, OIL, point, failed)
+    assert not again.converged
+    assert again.status.startswith('loaded nut, screw, smooth contact: ')

@@ -1,0 +1,164 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The identify command as a user types it."""
+
+import argparse
+import json
+import math
+import sys
+
+import numpy as np
+import pytest
+from surrogate import closed_form
+from surrogate.cli import add_commands
+from surrogate.identify_command import Progress
+from surrogate.parameters import InputError, load_lubricant, load_screw
+
+SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
+RPM = np.array([60, 100, 200, 400, 800, 1600, -60, -200, -800, -1600])
+ROWS = RPM * math.pi / 30
+TORQUE = np.sign(ROWS) * (
+    np.asarray(closed_form.solve(SCREW, OIL, np.abs(ROWS), 0.0, 313.15).friction_torque) + 0.12
+)
+TORQUE = TORQUE + 4e-4 * ROWS + 0.03
+
+
+def run(*words, read_bag=None):
+    """Run one command line and return its exit code."""
+    parser = argparse.ArgumentParser()
+    add_commands(parser.add_subparsers(required=True), read_bag)
+    args = parser.parse_args(['identify', *(str(word) for word in words)])
+    return args.handler(args)
+
+
+@pytest.fixture
+def data(tmp_path):
+    """Return the path of a clean synthetic recording."""
+    path = tmp_path / 'drag.csv'
+    rows = ''.join(f'{rpm},{torque:.12f}\n' for rpm, torque in zip(RPM, TORQUE, strict=True))
+    path.write_text('speed_rpm,torque_Nm\n' + rows, encoding='utf-8')
+    return path
+
+
+def test_json_is_strict_and_whole(capsys, data):
+    """Values, intervals and residual in SI units."""
+    assert run(data, '--json') == 0
+    record = json.loads(capsys.readouterr().out)
+    values = {one['name']: one['value'] for one in record['parameters']}
+    assert values == pytest.approx(
+        {'parasitic_torque': 0.12, 'parasitic_torque_rate': 4e-4, 'torque_offset': 0.03}, abs=1e-9
+    )
+    assert record['points'] == 10
+    assert record['temperature_K'] == pytest.approx(313.15)
+    assert record['data'] == 'drag.csv'
+
+
+def test_the_written_sheet_gives_the_measured_torque(capsys, data, tmp_path):
+    """`point` with the written sheets prints the torque along the motion without the offset."""
+    sheet = tmp_path / 'deep' / 'found.yaml'
+    assert run(data, '--out', sheet, '--fit', 'viscosity', '--temperature-degC', 35) == 0
+    assert '95 %' in capsys.readouterr().out
+    screw = load_screw(str(sheet))
+    oil = load_lubricant(str(sheet.with_name('found_oil.yaml')))
+    kelvin = oil.reference_temperature
+    assert kelvin == pytest.approx(308.15)
+    found = closed_form.solve(screw, oil, np.abs(ROWS), 0.0, kelvin).friction_torque
+    np.testing.assert_allclose(found, np.sign(ROWS) * (TORQUE - 0.03), rtol=5e-3)
+    assert 'Parasitic torque identified from drag.csv: 10 points' in screw.source
+    assert str(tmp_path) not in sheet.read_text(encoding='utf-8')
+    assert screw.name == 'nominal_identified'
+
+
+def test_only_the_screw_is_written_where_the_oil_is_not_fitted(data, tmp_path):
+    """And nothing at all without --out."""
+    assert run(data) == 0
+    assert [path.name for path in tmp_path.iterdir()] == ['drag.csv']
+    assert run(data, '--out', tmp_path / 'found.yaml') == 0
+    assert sorted(path.name for path in tmp_path.iterdir()) == ['drag.csv', 'found.yaml']
+
+
+def test_the_full_tier_is_asked_for_by_name(data, monkeypatch):
+    """It hands on what is fitted, and whom to tell."""
+    asked = []
+
+    def model(screw, lubricant, points, fitted, *, progress):
+        from surrogate.drag_model import closed_form_model
+
+        asked.append((fitted, type(progress)))
+        return closed_form_model(screw, lubricant, points)
+
+    monkeypatch.setattr('surrogate.drag_table.solved_model', model)
+    words = ('--fit', 'viscosity', '--fit', 'asperity_friction', '--fit', 'viscosity')
+    assert run(data, '--tier', 'full', *words) == 0
+    assert asked == [(('viscosity_factor', 'asperity_friction'), Progress)]
+
+
+def test_a_fit_that_did_not_converge_exits_with_1(data, monkeypatch, capsys):
+    """The record says so, too."""
+    from scipy.optimize import least_squares
+
+    monkeypatch.setattr(
+        'surrogate.identify.least_squares',
+        lambda *given, **options: least_squares(*given, **options, max_nfev=1),
+    )
+    assert run(data, '--fit', 'viscosity', '--json') == 1
+    record = json.loads(capsys.readouterr().out)
+    assert record['converged'] is False
+    assert record['status'] == 'the fit ended before it converged'
+
+
+def test_options_that_mean_nothing_are_refused(data, tmp_path):
+    """Bag options for a CSV, and the other way round; a temperature that stands twice."""
+    with pytest.raises(InputError, match='--speed-topic has no meaning here: .* is a CSV'):
+        run(data, '--speed-topic', 'joint_states')
+    with pytest.raises(InputError, match='--torque-column has no meaning here: .* is a bag'):
+        run(tmp_path, '--torque-column', 'torque_Nm')
+    with pytest.raises(InputError, match='is a bag, which only the command ballscrew reads'):
+        run(tmp_path)
+    text = data.read_text(encoding='utf-8').replace('\n', ',40\n')
+    data.write_text(text.replace('torque_Nm,40', 'torque_Nm,temperature_degC'), encoding='utf-8')
+    with pytest.raises(InputError, match='holds the temperature too: allowed is one of both'):
+        run(data, '--temperature-degC', 40)
+    assert run(data) == 0
+
+
+def test_a_bag_is_read_by_who_can(tmp_path, capsys):
+    """The arguments and the lead go out, columns and notes come back."""
+    seen = []
+
+    def reader(args, lead):
+        seen.append((args.data, args.speed_topic, lead))
+        return {'speed': ROWS, 'torque': TORQUE}, ('half of it was steady',)
+
+    assert run(tmp_path, '--speed-topic', 'joint_states', read_bag=reader) == 0
+    assert seen == [(tmp_path, 'joint_states', SCREW.lead)]
+    assert 'note: half of it was steady' in capsys.readouterr().out
+
+
+def test_a_picture(data, tmp_path, monkeypatch):
+    """One file, nothing half-written; without matplotlib or a place for it one sentence."""
+    pytest.importorskip('matplotlib')
+    folder = tmp_path / 'deep' / 'plots'
+    assert run(data, '--plot', folder) == 0
+    assert [path.name for path in folder.iterdir()] == ['identify.png']
+    with pytest.raises(InputError, match='--plot: .*drag.csv cannot be written'):
+        run(data, '--plot', data)
+    monkeypatch.setitem(sys.modules, 'surrogate.figures_identify', None)
+    with pytest.raises(InputError, match='--plot needs matplotlib: install the extra `plot`'):
+        run(data, '--plot', folder)
+
+
+def test_progress_speaks_to_a_terminal_only(monkeypatch, capsys):
+    """Bar, rate and time left, by a clock that is given."""
+    now = [100.0]
+    progress = Progress(clock=lambda: now[0])
+    progress(0, 4)
+    assert capsys.readouterr().err == ''
+    monkeypatch.setattr(sys.stderr, 'isatty', lambda: True)
+    progress(0, 4)
+    now[0] = 106.0
+    progress(2, 4)
+    progress(4, 4)
+    err = capsys.readouterr().err
+    assert '2/4 speeds solved, 3.0 s each, 6 s left' in err
+    assert err.endswith('\n')
