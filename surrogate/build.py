@@ -80,7 +80,7 @@ def build_closed_form(
     Raises InputError for a range that is reversed, empty or leaves the oil's datasheet.
 
     """
-    _check(settings, lubricant)
+    check_ranges(settings, lubricant)
     started = time.perf_counter()
     load, breaks = load_nodes(screw, settings)
     temperature = temperature_nodes(screw, lubricant, settings)
@@ -93,7 +93,7 @@ def build_closed_form(
         screw, lubricant, s, load, temperature, log_onset, lambda done: progress(done, total)
     )
     data = SurfaceData(
-        header=_header(screw, lubricant, settings, breaks),
+        header=surface_header(screw, lubricant, settings, breaks, closed_form.TIER),
         speed_coordinate=s,
         load=load,
         temperature=temperature,
@@ -148,9 +148,16 @@ def onset_speed(
     screw: Screw, lubricant: Lubricant, load: Array, temperature: Array, rcs: float
 ) -> Array:
     """Return the speed [rad/s] at which the worst contact reaches `rcs`; arguments broadcast."""
+    target = film_ratio_at_share_aihara_1987(rcs)
+    return speed_at_film_ratio(screw, lubricant, load, temperature, target)
+
+
+def speed_at_film_ratio(
+    screw: Screw, lubricant: Lubricant, load: Array, temperature: Array, target: float
+) -> Array:
+    """Return the speed [rad/s] of a film ratio [-] by formula; arguments broadcast."""
     load, temperature = np.broadcast_arrays(load, temperature)
     ratio = closed_form.solve(screw, lubricant, 1.0, load, temperature).film_ratio
-    target = film_ratio_at_share_aihara_1987(rcs)
     speed = (target / ratio) ** (1 / FILM_SPEED_EXPONENT)
     # Without any load there is no contact and no onset; the node itself is masked.
     return np.asarray(np.where(np.isfinite(speed), speed, np.nanmedian(speed)))
@@ -218,7 +225,8 @@ def _unmeasured(axes: tuple[Array, ...]) -> dict[str, Array]:
     return {name: np.full([len(axis) - 1 for axis in axes], np.nan) for name in FIELDS}
 
 
-def _check(settings: SurfaceSettings, lubricant: Lubricant) -> None:
+def check_ranges(settings: SurfaceSettings, lubricant: Lubricant) -> None:
+    """Raise InputError for a range that is reversed, empty or leaves the oil's datasheet."""
     for name, unit, (low, high) in (
         ('speed range', 'rad/s', settings.speed_range),
         ('load range', 'N', settings.load_range),
@@ -241,14 +249,14 @@ def _check(settings: SurfaceSettings, lubricant: Lubricant) -> None:
         )
 
 
-def _header(
-    screw: Screw, lubricant: Lubricant, settings: SurfaceSettings, breaks: list[float]
+def surface_header(
+    screw: Screw, lubricant: Lubricant, settings: SurfaceSettings, breaks: list[float], tier: str
 ) -> dict[str, Any]:
     """Return the hashed part of the header, in plain JSON types."""
     return {
         'format': FORMAT,
         'format_version': FORMAT_VERSION,
-        'tier': closed_form.TIER,
+        'tier': tier,
         'inputs': {'screw': asdict(screw), 'lubricant': asdict(lubricant)},
         'settings': {
             name: list(value) if isinstance(value, tuple) else value

@@ -1,0 +1,53 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What a full-tier surface covers, how fine it is, and how its work is handed out."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+import math
+from typing import Any
+
+from surrogate.build import SurfaceSettings
+from surrogate.columns import Results
+from surrogate.parameters import Screw
+from surrogate.speed_nodes import Target
+
+Run = Callable[[str, Mapping[str, Mapping[str, Any]]], Results]
+"""Solves named chains: takes what they are for, returns their results, None for a failure."""
+EFFICIENCY, RCS, RCS_RELATIVE = 0.003, 0.003, 0.05
+"""Errors aimed at with accuracy 1 [-]."""
+LEAST_JUDGED, LEAST_IN_RATINGS = 0.25, 0.01
+"""Least load whose efficiency is judged, in preloads, or of a free screw in ratings [-]."""
+NEAR_ONSET = (-1.0, 0.7)
+"""Speed coordinates between which contact sets in [-]."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class FullSettings(SurfaceSettings):
+    """
+    Ranges and nodes of a full-tier surface.
+
+    As for formulas, but `speed_nodes` is the most there may be; draws of the roughness from 0,
+    number of held-out points and the seed that draws them, accuracy aimed at as a multiple of
+    0.003 in efficiency and of 0.003 or, above RCS 0.05, 5 % in RCS [-].
+
+    """
+
+    speed_nodes: int = 16
+    load_cells: int = 4
+    unloaded_cells: int = 1
+    temperature_nodes: int = 4
+    draws: int = 8
+    held_out: int = 12
+    seed: int = 1
+    accuracy: float = 1.0
+
+
+def error_target(screw: Screw, settings: FullSettings) -> Target:
+    """Return the allowed errors; that of torque is of efficiency at the least judged load."""
+    least = LEAST_JUDGED * (screw.preload or LEAST_IN_RATINGS * screw.static_rating)
+    return Target(
+        torque=settings.accuracy * EFFICIENCY * least * screw.lead / (2 * math.pi),
+        rcs=settings.accuracy * RCS,
+        rcs_relative=settings.accuracy * RCS_RELATIVE,
+    )

@@ -1,0 +1,78 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Nodes of one axis where the interpolation needs them, found by halving intervals that fail."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import PchipInterpolator
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Sample:
+    """Friction torque [N m] and RCS [-] at one place of the axis."""
+
+    torque: float
+    rcs: float
+
+
+@dataclass(frozen=True, slots=True)
+class Target:
+    """Allowed errors: of torque [N m], of RCS [-] absolute, and relative where that is more."""
+
+    torque: float
+    rcs: float
+    rcs_relative: float
+
+    def worst(self, found: Sample, wanted: Sample) -> float:
+        """Return the largest error of an interpolated sample over the allowed one [-]."""
+        allowed = max(self.rcs, self.rcs_relative * wanted.rcs)
+        return max(
+            abs(found.torque - wanted.torque) / self.torque, abs(found.rcs - wanted.rcs) / allowed
+        )
+
+
+def refine_nodes(
+    first: Array, solve: Callable[[Array], dict[float, Sample]], target: Target, most: int
+) -> tuple[Array, float]:
+    """
+    Halve the intervals of an axis until their middles are met, or `most` nodes are used.
+
+    `solve` returns samples at places. Returns the nodes and the largest error over the allowed one
+    that was seen at a middle which did not become a node; NaN where none was tried.
+
+    """
+    known = solve(np.asarray(first))
+    nodes, left = sorted(known), float('nan')
+    pending = list(zip(nodes, nodes[1:]))
+    while pending:
+        middles = solve(np.array([0.5 * (low + high) for low, high in pending]))
+        guessed = {place: interpolate(known, place) for place in middles}
+        wrong = {place: target.worst(guessed[place], middles[place]) for place in middles}
+        worst_first = sorted(middles, key=lambda place: -wrong[place])
+        room = most - len(known)
+        taken = [place for place in worst_first if not wrong[place] <= 1][:room]
+        left = max([wrong[place] for place in middles if place not in taken], default=left)
+        known |= {place: middles[place] for place in taken}
+        pending = [
+            half
+            for low, high in pending
+            for middle in [0.5 * (low + high)]
+            if middle in taken
+            for half in ((low, middle), (middle, high))
+        ]
+    return np.array(sorted(known)), left
+
+
+def interpolate(known: dict[float, Sample], place: float) -> Sample:
+    """Return a sample between others by the monotone cubic of a surface, along one axis."""
+    places = sorted(known)
+    torque, rcs = (
+        float(PchipInterpolator(places, [getattr(known[p], name) for p in places])(place))
+        for name in ('torque', 'rcs')
+    )
+    return Sample(torque, rcs)
