@@ -4,9 +4,10 @@
 Solve the nominal screw in the full tier over speed; time it, and draw its torque and RCS.
 
 Run `python bench/screw.py [--load N] [--out DIR]`: ISO VG 68 at 40 degC, one draw of the roughness
-with waves down to 20.6 um. Prints friction torque and its parts, film ratio, RCS, the energy
-error, the change of normal forces by friction, and processor time of each point: from cold, from
-the solution at a speed 10 % lower, and that of the balance of one ball in it.
+with waves down to 20.6 um. Prints friction torque and its parts, the torque of smooth raceways,
+film ratio, RCS, the energy error, the difference of normal forces between contacts and balance,
+and processor time of each point: from cold, from the solution at a speed 10 % lower, and that of
+the balance of one ball in it.
 
 """
 
@@ -21,6 +22,7 @@ from surrogate.load_sharing import nut_forces
 from surrogate.nut import balance_nut
 from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
 from surrogate.screw import solve_screw
+from surrogate.screw_contacts import ScrewSettings
 
 SPEEDS = (0.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 600.0, 1000.0)
 """Screw speeds [rev/min]."""
@@ -31,11 +33,12 @@ def solve_all(load):
     screw, oil = load_screw('nominal'), load_lubricant('iso_vg_68')
     rows = []
     print(
-        'rev/min  torque  sliding  rolling   [N m]  Lambda     RCS   energy   dQ/Q   '
+        'rev/min  torque  sliding  rolling  smooth [N m]  Lambda     RCS   energy   dQ/Q   '
         'cold s  warm s  balance ms'
     )
     for rpm in SPEEDS:
         point = OperatingPoint(speed=rpm * math.pi / 30, load=load, temperature=313.15)
+        smooth = solve_screw(screw, oil, point, settings=ScrewSettings(draw=None))
         cold, found = timed(lambda point=point: solve_screw(screw, oil, point))
         near = solve_screw(screw, oil, replace(point, speed=0.9 * point.speed))
         warm, _ = timed(lambda point=point, near=near: solve_screw(screw, oil, point, start=near))
@@ -44,8 +47,8 @@ def solve_all(load):
         rows.append((rpm, found.friction_torque, rolling, found.film_ratio, found.rcs))
         print(
             f'{rpm:7.0f} {found.friction_torque:8.4f} {found.friction_torque - rolling:8.4f} '
-            f'{rolling:8.4f}        {found.film_ratio:7.3f} {found.rcs:8.5f} '
-            f'{found.energy_error:7.0e} {found.load_change:7.4f} '
+            f'{rolling:8.4f} {smooth.friction_torque:8.4f}      {found.film_ratio:7.3f} '
+            f'{found.rcs:8.5f} {found.energy_error:7.0e} {found.load_change:7.4f} '
             f'{cold:7.2f} {warm:7.2f} {1e3 * balance:8.0f}',
             flush=True,
         )
