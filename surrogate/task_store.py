@@ -88,7 +88,7 @@ class TaskStore:
         """
         self.path = store_path(out)
         self.dropped = 0
-        self._out, self._work = out, work
+        self.work, self._out = work, out
         self._results: dict[str, dict[str, Any]] = {}
         self._file = self._open()
         try:
@@ -150,7 +150,7 @@ class TaskStore:
         """Read what is whole and cut off a torn end; return the length that is kept."""
         with open(self.path, 'rb') as file:
             *lines, torn = file.read().split(b'\n')
-        head = _line({'format': FORMAT, 'version': FORMAT_VERSION, 'work': self._work})
+        head = _line({'format': FORMAT, 'version': FORMAT_VERSION, 'work': self.work})
         if not lines and head.startswith(torn):
             self._end = 0
             self._append(head)
@@ -178,7 +178,7 @@ class TaskStore:
             )
         raise SurfaceError(
             f'{self.path}: results of {head.get("work")}, format {head.get("version")}, this '
-            f'program makes {self._work}, format {FORMAT_VERSION}; '
+            f'program makes {self.work}, format {FORMAT_VERSION}; '
             f'`ballscrew surface clean {self._out}` removes them'
         )
 
