@@ -187,3 +187,8 @@ def extend_patch_weights(p: Weights, patch: list[float]) -> list[float]:
         b * l3,
         b * t3,
     ]
+
+
+def trilinear_weights(u: float, v: float, w: float) -> list[float]:
+    """Return the weights of the eight corners of a cell, the last fraction running fastest."""
+    return [a * b * c for a in (1.0 - u, u) for b in (1.0 - v, v) for c in (1.0 - w, w)]

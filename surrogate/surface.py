@@ -11,29 +11,39 @@ keeps the kinks at zero load and at the unloading load. Needs numpy only and nev
 
 from bisect import bisect_right
 from collections.abc import Mapping
+import copy
 import math
 from operator import mul
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from surrogate import surface_file
 from surrogate.hermite import (
-    Array,
     extend_patch_weights,
     first_rows,
     hermite_weights,
     patch_table,
     patch_weights,
+    trilinear_weights,
+)
+from surrogate.surface_correction import (
+    corrected_hash,
+    Correction,
+    make_correction,
+    Point,
+    solved_values,
 )
 from surrogate.surface_file import SurfaceData, SurfaceError
-from surrogate.surface_point import FIELDS, LOGARITHMIC, SurfacePoint, Validity
+from surrogate.surface_point import FIELDS, NO_SPREADS, SurfacePoint, Validity
+from surrogate.surface_tables import open_cells, spread_table, summary, transform
 
 __all__ = ['FIELDS', 'shipped_surface', 'Surface', 'SurfaceError', 'SurfacePoint', 'Validity']
 
 Place = tuple[int, float, float]
 """Cell, its width and the fraction of it at which a value lies."""
+Located = tuple[Place, Place, Place, list[float]]
+"""Places along speed, load and temperature, and the weights of the face of the last two."""
 ROUNDING = 1e-9
 """Largest error of a mapped speed [-]."""
 SHIPPED = Path(__file__).parent / 'data' / 'surfaces'
@@ -45,7 +55,8 @@ class Surface:
     def __init__(self, data: SurfaceData) -> None:
         """Tabulate values and slopes."""
         self.header: Mapping[str, Any] = data.header
-        self.sha256 = data.sha256
+        self.sha256 = self._uncorrected = data.sha256
+        self._pulls: dict[tuple[int, int, int], Correction] = {}
         self._axes = (data.speed_coordinate, data.load, data.temperature)
         self._lists = tuple(axis.tolist() for axis in self._axes)
         breaks = np.asarray(data.header['load_breaks'], dtype=float)
@@ -53,14 +64,15 @@ class Surface:
         self._rows = tuple(first_rows(axis, cut) for axis, cut in zip(self._axes, cuts))
         # Plain lists: a small table is read faster than an array is sliced.
         self._onset = patch_table(self._axes[1:], cuts[1:], data.log_onset).tolist()
-        values = np.stack([_transform(name, data.fields[name]) for name in FIELDS], axis=-1)
+        values = np.stack([transform(name, data.fields[name]) for name in FIELDS], axis=-1)
         self._table = patch_table(self._axes, cuts, values)
         self._speed_range = tuple(data.header['settings']['speed_range'])
         self._lead = float(data.header['inputs']['screw']['lead'])
         self._worst = data.worst_contact
-        self._open_cells = _open_cells(data.mask)
+        self._spreads = spread_table(data)
+        self._open_cells = open_cells(data.mask)
         self._errors = np.stack([data.errors[name] for name in ('friction_torque', 'rcs')], -1)
-        self.errors = {name: _summary(error) for name, error in data.errors.items()}
+        self.errors = {name: summary(error) for name, error in data.errors.items()}
 
     @classmethod
     def load(
@@ -128,7 +140,8 @@ class Surface:
     @property
     def cells(self) -> tuple[int, int, int]:
         """Return the number of cells along speed, load and temperature."""
-        return tuple(len(axis) - 1 for axis in self._lists)  # type: ignore[return-value]
+        s, load, temperature = (len(axis) - 1 for axis in self._lists)
+        return s, load, temperature
 
     @property
     def masked_cells(self) -> int:
@@ -150,26 +163,59 @@ class Surface:
         is NaN and `validity` says which limit was passed. A NaN argument is out of range.
 
         """
+        found = self._locate(speed, opposing_load, temperature)
+        if isinstance(found, Validity):
+            return self._empty(found, opposing_load)
+        return self._interpolate(*found, opposing_load)
+
+    @property
+    def corrections(self) -> tuple[Correction, ...]:
+        """Return the full solves that have pulled this surface, in the order of their cells."""
+        return tuple(self._pulls[cell] for cell in sorted(self._pulls))
+
+    def with_correction(self, point: Point, solution: object) -> 'Surface':
+        """
+        Return a surface that agrees with a full solve at `point`, and with this one elsewhere.
+
+        The point has a speed [rad/s], an opposing load [N] and a temperature [K]; of the solution
+        the attributes named in `FIELDS` are taken, those it lacks or that are NaN stay. Nothing
+        changes further away than `TRUST_RADIUS`, or outside the cell of the point; a correction
+        of the same cell is replaced. Raises SurfaceError for a solution that is not converged and
+        a point that is not covered or lies at the face of a cell.
+
+        """
+        values = solved_values(solution)
+        where = abs(point.speed), point.opposing_load, point.temperature
+        validity, found = self.lookup(*where).validity, self._locate(*where)
+        if isinstance(found, Validity) or validity is not Validity.VALID:
+            raise SurfaceError(f'no correction where the surface has no answer: {validity.name}')
+        cell, fractions = zip(*((place[0], place[2]) for place in found[:3]))
+        made = make_correction(point, cell, fractions, self._values(*found), values)
+        other = copy.copy(self)
+        other._pulls = {**self._pulls, cell: made}
+        other.sha256 = corrected_hash(self._uncorrected, other.corrections)
+        return other
+
+    def _locate(
+        self, speed: float, opposing_load: float, temperature: float
+    ) -> Located | Validity:
+        """Return where a point lies, or which limit it passes."""
         heat = self._place(2, temperature)
         if heat is None:
-            return self._empty(Validity.TEMPERATURE_OUT_OF_RANGE, opposing_load)
+            return Validity.TEMPERATURE_OUT_OF_RANGE
         load = self._place(1, opposing_load)
         if load is None:
-            return self._empty(Validity.LOAD_OUT_OF_RANGE, opposing_load)
+            return Validity.LOAD_OUT_OF_RANGE
         if not self._speed_range[0] <= speed <= self._speed_range[1]:
             fast = speed > self._speed_range[1]
-            return self._empty(
-                Validity.SPEED_ABOVE_RANGE if fast else Validity.SPEED_BELOW_RANGE, opposing_load
-            )
+            return Validity.SPEED_ABOVE_RANGE if fast else Validity.SPEED_BELOW_RANGE
         patch = self._patch(load, heat)
         s = math.log(speed) - self._log_onset(load, heat, patch)
-        fast = self._place_speed(s)
-        if fast is None:
+        place = self._place_speed(s)
+        if place is None:
             slow = s < self._lists[0][0]
-            return self._empty(
-                Validity.SPEED_BELOW_RANGE if slow else Validity.SPEED_ABOVE_RANGE, opposing_load
-            )
-        return self._interpolate(fast, load, heat, patch, opposing_load)
+            return Validity.SPEED_BELOW_RANGE if slow else Validity.SPEED_ABOVE_RANGE
+        return place, load, heat, patch
 
     def _place(self, axis: int, value: float) -> Place | None:
         """Return cell, width and fraction of `value`, or None outside."""
@@ -194,53 +240,52 @@ class Surface:
         low, high = self._onset[j], self._onset[j + 1]
         return sum(map(mul, patch, (*low[k], *low[k + 1], *high[k], *high[k + 1])))
 
+    def _values(self, fast: Place, load: Place, heat: Place, patch: list[float]) -> list[float]:
+        """Return the fields, transformed, without corrections."""
+        i, j, k = self._rows[0][fast[0]], self._rows[1][load[0]], self._rows[2][heat[0]]
+        # Bounds with names: the two formatters disagree about spaces beside the colon of sums.
+        x, y, z = i + 2, j + 2, k + 2
+        corners = self._table[i:x, j:y, k:z].reshape(32, -1)
+        weights = extend_patch_weights(hermite_weights(fast[1], fast[2]), patch)
+        values: list[float] = np.array(weights).dot(corners).tolist()
+        return values
+
     def _interpolate(
         self, fast: Place, load: Place, heat: Place, patch: list[float], opposing_load: float
     ) -> SurfacePoint:
         cell = fast[0], load[0], heat[0]
         if not self._open_cells[cell]:
             return self._empty(Validity.MASKED, opposing_load)
-        i, j, k = self._rows[0][cell[0]], self._rows[1][cell[1]], self._rows[2][cell[2]]
-        # Bounds with names: the two formatters disagree about spaces beside the colon of sums.
-        x, y, z = i + 2, j + 2, k + 2
-        corners = self._table[i:x, j:y, k:z].reshape(32, -1)
-        weights = extend_patch_weights(hermite_weights(fast[1], fast[2]), patch)
+        values = self._values(fast, load, heat, patch)
+        pull, corrected = self._pulls.get(cell), False
+        if pull is not None:
+            values, corrected = pull.apply(values, (fast[2], load[2], heat[2]))
         nearest = (cell[0] + (fast[2] > 0.5), cell[1] + (load[2] > 0.5), cell[2] + (heat[2] > 0.5))
         return SurfacePoint(
             validity=Validity.VALID,
             opposing_load=opposing_load,
             lead=self._lead,
-            values=np.array(weights).dot(corners).tolist(),
+            values=values,
             worst_contact=int(self._worst[nearest]),
             errors=self._errors[cell].tolist(),
+            spreads=NO_SPREADS if self._spreads is None else self._spread(fast, load, heat),
+            corrected=corrected,
         )
 
     def _empty(self, validity: Validity, opposing_load: float) -> SurfacePoint:
         return SurfacePoint(validity=validity, opposing_load=opposing_load, lead=self._lead)
 
-
-def _transform(name: str, values: Array) -> Array:
-    with np.errstate(divide='ignore', invalid='ignore'):
-        return np.log(values) if name in LOGARITHMIC else values
-
-
-def _open_cells(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Return the cells of which no corner is masked."""
-    good = ~mask
-    for axis in range(3):
-        low = [slice(None)] * 3
-        high = [slice(None)] * 3
-        low[axis], high[axis] = slice(None, -1), slice(1, None)
-        good = good[tuple(low)] & good[tuple(high)]
-    return good
-
-
-def _summary(error: Array) -> tuple[float, float]:
-    """Return the largest and the 95th percentile of the measured errors; NaN if none."""
-    known = error[np.isfinite(error)]
-    if not known.size:
-        return math.nan, math.nan
-    return float(known.max()), float(np.quantile(known, 0.95))
+    def _spread(self, fast: Place, load: Place, heat: Place) -> list[float]:
+        """Return what the draws leave uncertain, linear between the nodes: never below zero."""
+        assert self._spreads is not None
+        i, j, k = fast[0], load[0], heat[0]
+        x, y, z = i + 2, j + 2, k + 2
+        corners = self._spreads[i:x, j:y, k:z].reshape(8, -1)
+        weights = np.array(trilinear_weights(fast[2], load[2], heat[2]))
+        # A node that is not known has no part in a point where its weight is zero.
+        used = weights > 0
+        spread: list[float] = weights[used].dot(corners[used]).tolist()
+        return spread
 
 
 def shipped_surface(screw: str = 'nominal', oil: str = 'iso_vg_68') -> Path:

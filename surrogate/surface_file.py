@@ -1,33 +1,36 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-The surface file, format version 1: one self-describing .npz with a JSON header, never a pickle.
+The surface file: one self-describing .npz with a JSON header, never a pickle.
 
 The hash covers the header without its provenance and every array in name order, little-endian, C
-order. A file that does not verify is refused with one sentence.
+order. A file that does not verify is refused with one sentence. Version 2 is version 1 with what
+an ensemble of roughness draws leaves uncertain; both are read.
 
 """
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 import hashlib
+import io
 import json
 import math
-import os
 from pathlib import Path
-import tempfile
+import tokenize
 from typing import Any
 import zipfile
 import zlib
 
 import numpy as np
 from numpy.typing import NDArray
+from surrogate.atomic_file import replace_file
 from surrogate.surface_point import FIELDS
 
 Array = NDArray[np.float64]
 
 FORMAT = 'ballscrew_surface'
-FORMAT_VERSION = 1
+FORMAT_VERSION, ENSEMBLE_VERSION = 1, 2
+"""Versions without and with arrays about an ensemble of draws."""
 TIERS = ('closed_form', 'full')
 LARGEST_FILE = 256 * 2**20
 """Largest file that is read [byte]."""
@@ -37,6 +40,8 @@ DAMAGE = (
     KeyError,
     TypeError,
     EOFError,
+    SyntaxError,
+    tokenize.TokenError,
     zipfile.BadZipFile,
     zlib.error,
     NotImplementedError,
@@ -57,8 +62,10 @@ class SurfaceData:
     temperature] is the logarithm of the onset speed [rad/s]. Fields [speed, load, temperature] in
     SI; `worst_contact` 0 to 3 counts loaded nut on screw, on nut, relieved nut on screw, on nut;
     `mask` marks unconverged nodes; `errors` hold the measured interpolation error of each field
-    per cell. `header` has the keys format, format_version, tier, inputs, settings, load_breaks;
-    `provenance` is not hashed.
+    per cell. `deviations` and `standard_errors`, of any of the fields in its unit, hold the
+    standard deviation over roughness draws and the standard error of the mean on the nodes, NaN
+    where too few draws are known; without draws there are none. `header` has the keys format,
+    format_version, tier, inputs, settings, load_breaks; `provenance` is not hashed.
 
     """
 
@@ -71,6 +78,8 @@ class SurfaceData:
     errors: Mapping[str, Array]
     worst_contact: NDArray[np.uint8]
     mask: NDArray[np.bool_]
+    deviations: Mapping[str, Array] = field(default_factory=dict)
+    standard_errors: Mapping[str, Array] = field(default_factory=dict)
     provenance: Mapping[str, Any] = field(default_factory=dict)
 
     @property
@@ -83,33 +92,46 @@ class SurfaceData:
         return digest.hexdigest()
 
 
+def format_version(ensemble: bool) -> int:
+    """Return the version that a header must state, with or without an ensemble of draws."""
+    return ENSEMBLE_VERSION if ensemble else FORMAT_VERSION
+
+
 def write(path: str | Path, data: SurfaceData) -> None:
     """Write the file whole or not at all; raises SurfaceError when it cannot be written."""
-    path = Path(path)
-    head = {**data.header, 'sha256': data.sha256, 'provenance': data.provenance}
-    arrays = dict(_arrays(data))
-    arrays['header'] = np.frombuffer(_canonical(head), dtype=np.uint8)
-    if path.exists() and not path.is_file():
-        raise SurfaceError(f'{path}: the surface cannot be written, it is not a regular file')
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.NamedTemporaryFile(dir=path.parent, suffix='.npz', delete=False) as file:
-            temporary = Path(file.name)
-            try:
-                np.savez(file, **arrays)  # type: ignore[arg-type]
-                file.flush()
-                os.fsync(file.fileno())
-                temporary.chmod(0o644)
-                temporary.replace(path)
-            finally:
-                temporary.unlink(missing_ok=True)
+        replace_file(path, to_bytes(data))
     except OSError as error:
         raise SurfaceError(f'{path}: the surface cannot be written, {error.strerror}') from None
 
 
+def to_bytes(data: SurfaceData) -> bytes:
+    """Return the content of the file."""
+    head = {**data.header, 'sha256': data.sha256, 'provenance': data.provenance}
+    arrays = dict(_arrays(data))
+    arrays['header'] = np.frombuffer(_canonical(head), dtype=np.uint8)
+    file = io.BytesIO()
+    np.savez(file, **arrays)  # type: ignore[arg-type]
+    return file.getvalue()
+
+
 def read(path: str | Path) -> SurfaceData:
     """Read and verify a file; raises SurfaceError with one sentence."""
-    header, arrays = _read_arrays(Path(path))
+    path = Path(path)
+    if not path.is_file():
+        raise SurfaceError(f'{path}: no such surface file')
+    if path.stat().st_size > LARGEST_FILE:
+        raise SurfaceError(f'{path}: {path.stat().st_size} bytes, allowed is {LARGEST_FILE}')
+    try:
+        content = path.read_bytes()
+    except OSError as error:
+        raise SurfaceError(f'{path}: cannot be read, {error.strerror}') from None
+    return from_bytes(path, content)
+
+
+def from_bytes(path: str | Path, content: bytes) -> SurfaceData:
+    """Verify the content of a file, called `path` in the sentence of a SurfaceError."""
+    header, arrays = _read_arrays(path, content)
     stated, provenance = header.pop('sha256', ''), header.pop('provenance', {})
     try:
         data = _assemble(header, provenance, arrays)
@@ -124,13 +146,11 @@ def read(path: str | Path) -> SurfaceData:
     return data
 
 
-def _read_arrays(path: Path) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
-    if not path.is_file():
-        raise SurfaceError(f'{path}: no such surface file')
-    if path.stat().st_size > LARGEST_FILE:
-        raise SurfaceError(f'{path}: {path.stat().st_size} bytes, allowed is {LARGEST_FILE}')
+def _read_arrays(
+    path: str | Path, content: bytes
+) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
     try:
-        with path.open('rb') as file, np.load(file, allow_pickle=False) as archive:
+        with np.load(io.BytesIO(content), allow_pickle=False) as archive:
             arrays = {name: archive[name] for name in archive.files}
         header = json.loads(arrays.pop('header').tobytes())
     except DAMAGE:
@@ -141,10 +161,10 @@ def _read_arrays(path: Path) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
         raise SurfaceError(f'{path}: not a surface file (.npz with a header)') from None
     if not isinstance(header, dict) or header.get('format') != FORMAT:
         raise SurfaceError(f'{path}: not a surface file, its header is of another format')
-    if header.get('format_version') != FORMAT_VERSION:
+    if header.get('format_version') not in (FORMAT_VERSION, ENSEMBLE_VERSION):
         raise SurfaceError(
             f'{path}: surface format version {header.get("format_version")}, '
-            f'this program reads version {FORMAT_VERSION}'
+            f'this program reads versions {FORMAT_VERSION} and {ENSEMBLE_VERSION}'
         )
     return header, arrays
 
@@ -170,13 +190,15 @@ def _assemble(
         errors=group('error_'),
         worst_contact=arrays['worst_contact'],
         mask=arrays['mask'],
+        deviations=group('std_'),
+        standard_errors=group('stderr_'),
     )
 
 
 def _check(path: str | Path, data: SurfaceData) -> None:
     """Refuse a file that verifies but was written by a program that broke the format."""
     try:
-        sound = _has_sound_arrays(data) and _has_sound_header(data)
+        sound = _has_sound_arrays(data) and _has_sound_ensemble(data) and _has_sound_header(data)
     except DAMAGE:
         sound = False
     if not sound:
@@ -201,6 +223,18 @@ def _has_sound_arrays(data: SurfaceData) -> bool:
         and all(values.shape == cells for values in data.errors.values())
         and all(values.shape == nodes for values in data.fields.values())
         and all(np.all(np.isfinite(values[~data.mask])) for values in data.fields.values())
+    )
+
+
+def _has_sound_ensemble(data: SurfaceData) -> bool:
+    """Tell whether spreads are of known fields, at least 0 or NaN, and the version has them."""
+    spreads = [*data.deviations.values(), *data.standard_errors.values()]
+    return (
+        set(data.deviations) | set(data.standard_errors) <= set(FIELDS)
+        and all(values.shape == data.mask.shape for values in spreads)
+        and all(values.dtype == np.float64 for values in spreads)
+        and not any(np.any((values < 0) | np.isinf(values)) for values in spreads)
+        and data.header['format_version'] == format_version(bool(spreads))
     )
 
 
@@ -233,6 +267,8 @@ def _arrays(data: SurfaceData) -> Iterator[tuple[str, NDArray[Any]]]:
         'mask': data.mask,
         **{f'field_{name}': values for name, values in data.fields.items()},
         **{f'error_{name}': values for name, values in data.errors.items()},
+        **{f'std_{name}': values for name, values in data.deviations.items()},
+        **{f'stderr_{name}': values for name, values in data.standard_errors.items()},
     }
     for name in sorted(named):
         array = named[name]

@@ -22,6 +22,7 @@ FIELDS = (
 """Interpolated fields in table order."""
 LOGARITHMIC = ('film_ratio', 'central_film', 'minimum_film')
 NOTHING = (math.nan,) * len(FIELDS)
+NO_SPREADS = 2 * NOTHING
 
 
 class Validity(enum.IntEnum):
@@ -43,6 +44,9 @@ class SurfacePoint:
 
     Opposing load [N] and lead [m] belong to the question; `values` are in the order of `FIELDS`,
     `errors` the measured interpolation errors of the cell, of torque [N m] and RCS [-].
+    `spreads` over roughness draws are the standard deviations of the values and then the standard
+    errors of their means, NaN without draws. `corrected`: a full solve near this point has pulled
+    the numbers.
 
     """
 
@@ -52,6 +56,8 @@ class SurfacePoint:
     values: Sequence[float] = NOTHING
     worst_contact: int = -1
     errors: Sequence[float] = NOTHING
+    spreads: Sequence[float] = NO_SPREADS
+    corrected: bool = False
 
     @property
     def friction_torque(self) -> float:
@@ -116,12 +122,40 @@ class SurfacePoint:
     @property
     def rcs_std(self) -> float:
         """Return the standard deviation of RCS over roughness draws [-]; NaN without draws."""
-        return math.nan
+        return self.spreads[1]
+
+    @property
+    def rcs_stderr(self) -> float:
+        """Return the standard error of the mean RCS [-]; NaN without draws."""
+        return self.spreads[len(FIELDS) + 1]
+
+    @property
+    def friction_torque_std(self) -> float:
+        """Return the standard deviation of the torque over draws [N m]; NaN without draws."""
+        return self.spreads[0]
+
+    @property
+    def friction_torque_stderr(self) -> float:
+        """Return the standard error of the mean torque [N m]; NaN without draws."""
+        return self.spreads[len(FIELDS)]
 
     @property
     def efficiency_std(self) -> float:
         """Return the standard deviation of efficiency over draws [-]; NaN without draws."""
-        return math.nan
+        return self.spreads[0] * self._efficiency_slope()
+
+    @property
+    def efficiency_stderr(self) -> float:
+        """Return the standard error of the mean efficiency [-]; NaN without draws."""
+        return self.spreads[len(FIELDS)] * self._efficiency_slope()
+
+    def std(self, name: str) -> float:
+        """Return the standard deviation over draws of one of `FIELDS`, in its unit."""
+        return self.spreads[FIELDS.index(name)]
+
+    def stderr(self, name: str) -> float:
+        """Return the standard error of the mean over draws of one of `FIELDS`, in its unit."""
+        return self.spreads[len(FIELDS) + FIELDS.index(name)]
 
     @property
     def efficiency(self) -> float:
@@ -143,9 +177,10 @@ class SurfacePoint:
     @property
     def efficiency_error(self) -> float:
         """Interpolation error of the efficiency [-], to first order in that of the torque."""
-        return self.errors[0] * torque.efficiency_slope(
-            self.values[0], self.opposing_load, self.lead
-        )
+        return self.errors[0] * self._efficiency_slope()
+
+    def _efficiency_slope(self) -> float:
+        return torque.efficiency_slope(self.values[0], self.opposing_load, self.lead)
 
 
 def _share(value: float) -> float:

@@ -74,7 +74,8 @@ ROSDEP = {
     'scipy': 'python3-scipy',
     'yaml': 'python3-yaml',
 }
-OPTIONAL = {'mcap', 'zstandard', 'SurfaceTopography'}  # by the extras `bags` and `areal`
+# By the extras `bags`, `areal`, `dask` and `netcdf`.
+OPTIONAL = {'mcap', 'zstandard', 'SurfaceTopography', 'distributed', 'xarray'}
 
 
 def name_of(path: Path) -> str:

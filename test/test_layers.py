@@ -21,7 +21,16 @@ MODULES = {
     for package in ('surrogate', 'ballscrew_monitor')
 }
 # What the offline half stands on, and where it is forbidden to be heavy.
-NUMERICAL = {'matplotlib', 'numba', 'numpy', 'scipy', 'SurfaceTopography', 'yaml'}
+NUMERICAL = {
+    'distributed',
+    'matplotlib',
+    'numba',
+    'numpy',
+    'scipy',
+    'SurfaceTopography',
+    'xarray',
+    'yaml',
+}
 LOOKUP = {'surrogate', 'surrogate.surface'}
 
 

@@ -16,7 +16,7 @@ import pytest
 from surrogate import closed_form, torque
 from surrogate.load_sharing import UNLOADING_RATIO
 from surrogate.surface import FIELDS, shipped_surface, Surface, SurfaceError, Validity
-from surrogate.surface_file import SurfaceData, write
+from surrogate.surface_file import ENSEMBLE_VERSION, SurfaceData, write
 
 SPEEDS = st.floats(0.06, 229.0)
 LOADS = st.floats(-3960.0, 3960.0)
@@ -226,3 +226,63 @@ def test_the_lookup_needs_numpy_alone():
         [sys.executable, '-c', code], capture_output=True, text=True, check=True, timeout=60
     )
     assert found.stdout.strip() == '[]'
+
+
+def with_draws(data: SurfaceData) -> SurfaceData:
+    """Return the surface with an ensemble: deviations that grow with speed, errors a third."""
+    deviation = np.exp(0.1 * data.speed_coordinate)[:, None, None] * np.ones_like(data.mask)
+    return replace(
+        data,
+        header={**data.header, 'format_version': ENSEMBLE_VERSION},
+        deviations={'rcs': 0.01 * deviation, 'friction_torque': 0.001 * deviation},
+        standard_errors={'rcs': 0.01 * deviation / 3},
+    )
+
+
+def test_spread_over_draws_is_looked_up(surface_data):
+    """Exact at the nodes, between its corners elsewhere, NaN for what has none."""
+    data = with_draws(surface_data)
+    surface = Surface(data)
+    i, j, k = 20, 10, 4
+    load, kelvin = float(data.load[j]), float(data.temperature[k])
+    found = surface.lookup(node_speed(data, i, j, k), load, kelvin)
+    assert found.rcs_std == pytest.approx(data.deviations['rcs'][i, j, k], rel=1e-9)
+    assert found.rcs_stderr == pytest.approx(found.rcs_std / 3)
+    assert found.friction_torque_std == pytest.approx(found.rcs_std / 10)
+    assert found.std('rcs') == found.rcs_std
+    assert found.stderr('rcs') == found.rcs_stderr
+    for name in ('friction_torque_stderr', 'efficiency_stderr'):
+        assert math.isnan(getattr(found, name))
+    assert math.isnan(found.std('central_film'))
+    step = 1e-6
+    faster = torque.efficiency(found.friction_torque + step, load, surface.lead)
+    slope = abs(faster - found.efficiency) / step
+    assert found.efficiency_std == pytest.approx(slope * found.friction_torque_std, rel=1e-4)
+    onset = surface.onset_speed(load + 10.0, kelvin + 1.0)
+    middle = float(data.speed_coordinate[[i, i + 1]].mean())
+    between = surface.lookup(onset * math.exp(middle), load + 10.0, kelvin + 1.0)
+    assert found.rcs_std < between.rcs_std < data.deviations['rcs'][i + 1, j, k]
+
+
+def test_spread_does_not_touch_the_fields(surface_data):
+    """With draws or without, the fields are the same."""
+    plain, drawn = Surface(surface_data), Surface(with_draws(surface_data))
+    point = (62.8, 1000.0, 313.15)
+    assert drawn.lookup(*point).values == plain.lookup(*point).values
+    assert math.isnan(plain.lookup(*point).friction_torque_stderr)
+
+
+def test_an_unknown_spread_is_nan_beside_its_node_only(surface_data):
+    """A node with one draw has no deviation; beyond its cells there is one."""
+    data = with_draws(surface_data)
+    i, j, k = 20, 10, 4
+    data.deviations['rcs'][i, j, k] = np.nan
+    surface = Surface(data)
+    load, kelvin = float(data.load[j]), float(data.temperature[k])
+    beside = surface.lookup(node_speed(data, i, j, k) * 1.01, load, kelvin)
+    assert math.isnan(beside.rcs_std)
+    assert math.isfinite(beside.rcs)
+    assert math.isfinite(beside.rcs_stderr)
+    assert math.isfinite(
+        surface.lookup(node_speed(data, i + 1, j, k) * 1.01, load, kelvin).rcs_std
+    )

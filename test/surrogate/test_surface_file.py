@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 from surrogate.surface import shipped_surface
-from surrogate.surface_file import FORMAT_VERSION, read, SurfaceData, SurfaceError, write
+from surrogate.surface_file import ENSEMBLE_VERSION, read, SurfaceData, SurfaceError, write
 
 SHIPPED = shipped_surface().read_bytes()
 WHOLE = read(shipped_surface()).sha256
@@ -83,9 +83,9 @@ def test_a_flipped_byte_is_refused_or_harmless(tmp_path_factory, place, change):
 def test_an_unknown_version_is_told_before_anything_else(tmp_path: Path):
     """A newer format is not called damaged."""
     path = tmp_path / 'new.npz'
-    rewrite(path, format_version=FORMAT_VERSION + 1)
+    rewrite(path, format_version=ENSEMBLE_VERSION + 1)
     with pytest.raises(
-        SurfaceError, match='surface format version 2, this program reads version 1'
+        SurfaceError, match='surface format version 3, this program reads versions 1 and 2'
     ):
         read(path)
 
@@ -192,3 +192,52 @@ def test_a_failed_write_leaves_the_old_file(
         write(path, surface_data)
     assert path.read_bytes() == before
     assert [found.name for found in tmp_path.iterdir()] == ['map.npz']
+
+
+def with_draws(data: SurfaceData, **changes) -> SurfaceData:
+    """Return the surface with an ensemble of draws."""
+    spread = np.full(data.mask.shape, 0.01)
+    parts = {'deviations': {'rcs': spread}, 'standard_errors': {'rcs': 0.5 * spread}}
+    header = {**data.header, 'format_version': ENSEMBLE_VERSION}
+    return replace(data, **{'header': header, **parts, **changes})
+
+
+def test_what_draws_leave_uncertain_is_written_read_and_hashed(tmp_path: Path, surface_data):
+    """A round trip keeps the arrays; each of their bits is in the hash."""
+    path = tmp_path / 'map.npz'
+    data = with_draws(surface_data)
+    data.deviations['rcs'][3, 3, 3] = np.nan
+    write(path, data)
+    back = read(path)
+    assert set(back.deviations) == set(back.standard_errors) == {'rcs'}
+    assert np.array_equal(back.deviations['rcs'], data.deviations['rcs'], equal_nan=True)
+    assert np.array_equal(back.standard_errors['rcs'], data.standard_errors['rcs'])
+    other = with_draws(surface_data)
+    other.standard_errors['rcs'][3, 3, 3] = np.nextafter(0.005, 1)
+    assert len({data.sha256, other.sha256, surface_data.sha256}) == 3
+
+
+def test_without_draws_a_file_is_as_it_was(surface_data):
+    """The hash of a version 1 file has not changed with version 2."""
+    assert surface_data.header['format_version'] == 1
+    assert read(shipped_surface()).deviations == {}
+
+
+@pytest.mark.parametrize(
+    'change',
+    [
+        lambda data: {'header': data.header},
+        lambda data: {'deviations': {}, 'standard_errors': {}},
+        lambda data: {'deviations': {'heat': np.zeros(data.mask.shape)}},
+        lambda data: {'deviations': {'rcs': np.zeros(3)}},
+        lambda data: {'deviations': {'rcs': np.full(data.mask.shape, -0.1)}},
+        lambda data: {'standard_errors': {'rcs': np.full(data.mask.shape, np.inf)}},
+        lambda data: {'standard_errors': {'rcs': np.zeros(data.mask.shape, dtype=np.float32)}},
+    ],
+)
+def test_impossible_spreads_are_refused(tmp_path: Path, surface_data, change):
+    """Of no field, of another shape, below zero, without the version that has them."""
+    path = tmp_path / 'broken.npz'
+    write(path, with_draws(surface_data, **change(surface_data)))
+    with pytest.raises(SurfaceError, match='header, axes and fields do not fit together'):
+        read(path)

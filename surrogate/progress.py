@@ -1,0 +1,80 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Progress of long work on a terminal or in a log: a bar there, a line now and then here."""
+
+from collections.abc import Callable
+import sys
+import time
+from typing import TextIO
+
+WIDTH = 40
+"""Length of the bar in characters."""
+LOG_SHARE, LOG_PAUSE = 0.1, 60.0
+"""A log gets a line per this share of the work [-], or after this time [s] if that is sooner."""
+
+
+class Progress:
+    """
+    Counts what is done out of a total, with the rate and the time that is left.
+
+    What was there before, such as kept results, counts as done but not for the rate.
+
+    """
+
+    def __init__(
+        self,
+        total: int,
+        unit: str,
+        *,
+        stream: TextIO | None = None,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        """Begin; `clock` returns seconds, `stream` is stderr by default."""
+        self._total, self._unit, self._clock = total, unit, clock
+        self._stream = sys.stderr if stream is None else stream
+        self._bar = self._stream.isatty()
+        self._begin = self._last = clock()
+        self._done = self._there = self._said = 0
+
+    def add(self, number: int) -> None:
+        """Tell that the work has grown by `number`."""
+        self._total += number
+
+    def step(self, *, there: bool = False) -> None:
+        """Count one as done; `there` when it was done before."""
+        self._done += 1
+        self._there += there
+        if self._bar:
+            self._draw()
+        elif self._is_due():
+            print(self._text(), file=self._stream, flush=True)
+            self._said, self._last = self._done, self._clock()
+
+    def _draw(self) -> None:
+        bar = '#' * (WIDTH * self._done // max(self._total, 1))
+        end = '\n' if self._done == self._total else ''
+        # The end of an older, longer line is wiped.
+        print(f'\r[{bar:{WIDTH}}] {self._text()}\x1b[K', end=end, file=self._stream, flush=True)
+
+    def _is_due(self) -> bool:
+        return (
+            self._done == self._total
+            or self._done - self._said >= LOG_SHARE * self._total
+            or self._clock() - self._last >= LOG_PAUSE
+        )
+
+    def _text(self) -> str:
+        text = f'{self._done}/{self._total} {self._unit}'
+        new, spent = self._done - self._there, self._clock() - self._begin
+        if not new or spent <= 0:
+            return text
+        rate = new / spent
+        speed = f'{rate:.3g} per s' if rate >= 1 else f'{1 / rate:.2g} s each'
+        return f'{text}, {speed}, {_duration((self._total - self._done) / rate)} left'
+
+
+def _duration(seconds: float) -> str:
+    """Return a time in the unit that a person would use."""
+    if seconds < 90:
+        return f'{seconds:.0f} s'
+    return f'{seconds / 60:.0f} min' if seconds < 5400 else f'{seconds / 3600:.1f} h'

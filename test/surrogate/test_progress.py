@@ -1,0 +1,66 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Progress: rate, time left, a bar on a terminal and few lines elsewhere."""
+
+import io
+
+from surrogate.progress import Progress
+
+
+class Terminal(io.StringIO):
+    """A stream that says that it is a terminal."""
+
+    def isatty(self) -> bool:
+        """Tell so."""
+        return True
+
+
+def run(stream, total, seconds, there=0):
+    """Do all steps, each of them `seconds` after the one before."""
+    now = [0.0]
+    progress = Progress(total, 'solves', stream=stream, clock=lambda: now[0])
+    for number in range(total):
+        now[0] += 0.0 if number < there else seconds
+        progress.step(there=number < there)
+    return stream.getvalue()
+
+
+def test_a_terminal_gets_a_bar_with_rate_and_time_left():
+    """One line that is written over; the last one ends."""
+    lines = run(Terminal(), 4, 30.0).split('\r')[1:]
+    assert len(lines) == 4
+    assert lines[0].startswith('[' + 10 * '#' + 30 * ' ' + '] 1/4 solves, 30 s each, 2 min left')
+    assert '3/4 solves, 30 s each, 30 s left' in lines[2]
+    assert lines[3].endswith('\n')
+    assert lines[3].startswith('[' + 40 * '#' + ']')
+
+
+def test_a_log_gets_a_line_per_tenth():
+    """A thousand fast steps are ten lines and no control characters."""
+    lines = run(io.StringIO(), 1000, 0.01).splitlines()
+    assert len(lines) == 10
+    assert lines[0] == '100/1000 solves, 100 per s, 9 s left'
+    assert lines[-1].startswith('1000/1000 solves')
+
+
+def test_a_slow_log_gets_a_line_per_minute():
+    """A thousand slow steps of 40 s: no silence longer than 80 s until the tenth is due."""
+    assert (
+        run(io.StringIO(), 1000, 40.0).splitlines()[0] == '2/1000 solves, 40 s each, 11.1 h left'
+    )
+
+
+def test_what_was_there_does_not_count_for_the_rate():
+    """Two kept results of four, the others 10 s each."""
+    lines = run(Terminal(), 4, 10.0, there=2).split('\r')[1:]
+    assert '2/4 solves\x1b[K' in lines[1]
+    assert '3/4 solves, 10 s each, 10 s left' in lines[2]
+
+
+def test_work_may_grow():
+    """A builder that refines adds what it has found to do."""
+    stream = io.StringIO()
+    progress = Progress(1, 'solves', stream=stream, clock=lambda: 0.0)
+    progress.add(1)
+    progress.step()
+    assert stream.getvalue() == '1/2 solves\n'
