@@ -20,7 +20,7 @@ from surrogate.onset_search import find_onset, find_speed_nodes
 from surrogate.parameters import InputError, Lubricant, Screw
 from surrogate.screw import TIER
 from surrogate.surface import FIELDS
-from surrogate.surface_file import SurfaceData
+from surrogate.surface_file import format_version, SurfaceData
 
 
 def build_full(
@@ -35,7 +35,13 @@ def build_full(
     check_ranges(settings, lubricant)
     load, breaks = load_nodes(screw, settings)
     temperature = temperature_nodes(screw, lubricant, settings)
-    columns = Columns(screw=screw, lubricant=lubricant, load=load, temperature=temperature)
+    columns = Columns(
+        screw=screw,
+        lubricant=lubricant,
+        load=load,
+        temperature=temperature,
+        speed_range=settings.speed_range,
+    )
     columns = replace(columns, log_onset=find_onset(columns, settings, run))
     s = find_speed_nodes(columns, settings, run)
     chains = columns.chains(s, settings.draws)
@@ -45,7 +51,7 @@ def build_full(
         raise InputError('screw: no point of the surface converged, see the reasons above')
     data = SurfaceData(
         header=surface_header(screw, lubricant, settings, breaks, TIER)
-        | {'certified_s': nodes.certified},
+        | {'format_version': format_version(True), 'certified_s': nodes.certified},
         speed_coordinate=s,
         load=load,
         temperature=temperature,

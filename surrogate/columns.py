@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import maximum_filter, minimum_filter
 from surrogate.chain_task import chain_inputs
 from surrogate.parameters import Lubricant, Screw
 from surrogate.surface import FIELDS
@@ -23,6 +24,8 @@ Chains = dict[str, dict[str, Any]]
 Results = Mapping[str, Mapping[str, Any] | None]
 SPREAD = ('friction_torque', 'rcs', 'asperity_share', 'friction_coefficient')
 """Fields whose scatter over draws is kept."""
+ROUNDING = 1e-9
+"""Error of a mapped speed [-]."""
 CERTAIN = 2.0
 """Least rough film over the floor at which no asperity is near [-]."""
 
@@ -49,12 +52,18 @@ class Nodes:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Columns:
-    """Load [N] and temperature [K] nodes of one screw and oil, and the onset over both."""
+    """
+    Load [N] and temperature [K] nodes of one screw and oil, speeds [rad/s], onset over both.
+
+    Mapped speeds of hot and cold oil differ by far, so that no column needs all speed nodes.
+
+    """
 
     screw: Screw
     lubricant: Lubricant
     load: Array
     temperature: Array
+    speed_range: tuple[float, float]
     log_onset: Array = field(default_factory=lambda: np.empty((0, 0)))
 
     @property
@@ -66,6 +75,21 @@ class Columns:
         """Return the speeds [rad/s] of the coordinates `s` at load j and temperature k."""
         return np.asarray(np.exp(s + self.log_onset[j, k]))
 
+    def needed(self, s: Array) -> NDArray[np.bool_]:
+        """
+        Return the nodes [speed, load, temperature] that some lookup in the speed range reads.
+
+        A lookup reads the columns around it at its own coordinate, so a column reaches as far as
+        its neighbours.
+
+        """
+        low, high = (math.log(speed) - self.log_onset for speed in self.speed_range)
+        slowest, fastest = minimum_filter(low, 3), maximum_filter(high, 3)
+        first = np.searchsorted(s, slowest + ROUNDING, side='right') - 1
+        last = np.searchsorted(s, fastest - ROUNDING)
+        place = np.arange(len(s))[:, None, None]
+        return np.asarray((place >= first) & (place <= last))
+
     def chain(self, load: float, temperature: float, draw: int, speeds: Array) -> dict[str, Any]:
         """Return a chain; speeds fall."""
         falling = sorted((float(speed) for speed in speeds), reverse=True)
@@ -75,8 +99,11 @@ class Columns:
 
     def chains(self, s: Array, draws: int) -> Chains:
         """Return the chains of all columns, by the name of `chain_name`."""
+        needed = self.needed(s)
         return {
-            chain_name(load, k, draw): self.chain(load, heat, draw, self.speeds(s, j, k))
+            chain_name(load, k, draw): self.chain(
+                load, heat, draw, self.speeds(s[needed[:, j, k]], j, k)
+            )
             for load in self.magnitudes.tolist()
             for k, heat in enumerate(self.temperature)
             for draw in range(draws)
@@ -93,13 +120,15 @@ class Columns:
         means = {name: np.full(shape, np.nan) for name in FIELDS}
         spreads = [{name: np.full(shape, np.nan) for name in SPREAD} for _ in range(2)]
         worst = np.zeros(shape, dtype=np.uint8)
-        far, failed = np.full(shape, -np.inf), 0
+        far, failed, needed = np.full(shape, np.inf), 0, self.needed(s)
         for j, k in np.ndindex(shape[1:]):
             chains = [
                 results[chain_name(float(abs(self.load[j])), k, draw)] for draw in range(draws)
             ]
             sense = 'opposing' if self.load[j] >= 0 else 'assisting'
-            for i, records in enumerate(records_by_speed(chains, sense, len(s))):
+            places = np.flatnonzero(needed[:, j, k])
+            for i, records in zip(places, records_by_speed(chains, sense, len(places))):
+                far[i, j, k] = -np.inf
                 solved = [record for record in records if record['converged']]
                 failed += draws - len(solved)
                 if 2 * len(solved) < draws or not solved:
@@ -112,12 +141,13 @@ class Columns:
                     spreads[1][name][i, j, k] = deviation / math.sqrt(len(solved))
                 worst[i, j, k] = commonest([record['worst_contact'] for record in solved])
                 far[i, j, k] = min(record['film_over_floor'] for record in solved)
+        mask = ~np.all([np.isfinite(means[name]) for name in FIELDS], axis=0)
         return Nodes(
-            means=means,
+            means={name: continued(s, values) for name, values in means.items()},
             deviations=spreads[0],
             standard_errors=spreads[1],
             worst_contact=worst,
-            mask=~np.all([np.isfinite(means[name]) for name in FIELDS], axis=0),
+            mask=mask,
             failed=failed,
             certified=_certified(s, far),
         )
@@ -152,6 +182,29 @@ def deviation_over_draws(records: Sequence[Mapping[str, Any]], name: str) -> flo
 def commonest(places: Sequence[int]) -> int:
     """Return the value that stands most often, the least of equals."""
     return max(sorted(set(places)), key=places.count)
+
+
+def continued(s: Array, values: Array) -> Array:
+    """
+    Return `values` [speed, load, temperature] with columns continued beyond their ends.
+
+    As powers of speed, or as constants where a value is zero or falls; no lookup reads them, but
+    slopes of the columns beside them do.
+
+    """
+    filled = values.copy()
+    for j, k in np.ndindex(values.shape[1:]):
+        column = values[:, j, k]
+        known = np.flatnonzero(np.isfinite(column))
+        if known.size < 2:
+            continue
+        for end, inner in ((known[0], known[1]), (known[-1], known[-2])):
+            beyond = np.arange(len(s)) < end if end < inner else np.arange(len(s)) > end
+            power = 0.0
+            if column[end] > 0 and column[inner] > 0 and end > inner:
+                power = math.log(column[end] / column[inner]) / (s[end] - s[inner])
+            filled[beyond, j, k] = column[end] * np.exp(power * (s[beyond] - s[end]))
+    return filled
 
 
 def _certified(s: Array, far: Array) -> float | None:

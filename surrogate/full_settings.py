@@ -44,10 +44,11 @@ class FullSettings(SurfaceSettings):
 
 
 def error_target(screw: Screw, settings: FullSettings) -> Target:
-    """Return the allowed errors; that of torque is of efficiency at the least judged load."""
+    """Return the allowed errors, with the efficiency at the least load that is judged."""
     least = LEAST_JUDGED * (screw.preload or LEAST_IN_RATINGS * screw.static_rating)
     return Target(
-        torque=settings.accuracy * EFFICIENCY * least * screw.lead / (2 * math.pi),
+        ideal_torque=least * screw.lead / (2 * math.pi),
+        efficiency=settings.accuracy * EFFICIENCY,
         rcs=settings.accuracy * RCS,
         rcs_relative=settings.accuracy * RCS_RELATIVE,
     )

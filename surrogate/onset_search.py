@@ -19,6 +19,8 @@ ONSET_FILM_RATIO = 0.08
 ONSET_STEPS = (1.0, 0.6, 0.3, 0.0, -0.3, -0.6, -1.0)
 """Where the onset is looked for, as logarithms of speed over that of the film ratio [-]."""
 ONSET_DRAWS, REFERENCE_DRAWS = 2, 4
+OUTER_STEP = 1.4
+"""Distance of speed nodes beyond those of the reference column [-]."""
 NOTHING = 1e-6
 """RCS below which the logarithm of the onset search is cut off [-]."""
 FIRST_NODES = (-1.2, -0.6, -0.2, 0.2, 0.6, 1.5)
@@ -101,16 +103,16 @@ def find_speed_nodes(columns: Columns, settings: FullSettings, run: Run) -> Arra
     """
     Return nodes of the speed coordinate that cover the range at every load and temperature.
 
-    Between both ends they lie where the means of a few draws need them, at the least load that
-    presses a ball and the reference temperature.
+    Where the means of a few draws need them, at the least load that presses a ball and the
+    reference temperature; oil that is colder or hotter has nodes of even distance beyond.
 
     """
-    low, high = (math.log(speed) for speed in settings.speed_range)
-    ends = low - columns.log_onset.max(), high - columns.log_onset.min()
-    first = [ends[0], *(s for s in FIRST_NODES if ends[0] < s < ends[1]), ends[1]]
     pressed = [load for load in columns.magnitudes if load or columns.screw.preload]
     j = columns.place_of(pressed[0])
     k = int(np.argmin(np.abs(columns.temperature - columns.lubricant.reference_temperature)))
+    low, high = (math.log(speed) for speed in settings.speed_range)
+    ends = low - columns.log_onset[j, k], high - columns.log_onset[j, k]
+    first = [ends[0], *(s for s in FIRST_NODES if ends[0] < s < ends[1]), ends[1]]
 
     def solve(places: Array) -> dict[float, Sample]:
         speeds = columns.speeds(places, j, k)
@@ -122,9 +124,22 @@ def find_speed_nodes(columns: Columns, settings: FullSettings, run: Run) -> Arra
         records = records_by_speed(list(results.values()), 'opposing', len(places))
         return {float(place): _sample(solved) for place, solved in zip(np.sort(places), records)}
 
-    return refine_nodes(
-        np.array(first), solve, error_target(columns.screw, settings), settings.speed_nodes
-    )[0]
+    target = error_target(columns.screw, settings)
+    inner, _ = refine_nodes(np.array(first), solve, target, settings.speed_nodes)
+    return _extended(inner, low - columns.log_onset.max(), high - columns.log_onset.min())
+
+
+def _extended(inner: Array, low: float, high: float) -> Array:
+    """Return nodes with more of them, at most `OUTER_STEP` apart, out to `low` and `high`."""
+    below = math.ceil((inner[0] - low) / OUTER_STEP)
+    above = math.ceil((high - inner[-1]) / OUTER_STEP)
+    return np.concatenate(
+        [
+            np.linspace(min(low, inner[0]), inner[0], max(below, 0) + 1)[:-1],
+            inner,
+            np.linspace(inner[-1], max(high, inner[-1]), max(above, 0) + 1)[1:],
+        ]
+    )
 
 
 def _sample(records: list[dict[str, Any]]) -> Sample:

@@ -22,17 +22,27 @@ class Sample:
 
 @dataclass(frozen=True, slots=True)
 class Target:
-    """Allowed errors: of torque [N m], of RCS [-] absolute, and relative where that is more."""
+    """
+    Allowed errors of efficiency and of RCS, absolute and relative where that is more [-].
 
-    torque: float
+    The efficiency is that against a load with the `ideal_torque` [N m].
+
+    """
+
+    ideal_torque: float
+    efficiency: float
     rcs: float
     rcs_relative: float
 
     def worst(self, found: Sample, wanted: Sample) -> float:
         """Return the largest error of an interpolated sample over the allowed one [-]."""
         allowed = max(self.rcs, self.rcs_relative * wanted.rcs)
+        efficiencies = [
+            self.ideal_torque / (self.ideal_torque + sample.torque) for sample in (found, wanted)
+        ]
         return max(
-            abs(found.torque - wanted.torque) / self.torque, abs(found.rcs - wanted.rcs) / allowed
+            abs(efficiencies[0] - efficiencies[1]) / self.efficiency,
+            abs(found.rcs - wanted.rcs) / allowed,
         )
 
 
