@@ -4,6 +4,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+import math
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,12 +53,13 @@ def refine_nodes(
     """
     Halve the intervals of an axis until their middles are met, or `most` nodes are used.
 
-    `solve` returns samples at places. Returns the nodes and the largest error over the allowed one
-    that was seen at a middle which did not become a node; NaN where none was tried.
+    `solve` returns samples at places, NaN where it fails: there is no node but at those given.
+    Returns the nodes and the largest error over the allowed one that was seen at a middle which
+    did not become a node; NaN where none is known.
 
     """
     known = solve(np.asarray(first))
-    nodes, left = sorted(known), float('nan')
+    nodes, left = sorted(known), math.nan
     pending = list(zip(nodes, nodes[1:]))
     while pending:
         middles = solve(np.array([0.5 * (low + high) for low, high in pending]))
@@ -65,8 +67,8 @@ def refine_nodes(
         wrong = {place: target.worst(guessed[place], middles[place]) for place in middles}
         worst_first = sorted(middles, key=lambda place: -wrong[place])
         room = most - len(known)
-        taken = [place for place in worst_first if not wrong[place] <= 1][:room]
-        left = max([wrong[place] for place in middles if place not in taken], default=left)
+        taken = [place for place in worst_first if wrong[place] > 1][:room]
+        left = float(np.fmax.reduce([left, *(wrong[p] for p in middles if p not in taken)]))
         known |= {place: middles[place] for place in taken}
         pending = [
             half
@@ -79,8 +81,10 @@ def refine_nodes(
 
 
 def interpolate(known: dict[float, Sample], place: float) -> Sample:
-    """Return a sample between others by the monotone cubic of a surface, along one axis."""
-    places = sorted(known)
+    """Return a sample between solved ones by the monotone cubic of a surface; NaN if too few."""
+    places = sorted(place for place, sample in known.items() if math.isfinite(sample.torque))
+    if len(places) < 2:
+        return Sample(math.nan, math.nan)
     torque, rcs = (
         float(PchipInterpolator(places, [getattr(known[p], name) for p in places])(place))
         for name in ('torque', 'rcs')
