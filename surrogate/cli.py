@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Offline subcommands: `point`, `contact`, `identify` and `surface build|info|check`."""
+"""Offline subcommands: `point`, `contact`, `identify`, `figures`, `surface build|info|check`."""
 
 import argparse
 import json
@@ -12,6 +12,7 @@ import time
 from typing import Any
 
 from surrogate.contact_command import add_contact_command
+from surrogate.figures_command import add_figures_command
 from surrogate.identify_command import add_identify_command, BagReader
 from surrogate.parameters import (
     InputError,
@@ -45,6 +46,7 @@ def add_commands(subparsers: Any, read_bag: BagReader | None = None) -> None:
     add_point_command(subparsers)
     add_contact_command(subparsers)
     add_identify_command(subparsers, read_bag)
+    add_figures_command(subparsers)
     surface = subparsers.add_parser('surface', help='build, describe or check a surface file')
     actions = surface.add_subparsers(required=True, metavar='build|info|check')
     _add_build(actions.add_parser('build', help='build a surface file'))

@@ -1,0 +1,106 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The subcommand `figures`: every result figure of the published study, from our model."""
+
+import argparse
+import csv
+from pathlib import Path
+import sys
+import time
+from typing import Any
+
+from surrogate.paper_cases import NEEDS, Task, tasks
+from surrogate.parameters import InputError
+
+DRAWS = 12
+"""Draws of the contacts unless said otherwise [-]."""
+
+
+def add_figures_command(subparsers: Any) -> None:
+    """Add `figures`; its handler imports solver and plots, so that other commands start fast."""
+    parser = subparsers.add_parser(
+        'figures', help='make the figures of the published study from our model'
+    )
+    parser.add_argument(
+        '--out', type=Path, required=True, metavar='DIR', help='folder of pictures and numbers'
+    )
+    parser.add_argument(
+        '--draws',
+        type=int,
+        default=DRAWS,
+        metavar='N',
+        help='draws of the roughness of single contacts; the whole screw takes a third of them, '
+        'its map a sixth (default %(default)s)',
+    )
+    parser.add_argument(
+        '--only', nargs='+', default=None, metavar='FIGURE', help=f'some of {", ".join(NEEDS)}'
+    )
+    parser.add_argument(
+        '--measured',
+        type=Path,
+        metavar='CSV',
+        help='measured torque for figure 6b: speed_rev_min, torque_Nm and, if known, deviation_Nm',
+    )
+    parser.set_defaults(handler=_figures)
+
+
+def _figures(args: argparse.Namespace) -> int:
+    """Solve what is missing, draw, print the numbers; exit code 1 when a solve failed."""
+    figures = tuple(args.only or NEEDS)
+    wanted = tasks(figures, args.draws)
+    try:
+        from surrogate import figures_paper_set
+    except ImportError:
+        raise InputError('figures needs matplotlib: install the extra `plot`') from None
+    from surrogate.paper_mark import table
+    from surrogate.paper_marks import marks
+    from surrogate.paper_study import run_study
+    from surrogate.parameters import load_screw
+
+    measured = _measured(args.measured) if args.measured else None
+    study = run_study(args.out, wanted, Progress())
+    failed = [row for row in study.rows.values() if row.status != 'CONVERGED']
+    for row in failed:
+        print(f'ballscrew: {row.key} did not converge: {row.status}', file=sys.stderr)
+    for path in figures_paper_set.draw_figures(study, figures, measured):
+        print(path, file=sys.stderr)
+    print(table(marks(load_screw('nominal'), study.rows)))
+    return 1 if failed else 0
+
+
+def _measured(path: Path) -> Any:
+    """Read measured torques; one sentence when they cannot be read."""
+    from surrogate.figures_paper_screw import read_measured
+
+    try:
+        with path.open(newline='', encoding='utf-8') as file:
+            return read_measured(list(csv.DictReader(file)))
+    except (OSError, UnicodeDecodeError, ValueError) as error:
+        raise InputError(f'--measured: {path} cannot be read, {error}') from None
+
+
+class Progress:
+    """A bar with the rate and the time left on a terminal, a line per solve elsewhere."""
+
+    def __init__(self) -> None:
+        """Start the clock."""
+        self.began = time.monotonic()
+
+    def __call__(self, done: int, total: int, share: float, task: Task) -> None:
+        """Show how far the work is, by its `share` [-]."""
+        spent = time.monotonic() - self.began
+        text = progress_line(done, total, share, spent, task)
+        live = sys.stderr.isatty()
+        end = '\n' if not live or done == total else ''
+        print(('\r\033[K' if live else '') + text, end=end, file=sys.stderr, flush=True)
+
+
+def progress_line(done: int, total: int, share: float, spent: float, task: Task) -> str:
+    """Return bar, count, rate [1/min] and time left [s], from the share [-] and time spent [s]."""
+    bar = '#' * int(24 * share)
+    left = spent * (1 - share) / share if share > 0 else 0.0
+    rate = 60 * done / spent if spent > 0 else 0.0
+    return (
+        f'[{bar:24}] {done}/{total} solves, {rate:.0f} per min, {left:.0f} s left, '
+        f'{task.kind} {task.rpm:g} rev/min {task.load:g} N'
+    )
