@@ -1,0 +1,119 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Cost of a full-tier surface against the accuracy asked for, and the error that was reached.
+
+Run `python bench/surface.py [--workers N] [--draws K] [--out DIR] [--accuracy A ...]`: nominal
+screw, ISO VG 68, 39 to 41 degC, full range of speed and load. Prints nodes, chains, solved points,
+processor time of the workers, wall time, how busy the workers were, and the errors at held-out
+points, over the speeds with and without contact; draws cost against error.
+
+"""
+
+import argparse
+from dataclasses import dataclass
+from pathlib import Path
+import time
+
+import numpy as np
+from surrogate.build import default_settings
+from surrogate.build_full import build_full
+from surrogate.chain_run import ChainRun
+from surrogate.full_settings import FullSettings
+from surrogate.parameters import load_lubricant, load_screw
+from surrogate.surface import Surface
+from surrogate.task_workers import open_pool, usable_cores
+
+ACCURACIES = (8.0, 4.0, 2.0)
+TEMPERATURES = (312.15, 314.15)
+"""Temperature range [K]: as narrow as a file with two nodes allows."""
+
+
+@dataclass(frozen=True)
+class Cost:
+    """One surface: what was asked for, what it took, what it reached."""
+
+    accuracy: float
+    nodes: int
+    points: int
+    seconds: float
+    wall: float
+    torque_error: float
+    rcs_error: float
+
+
+def measure(accuracy, workers, draws):
+    """Build one surface and return its cost."""
+    screw, oil = load_screw('nominal'), load_lubricant('iso_vg_68')
+    ranges = default_settings(screw)
+    settings = FullSettings(
+        speed_range=ranges.speed_range,
+        load_range=ranges.load_range,
+        temperature_range=TEMPERATURES,
+        temperature_nodes=2,
+        draws=draws,
+        accuracy=accuracy,
+    )
+    with open_pool(workers) as pool:
+        run, began = ChainRun(pool=pool), time.perf_counter()
+        data = build_full(screw, oil, settings, run)
+        wall = time.perf_counter() - began
+    errors = Surface(data).errors
+    return Cost(
+        accuracy=accuracy,
+        nodes=int((~data.mask).sum()),
+        points=run.points,
+        seconds=run.seconds,
+        wall=wall,
+        torque_error=errors['friction_torque'][0],
+        rcs_error=errors['rcs'][0],
+    )
+
+
+def draw(costs, path):
+    """Draw the error over the worker time."""
+    import matplotlib
+
+    matplotlib.use('Agg')
+    from matplotlib import pyplot
+
+    figure, axes = pyplot.subplots(figsize=(7, 3.6), layout='constrained')
+    minutes = np.array([cost.seconds for cost in costs]) / 60
+    axes.loglog(minutes, [cost.rcs_error for cost in costs], 'o-', label='RCS [-]')
+    torque = [cost.torque_error for cost in costs]
+    axes.loglog(minutes, torque, 's--', label='friction torque [N m]')
+    axes.axhline(0.003, color='0.4', linestyle=':', label='0.003, aimed at in RCS')
+    axes.set(
+        xlabel='processor time of the workers [min]',
+        ylabel='largest error at held-out points',
+        title='Full tier, nominal screw, one temperature',
+    )
+    axes.grid(alpha=0.3, which='both')
+    axes.legend(fontsize=8)
+    figure.savefig(path, dpi=110)
+
+
+def main():
+    """Build, print and draw."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument('--workers', type=int, default=usable_cores())
+    parser.add_argument('--draws', type=int, default=2)
+    parser.add_argument('--accuracy', type=float, nargs='+', default=ACCURACIES)
+    parser.add_argument('--out', type=Path, default=Path('docs'))
+    args = parser.parse_args()
+    print('accuracy  nodes  points  worker s  wall s  busy   torque error [N m]  RCS error')
+    costs = []
+    for accuracy in args.accuracy:
+        cost = measure(accuracy, args.workers, args.draws)
+        costs.append(cost)
+        print(
+            f'{accuracy:8.1f} {cost.nodes:6d} {cost.points:7d} {cost.seconds:9.0f} '
+            f'{cost.wall:7.0f} {cost.seconds / cost.wall / args.workers:5.2f} '
+            f'{cost.torque_error:19.2g} {cost.rcs_error:10.2g}',
+            flush=True,
+        )
+    draw(costs, args.out / 'surface_cost.png')
+
+
+if __name__ == '__main__':
+    main()
