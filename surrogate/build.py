@@ -24,9 +24,9 @@ from surrogate.load_sharing import UNLOADING_RATIO
 from surrogate.parameters import InputError, Lubricant, Screw, ZERO_CELSIUS
 from surrogate.surface import FIELDS, Surface
 from surrogate.surface_file import FORMAT, FORMAT_VERSION, SurfaceData
+from surrogate.tiers import Progress, screw_and_oil
 
 Array = NDArray[np.float64]
-Progress = Callable[[int, int], None]
 
 FILM_SPEED_EXPONENT = 0.67
 """Exponent of speed in the central film of Hamrock and Dowson [-]."""
@@ -107,6 +107,15 @@ def build_closed_form(
         screw, lubricant, data, lambda done: progress(len(temperature) + done, total)
     )
     return replace(data, errors=errors, provenance=_provenance(time.perf_counter() - started))
+
+
+def solve_closed_form(
+    header: Mapping[str, Any], speed: float, load: float, temperature: float
+) -> dict[str, float]:
+    """Solve a point [rad/s, N, K] as the closed-form surface of this header was solved."""
+    screw, lubricant = screw_and_oil(header['inputs'])
+    result = closed_form.solve(screw, lubricant, speed, load, temperature)
+    return {name: float(getattr(result, name)) for name in FIELDS}
 
 
 def load_nodes(screw: Screw, settings: SurfaceSettings) -> tuple[Array, list[float]]:

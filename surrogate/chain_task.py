@@ -13,9 +13,10 @@ from dataclasses import asdict, replace
 import math
 from typing import Any
 
-from surrogate.parameters import Lubricant, Material, OperatingPoint, Roughness, Screw
+from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.screw import ScrewSolution, solve_screw
 from surrogate.screw_contacts import ScrewSettings
+from surrogate.tiers import screw_and_oil
 
 WORK = 'full tier 1'
 """Solver and version of what a chain returns; part of the key under which it is kept."""
@@ -50,21 +51,13 @@ def solve_chain(inputs: Mapping[str, Any]) -> dict[str, Any]:
     floor, whether it converged, and a status.
 
     """
-    screw, lubricant = sheets(inputs)
+    screw, lubricant = screw_and_oil(inputs)
     settings = ScrewSettings(draw=inputs['draw'])
     rows: dict[str, list[dict[str, Any]]] = {sense: [] for sense in SENSES}
     for opposing, assisting in _points(screw, lubricant, settings, inputs):
         rows['opposing'].append(point_record(opposing))
         rows['assisting'].append(point_record(assisting))
     return dict(rows)
-
-
-def sheets(inputs: Mapping[str, Any]) -> tuple[Screw, Lubricant]:
-    """Return screw and oil of what `asdict` made of them."""
-    screw, lubricant = dict(inputs['screw']), dict(inputs['lubricant'])
-    for name, cls in (('raceway', Material), ('ball', Material), ('roughness', Roughness)):
-        screw[name] = cls(**screw[name])
-    return Screw(**screw), Lubricant(**lubricant)
 
 
 def _points(

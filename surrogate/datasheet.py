@@ -8,7 +8,7 @@ range; keys, checks and error sentences all derive from that declaration.
 
 """
 
-from dataclasses import field, fields, MISSING
+from dataclasses import field, fields, MISSING, replace
 import math
 from pathlib import Path
 import re
@@ -126,15 +126,29 @@ class _StrictLoader(yaml.SafeLoader):
         return mapping
 
 
-def read_sheet(cls: type[Sheet], path: Path) -> Sheet:
-    """Read a YAML file whose keys are those that `cls` declares; raises InputError."""
+def read_yaml(path: Path) -> Any:
+    """Return the plain values of a YAML file; raises InputError, also for a key twice."""
     try:
         # A safe loader: it makes plain values only.
-        content = yaml.load(path.read_text(encoding='utf-8'), _StrictLoader)
+        return yaml.load(path.read_text(encoding='utf-8'), _StrictLoader)
     except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
         reason = ' '.join(str(error).split())
         raise InputError(f'{path}: cannot be read as YAML, {reason}') from None
-    return _from_mapping(cls, content, str(path))
+
+
+def read_sheet(cls: type[Sheet], path: Path) -> Sheet:
+    """Read a YAML file whose keys are those that `cls` declares; raises InputError."""
+    return _from_mapping(cls, read_yaml(path), str(path))
+
+
+def changed_sheet(sheet: Sheet, content: dict[str, Any], where: str) -> Sheet:
+    """Return a sheet with some values changed, by their keys on file; raises InputError."""
+    specs = {_key(spec): spec for spec in fields(sheet)}  # type: ignore[arg-type]
+    for key in content:
+        if key not in specs:
+            raise InputError(f'{where}: {_unknown_key(str(key), specs)}')
+    values = {specs[key].name: _value(specs[key], raw, where) for key, raw in content.items()}
+    return replace(sheet, **values)  # type: ignore[type-var]
 
 
 def find_sheet(name_or_path: str, folder: str) -> Path:

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import math
 from typing import Any
 
-from surrogate.build import SurfaceSettings
+from surrogate.build import default_settings, SurfaceSettings
 from surrogate.columns import Results
-from surrogate.parameters import Screw
+from surrogate.parameters import InputError, Screw
 from surrogate.speed_nodes import Target
 
 Run = Callable[[str, Mapping[str, Mapping[str, Any]]], Results]
@@ -41,6 +41,24 @@ class FullSettings(SurfaceSettings):
     held_out: int = 12
     seed: int = 1
     accuracy: float = 1.0
+
+    def __post_init__(self) -> None:
+        """Check the numbers that are not ranges."""
+        for name, least in (('draws', 1), ('held_out', 1), ('speed_nodes', len(NEAR_ONSET) + 2)):
+            if getattr(self, name) < least:
+                raise InputError(f'{name} is {getattr(self, name)}, allowed is {least} or more')
+        if not 0.1 <= self.accuracy <= 100:
+            raise InputError(f'accuracy is {self.accuracy:g}, allowed is 0.1 to 100')
+
+
+def default_full_settings(screw: Screw) -> FullSettings:
+    """Return the ranges of the closed-form surface of a screw, with the nodes of this tier."""
+    ranges = default_settings(screw)
+    return FullSettings(
+        speed_range=ranges.speed_range,
+        load_range=ranges.load_range,
+        temperature_range=ranges.temperature_range,
+    )
 
 
 def error_target(screw: Screw, settings: FullSettings) -> Target:

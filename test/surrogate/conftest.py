@@ -13,9 +13,10 @@ import numpy as np
 import pytest
 from surrogate import closed_form
 from surrogate.build import build_closed_form, default_settings
-from surrogate.chain_task import SENSES, sheets
+from surrogate.chain_task import SENSES
 from surrogate.parameters import load_lubricant, load_screw, Lubricant, Screw
 from surrogate.surface_file import SurfaceData
+from surrogate.tiers import screw_and_oil
 
 REFERENCE = Path(__file__).parents[1] / 'reference'
 
@@ -77,7 +78,7 @@ def solve_stand_in(inputs: Mapping[str, Any]) -> dict[str, Any]:
 def stand_in_record(
     inputs: Mapping[str, Any], speed: float, sign: float, scale: float, shift: float
 ) -> dict[str, Any]:
-    screw, lubricant = sheets(inputs)
+    screw, lubricant = screw_and_oil(inputs)
     found = closed_form.solve(
         screw, lubricant, speed, sign * inputs['load'], inputs['temperature']
     )

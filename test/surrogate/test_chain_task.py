@@ -7,12 +7,13 @@ import json
 import math
 
 import pytest
-from surrogate.chain_task import chain_inputs, point_record, sheets, solve_chain
+from surrogate.chain_task import chain_inputs, point_record, solve_chain
 from surrogate.ehl import Settings
 from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
 from surrogate.screw import solve_screw
 from surrogate.screw_contacts import ScrewSettings
 from surrogate.surface import FIELDS
+from surrogate.tiers import screw_and_oil
 
 SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
 WARM = 313.15
@@ -21,7 +22,7 @@ WARM = 313.15
 def test_sheets_survive_json():
     """Screw and oil come back as they were, options that are None among them."""
     inputs = chain_inputs(SCREW, OIL, 500.0, WARM, 3, [60.0, 6.0])
-    assert sheets(json.loads(json.dumps(inputs))) == (SCREW, OIL)
+    assert screw_and_oil(json.loads(json.dumps(inputs))) == (SCREW, OIL)
 
 
 def test_a_chain_is_the_points_it_says():

@@ -10,8 +10,6 @@ import numpy as np
 import pytest
 from surrogate.cli import add_commands
 from surrogate.parameters import InputError
-from surrogate.surface import shipped_surface, SurfaceError
-from surrogate.surface_file import read, write
 
 POINT = ['point', '--screw', 'nominal', '--oil', 'iso_vg_68', '--tier', 'closed_form']
 
@@ -114,82 +112,6 @@ def test_a_number_out_of_range_is_refused(words):
         run(*POINT, *words)
 
 
-def test_build_info_check(tmp_path: Path, capsys):
-    """A surface is built, described and found good; a second build is the same surface."""
-    path = tmp_path / 'map.npz'
-    assert (
-        run(
-            'surface',
-            'build',
-            '--out',
-            str(path),
-            '--load-range',
-            '-500',
-            '500',
-            '--temperature-range',
-            '30',
-            '50',
-            '--speed-range',
-            '1',
-            '2000',
-        )
-        == 0
-    )
-    built = capsys.readouterr().out
-    assert run('surface', 'info', str(path), '--json') == 0
-    info = json.loads(capsys.readouterr().out)
-    assert info['sha256'] in built
-    assert info['load_range_N'] == [-500.0, 500.0]
-    assert info['speed_range_rad_s'] == pytest.approx([0.10472, 209.44], rel=1e-4)
-    assert run('surface', 'info', str(path)) == 0
-    assert 'speed        1 to 2000 rev/min' in capsys.readouterr().out
-    assert run('surface', 'check', str(path), '--points', '5') == 0
-    assert 'passed, hash verified, 5 of 5 points' in capsys.readouterr().out
-
-
-def test_check_defaults_to_twenty_points_of_the_shipped_surface(capsys):
-    """Without a file the shipped surface is checked."""
-    assert run('surface', 'check') == 0
-    out = capsys.readouterr().out
-    assert str(shipped_surface()) in out
-    assert '20 of 20 points' in out
-
-
-def test_check_finds_a_wrong_surface(tmp_path: Path, capsys):
-    """A surface whose numbers are not those of its datasheets fails with exit code 1."""
-    from dataclasses import replace
-
-    data = read(shipped_surface())
-    wrong = replace(data, fields={**data.fields, 'rcs': 0.5 * data.fields['rcs']})
-    path = tmp_path / 'wrong.npz'
-    write(path, wrong)
-    assert run('surface', 'check', str(path)) == 1
-    assert 'FAILED' in capsys.readouterr().out
-
-
-def test_a_surface_without_answers_fails_its_check(tmp_path: Path, capsys):
-    """A map that is masked everywhere has no error, and is not good for that."""
-    from dataclasses import replace
-
-    data = read(shipped_surface())
-    path = tmp_path / 'masked.npz'
-    write(path, replace(data, mask=np.ones_like(data.mask)))
-    assert run('surface', 'check', str(path)) == 1
-    assert '20 without an answer' in capsys.readouterr().out
-
-
-def test_info_is_strict_json_even_without_errors(tmp_path: Path, capsys):
-    """Errors that were not measured are null."""
-    from dataclasses import replace
-
-    data = read(shipped_surface())
-    path = tmp_path / 'unmeasured.npz'
-    errors = {name: np.full_like(values, np.nan) for name, values in data.errors.items()}
-    write(path, replace(data, errors=errors))
-    assert run('surface', 'info', str(path), '--json') == 0
-    assert json.loads(capsys.readouterr().out)['errors']['rcs'] == {'max': None, 'p95': None}
-
-
 def test_comparator_knows_the_quadrant(capsys):
     """With the load driving, constant friction yields less than against it, and a brake torque."""
     against = record(capsys, '--speed-rpm', '600', '--load-N', '1000')['comparators']
@@ -197,40 +119,6 @@ def test_comparator_knows_the_quadrant(capsys):
     assert driven['constant_friction_efficiency'] == pytest.approx(0.895, abs=1e-3)
     assert against['constant_friction_efficiency'] == pytest.approx(0.905, abs=1e-3)
     assert driven['constant_friction_torque_Nm'] < 0 < against['constant_friction_torque_Nm']
-
-
-def test_check_without_time_is_a_failure(capsys):
-    """Nothing solved is nothing shown; a time that is none is refused."""
-    assert run('surface', 'check', '--max-seconds', '1e-9') == 1
-    assert '0 of 20 points' in capsys.readouterr().out
-    for text in ('0', '-1', 'nan', 'inf'):
-        with pytest.raises(InputError, match='--max-seconds is .* allowed is above 0'):
-            run('surface', 'check', '--max-seconds', text)
-
-
-@pytest.mark.parametrize(
-    ('words', 'sentence'),
-    [
-        (['--speed-range', '100', '10'], '--speed-range is 100 to 10 rpm, allowed is above 0'),
-        (['--speed-range', '0', '10'], '--speed-range is 0 to 10 rpm, allowed is above 0'),
-        (['--load-range', '5', '5'], '--load-range is 5 to 5 N, allowed is the low end first'),
-        (['--temperature-range', '50', 'nan'], '--temperature-range is 50 to nan degC'),
-    ],
-)
-def test_a_range_is_refused_in_the_unit_it_was_typed_in(words, sentence):
-    """The user reads the numbers that the user typed."""
-    with pytest.raises(InputError, match=sentence):
-        run('surface', 'build', *words)
-
-
-def test_bad_files_reach_the_user_as_sentences(tmp_path: Path):
-    """Missing files and unknown names raise the two exceptions that the program reports."""
-    with pytest.raises(SurfaceError, match='no such surface file'):
-        run('surface', 'info', str(tmp_path / 'none.npz'))
-    with pytest.raises(InputError, match='nor one of the shipped datasheets'):
-        run('surface', 'build', '--oil', 'water')
-    with pytest.raises(InputError, match='--points is 0'):
-        run('surface', 'check', '--points', '0')
 
 
 def test_full_tier_is_solved_and_a_failure_is_an_exit_code(capsys, monkeypatch):

@@ -1,0 +1,135 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Re-measure a surface: fresh solves at random points, by the solver of its tier.
+
+Random points are neither nodes nor the centres of cells at which a builder measures its errors.
+
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+import math
+import random
+from typing import Any
+
+import numpy as np
+from surrogate import torque
+from surrogate.surface import Surface
+from surrogate.surface_file import SurfaceData
+from surrogate.tiers import solve_point
+
+EFFICIENCY_TOLERANCE = 0.003
+"""Largest accepted error of the efficiency in a check [-]."""
+RCS_TOLERANCE, RCS_RELATIVE_TOLERANCE, RCS_SMALL = 0.003, 0.05, 0.05
+"""Accepted error of RCS [-]: absolute below `RCS_SMALL`, relative above."""
+STATED_FACTOR = 3.0
+"""Largest error found over the largest that the file states [-]; it is stated for the centres of
+cells, which are not their worst places."""
+STATED = ('friction_torque', 'rcs')
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class CheckResult:
+    """
+    What a check found.
+
+    Points asked for, points tried, those that the solver or the surface had no number for; largest
+    error of efficiency [-], of RCS over the accepted one [-], and of each of `STATED` over the
+    largest that the file states [-], NaN where it states none.
+
+    """
+
+    asked: int
+    tried: int
+    unsolved: int
+    silent: int
+    efficiency: float
+    rcs: float
+    stated: Mapping[str, float]
+
+    @property
+    def passed(self) -> bool:
+        """Whether something was compared, everything answered, and all is within the limits."""
+        # Written so that a NaN fails, but for errors that the file does not state.
+        return (
+            self.efficiency <= EFFICIENCY_TOLERANCE
+            and self.rcs <= 1.0
+            and not self.silent
+            and not any(ratio > STATED_FACTOR for ratio in self.stated.values())
+        )
+
+    def sentence(self) -> str:
+        """Return the result in words."""
+        stated = ', '.join(
+            f'{name.replace("_", " ")} {ratio:.2g}' if math.isfinite(ratio) else f'{name} not said'
+            for name, ratio in self.stated.items()
+        )
+        verdict = 'passed' if self.passed else 'FAILED'
+        return (
+            f'{verdict}, hash verified, {self.tried} of {self.asked} '
+            f'points solved, {self.silent} without an answer, {self.unsolved} without a solution, '
+            f'largest error: efficiency {self.efficiency:.2g} (allowed {EFFICIENCY_TOLERANCE}), '
+            f'RCS {100 * self.rcs:.0f} % of the allowed; over the largest that the file states: '
+            f'{stated} (allowed {STATED_FACTOR:g})'
+        )
+
+
+def check_surface(
+    data: SurfaceData, points: int, seed: int, has_time: Callable[[], bool]
+) -> CheckResult:
+    """Compare at up to `points` random points, as long as `has_time` says so before each."""
+    surface, drawn = Surface(data), random.Random(seed)
+    errors: list[dict[str, float]] = []
+    tried = unsolved = silent = 0
+    while tried < points and has_time():
+        found = _compare(surface, data.header, drawn)
+        tried += 1
+        unsolved += found is None
+        if found is not None and all(map(math.isfinite, found.values())):
+            errors.append(found)
+        else:
+            silent += found is not None
+    worst = {
+        name: max((error[name] for error in errors), default=math.nan)
+        for name in ('efficiency', 'allowed', *STATED)
+    }
+    return CheckResult(
+        asked=points,
+        tried=tried,
+        unsolved=unsolved,
+        silent=silent,
+        efficiency=worst['efficiency'],
+        rcs=worst['allowed'],
+        stated={name: _ratio(worst[name], surface.errors[name][0]) for name in STATED},
+    )
+
+
+def _ratio(found: float, stated: float) -> float:
+    return found / stated if stated > 0 else math.nan
+
+
+def _compare(
+    surface: Surface, header: Mapping[str, Any], drawn: random.Random
+) -> dict[str, float] | None:
+    """
+    Return the errors at a random point: NaN without an answer, None without a solution.
+
+    Of the efficiency [-], of RCS over the accepted one [-], and of each of `STATED`.
+
+    """
+    slow, fast = surface.speed_range
+    speed = math.exp(drawn.uniform(math.log(slow), math.log(fast)))
+    load = drawn.uniform(*surface.load_range)
+    kelvin = drawn.uniform(*surface.temperature_range)
+    solved = solve_point(header, speed, load, kelvin)
+    if not solved or not np.isfinite(solved['rcs']):
+        return None
+    found, rcs = surface.lookup(speed, load, kelvin), solved['rcs']
+    accepted = RCS_TOLERANCE if rcs < RCS_SMALL else RCS_RELATIVE_TOLERANCE * rcs
+    efficiency = torque.efficiency(solved['friction_torque'], load, surface.lead)
+    return {
+        'efficiency': abs(found.efficiency - efficiency),
+        'allowed': abs(found.rcs - rcs) / accepted,
+        **{name: abs(getattr(found, name) - solved[name]) for name in STATED},
+    }
