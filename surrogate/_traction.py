@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 
-@njit(cache=True, error_model='numpy', fastmath={'contract', 'reassoc', 'nsz'})
+@njit(cache=True, error_model='numpy')
 def sum_friction(
     x: Array,
     y: Array,

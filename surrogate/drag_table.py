@@ -38,6 +38,8 @@ FACTORS = 5
 """Viscosities of the table where it has more than one."""
 FRICTIONS = (FRICTION_BOUNDS[0], 0.05, 0.1, 0.15, 0.2, FRICTION_BOUNDS[1])
 """Friction coefficients of the table where it is identified [-]."""
+ROUNDING = 1e-9
+"""Relative difference of loads that are equal [-]."""
 TEMPERATURE_SPREAD, LOAD_SPREAD = 10.0, 0.1
 """Largest distance from the mean temperature [K], and from the mean load over the preload [-]."""
 SAME_VISCOSITY = 1e-3
@@ -136,7 +138,7 @@ def _load(screw: Screw, run: NoLoadRun) -> float:
     """Return the one load [N] of a run."""
     load = float(run.load.mean())
     spread = float(np.abs(run.load - load).max())
-    if spread > LOAD_SPREAD * screw.preload:
+    if spread > LOAD_SPREAD * screw.preload + ROUNDING * abs(load):
         raise InputError(
             f'{run.source}: load_N is up to {spread:.3g} N from its mean, allowed is '
             f'{LOAD_SPREAD * screw.preload:.3g} N in the full tier; split the data or use '

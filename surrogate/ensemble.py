@@ -8,7 +8,6 @@ standard deviation and, for the mean, the standard error.
 
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 import math
 
@@ -59,24 +58,27 @@ def solve_ensemble(
     *,
     settings: ScrewSettings | None = None,
 ) -> EnsembleSolution:
-    """Solve a point for `draws` draws, the first that of the settings; InputError below 1."""
+    """
+    Solve a point for `draws` draws, the first that of the settings.
+
+    Raises InputError below 1, and for settings of smooth raceways, which have no draw.
+
+    """
     if draws < 1:
         raise InputError(f'draws is {draws}, allowed is 1 or more')
-    solutions = tuple(_solutions(screw, lubricant, point, draws, settings or ScrewSettings()))
+    settings = settings or ScrewSettings()
+    if settings.draw is None:
+        raise InputError('draw is None, allowed is a number: smooth raceways have no draws')
+    solutions = tuple(
+        solve_screw(screw, lubricant, point, settings=replace(settings, draw=draw))
+        for draw in range(settings.draw, settings.draw + draws)
+    )
     solved = [found for found in solutions if found.converged]
     return EnsembleSolution(
         spreads={name: spread([getattr(found, name) for found in solved]) for name in FIELDS},
         solutions=solutions,
         failed=len(solutions) - len(solved),
     )
-
-
-def _solutions(
-    screw: Screw, lubricant: Lubricant, point: OperatingPoint, draws: int, settings: ScrewSettings
-) -> Iterator[ScrewSolution]:
-    first = settings.draw or 0
-    for draw in range(first, first + draws):
-        yield solve_screw(screw, lubricant, point, settings=replace(settings, draw=draw))
 
 
 def spread(values: list[float]) -> Spread:

@@ -42,8 +42,12 @@ def draw_point(folder: Path, screw: Screw, found: ScrewSolution, record: dict[st
 
 
 def figure_point(screw: Screw, found: ScrewSolution, record: dict[str, Any]) -> Figure:
-    """Return one column per contact that carries load: pressure above, film and slip below."""
-    pressed = [contact for contact in found.contacts if contact.rough is not None]
+    """Return one column per solved contact: pressure above, film and slip below."""
+    pressed = [
+        contact
+        for contact in found.contacts
+        if contact.rough is not None and contact.rough.converged
+    ]
     figure = Figure(figsize=(2.3 * max(len(pressed), 2) + 1.2, 7.4), dpi=DPI, layout='constrained')
     FigureCanvasAgg(figure)
     figure.suptitle(_title(record), fontsize=10)

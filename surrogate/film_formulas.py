@@ -10,12 +10,15 @@ formula the symbols are those of its paper.
 """
 
 from dataclasses import dataclass
+import math
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from surrogate.geometry import Contact
 
 Array = NDArray[np.float64]
+LEAST_FACTOR = 0.3
+"""Film factor of inlet heating below which the fit is not used [-]."""
 
 RANGES: dict[str, dict[str, tuple[float, float]]] = {
     # The thirty-four computed cases of the paper.
@@ -179,7 +182,9 @@ def film_factor_gupta_1992(*, pressure: float, loading: float, slide_roll: float
     (1 - 13.2 (p_H/E') L^0.42) / (1 + 0.213 (1 + 2.23 S^0.83) L^0.64): Gupta, Cheng, Zhu, Forster,
     Schrand, J. Tribol. 114 (1992) 55. Hertz `pressure` p_H/E', thermal `loading` L = eta0 beta
     us^2/k with the relative slope of viscosity beta and the conductivity k, `slide_roll` ratio S.
+    NaN below `LEAST_FACTOR`: the numerator is linear in the pressure and ends below zero.
 
     """
     drop = 1 - 13.2 * pressure * loading**0.42
-    return drop / (1 + 0.213 * (1 + 2.23 * slide_roll**0.83) * loading**0.64)
+    factor = drop / (1 + 0.213 * (1 + 2.23 * slide_roll**0.83) * loading**0.64)
+    return factor if factor >= LEAST_FACTOR else math.nan

@@ -5,9 +5,9 @@
 import argparse
 from collections.abc import Callable
 import json
+import math
 from pathlib import Path
 import sys
-import time
 from typing import Any
 
 from surrogate.parameters import (
@@ -19,6 +19,7 @@ from surrogate.parameters import (
     ZERO_CELSIUS,
 )
 from surrogate.point_command import add_inputs
+from surrogate.progress import Progress
 
 FITTED = {'viscosity': 'viscosity_factor', 'asperity_friction': 'asperity_friction'}
 """What `--fit` takes, and the parameter that it means."""
@@ -33,7 +34,6 @@ BAG_OPTIONS = (
     'temperature_topic',
     'temperature_field',
 )
-BAR = 30
 
 BagReader = Callable[[argparse.Namespace, float], tuple[dict[str, Any], tuple[str, ...]]]
 """Return columns in SI units and notes, for the arguments and the lead [m]."""
@@ -110,6 +110,7 @@ def _identify(args: argparse.Namespace) -> int:
     from surrogate.identify_record import identification_record, page
     from surrogate.plain_json import to_json
 
+    _check(args)
     screw, lubricant = load_screw(args.screw), load_lubricant(args.oil)
     run = _run(args, screw, lubricant)
     fitted = tuple(FITTED[name] for name in dict.fromkeys(args.fit))
@@ -117,11 +118,34 @@ def _identify(args: argparse.Namespace) -> int:
     found = identify(screw, run, contacts, fitted, loss=args.loss)
     record = identification_record(screw, run, contacts, found)
     print(json.dumps(to_json(record), indent=2, allow_nan=False) if args.json else page(record))
-    if args.out:
+    if args.out and found.converged:
         _write(args.out, screw, lubricant, run, contacts, found)
     if args.plot:
         _plot(args.plot, run, found, f'{screw.name}, {lubricant.name}, tier {contacts.tier}')
     return 0 if found.converged else 1
+
+
+def _check(args: argparse.Namespace) -> None:
+    """Raise InputError for a temperature that no oil has, and for an output that is an input."""
+    kelvin = ZERO_CELSIUS if args.temperature is None else args.temperature + ZERO_CELSIUS
+    if not 0 < kelvin < math.inf:
+        raise InputError(
+            f'--temperature-degC is {args.temperature:g} degC, allowed is a number above absolute '
+            'zero'
+        )
+    if args.out is None:
+        return
+    for written in (args.out, _oil_sheet(args.out)):
+        for name in ('screw', 'oil'):
+            if written.resolve() == Path(getattr(args, name)).resolve():
+                raise InputError(
+                    f'--out: {written} is the datasheet given as --{name}, allowed is another file'
+                )
+
+
+def _oil_sheet(out: Path) -> Path:
+    """Return where an identified oil is written."""
+    return out.with_name(f'{out.stem}_oil{out.suffix}')
 
 
 def _run(args: argparse.Namespace, screw: Screw, lubricant: Lubricant) -> Any:
@@ -169,33 +193,23 @@ def _contacts(
     if tier == 'full':
         from surrogate.drag_table import solved_model
 
-        return solved_model(screw, lubricant, run, fitted, progress=Progress())
+        return solved_model(screw, lubricant, run, fitted, progress=_bar())
     from surrogate.drag_model import closed_form_model
 
     return closed_form_model(screw, lubricant, run)
 
 
-class Progress:
-    """Bar, rate and time left on stderr, where someone looks."""
+def _bar() -> Callable[[int, int], None]:
+    """Return what shows that some of all speeds are solved."""
+    bars: list[Progress] = []
 
-    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
-        """Begin; `clock` returns seconds."""
-        self._clock, self._began = clock, clock()
+    def show(done: int, total: int) -> None:
+        if not bars:
+            bars.append(Progress(total, 'speeds solved'))
+        elif done:
+            bars[0].step()
 
-    def __call__(self, done: int, total: int) -> None:
-        """Show that `done` of `total` speeds are solved."""
-        if not sys.stderr.isatty():
-            return
-        pace = ''
-        if done:
-            each = (self._clock() - self._began) / done
-            pace = f', {each:.1f} s each, {each * (total - done):.0f} s left'
-        print(
-            f'\r[{"#" * (BAR * done // total):{BAR}}] {done}/{total} speeds solved{pace:40}',
-            end='\n' if done == total else '',
-            file=sys.stderr,
-            flush=True,
-        )
+    return show
 
 
 def _write(
@@ -208,7 +222,7 @@ def _write(
     write_sheet(out, identified_screw(screw, run, contacts, found))
     print(out, file=sys.stderr)
     if 'viscosity_factor' in [one.name for one in found.estimates]:
-        oil = out.with_name(f'{out.stem}_oil{out.suffix}')
+        oil = _oil_sheet(out)
         write_sheet(oil, identified_oil(lubricant, run, contacts, found))
         print(oil, file=sys.stderr)
 

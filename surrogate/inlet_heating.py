@@ -10,11 +10,11 @@ entrainment that yields this film.
 
 import math
 
-from surrogate.film_formulas import film_factor_gupta_1992
+from surrogate.film_formulas import film_factor_gupta_1992, LEAST_FACTOR
 from surrogate.geometry import hertz, screw_contact, Side
 from surrogate.kinematics import no_slip_rates
 from surrogate.lubricant import lubricant_state
-from surrogate.parameters import Lubricant, Screw
+from surrogate.parameters import InputError, Lubricant, Screw, ZERO_CELSIUS
 
 SPEED_EXPONENT = 0.67
 """Exponent of speed in the central film of Hamrock and Dowson [-]."""
@@ -26,7 +26,7 @@ def heating_factor(
     screw: Screw, lubricant: Lubricant, side: Side, load: float, speed: float, temperature: float
 ) -> float:
     """
-    Return central film with over without heating [-].
+    Return central film with over without heating [-], NaN where the fit does not reach.
 
     Normal force [N], entrainment speed [m/s], temperature [K]; slide-roll ratio of the ball
     without gross slip.
@@ -46,8 +46,19 @@ def heating_factor(
 def heated_speed(
     screw: Screw, lubricant: Lubricant, side: Side, load: float, speed: float, temperature: float
 ) -> float:
-    """Return the entrainment [m/s] whose isothermal film is that of the heated inlet."""
+    """
+    Return the entrainment [m/s] whose isothermal film is that of the heated inlet.
+
+    Raises InputError where the factor is not known.
+
+    """
     factor = heating_factor(screw, lubricant, side, load, speed, temperature)
+    if math.isnan(factor):
+        raise InputError(
+            f'inlet heating: entrainment is {speed:g} m/s at {temperature - ZERO_CELSIUS:g} degC, '
+            'the fitted film factor is not known where it falls below '
+            f'{LEAST_FACTOR:g}; leave --inlet-heating off'
+        )
     return speed * factor ** (1 / SPEED_EXPONENT)
 
 

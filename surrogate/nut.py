@@ -110,7 +110,7 @@ def make_nut(
     pairs: tuple[Pair, ...],
 ) -> Nut:
     """Balance the ball of a nut with an axial force [N] between its solved contacts."""
-    if not pairs:
+    if force == 0:
         idle = tuple(_contact(screw, name, side, None, None, None) for side in SIDES)
         return Nut(name=name, force=force, contacts=idle, ball=None)
     failure, ball = _failure(name, pairs), None

@@ -153,7 +153,7 @@ def _warnings(
         warnings.append(
             f'load: {abs(point.load):.4g} N, the static rating is {screw.static_rating:.4g} N'
         )
-    if abs(point.load) >= UNLOADING_RATIO * screw.preload:
+    if screw.preload and abs(point.load) >= UNLOADING_RATIO * screw.preload:
         warnings.append(
             'load: the relieved nut carries nothing, unloading begins at '
             f'{UNLOADING_RATIO * screw.preload:.4g} N'

@@ -95,24 +95,30 @@ def _point(args: argparse.Namespace) -> int:
         else args.temperature + ZERO_CELSIUS
     )
     point = OperatingPoint(speed=args.speed_rpm * math.pi / 30, load=args.load, temperature=kelvin)
+    if args.plot:
+        _prepare(args.plot)
+    solution = None
     if args.tier == 'full':
-        record = _full(args, screw, lubricant, point)
+        solution, record = _full(args, screw, lubricant, point)
     else:
         record = closed_form_record(screw, lubricant, point)
     print(json.dumps(to_json(record), indent=2, allow_nan=False) if args.json else page(record))
+    if args.plot:
+        _plot(args.plot, screw, solution, record)
     return 0 if record.get('converged', True) else 1
 
 
 def _check(args: argparse.Namespace) -> None:
     for name in FULL_ONLY:
-        if getattr(args, name) and args.tier != 'full':
+        given = getattr(args, name)
+        if given is not None and given is not False and args.tier != 'full':
             raise InputError(f'--{name.replace("_", "-")} needs --tier full')
 
 
 def _full(
     args: argparse.Namespace, screw: Screw, lubricant: Lubricant, point: OperatingPoint
-) -> dict[str, Any]:
-    """Solve a point in the full tier; only this loads the contact solver."""
+) -> tuple[Any, dict[str, Any]]:
+    """Return a point of the full tier and its record; only this loads the contact solver."""
     from surrogate.ensemble import solve_ensemble
     from surrogate.screw import solve_screw
     from surrogate.screw_contacts import ScrewSettings
@@ -126,9 +132,15 @@ def _full(
         ensemble = solve_ensemble(screw, lubricant, point, args.draws, settings=settings)
         first = ensemble.solutions[0]
         record = ensemble_record(screw, lubricant, point, ensemble, settings)
-    if args.plot:
-        _plot(args.plot, screw, first, record)
-    return record | {'wall_s': time.perf_counter() - started}
+    return first, record | {'wall_s': time.perf_counter() - started}
+
+
+def _prepare(folder: Path) -> None:
+    """Make the directory of the picture before the long work."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f'--plot: {folder} cannot be made, {error.strerror}') from None
 
 
 def _plot(folder: Path, screw: Screw, solution: Any, record: dict[str, Any]) -> None:
@@ -138,7 +150,6 @@ def _plot(folder: Path, screw: Screw, solution: Any, record: dict[str, Any]) -> 
     except ImportError:
         raise InputError('--plot needs matplotlib: install the extra `plot`') from None
     try:
-        folder.mkdir(parents=True, exist_ok=True)
         print(draw_point(folder, screw, solution, record), file=sys.stderr)
     except OSError as error:
         raise InputError(f'--plot: {folder} cannot be written, {error.strerror}') from None

@@ -13,10 +13,11 @@ import math
 
 from surrogate.ball_motion import Flank
 from surrogate.ehl import ContactSolution
+from surrogate.geometry import SIDES
 from surrogate.kinematics import no_slip_rates
 from surrogate.load_sharing import normal_force, nut_forces
 from surrogate.nut import load_change, make_nut, Nut, ScrewContact, solve_nut
-from surrogate.parameters import Lubricant, OperatingPoint, Screw
+from surrogate.parameters import InputError, Lubricant, OperatingPoint, Screw
 from surrogate.screw_contacts import fluid_at, ScrewSettings, smooth_film, solve_sides
 from surrogate.torque import driving_torque, efficiency, is_back_driving
 
@@ -27,6 +28,8 @@ SOLVED = (
     'Solved: four contacts and the balls of both nuts.',
 )
 """Status by the number of nuts that carry load."""
+SAME_FORCE = 1e-3
+"""Normal forces that differ by less, over the larger, count as the same [-]."""
 IDLE_SHARE = 1e-3
 """Force of the relieved nut over that of the loaded one below which it counts as idle [-]."""
 
@@ -107,9 +110,10 @@ def rebalance_screw(
 
     For another asperity friction or parasitic torque, which no contact knows of, this is what a
     solve gives. Another oil or speed must keep the product of viscosity and speed, which pressure
-    and film follow, nearly. The load must be the one solved.
+    and film follow, nearly. Raises InputError for another load than that solved.
 
     """
+    _check_same_load(screw, point, found)
     fluid = fluid_at(lubricant, point.temperature)
     loaded, relieved = (
         tuple(
@@ -125,6 +129,23 @@ def rebalance_screw(
         make_nut(screw, point, 'relieved', forces[1], behind, relieved),
     )
     return _combine(screw, point, nuts)
+
+
+def _check_same_load(screw: Screw, point: OperatingPoint, found: ScrewSolution) -> None:
+    """Raise InputError when the contacts of a solution belong to other normal forces."""
+    wanted = [float(normal_force(screw, force)) for force in _forces(screw, point)]
+    unsolved = any(
+        force > 0 and contact.rough is None
+        for place, contact in enumerate(found.contacts)
+        for force in [wanted[place // len(SIDES)]]
+    )
+    apart = max(abs(new - old) for new, old in zip(wanted, found.normal_forces, strict=True))
+    if unsolved or apart > SAME_FORCE * max(wanted):
+        raise InputError(
+            f'load is {point.load:g} N, with {wanted[0]:.4g} and {wanted[1]:.4g} N a ball, '
+            f'allowed is that solved, with {found.normal_forces[0]:.4g} and '
+            f'{found.normal_forces[1]:.4g} N'
+        )
 
 
 def _flanks(point: OperatingPoint) -> tuple[Flank, Flank]:

@@ -26,7 +26,8 @@ Pair = tuple[ContactSolution, ContactSolution]
 """The same contact smooth and rough."""
 Start = tuple[ContactSolution | None, ContactSolution | None]
 ACROSS, MOST_NODES = 2.42, 513
-"""Width of a rough domain over the semi-axis across, most nodes there by the wavelength [-]."""
+"""About the width of a rough domain over the semi-axis across (2.4 to 3.1); most nodes there by
+the wavelength [-]."""
 WINDOW_SHARE = 0.05
 """Least axial load whose Hertz rectangle is the window of the patch, over the rating [-]."""
 

@@ -18,8 +18,10 @@ from surrogate.screw_contacts import ScrewSettings, shortest_on_grid
 
 KEYS = {'friction_torque': 'friction_torque_Nm', 'driving_torque': 'driving_torque_Nm'}
 """Keys of the record where they differ from the field."""
-LOAD_CHANGE = 0.02
+LOAD_CHANGE = 0.01
 """Change of a normal force by friction and inertia that is warned about [-]."""
+FILM_ERROR = 0.1
+"""Estimated error of a central film that is warned about [-]."""
 FEWEST_NODES = 4.0
 """Nodes per shortest wave below which a rough contact is warned about [-]."""
 
@@ -54,15 +56,23 @@ def ensemble_record(
     Return a point over draws of the roughness as plain numbers.
 
     Means over the draws that converged in place of the numbers of one draw, their spreads under
-    `ensemble`; contacts are those of the first draw.
+    `ensemble`; contacts are those of the first draw that converged, energy error and load change
+    the largest.
 
     """
-    record = solution_record(screw, lubricant, point, ensemble.solutions[0], settings)
+    solved = [found for found in ensemble.solutions if found.converged]
     failures = [found.status for found in ensemble.solutions if not found.converged]
+    shown = (solved or ensemble.solutions)[0]
+    record = solution_record(screw, lubricant, point, shown, settings)
+    worst = {
+        name: max((getattr(found, name) for found in solved), default=math.nan)
+        for name in ('energy_error', 'load_change')
+    }
     means = {KEYS.get(name, name): spread.mean for name, spread in ensemble.spreads.items()}
     return (
         record
         | means
+        | worst
         | {
             'status': failures[0] if failures else record['status'],
             'converged': not failures,
@@ -93,6 +103,7 @@ def solution_record(
         'warnings': [
             *_warnings(formulas['warnings'], found, shortest_on_grid(screw, settings)),
             *_third_contacts(screw, contacts),
+            *_uncertain_films(contacts),
         ],
         'efficiency': found.efficiency,
         'friction_torque_Nm': found.friction_torque,
@@ -100,6 +111,8 @@ def solution_record(
         'energy_error': found.energy_error,
         'load_change': found.load_change,
         'back_driving': found.back_driving,
+        'normal_force_loaded_N': found.normal_forces[0],
+        'normal_force_relieved_N': found.normal_forces[1],
         'rcs': found.rcs,
         'asperity_share': found.asperity_share,
         'film_ratio': found.film_ratio,
@@ -132,6 +145,7 @@ def _contact_record(screw: Screw, found: ScrewSolution, contact: ScrewContact) -
         'hertz_pressure_Pa': rough.hertz_pressure,
         'max_pressure_Pa': rough.max_pressure,
         'central_film_m': contact.film_ratio * screw.roughness.rms,
+        'film_error': contact.smooth.film_error if contact.smooth else math.nan,
         'minimum_film_m': rough.minimum_film,
         'film_ratio': contact.film_ratio,
         'rcs': rough.rcs,
@@ -154,6 +168,7 @@ def _unknown(reason: str) -> dict[str, Any]:
         'hertz_pressure_Pa',
         'max_pressure_Pa',
         'central_film_m',
+        'film_error',
         'minimum_film_m',
         'film_ratio',
         'rcs',
@@ -194,6 +209,16 @@ def _warnings(rated: list[str], found: ScrewSolution, wave: float) -> list[str]:
             f'contact is resolved from {FEWEST_NODES:g}'
         )
     return warnings
+
+
+def _uncertain_films(contacts: list[dict[str, Any]]) -> list[str]:
+    """Return a warning for each contact whose film is known badly: hardly pressed, thick film."""
+    return [
+        f'{contact["nut"]} nut, {contact["side"]}: the film is known to '
+        f'{100 * contact["film_error"]:.0f} % only, the contact is hardly pressed'
+        for contact in contacts
+        if contact['film_error'] > FILM_ERROR
+    ]
 
 
 def _third_contacts(screw: Screw, contacts: list[dict[str, Any]]) -> list[str]:

@@ -4,12 +4,11 @@
 
 from collections.abc import Sequence
 from dataclasses import fields
-import os
 from pathlib import Path
-import tempfile
 import textwrap
 from typing import Any
 
+from surrogate.atomic_file import replace_file
 from surrogate.datasheet import InputError
 from surrogate.parameters import Lubricant, Screw
 import yaml
@@ -30,22 +29,8 @@ def write_sheet(path: str | Path, sheet: Screw | Lubricant, comments: Sequence[s
     head = [line for text in comments for line in textwrap.wrap(text, WIDTH - 2)]
     body = yaml.safe_dump(_on_file(sheet), sort_keys=False, allow_unicode=True, width=WIDTH)
     text = ''.join(f'# {line}\n' for line in head) + body
-    if path.exists() and not path.is_file():
-        raise InputError(f'{path}: the datasheet cannot be written, it is not a regular file')
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.NamedTemporaryFile(
-            'w', encoding='utf-8', dir=path.parent, suffix='.yaml', delete=False
-        ) as file:
-            temporary = Path(file.name)
-            try:
-                file.write(text)
-                file.flush()
-                os.fsync(file.fileno())
-                temporary.chmod(0o644)
-                temporary.replace(path)
-            finally:
-                temporary.unlink(missing_ok=True)
+        replace_file(path, text.encode())
     except OSError as error:
         raise InputError(f'{path}: the datasheet cannot be written, {error.strerror}') from None
 

@@ -293,7 +293,8 @@ class Search:
         """Return a smooth film that the roughness hardly pierces."""
         k = self.case.ellipticity
         inside = grid.x[:, None] ** 2 + (grid.y[None, :] / k) ** 2 < 1
-        return max(PARTING * float(rough[inside].std()), 2 * self.case.floor)
+        height = float(rough[inside].std()) if inside.any() else 0.0
+        return max(PARTING * height, 2 * self.case.floor)
 
     def warm(self, start: ContactSolution) -> Found | None:
         """

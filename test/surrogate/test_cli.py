@@ -145,9 +145,18 @@ def test_options_of_the_full_tier(tmp_path: Path, capsys):
     assert found['inlet_heating'] is True
     assert 0.9 < found['inlet_heating_factor'] < 0.995
     assert [file.suffix for file in tmp_path.iterdir()] == ['.png']
-    for option in (('--draws', '2'), ('--inlet-heating',), ('--plot', str(tmp_path))):
+    for option in (
+        ('--draws', '2'),
+        ('--draws', '0'),
+        ('--inlet-heating',),
+        ('--plot', str(tmp_path)),
+    ):
         with pytest.raises(InputError, match=f'{option[0]} needs --tier full'):
             run(*words, *option)
+    blocked = tmp_path / 'file'
+    blocked.write_text('')
+    with pytest.raises(InputError, match='--plot: .*file cannot be made'):
+        run(*words, '--tier', 'full', '--plot', str(blocked))
     with pytest.raises(InputError, match='draws is 0'):
         run(*words, '--tier', 'full', '--draws', '0')
 

@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 from surrogate import closed_form
 from surrogate.cli import add_commands
-from surrogate.identify_command import Progress
 from surrogate.parameters import InputError, load_lubricant, load_screw
 
 SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
@@ -77,20 +76,23 @@ def test_only_the_screw_is_written_where_the_oil_is_not_fitted(data, tmp_path):
     assert sorted(path.name for path in tmp_path.iterdir()) == ['drag.csv', 'found.yaml']
 
 
-def test_the_full_tier_is_asked_for_by_name(data, monkeypatch):
+def test_the_full_tier_is_asked_for_by_name(data, monkeypatch, capsys):
     """It hands on what is fitted, and whom to tell."""
     asked = []
 
     def model(screw, lubricant, points, fitted, *, progress):
         from surrogate.drag_model import closed_form_model
 
-        asked.append((fitted, type(progress)))
+        asked.append(fitted)
+        for done in range(3):
+            progress(done, 2)
         return closed_form_model(screw, lubricant, points)
 
     monkeypatch.setattr('surrogate.drag_table.solved_model', model)
     words = ('--fit', 'viscosity', '--fit', 'asperity_friction', '--fit', 'viscosity')
     assert run(data, '--tier', 'full', *words) == 0
-    assert asked == [(('viscosity_factor', 'asperity_friction'), Progress)]
+    assert asked == [('viscosity_factor', 'asperity_friction')]
+    assert '2/2 speeds solved' in capsys.readouterr().err
 
 
 def test_a_fit_that_did_not_converge_exits_with_1(data, monkeypatch, capsys):
@@ -101,10 +103,31 @@ def test_a_fit_that_did_not_converge_exits_with_1(data, monkeypatch, capsys):
         'surrogate.identify.least_squares',
         lambda *given, **options: least_squares(*given, **options, max_nfev=1),
     )
-    assert run(data, '--fit', 'viscosity', '--json') == 1
+    sheet = data.with_name('found.yaml')
+    assert run(data, '--fit', 'viscosity', '--json', '--out', sheet) == 1
+    assert not sheet.exists()
     record = json.loads(capsys.readouterr().out)
     assert record['converged'] is False
     assert record['status'] == 'the fit ended before it converged'
+
+
+def test_datasheets_that_are_read_are_not_written_over(data, tmp_path):
+    """Neither the screw nor the oil, which takes its name from the output."""
+    mine = tmp_path / 'mine.yaml'
+    assert run(data, '--out', mine) == 0
+    before = mine.read_text(encoding='utf-8')
+    with pytest.raises(InputError, match='is the datasheet given as --screw'):
+        run(data, '--screw', mine, '--out', mine)
+    with pytest.raises(InputError, match='is the datasheet given as --oil'):
+        run(data, '--oil', tmp_path / 'other_oil.yaml', '--out', tmp_path / 'other.yaml')
+    assert mine.read_text(encoding='utf-8') == before
+
+
+@pytest.mark.parametrize('celsius', ['-300', 'nan', 'inf'])
+def test_a_temperature_that_no_oil_has_is_refused(data, celsius):
+    """The sentence names the option."""
+    with pytest.raises(InputError, match='--temperature-degC is .* allowed is a number above'):
+        run(data, f'--temperature-degC={celsius}')
 
 
 def test_options_that_mean_nothing_are_refused(data, tmp_path):
@@ -146,19 +169,3 @@ def test_a_picture(data, tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, 'surrogate.figures_identify', None)
     with pytest.raises(InputError, match='--plot needs matplotlib: install the extra `plot`'):
         run(data, '--plot', folder)
-
-
-def test_progress_speaks_to_a_terminal_only(monkeypatch, capsys):
-    """Bar, rate and time left, by a clock that is given."""
-    now = [100.0]
-    progress = Progress(clock=lambda: now[0])
-    progress(0, 4)
-    assert capsys.readouterr().err == ''
-    monkeypatch.setattr(sys.stderr, 'isatty', lambda: True)
-    progress(0, 4)
-    now[0] = 106.0
-    progress(2, 4)
-    progress(4, 4)
-    err = capsys.readouterr().err
-    assert '2/4 speeds solved, 3.0 s each, 6 s left' in err
-    assert err.endswith('\n')

@@ -9,7 +9,7 @@ import pytest
 from surrogate import closed_form
 from surrogate.drag_model import thickened
 from surrogate.ehl import Settings
-from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
+from surrogate.parameters import InputError, load_lubricant, load_screw, OperatingPoint
 from surrogate.screw import rebalance_screw, solve_screw
 from surrogate.screw_contacts import raceway_patch, ScrewSettings
 
@@ -205,3 +205,16 @@ def test_a_balance_needs_solved_contacts():
     again = rebalance_screw(SCREW, OIL, point, failed)
     assert not again.converged
     assert again.status.startswith('loaded nut, screw, smooth contact: ')
+
+
+def test_contacts_of_another_load_are_not_rebalanced():
+    """Smooth contacts beyond unloading say nothing about a load below it, nor of another one."""
+    idle = at(600, 3.0 * SCREW.preload)
+    point = OperatingPoint(speed=600 * math.pi / 30, load=1000.0, temperature=WARM)
+    with pytest.raises(InputError, match='load is 1000 N, .* allowed is that solved'):
+        rebalance_screw(SCREW, OIL, point, idle)
+    with pytest.raises(InputError, match='load is 1000 N'):
+        rebalance_screw(SCREW, OIL, point, at(600, 900.0))
+    same = replace(point, load=3.0 * SCREW.preload)
+    again = rebalance_screw(SCREW, OIL, same, idle)
+    assert again.friction_torque == pytest.approx(idle.friction_torque, rel=1e-9)

@@ -5,6 +5,8 @@
 from dataclasses import replace
 import json
 import math
+from pathlib import Path
+import re
 
 import pytest
 from surrogate import figures_point
@@ -13,7 +15,7 @@ from surrogate.contact_friction import contact_friction
 from surrogate.ehl import Settings
 from surrogate.ensemble import solve_ensemble
 from surrogate.nut import contact_slip
-from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
+from surrogate.parameters import InputError, load_lubricant, load_screw, OperatingPoint
 from surrogate.plain_json import to_json
 from surrogate.point import closed_form_record, page
 from surrogate.screw import solve_screw
@@ -171,3 +173,60 @@ def test_picture_has_a_column_per_pressed_contact(tmp_path):
     assert 'film [nm]' in labels
     path = figures_point.draw_point(tmp_path, SCREW, found, record)
     assert [file.name for file in tmp_path.iterdir()] == [path.name]
+
+
+def test_a_failed_point_is_drawn_without_its_contacts(tmp_path):
+    """No column for a contact without a solution; the record is not lost."""
+    point = OperatingPoint(speed=60.0, load=500.0, temperature=313.15)
+    failed = ScrewSettings(smooth=Settings(newton_limit=1), draw=None)
+    found = solve_screw(SCREW, OIL, point, settings=failed)
+    assert not found.converged
+    record = solution_record(SCREW, OIL, point, found, failed)
+    assert figures_point.draw_point(tmp_path, SCREW, found, record).exists()
+
+
+def test_films_of_hardly_pressed_contacts_are_warned_about():
+    """Near unloading at high speed the relieved nut floats; each contact tells its error."""
+    settings = ScrewSettings(draw=None)
+    point = OperatingPoint(speed=200.0, load=2520.0, temperature=313.15)
+    found = full_record(SCREW, OIL, point, settings)
+    assert found['contacts'][0]['film_error'] < 0.01
+    assert found['contacts'][2]['film_error'] > 0.1
+    assert any('hardly pressed' in text for text in found['warnings'])
+
+
+def test_normal_forces_are_those_of_the_solve():
+    """A nut about to unload is idle in the head of the record as in its contacts."""
+    _, found = record(600, 0.9985 * 2**1.5 * SCREW.preload)
+    assert found['normal_force_relieved_N'] == 0.0
+    assert found['contacts'][2]['normal_force_N'] == 0.0
+
+
+def test_an_ensemble_shows_a_draw_that_converged():
+    """When the first draw fails, films and contacts are those of the next one."""
+    point = OperatingPoint(speed=60.0, load=800.0, temperature=313.15)
+    ensemble = solve_ensemble(SCREW, OIL, point, 2, settings=SETTINGS)
+    broken = replace(ensemble.solutions[0], converged=False, status='broken')
+    partly = replace(ensemble, solutions=(broken, ensemble.solutions[1]), failed=1)
+    found = ensemble_record(SCREW, OIL, point, partly, SETTINGS)
+    assert found['status'] == 'broken'
+    assert found['film_ratio'] == ensemble.solutions[1].film_ratio
+    with pytest.raises(InputError, match='smooth raceways have no draws'):
+        solve_ensemble(SCREW, OIL, point, 2, settings=ScrewSettings(draw=None))
+
+
+def test_the_page_lists_every_key():
+    """docs/screw.md has the keys of both tiers, with a star on those of the full one alone."""
+    page_text = (Path(__file__).parents[2] / 'docs' / 'screw.md').read_text(encoding='utf-8')
+    table = page_text.split('## Keys of `--json`')[1].split('## ')[0]
+    (own,) = (line for line in table.splitlines() if line.startswith('| `contacts`'))
+    point, found = record(60, 800.0)
+    formulas = closed_form_record(SCREW, OIL, point)
+    heads = {'draws', 'failed', 'mean', 'deviation', 'error', 'ensemble'}
+    for lines, full, closed, others in (
+        (table.replace(own, '`contacts`'), found, formulas, heads),
+        (own, found['contacts'][0], formulas['contacts'][0], {'contacts'}),
+    ):
+        listed = {key: bool(star) for key, star in re.findall(r'`(\w+)`(\*?)', lines)}
+        wanted = {key: key not in closed for key in full}
+        assert {key: star for key, star in listed.items() if key not in others} == wanted
