@@ -68,7 +68,7 @@ class Columns:
 
     @property
     def magnitudes(self) -> Array:
-        """Loads without their sign [N], rising."""
+        """Return the loads without their sign [N], rising."""
         return np.unique(np.abs(self.load))
 
     def speeds(self, s: Array, j: int, k: int) -> Array:
@@ -91,7 +91,7 @@ class Columns:
         return np.asarray((place >= first) & (place <= last))
 
     def chain(self, load: float, temperature: float, draw: int, speeds: Array) -> dict[str, Any]:
-        """Return a chain; speeds fall."""
+        """Return a chain at a load [N] and temperature [K] with falling `speeds` [rad/s]."""
         falling = sorted((float(speed) for speed in speeds), reverse=True)
         return chain_inputs(
             self.screw, self.lubricant, float(load), float(temperature), draw, falling

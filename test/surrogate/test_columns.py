@@ -42,10 +42,11 @@ def test_what_a_lookup_reads_is_solved_and_little_else(columns):
     low, high = np.log(columns.speed_range)
     for j in range(2):
         for k in range(2):
-            onset = columns.log_onset[j : j + 2, k : k + 2]
+            beside = slice(j, j + 2), slice(k, k + 2)
+            onset = columns.log_onset[beside]
             inside = (S[1:] > low - onset.max()) & (S[:-1] < high - onset.min())
             for i in np.flatnonzero(inside):
-                assert needed[i : i + 2, j : j + 2, k : k + 2].all()
+                assert needed[slice(i, i + 2), *beside].all()
     assert not needed.all()
 
 

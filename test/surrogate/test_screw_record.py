@@ -222,7 +222,7 @@ def test_the_page_lists_every_key():
     (own,) = (line for line in table.splitlines() if line.startswith('| `contacts`'))
     point, found = record(60, 800.0)
     formulas = closed_form_record(SCREW, OIL, point)
-    heads = {'draws', 'failed', 'mean', 'deviation', 'error', 'ensemble'}
+    heads = {'draws', 'failed', 'mean', 'deviation', 'error', 'ensemble', 'reason'}
     for lines, full, closed, others in (
         (table.replace(own, '`contacts`'), found, formulas, heads),
         (own, found['contacts'][0], formulas['contacts'][0], {'contacts'}),

@@ -50,7 +50,7 @@ def test_a_straight_line_needs_no_nodes():
 
 
 def test_a_solve_that_failed_is_not_met():
-    """NaN at a middle makes it no node, and what is left is not known."""
+    """A middle without a number is no node, and what is left is not known."""
 
     def failing(places):
         return {float(s): Sample(math.nan if abs(s) == 0.5 else 0.1, 0.0) for s in places}
