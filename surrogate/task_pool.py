@@ -11,8 +11,9 @@ by another.
 """
 
 from collections.abc import Callable, Iterator, Mapping
-from concurrent.futures import as_completed, BrokenExecutor, CancelledError, Future
+from concurrent.futures import BrokenExecutor, CancelledError, Future
 from dataclasses import dataclass
+import queue
 from typing import Any, Protocol, Self
 
 from surrogate.surface_file import SurfaceError
@@ -20,7 +21,7 @@ from surrogate.task_store import task_key, TaskStore
 from surrogate.task_worker import describe_failure, Task
 
 MOST_TRIES = 3
-"""How often a task is begun whose worker is lost each time; the last time it runs alone [-]."""
+"""How often a task is begun whose worker is lost each time [-]."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -52,13 +53,10 @@ class Pool(Protocol):
         """Stop all workers, also those at work."""
 
     def submit(self, task: Task, name: str, inputs: Mapping[str, Any]) -> Future[dict[str, Any]]:
-        """Hand a task over; raises BrokenExecutor when workers were lost."""
+        """Hand a task over; its future fails with BrokenExecutor when its worker is lost."""
 
     def begun(self) -> list[tuple[str, str]]:
         """Return names of tasks and workers that have begun them, since the last call."""
-
-    def renew(self) -> None:
-        """Replace workers that were lost."""
 
 
 def run_tasks(
@@ -74,7 +72,7 @@ def run_tasks(
 
     With a `store`, results that it has are taken from there, and new ones are kept as they come;
     failures are not, they are tried again by the next run. `report` is told of each outcome, in
-    any order. Raises SurfaceError when no workers can be had or the store cannot be written.
+    any order. Raises SurfaceError when a cluster is lost or the store cannot be written.
 
     """
     run = _Run(pool, task, inputs, store)
@@ -98,20 +96,23 @@ class _Run:
         self._pool, self._task, self._store = pool, task, store
         self._left = dict(inputs)
         self._begun: dict[str, list[str]] = {name: [] for name in inputs}
+        self._names: dict[Future[dict[str, Any]], str] = {}
+        self._done: queue.SimpleQueue[Future[dict[str, Any]]] = queue.SimpleQueue()
 
     def outcomes(self) -> Iterator[Outcome]:
         """Yield outcomes as they come, those of the store first."""
         yield from self._kept()
-        idle = 0
+        for name in self._left:
+            self._submit(name)
         while self._left:
-            before = len(self._left), sum(map(len, self._begun.values()))
-            yield from self._round(self._batch())
-            idle += before == (len(self._left), sum(map(len, self._begun.values())))
-            if idle == MOST_TRIES:
-                raise SurfaceError(
-                    f'{len(self._left)} tasks are left and no worker begins one: the workers end '
-                    'as soon as they start'
-                )
+            future = self._done.get()
+            name, error = self._names.pop(future), _error(future)
+            for begun, worker in self._pool.begun():
+                self._begun[begun].append(worker)
+            if isinstance(error, BrokenExecutor) and len(self._begun[name]) < MOST_TRIES:
+                self._submit(name)
+            else:
+                yield self._finish(name, future, error)
 
     def _kept(self) -> Iterator[Outcome]:
         if self._store is None:
@@ -122,60 +123,28 @@ class _Run:
                 del self._left[name]
                 yield Outcome(name=name, result=result, stored=True)
 
-    def _batch(self) -> list[str]:
-        """Return what to try: those that have lost too many workers last, and each alone."""
-        fresh = [name for name in self._left if len(self._begun[name]) < MOST_TRIES - 1]
-        return fresh or [next(iter(self._left))]
-
-    def _round(self, names: list[str]) -> Iterator[Outcome]:
-        """Try some tasks until all are done or workers are lost."""
-        futures: dict[Future[dict[str, Any]], str] = {}
-        broken = False
-        try:
-            for name in names:
-                futures[self._pool.submit(self._task, name, self._left[name])] = name
-        except BrokenExecutor:
-            broken = True
-        for future in as_completed(futures):
-            self._take_notes()
-            error = _error(future)
-            if isinstance(error, BrokenExecutor):
-                broken = True
-                continue
-            yield self._finish(futures[future], future, error)
-        if broken:
-            self._take_notes()
-            self._pool.renew()
-            yield from self._given_up(names)
-
-    def _take_notes(self) -> None:
-        for name, worker in self._pool.begun():
-            self._begun[name].append(worker)
+    def _submit(self, name: str) -> None:
+        future = self._pool.submit(self._task, name, self._left[name])
+        self._names[future] = name
+        future.add_done_callback(self._done.put)
 
     def _finish(
         self, name: str, future: Future[dict[str, Any]], error: BaseException | None
     ) -> Outcome:
-        inputs = self._left.pop(name)
+        inputs, lost = self._left.pop(name), list(dict.fromkeys(self._begun[name]))
         if error is not None:
-            return self._failed(name, describe_failure(error))
+            sentence = describe_failure(error)
+            if isinstance(error, BrokenExecutor):
+                sentence = f'its worker was lost {len(lost)} times'
+            worker = lost[-1] if lost else ''
+            return Outcome(
+                name=name, result=None, sentence=sentence, lost=tuple(lost), worker=worker
+            )
         done = future.result()
         if self._store is not None and done['result'] is not None:
             self._store.put(task_key(self._store.work, inputs), done['result'])
-        lost = [worker for worker in self._begun[name] if worker != done['worker']]
-        return Outcome(name=name, lost=tuple(dict.fromkeys(lost)), **done)
-
-    def _given_up(self, names: list[str]) -> Iterator[Outcome]:
-        for name in names:
-            if name in self._left and len(self._begun[name]) >= MOST_TRIES:
-                del self._left[name]
-                yield self._failed(
-                    name, f'its worker was lost {len(self._begun[name])} times, at last alone'
-                )
-
-    def _failed(self, name: str, sentence: str) -> Outcome:
-        lost = tuple(self._begun[name])
         return Outcome(
-            name=name, result=None, sentence=sentence, lost=lost, worker=lost[-1] if lost else ''
+            name=name, lost=tuple(worker for worker in lost if worker != done['worker']), **done
         )
 
 

@@ -8,8 +8,10 @@ Light to import, so that a worker starts fast; what a task needs is imported wit
 """
 
 from collections.abc import Callable, Mapping
-from multiprocessing.connection import Connection
+from multiprocessing import parent_process
+from multiprocessing.connection import Connection, wait
 import os
+import pickle
 import signal
 import socket
 import threading
@@ -21,40 +23,48 @@ from surrogate.task_store import plain_result
 Task = Callable[[Mapping[str, Any]], Mapping[str, Any]]
 """A pure function at the top level of a module, from plain JSON to plain JSON."""
 
-_notes: list[Connection] = []
-
 
 def worker_name() -> str:
     """Return the name of this process, host/pid."""
     return f'{socket.gethostname()}/{os.getpid()}'
 
 
-def begin_worker(notes: Connection, alive: Connection) -> None:
+def serve(pipe: Connection) -> None:
     """
-    Set a worker up: one thread for its kernels, deaf to Ctrl-C, gone when its parent is gone.
+    Do the calls that come through a pipe until it ends: the main function of a worker process.
 
-    `notes` takes a note when a task is begun; `alive` ends when the parent closes it or dies.
+    One thread for its kernels, deaf to Ctrl-C, gone when its parent is gone, also from the middle
+    of a call.
 
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     os.environ['NUMBA_NUM_THREADS'] = '1'
-    _notes[:] = [notes]
-    threading.Thread(target=_end_with, args=(alive,), daemon=True).start()
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+    while True:
+        try:
+            message = pipe.recv_bytes()
+        except (EOFError, OSError):
+            return
+        pipe.send_bytes(_call(message))
 
 
-def _end_with(alive: Connection) -> None:
-    """Wait for the end of a pipe that the parent alone holds open."""
+def _call(message: bytes) -> bytes:
+    """Return what a call returns or raises, pickled; either may be something that cannot be."""
     try:
-        alive.recv_bytes()
-    except (EOFError, OSError):
+        function, arguments = pickle.loads(message)
+        return pickle.dumps((function(*arguments), None))
+    except Exception as error:  # handed to the caller
+        try:
+            return pickle.dumps((None, error))
+        except Exception:  # an exception that holds something else
+            return pickle.dumps((None, RuntimeError(describe_failure(error))))
+
+
+def _end_with_parent() -> None:
+    parent = parent_process()
+    if parent is not None:
+        wait([parent.sentinel])
         os._exit(1)
-
-
-def run_noted(task: Task, name: str, inputs: Mapping[str, Any]) -> dict[str, Any]:
-    """Run a task in a worker of a process pool and tell the parent that it is begun."""
-    # Short enough to be written in one piece, so workers need no lock that a kill would hold.
-    _notes[0].send_bytes(f'{worker_name()} {name}'.encode())
-    return run_task(task, name, inputs)
 
 
 def run_task(task: Task, name: str, inputs: Mapping[str, Any]) -> dict[str, Any]:

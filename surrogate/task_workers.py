@@ -4,20 +4,17 @@
 
 import asyncio
 from collections import deque
-from collections.abc import Iterator, Mapping
-from concurrent.futures import Future, ProcessPoolExecutor
-from contextlib import contextmanager
-import multiprocessing
+from collections.abc import Mapping
+from concurrent.futures import Future
 import os
-import signal
 from types import ModuleType
 from typing import Any, Self
 
 from surrogate.parameters import InputError
+from surrogate.spawned_workers import apart, SpawnedWorkers
 from surrogate.task_pool import Pool
-from surrogate.task_worker import begin_worker, run_noted, run_task, Task, worker_name
+from surrogate.task_worker import run_task, Task, worker_name
 
-ONE_THREAD = ('MKL_NUM_THREADS', 'OMP_NUM_THREADS', 'OPENBLAS_NUM_THREADS')
 LOCAL = 'local'
 """The word for a Dask cluster on this machine."""
 PATIENCE = 5.0
@@ -49,36 +46,13 @@ def open_pool(workers: int | None = None, dask: str | None = None) -> Pool:
     return DaskPool(dask, workers or usable_cores())
 
 
-@contextmanager
-def _apart() -> Iterator[None]:
-    """
-    Let processes and threads that start meanwhile run one thread each and not see Ctrl-C.
-
-    Both are inherited, so there is no moment in which a new process would be hit. Ctrl-C is for
-    the parent alone, which then ends its workers.
-
-    """
-    before = {name: os.environ.get(name) for name in ONE_THREAD}
-    os.environ.update(dict.fromkeys(ONE_THREAD, '1'))
-    mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        for name, value in before.items():
-            if value is None:
-                del os.environ[name]
-            else:
-                os.environ[name] = value
-        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
-
-
 class ProcessPool:
-    """Spawned processes; they end when the pool is closed or this process dies."""
+    """Spawned processes of this machine."""
 
     def __init__(self, workers: int) -> None:
         """Prepare for `workers` processes; each starts with the first task it is needed for."""
-        self._workers = workers
-        self._start()
+        self._events: deque[tuple[str, str]] = deque()
+        self._executor = SpawnedWorkers(workers, self._note)
 
     def __enter__(self) -> Self:
         """Return the pool."""
@@ -86,42 +60,18 @@ class ProcessPool:
 
     def __exit__(self, *error: object) -> None:
         """End all workers, also those at work."""
-        self._stop()
+        self._executor.shutdown()
 
     def submit(self, task: Task, name: str, inputs: Mapping[str, Any]) -> Future[dict[str, Any]]:
-        """Hand a task over; raises BrokenExecutor when workers were lost."""
-        with _apart():
-            return self._executor.submit(run_noted, task, name, inputs)
+        """Hand a task over."""
+        return self._executor.submit(run_task, task, name, inputs)
 
     def begun(self) -> list[tuple[str, str]]:
         """Return names of tasks and workers that have begun them, since the last call."""
-        notes = []
-        while self._notes.poll():
-            worker, _, name = self._notes.recv_bytes().decode().partition(' ')
-            notes.append((name, worker))
-        return notes
+        return [self._events.popleft() for _ in range(len(self._events))]
 
-    def renew(self) -> None:
-        """Start anew with other processes."""
-        self._stop()
-        self._start()
-
-    def _start(self) -> None:
-        context = multiprocessing.get_context('spawn')
-        self._notes, writer = context.Pipe(duplex=False)
-        reader, self._alive = context.Pipe(duplex=False)
-        self._ends = (self._notes, writer, reader)
-        self._executor = ProcessPoolExecutor(
-            self._workers, context, initializer=begin_worker, initargs=(writer, reader)
-        )
-
-    def _stop(self) -> None:
-        # Workers at work would finish their tasks first: they end with the pipe instead.
-        self._executor.shutdown(wait=False, cancel_futures=True)
-        self._alive.close()
-        self._executor.shutdown(wait=True)
-        for end in self._ends:
-            end.close()
+    def _note(self, arguments: tuple[Any, ...], worker: str) -> None:
+        self._events.append((arguments[1], worker))
 
 
 class DaskPool:
@@ -131,7 +81,7 @@ class DaskPool:
         """Connect to a scheduler, or start `workers` processes of this machine."""
         distributed = _distributed()
         self._events: deque[tuple[str, str]] = deque()
-        with _apart():
+        with apart():
             self._cluster = _local_cluster(distributed, workers) if address == LOCAL else None
             self._client = _client(distributed, self._cluster or address)
         self._client.subscribe_topic(TOPIC, self._note)
@@ -155,9 +105,6 @@ class DaskPool:
     def begun(self) -> list[tuple[str, str]]:
         """Return names of tasks and workers that have begun them, since the last call."""
         return [self._events.popleft() for _ in range(len(self._events))]
-
-    def renew(self) -> None:
-        """Do nothing: the cluster sees to its workers."""
 
     def _note(self, event: tuple[float, Mapping[str, str]]) -> None:
         self._events.append((event[1]['task'], event[1]['process']))

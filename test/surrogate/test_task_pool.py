@@ -13,7 +13,6 @@ import threading
 import pytest
 from surrogate import task_workers
 from surrogate.parameters import InputError
-from surrogate.surface_file import SurfaceError
 from surrogate.task_pool import MOST_TRIES, run_tasks
 from surrogate.task_store import TaskStore
 from surrogate.task_worker import worker_name
@@ -21,7 +20,8 @@ from surrogate.task_workers import open_pool
 
 DEADLINE = 60.0
 TASKS = """
-import math, os, signal
+import math, os, signal, struct
+from multiprocessing.connection import Connection
 from surrogate.parameters import InputError
 
 def root(inputs):
@@ -36,6 +36,14 @@ def say_hello_and_wait(inputs):
     with open(inputs['gate']) as gate:
         gate.read()
     return {'done': True}
+
+def send_half(inputs):
+    def send_and_die(pipe, message):
+        os.write(pipe.fileno(), struct.pack('!i', len(message)) + bytes(message)[:500])
+        os.kill(os.getpid(), signal.SIGKILL)
+    if inputs['cut']:
+        Connection._send_bytes = send_and_die
+    return {'text': 1000 * 'x'}
 
 def kill_worker(inputs):
     if inputs['kill']:
@@ -161,22 +169,45 @@ def test_a_task_that_kills_its_workers_ends_as_a_sentence(tasks):
     inputs = {f'{number}': {'x': number, 'kill': number == 3} for number in range(10)}
     with open_pool(2) as pool:
         outcomes = run_tasks(pool, tasks.kill_worker, inputs)
-    assert outcomes['3'].sentence == f'its worker was lost {MOST_TRIES} times, at last alone'
+    assert outcomes['3'].sentence == f'its worker was lost {MOST_TRIES} times'
     assert len(set(outcomes['3'].lost)) == MOST_TRIES
     for name, outcome in outcomes.items():
         assert outcome.result == (None if name == '3' else {'x': int(name)})
 
 
-def test_workers_that_cannot_start_are_told(tasks, tmp_path: Path, monkeypatch):
-    """A module that ends every process that imports it is no endless loop."""
+def test_a_module_that_ends_its_process_is_told(tmp_path: Path, monkeypatch):
+    """Every process that imports it ends: a sentence, and no endless loop."""
     (tmp_path / 'deadly_tasks.py').write_text(
         f'import os\nif os.getpid() != {os.getpid()}:\n    os._exit(3)\n'
         'def task(inputs):\n    return {}\n'
     )
+    monkeypatch.syspath_prepend(tmp_path)
     import deadly_tasks
 
-    with open_pool(1) as pool, pytest.raises(SurfaceError, match='1 tasks are left and no worker'):
-        run_tasks(pool, deadly_tasks.task, {'a': {}})
+    with open_pool(1) as pool:
+        outcome = run_tasks(pool, deadly_tasks.task, {'a': {}})['a']
+    assert outcome.sentence == f'its worker was lost {MOST_TRIES} times'
+
+
+def test_a_module_that_workers_do_not_have_is_told(tmp_path: Path, monkeypatch):
+    """The other tasks go on."""
+    (tmp_path / 'gone_tasks.py').write_text('def task(inputs):\n    return {}\n')
+    with monkeypatch.context() as here:
+        here.syspath_prepend(tmp_path)
+        import gone_tasks
+    with open_pool(1) as pool:
+        outcome = run_tasks(pool, gone_tasks.task, {'a': {}})['a']
+    assert outcome.sentence == "ModuleNotFoundError: No module named 'gone_tasks'"
+
+
+def test_a_kill_in_the_middle_of_a_result_is_only_a_lost_worker(tasks):
+    """Half a message in a pipe stops neither the other tasks nor the end of the pool."""
+    inputs = {f'{number}': {'cut': number == 3} for number in range(10)}
+    with open_pool(2) as pool:
+        outcomes = run_tasks(pool, tasks.send_half, inputs)
+    assert outcomes['3'].sentence == f'its worker was lost {MOST_TRIES} times'
+    for name, outcome in outcomes.items():
+        assert outcome.result == (None if name == '3' else {'text': 1000 * 'x'})
 
 
 def test_kept_results_are_not_solved_again(tasks, tmp_path: Path):
