@@ -98,6 +98,7 @@ def fill_result(message: PointResult, result: Estimate, tier: int) -> None:
     for name in NUMBERS:
         setattr(message, name, NAN if numbers is None else float(getattr(numbers, name)))
     message.back_driving = numbers is not None and bool(numbers.back_driving)
+    message.corrected = numbers is not None and bool(numbers.corrected)
     message.worst_side = 0 if numbers is None else int(numbers.worst_side)
     message.worst_nut = int(result.worst_nut)
     message.regime = int(result.regime)

@@ -14,6 +14,7 @@ from dataclasses import replace
 import numpy as np
 from surrogate.build import check_ranges, load_nodes, surface_header, temperature_nodes
 from surrogate.columns import Columns
+from surrogate.ensemble_nodes import gather_nodes
 from surrogate.full_settings import FullSettings, Run
 from surrogate.held_out import measure_errors
 from surrogate.onset_search import find_onset, find_speed_nodes
@@ -41,12 +42,12 @@ def build_full(
         load=load,
         temperature=temperature,
         speed_range=settings.speed_range,
+        draws=settings.draws,
+        shared_draws=settings.shared_draws,
     )
     columns = replace(columns, log_onset=find_onset(columns, settings, run))
     s = find_speed_nodes(columns, settings, run)
-    chains = columns.chains(s, settings.draws)
-    results = run('nodes', chains)
-    nodes = columns.gather(s, settings.draws, results)
+    nodes = gather_nodes(columns, s, run('nodes', columns.chains(s)))
     if nodes.mask.all():
         raise InputError('screw: no point of the surface converged, see the reasons above')
     data = SurfaceData(

@@ -27,7 +27,8 @@ class FullSettings(SurfaceSettings):
     """
     Ranges and nodes of a full-tier surface.
 
-    As for formulas, but `speed_nodes` is the most there may be; draws of the roughness from 0,
+    As for formulas, but `speed_nodes` is the most there may be; draws of the roughness from 0, and
+    how many of them are solved at other temperatures than that nearest to the oil's reference;
     number of held-out points and the seed that draws them, accuracy aimed at as a multiple of
     0.003 in efficiency and of 0.003 or, above RCS 0.05, 5 % in RCS [-].
 
@@ -38,13 +39,19 @@ class FullSettings(SurfaceSettings):
     unloaded_cells: int = 1
     temperature_nodes: int = 4
     draws: int = 8
+    shared_draws: int = 2
     held_out: int = 12
     seed: int = 1
     accuracy: float = 1.0
 
     def __post_init__(self) -> None:
         """Check the numbers that are not ranges."""
-        for name, least in (('draws', 1), ('held_out', 1), ('speed_nodes', len(NEAR_ONSET) + 2)):
+        for name, least in (
+            ('draws', 1),
+            ('shared_draws', 1),
+            ('held_out', 1),
+            ('speed_nodes', len(NEAR_ONSET) + 2),
+        ):
             if getattr(self, name) < least:
                 raise InputError(f'{name} is {getattr(self, name)}, allowed is {least} or more')
         if not 0.1 <= self.accuracy <= 100:

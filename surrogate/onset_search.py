@@ -44,9 +44,7 @@ def find_onset(columns: Columns, settings: FullSettings, run: Run) -> Array:
             ONSET_FILM_RATIO,
         )
     )
-    reference = int(
-        np.argmin(np.abs(columns.temperature - columns.lubricant.reference_temperature))
-    )
+    reference = columns.reference
     by_load, by_heat = _shifts(columns, guess, reference, settings, run)
     places = np.searchsorted(columns.magnitudes, np.abs(columns.load))
     found = guess + by_load[places][:, None] + (by_heat - by_heat[reference])
@@ -109,7 +107,7 @@ def find_speed_nodes(columns: Columns, settings: FullSettings, run: Run) -> Arra
     """
     pressed = [load for load in columns.magnitudes if load or columns.screw.preload]
     j = columns.place_of(pressed[0])
-    k = int(np.argmin(np.abs(columns.temperature - columns.lubricant.reference_temperature)))
+    k = columns.reference
     low, high = (math.log(speed) for speed in settings.speed_range)
     ends = low - columns.log_onset[j, k], high - columns.log_onset[j, k]
     first = [ends[0], *(s for s in FIRST_NODES if ends[0] < s < ends[1]), ends[1]]

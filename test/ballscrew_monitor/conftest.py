@@ -67,6 +67,7 @@ class Numbers:
     rcs_error: float = 1e-5
     efficiency_std: float = math.nan
     rcs_std: float = math.nan
+    corrected: bool = False
 
 
 class ConstantSurface:

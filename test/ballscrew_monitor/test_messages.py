@@ -86,12 +86,13 @@ def test_a_result_as_a_message(core):
 
 def test_a_used_message_keeps_nothing_of_the_state_before(core):
     writer = StateWriter('x', 1)
-    bad, _ = one_state(core, surface=core.surface(rcs=0.5, back_driving=True))
-    writer.write(bad)
+    bad, _ = one_state(core, surface=core.surface(rcs=0.5, back_driving=True, corrected=True))
+    assert writer.write(bad).result.corrected
     lost, _ = one_state(core, speed=500.0, stamp=SECOND)
     fresh = StateWriter('x', 1).write(lost)
     assert repr(writer.write(lost)) == repr(fresh)
     assert not fresh.result.back_driving
+    assert not fresh.result.corrected
     numbers = [getattr(fresh.result, name) for name in ('efficiency', 'rcs', *NUMBERS)]
     assert all(math.isnan(number) for number in numbers)
     assert 'above the surface' in fresh.result.reason
