@@ -20,7 +20,7 @@ from ballscrew_monitor.inputs import Input, make_input, Source
 from ballscrew_monitor.judgement import Limits
 from ballscrew_monitor.monitor import Monitor
 from ballscrew_monitor.state import Settings
-from surrogate.surface import shipped_surface, Surface, SurfaceError
+from surrogate.surface import find_surface, Surface, SurfaceError
 
 OPTIONAL = (Source.TEMPERATURE, Source.TORQUE)
 
@@ -83,7 +83,7 @@ def load_surface(name: str, values: Mapping[str, Any]) -> Surface:
     """Return the verified surface of the axis `name`; raises InputError with the reason."""
     screw, oil = values[f'{name}.screw'], values[f'{name}.oil']
     try:
-        path = values[f'{name}.surface'] or shipped_surface(screw, oil)
+        path = find_surface(values[f'{name}.surface'], screw, oil)
         return Surface.load(path, screw=screw, oil=oil)
     except SurfaceError as error:
         raise InputError(f'axis {name}: {error}') from None

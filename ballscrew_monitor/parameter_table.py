@@ -178,7 +178,11 @@ def _input_rows(
 AXIS_ROWS = (
     Row(name='screw', default='nominal', text='Name of the screw that the surface is for.'),
     Row(name='oil', default='iso_vg_68', text='Name of the oil that the surface is for.'),
-    Row(name='surface', default='', text='Path of the surface file; empty: the shipped one.'),
+    Row(
+        name='surface',
+        default='',
+        text='Path of the surface file, or a tier of those shipped; empty: closed_form.',
+    ),
     Row(
         name='handedness',
         default='right',

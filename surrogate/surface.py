@@ -38,7 +38,15 @@ from surrogate.surface_file import SurfaceData, SurfaceError
 from surrogate.surface_point import FIELDS, NO_SPREADS, SurfacePoint, Validity
 from surrogate.surface_tables import open_cells, spread_table, summary, transform
 
-__all__ = ['FIELDS', 'shipped_surface', 'Surface', 'SurfaceError', 'SurfacePoint', 'Validity']
+__all__ = [
+    'FIELDS',
+    'find_surface',
+    'shipped_surface',
+    'Surface',
+    'SurfaceError',
+    'SurfacePoint',
+    'Validity',
+]
 
 Place = tuple[int, float, float]
 """Cell, its width and the fraction of it at which a value lies."""
@@ -46,6 +54,7 @@ Located = tuple[Place, Place, Place, list[float]]
 """Places along speed, load and temperature, and the weights of the face of the last two."""
 ROUNDING = 1e-9
 """Largest error of a mapped speed [-]."""
+DEFAULT_TIER = 'closed_form'
 SHIPPED = Path(__file__).parent / 'data' / 'surfaces'
 
 
@@ -288,13 +297,29 @@ class Surface:
         return spread
 
 
-def shipped_surface(screw: str = 'nominal', oil: str = 'iso_vg_68') -> Path:
+def find_surface(
+    wanted: str | Path | None, screw: str = 'nominal', oil: str = 'iso_vg_68'
+) -> Path:
+    """
+    Return the file that is wanted: a path, or a tier of those shipped, by default closed form.
+
+    Raises SurfaceError when no such surface is shipped.
+
+    """
+    text = str(wanted or DEFAULT_TIER)
+    return shipped_surface(screw, oil, text) if text in surface_file.TIERS else Path(text)
+
+
+def shipped_surface(
+    screw: str = 'nominal', oil: str = 'iso_vg_68', tier: str = DEFAULT_TIER
+) -> Path:
     """Return where the shipped surface of `screw` and `oil` lies; raises SurfaceError if none."""
-    path = SHIPPED / f'{screw}_{oil}.npz'
+    ending = '' if tier == DEFAULT_TIER else f'_{tier}'
+    path = SHIPPED / f'{screw}_{oil}{ending}.npz'
     if not path.is_file():
         shipped = ', '.join(sorted(found.stem for found in SHIPPED.glob('*.npz')))
         raise SurfaceError(
-            f'no surface is shipped for screw {screw!r} and oil {oil!r}, '
+            f'no surface of tier {tier} is shipped for screw {screw!r} and oil {oil!r}, '
             f'shipped are {shipped or "none"}'
         )
     return path

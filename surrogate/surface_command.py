@@ -14,7 +14,7 @@ from typing import Any
 from surrogate.parameters import InputError, load_lubricant, load_screw, ZERO_CELSIUS
 from surrogate.plain_json import to_json
 from surrogate.point_command import add_inputs
-from surrogate.surface import shipped_surface
+from surrogate.surface import find_surface
 from surrogate.surface_file import read, write
 from surrogate.surface_inspect_command import add_inspect_commands
 from surrogate.sweep_command import add_sweep_command, add_workers
@@ -73,7 +73,12 @@ def _add_clean(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_info(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument('file', nargs='?', type=Path, help='default: the shipped surface')
+    parser.add_argument(
+        'file',
+        nargs='?',
+        type=Path,
+        help='a path, or a tier of those shipped (default closed_form)',
+    )
     parser.add_argument('--json', action='store_true', help='print JSON in SI units')
     parser.set_defaults(handler=_info)
 
@@ -154,7 +159,7 @@ def _clean(args: argparse.Namespace) -> int:
 def _info(args: argparse.Namespace) -> int:
     from surrogate.surface_page import info_page, info_record
 
-    path = args.file or shipped_surface()
+    path = find_surface(args.file)
     record = info_record(path, read(path))
     print(
         json.dumps(to_json(record), indent=2, allow_nan=False) if args.json else info_page(record)

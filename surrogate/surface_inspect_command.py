@@ -13,7 +13,7 @@ from typing import Any
 from surrogate.atomic_file import replace_file
 from surrogate.parameters import InputError, OperatingPoint, ZERO_CELSIUS
 from surrogate.plain_json import to_json
-from surrogate.surface import shipped_surface, Surface
+from surrogate.surface import find_surface, Surface
 from surrogate.surface_file import read
 
 
@@ -27,7 +27,12 @@ def add_inspect_commands(actions: Any) -> None:
 
 
 def _add_file(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument('file', nargs='?', type=Path, help='default: the shipped surface')
+    parser.add_argument(
+        'file',
+        nargs='?',
+        type=Path,
+        help='a path, or a tier of those shipped (default closed_form)',
+    )
 
 
 def _add_check(parser: argparse.ArgumentParser) -> None:
@@ -117,7 +122,7 @@ def _add_export(parser: argparse.ArgumentParser) -> None:
 def _check(args: argparse.Namespace) -> int:
     from surrogate.surface_check import check_surface
 
-    path = args.file or shipped_surface()
+    path = find_surface(args.file)
     if args.points < 1:
         raise InputError(f'--points is {args.points}, allowed is 1 or more')
     if not 0.0 < args.max_seconds < math.inf:
@@ -132,7 +137,7 @@ def _check(args: argparse.Namespace) -> int:
 def _query(args: argparse.Namespace) -> int:
     from surrogate.surface_query import query_page, query_record
 
-    surface = Surface.load(args.file or shipped_surface())
+    surface = Surface.load(find_surface(args.file))
     if args.csv is not None:
         return _query_table(args, surface)
     if args.speed_rpm is None or args.load is None:
@@ -171,7 +176,7 @@ def _query_table(args: argparse.Namespace, surface: Surface) -> int:
 
 
 def _plot(args: argparse.Namespace) -> int:
-    surface = Surface.load(args.file or shipped_surface())
+    surface = Surface.load(find_surface(args.file))
     try:
         from surrogate.figures_surface import draw_surface
     except ImportError:
@@ -220,7 +225,7 @@ def _diff(args: argparse.Namespace) -> int:
 def _export(args: argparse.Namespace) -> int:
     from surrogate.surface_export import to_netcdf, to_table
 
-    data = read(args.file or shipped_surface())
+    data = read(find_surface(args.file))
     out = args.netcdf or args.csv
     _write(out, to_netcdf(data) if args.netcdf else to_table(data).encode())
     print(f'{out}: {data.mask.size} nodes of surface {data.sha256}')

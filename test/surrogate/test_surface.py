@@ -15,7 +15,14 @@ import numpy as np
 import pytest
 from surrogate import closed_form, torque
 from surrogate.load_sharing import UNLOADING_RATIO
-from surrogate.surface import FIELDS, shipped_surface, Surface, SurfaceError, Validity
+from surrogate.surface import (
+    FIELDS,
+    find_surface,
+    shipped_surface,
+    Surface,
+    SurfaceError,
+    Validity,
+)
 from surrogate.surface_file import ENSEMBLE_VERSION, SurfaceData, write
 
 SPEEDS = st.floats(0.06, 229.0)
@@ -214,6 +221,15 @@ def test_an_unshipped_surface_lists_the_shipped_ones():
     """A missing map names what there is."""
     with pytest.raises(SurfaceError, match='shipped are nominal_iso_vg_68'):
         shipped_surface('nominal', 'iso_vg_32')
+
+
+def test_a_surface_is_found_by_path_or_tier(tmp_path: Path):
+    """Nothing means the closed form; the name of a tier one that is shipped; all else a path."""
+    for wanted in (None, '', 'closed_form', Path('closed_form')):
+        assert find_surface(wanted) == shipped_surface()
+    assert find_surface(tmp_path / 'mine.npz') == tmp_path / 'mine.npz'
+    with pytest.raises(SurfaceError, match='no surface of tier full is shipped for screw'):
+        find_surface('full', 'nominal', 'iso_vg_32')
 
 
 def test_the_lookup_needs_numpy_alone():
