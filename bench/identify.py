@@ -18,11 +18,11 @@ from pathlib import Path
 import time
 
 import numpy as np
-from surrogate.drag_data import no_load_run
-from surrogate.drag_model import anchored, closed_form_model, thickened
-from surrogate.drag_table import solved_model
-from surrogate.figures_identify import draw_identification
-from surrogate.identify import identify
+from surrogate.drag.data import no_load_run
+from surrogate.drag.figures import draw_identification
+from surrogate.drag.fit import identify
+from surrogate.drag.model import anchored, closed_form_model, thickened
+from surrogate.drag.table import solved_model
 from surrogate.lubricant import lubricant_state
 from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
 from surrogate.screw import rebalance_screw, solve_screw

@@ -17,12 +17,12 @@ import time
 
 import numpy as np
 from surrogate.build import default_settings
-from surrogate.build_full import build_full
-from surrogate.chain_run import ChainRun
-from surrogate.full_settings import FullSettings
+from surrogate.full.build import build_full
+from surrogate.full.run import ChainRun
+from surrogate.full.settings import FullSettings
 from surrogate.parameters import load_lubricant, load_screw
 from surrogate.surface import Surface
-from surrogate.task_workers import open_pool, usable_cores
+from surrogate.tasks.workers import open_pool, usable_cores
 
 ACCURACIES = (8.0, 4.0, 2.0)
 TEMPERATURES = (312.15, 314.15)

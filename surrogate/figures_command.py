@@ -9,7 +9,7 @@ import sys
 import time
 from typing import Any
 
-from surrogate.paper_cases import NEEDS, Task, tasks
+from surrogate.paper.cases import NEEDS, Task, tasks
 from surrogate.parameters import InputError
 
 DRAWS = 12
@@ -49,12 +49,12 @@ def _figures(args: argparse.Namespace) -> int:
     figures = tuple(args.only or NEEDS)
     wanted = tasks(figures, args.draws)
     try:
-        from surrogate import figures_paper_set
+        from surrogate.paper import figures_set
     except ImportError:
         raise InputError('figures needs matplotlib: install the extra `plot`') from None
-    from surrogate.paper_mark import table
-    from surrogate.paper_marks import marks
-    from surrogate.paper_study import run_study
+    from surrogate.paper.mark import table
+    from surrogate.paper.marks import marks
+    from surrogate.paper.study import run_study
     from surrogate.parameters import load_screw
 
     measured = _measured(args.measured) if args.measured else None
@@ -62,7 +62,7 @@ def _figures(args: argparse.Namespace) -> int:
     failed = [row for row in study.rows.values() if row.status != 'CONVERGED']
     for row in failed:
         print(f'ballscrew: {row.key} did not converge: {row.status}', file=sys.stderr)
-    for path in figures_paper_set.draw_figures(study, figures, measured):
+    for path in figures_set.draw_figures(study, figures, measured):
         print(path, file=sys.stderr)
     print(table(marks(load_screw('nominal'), study.rows)))
     return 1 if failed else 0
@@ -70,7 +70,7 @@ def _figures(args: argparse.Namespace) -> int:
 
 def _measured(path: Path) -> Any:
     """Read measured torques; one sentence when they cannot be read."""
-    from surrogate.figures_paper_screw import read_measured
+    from surrogate.paper.figures_screw import read_measured
 
     try:
         with path.open(newline='', encoding='utf-8') as file:

@@ -106,8 +106,8 @@ def _add_topics(group: Any) -> None:
 
 def _identify(args: argparse.Namespace) -> int:
     """Identify, write and draw; exit code 1 when the fit did not converge."""
-    from surrogate.identify import identify
-    from surrogate.identify_record import identification_record, page
+    from surrogate.drag.fit import identify
+    from surrogate.drag.record import identification_record, page
     from surrogate.plain_json import to_json
 
     _check(args)
@@ -150,7 +150,7 @@ def _oil_sheet(out: Path) -> Path:
 
 def _run(args: argparse.Namespace, screw: Screw, lubricant: Lubricant) -> Any:
     """Read the data, whatever they are."""
-    from surrogate.drag_data import no_load_run, read_drag_csv
+    from surrogate.drag.data import no_load_run, read_drag_csv
 
     bag = args.data.is_dir() or args.data.suffix == '.mcap'
     _refuse(args, COLUMN_OPTIONS if bag else BAG_OPTIONS, 'bag' if bag else 'CSV')
@@ -191,10 +191,10 @@ def _contacts(
 ) -> Any:
     """Return the contacts of the run; only the full tier loads the solver."""
     if tier == 'full':
-        from surrogate.drag_table import solved_model
+        from surrogate.drag.table import solved_model
 
         return solved_model(screw, lubricant, run, fitted, progress=_bar())
-    from surrogate.drag_model import closed_form_model
+    from surrogate.drag.model import closed_form_model
 
     return closed_form_model(screw, lubricant, run)
 
@@ -216,7 +216,7 @@ def _write(
     out: Path, screw: Screw, lubricant: Lubricant, run: Any, contacts: Any, found: Any
 ) -> None:
     """Write the screw, and beside it the oil where its viscosity was identified."""
-    from surrogate.identify_record import identified_oil, identified_screw
+    from surrogate.drag.record import identified_oil, identified_screw
     from surrogate.sheet_file import write_sheet
 
     write_sheet(out, identified_screw(screw, run, contacts, found))
@@ -230,7 +230,7 @@ def _write(
 def _plot(folder: Path, run: Any, found: Any, title: str) -> None:
     """Draw the picture; only this needs matplotlib."""
     try:
-        from surrogate.figures_identify import draw_identification
+        from surrogate.drag.figures import draw_identification
     except ImportError:
         raise InputError('--plot needs matplotlib: install the extra `plot`') from None
     try:

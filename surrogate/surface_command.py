@@ -118,7 +118,7 @@ def _workers(args: argparse.Namespace) -> Iterator[Any]:
             raise InputError(f'--workers and --dask have no meaning for tier {args.tier}')
         yield None
         return
-    from surrogate.task_workers import open_pool
+    from surrogate.tasks.workers import open_pool
 
     with open_pool(args.workers, args.dask) as pool:
         yield pool
@@ -149,7 +149,7 @@ def _show_progress(done: int, total: int) -> None:
 
 
 def _clean(args: argparse.Namespace) -> int:
-    from surrogate.task_store import clear, store_path
+    from surrogate.tasks.store import clear, store_path
 
     removed = clear(args.out)
     print(f'{store_path(args.out)}: {"removed" if removed else "nothing to remove"}')

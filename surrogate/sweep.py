@@ -28,8 +28,8 @@ from surrogate.parameters import (
     ZERO_CELSIUS,
 )
 from surrogate.surface_file import from_bytes, SurfaceData, SurfaceError, to_bytes, write
-from surrogate.task_pool import Outcome, Pool, run_tasks
-from surrogate.task_worker import describe_failure, worker_name
+from surrogate.tasks.pool import Outcome, Pool, run_tasks
+from surrogate.tasks.worker import describe_failure, worker_name
 from surrogate.tiers import (
     build_surface,
     default_settings,

@@ -34,7 +34,7 @@ def _sweep(args: argparse.Namespace) -> int:
     from surrogate.progress import Progress
     from surrogate.sweep import Built, load_catalogue, sweep
     from surrogate.sweep_report import JSON_NAME, PAGE_NAME, SweepReport
-    from surrogate.task_workers import open_pool
+    from surrogate.tasks.workers import open_pool
 
     items = load_catalogue(args.catalogue)
     report = SweepReport(args.catalogue, items, args.out)

@@ -16,7 +16,7 @@ from typing import Any
 
 from surrogate.parameters import InputError, Lubricant, Material, Roughness, Screw
 from surrogate.surface_file import SurfaceData
-from surrogate.task_pool import Pool
+from surrogate.tasks.pool import Pool
 
 Progress = Callable[[int, int], None]
 
@@ -49,9 +49,9 @@ TIERS = {
         solve='surrogate.build:solve_closed_form',
     ),
     'full': Tier(
-        settings='surrogate.full_settings:default_full_settings',
-        build='surrogate.full_tier:build_full_surface',
-        solve='surrogate.full_tier:solve_full',
+        settings='surrogate.full.settings:default_full_settings',
+        build='surrogate.full.tier:build_full_surface',
+        solve='surrogate.full.tier:solve_full',
         spreads=True,
     ),
 }

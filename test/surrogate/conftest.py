@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from surrogate import closed_form
 from surrogate.build import build_closed_form, default_settings
-from surrogate.chain_task import SENSES
+from surrogate.full.chain import SENSES
 from surrogate.parameters import load_lubricant, load_screw, Lubricant, Screw
 from surrogate.surface_file import SurfaceData
 from surrogate.tiers import screw_and_oil

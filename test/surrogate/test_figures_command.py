@@ -7,7 +7,7 @@ import argparse
 import pytest
 from surrogate.cli import add_commands
 from surrogate.figures_command import progress_line
-from surrogate.paper_cases import Task
+from surrogate.paper.cases import Task
 from surrogate.parameters import InputError
 
 pytest.importorskip('matplotlib')

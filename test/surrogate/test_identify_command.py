@@ -81,14 +81,14 @@ def test_the_full_tier_is_asked_for_by_name(data, monkeypatch, capsys):
     asked = []
 
     def model(screw, lubricant, points, fitted, *, progress):
-        from surrogate.drag_model import closed_form_model
+        from surrogate.drag.model import closed_form_model
 
         asked.append(fitted)
         for done in range(3):
             progress(done, 2)
         return closed_form_model(screw, lubricant, points)
 
-    monkeypatch.setattr('surrogate.drag_table.solved_model', model)
+    monkeypatch.setattr('surrogate.drag.table.solved_model', model)
     words = ('--fit', 'viscosity', '--fit', 'asperity_friction', '--fit', 'viscosity')
     assert run(data, '--tier', 'full', *words) == 0
     assert asked == [('viscosity_factor', 'asperity_friction')]
@@ -100,7 +100,7 @@ def test_a_fit_that_did_not_converge_exits_with_1(data, monkeypatch, capsys):
     from scipy.optimize import least_squares
 
     monkeypatch.setattr(
-        'surrogate.identify.least_squares',
+        'surrogate.drag.fit.least_squares',
         lambda *given, **options: least_squares(*given, **options, max_nfev=1),
     )
     sheet = data.with_name('found.yaml')
@@ -166,6 +166,6 @@ def test_a_picture(data, tmp_path, monkeypatch):
     assert [path.name for path in folder.iterdir()] == ['identify.png']
     with pytest.raises(InputError, match='--plot: .*drag.csv cannot be written'):
         run(data, '--plot', data)
-    monkeypatch.setitem(sys.modules, 'surrogate.figures_identify', None)
+    monkeypatch.setitem(sys.modules, 'surrogate.drag.figures', None)
     with pytest.raises(InputError, match='--plot needs matplotlib: install the extra `plot`'):
         run(data, '--plot', folder)

@@ -7,7 +7,7 @@ import math
 
 import pytest
 from surrogate import closed_form
-from surrogate.drag_model import thickened
+from surrogate.drag.model import thickened
 from surrogate.ehl import Settings
 from surrogate.parameters import InputError, load_lubricant, load_screw, OperatingPoint
 from surrogate.screw import rebalance_screw, solve_screw

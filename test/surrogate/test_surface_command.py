@@ -12,7 +12,7 @@ from surrogate.cli import add_commands
 from surrogate.parameters import InputError
 from surrogate.surface import shipped_surface, SurfaceError
 from surrogate.surface_file import read, write
-from surrogate.task_store import store_path, TaskStore
+from surrogate.tasks.store import store_path, TaskStore
 
 
 def run(*words: str) -> int:

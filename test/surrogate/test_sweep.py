@@ -17,7 +17,7 @@ from surrogate.parameters import DATA, InputError
 from surrogate.surface import Surface
 from surrogate.surface_file import read
 from surrogate.sweep import load_catalogue
-from surrogate.task_worker import worker_name
+from surrogate.tasks.worker import worker_name
 from surrogate.tiers import TIERS
 
 DEADLINE = 60.0
@@ -242,7 +242,7 @@ def test_a_scheduler_that_is_not_there_leaves_a_report_of_waiting_items(
 ):
     """Soon and in one sentence."""
     pytest.importorskip('distributed')
-    monkeypatch.setattr('surrogate.task_workers.PATIENCE', 0.3)
+    monkeypatch.setattr('surrogate.tasks.workers.PATIENCE', 0.3)
     with pytest.raises(InputError, match='--dask: no scheduler at tcp://127.0.0.1:1'):
         run(catalogue, '--out', tmp_path / 'out', '--dask', 'tcp://127.0.0.1:1')
     assert report(tmp_path / 'out')['counts'] == {'built': 0, 'failed': 0, 'waiting': 3}

@@ -1,0 +1,79 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What a full-tier surface covers, how fine it is, and how its work is handed out."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+import math
+from typing import Any
+
+from surrogate.build import default_settings, SurfaceSettings
+from surrogate.full.columns import Results
+from surrogate.full.speed_nodes import Target
+from surrogate.parameters import InputError, Screw
+
+Run = Callable[[str, Mapping[str, Mapping[str, Any]]], Results]
+"""Solves named chains: takes what they are for, returns their results, None for a failure."""
+EFFICIENCY, RCS, RCS_RELATIVE = 0.003, 0.003, 0.05
+"""Errors aimed at with accuracy 1 [-]."""
+LEAST_JUDGED, LEAST_IN_RATINGS = 0.25, 0.01
+"""Least load whose efficiency is judged, in preloads, or of a free screw in ratings [-]."""
+NEAR_ONSET = (-1.0, 0.7)
+"""Speed coordinates between which contact sets in [-]."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class FullSettings(SurfaceSettings):
+    """
+    Ranges and nodes of a full-tier surface.
+
+    As for formulas, but `speed_nodes` is the most there may be; draws of the roughness from 0, and
+    how many of them are solved at other temperatures than that nearest to the oil's reference;
+    number of held-out points and the seed that draws them, accuracy aimed at as a multiple of
+    0.003 in efficiency and of 0.003 or, above RCS 0.05, 5 % in RCS [-].
+
+    """
+
+    speed_nodes: int = 16
+    load_cells: int = 4
+    unloaded_cells: int = 1
+    temperature_nodes: int = 4
+    draws: int = 8
+    shared_draws: int = 2
+    held_out: int = 12
+    seed: int = 1
+    accuracy: float = 1.0
+
+    def __post_init__(self) -> None:
+        """Check the numbers that are not ranges."""
+        for name, least in (
+            ('draws', 1),
+            ('shared_draws', 1),
+            ('held_out', 1),
+            ('speed_nodes', len(NEAR_ONSET) + 2),
+        ):
+            if getattr(self, name) < least:
+                raise InputError(f'{name} is {getattr(self, name)}, allowed is {least} or more')
+        if not 0.1 <= self.accuracy <= 100:
+            raise InputError(f'accuracy is {self.accuracy:g}, allowed is 0.1 to 100')
+
+
+def default_full_settings(screw: Screw) -> FullSettings:
+    """Return the ranges of the closed-form surface of a screw, with the nodes of this tier."""
+    ranges = default_settings(screw)
+    return FullSettings(
+        speed_range=ranges.speed_range,
+        load_range=ranges.load_range,
+        temperature_range=ranges.temperature_range,
+    )
+
+
+def error_target(screw: Screw, settings: FullSettings) -> Target:
+    """Return the allowed errors, with the efficiency at the least load that is judged."""
+    least = LEAST_JUDGED * (screw.preload or LEAST_IN_RATINGS * screw.static_rating)
+    return Target(
+        ideal_torque=least * screw.lead / (2 * math.pi),
+        efficiency=settings.accuracy * EFFICIENCY,
+        rcs=settings.accuracy * RCS,
+        rcs_relative=settings.accuracy * RCS_RELATIVE,
+    )

@@ -1,0 +1,81 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The full tier as a tier of surfaces: build with workers and a store, and solve a point again."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+import platform
+import time
+from typing import Any
+
+import numba
+import numpy as np
+import scipy
+from surrogate.full.build import build_full
+from surrogate.full.chain import chain_inputs, solve_chain, WORK
+from surrogate.full.columns import mean_over_draws
+from surrogate.full.run import ChainRun
+from surrogate.full.settings import FullSettings
+from surrogate.parameters import Lubricant, Screw
+from surrogate.surface import FIELDS
+from surrogate.surface_file import SurfaceData
+from surrogate.tasks.pool import Pool
+from surrogate.tasks.store import TaskStore
+from surrogate.tiers import screw_and_oil
+
+
+def build_full_surface(
+    screw: Screw, lubricant: Lubricant, settings: FullSettings, *, pool: Pool, out: str | Path
+) -> SurfaceData:
+    """
+    Build a surface on workers; results are kept beside `out`, an interrupted build goes on.
+
+    Raises InputError for ranges that make no sense, SurfaceError for a store that cannot be used.
+
+    """
+    began = time.perf_counter()
+    with TaskStore(out, WORK) as store:
+        run = ChainRun(pool=pool, store=store)
+        data = build_full(screw, lubricant, settings, run)
+    return replace(data, provenance=_provenance(run, time.perf_counter() - began))
+
+
+def solve_full(
+    header: Mapping[str, Any], speed: float, load: float, temperature: float
+) -> dict[str, float]:
+    """
+    Solve a point [rad/s, N, K] with the draws of a surface and return the means of its fields.
+
+    Nothing where half of the draws or more do not converge, as for a node.
+
+    """
+    screw, lubricant = screw_and_oil(header['inputs'])
+    draws = int(header['settings']['draws'])
+    sense = 'opposing' if load >= 0 else 'assisting'
+    records = [
+        solve_chain(chain_inputs(screw, lubricant, abs(load), temperature, draw, [speed]))[sense][
+            0
+        ]
+        for draw in range(draws)
+    ]
+    solved = [record for record in records if record['converged']]
+    if 2 * len(solved) < draws:
+        return {}
+    return {name: mean_over_draws(solved, name) for name in FIELDS}
+
+
+def _provenance(run: ChainRun, seconds: float) -> dict[str, Any]:
+    return {
+        'built': time.strftime('%Y-%m-%dT%H:%M:%SZ', time.gmtime()),
+        'build_seconds': round(seconds, 3),
+        'worker_seconds': round(run.seconds, 3),
+        'chains': run.chains,
+        'solved_points': run.points,
+        'failed_chains': len(run.failures),
+        'machine': platform.machine(),
+        'python': platform.python_version(),
+        'numpy': np.__version__,
+        'scipy': scipy.__version__,
+        'numba': numba.__version__,
+    }

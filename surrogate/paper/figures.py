@@ -1,0 +1,114 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What all pictures of the comparison with the published study share: style, axes, files."""
+
+from collections.abc import Sequence
+from functools import cache
+import math
+import os
+from pathlib import Path
+import textwrap
+from typing import Any
+
+import matplotlib
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+import numpy as np
+from surrogate.kinematics import entrainment_speed_paper
+from surrogate.paper.curves import Curve
+from surrogate.paper.rows import Array
+from surrogate.parameters import load_screw
+
+DPI, WIDTH, CAPTION_LETTERS = 110, 7.2, 118
+"""Resolution [1/inch], width [inch] and letters in a line of a caption."""
+BLUE, VERMILION, GREEN, PURPLE, GREY = '#0072b2', '#d55e00', '#009e73', '#7b2d8e', '#6f6f6f'
+"""Colours that colour-blind readers keep apart; curves differ by line style, too."""
+STYLES = ('-', '--', '-.', ':', (0, (5, 1, 1, 1, 1, 1)), (0, (1, 1)))
+MICRO, NANO, GIGA, MILLI = 1e6, 1e9, 1e-9, 1e3
+
+
+def new_figure(height: float, caption: str) -> Figure:
+    """Return an empty figure of a `height` [inch] with a caption below."""
+    figure = Figure(figsize=(WIDTH, height), dpi=DPI, layout='constrained')
+    FigureCanvasAgg(figure)
+    text = textwrap.fill(caption, CAPTION_LETTERS)
+    figure.supxlabel(text, x=0.012, ha='left', fontsize=7.5, color='#333333')
+    return figure
+
+
+def save(figure: Figure, path: Path) -> Path:
+    """Write a PNG by atomic rename and return its path."""
+    partial = path.with_name(f'{path.name}.partial')
+    figure.savefig(partial, format='png')
+    os.replace(partial, path)
+    return path
+
+
+def shades(count: int) -> list[Any]:
+    """Return colours of a series, dark to light, that also keep apart in grey."""
+    return [matplotlib.colormaps['viridis'](x) for x in np.linspace(0.0, 0.82, count)]
+
+
+def entrainment(rpm: Any) -> Any:
+    """Return w r_m / 2 [mm/s] for screw speeds [rev/min]."""
+    return _one_rpm() * np.asarray(rpm)
+
+
+@cache
+def _one_rpm() -> float:
+    """Return the study's entrainment speed [mm/s] of the nominal screw at 1 rev/min."""
+    return MILLI * float(entrainment_speed_paper(load_screw('nominal'), math.pi / 30))
+
+
+def speed_axis(axes: Axes, *, label: bool = True, top: bool = True) -> None:
+    """Make the lower axis the entrainment speed [mm/s], logarithmic, the upper one rev/min."""
+    axes.set_xscale('log')
+    if label:
+        axes.set_xlabel('entrainment speed $\\omega r_m/2$ [mm/s]')
+    if top:
+        one = float(entrainment(1.0))
+        upper = axes.secondary_xaxis(
+            'top', functions=(lambda u: np.divide(u, one), lambda n: np.multiply(n, one))
+        )
+        upper.set_xlabel('screw speed [rev/min]', fontsize=8)
+        upper.tick_params(labelsize=8)
+
+
+def finish(axes: Axes, letter: str = '', title: str = '', legend: Any = 'best') -> None:
+    """Add grid, title and legend."""
+    axes.grid(visible=True, color='#e2e2e2', linewidth=0.6)
+    axes.set_axisbelow(True)
+    if letter or title:
+        axes.set_title(f'({letter}) {title}' if letter else title, fontsize=9, loc='left')
+    if legend and axes.get_legend_handles_labels()[0]:
+        axes.legend(fontsize=7, loc=legend, framealpha=0.85, edgecolor='none')
+
+
+def draw_curve(
+    axes: Axes, x: Array, found: Curve, factor: float, *, floor: float = 0.0, **style: Any
+) -> None:
+    """Draw means times a factor, with the standard deviation over draws as a band."""
+    mean = np.maximum(factor * found.mean, floor)
+    axes.plot(x, mean, **style)
+    if np.isfinite(found.deviation).any():
+        low, high = (factor * (found.mean + sign * found.deviation) for sign in (-1, 1))
+        axes.fill_between(
+            x,
+            np.maximum(low, floor),
+            np.maximum(high, floor),
+            color=style.get('color'),
+            alpha=0.15,
+            linewidth=0,
+        )
+
+
+def limit(axes: Axes, value: float, label: str, *, vertical: bool = False) -> None:
+    """Mark a limit or a published number."""
+    draw = axes.axvline if vertical else axes.axhline
+    draw(value, color=PURPLE, linestyle='--', linewidth=1.0, label=label)
+
+
+def many(values: Sequence[Any], unit: str) -> str:
+    """Return values and a unit as text."""
+    return f'{", ".join(f"{value:g}" for value in values)} {unit}'

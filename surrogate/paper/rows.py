@@ -1,0 +1,170 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Rows of the comparison with the published study: numbers in a CSV, fields of contacts beside it.
+
+A file holds rows of one set of datasheets: `inputs` is the beginning of their hash, and rows of
+others are not read.
+
+"""
+
+from collections.abc import Iterable
+import csv
+from dataclasses import asdict, dataclass, fields
+import hashlib
+import math
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from surrogate.paper.cases import OURS, SMOOTH, Task
+from surrogate.parameters import InputError, Lubricant, Screw
+
+Array = NDArray[np.float64]
+TABLE, FIELDS = 'paper.csv', 'paper_fields'
+"""Names of the table and of the folder of fields in the output folder."""
+VERSION = '1'
+"""Of what a row means; other versions are not read."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Row:
+    """
+    One solve; numbers that its kind does not have, or that did not converge, are NaN.
+
+    Task: kind, case, screw speed [rev/min], axial load [N], draw. Contact or worst contact: normal
+    force [N], entrainment speed [m/s], films at the centre, over the inner half of the ellipse and
+    the least [m], Hertz and largest pressure [Pa], RCS and asperity share [-], mean distance of
+    the asperity load from the centre over the semi-axes [-], punctured share of the ellipse [-].
+    Screw: RCS of loaded and relieved nut [-], friction torque and its sliding and rolling part,
+    the sliding part with the central film in Eyring's law, the torque of friction along the track
+    [N m], friction coefficient and its parts from film and asperities [-].
+    Processor time [s].
+
+    """
+
+    inputs: str
+    kind: str
+    case: str = OURS
+    rpm: float
+    load: float
+    draw: int = SMOOTH
+    status: str = ''
+    normal_force: float = math.nan
+    entrainment_speed: float = math.nan
+    central_film: float = math.nan
+    mean_film: float = math.nan
+    minimum_film: float = math.nan
+    hertz_pressure: float = math.nan
+    max_pressure: float = math.nan
+    rcs: float = math.nan
+    asperity_share: float = math.nan
+    asperity_distance: float = math.nan
+    punctured_share: float = math.nan
+    rcs_loaded: float = math.nan
+    rcs_relieved: float = math.nan
+    friction_torque: float = math.nan
+    sliding_torque: float = math.nan
+    rolling_torque: float = math.nan
+    central_film_torque: float = math.nan
+    track_torque: float = math.nan
+    friction_coefficient: float = math.nan
+    film_coefficient: float = math.nan
+    asperity_coefficient: float = math.nan
+    seconds: float = math.nan
+
+    @property
+    def key(self) -> str:
+        """Name of the task that the row answers."""
+        task: Any = {name: getattr(self, name) for name in ('kind', 'case', 'rpm', 'load', 'draw')}
+        return Task(**task).key
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ContactFields:
+    """
+    What a picture of a contact needs, whole or on the centre line.
+
+    Places along and across the track [m], semi-axes [m], Hertz, film and asperity pressure [Pa],
+    film [m], heights of the surface out of the raceway [m]; arrays (nx, ny), ny = 1 on a line.
+
+    """
+
+    x: Array
+    y: Array
+    semi_axis_x: float
+    semi_axis_y: float
+    hertz_pressure: float
+    film_pressure: Array
+    asperity_pressure: Array
+    film: Array
+    heights: Array
+
+
+def inputs_hash(screw: Screw, lubricant: Lubricant) -> str:
+    """Return the beginning of the hash of datasheets and of what a row means."""
+    text = repr((VERSION, asdict(screw), asdict(lubricant)))
+    return hashlib.sha256(text.encode()).hexdigest()[:12]
+
+
+def read_rows(path: Path, inputs: str = '') -> dict[str, Row]:
+    """Return the rows of a table by key, those of one set of inputs if it is given; InputError."""
+    try:
+        with path.open(newline='', encoding='utf-8') as file:
+            rows = [_row(record) for record in csv.DictReader(file)]
+    except FileNotFoundError:
+        return {}
+    except (OSError, UnicodeDecodeError, ValueError, TypeError) as error:
+        raise InputError(f'{path}: cannot be read as rows of this study, {error}') from None
+    return {row.key: row for row in rows if inputs in ('', row.inputs)}
+
+
+def _row(record: dict[str, str]) -> Row:
+    kinds = {'str': str, 'int': int, 'float': float}
+    values: dict[str, Any] = {
+        spec.name: kinds[getattr(spec.type, '__name__', str(spec.type))](record[spec.name])
+        for spec in fields(Row)
+        if spec.name in record
+    }
+    return Row(**values)
+
+
+def write_rows(path: Path, rows: Iterable[Row]) -> None:
+    """Write a table as a whole, by atomic rename."""
+    partial = path.with_suffix('.partial')
+    with partial.open('w', newline='', encoding='utf-8') as file:
+        writer = csv.DictWriter(file, [spec.name for spec in fields(Row)], lineterminator='\n')
+        writer.writeheader()
+        writer.writerows(_shown(row) for row in rows)
+    os.replace(partial, path)
+
+
+def _shown(row: Row) -> dict[str, Any]:
+    return {
+        name: f'{value:.6g}' if isinstance(value, float) else value
+        for name, value in asdict(row).items()
+    }
+
+
+def fields_path(folder: Path, inputs: str, key: str) -> Path:
+    """Return the file of the fields of a task."""
+    return folder / FIELDS / inputs / f'{key}.npz'
+
+
+def read_fields(path: Path) -> ContactFields:
+    """Return the fields in a file."""
+    with np.load(path, allow_pickle=False) as file:
+        kept: dict[str, Any] = {name: file[name] for name in file.files}
+    numbers = ('semi_axis_x', 'semi_axis_y', 'hertz_pressure')
+    return ContactFields(**(kept | {name: float(kept[name]) for name in numbers}))
+
+
+def write_fields(path: Path, found: ContactFields) -> None:
+    """Keep the fields of a task, by atomic rename."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    partial = path.with_suffix('.partial')
+    with partial.open('wb') as file:
+        np.savez_compressed(file, **asdict(found))
+    os.replace(partial, path)

@@ -1,0 +1,117 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Surfaces of the full tier on a fast stand-in: nodes, errors, resumption, failures."""
+
+from dataclasses import replace
+import math
+
+import numpy as np
+import pytest
+from surrogate import surface_file
+from surrogate.full.build import build_full
+from surrogate.full.chain import chain_inputs
+from surrogate.full.held_out import held_out_points
+from surrogate.full.settings import FullSettings
+from surrogate.parameters import InputError
+from surrogate.surface import Surface, Validity
+
+SETTINGS = FullSettings(
+    speed_range=(0.5, 100.0),
+    load_range=(-2000.0, 2000.0),
+    temperature_range=(293.15, 333.15),
+    temperature_nodes=3,
+    draws=3,
+    held_out=4,
+    load_cells=2,
+)
+
+
+@pytest.fixture(scope='module', name='data')
+def build(screw, oil, stand_in):
+    """Build once."""
+    return build_full(screw, oil, SETTINGS, stand_in.run)
+
+
+@pytest.fixture(name='mean')
+def make_mean(screw, oil, data, stand_in):
+    """Return speed [rad/s], mean torque [N m] and mean RCS [-] over the draws at a point."""
+    surface = Surface(data)
+
+    def mean(s, load, heat):
+        speed = surface.onset_speed(load, heat) * math.exp(s)
+        sense = 'opposing' if load >= 0 else 'assisting'
+        found = [
+            stand_in.solve(chain_inputs(screw, oil, abs(load), heat, draw, [speed]))[sense][0]
+            for draw in range(SETTINGS.draws)
+        ]
+        names = ('friction_torque', 'rcs')
+        return speed, *(float(np.mean([record[name] for record in found])) for name in names)
+
+    return mean
+
+
+def test_file_of_the_full_tier_is_read_back(data, tmp_path):
+    """Written, verified and looked up; tier, draws and spreads are in it."""
+    surface_file.write(tmp_path / 'full.npz', data)
+    surface = Surface.load(tmp_path / 'full.npz')
+    assert surface.tier == 'full'
+    assert surface.header['settings']['draws'] == 3
+    point = surface.lookup(20.0, 500.0, 313.15)
+    assert point.validity is Validity.VALID
+    assert point.friction_torque_std > 0
+
+
+def test_onset_is_near_rcs_of_one_percent(mean):
+    """At s = 0 the mean of the draws is a few percent at most, and not nothing."""
+    for load in (0.0, 900.0):
+        for heat in (300.0, 325.0):
+            _, _, rcs = mean(0.0, load, heat)
+            assert 0.001 < rcs < 0.05
+
+
+def test_every_point_of_the_range_has_an_answer(data):
+    """Corners and random points, though columns leave out speeds that no lookup reads."""
+    surface, drawn = Surface(data), np.random.default_rng(5)
+    for _ in range(300):
+        speed = math.exp(drawn.uniform(*np.log(SETTINGS.speed_range)))
+        load = float(drawn.choice([-2000.0, 2000.0, drawn.uniform(-2000, 2000)]))
+        heat = float(drawn.choice([293.15, 333.15, drawn.uniform(293.15, 333.15)]))
+        point = surface.lookup(speed, load, heat)
+        assert point.validity is Validity.VALID
+        assert all(math.isfinite(value) for value in point.values)
+
+
+def test_stated_errors_hold_elsewhere(data, mean):
+    """At points that were not held out the errors are of the stated size."""
+    surface = Surface(data)
+    other = held_out_points(data, replace(SETTINGS, seed=99, held_out=20))
+    worst = {name: surface.errors[name][0] for name in ('friction_torque', 'rcs')}
+    for s, load, heat in other:
+        speed, torque, rcs = mean(s, load, heat)
+        found = surface.lookup(speed, load, heat)
+        assert abs(found.friction_torque - torque) < 4 * worst['friction_torque']
+        assert abs(found.rcs - rcs) < 4 * worst['rcs'] + 1e-4
+
+
+def test_same_work_same_file(data, screw, oil, stand_in):
+    """In another order of chains the file has the same hash."""
+
+    def backwards(purpose, chains):
+        return dict(reversed(stand_in.run(purpose, dict(reversed(chains.items()))).items()))
+
+    assert build_full(screw, oil, SETTINGS, backwards).sha256 == data.sha256
+    other = replace(SETTINGS, draws=2)
+    assert build_full(screw, oil, other, stand_in.run).sha256 != data.sha256
+
+
+def test_nothing_that_converges_is_one_sentence(screw, oil):
+    """No file of masked nodes."""
+    with pytest.raises(InputError, match='no point of the surface converged'):
+        build_full(screw, oil, SETTINGS, lambda purpose, chains: dict.fromkeys(chains))
+
+
+def test_a_reversed_range_is_refused_before_any_work(screw, oil):
+    """The builder is never asked to solve."""
+    wrong = replace(SETTINGS, load_range=(100.0, -100.0))
+    with pytest.raises(InputError, match='load range'):
+        build_full(screw, oil, wrong, None)

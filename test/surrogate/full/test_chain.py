@@ -1,0 +1,59 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The unit of work of a full-tier surface is what the solver gives, whoever solves it."""
+
+from dataclasses import replace
+import json
+import math
+
+import pytest
+from surrogate.ehl import Settings
+from surrogate.full.chain import chain_inputs, point_record, solve_chain
+from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
+from surrogate.screw import solve_screw
+from surrogate.screw_contacts import ScrewSettings
+from surrogate.surface import FIELDS
+from surrogate.tiers import screw_and_oil
+
+SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
+WARM = 313.15
+
+
+def test_sheets_survive_json():
+    """Screw and oil come back as they were, options that are None among them."""
+    inputs = chain_inputs(SCREW, OIL, 500.0, WARM, 3, [60.0, 6.0])
+    assert screw_and_oil(json.loads(json.dumps(inputs))) == (SCREW, OIL)
+
+
+def test_a_chain_is_the_points_it_says():
+    """Both senses at two speeds, of one draw; the same numbers as single solves from cold."""
+    speeds = [60.0, 30.0]
+    chain = solve_chain(chain_inputs(SCREW, OIL, 500.0, WARM, 1, speeds))
+    assert json.loads(json.dumps(chain)) == chain
+    for sense, sign in (('opposing', 1), ('assisting', -1)):
+        for record, speed in zip(chain[sense], speeds, strict=True):
+            point = OperatingPoint(speed=speed, load=sign * 500.0, temperature=WARM)
+            found = solve_screw(SCREW, OIL, point, settings=ScrewSettings(draw=1))
+            assert record['converged']
+            assert record['friction_torque'] == pytest.approx(found.friction_torque, rel=1e-4)
+            assert record['film_ratio'] == pytest.approx(found.film_ratio, rel=1e-4)
+    assert chain['opposing'][0]['friction_torque'] != chain['assisting'][0]['friction_torque']
+
+
+def test_record_of_a_point():
+    """Every field of a surface, the worst contact among those that carry, the free film."""
+    small = Settings(nx=65, ny=65, error_estimate=False)
+    settings = ScrewSettings(smooth=small, draw=None)
+    point = OperatingPoint(speed=60.0, load=500.0, temperature=WARM)
+    found = solve_screw(SCREW, OIL, point, settings=settings)
+    record = point_record(found)
+    assert set(FIELDS) <= set(record)
+    ratios = [contact.film_ratio for contact in found.contacts]
+    assert record['worst_contact'] == ratios.index(min(ratios))
+    floor = SCREW.roughness.film_floor
+    assert record['film_over_floor'] == pytest.approx(record['minimum_film'] / floor)
+    free = solve_screw(
+        replace(SCREW, preload=0.0), OIL, replace(point, load=0.0), settings=settings
+    )
+    assert not point_record(free)['converged']
+    assert math.isnan(point_record(free)['film_over_floor'])

@@ -1,0 +1,133 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The full tier as users build it: workers, kept results, interruption, a point solved again."""
+
+from concurrent.futures import Future
+from dataclasses import replace
+from functools import partial
+import math
+
+import pytest
+from surrogate import tiers
+from surrogate.full import tier as full_tier
+from surrogate.full.run import ChainRun
+from surrogate.full.settings import default_full_settings, FullSettings
+from surrogate.parameters import InputError
+from surrogate.surface import FIELDS
+from surrogate.surface_check import check_surface
+from surrogate.tasks.store import TaskStore
+from surrogate.tasks.worker import run_task
+
+SETTINGS = FullSettings(
+    speed_range=(1.0, 60.0),
+    load_range=(-1000.0, 1000.0),
+    temperature_range=(303.15, 323.15),
+    temperature_nodes=2,
+    load_cells=2,
+    draws=2,
+    held_out=3,
+)
+
+
+class Here:
+    """A pool that solves in this process, and may be interrupted after some tasks."""
+
+    def __init__(self, most=math.inf):
+        self.most, self.solved = most, 0
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *error):
+        pass
+
+    def submit(self, task, name, inputs):
+        """Solve at once."""
+        if self.solved == self.most:
+            raise KeyboardInterrupt
+        self.solved += 1
+        future = Future()
+        future.set_result(run_task(task, name, inputs))
+        return future
+
+    def begun(self):
+        """Tell of nothing."""
+        return []
+
+    def renew(self):
+        """Lose no worker."""
+
+
+@pytest.fixture(autouse=True)
+def fast(monkeypatch, stand_in):
+    """Let chains be those of the stand-in."""
+    monkeypatch.setattr(full_tier, 'ChainRun', partial(ChainRun, task=stand_in.solve))
+    monkeypatch.setattr(full_tier, 'solve_chain', stand_in.solve)
+
+
+def build(screw, oil, out, pool, settings=SETTINGS):
+    """Build beside `out`."""
+    return tiers.build_surface('full', screw, oil, settings, pool=pool, out=out)
+
+
+def test_an_interrupted_build_resumes_to_the_same_file(screw, oil, tmp_path, capsys):
+    """What was kept is not solved again, and the hash is that of a build in one go."""
+    whole = Here()
+    data = build(screw, oil, tmp_path / 'whole.npz', whole)
+    assert whole.solved > 20
+    first, second = Here(most=18), Here()
+    with pytest.raises(KeyboardInterrupt):
+        build(screw, oil, tmp_path / 'cut.npz', first)
+    resumed = build(screw, oil, tmp_path / 'cut.npz', second)
+    assert resumed.sha256 == data.sha256
+    with TaskStore(tmp_path / 'cut.npz', full_tier.WORK) as store:
+        kept = len(store)
+    assert kept == whole.solved
+    assert second.solved < whole.solved
+    assert 'chains, nodes' in capsys.readouterr().err
+
+
+def test_provenance_counts_the_work_and_is_not_hashed(screw, oil, tmp_path):
+    """Chains, points and versions; another run of the same work has the same hash."""
+    data = build(screw, oil, tmp_path / 'a.npz', Here())
+    assert data.provenance['solved_points'] > data.provenance['chains'] > 20
+    assert data.provenance['failed_chains'] == 0
+    assert replace(data, provenance={}).sha256 == data.sha256
+
+
+def test_a_point_is_solved_with_the_draws_of_the_surface(screw, oil, tmp_path):
+    """A check passes at points that were never nodes; the fields are all there."""
+    data = build(screw, oil, tmp_path / 'a.npz', Here())
+    solved = full_tier.solve_full(data.header, 10.0, 300.0, 310.0)
+    assert set(solved) == set(FIELDS)
+    result = check_surface(data, points=10, seed=4, has_time=lambda: True)
+    assert result.tried == 10
+    assert result.silent == result.unsolved == 0
+    assert result.efficiency < 0.01
+
+
+def test_failed_chains_are_named_and_counted(screw, oil, tmp_path, monkeypatch, stand_in, capsys):
+    """One draw that fails everywhere leaves the means of the others."""
+
+    def failing(inputs):
+        if inputs['draw'] == 1:
+            raise InputError('no luck')
+        return stand_in.solve(inputs)
+
+    monkeypatch.setattr(full_tier, 'ChainRun', partial(ChainRun, task=failing))
+    data = build(screw, oil, tmp_path / 'a.npz', Here())
+    assert data.provenance['failed_chains'] > 10
+    assert not data.mask.all()
+    assert 'draw 1: no luck' in capsys.readouterr().err
+
+
+def test_defaults_cover_what_the_closed_form_covers(screw):
+    """Same ranges, by the name of the tier; changes are checked."""
+    found = tiers.default_settings('full', screw, {'draws': 3, 'accuracy': 2.0})
+    assert found == replace(default_full_settings(screw), draws=3, accuracy=2.0)
+    closed = tiers.default_settings('closed_form', screw, {})
+    assert found.load_range == closed.load_range
+    with pytest.raises(InputError, match='draws is 0, allowed is 1 or more'):
+        tiers.default_settings('full', screw, {'draws': 0})
+    with pytest.raises(InputError, match='accuracy is 0, allowed is 0.1 to 100'):
+        tiers.default_settings('full', screw, {'accuracy': 0.0})

@@ -1,0 +1,225 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Pictures of the comparison with the published study: what they draw, on made-up rows."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from surrogate.paper.cases import (
+    EFFICIENCY_LOAD,
+    MAP_LOADS,
+    MAP_SPEEDS,
+    NEEDS,
+    PRELOAD,
+    SMOOTH,
+    STRIBECK_SPEEDS,
+    Task,
+    tasks,
+)
+from surrogate.paper.mark import table
+from surrogate.paper.marks import marks
+from surrogate.paper.rows import ContactFields, fields_path, Row, write_fields
+from surrogate.paper.study import Study
+from surrogate.parameters import load_screw
+
+figures = pytest.importorskip('surrogate.paper.figures_set')
+maps = pytest.importorskip('surrogate.paper.figures_map')
+screws = pytest.importorskip('surrogate.paper.figures_screw')
+entrainment = pytest.importorskip('surrogate.paper.figures').entrainment
+
+SCREW = load_screw('nominal')
+UNITS = ('[-]', '[mm/s]', '[mN m]', '[nm]', '[N]', '[GPa]', '[µm]', '[rev/min]')
+
+
+def made_up(task: Task) -> Row:
+    """Return a row with numbers of the right size: friction falls, then rises with speed."""
+    slow = 1 / (1 + (task.rpm / 8) ** 4)
+    torque = 0.02 + 0.07 * slow + 1e-4 * task.rpm
+    return Row(
+        inputs='made up',
+        kind=task.kind,
+        case=task.case,
+        rpm=task.rpm,
+        load=task.load,
+        draw=task.draw,
+        status='CONVERGED',
+        normal_force=27.6,
+        entrainment_speed=1e-3 * float(entrainment(task.rpm)),
+        central_film=1e-8 * task.rpm**0.5 * (1 + 0.01 * task.draw),
+        mean_film=1.1e-8 * task.rpm**0.5 * (1 + 0.01 * task.draw),
+        minimum_film=4e-9,
+        rcs=slow if task.rpm < 40 and task.draw != SMOOTH else 0.0,
+        asperity_share=0.7 * slow if task.rpm < 40 else 0.0,
+        asperity_distance=0.6,
+        rcs_loaded=slow,
+        rcs_relieved=slow,
+        friction_torque=torque,
+        sliding_torque=0.6 * torque,
+        rolling_torque=0.4 * torque,
+        central_film_torque=0.62 * torque,
+        track_torque=10 * torque,
+        friction_coefficient=0.02 + 0.08 * slow,
+        film_coefficient=0.02 * (1 - slow),
+        asperity_coefficient=0.1 * slow,
+    )
+
+
+@pytest.fixture(scope='module')
+def study(tmp_path_factory):
+    """Return a study of six draws with the same small fields for every picture."""
+    folder = tmp_path_factory.mktemp('study')
+    x, y = np.linspace(-90e-6, 60e-6, 31), np.linspace(-450e-6, 450e-6, 21)
+    wanted = tasks(tuple(NEEDS), 6)
+    for task in wanted:
+        if task.fields:
+            places = y if task.fields == 'map' else y[10:11]
+            write_fields(fields_path(folder, 'made up', task.key), hump(x, places))
+    rows = {task.key: made_up(task) for task in wanted}
+    return Study(rows=rows, folder=folder, inputs='made up')
+
+
+def hump(x, y):
+    """Return fields of a contact with an asperity in the middle."""
+    inside = np.maximum(1 - (x[:, None] / 40e-6) ** 2 - (y[None, :] / 360e-6) ** 2, 0)
+    return ContactFields(
+        x=x,
+        y=y,
+        semi_axis_x=40e-6,
+        semi_axis_y=360e-6,
+        hertz_pressure=0.9e9,
+        film_pressure=0.8e9 * np.sqrt(inside),
+        asperity_pressure=np.where(inside > 0.9, 1e9, 0.0),
+        film=4e-9 + 1e-7 * (1 - inside),
+        heights=1e-7 * inside,
+    )
+
+
+def test_all_pictures_are_written(study):
+    """One PNG per figure, two for the load on the rough contact; nothing else is left."""
+    paths = list(figures.draw_figures(study, tuple(NEEDS)))
+    assert [path.name for path in paths] == [
+        'paper_04_surface.png',
+        'paper_06b_torque.png',
+        'paper_07_smooth_speed.png',
+        'paper_08_smooth_load.png',
+        'paper_09_rough_speed.png',
+        'paper_10_rough_load.png',
+        'paper_10_asperities.png',
+        'paper_11_stribeck.png',
+        'paper_12_maps.png',
+        'paper_13_zone.png',
+        'paper_alternatives.png',
+    ]
+    for path in paths:
+        assert path.read_bytes().startswith(b'\x89PNG')
+    assert not list(study.folder.glob('*.partial'))
+
+
+@pytest.mark.parametrize('name', tuple(NEEDS))
+def test_axes_say_quantity_and_unit(study, name):
+    """Every labelled axis ends in a unit, and every picture has a caption and a label."""
+    for draw in figures._pictures(study, name, None).values():
+        figure = draw()
+        labels = [
+            label
+            for axes in figure.axes
+            for label in (axes.get_xlabel(), axes.get_ylabel())
+            if label
+        ]
+        assert len(labels) >= 2
+        for label in labels:
+            assert label.split(',')[0].endswith(UNITS), label
+        assert len(figure.get_supxlabel()) > 60
+
+
+def test_torque_with_its_least_and_measurements(study):
+    """The marked least is that of the mean; measurements stand at their speed and torque."""
+    measured = screws.Measured(
+        rpm=np.array([100.0]), torque=np.array([0.05]), deviation=np.array([0.01])
+    )
+    axes = screws.figure_torque(list(study.rows.values()), measured).axes[0]
+    lines = {line.get_label(): line for line in axes.get_lines()}
+    torque = lines['friction torque']
+    np.testing.assert_allclose(torque.get_xdata(), entrainment(STRIBECK_SPEEDS))
+    assert lines['least torque'].get_ydata()[0] == pytest.approx(min(torque.get_ydata()))
+    bars = axes.containers[0].lines[0]
+    assert bars.get_xdata()[0] == pytest.approx(83.776, abs=1e-3)
+    assert bars.get_ydata()[0] == pytest.approx(50.0)
+
+
+def test_stribeck_marks_the_limit_and_the_published_film(study):
+    """RCS 0.01; 153 nm at 502.65 mm/s."""
+    figure = screws.figure_stribeck(list(study.rows.values()))
+    labels = [label for axes in figure.axes for label in axes.get_legend_handles_labels()[1]]
+    assert 'limit 0.01' in labels
+    assert 'reported, rough: 153 nm at 502.65 mm/s' in labels
+    assert {'asperity share', 'film share'} <= set(labels)
+
+
+def test_measurements_are_read_and_refused():
+    """Deviation is optional; a missing column or word is an error."""
+    found = screws.read_measured([{'speed_rev_min': '60', 'torque_Nm': '0.2'}])
+    assert (found.rpm[0], found.torque[0], found.deviation[0]) == (60.0, 0.2, 0.0)
+    for line in ({'speed': '60', 'torque_Nm': '0.2'}, {'speed_rev_min': 'x', 'torque_Nm': '1'}):
+        with pytest.raises(ValueError, match=r'needs numbers|could not convert'):
+            screws.read_measured([line])
+
+
+def test_maps_meet_their_nodes(study):
+    """Between the nodes lies a map that returns them; efficiency rises with load."""
+    speed, load, rcs, eta = maps.fine_map(SCREW, list(study.rows.values()))
+    corner = study.rows[Task(kind='screw', rpm=MAP_SPEEDS[0], load=MAP_LOADS[-1], draw=0).key]
+    assert rcs[-1, 0] == pytest.approx(corner.rcs)
+    ideal = corner.load * SCREW.lead / (2 * np.pi)
+    assert eta[-1, 0] == pytest.approx(ideal / (ideal + corner.friction_torque))
+    assert (np.diff(eta, axis=0) > 0).all()
+    assert (speed[-1], load[0]) == (pytest.approx(MAP_SPEEDS[-1]), pytest.approx(MAP_LOADS[0]))
+
+
+def test_a_point_that_failed_leaves_a_gap(study):
+    """Its profile is left out, and the map bridges it between its neighbours."""
+    failed = [
+        Task(kind='contact', rpm=600.0, load=PRELOAD).key,
+        Task(kind='screw', rpm=MAP_SPEEDS[3], load=MAP_LOADS[0], draw=0).key,
+    ]
+    rows = study.rows | {key: replace(study.rows[key], status='STALLED') for key in failed}
+    gap = replace(study, rows=rows)
+    figure = figures._pictures(gap, '7', None)['07_smooth_speed']()
+    labels = figure.axes[0].get_legend_handles_labels()[1]
+    assert len(labels) == 4
+    assert not [label for label in labels if '600 rev/min' in label]
+    assert np.isfinite(maps.fine_map(SCREW, list(rows.values()))[3]).all()
+
+
+def test_zone_and_maps_need_no_row_beyond_the_map(study):
+    """They draw from the map alone."""
+    only = [row for row in study.rows.values() if row.load > 0 and row.kind == 'screw']
+    assert maps.figure_maps(SCREW, only).axes
+    assert maps.figure_zone(SCREW, only).axes
+
+
+def test_marks_leave_out_what_the_rows_cannot_tell(study):
+    """Without rows no number; of some rows only theirs; none that is not finite."""
+    assert marks(SCREW, {}) == []
+    names = [mark.name for mark in marks(SCREW, study.rows)]
+    assert len(names) == len(set(names)) > 30
+    torque = {key: row for key, row in study.rows.items() if row.load == PRELOAD}
+    torque = {key: row for key, row in torque.items() if row.kind == 'screw'}
+    few = marks(SCREW, torque)
+    assert 5 < len(few) < 25
+    assert table(few).count('\n') == len(few) + 1
+
+
+def test_marks_follow_the_rows(study):
+    """Less torque, more efficiency: the numbers are computed."""
+    lighter = {
+        key: replace(row, friction_torque=0.5 * row.friction_torque)
+        for key, row in study.rows.items()
+    }
+    name = f'best efficiency, {EFFICIENCY_LOAD:g} N'
+    values = [
+        next(mark.value for mark in marks(SCREW, rows) if mark.name == name)
+        for rows in (study.rows, lighter)
+    ]
+    assert values[1] > values[0] + 0.003

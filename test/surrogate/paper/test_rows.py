@@ -1,0 +1,160 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Tasks, rows and their files, curves and crossings of the comparison with the study."""
+
+from dataclasses import replace
+import math
+
+import numpy as np
+import pytest
+from surrogate.paper.cases import NEEDS, SHORT, SMOOTH, Task, tasks
+from surrogate.paper.curves import (
+    constant_friction_efficiency,
+    crossing,
+    Curve,
+    curve,
+    grid,
+    lowest,
+    paired_change,
+    pick,
+)
+from surrogate.paper.rows import inputs_hash, read_rows, Row, write_rows
+from surrogate.paper.study import run_study
+from surrogate.parameters import InputError, load_lubricant, load_screw
+
+SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
+BASE = Row(inputs='a', kind='contact', rpm=5.0, load=0.0, draw=0, status='CONVERGED', rcs=0.1)
+
+
+def test_every_task_is_asked_once():
+    """Figures share their solves; what keeps most fields wins."""
+    wanted = tasks(tuple(NEEDS), 6)
+    assert len({task.key for task in wanted}) == len(wanted)
+    first = next(task for task in wanted if (task.rpm, task.load, task.draw) == (5.0, 0.0, 0))
+    assert first.fields == 'map'
+    assert len(tasks(('7',), 1)) == 4
+
+
+def test_more_draws_are_more_tasks_of_rough_contacts():
+    """The whole screw takes a third, at least one."""
+    few, many = (tasks(('6b',), draws) for draws in (2, 6))
+    assert len(many) == 2 * len(few)
+    assert {task.draw for task in few} == {0}
+    assert len(tasks(('12',), 12)) == 2 * len(tasks(('12',), 11)) == 84
+
+
+@pytest.mark.parametrize(
+    ('figures', 'draws', 'words'),
+    [(('5',), 6, "figure is '5', allowed are 4, 6b"), (('7',), 0, 'draws is 0, allowed is 1')],
+)
+def test_what_is_not_made_is_refused(figures, draws, words):
+    """One sentence."""
+    with pytest.raises(InputError, match=words):
+        tasks(figures, draws)
+
+
+def test_rows_come_back_as_they_were_written(tmp_path):
+    """NaN, negative draws and names with blanks included; rows of other inputs are left."""
+    rows = [BASE, replace(BASE, draw=SMOOTH, case=SHORT, load=500.0), replace(BASE, inputs='b')]
+    write_rows(tmp_path / 'paper.csv', rows)
+    found = read_rows(tmp_path / 'paper.csv', 'a')
+    assert list(found) == [BASE.key, rows[1].key]
+    first = found[BASE.key]
+    assert (first.rcs, first.draw, first.status) == (0.1, 0, 'CONVERGED')
+    assert math.isnan(first.friction_torque)
+    assert [path.name for path in tmp_path.iterdir()] == ['paper.csv']
+
+
+def test_a_broken_table_is_refused(tmp_path):
+    """With its path."""
+    (tmp_path / 'paper.csv').write_text('inputs,kind,rpm\na,contact,fast\n')
+    with pytest.raises(InputError, match=r'paper\.csv: cannot be read'):
+        read_rows(tmp_path / 'paper.csv')
+    assert read_rows(tmp_path / 'none.csv') == {}
+
+
+def test_another_screw_is_another_study():
+    """The hash covers both datasheets."""
+    changed = replace(OIL, viscosity=1.01 * OIL.viscosity)
+    assert inputs_hash(SCREW, OIL) == inputs_hash(SCREW, OIL)
+    assert inputs_hash(SCREW, OIL) != inputs_hash(SCREW, changed)
+
+
+def test_a_study_goes_on_where_it_stopped(tmp_path, monkeypatch):
+    """Rows that are there are not solved again, missing fields are."""
+    wanted = tasks(('7',), 1)
+    told = []
+    run_study(tmp_path, wanted[:2], lambda *now: told.append(now[:3]))
+    assert told == [(1, 2, 0.5), (2, 2, 1.0)]
+    told.clear()
+    study = run_study(tmp_path, wanted[:2], lambda *now: told.append(now))
+    assert not told
+    assert list(study.rows) == [task.key for task in wanted[:2]]
+    assert study.fields(wanted[0].key).film.shape == (257, 1)
+    next(tmp_path.rglob('*.npz')).unlink()
+    run_study(tmp_path, wanted[:2], lambda *now: told.append(now))
+    assert len(told) == 1
+
+
+def test_mean_and_spread_over_draws():
+    """Standard deviation and error of two draws by hand; rows that failed are left out."""
+    rows = [
+        replace(BASE, draw=draw, rpm=rpm, rcs=rcs)
+        for draw, rpm, rcs in ((0, 5.0, 0.1), (1, 5.0, 0.3), (0, 20.0, 0.0), (1, 20.0, 0.02))
+    ]
+    rows.append(replace(BASE, draw=2, status='STALLED', rcs=9.0))
+    found = curve(rows, 'rpm', 'rcs', kind='contact', rough=True)
+    np.testing.assert_allclose(found.mean, [0.2, 0.01])
+    np.testing.assert_allclose(found.deviation, [0.1 * math.sqrt(2), 0.01 * math.sqrt(2)])
+    np.testing.assert_allclose(found.error, [0.1, 0.01])
+    assert found.draws == 2
+    assert not pick(rows, rough=False)
+    mean, error, draws = paired_change(rows, 'rcs', 'rpm', 5.0, 20.0, kind='contact')
+    assert (mean, error, draws) == (pytest.approx(-0.19), pytest.approx(0.09), 2)
+
+
+def line(at, mean):
+    """Return a curve without spread."""
+    nothing = np.full(len(at), math.nan)
+    return Curve(at=np.array(at), mean=np.array(mean), deviation=nothing, error=nothing, draws=1)
+
+
+def test_crossing_by_logarithms():
+    """Between 0.1 and 0.001 half way in the logarithm; NaN where it never passes."""
+    assert crossing(line([10.0, 40.0], [0.1, 0.001]), 0.01) == pytest.approx(20.0)
+    assert crossing(line([10.0, 40.0], [0.01, 0.0]), 0.01) == pytest.approx(10.0)
+    assert math.isnan(crossing(line([10.0, 40.0], [0.1, 0.02]), 0.01))
+    assert math.isnan(crossing(line([10.0, 40.0], [0.001, 0.0]), 0.01))
+    assert lowest(line([1.0, 2.0, 3.0], [5.0, 4.0, 6.0])) == (2.0, 4.0)
+
+
+def test_constant_friction_is_that_of_the_table(table):
+    """The comparator of the maps is the reference table's, at its preload of 1 kN."""
+    row = table('constant_friction.csv')[0]
+    screw = replace(SCREW, preload=1000.0)
+    for load in (0.5, 1.0, 2.0):
+        expected = float(row[f'eta_at_{load:g}_preload'])
+        assert constant_friction_efficiency(screw, 1000.0 * load) == pytest.approx(
+            expected, abs=1e-3
+        )
+
+
+def test_the_map_is_a_grid():
+    """Loads by speeds, means over draws, NaN for what did not converge."""
+    rows = [
+        replace(BASE, kind='screw', load=load, rpm=rpm, rcs=load * rpm)
+        for load in (50.0, 100.0)
+        for rpm in (5.0, 10.0)
+    ]
+    rows[1] = replace(rows[1], status='nut: stalled')
+    rows.append(replace(rows[3], draw=1, rcs=1200.0))
+    speeds, loads, values = grid(rows, 'rcs')
+    np.testing.assert_array_equal(speeds, [5.0, 10.0])
+    np.testing.assert_array_equal(loads, [50.0, 100.0])
+    np.testing.assert_array_equal(values, [[250.0, math.nan], [500.0, 1100.0]])
+
+
+def test_key_names_the_task():
+    """A row has the key of its task."""
+    task = Task(kind='contact', rpm=5.0, load=0.0, draw=0)
+    assert task.key == BASE.key == 'contact_ours_5rpm_0N_draw0'

@@ -1,0 +1,291 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Tasks on real processes: same results for any workers, and none lost with its worker."""
+
+import os
+from pathlib import Path
+import select
+import signal
+import subprocess
+import sys
+import threading
+
+import pytest
+from surrogate.parameters import InputError
+from surrogate.tasks import workers as task_workers
+from surrogate.tasks.pool import MOST_TRIES, run_tasks
+from surrogate.tasks.store import TaskStore
+from surrogate.tasks.worker import worker_name
+from surrogate.tasks.workers import open_pool
+
+DEADLINE = 60.0
+TASKS = """
+import math, os, signal, struct
+from multiprocessing.connection import Connection
+from surrogate.parameters import InputError
+
+def root(inputs):
+    return {'root': math.sqrt(inputs['x']), 'chain': [math.exp(-inputs['x']), 1]}
+
+def refuse(inputs):
+    raise InputError('x is -1, allowed is 0 or more')
+
+def say_hello_and_wait(inputs):
+    with open(inputs['hello'], 'w') as hello:
+        hello.write(str(os.getpid()))
+    with open(inputs['gate']) as gate:
+        gate.read()
+    return {'done': True}
+
+def send_half(inputs):
+    def send_and_die(pipe, message):
+        os.write(pipe.fileno(), struct.pack('!i', len(message)) + bytes(message)[:500])
+        os.kill(os.getpid(), signal.SIGKILL)
+    if inputs['cut']:
+        Connection._send_bytes = send_and_die
+    return {'text': 1000 * 'x'}
+
+def kill_worker(inputs):
+    if inputs['kill']:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return {'x': inputs['x']}
+
+def describe(inputs):
+    import numba
+    ignored = signal.getsignal(signal.SIGINT) is signal.SIG_IGN
+    return {'threads': numba.get_num_threads(), 'blas': os.environ['OMP_NUM_THREADS'],
+            'ignores': ignored}
+"""
+PARENT = """
+import signal
+import sys
+from surrogate.tasks.pool import run_tasks
+from surrogate.tasks.workers import open_pool
+import pool_tasks
+
+if __name__ == '__main__':
+    # A shell may have started the tests deaf to Ctrl-C.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    *hellos, gate = sys.argv[1:]
+    inputs = {hello: {'hello': hello, 'gate': gate} for hello in hellos}
+    with open_pool(2) as pool:
+        run_tasks(pool, pool_tasks.say_hello_and_wait, inputs)
+"""
+
+
+@pytest.fixture
+def tasks(tmp_path: Path, monkeypatch):
+    """Return a module of tasks that workers can import too."""
+    (tmp_path / 'pool_tasks.py').write_text(TASKS)
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.delitem(sys.modules, 'pool_tasks', raising=False)
+    import pool_tasks
+
+    return pool_tasks
+
+
+@pytest.fixture
+def pipes(tmp_path: Path) -> dict[str, str]:
+    """Return named pipes: a task says hello with its process number, then waits at the gate."""
+    names = {name: str(tmp_path / name) for name in ('hello', 'second', 'gate')}
+    for path in names.values():
+        os.mkfifo(path)
+    return names
+
+
+def read(path: str) -> str:
+    """Return what one writer says on a named pipe."""
+    with open(path) as pipe:
+        return pipe.read()
+
+
+def killer(pipes: dict[str, str], seen: list[int]) -> threading.Thread:
+    """Kill the worker that begins the waiting task first, and let the second one pass."""
+
+    def work() -> None:
+        seen.append(int(read(pipes['hello'])))
+        os.kill(seen[0], signal.SIGKILL)
+        seen.append(int(read(pipes['hello'])))
+        open(pipes['gate'], 'w').close()
+
+    thread = threading.Thread(target=work, daemon=True)
+    thread.start()
+    return thread
+
+
+def numbers(count: int) -> dict[str, dict[str, float]]:
+    """Return inputs of many small tasks."""
+    return {f'task {number}': {'x': number / 7} for number in range(count)}
+
+
+def test_results_do_not_depend_on_workers(tasks):
+    """One process or two: the same results, in the order of the inputs."""
+    found = []
+    for workers in (1, 2):
+        with open_pool(workers) as pool:
+            outcomes = run_tasks(pool, tasks.root, numbers(20))
+        assert list(outcomes) == list(numbers(20))
+        found.append([outcome.result for outcome in outcomes.values()])
+        assert {outcome.worker.partition('/')[0] for outcome in outcomes.values()} == {
+            worker_name().partition('/')[0]
+        }
+    assert found[0] == found[1]
+    assert found[0] == [tasks.root(inputs) for inputs in numbers(20).values()]
+
+
+def test_a_failed_task_is_a_sentence(tasks):
+    """A refusal keeps its sentence, any other error its name; the rest is done."""
+    with open_pool(2) as pool:
+        outcomes = run_tasks(pool, tasks.root, {**numbers(3), 'bad': {'x': -1.0}, 'none': {}})
+        refused = run_tasks(pool, tasks.refuse, {'one': {}})['one']
+    assert outcomes['bad'].result is None
+    assert outcomes['bad'].sentence == 'ValueError: math domain error'
+    assert outcomes['none'].sentence == "KeyError: 'x'"
+    assert [outcome.sentence for outcome in outcomes.values()].count('') == 3
+    assert refused.sentence == 'x is -1, allowed is 0 or more'
+
+
+@pytest.mark.parametrize('dask', [None, 'local'])
+def test_the_task_of_a_killed_worker_is_done_elsewhere(tasks, pipes, dask):
+    """SIGKILL at work: another process does the task, and the outcome names both."""
+    if dask:
+        pytest.importorskip('distributed')
+    seen: list[int] = []
+    thread = killer(pipes, seen)
+    with open_pool(2, dask) as pool:
+        outcome = run_tasks(pool, tasks.say_hello_and_wait, {'it': pipes})['it']
+        rest = run_tasks(pool, tasks.root, numbers(20))
+    thread.join(DEADLINE)
+    host = worker_name().partition('/')[0]
+    assert outcome.result == {'done': True}
+    assert outcome.lost == (f'{host}/{seen[0]}',)
+    assert outcome.worker == f'{host}/{seen[1]}'
+    assert len(set(seen)) == 2
+    assert not any(other.sentence for other in rest.values())
+
+
+def test_a_task_that_kills_its_workers_ends_as_a_sentence(tasks):
+    """It is given up after a few tries, and costs no other task its result."""
+    inputs = {f'{number}': {'x': number, 'kill': number == 3} for number in range(10)}
+    with open_pool(2) as pool:
+        outcomes = run_tasks(pool, tasks.kill_worker, inputs)
+    assert outcomes['3'].sentence == f'its worker was lost {MOST_TRIES} times'
+    assert len(set(outcomes['3'].lost)) == MOST_TRIES
+    for name, outcome in outcomes.items():
+        assert outcome.result == (None if name == '3' else {'x': int(name)})
+
+
+def test_a_module_that_ends_its_process_is_told(tmp_path: Path, monkeypatch):
+    """Every process that imports it ends: a sentence, and no endless loop."""
+    (tmp_path / 'deadly_tasks.py').write_text(
+        f'import os\nif os.getpid() != {os.getpid()}:\n    os._exit(3)\n'
+        'def task(inputs):\n    return {}\n'
+    )
+    monkeypatch.syspath_prepend(tmp_path)
+    import deadly_tasks
+
+    with open_pool(1) as pool:
+        outcome = run_tasks(pool, deadly_tasks.task, {'a': {}})['a']
+    assert outcome.sentence == f'its worker was lost {MOST_TRIES} times'
+
+
+def test_a_module_that_workers_do_not_have_is_told(tmp_path: Path, monkeypatch):
+    """The other tasks go on."""
+    (tmp_path / 'gone_tasks.py').write_text('def task(inputs):\n    return {}\n')
+    with monkeypatch.context() as here:
+        here.syspath_prepend(tmp_path)
+        import gone_tasks
+    with open_pool(1) as pool:
+        outcome = run_tasks(pool, gone_tasks.task, {'a': {}})['a']
+    assert outcome.sentence == "ModuleNotFoundError: No module named 'gone_tasks'"
+
+
+def test_a_kill_in_the_middle_of_a_result_is_only_a_lost_worker(tasks):
+    """Half a message in a pipe stops neither the other tasks nor the end of the pool."""
+    inputs = {f'{number}': {'cut': number == 3} for number in range(10)}
+    with open_pool(2) as pool:
+        outcomes = run_tasks(pool, tasks.send_half, inputs)
+    assert outcomes['3'].sentence == f'its worker was lost {MOST_TRIES} times'
+    for name, outcome in outcomes.items():
+        assert outcome.result == (None if name == '3' else {'text': 1000 * 'x'})
+
+
+def test_kept_results_are_not_solved_again(tasks, tmp_path: Path):
+    """The second run solves what has failed alone; both give the same results."""
+    inputs = {**numbers(5), 'bad': {'x': -1.0}}
+    told: list[str] = []
+    with TaskStore(tmp_path / 'map.npz', 'test 1') as store, open_pool(2) as pool:
+        first = run_tasks(pool, tasks.root, inputs, store=store)
+    with TaskStore(tmp_path / 'map.npz', 'test 1') as store, open_pool(1) as pool:
+        second = run_tasks(
+            pool, tasks.root, inputs, store=store, report=lambda outcome: told.append(outcome.name)
+        )
+    assert not any(outcome.stored for outcome in first.values())
+    assert [name for name, outcome in second.items() if not outcome.stored] == ['bad']
+    assert [o.result for o in first.values()] == [o.result for o in second.values()]
+    assert sorted(told) == sorted(inputs)
+
+
+def test_a_worker_has_one_thread_and_ignores_ctrl_c(tasks):
+    """Workers share the cores, and Ctrl-C is for the parent."""
+    with open_pool(1) as pool:
+        found = run_tasks(pool, tasks.describe, {'a': {}})['a']
+    assert found.result == {'threads': 1, 'blas': '1', 'ignores': True}
+
+
+def parent(tmp_path: Path, pipes: dict[str, str]) -> subprocess.Popen[str]:
+    """Start a program with two workers at work, in a session of its own."""
+    script = tmp_path / 'parent.py'
+    script.write_text(PARENT)
+    path = os.pathsep.join([str(tmp_path), str(Path(task_workers.__file__).parents[2])])
+    return subprocess.Popen(
+        [sys.executable, str(script), *pipes.values()],
+        env={**os.environ, 'PYTHONPATH': path},
+        start_new_session=True,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+
+
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
+def test_no_worker_outlives_its_parent(tasks, tmp_path: Path, pipes, number):
+    """Ctrl-C reaches the whole group, a kill the parent alone: all are gone, no one chatters."""
+    with parent(tmp_path, pipes) as process:
+        workers = [int(read(pipes[name])) for name in ('hello', 'second')]
+        endings = [os.pidfd_open(pid) for pid in workers]
+        if number == signal.SIGINT:
+            os.killpg(process.pid, number)
+        else:
+            process.send_signal(number)
+        for ending in endings:
+            assert select.select([ending], [], [], DEADLINE)[0], 'a worker is still there'
+            os.close(ending)
+        errors = process.communicate(timeout=DEADLINE)[1]
+    assert process.returncode == -number
+    assert errors.count('Traceback') == (number == signal.SIGINT)
+    assert errors.endswith('KeyboardInterrupt\n') == (number == signal.SIGINT)
+
+
+@pytest.mark.parametrize(
+    ('workers', 'dask', 'sentence'),
+    [
+        (0, None, '--workers is 0, allowed is 1 or more'),
+        (2, 'tcp://host:8786', '--workers does not belong to --dask tcp://host:8786'),
+        (None, 'here', r"no scheduler at here \(missing port number in address 'here'\)"),
+        (None, 'tcp://127.0.0.1:1', 'no scheduler at tcp://127.0.0.1:1 .nothing answers within'),
+    ],
+)
+def test_a_wrong_pool_is_one_sentence(monkeypatch, workers, dask, sentence):
+    """What, value, allowed; a scheduler that is not there is told soon."""
+    if dask and workers is None:
+        pytest.importorskip('distributed')
+    monkeypatch.setattr(task_workers, 'PATIENCE', 0.3)
+    with pytest.raises(InputError, match=sentence):
+        open_pool(workers, dask)
+
+
+def test_dask_that_is_not_installed_names_the_extra(monkeypatch):
+    """The sentence says what to install."""
+    monkeypatch.setitem(sys.modules, 'distributed', None)
+    with pytest.raises(InputError, match='install the extra `dask`'):
+        open_pool(2, 'local')

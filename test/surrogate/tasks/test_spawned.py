@@ -1,0 +1,79 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The executor beneath a pool of processes: calls, failures, losses, its end."""
+
+import math
+import operator
+import os
+
+import pytest
+from surrogate.tasks.spawned import apart, LostWorker, SpawnedWorkers
+
+DEADLINE = 60.0
+
+
+@pytest.fixture
+def began():
+    """Return the list of what was begun."""
+    return []
+
+
+@pytest.fixture
+def workers(began):
+    """Return two workers."""
+    with SpawnedWorkers(2, lambda arguments, worker: began.append((arguments, worker))) as pool:
+        yield pool
+
+
+def test_calls_return_and_raise(workers, began):
+    """What the function returns or raises is what the future has."""
+    assert workers.submit(math.sqrt, 9.0).result(DEADLINE) == 3.0
+    with pytest.raises(ValueError, match='math domain error'):
+        workers.submit(math.sqrt, -1.0).result(DEADLINE)
+    assert [arguments for arguments, _ in began] == [(9.0,), (-1.0,)]
+
+
+def test_map_keeps_the_order(workers):
+    """As every executor does."""
+    assert list(workers.map(operator.neg, range(20))) == [-n for n in range(20)]
+
+
+def test_a_lost_process_is_the_loss_of_its_call(workers):
+    """The next call finds another process."""
+    with pytest.raises(LostWorker):
+        workers.submit(os._exit, 3).result(DEADLINE)
+    assert workers.submit(abs, -1).result(DEADLINE) == 1
+
+
+def test_what_cannot_be_handed_over_is_that_call_alone(workers):
+    """A function without a name, arguments by keyword, a result that has no bytes."""
+    with pytest.raises(Exception, match='pickle'):
+        workers.submit(lambda: 1).result(DEADLINE)
+    with pytest.raises(TypeError, match='by position'):
+        workers.submit(abs, x=1)
+    with pytest.raises(Exception, match='pickle'):
+        workers.submit(memoryview, b'abc').result(DEADLINE)
+    assert workers.submit(abs, -1).result(DEADLINE) == 1
+
+
+def test_the_end_cancels_what_was_not_begun(began):
+    """No call is left that is neither done nor cancelled, and none is taken any more."""
+    pool = SpawnedWorkers(1, lambda arguments, worker: began.append(worker))
+    first = pool.submit(abs, -1)
+    assert first.result(DEADLINE) == 1
+    later = [pool.submit(abs, number) for number in range(50)]
+    pool.shutdown()
+    assert all(future.done() for future in later)
+    assert later[-1].cancelled() or later[-1].exception() or later[-1].result() == 49
+    with pytest.raises(RuntimeError, match='have been ended'):
+        pool.submit(abs, 1)
+
+
+def test_the_environment_is_as_it_was_afterwards(monkeypatch):
+    """One thread for those that start meanwhile, and no trace of it."""
+    monkeypatch.setenv('OMP_NUM_THREADS', '7')
+    monkeypatch.delenv('MKL_NUM_THREADS', raising=False)
+    with apart():
+        assert os.environ['OMP_NUM_THREADS'] == os.environ['MKL_NUM_THREADS'] == '1'
+    assert os.environ['OMP_NUM_THREADS'] == '7'
+    assert 'MKL_NUM_THREADS' not in os.environ
