@@ -98,12 +98,15 @@ def balance_ball(
     )
     if problem.force_unit == 0:
         return unloaded_balance(problem)
-    found = _solve(problem, settings or BalanceSettings())
-    if found.status is not BalanceStatus.CONVERGED:
-        return BallBalance(
-            status=found.status, speed=problem.speed, flank=flank, iterations=found.steps
-        )
-    return converged_balance(problem, found.unknowns, found.steps)
+    settings = settings or BalanceSettings()
+    found = _solve(problem, settings)
+    status = found.status
+    if status is BalanceStatus.CONVERGED:
+        balance = converged_balance(problem, found.unknowns, found.steps)
+        if balance.imbalance <= settings.balance_tolerance:
+            return balance
+        status = BalanceStatus.STALLED
+    return BallBalance(status=status, speed=problem.speed, flank=flank, iterations=found.steps)
 
 
 def _solve(problem: BallProblem, settings: BalanceSettings) -> _Iterate:
@@ -120,7 +123,7 @@ def _solve(problem: BallProblem, settings: BalanceSettings) -> _Iterate:
             if found.status is not BalanceStatus.CONVERGED:
                 break
         else:
-            return replace(found, status=_judge(problem, found.unknowns, settings))
+            return found
     return found
 
 
@@ -199,15 +202,6 @@ def _regular(jacobian: Array) -> bool:
     if not (np.isfinite(jacobian).all() and rows.min() > 0):
         return False
     return bool(np.linalg.cond(jacobian / rows) < LARGEST_CONDITION)
-
-
-def _judge(problem: BallProblem, unknowns: Array, settings: BalanceSettings) -> BalanceStatus:
-    """Return whether the last iterate is in balance."""
-    if not _legal(problem, unknowns):
-        return BalanceStatus.OUT_OF_RANGE
-    left = _imbalance(problem, unknowns, wrenches(problem, unknowns))
-    good = np.abs(left).max() <= settings.balance_tolerance
-    return BalanceStatus.CONVERGED if good else BalanceStatus.STALLED
 
 
 def _check(
