@@ -2,10 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The full tier as users build it: workers, kept results, interruption, a point solved again."""
 
-from concurrent.futures import Future
 from dataclasses import replace
 from functools import partial
-import math
 
 import pytest
 from surrogate import tiers
@@ -16,7 +14,6 @@ from surrogate.parameters import InputError
 from surrogate.surface import FIELDS
 from surrogate.surface_check import check_surface
 from surrogate.tasks.store import TaskStore
-from surrogate.tasks.worker import run_task
 
 SETTINGS = FullSettings(
     speed_range=(1.0, 60.0),
@@ -27,35 +24,6 @@ SETTINGS = FullSettings(
     draws=2,
     held_out=3,
 )
-
-
-class Here:
-    """A pool that solves in this process, and may be interrupted after some tasks."""
-
-    def __init__(self, most=math.inf):
-        self.most, self.solved = most, 0
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *error):
-        pass
-
-    def submit(self, task, name, inputs):
-        """Solve at once."""
-        if self.solved == self.most:
-            raise KeyboardInterrupt
-        self.solved += 1
-        future = Future()
-        future.set_result(run_task(task, name, inputs))
-        return future
-
-    def begun(self):
-        """Tell of nothing."""
-        return []
-
-    def renew(self):
-        """Lose no worker."""
 
 
 @pytest.fixture(autouse=True)
@@ -70,12 +38,12 @@ def build(screw, oil, out, pool, settings=SETTINGS):
     return tiers.build_surface('full', screw, oil, settings, pool=pool, out=out)
 
 
-def test_an_interrupted_build_resumes_to_the_same_file(screw, oil, tmp_path, capsys):
+def test_an_interrupted_build_resumes_to_the_same_file(screw, oil, tmp_path, capsys, here):
     """What was kept is not solved again, and the hash is that of a build in one go."""
-    whole = Here()
+    whole = here()
     data = build(screw, oil, tmp_path / 'whole.npz', whole)
     assert whole.solved > 20
-    first, second = Here(most=18), Here()
+    first, second = here(most=18), here()
     with pytest.raises(KeyboardInterrupt):
         build(screw, oil, tmp_path / 'cut.npz', first)
     resumed = build(screw, oil, tmp_path / 'cut.npz', second)
@@ -87,17 +55,17 @@ def test_an_interrupted_build_resumes_to_the_same_file(screw, oil, tmp_path, cap
     assert 'chains, nodes' in capsys.readouterr().err
 
 
-def test_provenance_counts_the_work_and_is_not_hashed(screw, oil, tmp_path):
+def test_provenance_counts_the_work_and_is_not_hashed(screw, oil, tmp_path, here):
     """Chains, points and versions; another run of the same work has the same hash."""
-    data = build(screw, oil, tmp_path / 'a.npz', Here())
+    data = build(screw, oil, tmp_path / 'a.npz', here())
     assert data.provenance['solved_points'] > data.provenance['chains'] > 20
     assert data.provenance['failed_chains'] == 0
     assert replace(data, provenance={}).sha256 == data.sha256
 
 
-def test_a_point_is_solved_with_the_draws_of_the_surface(screw, oil, tmp_path):
+def test_a_point_is_solved_with_the_draws_of_the_surface(screw, oil, tmp_path, here):
     """A check passes at points that were never nodes; the fields are all there."""
-    data = build(screw, oil, tmp_path / 'a.npz', Here())
+    data = build(screw, oil, tmp_path / 'a.npz', here())
     solved = full_tier.solve_full(data.header, 10.0, 300.0, 310.0)
     assert set(solved) == set(FIELDS)
     result = check_surface(data, points=10, seed=4, has_time=lambda: True)
@@ -106,7 +74,9 @@ def test_a_point_is_solved_with_the_draws_of_the_surface(screw, oil, tmp_path):
     assert result.efficiency < 0.01
 
 
-def test_failed_chains_are_named_and_counted(screw, oil, tmp_path, monkeypatch, stand_in, capsys):
+def test_failed_chains_are_named_and_counted(
+    screw, oil, tmp_path, monkeypatch, stand_in, capsys, here
+):
     """One draw that fails everywhere leaves the means of the others."""
 
     def failing(inputs):
@@ -115,7 +85,7 @@ def test_failed_chains_are_named_and_counted(screw, oil, tmp_path, monkeypatch, 
         return stand_in.solve(inputs)
 
     monkeypatch.setattr(full_tier, 'ChainRun', partial(ChainRun, task=failing))
-    data = build(screw, oil, tmp_path / 'a.npz', Here())
+    data = build(screw, oil, tmp_path / 'a.npz', here())
     assert data.provenance['failed_chains'] > 10
     assert not data.mask.all()
     assert 'draw 1: no luck' in capsys.readouterr().err
