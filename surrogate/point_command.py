@@ -28,28 +28,7 @@ def add_point_command(subparsers: Any) -> None:
     """Add `point`; its handler imports the model that is asked for."""
     parser = subparsers.add_parser('point', help='solve one operating point')
     add_inputs(parser)
-    parser.add_argument(
-        '--speed-rpm',
-        type=float,
-        required=True,
-        metavar='N',
-        help='screw speed [rev/min], the sign is the direction of motion',
-    )
-    parser.add_argument(
-        '--load-N',
-        type=float,
-        required=True,
-        metavar='F',
-        dest='load',
-        help='axial load [N]; it opposes the motion when it has the sign of the speed',
-    )
-    parser.add_argument(
-        '--temperature-degC',
-        type=float,
-        metavar='T',
-        dest='temperature',
-        help='oil temperature [degC], default that of the oil datasheet',
-    )
+    add_operating_point(parser, required=True)
     parser.add_argument(
         '--tier',
         choices=('closed_form', 'full'),
@@ -79,6 +58,32 @@ def add_inputs(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         '--oil', default='iso_vg_68', metavar='NAME|FILE', help='oil datasheet (default iso_vg_68)'
+    )
+
+
+def add_operating_point(parser: argparse.ArgumentParser, *, required: bool) -> None:
+    """Add speed, load and temperature, the first two `required` or not."""
+    parser.add_argument(
+        '--speed-rpm',
+        type=float,
+        required=required,
+        metavar='N',
+        help='screw speed [rev/min], the sign is the direction of motion',
+    )
+    parser.add_argument(
+        '--load-N',
+        type=float,
+        required=required,
+        metavar='F',
+        dest='load',
+        help='axial load [N]; it opposes the motion when it has the sign of the speed',
+    )
+    parser.add_argument(
+        '--temperature-degC',
+        type=float,
+        metavar='T',
+        dest='temperature',
+        help='oil temperature [degC], default that of the oil datasheet',
     )
 
 

@@ -13,6 +13,7 @@ from typing import Any
 from surrogate.atomic_file import replace_file
 from surrogate.parameters import InputError, OperatingPoint, ZERO_CELSIUS
 from surrogate.plain_json import to_json
+from surrogate.point_command import add_operating_point
 from surrogate.surface import find_surface, Surface
 from surrogate.surface_file import read
 
@@ -50,21 +51,7 @@ def _add_check(parser: argparse.ArgumentParser) -> None:
 
 def _add_query(parser: argparse.ArgumentParser) -> None:
     _add_file(parser)
-    parser.add_argument('--speed-rpm', type=float, metavar='N', help='screw speed [rev/min]')
-    parser.add_argument(
-        '--load-N',
-        type=float,
-        metavar='F',
-        dest='load',
-        help='axial load [N]; it opposes the motion when it has the sign of the speed',
-    )
-    parser.add_argument(
-        '--temperature-degC',
-        type=float,
-        metavar='T',
-        dest='temperature',
-        help='oil temperature [degC], default that of the oil datasheet',
-    )
+    add_operating_point(parser, required=False)
     parser.add_argument(
         '--csv',
         type=Path,
