@@ -27,10 +27,10 @@ class FullSettings(SurfaceSettings):
     """
     Ranges and nodes of a full-tier surface.
 
-    As for formulas, but `speed_nodes` is the most there may be; draws of the roughness from 0, and
-    how many of them are solved at other temperatures than that nearest to the oil's reference;
-    number of held-out points and the seed that draws them, accuracy aimed at as a multiple of
-    0.003 in efficiency and of 0.003 or, above RCS 0.05, 5 % in RCS [-].
+    As for formulas, but `speed_nodes` is the most that refinement reaches; draws of the roughness
+    from 0, and how many of them are solved at other temperatures than that nearest to the oil's
+    reference; number of held-out points and the seed that draws them, accuracy aimed at as a
+    multiple of 0.003 in efficiency and of 0.003 or, above RCS 0.05, 5 % in RCS [-].
 
     """
 
@@ -50,7 +50,7 @@ class FullSettings(SurfaceSettings):
             ('draws', 1),
             ('shared_draws', 1),
             ('held_out', 1),
-            ('speed_nodes', len(NEAR_ONSET) + 2),
+            ('speed_nodes', 2),
         ):
             if getattr(self, name) < least:
                 raise InputError(f'{name} is {getattr(self, name)}, allowed is {least} or more')

@@ -53,6 +53,8 @@ def refine_nodes(
     """
     Halve the intervals of an axis until their middles are met, or `most` nodes are used.
 
+    Those given at first stay, also where they are more.
+
     `solve` returns samples at places, NaN where it fails: there is no node but at those given.
     Returns the nodes and the largest error over the allowed one that was seen at a middle which
     did not become a node; NaN where none is known.
@@ -66,7 +68,7 @@ def refine_nodes(
         guessed = {place: interpolate(known, place) for place in middles}
         wrong = {place: target.worst(guessed[place], middles[place]) for place in middles}
         worst_first = sorted(middles, key=lambda place: -wrong[place])
-        room = most - len(known)
+        room = max(0, most - len(known))
         taken = [place for place in worst_first if wrong[place] > 1][:room]
         left = float(np.fmax.reduce([left, *(wrong[p] for p in middles if p not in taken)]))
         known |= {place: middles[place] for place in taken}

@@ -35,6 +35,14 @@ def test_a_limit_is_kept_and_what_is_left_is_said():
     assert left > 1
 
 
+def test_first_nodes_stay_where_they_are_more_than_the_limit():
+    """No room for others, and none is taken."""
+    first = np.linspace(-4.0, 4.0, 9)
+    nodes, left = refine_nodes(first, step, TARGET, 8)
+    assert nodes.tolist() == first.tolist()
+    assert left > 1
+
+
 def test_a_straight_line_needs_no_nodes():
     """Only the middles are tried."""
     tried = []
