@@ -60,7 +60,7 @@ def _add_build(parser: argparse.ArgumentParser) -> None:
         '--draws',
         type=int,
         metavar='K',
-        help='full tier: draws of the roughness that are averaged (default 8)',
+        help='full tier: draws of the roughness that are averaged (default 16)',
     )
     parser.add_argument('--out', type=Path, help='file to write (default SCREW_OIL.npz)')
     add_workers(parser)

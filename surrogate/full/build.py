@@ -3,21 +3,25 @@
 """
 Build a surface of the full tier: every node the mean over draws of solved screws.
 
-First the speeds at which contact sets in, from which the mapped speed counts; then speed nodes
-where a reference column of few draws needs them; then all columns; at last points that are no
-nodes, which measure the error. What is solved, and where, is left to the caller.
+First the loads that an interpolation needs and the speeds at which contact sets in, from which the
+mapped speed counts; then speed nodes where a column of few draws needs them; then all columns; at
+last points that are no nodes, which measure the error. What is solved, and where, is left to the
+caller.
 
 """
 
 from dataclasses import replace
 
 import numpy as np
-from surrogate.build import check_ranges, load_nodes, surface_header, temperature_nodes
+from surrogate.build import check_ranges, surface_header
 from surrogate.full.columns import Columns
 from surrogate.full.held_out import measure_errors
+from surrogate.full.loads import signed_loads
 from surrogate.full.nodes import gather_nodes
-from surrogate.full.onset import find_onset, find_speed_nodes
+from surrogate.full.onset import find_loads, find_onset, middle, Profiles
 from surrogate.full.settings import FullSettings, Run
+from surrogate.full.speeds import find_speed_nodes
+from surrogate.full.temperatures import file_temperatures, solved_temperatures
 from surrogate.parameters import InputError, Lubricant, Screw
 from surrogate.screw import TIER
 from surrogate.surface import FIELDS
@@ -30,24 +34,34 @@ def build_full(
     """
     Build the surface of the full tier from chains that `run` solves.
 
-    Raises InputError for ranges that make no sense, and for a screw of which no point converges.
+    The header says how far the error at the held-out points is from what was aimed at: `reached`
+    is the largest error over the allowed one. Raises InputError for ranges that make no sense, and
+    for a screw of which no point converges.
 
     """
     check_ranges(settings, lubricant)
-    load, breaks = load_nodes(screw, settings)
-    temperature = temperature_nodes(screw, lubricant, settings)
+    solved = solved_temperatures(lubricant, settings.temperature_range)
+    temperature = file_temperatures(
+        lubricant, settings.temperature_range, solved, settings.temperature_nodes
+    )
+    profiles = Profiles(screw=screw, lubricant=lubricant, settings=settings, run=run)
+    pieces, known = find_loads(profiles, middle(solved))
+    load, breaks = signed_loads(screw, settings, pieces)
+    nodes_and_solved = np.union1d(temperature, solved)
+    onset = find_onset(profiles, pieces, known, load, solved, nodes_and_solved)
+    log_onset = onset[:, np.isin(nodes_and_solved, temperature)]
     columns = Columns(
         screw=screw,
         lubricant=lubricant,
         load=load,
-        temperature=temperature,
+        temperature=solved,
         speed_range=settings.speed_range,
         draws=settings.draws,
         shared_draws=settings.shared_draws,
+        log_onset=onset[:, np.isin(nodes_and_solved, solved)],
     )
-    columns = replace(columns, log_onset=find_onset(columns, settings, run))
-    s = find_speed_nodes(columns, settings, run)
-    nodes = gather_nodes(columns, s, run('nodes', columns.chains(s)))
+    s = find_speed_nodes(columns, onset, settings, run)
+    nodes = gather_nodes(columns, s, run('nodes', columns.chains(s)), temperature, log_onset)
     if nodes.mask.all():
         raise InputError('screw: no point of the surface converged, see the reasons above')
     data = SurfaceData(
@@ -56,7 +70,7 @@ def build_full(
         speed_coordinate=s,
         load=load,
         temperature=temperature,
-        log_onset=columns.log_onset,
+        log_onset=log_onset,
         fields={name: nodes.means[name] for name in FIELDS},
         errors={
             name: np.full([len(axis) - 1 for axis in (s, load, temperature)], np.nan)
@@ -67,4 +81,5 @@ def build_full(
         deviations=nodes.deviations,
         standard_errors=nodes.standard_errors,
     )
-    return replace(data, errors=measure_errors(data, columns, settings, run))
+    errors, reached = measure_errors(data, columns, settings, run)
+    return replace(data, errors=errors, header={**data.header, 'reached': reached})

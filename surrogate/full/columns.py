@@ -8,7 +8,7 @@ Loads of either sign share their chains: the contacts are the same, only the bal
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 import math
 from typing import Any
 
@@ -21,6 +21,8 @@ from surrogate.parameters import Lubricant, Screw
 Array = NDArray[np.float64]
 Chains = dict[str, dict[str, Any]]
 Results = Mapping[str, Mapping[str, Any] | None]
+NEAR_ONSET = (-1.25, 0.75)
+"""Speed coordinates between which contact sets in, and draws differ most [-]."""
 ROUNDING = 1e-9
 """Error of a mapped speed [-]."""
 
@@ -28,11 +30,11 @@ ROUNDING = 1e-9
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Columns:
     """
-    Load [N] and temperature [K] nodes of one screw and oil, speeds [rad/s], onset over both.
+    Load [N] and solved temperature [K] nodes of one screw and oil, speeds [rad/s], onset of both.
 
     Mapped speeds of hot and cold oil differ by far, so that no column needs all speed nodes. All
-    `draws` of the roughness are solved at the reference temperature, `shared_draws` of them at
-    others.
+    `draws` of the roughness are solved at the middle temperature around the onset, and
+    `shared_draws` of them elsewhere.
 
     """
 
@@ -43,7 +45,7 @@ class Columns:
     speed_range: tuple[float, float]
     draws: int
     shared_draws: int
-    log_onset: Array = field(default_factory=lambda: np.empty((0, 0)))
+    log_onset: Array
 
     @property
     def magnitudes(self) -> Array:
@@ -52,32 +54,48 @@ class Columns:
 
     @property
     def reference(self) -> int:
-        """Return the number of the temperature node nearest to the oil's reference."""
-        return int(np.argmin(np.abs(self.temperature - self.lubricant.reference_temperature)))
+        """Return the number of the middle temperature."""
+        return len(self.temperature) // 2
 
-    def draws_at(self, k: int) -> range:
-        """Return the draws that are solved at temperature k."""
-        few = min(self.shared_draws, self.draws)
-        return range(self.draws if k == self.reference else few)
+    @property
+    def few(self) -> int:
+        """Return how many draws are solved everywhere."""
+        return min(self.shared_draws, self.draws)
 
     def speeds(self, s: Array, j: int, k: int) -> Array:
         """Return the speeds [rad/s] of the coordinates `s` at load j and temperature k."""
         return np.asarray(np.exp(s + self.log_onset[j, k]))
 
     def needed(self, s: Array) -> NDArray[np.bool_]:
-        """
-        Return the nodes [speed, load, temperature] that some lookup in the speed range reads.
+        """Return the nodes [speed, load, temperature] that cover the speed range."""
+        return covering(s, self.log_onset, self.speed_range, (3, 1))
 
-        A lookup reads the columns around it at its own coordinate, so a column reaches as far as
-        its neighbours.
+    def all_drawn(self, s: Array) -> list[NDArray[np.bool_]]:
+        """
+        Return the speed nodes of the chains of those draws that are not solved everywhere.
+
+        First where draws differ most, and one node beyond, where contact has ended; then two far
+        nodes, between which what they differ in changes little.
 
         """
-        low, high = (math.log(speed) - self.log_onset for speed in self.speed_range)
-        slowest, fastest = minimum_filter(low, 3), maximum_filter(high, 3)
-        first = np.searchsorted(s, slowest + ROUNDING, side='right') - 1
-        last = np.searchsorted(s, fastest - ROUNDING)
-        place = np.arange(len(s))[:, None, None]
-        return np.asarray((place >= first) & (place <= last))
+        place = np.arange(len(s))
+        beyond = int(np.searchsorted(s, NEAR_ONSET[1], side='right'))
+        near = (s >= NEAR_ONSET[0]) & (place <= beyond)
+        common = np.flatnonzero(self.needed(s)[:, :, self.reference].all(axis=1))
+        last = int(common[-1]) if common.size else 0
+        far = [(beyond + last) // 2, last] if last > beyond else []
+        return [near, np.isin(place, far) & ~near]
+
+    def full(self, s: Array) -> NDArray[np.bool_]:
+        """Return the speed nodes at which all draws are solved."""
+        return np.asarray(np.any(self.all_drawn(s), axis=0))
+
+    def asked(self, s: Array) -> NDArray[np.bool_]:
+        """Return what is solved, over [speed, load, temperature, draw]."""
+        draw = np.arange(self.draws)
+        at_middle = np.arange(len(self.temperature)) == self.reference
+        more = at_middle[:, None] & self.full(s)[:, None, None, None]
+        return np.asarray(self.needed(s)[..., None] & ((draw < self.few) | more))
 
     def chain(self, load: float, temperature: float, draw: int, speeds: Array) -> dict[str, Any]:
         """Return a chain at a load [N] and temperature [K] with falling `speeds` [rad/s]."""
@@ -88,20 +106,45 @@ class Columns:
 
     def chains(self, s: Array) -> Chains:
         """Return the chains of all columns, by the name of `chain_name`."""
-        needed = self.needed(s)
         return {
-            chain_name(load, k, draw): self.chain(
-                load, heat, draw, self.speeds(s[needed[:, j, k]], j, k)
+            name: self.chain(
+                abs(self.load[j]), self.temperature[k], draw, self.speeds(s[places], j, k)
             )
-            for load in self.magnitudes.tolist()
-            for k, heat in enumerate(self.temperature)
-            for draw in self.draws_at(k)
-            for j in [self.place_of(load)]
+            for name, (j, k, draw), places in self.pieces(s)
         }
+
+    def pieces(self, s: Array) -> Iterator[tuple[str, tuple[int, int, int], NDArray[np.intp]]]:
+        """Yield, for every load, the name of a chain, load, temperature and draw, speed nodes."""
+        asked, parts = self.asked(s), self.all_drawn(s)
+        for j, k, draw in np.ndindex(asked.shape[1:]):
+            column = asked[:, j, k, draw]
+            for part, wanted in enumerate([column] if draw < self.few else parts):
+                places = np.flatnonzero(column & wanted)
+                if places.size:
+                    load = float(abs(self.load[j]))
+                    yield chain_name(load, k, draw) + ' far' * part, (j, k, draw), places
 
     def place_of(self, magnitude: float) -> int:
         """Return the first load node of a magnitude; onsets do not depend on the sign."""
         return int(np.flatnonzero(np.abs(self.load) == magnitude)[0])
+
+
+def covering(
+    s: Array, log_onset: Array, speed_range: tuple[float, float], reach: tuple[int, int]
+) -> NDArray[np.bool_]:
+    """
+    Return the nodes [speed, load, temperature] that lookups in the speed range [rad/s] read.
+
+    A lookup reads the columns around it at its own coordinate, so a column covers what its
+    neighbours within the window `reach` of loads and temperatures cover.
+
+    """
+    low, high = (math.log(speed) - log_onset for speed in speed_range)
+    slowest, fastest = minimum_filter(low, reach), maximum_filter(high, reach)
+    first = np.searchsorted(s, slowest + ROUNDING, side='right') - 1
+    last = np.searchsorted(s, fastest - ROUNDING)
+    place = np.arange(len(s))[:, None, None]
+    return np.asarray((place >= first) & (place <= last))
 
 
 def chain_name(load: float, heat: int, draw: int) -> str:

@@ -2,30 +2,38 @@
 # SPDX-License-Identifier: Apache-2.0
 """Error of a full-tier surface, measured at points that are no nodes, with the same draws."""
 
+from dataclasses import replace
 import math
 
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.full.columns import Columns, mean_over_draws
-from surrogate.full.settings import FullSettings, NEAR_ONSET, Run
-from surrogate.surface import FIELDS, Surface
+from surrogate.full.columns import Columns, mean_over_draws, NEAR_ONSET
+from surrogate.full.loads import idle_load
+from surrogate.full.settings import error_target, FullSettings, Run
+from surrogate.full.speed_nodes import Sample
+from surrogate.parameters import Screw
+from surrogate.surface import FIELDS, Surface, Validity
 from surrogate.surface_file import SurfaceData
 
 Array = NDArray[np.float64]
+Ends = tuple[float, float]
+
+NEAR_IDLE = 0.8
+"""Part of the idle load from which on the relieved nut is near unloading [-]."""
 
 
 def measure_errors(
     data: SurfaceData, columns: Columns, settings: FullSettings, run: Run
-) -> dict[str, Array]:
+) -> tuple[dict[str, Array], float]:
     """
-    Return, per field and cell, |lookup - solve| with the same draws at points that are no nodes.
+    Return the errors per field and cell, and the largest of torque or RCS over the allowed one.
 
-    A cell without a point of its own has the largest error that was found on its side of the
-    onset; NaN where none was.
+    They are |lookup - solve| with the same draws at points that are no nodes. A cell without a
+    point of its own has the largest of its stratum; NaN where none was.
 
     """
     surface = Surface(data)
-    points = held_out_points(data, settings)
+    points = held_out_points(data, columns.screw, settings)
     chains = {
         f'{place} {draw}': columns.chain(
             abs(load), heat, draw, np.array([surface.onset_speed(load, heat) * math.exp(s)])
@@ -34,47 +42,92 @@ def measure_errors(
         for draw in range(settings.draws)
     }
     results = run('held-out points', chains)
+    target = error_target(columns.screw, settings)
     errors = {name: np.full([len(axis) - 1 for axis in _axes(data)], np.nan) for name in FIELDS}
+    reached = 0.0
     for place, (s, load, heat) in enumerate(points):
         found = surface.lookup(surface.onset_speed(load, heat) * math.exp(s), load, heat)
         sense = 'opposing' if load >= 0 else 'assisting'
-        chained = [results[f'{place} {draw}'] for draw in range(settings.draws)]
+        chained = [results.get(f'{place} {draw}') for draw in range(settings.draws)]
         solved = [chain[sense][0] for chain in chained if chain and chain[sense][0]['converged']]
+        if found.validity is not Validity.VALID or 2 * len(solved) < settings.draws:
+            continue
+        mean = {name: mean_over_draws(solved, name) for name in FIELDS}
         cell = tuple(
             int(np.searchsorted(axis, value)) - 1
             for axis, value in zip(_axes(data), (s, load, heat))
         )
         for name in FIELDS:
-            error = abs(getattr(found, name) - mean_over_draws(solved, name))
+            error = abs(getattr(found, name) - mean[name])
             errors[name][cell] = np.fmax(errors[name][cell], error)
-    return {name: _spread_out(error, data.speed_coordinate) for name, error in errors.items()}
+        ideal = abs(load) * columns.screw.lead / (2 * math.pi)
+        allowed = replace(target, ideal_torque=max(target.ideal_torque, ideal))
+        samples = (Sample(found.friction_torque, found.rcs), _sample(mean))
+        reached = max(reached, allowed.worst(*samples))
+    boxes = strata(data, columns.screw, settings)
+    filled = {name: _spread_out(error, data, boxes) for name, error in errors.items()}
+    return filled, reached
 
 
-def held_out_points(data: SurfaceData, settings: FullSettings) -> list[tuple[float, float, float]]:
-    """Return coordinate, load [N] and temperature [K] of points, half of them near the onset."""
-    drawn = np.random.default_rng(settings.seed)
+def strata(data: SurfaceData, screw: Screw, settings: FullSettings) -> list[tuple[Ends, Ends]]:
+    """
+    Return the ends of speed coordinates and of |load| [N] within which errors are alike.
+
+    Around the onset of contact, faster and slower; each with both nuts loaded, with the relieved
+    one near unloading, and with that idle.
+
+    """
     low, high = (math.log(speed) for speed in settings.speed_range)
-    inside = low - data.log_onset.min(), high - data.log_onset.max()
-    near = max(NEAR_ONSET[0], inside[0]), min(NEAR_ONSET[1], inside[1])
+    inside = low - float(data.log_onset.min()), high - float(data.log_onset.max())
+    slow, fast = np.clip(NEAR_ONSET, *inside).tolist()
+    idle, most = idle_load(screw), float(np.abs(data.load).max())
+    marks = [0.0, *(mark for mark in (NEAR_IDLE * idle, idle) if 0 < mark < most), most]
     return [
-        (
-            float(drawn.uniform(*(near if place % 2 else inside))),
-            float(drawn.uniform(data.load[0], data.load[-1])),
-            float(drawn.uniform(data.temperature[0], data.temperature[-1])),
-        )
-        for place in range(settings.held_out)
+        (speeds, loads)
+        for speeds in ((slow, fast), (fast, inside[1]), (inside[0], slow))
+        for loads in zip(marks, marks[1:])
+        if speeds[0] < speeds[1]
     ]
 
 
-def _spread_out(error: Array, s: Array) -> Array:
-    """Return errors with unmeasured cells filled from those on their side of the onset."""
-    middle = 0.5 * (s[1:] + s[:-1])
+def held_out_points(
+    data: SurfaceData, screw: Screw, settings: FullSettings
+) -> list[tuple[float, float, float]]:
+    """Return coordinate, load [N] and temperature [K] of points, from all strata in turn."""
+    drawn = np.random.default_rng(settings.seed)
+    boxes = strata(data, screw, settings)
+    points = []
+    for place in range(settings.held_out):
+        speeds, loads = boxes[place % len(boxes)]
+        sides = [side for side in (-1, 1) if data.load[0] <= side * loads[0] <= data.load[-1]]
+        load = float(drawn.choice(sides)) * float(drawn.uniform(*loads))
+        heat = float(drawn.uniform(data.temperature[0], data.temperature[-1]))
+        inside = float(np.clip(load, data.load[0], data.load[-1]))
+        points.append((float(drawn.uniform(*speeds)), inside, heat))
+    return points
+
+
+def _sample(mean: dict[str, float]) -> Sample:
+    return Sample(mean['friction_torque'], mean['rcs'])
+
+
+def _spread_out(error: Array, data: SurfaceData, boxes: list[tuple[Ends, Ends]]) -> Array:
+    """Return errors with unmeasured cells filled with the largest of their stratum."""
+    s, load, _ = (0.5 * (axis[1:] + axis[:-1]) for axis in _axes(data))
     filled = error.copy()
-    for side in (middle < NEAR_ONSET[1], middle >= NEAR_ONSET[1]):
-        known = error[side][np.isfinite(error[side])]
+    for speeds, loads in boxes:
+        part = np.ix_(_within(s, speeds, NEAR_ONSET), _within(np.abs(load), loads))
+        known = error[part][np.isfinite(error[part])]
         if known.size:
-            filled[side] = np.where(np.isfinite(error[side]), error[side], known.max())
+            filled[part] = np.where(np.isfinite(error[part]), error[part], known.max())
     return filled
+
+
+def _within(places: Array, ends: Ends, inner: Ends = (-math.inf, math.inf)) -> NDArray[np.bool_]:
+    """Tell which places lie between ends; those outside the `inner` marks reach to infinity."""
+    low = -math.inf if ends[0] < inner[0] else ends[0]
+    high = math.inf if ends[1] > inner[1] else ends[1]
+    return np.asarray((places >= low) & (places < high))
 
 
 def _axes(data: SurfaceData) -> tuple[Array, Array, Array]:

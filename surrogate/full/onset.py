@@ -1,16 +1,29 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Where a full-tier surface needs speed nodes: onset of contact, and a reference column."""
+"""
+Where contact sets in over load and temperature, and the loads that an interpolation needs.
 
+Both from profiles: chains of few draws over speeds around the onset that a formula gives. The
+onset only decides where nodes lie. It shall be smooth over the load, so that what is left of few
+draws is not carried into fields at one mapped speed: the formula moved by straight lines.
+
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 import math
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.build import speed_at_film_ratio
-from surrogate.full.columns import Columns, mean_over_draws, records_by_speed, Results
+from surrogate.full.chain import chain_inputs
+from surrogate.full.columns import mean_over_draws, records_by_speed
+from surrogate.full.loads import first_loads, LoadPieces, refine_loads
 from surrogate.full.settings import error_target, FullSettings, Run
-from surrogate.full.speed_nodes import refine_nodes, Sample
+from surrogate.full.speed_nodes import Sample
+from surrogate.full.temperatures import between, log_viscosity
+from surrogate.parameters import Lubricant, Screw
 
 Array = NDArray[np.float64]
 
@@ -18,130 +31,137 @@ ONSET_FILM_RATIO = 0.08
 """Film ratio near which RCS passes 0.01 on the nominal screw [-]; docs/onset.md."""
 ONSET_STEPS = (1.0, 0.6, 0.3, 0.0, -0.3, -0.6, -1.0)
 """Where the onset is looked for, as logarithms of speed over that of the film ratio [-]."""
-ONSET_DRAWS, REFERENCE_DRAWS = 2, 4
-OUTER_STEP = 1.4
-"""Distance of speed nodes beyond those of the reference column [-]."""
+ONSET_DRAWS = 2
 NOTHING = 1e-6
 """RCS below which the logarithm of the onset search is cut off [-]."""
-FIRST_NODES = (-1.2, -0.6, -0.2, 0.2, 0.6, 1.5)
-"""Speed coordinates between the ends with which the refinement begins [-]."""
 
 
-def find_onset(columns: Columns, settings: FullSettings, run: Run) -> Array:
-    """
-    Return the logarithm of the speed [rad/s] at which RCS of the first draws is about 0.01.
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Profiles:
+    """Solves profiles of one screw and oil on `run`."""
 
-    By formula over load and temperature, moved by solves over the loads at the reference
-    temperature and over the temperatures at the least load. It only decides where nodes lie.
+    screw: Screw
+    lubricant: Lubricant
+    settings: FullSettings
+    run: Run
 
-    """
-    guess = np.log(
-        speed_at_film_ratio(
-            columns.screw,
-            columns.lubricant,
-            columns.load[:, None],
-            columns.temperature,
-            ONSET_FILM_RATIO,
+    def guess(self, load: Array, temperature: Array) -> Array:
+        """Return the logarithm of the onset speed [rad/s] by formula, over [load, temperature]."""
+        return np.asarray(
+            np.log(
+                speed_at_film_ratio(
+                    self.screw, self.lubricant, load[:, None], temperature, ONSET_FILM_RATIO
+                )
+            )
         )
-    )
-    reference = columns.reference
-    by_load, by_heat = _shifts(columns, guess, reference, settings, run)
-    places = np.searchsorted(columns.magnitudes, np.abs(columns.load))
-    found = guess + by_load[places][:, None] + (by_heat - by_heat[reference])
-    low, high = (math.log(speed) for speed in settings.speed_range)
-    return np.asarray(np.clip(found, low, high))
 
-
-def _shifts(
-    columns: Columns, guess: Array, reference: int, settings: FullSettings, run: Run
-) -> tuple[Array, Array]:
-    """Return how far the onset lies from its guess over the loads and over the temperatures."""
-    least = int(np.argmin(np.abs(columns.load)))
-    pairs = [(columns.place_of(load), reference) for load in columns.magnitudes]
-    pairs += [(least, k) for k in range(len(columns.temperature))]
-    chains = {
-        f'{j} {k} {draw}': columns.chain(
-            abs(columns.load[j]),
-            columns.temperature[k],
-            draw,
-            np.exp(guess[j, k] + np.array(ONSET_STEPS)),
-        )
-        for j, k in pairs
-        for draw in range(min(ONSET_DRAWS, settings.draws))
-    }
-    results = run('onset', chains)
-    shifts = [_shift(results, f'{j} {k} ', settings.onset_rcs) for j, k in pairs]
-    count = len(columns.magnitudes)
-    return _filled(np.array(shifts[:count])), _filled(np.array(shifts[count:]))
-
-
-def _shift(results: Results, start: str, onset_rcs: float) -> float:
-    """Return where the mean RCS of the chains of one column passes `onset_rcs`, or NaN."""
-    chains = [result for name, result in results.items() if name.startswith(start)]
-    shares = [
-        mean_over_draws([record for record in records if record['converged']], 'rcs')
-        for records in records_by_speed(chains, 'opposing', len(ONSET_STEPS))
-    ]
-    logs = np.log(np.maximum(shares, NOTHING))
-    known = np.isfinite(logs)
-    if known.sum() < 2 or not logs[known].min() < math.log(onset_rcs) < logs[known].max():
-        return math.nan
-    # RCS falls with speed; running minima mend what a draw or two leave of a rise.
-    falling = np.minimum.accumulate(logs[known])
-    return float(np.interp(-math.log(onset_rcs), -falling, np.array(ONSET_STEPS)[::-1][known]))
-
-
-def _filled(shifts: Array) -> Array:
-    """Return shifts with those that are not known taken from the mean of the others, or zero."""
-    known = np.isfinite(shifts)
-    return np.where(known, shifts, float(shifts[known].mean()) if known.any() else 0.0)
-
-
-def find_speed_nodes(columns: Columns, settings: FullSettings, run: Run) -> Array:
-    """
-    Return nodes of the speed coordinate that cover the range at every load and temperature.
-
-    Where the means of a few draws need them, at the least load that presses a ball and the
-    reference temperature; oil that is colder or hotter has nodes of even distance beyond.
-
-    """
-    pressed = [load for load in columns.magnitudes if load or columns.screw.preload]
-    j = columns.place_of(pressed[0])
-    k = columns.reference
-    low, high = (math.log(speed) for speed in settings.speed_range)
-    ends = low - columns.log_onset[j, k], high - columns.log_onset[j, k]
-    first = [ends[0], *(s for s in FIRST_NODES if ends[0] < s < ends[1]), ends[1]]
-
-    def solve(places: Array) -> dict[float, Sample]:
-        speeds = columns.speeds(places, j, k)
+    def solve(self, loads: Sequence[float] | Array, temperature: float) -> dict[float, Sample]:
+        """Return torque [N m] and RCS over `ONSET_STEPS` for magnitudes [N] at a temperature."""
         chains = {
-            str(draw): columns.chain(pressed[0], columns.temperature[k], draw, speeds)
-            for draw in range(min(REFERENCE_DRAWS, settings.draws))
+            f'{load!r} N, {temperature:g} K, draw {draw}': self._chain(load, temperature, draw)
+            for load in map(float, loads)
+            for draw in range(min(ONSET_DRAWS, self.settings.draws))
         }
-        results = run('speed nodes', chains)
-        records = records_by_speed(list(results.values()), 'opposing', len(places))
-        return {float(place): _sample(solved) for place, solved in zip(np.sort(places), records)}
+        results = self.run('onset', chains)
+        return {
+            load: _profile(
+                [result for name, result in results.items() if name.startswith(f'{load!r} N, ')]
+            )
+            for load in map(float, loads)
+        }
 
-    target = error_target(columns.screw, settings)
-    inner, _ = refine_nodes(np.array(first), solve, target, settings.speed_nodes)
-    return _extended(inner, low - columns.log_onset.max(), high - columns.log_onset.min())
+    def _chain(self, load: float, temperature: float, draw: int) -> dict[str, Any]:
+        guess = self.guess(np.array([load]), np.array([temperature]))[0, 0]
+        speeds = [float(speed) for speed in np.exp(guess + np.array(ONSET_STEPS))]
+        return chain_inputs(self.screw, self.lubricant, load, temperature, draw, speeds)
 
 
-def _extended(inner: Array, low: float, high: float) -> Array:
-    """Return nodes with more of them, at most `OUTER_STEP` apart, out to `low` and `high`."""
-    below = math.ceil((inner[0] - low) / OUTER_STEP)
-    above = math.ceil((high - inner[-1]) / OUTER_STEP)
-    return np.concatenate(
-        [
-            np.linspace(min(low, inner[0]), inner[0], max(below, 0) + 1)[:-1],
-            inner,
-            np.linspace(inner[-1], max(high, inner[-1]), max(above, 0) + 1)[1:],
-        ]
+def _profile(chains: Sequence[Mapping[str, Any] | None]) -> Sample:
+    """Return the means of chains in the order of `ONSET_STEPS`."""
+    solved = [
+        [record for record in records if record['converged']]
+        for records in records_by_speed(chains, 'opposing', len(ONSET_STEPS))
+    ][::-1]
+    torque, rcs = (
+        np.array([mean_over_draws(records, name) for records in solved])
+        for name in ('friction_torque', 'rcs')
     )
+    return Sample(torque, rcs)
 
 
-def _sample(records: list[dict[str, Any]]) -> Sample:
-    solved = [record for record in records if record['converged']]
-    return Sample(
-        torque=mean_over_draws(solved, 'friction_torque'), rcs=mean_over_draws(solved, 'rcs')
+def find_loads(profiles: Profiles, temperature: float) -> tuple[LoadPieces, dict[float, Sample]]:
+    """Return the magnitudes [N] that the profiles at a temperature [K] need, and these."""
+    settings, known = profiles.settings, {}
+
+    def solve(loads: Array) -> dict[float, Sample]:
+        found = profiles.solve(loads, temperature)
+        known.update(found)
+        return found
+
+    target = error_target(profiles.screw, settings)
+    first = first_loads(profiles.screw, settings)
+    return refine_loads(first, solve, target, settings.load_nodes), known
+
+
+def find_onset(
+    profiles: Profiles,
+    pieces: LoadPieces,
+    known: Mapping[float, Sample],
+    loads: Array,
+    solved: Array,
+    temperature: Array,
+) -> Array:
+    """
+    Return the logarithm of the onset speed [rad/s] over load [N] and temperature [K] nodes.
+
+    By formula, moved along the load by `known` profiles at the middle one of the `solved`
+    temperatures, and along the temperature by profiles at the least load that presses a ball.
+
+    """
+    onset_rcs = profiles.settings.onset_rcs
+    at_load = smooth_shifts(
+        pieces, {load: _shift(known[load], onset_rcs) for load in pieces.magnitudes.tolist()}
     )
+    by_load = [at_load[load] for load in np.abs(loads).tolist()]
+    least = min(load for load in known if load or profiles.screw.preload)
+    at_heat = [
+        known[least] if heat == middle(solved) else profiles.solve([least], heat)[least]
+        for heat in solved.tolist()
+    ]
+    shifts = np.array([_shift(profile, onset_rcs) for profile in at_heat])
+    centred = np.nan_to_num(shifts - shifts[len(shifts) // 2])
+    x, wanted = (log_viscosity(profiles.lubricant, heat) for heat in (solved, temperature))
+    moved = np.array(by_load)[:, None] + between(x, centred, wanted, smooth=True)
+    low, high = (math.log(speed) for speed in profiles.settings.speed_range)
+    return np.asarray(np.clip(profiles.guess(loads, temperature) + moved, low, high))
+
+
+def middle(temperatures: Array) -> float:
+    """Return the temperature [K] in the middle of those solved."""
+    return float(temperatures[len(temperatures) // 2])
+
+
+def smooth_shifts(pieces: LoadPieces, shifts: Mapping[float, float]) -> dict[float, float]:
+    """Return shifts by magnitude on a straight line below the idle load and one level above."""
+    smooth: dict[float, float] = {}
+    for piece, degree in ((pieces.shared, 1), (pieces.alone, 0)):
+        found = np.array([shifts[load] for load in piece.tolist()])
+        known = np.isfinite(found)
+        line = [0.0]
+        if known.any():
+            degree = degree if known.sum() > 2 else 0
+            line = np.polyfit(piece[known], found[known], degree).tolist()
+        smooth |= dict(zip(piece.tolist(), np.polyval(line, piece).tolist()))
+    return smooth
+
+
+def _shift(profile: Sample, onset_rcs: float) -> float:
+    """Return the step at which the RCS of a profile passes `onset_rcs`, or NaN."""
+    logs = np.log(np.maximum(profile.rcs, NOTHING))
+    known = np.isfinite(logs)
+    onset = math.log(onset_rcs)
+    if known.sum() < 2 or not logs[known].min() < onset < logs[known].max():
+        return math.nan
+    # RCS rises as the speed falls; running maxima mend what a draw or two leave of a fall.
+    rising = np.maximum.accumulate(logs[known])
+    return float(np.interp(onset, rising, np.array(ONSET_STEPS)[known]))

@@ -18,8 +18,6 @@ EFFICIENCY, RCS, RCS_RELATIVE = 0.003, 0.003, 0.05
 """Errors aimed at with accuracy 1 [-]."""
 LEAST_JUDGED, LEAST_IN_RATINGS = 0.25, 0.01
 """Least load whose efficiency is judged, in preloads, or of a free screw in ratings [-]."""
-NEAR_ONSET = (-1.0, 0.7)
-"""Speed coordinates between which contact sets in [-]."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -27,18 +25,20 @@ class FullSettings(SurfaceSettings):
     """
     Ranges and nodes of a full-tier surface.
 
-    As for formulas, but `speed_nodes` is the most that refinement reaches; draws of the roughness
-    from 0, and how many of them are solved at other temperatures than that nearest to the oil's
-    reference; number of held-out points and the seed that draws them, accuracy aimed at as a
-    multiple of 0.003 in efficiency and of 0.003 or, above RCS 0.05, 5 % in RCS [-].
+    As for formulas, but `speed_nodes` is the most that refinement reaches, and `load_nodes` that
+    over the loads without their sign, beginning with `load_cells` below unloading and
+    `unloaded_cells` above. Draws of the roughness from 0, and how many of them are solved where
+    draws differ little; number of held-out points and the seed that draws them; accuracy aimed at
+    as a multiple of 0.003 in efficiency and of 0.003 or, above RCS 0.05, 5 % in RCS [-].
 
     """
 
     speed_nodes: int = 16
-    load_cells: int = 4
+    load_nodes: int = 8
+    load_cells: int = 2
     unloaded_cells: int = 1
-    temperature_nodes: int = 4
-    draws: int = 8
+    temperature_nodes: int = 7
+    draws: int = 16
     shared_draws: int = 2
     held_out: int = 12
     seed: int = 1
@@ -51,6 +51,9 @@ class FullSettings(SurfaceSettings):
             ('shared_draws', 1),
             ('held_out', 1),
             ('speed_nodes', 2),
+            ('load_cells', 1),
+            ('unloaded_cells', 1),
+            ('temperature_nodes', 2),
         ):
             if getattr(self, name) < least:
                 raise InputError(f'{name} is {getattr(self, name)}, allowed is {least} or more')

@@ -4,10 +4,9 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-import math
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import PchipInterpolator
 
 Array = NDArray[np.float64]
@@ -15,10 +14,10 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class Sample:
-    """Friction torque [N m] and RCS [-] at one place of the axis."""
+    """Friction torque [N m] and RCS [-] at one place of the axis, or over another axis there."""
 
-    torque: float
-    rcs: float
+    torque: ArrayLike
+    rcs: ArrayLike
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,15 +35,18 @@ class Target:
     rcs_relative: float
 
     def worst(self, found: Sample, wanted: Sample) -> float:
-        """Return the largest error of an interpolated sample over the allowed one [-]."""
-        allowed = max(self.rcs, self.rcs_relative * wanted.rcs)
-        efficiencies = [
-            self.ideal_torque / (self.ideal_torque + sample.torque) for sample in (found, wanted)
-        ]
-        return max(
-            abs(efficiencies[0] - efficiencies[1]) / self.efficiency,
-            abs(found.rcs - wanted.rcs) / allowed,
+        """Return the largest error of an interpolated sample over the allowed one, or NaN [-]."""
+        share, wanted_share = np.asarray(found.rcs), np.asarray(wanted.rcs)
+        allowed = np.maximum(self.rcs, self.rcs_relative * wanted_share)
+        efficiency, wanted_efficiency = (
+            self.ideal_torque / (self.ideal_torque + np.asarray(sample.torque))
+            for sample in (found, wanted)
         )
+        wrong = np.maximum(
+            np.abs(efficiency - wanted_efficiency) / self.efficiency,
+            np.abs(share - wanted_share) / allowed,
+        )
+        return float(np.max(wrong))
 
 
 def refine_nodes(
@@ -61,7 +63,7 @@ def refine_nodes(
 
     """
     known = solve(np.asarray(first))
-    nodes, left = sorted(known), math.nan
+    nodes, left = sorted(known), np.nan
     pending = list(zip(nodes, nodes[1:]))
     while pending:
         middles = solve(np.array([0.5 * (low + high) for low, high in pending]))
@@ -84,11 +86,15 @@ def refine_nodes(
 
 def interpolate(known: dict[float, Sample], place: float) -> Sample:
     """Return a sample between solved ones by the monotone cubic of a surface; NaN if too few."""
-    places = sorted(place for place, sample in known.items() if math.isfinite(sample.torque))
+    places = sorted(place for place, sample in known.items() if _is_known(sample))
     if len(places) < 2:
-        return Sample(math.nan, math.nan)
+        return Sample(np.nan, np.nan)
     torque, rcs = (
-        float(PchipInterpolator(places, [getattr(known[p], name) for p in places])(place))
+        PchipInterpolator(places, [getattr(known[p], name) for p in places])(place)
         for name in ('torque', 'rcs')
     )
     return Sample(torque, rcs)
+
+
+def _is_known(sample: Sample) -> bool:
+    return bool(np.isfinite(sample.torque).all() and np.isfinite(sample.rcs).all())

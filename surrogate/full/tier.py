@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 import platform
+import sys
 import time
 from typing import Any
 
@@ -31,6 +32,8 @@ def build_full_surface(
     """
     Build a surface on workers; results are kept beside `out`, an interrupted build goes on.
 
+    Says on stderr what was reached where the accuracy asked for was not.
+
     Raises InputError for ranges that make no sense, SurfaceError for a store that cannot be used.
 
     """
@@ -38,6 +41,13 @@ def build_full_surface(
     with TaskStore(out, WORK) as store:
         run = ChainRun(pool=pool, store=store)
         data = build_full(screw, lubricant, settings, run)
+    if (reached := data.header['reached']) > 1:
+        print(
+            f'accuracy is {settings.accuracy:g}, reached is '
+            f'{reached * settings.accuracy:.2g} with {settings.speed_nodes} speed and '
+            f'{settings.load_nodes} load nodes at most; the file says where',
+            file=sys.stderr,
+        )
     return replace(data, provenance=_provenance(run, time.perf_counter() - began))
 
 

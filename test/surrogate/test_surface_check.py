@@ -96,6 +96,24 @@ def test_errors_that_the_file_does_not_state_are_said():
     assert 'rcs not said' in result.sentence()
 
 
+def test_what_a_cell_states_is_accepted_and_said(monkeypatch):
+    """RCS off by 0.006: missed everywhere, accepted where the file states a third of that."""
+
+    def shifted(*args):
+        solved = build.solve_closed_form(*args)
+        return solved | {'rcs': solved['rcs'] + 0.006 * (solved['rcs'] < 0.04)}
+
+    with_solver(monkeypatch, shifted)
+    for stated, passes in ((0.0021, True), (0.0015, False)):
+        errors = DATA.errors | {'rcs': np.full_like(DATA.errors['rcs'], stated)}
+        header = {**DATA.header, 'tier': 'full'}
+        result = check_surface(replace(DATA, header=header, errors=errors), 30, 1, always)
+        assert result.missed > 0
+        assert result.rcs == pytest.approx(2, abs=0.1)
+        assert (result.accepted <= 1) is passes is result.passed
+        assert f'{result.missed} points miss an aim' in result.sentence()
+
+
 @pytest.mark.parametrize('steps', [0, 3])
 def test_time_ends_the_check(steps):
     """What was done is judged; nothing done is nothing shown."""

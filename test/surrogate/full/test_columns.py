@@ -2,9 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Chains of all columns: which there are, and over which speeds."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
-from surrogate.full.columns import Columns
+from surrogate.full.columns import Columns, NEAR_ONSET
 from surrogate.parameters import load_lubricant, load_screw
 
 LOADS, HEATS = np.array([-1000.0, 0.0, 1000.0]), np.array([293.15, 313.15, 333.15])
@@ -27,24 +29,55 @@ def make_columns():
 
 
 def test_loads_of_either_sign_share_their_chains(columns):
-    """Two magnitudes; three draws at the reference temperature, two at others; speeds fall."""
+    """Two magnitudes; a third draw, in two parts, at the middle temperature; speeds fall."""
     chains = columns.chains(S)
     assert columns.reference == 1
-    assert len(chains) == 2 * (2 + 3 + 2)
+    assert len(chains) == 2 * (2 + 4 + 2)
     for chain in chains.values():
         assert chain['load'] >= 0
         assert chain['speeds'] == sorted(chain['speeds'], reverse=True)
 
 
 def test_what_a_lookup_reads_is_solved_and_little_else(columns):
-    """Around every cell that holds a speed of the range all eight corners are needed."""
+    """Around every cell of loads that holds a speed of the range both columns are needed."""
     needed = columns.needed(S)
     low, high = np.log(columns.speed_range)
-    for j in range(2):
-        for k in range(2):
-            beside = slice(j, j + 2), slice(k, k + 2)
-            onset = columns.log_onset[beside]
-            inside = (S[1:] > low - onset.max()) & (S[:-1] < high - onset.min())
-            for i in np.flatnonzero(inside):
-                assert needed[slice(i, i + 2), *beside].all()
+    for j, k in np.ndindex(2, 3):
+        onset = columns.log_onset[slice(j, j + 2), k]
+        inside = (S[1:] > low - onset.max()) & (S[:-1] < high - onset.min())
+        for i in np.flatnonzero(inside):
+            assert needed[slice(i, i + 2), slice(j, j + 2), k].all()
     assert not needed.all()
+
+
+def test_the_last_draw_is_solved_around_the_onset_and_at_two_far_speeds(columns):
+    """At the middle temperature; the others everywhere needed."""
+    asked, needed, full = columns.asked(S), columns.needed(S), columns.full(S)
+    assert np.array_equal(asked[..., 0], needed)
+    assert np.array_equal(asked[..., 1], needed)
+    assert not asked[:, :, [0, 2], 2].any()
+    assert np.array_equal(asked[:, :, 1, 2], needed[:, :, 1] & full[:, None])
+    near, far = columns.all_drawn(S)
+    low, high = NEAR_ONSET
+    assert (S[near][0] >= low) & (S[near][-2] <= high < S[near][-1])
+    assert far.sum() == 2
+    assert needed[far][:, :, 1].all()
+    assert S[far][0] > S[near][-1]
+    assert not needed[np.flatnonzero(far)[-1] + 1, :, 1].all()
+
+
+def test_chains_are_the_pieces_of_all_columns(columns):
+    """Together they hold every speed that is asked for, once per load without its sign."""
+    asked, found = columns.asked(S), np.zeros_like(columns.asked(S), dtype=int)
+    for name, (j, k, draw), places in columns.pieces(S):
+        found[places, j, k, draw] += 1
+        assert columns.chains(S)[name]['draw'] == draw
+    assert np.array_equal(found, asked)
+
+
+def test_a_draw_without_speeds_has_no_chain(columns):
+    """Far from the onset all but the shared draws have their far speeds only."""
+    slow = replace(columns, speed_range=(0.05, 0.08))
+    names = slow.chains(S)
+    assert len(names) == 2 * 3 * 2
+    assert not any('draw 2' in name for name in names)

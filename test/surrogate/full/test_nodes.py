@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 from surrogate.build import speed_at_film_ratio
-from surrogate.full.columns import Columns
+from surrogate.full.columns import Columns, covering
 from surrogate.full.nodes import commonest, continued, gather_nodes
 from surrogate.parameters import load_lubricant, load_screw
 
@@ -34,56 +34,64 @@ def make_columns():
     )
 
 
-def at_node(columns, stand_in, i, j, k, draws):
+def at_node(columns, stand_in, s, j, k, draws):
     """Return the records of some draws at one node."""
     sense = 'opposing' if LOADS[j] >= 0 else 'assisting'
-    speed = math.exp(S[i] + columns.log_onset[j, k])
+    speed = math.exp(s + columns.log_onset[j, k])
     chains = [columns.chain(abs(LOADS[j]), HEATS[k], draw, np.array([speed])) for draw in draws]
     return [stand_in.solve(chain)[sense][0] for chain in chains]
 
 
+def gather(columns, results, s=S):
+    """Return the nodes at the solved temperatures."""
+    return gather_nodes(columns, s, results, columns.temperature, columns.log_onset)
+
+
 def test_fields_are_means_and_spreads_over_draws(columns, stand_in):
     """At the reference temperature: mean, deviation and error of five draws, by hand."""
-    nodes = gather_nodes(columns, S, stand_in.run('', columns.chains(S)))
+    nodes = gather(columns, stand_in.run('', columns.chains(S)))
     i, k = 4, REFERENCE
     for j in (0, 2):
-        found = at_node(columns, stand_in, i, j, k, range(5))
+        found = at_node(columns, stand_in, S[i], j, k, range(5))
         values = [record['friction_torque'] for record in found]
         assert nodes.means['friction_torque'][i, j, k] == pytest.approx(np.mean(values))
         deviation = np.std(values, ddof=1)
         assert nodes.deviations['friction_torque'][i, j, k] == pytest.approx(deviation)
         error = nodes.standard_errors['friction_torque'][i, j, k]
         assert error == pytest.approx(deviation / math.sqrt(5))
-    assert nodes.failed == 0
-    assert np.array_equal(nodes.mask, ~columns.needed(S))
+    needed = covering(S, columns.log_onset, columns.speed_range, (3, 3))
+    assert np.array_equal(nodes.mask, ~needed)
     assert all(np.isfinite(values).all() for values in nodes.means.values())
 
 
 @pytest.mark.parametrize('k', [0, 2])
 def test_few_draws_come_near_the_mean_of_all_of_them(columns, stand_in, k):
     """At other temperatures: nearer to the mean of five draws than the two solved there."""
-    nodes = gather_nodes(columns, S, stand_in.run('', columns.chains(S)))
+    fine = np.linspace(-3.0, 6.0, 31)
+    nodes = gather(columns, stand_in.run('', columns.chains(fine)), fine)
+    around = np.flatnonzero(columns.needed(fine)[:, 2, k] & (np.abs(fine) < 1.3))
+    assert len(around) > 5
     off = {'friction_torque': [], 'rcs': []}
-    for i in (1, 2, 3, 4):
-        found = at_node(columns, stand_in, i, 2, k, range(5))
-        for name, (shared, plain) in {name: ([], []) for name in off}.items():
+    for i in around:
+        found = at_node(columns, stand_in, fine[i], 2, k, range(5))
+        for name, pairs in off.items():
             values = [record[name] for record in found]
-            shared.append(abs(nodes.means[name][i, 2, k] - np.mean(values)))
-            plain.append(abs(np.mean(values[:2]) - np.mean(values)))
-            off[name].append((shared[0], plain[0]))
+            mean = np.mean(values)
+            pairs.append((abs(nodes.means[name][i, 2, k] - mean), abs(np.mean(values[:2]) - mean)))
     for name, pairs in off.items():
-        shared, plain = np.array(pairs).T
-        assert plain.max() > 1e-3
-        assert shared.max() < 0.2 * plain.max(), name
-    reference = nodes.deviations['rcs'][3, 2, REFERENCE]
-    assert nodes.deviations['rcs'][3, 2, k] == reference
+        shared, plain = np.max(pairs, axis=0)
+        assert plain > 1e-3
+        assert shared < 0.2 * plain, name
+    assert np.array_equal(
+        nodes.deviations['rcs'][around, 2, k], nodes.deviations['rcs'][around, 2, REFERENCE]
+    )
 
 
 def test_sharing_all_draws_is_solving_all(columns, stand_in):
     """With as many shared as there are, every temperature has its plain mean."""
     whole = replace(columns, shared_draws=5)
-    nodes = gather_nodes(whole, S, stand_in.run('', whole.chains(S)))
-    found = at_node(columns, stand_in, 3, 0, 2, range(5))
+    nodes = gather(whole, stand_in.run('', whole.chains(S)))
+    found = at_node(columns, stand_in, S[3], 0, 2, range(5))
     for name in ('friction_torque', 'rcs', 'central_film'):
         mean = np.mean([record[name] for record in found])
         assert nodes.means[name][3, 0, 2] == pytest.approx(mean, rel=1e-12)
@@ -93,27 +101,26 @@ def test_failed_draws_are_left_out_until_too_few_remain(columns, stand_in):
     """One of two is enough, none masks the node; the others stay."""
     chains = columns.chains(S)
     results = stand_in.run('', chains)
-    whole = gather_nodes(columns, S, results)
+    whole = gather(columns, results)
     broken = dict(results)
     first, second = [name for name in chains if name.startswith('1000.0 N, temperature 2')]
     broken[first] = None
-    partly = gather_nodes(columns, S, broken)
-    assert partly.failed == 2 * int(columns.needed(S)[:, 0, 2].sum())
+    partly = gather(columns, broken)
     assert np.array_equal(partly.mask, whole.mask)
     broken[second] = None
-    masked = gather_nodes(columns, S, broken).mask
+    masked = gather(columns, broken).mask
     assert masked[:, 0, 2].all()
     assert np.array_equal(masked[:, 1], whole.mask[:, 1])
 
 
 def test_certified_is_free_of_contact_at_every_node_beyond(columns, stand_in):
     """The least coordinate from which all films are twice the floor; None when one never is."""
-    nodes = gather_nodes(columns, S, stand_in.run('', columns.chains(S)))
+    nodes = gather(columns, stand_in.run('', columns.chains(S)))
     assert nodes.certified in S
     beyond = S >= nodes.certified
     assert (nodes.means['rcs'][beyond] == 0).all()
     slow = replace(columns, speed_range=(0.2, 0.6))
-    found = gather_nodes(slow, S[:5], stand_in.run('', slow.chains(S[:5])))
+    found = gather(slow, stand_in.run('', slow.chains(S[:5])), S[:5])
     assert found.certified is None
 
 

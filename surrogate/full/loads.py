@@ -1,0 +1,104 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Loads of a full-tier surface: zero, the load at which the relieved nut becomes idle, and others.
+
+At that load torque and RCS jump, because the balls of the relieved nut are no longer solved; so a
+node lies on either side of it. Loads between are where interpolation over the load fails, seen on
+chains of few draws. Loads of either sign share their chains: all here are magnitudes but the nodes
+of the file.
+
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+from surrogate.full.settings import FullSettings
+from surrogate.full.speed_nodes import refine_nodes, Sample, Target
+from surrogate.parameters import Screw
+from surrogate.screw import IDLE_SHARE
+
+Array = NDArray[np.float64]
+
+BESIDE = 1e-4
+"""Distance of the nodes beside the idle load, over that load [-]."""
+
+
+@dataclass(frozen=True, slots=True)
+class LoadPieces:
+    """Magnitudes [N] between which fields are smooth: below and above the idle load."""
+
+    shared: Array
+    alone: Array
+
+    @property
+    def magnitudes(self) -> Array:
+        """Return all magnitudes, rising."""
+        return np.union1d(self.shared, self.alone)
+
+
+def idle_load(screw: Screw) -> float:
+    """
+    Return the axial load [N] from which on the relieved nut is idle; 0 without preload.
+
+    Where F_R = e F_L with the least share e of `surrogate.screw`, of F_L^(2/3) + F_R^(2/3) = 2
+    F_pre^(2/3).
+
+    """
+    loaded = screw.preload * (2 / (1 + IDLE_SHARE ** (2 / 3))) ** 1.5
+    return float((1 - IDLE_SHARE) * loaded)
+
+
+def first_loads(screw: Screw, settings: FullSettings) -> LoadPieces:
+    """Return the magnitudes that refinement begins with."""
+    low, high = settings.load_range
+    least = 0.0 if low <= 0 <= high else min(abs(low), abs(high))
+    most, idle = max(abs(low), abs(high)), idle_load(screw)
+    ends = [abs(end) for end in (low, high) if least < abs(end) < most]
+    below, above = (1 - BESIDE) * idle, (1 + BESIDE) * idle
+    shared = alone = np.empty(0)
+    if least < below:
+        shared = np.linspace(least, min(below, most), settings.load_cells + 1)
+    if most > above:
+        cells = settings.unloaded_cells if below > 0 else settings.load_cells
+        alone = np.linspace(max(above, least), most, cells + 1)
+    return LoadPieces(
+        np.union1d(shared, [end for end in ends if end <= below]),
+        np.union1d(alone, [end for end in ends if end >= above]),
+    )
+
+
+def refine_loads(
+    first: LoadPieces, solve: Callable[[Array], dict[float, Sample]], target: Target, most: int
+) -> LoadPieces:
+    """
+    Return magnitudes with more of them where `solve`, which returns profiles, differs.
+
+    At most `most`, the loads above idle first: there fields are smooth and need few.
+
+    """
+    pieces = [first.alone, first.shared]
+    for place, piece in enumerate(pieces):
+        if len(piece) > 1:
+            room = most - len(pieces[1 - place])
+            pieces[place], _ = refine_nodes(piece, solve, target, room)
+    return LoadPieces(pieces[1], pieces[0])
+
+
+def signed_loads(
+    screw: Screw, settings: FullSettings, pieces: LoadPieces
+) -> tuple[Array, list[float]]:
+    """Return the load nodes [N] of either sign within the range, and the breaks among them."""
+    low, high = settings.load_range
+    nodes = np.union1d(-pieces.magnitudes, pieces.magnitudes) + 0.0
+    nodes = nodes[(nodes >= low) & (nodes <= high)]
+    beside = [(1 + side) * idle_load(screw) for side in (-BESIDE, BESIDE)]
+    breaks = [
+        float(load)
+        for load in nodes
+        if load == 0 or any(math.isclose(abs(load), edge, rel_tol=1e-9) for edge in beside)
+    ]
+    return nodes, breaks

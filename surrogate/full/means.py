@@ -1,0 +1,157 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Means over all draws, also where few of them are solved.
+
+All are solved at the middle temperature around the onset, and at two speeds beyond. What they
+differ from the few there is carried to other speeds as a factor, which fades as contact grows
+below the onset: where asperities carry everything, draws are alike. To other temperatures it is
+carried as a factor too, but for shares: at one mapped speed they are nearly those of the middle
+temperature, so theirs are read there at a coordinate that is moved by a straight line. The line is
+fitted to the few draws, which leaves their noise behind.
+
+"""
+
+from collections.abc import Callable
+from typing import Any
+import warnings
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import PchipInterpolator
+from scipy.optimize import least_squares
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+LEAST_WEIGHED, RELATIVE = 0.003, 0.05
+"""Errors of a share that count as equal in a fit: absolute, and of the share where more [-]."""
+FARTHEST = np.array([0.5, 0.3])
+"""Largest shift and stretch of a coordinate that a fit may find [-]."""
+
+
+def fading(rcs: Array, full: Flags, few: int) -> Array:
+    """
+    Return what is left [speed, load] of the differences between draws below the onset, 0 to 1.
+
+    What `few` draws of the `rcs` [speed, load, draw] lack of 1, over that at the first of the
+    speeds at which all draws are solved.
+
+    """
+    lacking = 1 - quiet(np.nanmean, rcs[..., :few])
+    first = int(np.argmax(full))
+    with np.errstate(divide='ignore', invalid='ignore'):
+        left = np.clip(lacking / lacking[first], 0.0, 1.0)
+    below = (np.arange(len(full)) < first)[:, None]
+    return np.asarray(np.where(below & np.isfinite(left), left, 1.0))
+
+
+def middle_mean(
+    s: Array, values: Array, full: Flags, few: int, fade: Array, *, share: bool
+) -> Array:
+    """
+    Return the mean [speed, load] of `values` [speed, load, draw] at the middle temperature.
+
+    `full` tells at which speeds all draws are solved; elsewhere the first `few` are. A share is
+    scaled below the onset by what it lacks of 1, as `fade` is.
+
+    """
+    whole, part = quiet(np.nanmean, values), quiet(np.nanmean, values[..., :few])
+    around = full[:, None]
+    with np.errstate(divide='ignore', invalid='ignore'):
+        factor = filled(s, np.where(around, whole / part, np.nan), 1.0)
+        lacking = filled(s, np.where(around, (1 - whole) / (1 - part), np.nan), 1.0)
+    if not share:
+        return np.asarray(np.where(around, whole, part * (1 + (factor - 1) * fade)))
+    below = (np.arange(len(full)) < np.argmax(full))[:, None]
+    scaled = np.where(below, 1 - (1 - part) * lacking, part * factor)
+    return np.asarray(np.clip(np.where(around, whole, scaled), 0.0, 1.0))
+
+
+def middle_spread(
+    s: Array, values: Array, mean: Array, full: Flags, fade: Array, *, share: bool
+) -> tuple[Array, Array]:
+    """
+    Return the deviation of draws and the standard error of their mean [speed, load].
+
+    Known where all draws are solved; elsewhere carried over the speed, relative to the `mean` but
+    for shares, and fading as the differences do.
+
+    """
+    count = np.where(full[:, None], np.isfinite(values).sum(axis=-1), 0)
+    # With one draw there is no deviation: 0/0 is the answer.
+    with np.errstate(divide='ignore', invalid='ignore'):
+        spread = quiet(np.nanstd, values) * np.sqrt(count / (count - 1.0))
+        one = np.where(count > 1, spread if share else spread / mean, np.nan)
+        found = filled(s, one, np.nan) * fade * (1.0 if share else mean)
+        error = found / np.sqrt(filled(s, np.where(count > 1, count, np.nan), np.nan))
+    return np.asarray(found), np.asarray(error)
+
+
+def other_mean(s: Array, own: Array, middle: Array, mean: Array) -> Array:
+    """
+    Return the mean [speed, load] at a temperature with few draws, by a factor.
+
+    `own` and `middle` [speed, load, draw] are the same draws there and at the middle temperature,
+    `mean` is that of all draws at the latter.
+
+    """
+    both = np.isfinite(own) & np.isfinite(middle)
+    few = quiet(np.nanmean, np.where(both, middle, np.nan))
+    with np.errstate(divide='ignore', invalid='ignore'):
+        return np.asarray(quiet(np.nanmean, own) * filled(s, mean / few, 1.0))
+
+
+def moved_share(s: Array, own: Array, middle: Array, mean: Array, full: Flags) -> Array:
+    """
+    Return the mean share [speed] of one load at a temperature with few draws.
+
+    Arguments as for `other_mean`, of one load: read from `mean` at s + a + b s.
+
+    """
+    here, there = own.mean(axis=-1), middle.mean(axis=-1)
+    fitted = np.isfinite(here) & full
+    few, all_draws = _curve(s, there), _curve(s, mean)
+    if few is None or all_draws is None or not fitted.any():
+        return quiet(np.nanmean, own)
+    weight = 1 / np.maximum(LEAST_WEIGHED, RELATIVE * here[fitted])
+
+    def wrong(line: Array) -> Array:
+        return np.asarray(weight * (few(s[fitted] + _moved(s[fitted], line)) - here[fitted]))
+
+    line = least_squares(wrong, np.zeros(2), bounds=(-FARTHEST, FARTHEST), loss='soft_l1').x
+    ends = s[fitted][0], s[fitted][-1]
+    found = all_draws(s + _moved(np.clip(s, *ends), line))
+    slower = s < s[np.isfinite(there)][0]
+    found = np.where(slower, np.fmax(found, quiet(np.nanmean, own)), found)
+    return np.asarray(np.where(np.isfinite(own).any(axis=-1), found, np.nan))
+
+
+def _moved(s: Array, line: Array) -> Array:
+    return np.asarray(line[0] + line[1] * s)
+
+
+def _curve(s: Array, values: Array) -> Callable[[Array], Array] | None:
+    """Return a monotone cubic through what is known, held beyond its ends; None if too few."""
+    known = np.isfinite(values)
+    if known.sum() < 2:
+        return None
+    cubic, ends = PchipInterpolator(s[known], values[known]), s[known][[0, -1]]
+    return lambda place: np.asarray(cubic(np.clip(place, *ends)))
+
+
+def filled(s: Array, values: Array, otherwise: float) -> Array:
+    """Return columns over `s` with straight lines between what is known, held beyond it."""
+    found = np.full_like(values, otherwise)
+    for j, column in enumerate(values.T):
+        known = np.isfinite(column)
+        if known.any():
+            found[:, j] = np.interp(s, s[known], column[known])
+    return found
+
+
+def quiet(reduce: Any, values: Array) -> Array:
+    """Reduce over draws, where there may be none."""
+    with warnings.catch_warnings():
+        warnings.simplefilter('ignore', RuntimeWarning)
+        return np.asarray(reduce(values, axis=-1))

@@ -1,0 +1,125 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Means over all draws from few of them: exact where draws differ as is assumed."""
+
+import numpy as np
+import pytest
+from surrogate.full.means import (
+    fading,
+    filled,
+    middle_mean,
+    middle_spread,
+    moved_share,
+    other_mean,
+)
+
+S = np.array([-3.0, -2.0, -1.2, -0.9, -0.6, -0.2, 0.2, 0.6, 1.5, 3.0, 5.0])
+FULL = ((S >= -1.25) & (S <= 1.5)) | (S == 5.0)
+WHOLE = np.ones((len(S), 1))
+FACTORS = np.array([0.7, 1.1, 0.9, 1.4])
+
+
+def falling(s):
+    """Return a share that falls from 1 to 0."""
+    return 1 / (1 + np.exp(4 * (s + 1)))
+
+
+def only_few_beyond(values):
+    """Remove all but two draws where the onset is far."""
+    solved = values.copy()
+    solved[~FULL, :, 2:] = np.nan
+    return solved
+
+
+def test_draws_that_differ_by_a_factor_have_their_plain_mean():
+    """Everywhere, though two of four are solved beyond the onset."""
+    values = np.exp(0.6 * S)[:, None, None] * FACTORS * np.array([[1.0], [2.0]])
+    mean = middle_mean(S, only_few_beyond(values), FULL, 2, WHOLE, share=False)
+    assert mean == pytest.approx(values.mean(axis=-1), rel=1e-12)
+
+
+def test_shares_are_scaled_by_what_they_lack_of_one_below_the_onset():
+    """Exact where draws differ by a factor there, and never outside 0 to 1."""
+    lacking = (1 - falling(S))[:, None, None] * np.array([0.7, 0.9, 0.8, 1.0])
+    mean = middle_mean(S, only_few_beyond(1 - lacking), FULL, 2, WHOLE, share=True)
+    slow = FULL | (S < 0)
+    assert mean[slow] == pytest.approx(1 - lacking[slow].mean(axis=-1), rel=1e-12)
+    steep = np.clip(falling(S)[:, None, None] * FACTORS, 0, 1)
+    mean = middle_mean(S, only_few_beyond(steep), FULL, 2, WHOLE, share=True)
+    assert ((mean >= 0) & (mean <= 1)).all()
+    assert mean[-1] == pytest.approx(0.0, abs=1e-6)
+
+
+def test_all_draws_everywhere_is_the_plain_mean():
+    """Nothing is carried anywhere."""
+    values = np.random.default_rng(2).uniform(0.1, 0.9, (len(S), 3, 4))
+    for share in (False, True):
+        found = middle_mean(S, values, FULL, 4, WHOLE, share=share)
+        assert found == pytest.approx(values.mean(axis=-1), rel=1e-12)
+
+
+def test_another_temperature_has_the_factor_of_the_middle_one():
+    """Two draws of four there, one of them lost at some speeds."""
+    middle = np.exp(0.6 * S)[:, None, None] * FACTORS
+    own = 1.7 * middle[..., :2]
+    own[3:5, 0, 1] = np.nan
+    mean = other_mean(S, own, middle[..., :2], middle.mean(axis=-1))
+    assert mean == pytest.approx(1.7 * middle.mean(axis=-1), rel=1e-12)
+
+
+def test_a_moved_share_is_found_through_noise():
+    """A shift and a stretch of the coordinate come back from two noisy draws."""
+    shifts = np.array([-0.15, 0.05, 0.2, 0.3])
+    moved = S + 0.04 - 0.02 * np.clip(S, -1.2, 1.5)
+    middle = falling(S[:, None] + shifts)
+    noise = np.random.default_rng(4).normal(0, 0.003, (len(S), 2)) * FULL[:, None]
+    own = falling(moved[:, None] + shifts[:2]) + noise
+    found = moved_share(S, own, middle[:, :2], middle.mean(axis=-1), FULL)
+    wanted = falling(moved[:, None] + shifts).mean(axis=-1)
+    # What a cubic between these nodes makes of the curve is most of the difference.
+    assert np.abs(found - wanted)[FULL].max() < 0.008
+    assert (np.diff(found) <= 1e-9).all()
+
+
+def test_a_share_that_is_not_known_stays_so():
+    """Where no draw was solved there is no share; without a middle one it is the plain mean."""
+    middle = falling(S[:, None] + np.zeros(2))
+    own = middle.copy()
+    own[0] = np.nan
+    found = moved_share(S, own, middle, middle.mean(axis=-1), FULL)
+    assert np.isnan(found[0])
+    assert found[1:] == pytest.approx(middle[1:].mean(axis=-1), abs=1e-6)
+    nothing = np.full_like(middle, np.nan)
+    assert moved_share(S, own, nothing, nothing[:, 0], FULL)[1:] == pytest.approx(own[1:, 0])
+
+
+def test_differences_fade_where_asperities_carry_everything():
+    """As what a share lacks of one; draws that are alike at full contact have their plain mean."""
+    shares = falling(S)[:, None, None] * np.ones((1, 2))
+    fade = fading(shares, FULL, 2)
+    edge = 1 - falling(-1.2)
+    assert fade[:2, 0] == pytest.approx((1 - falling(S[:2])) / edge)
+    assert (fade[2:] == 1).all()
+    factors = 1 + (FACTORS - 1) * (1 - falling(np.clip(S, -9, -1.2)))[:, None] / edge
+    values = factors[:, None, :] * (2 - S)[:, None, None] ** 2
+    mean = middle_mean(S, only_few_beyond(values), FULL, 2, fade, share=False)
+    slow = S < 0
+    assert mean[slow, 0] == pytest.approx(values.mean(axis=-1)[slow, 0], rel=0.03)
+
+
+def test_spread_is_that_of_all_draws_and_its_error():
+    """Exact for a constant relative spread, at every speed."""
+    values = np.exp(0.6 * S)[:, None, None] * FACTORS
+    mean = values.mean(axis=-1)
+    found, error = middle_spread(S, only_few_beyond(values), mean, FULL, WHOLE, share=False)
+    assert found == pytest.approx(values.std(axis=-1, ddof=1))
+    assert error == pytest.approx(found / 2)
+    lone = middle_spread(S, values[..., :1], mean, FULL, WHOLE, share=False)
+    assert np.isnan(lone).all()
+
+
+def test_gaps_are_straight_and_ends_are_held():
+    """Each column for itself; one without anything has what is given."""
+    values = np.array([[np.nan, 1.0, np.nan], [2.0, np.nan, np.nan], [np.nan, 4.0, np.nan]])
+    found = filled(np.array([0.0, 1.0, 3.0]), values, 7.0)
+    assert found.T.tolist() == [[2.0, 2.0, 2.0], [1.0, 2.0, 4.0], [7.0, 7.0, 7.0]]
