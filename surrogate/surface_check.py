@@ -73,8 +73,8 @@ class CheckResult:
             f'{verdict}, hash verified, {self.tried} of {self.asked} '
             f'points solved, {self.silent} without an answer, {self.unsolved} without a solution, '
             f'largest error: efficiency {self.efficiency:.2g} (aim {EFFICIENCY_TOLERANCE}), '
-            f'RCS {100 * self.rcs:.0f} % of the aim, {self.missed} points miss an aim; over the aim '
-            f'or {STATED_FACTOR:g} times what the file states for the cell: {self.accepted:.2g} '
+            f'RCS {100 * self.rcs:.0f} % of the aim, {self.missed} points miss an aim; over '
+            f'the aim or {STATED_FACTOR:g} times what the file states for the cell: {self.accepted:.2g} '
             f'(allowed 1); over the largest that it states: {stated} (allowed {STATED_FACTOR:g})'
         )
 
@@ -144,8 +144,13 @@ def _compare(
         'efficiency': wrong,
         'rcs_over_aim': errors['rcs'] / aim,
         'accepted': max(
-            wrong / np.fmax(EFFICIENCY_TOLERANCE, STATED_FACTOR * found.efficiency_error),
-            errors['rcs'] / np.fmax(aim, STATED_FACTOR * found.rcs_error),
+            wrong / _larger(EFFICIENCY_TOLERANCE, found.efficiency_error),
+            errors['rcs'] / _larger(aim, found.rcs_error),
         ),
         **errors,
     }
+
+
+def _larger(aim: float, stated: float) -> float:
+    """Return what is accepted: the aim, or more where a cell states more."""
+    return float(np.fmax(aim, STATED_FACTOR * stated))
