@@ -4,10 +4,10 @@
 Generate the bag of a nominal machine cycle: 60 s of one milling machine axis.
 
 A table of 200 kg on the nominal screw (lead 10 mm), from cold to warm oil: homing, rapids, a
-facing cut with climb return, light finishing, a deep cut near the unloading load, a dwell,
-warm-up by rapid reversals, the facing cut again and the same cut at high speed. A warm-up takes
-the better part of an hour; here the oil heats up within the cycle. The bytes are the same every
-time.
+creep feed, a facing cut with climb return, light finishing, a deep cut near the unloading load
+that ends creeping, a dwell, warm-up by rapid reversals, the creep feed again and fast cuts. A
+warm-up takes the better part of an hour; here the oil heats up within the cycle. The bytes are
+the same every time.
 
 """
 
