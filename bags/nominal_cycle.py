@@ -4,10 +4,10 @@
 Generate the bag of a nominal machine cycle: 60 s of one milling machine axis.
 
 A table of 200 kg on the nominal screw (lead 10 mm), from cold to warm oil: homing, rapids, a
-facing cut with climb return, light finishing, a deep cut near the unloading load, a dwell,
-warm-up by rapid reversals, the facing cut again and the same cut at high speed. A warm-up takes
-the better part of an hour; here the oil heats up within the cycle. The bytes are the same every
-time.
+creep feed, a facing cut with climb return, light finishing, a deep cut near the unloading load
+that ends creeping, a dwell, warm-up by rapid reversals, the creep feed again and fast cuts. A
+warm-up takes the better part of an hour; here the oil heats up within the cycle. The bytes are
+the same every time.
 
 """
 
@@ -86,30 +86,32 @@ CYCLE = (
     Phase(name='at work', duration=0.3),
     Phase(name='rapid', duration=1.6, speed=-2000.0),
     Phase(name='at work', duration=0.4),
-    Phase(name='facing', duration=3.8, speed=800.0, cut=1150.0, tooth=27.0),
+    Phase(name='creep feed', duration=3.0, speed=16.0, cut=1500.0, tooth=11.0),
+    Phase(name='at work', duration=0.3),
+    Phase(name='facing', duration=2.4, speed=700.0, cut=1150.0, tooth=27.0),
     Phase(name='reversal', duration=0.3),
-    Phase(name='climb return', duration=3.8, speed=-800.0, cut=-1250.0, tooth=27.0),
+    Phase(name='climb return', duration=2.4, speed=-700.0, cut=-1250.0, tooth=27.0),
     Phase(name='reversal', duration=0.3),
-    Phase(name='finishing', duration=2.0, speed=1500.0, cut=330.0, tooth=41.0),
+    Phase(name='finishing', duration=1.9, speed=1800.0, cut=330.0, tooth=41.0),
     Phase(name='reversal', duration=0.3),
-    Phase(name='finishing', duration=2.0, speed=-1500.0, cut=330.0, tooth=41.0),
+    Phase(name='finishing', duration=1.9, speed=-1800.0, cut=330.0, tooth=41.0),
     Phase(name='at work', duration=0.4),
     Phase(name='rapid', duration=1.6, speed=2000.0),
     Phase(name='at work', duration=0.3),
     Phase(name='rapid', duration=1.6, speed=-2000.0),
     Phase(name='at work', duration=0.8),
-    Phase(name='deep cut', duration=2.8, speed=380.0, cut=2750.0, tooth=17.0),
-    Phase(name='deep cut, slow', duration=3.2, speed=110.0, cut=2850.0, tooth=13.0),
-    Phase(name='dwell', duration=3.4),
-    *_reversals(6),
+    Phase(name='deep cut', duration=2.8, speed=700.0, cut=2750.0, tooth=17.0),
+    Phase(name='deep cut, creeping', duration=3.8, speed=8.0, cut=2850.0, tooth=13.0),
+    Phase(name='dwell', duration=3.75),
+    *_reversals(5),
     Phase(name='at work', duration=0.8),
-    Phase(name='facing, warm', duration=3.6, speed=800.0, cut=1150.0, tooth=27.0),
+    Phase(name='creep feed, warm', duration=3.8, speed=16.0, cut=1500.0, tooth=11.0),
     Phase(name='reversal', duration=0.4),
     Phase(name='climb return, fast', duration=1.7, speed=-2050.0, cut=-1700.0, tooth=37.0),
     Phase(name='reversal', duration=0.3),
     Phase(name='facing, fast', duration=1.7, speed=2050.0, cut=1500.0, tooth=37.0),
     Phase(name='at work', duration=0.8),
-    Phase(name='park', duration=0.35, speed=-250.0),
+    Phase(name='park', duration=0.35, speed=-9.0),
     Phase(name='parked', duration=3.65),
 )
 

@@ -193,7 +193,7 @@ def _draw_efficiency(axes: Axes, trace: Trace) -> None:
 def _draw_ratio(axes: Axes, trace: Trace) -> None:
     _dots(axes, trace, trace.film_ratio, 'film ratio Λ\n[-]')
     axes.set_yscale('log')
-    low, high = 0.05, 10.0
+    low, high = 0.02, 10.0
     axes.set_yticks([0.1, 1.0, 3.0, 10.0], ['0.1', '1', '3', '10'])
     axes.minorticks_off()
     for name, begin, end, colour in REGIMES:

@@ -4,7 +4,8 @@
 The operating map under a cycle: what the surface says of speed and opposing load.
 
 It holds at one oil temperature, the mean of the run in motion; the border RCS = limit is drawn for
-the coldest and the warmest oil too, because it moves with the oil.
+the coldest and the warmest oil too, because it moves with the oil. Speeds are logarithmic and
+begin where judging does: contact sets in at a hundredth of the highest speed.
 
 """
 
@@ -29,6 +30,7 @@ GREEN, ORANGE, BLUE, PURPLE, GREY = '#009e73', '#d55e00', '#0072b2', '#7b3294', 
 OPTIMAL_FILL = '#dff2ea'
 EFFICIENCIES = (0.3, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.97)
 SPEEDS, LOADS = 120, 181  # points of the grid
+TICKS = [first * 10.0**power for power in range(-2, 6) for first in (1, 2, 5)]  # [rev/min]
 TOP, BELOW_TOP = 0.975, 0.925  # heights of the labels, as parts of the map
 BOX = {'boxstyle': 'round,pad=0.15', 'facecolor': 'white', 'edgecolor': 'none', 'alpha': 0.85}
 
@@ -47,7 +49,7 @@ class Field:
 def sample(surface: Surface, trace: Trace, temperature: float) -> Field:
     """Return the surface at `temperature` [degC] on a grid around the run."""
     low, high = _load_span(surface, trace)
-    speed = np.linspace(*surface.speed_range, SPEEDS)
+    speed = np.geomspace(*_speed_span(surface, trace), SPEEDS)
     load = np.linspace(low, high, LOADS)
     points = [
         [surface.lookup(w, f, kelvin(temperature)) for w in speed.tolist()] for f in load.tolist()
@@ -84,6 +86,13 @@ def draw_map(axes: Axes, trace: Trace, surface: Surface) -> tuple[float, bool]:
         _draw_border(axes, sample(surface, trace, degrees), trace.limits, degrees)
     _label(axes, field)
     return mean, bool(others)
+
+
+def _speed_span(surface: Surface, trace: Trace) -> tuple[float, float]:
+    """Return the speeds that are judged [rad/s], or all of the surface where none is."""
+    slowest, fastest = surface.speed_range
+    judged = max(slowest, trace.limits.standstill)
+    return (judged if judged < fastest else slowest), fastest
 
 
 def _load_span(surface: Surface, trace: Trace) -> tuple[float, float]:
@@ -196,7 +205,12 @@ def _name_line(
 
 
 def _label(axes: Axes, field: Field) -> None:
-    axes.set_xlim(0.0, field.speed[-1])
+    low, high = float(field.speed[0]), float(field.speed[-1])
+    axes.set_xscale('log')
+    ticks = [tick for tick in TICKS if low <= tick <= high]
+    axes.set_xticks(ticks, [f'{tick:g}' for tick in ticks])
+    axes.minorticks_off()
+    axes.set_xlim(low, high)
     axes.set_ylim(field.load[0], field.load[-1])
     axes.axhline(0.0, color='black', linewidth=0.6, zorder=2)
     axes.set_xlabel(

@@ -181,7 +181,7 @@ AXIS_ROWS = (
     Row(
         name='surface',
         default='',
-        text='Path of the surface file, or a tier of those shipped; empty: closed_form.',
+        text='Path of the surface file, or a tier of those shipped; empty: full, if shipped.',
     ),
     Row(
         name='handedness',

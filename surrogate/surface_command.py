@@ -74,10 +74,7 @@ def _add_clean(parser: argparse.ArgumentParser) -> None:
 
 def _add_info(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
-        'file',
-        nargs='?',
-        type=Path,
-        help='a path, or a tier of those shipped (default closed_form)',
+        'file', nargs='?', type=Path, help='a path, or a tier of those shipped (default full)'
     )
     parser.add_argument('--json', action='store_true', help='print JSON in SI units')
     parser.set_defaults(handler=_info)

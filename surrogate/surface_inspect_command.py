@@ -29,10 +29,7 @@ def add_inspect_commands(actions: Any) -> None:
 
 def _add_file(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
-        'file',
-        nargs='?',
-        type=Path,
-        help='a path, or a tier of those shipped (default closed_form)',
+        'file', nargs='?', type=Path, help='a path, or a tier of those shipped (default full)'
     )
 
 

@@ -44,11 +44,11 @@ def nominal_bag(nominal_cycle, tmp_path_factory):
 
 @pytest.fixture(scope='session')
 def short_bag(nominal_bag, tmp_path_factory):
-    """Return the directory of its first 3 s: a standstill, and homing with its warning."""
+    """Return the directory of 3 s of it: creeping with its warning, and a standstill."""
     from ballscrew_monitor.bag import Bag
 
     directory = tmp_path_factory.mktemp('bags') / 'short'
-    cut(Bag(nominal_bag), directory, 0.0, 3.005)
+    cut(Bag(nominal_bag), directory, 32.995, 36.0)
     return directory
 
 

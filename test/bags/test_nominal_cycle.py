@@ -7,6 +7,7 @@ from pathlib import Path
 import subprocess
 import sys
 
+from ballscrew_monitor.axis import load_surface
 from ballscrew_monitor.bag import Bag
 from ballscrew_monitor.judgement import Code, Gate, Level, Zone
 from ballscrew_monitor.parameters import read_file
@@ -119,6 +120,11 @@ def test_acceleration_and_jerk_are_those_of_a_drive(nominal_cycle):
     assert np.abs(acceleration).max() <= nominal_cycle.ACCELERATION * (1 + 1e-6)
     most = 2 * nominal_cycle.ACCELERATION / nominal_cycle.JERK_TIME
     assert np.abs(jerk).max() <= most * (1 + 1e-6)
+
+
+def test_the_surface_is_of_the_expected_tier():
+    values = read_file(ROOT / 'config/nominal_cycle.yaml')
+    assert load_surface('x', values).tier == EXPECTED['tier']
 
 
 def test_the_warnings_are_the_expected_ones(judged):

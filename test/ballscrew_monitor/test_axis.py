@@ -24,11 +24,17 @@ def build(**changes):
 def test_defaults_make_an_axis_of_the_shipped_surface():
     axis = build()
     assert (axis.surface.screw_name, axis.surface.oil_name) == ('nominal', 'iso_vg_68')
+    assert axis.surface.tier == 'full'
     assert [source.source for source in axis.inputs] == [Source.LOAD, Source.SPEED]
     assert axis.max_future == axis.monitor.settings.tick_period == SECOND // 10
     limits = axis.monitor.settings.limits
     assert limits.light_load == 0.25 * axis.surface.preload
     assert (limits.raise_delay, limits.clear_delay) == (SECOND // 2, SECOND)
+
+
+@pytest.mark.parametrize('tier', ['closed_form', 'full'])
+def test_a_tier_chooses_its_shipped_surface(tier):
+    assert build(surface=tier).surface.tier == tier
 
 
 def test_a_topic_makes_an_input():

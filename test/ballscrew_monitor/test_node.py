@@ -22,7 +22,7 @@ from std_srvs.srv import Trigger
 from surrogate.surface import shipped_surface, Surface
 
 LATCHED = QoSProfile(depth=1, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL)
-FAST, SLOW = 200.0, 5.0  # [rad/s] optimal and outside at 1 kN and 40 degC
+FAST, SLOW = 100.0, 0.8  # [rad/s] optimal and outside at 1 kN and 40 degC
 # The stamps of a test run ahead of the clock.
 AHEAD = {'x__max_future': 3600.0}
 

@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The numbers under the operating map."""
 
+import dataclasses
+
 from ballscrew_monitor.cycle_trace import Limits, Trace
 from ballscrew_monitor.operating_map import RPM, sample
 import numpy as np
@@ -55,3 +57,13 @@ def test_it_covers_the_loads_in_motion_within_the_surface(surface):
 def test_a_temperature_outside_says_nothing(surface):
     field = sample(surface, make_trace([10.0], [100.0]), 200.0)
     assert np.isnan(field.rcs).all()
+
+
+def test_it_begins_where_speeds_are_judged(surface):
+    trace = make_trace([10.0], [100.0])
+    field = sample(surface, trace, 40.0)
+    assert field.speed[0] / RPM == pytest.approx(trace.limits.standstill)
+    assert field.speed[-1] / RPM == pytest.approx(surface.speed_range[1])
+    never = dataclasses.replace(trace.limits, standstill=1e4)
+    field = sample(surface, dataclasses.replace(trace, limits=never), 40.0)
+    assert field.speed[0] / RPM == pytest.approx(surface.speed_range[0])

@@ -14,6 +14,8 @@ from surrogate.surface import shipped_surface, SurfaceError
 from surrogate.surface_file import read, write
 from surrogate.tasks.store import store_path, TaskStore
 
+CLOSED_FORM = shipped_surface(tier='closed_form')
+
 
 def run(*words: str) -> int:
     """Run one command line."""
@@ -56,11 +58,11 @@ def test_build_info_check(tmp_path: Path, capsys):
     assert 'passed, hash verified, 5 of 5 points' in capsys.readouterr().out
 
 
-def test_check_defaults_to_twenty_points_of_the_shipped_surface(capsys):
-    """Without a file the shipped surface is checked."""
-    assert run('surface', 'check') == 0
+def test_check_of_a_shipped_tier_is_of_twenty_points(capsys):
+    """The name of a tier is enough."""
+    assert run('surface', 'check', 'closed_form') == 0
     out = capsys.readouterr().out
-    assert str(shipped_surface()) in out
+    assert str(CLOSED_FORM) in out
     assert '20 of 20 points' in out
 
 
@@ -68,7 +70,7 @@ def test_check_finds_a_wrong_surface(tmp_path: Path, capsys):
     """A surface whose numbers are not those of its datasheets fails with exit code 1."""
     from dataclasses import replace
 
-    data = read(shipped_surface())
+    data = read(CLOSED_FORM)
     wrong = replace(data, fields={**data.fields, 'rcs': 0.5 * data.fields['rcs']})
     path = tmp_path / 'wrong.npz'
     write(path, wrong)
@@ -80,7 +82,7 @@ def test_a_surface_without_answers_fails_its_check(tmp_path: Path, capsys):
     """A map that is masked everywhere has no error, and is not good for that."""
     from dataclasses import replace
 
-    data = read(shipped_surface())
+    data = read(CLOSED_FORM)
     path = tmp_path / 'masked.npz'
     write(path, replace(data, mask=np.ones_like(data.mask)))
     assert run('surface', 'check', str(path)) == 1
@@ -91,7 +93,7 @@ def test_info_is_strict_json_even_without_errors(tmp_path: Path, capsys):
     """Errors that were not measured are null."""
     from dataclasses import replace
 
-    data = read(shipped_surface())
+    data = read(CLOSED_FORM)
     path = tmp_path / 'unmeasured.npz'
     errors = {name: np.full_like(values, np.nan) for name, values in data.errors.items()}
     write(path, replace(data, errors=errors))
@@ -100,9 +102,11 @@ def test_info_is_strict_json_even_without_errors(tmp_path: Path, capsys):
 
 
 def test_check_without_time_is_a_failure(capsys):
-    """Nothing solved is nothing shown; a time that is none is refused."""
+    """Nothing solved of the default surface is nothing shown; a time that is none is refused."""
     assert run('surface', 'check', '--max-seconds', '1e-9') == 1
-    assert '0 of 20 points' in capsys.readouterr().out
+    out = capsys.readouterr().out
+    assert str(shipped_surface(tier='full')) in out
+    assert '0 of 20 points' in out
     for text in ('0', '-1', 'nan', 'inf'):
         with pytest.raises(InputError, match='--max-seconds is .* allowed is above 0'):
             run('surface', 'check', '--max-seconds', text)
@@ -135,7 +139,7 @@ def test_bad_files_reach_the_user_as_sentences(tmp_path: Path):
 
 def test_info_is_a_page_a_person_reads(capsys):
     """Inputs, ranges in rev/min and degC, nodes, the error table and where it comes from."""
-    assert run('surface', 'info') == 0
+    assert run('surface', 'info', 'closed_form') == 0
     text = capsys.readouterr().out
     for part in (
         'nominal, iso_vg_68; lead 10 mm, preload 990 N, Rq 0.12 um',
@@ -154,7 +158,7 @@ def test_info_tells_what_draws_leave_uncertain(tmp_path: Path, capsys):
     """Median and largest deviation, in the page and in the record."""
     from dataclasses import replace
 
-    data = read(shipped_surface())
+    data = read(CLOSED_FORM)
     spread = np.linspace(0.0, 0.02, data.mask.size).reshape(data.mask.shape)
     path = tmp_path / 'drawn.npz'
     header = {**data.header, 'format_version': 2}

@@ -13,10 +13,16 @@ from surrogate.surface import FIELDS, shipped_surface, Surface, SurfaceError, Va
 from surrogate.surface_correction import NEAREST, TRUST_RADIUS
 from surrogate.surface_file import read
 
-DATA = read(shipped_surface())
-SHIPPED = Surface(DATA)
+DATA, FULL_DATA = (read(shipped_surface(tier=tier)) for tier in ('closed_form', 'full'))
+SHIPPED, FULL = Surface(DATA), Surface(FULL_DATA)
+AXES = {
+    data.header['tier']: (data.speed_coordinate, data.load, data.temperature)
+    for data in (DATA, FULL_DATA)
+}
+both = pytest.mark.parametrize('shipped', [SHIPPED, FULL], ids=['closed_form', 'full'])
 SHARES = ('rcs', 'asperity_share')
-CELLS = st.tuples(*(st.integers(0, count - 1) for count in SHIPPED.cells))
+CELLS = st.tuples(*3 * [st.integers(0, 1000)])
+"""Cells of any surface, counted round."""
 FRACTIONS = st.tuples(*3 * [st.floats(0.02, 0.98)])
 FACTORS = st.floats(0.05, 20.0)
 ONE = st.floats(0.0, 1.0)
@@ -28,16 +34,19 @@ SOLUTIONS = st.builds(
 )
 
 
-def place(cell, fractions) -> tuple[float, float, float]:
+def turn(surface, cell) -> tuple[int, int, int]:
+    """Return a cell of the surface."""
+    return tuple(number % count for number, count in zip(cell, surface.cells))
+
+
+def place(surface, cell, fractions) -> tuple[float, float, float]:
     """Return speed, load and temperature at fractions of a cell; passes over those outside."""
     s, load, heat = (
         float(axis[i] + (axis[i + 1] - axis[i]) * fraction)
-        for axis, i, fraction in zip(
-            (DATA.speed_coordinate, DATA.load, DATA.temperature), cell, fractions
-        )
+        for axis, i, fraction in zip(AXES[surface.tier], turn(surface, cell), fractions)
     )
-    speed = SHIPPED.onset_speed(load, heat) * math.exp(s)
-    assume(SHIPPED.speed_range[0] < speed < SHIPPED.speed_range[1])
+    speed = surface.onset_speed(load, heat) * math.exp(s)
+    assume(surface.lookup(speed, load, heat).validity is Validity.VALID)
     return speed, load, heat
 
 
@@ -48,48 +57,51 @@ def at(where, speed_sign=1.0) -> SimpleNamespace:
     )
 
 
-def solution(where, drawn) -> SimpleNamespace:
+def solution(surface, where, drawn) -> SimpleNamespace:
     """Return a solution that differs from the surface by factors, and with other shares."""
-    found, (factors, shares) = SHIPPED.lookup(*where), drawn
+    found, (factors, shares) = surface.lookup(*where), drawn
     values = {name: factor * getattr(found, name) for name, factor in zip(FIELDS, factors)}
     return SimpleNamespace(**{**values, **shares})
 
 
+@both
 @settings(max_examples=100, deadline=None)
 @given(CELLS, FRACTIONS, SOLUTIONS)
-def test_the_corrected_point_is_the_solve(cell, fractions, drawn):
+def test_the_corrected_point_is_the_solve(shipped, cell, fractions, drawn):
     """Every field, to rounding; what follows from the torque too; the flag tells."""
-    where = place(cell, fractions)
-    solved = solution(where, drawn)
-    found = SHIPPED.with_correction(at(where), solved).lookup(*where)
+    where = place(shipped, cell, fractions)
+    solved = solution(shipped, where, drawn)
+    found = shipped.with_correction(at(where), solved).lookup(*where)
     assert found.corrected
     for name in FIELDS:
         assert getattr(found, name) == pytest.approx(getattr(solved, name), rel=1e-9, abs=1e-12)
-    assert str(found.errors) == str(SHIPPED.lookup(*where).errors)
+    assert str(found.errors) == str(shipped.lookup(*where).errors)
 
 
+@both
 @settings(max_examples=150, deadline=None)
 @given(CELLS, FRACTIONS, SOLUTIONS, CELLS, FRACTIONS)
-def test_elsewhere_nothing_changes_by_a_bit(cell, fractions, drawn, other, others):
+def test_elsewhere_nothing_changes_by_a_bit(shipped, cell, fractions, drawn, other, others):
     """In any other cell, and in the same cell beyond the trust region, bit for bit."""
-    where, elsewhere = place(cell, fractions), place(other, others)
+    where, elsewhere = place(shipped, cell, fractions), place(shipped, other, others)
     beyond = any(abs(a - b) > TRUST_RADIUS + 1e-9 for a, b in zip(fractions, others))
-    assume(other != cell or beyond)
-    corrected = SHIPPED.with_correction(at(where), solution(where, drawn))
-    before, after = SHIPPED.lookup(*elsewhere), corrected.lookup(*elsewhere)
+    assume(turn(shipped, other) != turn(shipped, cell) or beyond)
+    corrected = shipped.with_correction(at(where), solution(shipped, where, drawn))
+    before, after = shipped.lookup(*elsewhere), corrected.lookup(*elsewhere)
     # By their texts, which tell every bit and let NaN be equal to itself.
     assert str(after) == str(before)
     assert not after.corrected
 
 
+@both
 @settings(max_examples=150, deadline=None)
 @given(CELLS, FRACTIONS, SOLUTIONS, FRACTIONS)
-def test_signs_and_ranges_hold(cell, fractions, drawn, others):
+def test_signs_and_ranges_hold(shipped, cell, fractions, drawn, others):
     """Anywhere in the cell: positive stays positive, shares stay shares, and no overshoot."""
-    where, near = place(cell, fractions), place(cell, others)
-    solved = solution(where, drawn)
-    corrected = SHIPPED.with_correction(at(where), solved)
-    before, after, here = SHIPPED.lookup(*near), corrected.lookup(*near), SHIPPED.lookup(*where)
+    where, near = place(shipped, cell, fractions), place(shipped, cell, others)
+    solved = solution(shipped, where, drawn)
+    corrected = shipped.with_correction(at(where), solved)
+    before, after, here = shipped.lookup(*near), corrected.lookup(*near), shipped.lookup(*where)
     for name in FIELDS:
         old, new = getattr(before, name), getattr(after, name)
         if name in SHARES:
@@ -101,19 +113,22 @@ def test_signs_and_ranges_hold(cell, fractions, drawn, others):
             assert min(1.0, factor) - 1e-9 <= new / old <= max(1.0, factor) + 1e-9
 
 
+@both
 @settings(max_examples=60, deadline=None)
 @given(CELLS, FRACTIONS, SOLUTIONS, FRACTIONS, st.integers(0, 2), st.sampled_from([0, 1]))
-def test_the_pull_and_its_slope_vanish_at_the_faces(cell, fractions, drawn, others, axis, side):
+def test_the_pull_and_its_slope_vanish_at_the_faces(
+    shipped, cell, fractions, drawn, others, axis, side
+):
     """A step h from a face the torque is pulled by no more than a multiple of h squared."""
-    where = place(cell, fractions)
-    corrected = SHIPPED.with_correction(at(where), solution(where, drawn))
+    where = place(shipped, cell, fractions)
+    corrected = shipped.with_correction(at(where), solution(shipped, where, drawn))
     bound = abs(corrected.corrections[0].gains[0]) + 1e-12
     reach = min(fractions[axis], 1 - fractions[axis], TRUST_RADIUS)
     for step in (1e-3, 1e-4, 1e-5):
         near = list(others)
         near[axis] = step if side == 0 else 1 - step
-        point = place(cell, near)
-        old, new = (one.lookup(*point).friction_torque for one in (SHIPPED, corrected))
+        point = place(shipped, cell, near)
+        old, new = (one.lookup(*point).friction_torque for one in (shipped, corrected))
         assert abs(new / old - 1) <= 3.01 * bound * (step / reach) ** 2 + 1e-13
 
 

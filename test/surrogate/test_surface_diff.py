@@ -16,7 +16,8 @@ from surrogate.surface import shipped_surface, Surface, SurfaceError
 from surrogate.surface_diff import diff_record, zone_limits
 from surrogate.surface_file import read, SurfaceData, write
 
-DATA = read(shipped_surface())
+CLOSED_FORM = shipped_surface(tier='closed_form')
+DATA = read(CLOSED_FORM)
 SHIPPED = Surface(DATA)
 
 
@@ -36,11 +37,11 @@ def scaled(data: SurfaceData, **factors: float) -> SurfaceData:
 
 def test_equal_surfaces_do_not_differ(capsys):
     """Zero everywhere, exit code 0, in words and as JSON."""
-    assert run(shipped_surface(), shipped_surface()) == 0
+    assert run(CLOSED_FORM, CLOSED_FORM) == 0
     text = capsys.readouterr().out
     assert 'inputs and settings: the same' in text
     assert text.endswith('within the tolerances\n')
-    assert run(shipped_surface(), shipped_surface(), '--json') == 0
+    assert run(CLOSED_FORM, CLOSED_FORM, '--json') == 0
     found = json.loads(capsys.readouterr().out)
     assert {gap['max'] for gap in found['fields'].values()} == {0.0}
     assert found['zone']['largest_shift_slow'] == found['zone']['largest_shift_fast'] == 0.0
@@ -86,10 +87,10 @@ def test_differences_beyond_the_tolerances_exit_with_1(tmp_path, capsys):
     """The sentence says what, how much and what is allowed; a wider tolerance accepts it."""
     other = tmp_path / 'other.npz'
     write(other, scaled(DATA, friction_torque=1.02))
-    assert run(shipped_surface(), other) == 1
+    assert run(CLOSED_FORM, other) == 1
     assert 'efficiency differs by 0.0' in capsys.readouterr().out
     words = ('--efficiency-tolerance', 0.02, '--zone-tolerance', 0.1)
-    assert run(shipped_surface(), other, *words) == 0
+    assert run(CLOSED_FORM, other, *words) == 0
 
 
 def test_an_answer_of_one_alone_is_a_difference(tmp_path, capsys):
@@ -97,7 +98,7 @@ def test_an_answer_of_one_alone_is_a_difference(tmp_path, capsys):
     mask = DATA.mask.copy()
     mask[:, 5, :] = True
     write(tmp_path / 'holed.npz', replace(DATA, mask=mask))
-    assert run(shipped_surface(), tmp_path / 'holed.npz') == 1
+    assert run(CLOSED_FORM, tmp_path / 'holed.npz') == 1
     assert 'points are answered by one surface only' in capsys.readouterr().out
 
 
@@ -107,7 +108,7 @@ def test_other_inputs_are_listed(tmp_path, capsys, screw, oil):
     settings = replace(default_settings(screw), temperature_range=(293.15, 333.15), **nodes)
     data = build_closed_form(replace(screw, preload=1000.0), oil, settings)
     write(tmp_path / 'other.npz', data)
-    assert run(shipped_surface(), tmp_path / 'other.npz') == 1
+    assert run(CLOSED_FORM, tmp_path / 'other.npz') == 1
     text = capsys.readouterr().out
     assert 'inputs.screw.preload: 990.0 in A, 1000.0 in B' in text
     assert 'temperature: 9 nodes 283.1 to 353.1 in A, 3 nodes 293.1 to 333.1 in B' in text
@@ -123,4 +124,4 @@ def test_nothing_in_common_is_one_sentence():
 def test_a_tolerance_must_be_a_number():
     """Not a number would accept nothing and say nothing."""
     with pytest.raises(InputError, match='--rcs-tolerance is nan, allowed is 0 or more'):
-        run(shipped_surface(), shipped_surface(), '--rcs-tolerance', np.nan)
+        run(CLOSED_FORM, CLOSED_FORM, '--rcs-tolerance', np.nan)

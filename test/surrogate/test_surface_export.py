@@ -17,7 +17,7 @@ from surrogate.surface import FIELDS, shipped_surface
 from surrogate.surface_fields import FIELD_TEXTS
 from surrogate.surface_file import read, write
 
-DATA = read(shipped_surface())
+DATA = read(shipped_surface(tier='closed_form'))
 SPREAD = np.linspace(0.0, 0.1, DATA.mask.size).reshape(DATA.mask.shape)
 DRAWN = replace(
     DATA,

@@ -13,11 +13,13 @@ import numpy as np
 import pytest
 from surrogate.cli import add_commands
 from surrogate.parameters import InputError
+from surrogate.plain_json import to_json
 from surrogate.surface import shipped_surface, Surface
 from surrogate.surface_fields import FIELD_TEXTS
 from surrogate.surface_file import read, write
 
 SHIPPED = Surface.load(shipped_surface())
+CLOSED_FORM = shipped_surface(tier='closed_form')
 
 
 def run(*words) -> int:
@@ -34,23 +36,25 @@ def query(capsys, *words) -> dict:
     return json.loads(capsys.readouterr().out)
 
 
+@pytest.mark.parametrize('tier', ['full', 'closed_form'])
 @pytest.mark.parametrize(('rpm', 'load', 'opposing'), [(600, 1000, 1000), (-600, 1000, -1000)])
-def test_a_point_is_the_lookup(capsys, rpm, load, opposing):
+def test_a_point_is_the_lookup(capsys, tier, rpm, load, opposing):
     """Every field, its errors, and the load's sign by the direction of motion."""
-    found = query(capsys, '--speed-rpm', rpm, '--load-N', load, '--temperature-degC', 50)
-    direct = SHIPPED.lookup(600 * math.pi / 30, opposing, 323.15)
+    found = query(capsys, tier, '--speed-rpm', rpm, '--load-N', load, '--temperature-degC', 50)
+    direct = Surface.load(shipped_surface(tier=tier)).lookup(600 * math.pi / 30, opposing, 323.15)
     for name, text in FIELD_TEXTS.items():
         assert found[text.key] == getattr(direct, name)
     assert found['efficiency'] == direct.efficiency
     assert found['friction_torque_error_Nm'] == direct.friction_torque_error
     assert found['opposing_load_N'] == opposing
     assert found['back_driving'] is (opposing < 0)
-    assert (found['validity'], found['reason'], found['rcs_std']) == ('VALID', '', None)
+    assert (found['validity'], found['reason']) == ('VALID', '')
+    assert (found['tier'], found['rcs_std']) == (tier, to_json(direct.rcs_std))
 
 
 def test_a_page_says_what_is_known(capsys):
     """Default temperature is that of the oil's datasheet; errors stand beside their numbers."""
-    assert run('--speed-rpm', 600, '--load-N', 1000) == 0
+    assert run('closed_form', '--speed-rpm', 600, '--load-N', 1000) == 0
     text = capsys.readouterr().out
     assert 'tier closed_form: 600 rev/min, 1000 N, 40 degC' in text
     assert 'efficiency           0.9423   (interpolation 1.1e-05)' in text
@@ -81,7 +85,7 @@ def test_no_answer_has_a_reason_and_exit_code_1(capsys, words, reason):
 
 def test_draws_are_told(tmp_path, capsys):
     """Deviation and error of the mean of RCS and torque."""
-    data = read(shipped_surface())
+    data = read(CLOSED_FORM)
     spread = np.full(data.mask.shape, 0.01)
     parts = {'deviations': {'rcs': spread}, 'standard_errors': {'rcs': 0.5 * spread}}
     write(tmp_path / 'a.npz', replace(data, header={**data.header, 'format_version': 2}, **parts))

@@ -1,0 +1,67 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The shipped full-tier surface: whole, of today's datasheets, and what the solver gives."""
+
+from dataclasses import asdict
+import itertools
+import math
+
+import numpy as np
+import pytest
+from surrogate.full.chain import chain_inputs, solve_chain
+from surrogate.surface import find_surface, Surface, Validity
+from surrogate.surface_file import read
+
+PATH = find_surface('full')
+DATA, LARGEST = read(PATH), 2_000_000
+SURFACE = Surface(DATA)
+
+
+def test_file_is_of_the_datasheets_and_small(screw, oil):
+    """A datasheet that changes asks for another build; the package stays small."""
+    assert DATA.header['inputs'] == {'screw': asdict(screw), 'lubricant': asdict(oil)}
+    assert SURFACE.tier == 'full'
+    assert PATH.stat().st_size < LARGEST
+
+
+def test_every_point_has_an_answer_with_its_uncertainty():
+    """No masked cell in the ranges, to their corners; deviations over draws everywhere."""
+    ends = (np.log(SURFACE.speed_range), SURFACE.load_range, SURFACE.temperature_range)
+    corners = itertools.product((1e-9, 1 - 1e-9), repeat=3)
+    inside = np.random.default_rng(3).random((2000, 3)).tolist()
+    for fractions in (*corners, *inside):
+        speed, load, kelvin = (low + (high - low) * f for (low, high), f in zip(ends, fractions))
+        found = SURFACE.lookup(math.exp(speed), load, kelvin)
+        assert found.validity is Validity.VALID
+        assert 0 <= found.rcs <= 1
+        assert found.friction_torque > 0
+        assert found.friction_torque_std > 0
+
+
+def test_contact_ends_and_stays_away():
+    """RCS falls with speed to exactly nothing, and torque has its least between."""
+    speeds = np.geomspace(*SURFACE.speed_range, 80)
+    points = [SURFACE.lookup(float(w), 500.0, 313.15) for w in speeds]
+    shares = np.array([point.rcs for point in points])
+    assert (np.diff(shares) <= 1e-12).all()
+    assert shares[0] > 0.95
+    assert shares[-1] == 0.0
+    least = speeds[int(np.argmin([point.friction_torque for point in points]))]
+    assert 5 < least * 30 / math.pi < 40
+
+
+def test_a_node_is_what_the_solver_gives(screw, oil):
+    """At the reference temperature and preload, without contact: the mean over all draws."""
+    k = int(np.argmin(np.abs(DATA.temperature - oil.reference_temperature)))
+    j = int(np.argmin(np.abs(DATA.load)))
+    i = int(np.searchsorted(DATA.speed_coordinate, 1.5))
+    speed = math.exp(DATA.speed_coordinate[i] + DATA.log_onset[j, k])
+    load, heat = float(DATA.load[j]), float(DATA.temperature[k])
+    records = [
+        solve_chain(chain_inputs(screw, oil, load, heat, draw, [speed]))['opposing'][0]
+        for draw in range(DATA.header['settings']['draws'])
+    ]
+    for name, tolerance in (('friction_torque', 1e-3), ('film_ratio', 1e-4)):
+        mean = np.mean([record[name] for record in records])
+        assert DATA.fields[name][i, j, k] == pytest.approx(mean, rel=tolerance)
+    assert DATA.fields['rcs'][i, j, k] == 0.0
