@@ -74,20 +74,31 @@ class CheckResult:
             f'points solved, {self.silent} without an answer, {self.unsolved} without a solution, '
             f'largest error: efficiency {self.efficiency:.2g} (aim {EFFICIENCY_TOLERANCE}), '
             f'RCS {100 * self.rcs:.0f} % of the aim, {self.missed} points miss an aim; over '
-            f'the aim or {STATED_FACTOR:g} times what the file states for the cell: {self.accepted:.2g} '
-            f'(allowed 1); over the largest that it states: {stated} (allowed {STATED_FACTOR:g})'
+            f'the aim or {STATED_FACTOR:g} times what the file states for the cell: '
+            f'{self.accepted:.2g} (allowed 1); over the largest that it states: {stated} '
+            f'(allowed {STATED_FACTOR:g})'
         )
 
 
 def check_surface(
-    data: SurfaceData, points: int, seed: int, has_time: Callable[[], bool]
+    data: SurfaceData,
+    points: int,
+    seed: int,
+    has_time: Callable[[], bool],
+    step: Callable[[], None] = lambda: None,
 ) -> CheckResult:
-    """Compare at up to `points` random points, as long as `has_time` says so before each."""
+    """
+    Compare at up to `points` random points, as long as `has_time` says so before each.
+
+    Calls `step` after each.
+
+    """
     surface, drawn = Surface(data), random.Random(seed)
     errors: list[dict[str, float]] = []
     tried = unsolved = silent = 0
     while tried < points and has_time():
         found = _compare(surface, data.header, drawn)
+        step()
         tried += 1
         unsolved += found is None
         if found is not None and all(map(math.isfinite, found.values())):

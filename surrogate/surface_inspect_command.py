@@ -14,8 +14,10 @@ from surrogate.atomic_file import replace_file
 from surrogate.parameters import InputError, OperatingPoint, ZERO_CELSIUS
 from surrogate.plain_json import to_json
 from surrogate.point_command import add_operating_point
+from surrogate.progress import Progress
 from surrogate.surface import find_surface, Surface
 from surrogate.surface_file import read
+from surrogate.tiers import find_tier
 
 
 def add_inspect_commands(actions: Any) -> None:
@@ -41,7 +43,8 @@ def _add_check(parser: argparse.ArgumentParser) -> None:
         '--max-seconds',
         type=float,
         default=60.0,
-        help='stop after this time [s] and judge what was done (default 60)',
+        help='begin no other point after this time [s] and judge what was done (default 60); one '
+        'of the full tier takes about a minute',
     )
     parser.set_defaults(handler=_check)
 
@@ -113,7 +116,14 @@ def _check(args: argparse.Namespace) -> int:
         raise InputError(f'--max-seconds is {args.max_seconds:g} s, allowed is above 0')
     data = read(path)
     deadline = time.monotonic() + args.max_seconds
-    result = check_surface(data, args.points, args.seed, lambda: time.monotonic() < deadline)
+    slow = find_tier(data.header['tier']).spreads
+    result = check_surface(
+        data,
+        args.points,
+        args.seed,
+        lambda: time.monotonic() < deadline,
+        Progress(args.points, 'points').step if slow else lambda: None,
+    )
     print(f'{path}: {result.sentence()}')
     return 0 if result.passed else 1
 

@@ -118,6 +118,7 @@ def test_what_a_cell_states_is_accepted_and_said(monkeypatch):
 def test_time_ends_the_check(steps):
     """What was done is judged; nothing done is nothing shown."""
     left = iter(range(steps, -1, -1))
-    result = check_surface(DATA, 10, 1, lambda: next(left) > 0)
-    assert result.tried == steps
+    counted = []
+    result = check_surface(DATA, 10, 1, lambda: next(left) > 0, lambda: counted.append(1))
+    assert result.tried == len(counted) == steps
     assert result.passed is (steps > 0)
