@@ -51,6 +51,8 @@ def info_record(path: Path, data: SurfaceData) -> dict[str, Any]:
             for name in FIELD_TEXTS
             if name in data.deviations or name in data.standard_errors
         },
+        'certified_s': data.header.get('certified_s'),
+        'accuracy_reached': data.header.get('reached'),
         'settings': dict(data.header['settings']),
         'provenance': dict(data.provenance),
     }
@@ -71,6 +73,7 @@ def info_page(record: Mapping[str, Any]) -> str:
         [
             f'{record["file"]}',
             *_head(record),
+            *_full_tier(record),
             '  measured interpolation error                    max         p95',
             *(
                 f'    {_label(name):44} {error["max"]:<10.3g}  {error["p95"]:.3g}'
@@ -114,6 +117,19 @@ def _head(record: Mapping[str, Any]) -> Iterator[str]:
     yield '  cells        {} x {} x {}'.format(*record['cells']) + (
         f', {record["masked_cells"]} masked'
     )
+
+
+def _full_tier(record: Mapping[str, Any]) -> Iterator[str]:
+    """Yield what a full-tier builder says of its result."""
+    if record['certified_s'] is not None:
+        times = math.exp(record['certified_s'])
+        yield f'  certified    no draw is near contact from {times:.3g} times the onset speed on'
+    if record['accuracy_reached'] is not None:
+        asked = record['settings']['accuracy']
+        yield (
+            f'  accuracy     {asked:g} was aimed at, the worst held-out point reaches '
+            f'{record["accuracy_reached"] * asked:.2g}'
+        )
 
 
 def _draws(draws: Mapping[str, Any]) -> Iterator[str]:

@@ -24,12 +24,13 @@ NEAR_IDLE = 0.8
 
 def measure_errors(
     data: SurfaceData, columns: Columns, settings: FullSettings, run: Run
-) -> tuple[dict[str, Array], float]:
+) -> tuple[dict[str, Array], float | None]:
     """
     Return the errors per field and cell, and the largest of torque or RCS over the allowed one.
 
-    They are |lookup - solve| with the same draws at points that are no nodes. A cell without a
-    point of its own has the largest of its stratum; NaN where none was.
+    The latter is None where no point was solved. Errors are |lookup - solve| with the same draws
+    at points that are no nodes. A cell without a point of its own has the largest of its stratum;
+    NaN where none was.
 
     """
     surface = Surface(data)
@@ -44,7 +45,7 @@ def measure_errors(
     results = run('held-out points', chains)
     target = error_target(columns.screw, settings)
     errors = {name: np.full([len(axis) - 1 for axis in _axes(data)], np.nan) for name in FIELDS}
-    reached = 0.0
+    reached: list[float] = []
     for place, (s, load, heat) in enumerate(points):
         found = surface.lookup(surface.onset_speed(load, heat) * math.exp(s), load, heat)
         sense = 'opposing' if load >= 0 else 'assisting'
@@ -63,10 +64,10 @@ def measure_errors(
         ideal = abs(load) * columns.screw.lead / (2 * math.pi)
         allowed = replace(target, ideal_torque=max(target.ideal_torque, ideal))
         samples = (Sample(found.friction_torque, found.rcs), _sample(mean))
-        reached = max(reached, allowed.worst(*samples))
+        reached.append(allowed.worst(*samples))
     boxes = strata(data, columns.screw, settings)
     filled = {name: _spread_out(error, data, boxes) for name, error in errors.items()}
-    return filled, reached
+    return filled, max(reached, default=None)
 
 
 def strata(data: SurfaceData, screw: Screw, settings: FullSettings) -> list[tuple[Ends, Ends]]:

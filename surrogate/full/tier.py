@@ -41,7 +41,10 @@ def build_full_surface(
     with TaskStore(out, WORK) as store:
         run = ChainRun(pool=pool, store=store)
         data = build_full(screw, lubricant, settings, run)
-    if (reached := data.header['reached']) > 1:
+    reached = data.header['reached']
+    if reached is None:
+        print('accuracy is not known: no held-out point was solved', file=sys.stderr)
+    elif reached > 1:
         print(
             f'accuracy is {settings.accuracy:g}, reached is '
             f'{reached * settings.accuracy:.2g} with {settings.speed_nodes} speed and '

@@ -14,6 +14,7 @@ from surrogate.full.held_out import held_out_points
 from surrogate.full.settings import FullSettings
 from surrogate.parameters import InputError
 from surrogate.surface import Surface, Validity
+from surrogate.surface_page import info_page, info_record
 
 SETTINGS = FullSettings(
     speed_range=(0.5, 100.0),
@@ -115,3 +116,27 @@ def test_a_reversed_range_is_refused_before_any_work(screw, oil):
     wrong = replace(SETTINGS, load_range=(100.0, -100.0))
     with pytest.raises(InputError, match='load range'):
         build_full(screw, oil, wrong, None)
+
+
+def test_info_says_what_is_certified_and_what_was_reached(data, tmp_path):
+    """And nothing where neither is known."""
+    path = tmp_path / 'full.npz'
+    for known in (True, False):
+        told = {'certified_s': 1.0, 'reached': 2.5} if known else {}
+        header = {**data.header, 'certified_s': None, 'reached': None, **told}
+        surface_file.write(path, replace(data, header=header))
+        page = info_page(info_record(path, surface_file.read(path)))
+        assert ('from 2.72 times the onset speed on' in page) is known
+        assert ('1 was aimed at, the worst held-out point reaches 2.5' in page) is known
+
+
+def test_accuracy_is_not_known_without_a_held_out_point(screw, oil, stand_in):
+    """All of them fail: no number, and errors are NaN."""
+
+    def run(purpose, chains):
+        held = purpose == 'held-out points'
+        return dict.fromkeys(chains) if held else stand_in.run(purpose, chains)
+
+    found = build_full(screw, oil, replace(SETTINGS, draws=1), run)
+    assert found.header['reached'] is None
+    assert np.isnan(found.errors['rcs']).all()
