@@ -21,8 +21,8 @@ from surrogate.tiers import solve_point
 
 EFFICIENCY_TOLERANCE = 0.003
 """Error of the efficiency that is aimed at [-]."""
-RCS_TOLERANCE, RCS_RELATIVE_TOLERANCE, RCS_SMALL = 0.003, 0.05, 0.05
-"""Error of RCS that is aimed at [-]: absolute below `RCS_SMALL`, relative above."""
+RCS_TOLERANCE, RCS_RELATIVE_TOLERANCE = 0.003, 0.05
+"""Error of RCS that is aimed at [-]: absolute, and relative where that is more."""
 STATED_FACTOR = 3.0
 """Largest error found over one that the file states [-]; it is stated for few places of a cell,
 which are not the worst."""
@@ -147,7 +147,7 @@ def _compare(
     if not solved or not np.isfinite(solved['rcs']):
         return None
     found, rcs = surface.lookup(speed, load, kelvin), solved['rcs']
-    aim = RCS_TOLERANCE if rcs < RCS_SMALL else RCS_RELATIVE_TOLERANCE * rcs
+    aim = max(RCS_TOLERANCE, RCS_RELATIVE_TOLERANCE * rcs)
     errors = {name: abs(getattr(found, name) - solved[name]) for name in STATED}
     efficiency = torque.efficiency(solved['friction_torque'], load, surface.lead)
     wrong = abs(found.efficiency - efficiency)

@@ -112,7 +112,7 @@ def _head(record: Mapping[str, Any]) -> Iterator[str]:
         ', '.join(f'{kelvin - ZERO_CELSIUS:.3g}' for kelvin in record['temperature_nodes_K'])
     )
     yield '  nodes        {} x {} x {}'.format(*record['nodes']) + (
-        f', {record["masked_nodes"]} not converged'
+        f', {record["masked_nodes"]} without a number: unsolved, or beyond the speed range'
     )
     yield '  cells        {} x {} x {}'.format(*record['cells']) + (
         f', {record["masked_cells"]} masked'

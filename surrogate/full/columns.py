@@ -21,6 +21,8 @@ from surrogate.parameters import Lubricant, Screw
 Array = NDArray[np.float64]
 Chains = dict[str, dict[str, Any]]
 Results = Mapping[str, Mapping[str, Any] | None]
+Place = tuple[int, int, int]
+"""Numbers of a load, a temperature and a draw."""
 NEAR_ONSET = (-1.25, 0.75)
 """Speed coordinates between which contact sets in, and draws differ most [-]."""
 ROUNDING = 1e-9
@@ -68,9 +70,13 @@ class Columns:
 
     def needed(self, s: Array) -> NDArray[np.bool_]:
         """Return the nodes [speed, load, temperature] that cover the speed range."""
-        return covering(s, self.log_onset, self.speed_range, (3, 1))
+        magnitudes = self.magnitudes
+        onset = self.log_onset[[self.place_of(load) for load in magnitudes.tolist()]]
+        # Either sign reads the chains of a magnitude: beside it lie those of both.
+        both = covering(s, onset, self.speed_range, (3, 1))
+        return np.asarray(both[:, np.searchsorted(magnitudes, np.abs(self.load))])
 
-    def all_drawn(self, s: Array) -> list[NDArray[np.bool_]]:
+    def parts_of_draws(self, s: Array) -> list[NDArray[np.bool_]]:
         """
         Return the speed nodes of the chains of those draws that are not solved everywhere.
 
@@ -88,7 +94,7 @@ class Columns:
 
     def full(self, s: Array) -> NDArray[np.bool_]:
         """Return the speed nodes at which all draws are solved."""
-        return np.asarray(np.any(self.all_drawn(s), axis=0))
+        return np.asarray(np.any(self.parts_of_draws(s), axis=0))
 
     def asked(self, s: Array) -> NDArray[np.bool_]:
         """Return what is solved, over [speed, load, temperature, draw]."""
@@ -110,19 +116,21 @@ class Columns:
             name: self.chain(
                 abs(self.load[j]), self.temperature[k], draw, self.speeds(s[places], j, k)
             )
-            for name, (j, k, draw), places in self.pieces(s)
+            for name, (j, k, draw), places in self.chain_nodes(s)
         }
 
-    def pieces(self, s: Array) -> Iterator[tuple[str, tuple[int, int, int], NDArray[np.intp]]]:
-        """Yield, for every load, the name of a chain, load, temperature and draw, speed nodes."""
-        asked, parts = self.asked(s), self.all_drawn(s)
+    def chain_nodes(self, s: Array) -> Iterator[tuple[str, Place, NDArray[np.intp]]]:
+        """Yield, for every load that presses a ball, the chains' names, places, speed nodes."""
+        asked, parts = self.asked(s), self.parts_of_draws(s)
         for j, k, draw in np.ndindex(asked.shape[1:]):
+            load = float(abs(self.load[j]))
+            if not presses(self.screw, load):
+                continue
             column = asked[:, j, k, draw]
             for part, wanted in enumerate([column] if draw < self.few else parts):
                 places = np.flatnonzero(column & wanted)
                 if places.size:
-                    load = float(abs(self.load[j]))
-                    yield chain_name(load, k, draw) + ' far' * part, (j, k, draw), places
+                    yield chain_name(load, k, draw, part), (j, k, draw), places
 
     def place_of(self, magnitude: float) -> int:
         """Return the first load node of a magnitude; onsets do not depend on the sign."""
@@ -147,9 +155,14 @@ def covering(
     return np.asarray((place >= first) & (place <= last))
 
 
-def chain_name(load: float, heat: int, draw: int) -> str:
-    """Return the name of a chain: load [N], number of the temperature node, draw."""
-    return f'{load!r} N, temperature {heat}, draw {draw}'
+def presses(screw: Screw, load: float) -> bool:
+    """Tell whether balls are pressed at a load [N]."""
+    return load > 0 or screw.preload > 0
+
+
+def chain_name(load: float, heat: int, draw: int, part: int = 0) -> str:
+    """Return the name of a chain: load [N], number of the temperature node, draw, its part."""
+    return f'{load!r} N, temperature {heat}, draw {draw}, part {part}'
 
 
 def records_by_speed(

@@ -2,12 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Error of a full-tier surface, measured at points that are no nodes, with the same draws."""
 
-from dataclasses import replace
+from bisect import bisect_right
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 import math
 
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.full.columns import Columns, mean_over_draws, NEAR_ONSET
+from surrogate.full.columns import Columns, mean_over_draws, NEAR_ONSET, Results
 from surrogate.full.loads import idle_load
 from surrogate.full.settings import error_target, FullSettings, Run
 from surrogate.full.speed_nodes import Sample
@@ -17,9 +19,25 @@ from surrogate.surface_file import SurfaceData
 
 Array = NDArray[np.float64]
 Ends = tuple[float, float]
+Point = tuple[float, float, float]
+"""Speed [rad/s], load [N], temperature [K]."""
 
 NEAR_IDLE = 0.8
 """Part of the idle load from which on the relieved nut is near unloading [-]."""
+SPEEDS = (NEAR_ONSET, (NEAR_ONSET[1], math.inf), (-math.inf, NEAR_ONSET[0]))
+"""Ends of the speed coordinates within which errors are alike [-]."""
+TRIES = 20
+"""Loads and temperatures that are tried for a point of a stratum."""
+
+
+@dataclass(frozen=True, slots=True)
+class HeldOut:
+    """A solved point: where, its cell, what the lookup and what the mean of the draws says."""
+
+    point: Point
+    cell: tuple[int, int, int]
+    found: dict[str, float]
+    mean: dict[str, float]
 
 
 def measure_errors(
@@ -34,102 +52,127 @@ def measure_errors(
 
     """
     surface = Surface(data)
-    points = held_out_points(data, columns.screw, settings)
+    points = held_out_points(surface, columns.screw, settings)
     chains = {
-        f'{place} {draw}': columns.chain(
-            abs(load), heat, draw, np.array([surface.onset_speed(load, heat) * math.exp(s)])
-        )
-        for place, (s, load, heat) in enumerate(points)
+        f'{place} {draw}': columns.chain(abs(load), heat, draw, np.array([speed]))
+        for place, (speed, load, heat) in enumerate(points)
         for draw in range(settings.draws)
     }
-    results = run('held-out points', chains)
+    solved = _compare(data, points, run('held-out points', chains), settings.draws)
     target = error_target(columns.screw, settings)
-    errors = {name: np.full([len(axis) - 1 for axis in _axes(data)], np.nan) for name in FIELDS}
-    reached: list[float] = []
-    for place, (s, load, heat) in enumerate(points):
-        found = surface.lookup(surface.onset_speed(load, heat) * math.exp(s), load, heat)
-        sense = 'opposing' if load >= 0 else 'assisting'
-        chained = [results.get(f'{place} {draw}') for draw in range(settings.draws)]
-        solved = [chain[sense][0] for chain in chained if chain and chain[sense][0]['converged']]
-        if found.validity is not Validity.VALID or 2 * len(solved) < settings.draws:
-            continue
-        mean = {name: mean_over_draws(solved, name) for name in FIELDS}
-        cell = tuple(
-            int(np.searchsorted(axis, value)) - 1
-            for axis, value in zip(_axes(data), (s, load, heat))
+    reached = [
+        replace(target, ideal_torque=max(target.ideal_torque, ideal)).worst(
+            *(Sample(which['friction_torque'], which['rcs']) for which in (one.found, one.mean))
         )
-        for name in FIELDS:
-            error = abs(getattr(found, name) - mean[name])
-            errors[name][cell] = np.fmax(errors[name][cell], error)
-        ideal = abs(load) * columns.screw.lead / (2 * math.pi)
-        allowed = replace(target, ideal_torque=max(target.ideal_torque, ideal))
-        samples = (Sample(found.friction_torque, found.rcs), _sample(mean))
-        reached.append(allowed.worst(*samples))
-    boxes = strata(data, columns.screw, settings)
-    filled = {name: _spread_out(error, data, boxes) for name, error in errors.items()}
-    return filled, max(reached, default=None)
-
-
-def strata(data: SurfaceData, screw: Screw, settings: FullSettings) -> list[tuple[Ends, Ends]]:
-    """
-    Return the ends of speed coordinates and of |load| [N] within which errors are alike.
-
-    Around the onset of contact, faster and slower; each with both nuts loaded, with the relieved
-    one near unloading, and with that idle.
-
-    """
-    low, high = (math.log(speed) for speed in settings.speed_range)
-    inside = low - float(data.log_onset.min()), high - float(data.log_onset.max())
-    slow, fast = np.clip(NEAR_ONSET, *inside).tolist()
-    idle, most = idle_load(screw), float(np.abs(data.load).max())
-    marks = [0.0, *(mark for mark in (NEAR_IDLE * idle, idle) if 0 < mark < most), most]
-    return [
-        (speeds, loads)
-        for speeds in ((slow, fast), (fast, inside[1]), (inside[0], slow))
-        for loads in zip(marks, marks[1:])
-        if speeds[0] < speeds[1]
+        for one in solved
+        for ideal in [abs(one.point[1]) * columns.screw.lead / (2 * math.pi)]
     ]
+    bands = load_bands(columns.screw, settings)
+    errors = {name: _errors(name, data, solved, bands) for name in FIELDS}
+    return errors, max(reached, default=None)
 
 
-def held_out_points(
-    data: SurfaceData, screw: Screw, settings: FullSettings
-) -> list[tuple[float, float, float]]:
-    """Return coordinate, load [N] and temperature [K] of points, from all strata in turn."""
+def load_bands(screw: Screw, settings: FullSettings) -> list[Ends]:
+    """
+    Return the ends of |load| [N] within which errors are alike, as far as the range has them.
+
+    Both nuts loaded, the relieved one near unloading, and idle.
+
+    """
+    low, high = settings.load_range
+    least = 0.0 if low <= 0 <= high else min(abs(low), abs(high))
+    most, idle = max(abs(low), abs(high)), idle_load(screw)
+    marks = [least, *(mark for mark in (NEAR_IDLE * idle, idle) if least < mark < most), most]
+    return list(zip(marks, marks[1:]))
+
+
+def held_out_points(surface: Surface, screw: Screw, settings: FullSettings) -> list[Point]:
+    """Return points of the range, from all strata in turn; fewer where a stratum is empty."""
     drawn = np.random.default_rng(settings.seed)
-    boxes = strata(data, screw, settings)
-    points = []
-    for place in range(settings.held_out):
-        speeds, loads = boxes[place % len(boxes)]
-        sides = [side for side in (-1, 1) if data.load[0] <= side * loads[0] <= data.load[-1]]
-        load = float(drawn.choice(sides)) * float(drawn.uniform(*loads))
-        heat = float(drawn.uniform(data.temperature[0], data.temperature[-1]))
-        inside = float(np.clip(load, data.load[0], data.load[-1]))
-        points.append((float(drawn.uniform(*speeds)), inside, heat))
-    return points
+    strata = [(speeds, loads) for speeds in SPEEDS for loads in load_bands(screw, settings)]
+    points = (
+        _point(surface, drawn, *strata[place % len(strata)], settings)
+        for place in range(settings.held_out)
+    )
+    return [point for point in points if point is not None]
 
 
-def _sample(mean: dict[str, float]) -> Sample:
-    return Sample(mean['friction_torque'], mean['rcs'])
+def _point(
+    surface: Surface, drawn: np.random.Generator, speeds: Ends, loads: Ends, settings: FullSettings
+) -> Point | None:
+    """Return a point of a stratum; cold or hot oil may have none, then another is tried."""
+    for _ in range(TRIES):
+        load = _signed(drawn, loads, settings.load_range)
+        heat = float(drawn.uniform(*settings.temperature_range))
+        onset = math.log(surface.onset_speed(load, heat))
+        low, high = (math.log(speed) - onset for speed in settings.speed_range)
+        low, high = max(low, speeds[0]), min(high, speeds[1])
+        if low < high:
+            return math.exp(float(drawn.uniform(low, high)) + onset), load, heat
+    return None
 
 
-def _spread_out(error: Array, data: SurfaceData, boxes: list[tuple[Ends, Ends]]) -> Array:
-    """Return errors with unmeasured cells filled with the largest of their stratum."""
-    s, load, _ = (0.5 * (axis[1:] + axis[:-1]) for axis in _axes(data))
+def _signed(drawn: np.random.Generator, band: Ends, load_range: Ends) -> float:
+    """Return a load [N] of either sign within a band of |load| and the range."""
+    pieces = [
+        (max(low, load_range[0]), min(high, load_range[1]))
+        for low, high in (band, (-band[1], -band[0]))
+    ]
+    inside = [piece for piece in pieces if piece[0] < piece[1]]
+    return float(drawn.uniform(*inside[int(drawn.integers(len(inside)))]))
+
+
+def _compare(
+    data: SurfaceData, points: Sequence[Point], results: Results, draws: int
+) -> list[HeldOut]:
+    """Return the points that at least half of the draws were solved at."""
+    surface, compared = Surface(data), []
+    for place, point in enumerate(points):
+        sense = 'opposing' if point[1] >= 0 else 'assisting'
+        chains = [results.get(f'{place} {draw}') for draw in range(draws)]
+        solved = [chain[sense][0] for chain in chains if chain and chain[sense][0]['converged']]
+        found = surface.lookup(*point)
+        if found.validity is Validity.VALID and 2 * len(solved) >= draws:
+            s = math.log(point[0] / surface.onset_speed(*point[1:]))
+            compared.append(
+                HeldOut(
+                    point,
+                    _cell(data, (s, *point[1:])),
+                    {name: float(getattr(found, name)) for name in FIELDS},
+                    {name: mean_over_draws(solved, name) for name in FIELDS},
+                )
+            )
+    return compared
+
+
+def _cell(data: SurfaceData, place: Sequence[float]) -> tuple[int, int, int]:
+    axes = (data.speed_coordinate, data.load, data.temperature)
+    i, j, k = (
+        bisect_right(axis.tolist(), value, 1, len(axis) - 1) - 1
+        for axis, value in zip(axes, place)
+    )
+    return i, j, k
+
+
+def _errors(
+    name: str, data: SurfaceData, solved: Sequence[HeldOut], bands: Sequence[Ends]
+) -> Array:
+    """Return the errors of a field per cell, with unmeasured cells filled from their stratum."""
+    axes = (data.speed_coordinate, data.load, data.temperature)
+    error = np.full([len(axis) - 1 for axis in axes], np.nan)
+    for one in solved:
+        here = abs(one.found[name] - one.mean[name])
+        error[one.cell] = np.fmax(error[one.cell], here)
+    s, load, _ = (0.5 * (axis[1:] + axis[:-1]) for axis in axes)
     filled = error.copy()
-    for speeds, loads in boxes:
-        part = np.ix_(_within(s, speeds, NEAR_ONSET), _within(np.abs(load), loads))
-        known = error[part][np.isfinite(error[part])]
-        if known.size:
-            filled[part] = np.where(np.isfinite(error[part]), error[part], known.max())
+    for speeds in SPEEDS:
+        for loads in bands:
+            part = np.ix_(_within(s, speeds), _within(np.abs(load), loads))
+            known = error[part][np.isfinite(error[part])]
+            if known.size:
+                filled[part] = np.where(np.isfinite(error[part]), error[part], known.max())
     return filled
 
 
-def _within(places: Array, ends: Ends, inner: Ends = (-math.inf, math.inf)) -> NDArray[np.bool_]:
-    """Tell which places lie between ends; those outside the `inner` marks reach to infinity."""
-    low = -math.inf if ends[0] < inner[0] else ends[0]
-    high = math.inf if ends[1] > inner[1] else ends[1]
-    return np.asarray((places >= low) & (places < high))
-
-
-def _axes(data: SurfaceData) -> tuple[Array, Array, Array]:
-    return data.speed_coordinate, data.load, data.temperature
+def _within(places: Array, ends: Ends) -> NDArray[np.bool_]:
+    return np.asarray((places >= ends[0]) & (places < ends[1]))

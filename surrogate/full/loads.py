@@ -61,10 +61,10 @@ def first_loads(screw: Screw, settings: FullSettings) -> LoadPieces:
     below, above = (1 - BESIDE) * idle, (1 + BESIDE) * idle
     shared = alone = np.empty(0)
     if least < below:
-        shared = np.linspace(least, min(below, most), settings.load_cells + 1)
-    if most > above:
+        shared = np.linspace(least, below if most > above else most, settings.load_cells + 1)
+    if most > above or least >= below:
         cells = settings.unloaded_cells if below > 0 else settings.load_cells
-        alone = np.linspace(max(above, least), most, cells + 1)
+        alone = np.linspace(above if least < below else least, most, cells + 1)
     return LoadPieces(
         np.union1d(shared, [end for end in ends if end <= below]),
         np.union1d(alone, [end for end in ends if end >= above]),
@@ -84,7 +84,7 @@ def refine_loads(
     for place, piece in enumerate(pieces):
         if len(piece) > 1:
             room = most - len(pieces[1 - place])
-            pieces[place], _ = refine_nodes(piece, solve, target, room)
+            pieces[place] = refine_nodes(piece, solve, target, room)
     return LoadPieces(pieces[1], pieces[0])
 
 

@@ -6,7 +6,7 @@ Means over all draws, also where few of them are solved.
 All are solved at the middle temperature around the onset, and at two speeds beyond. What they
 differ from the few there is carried to other speeds as a factor, which fades as contact grows
 below the onset: where asperities carry everything, draws are alike. To other temperatures it is
-carried as a factor too, but for shares: at one mapped speed they are nearly those of the middle
+carried as a factor, too, but for shares: at one mapped speed they are nearly those of the middle
 temperature, so theirs are read there at a coordinate that is moved by a straight line. The line is
 fitted to the few draws, which leaves their noise behind.
 
@@ -52,20 +52,31 @@ def middle_mean(
     """
     Return the mean [speed, load] of `values` [speed, load, draw] at the middle temperature.
 
-    `full` tells at which speeds all draws are solved; elsewhere the first `few` are. A share is
-    scaled below the onset by what it lacks of 1, as `fade` is.
+    `full` tells at which speeds all draws are solved; elsewhere the first `few` are, each moved by
+    what the mean differs from it, so that one that is lost moves nothing. A share is scaled below
+    the onset by what it lacks of 1, as `fade` is.
 
     """
-    whole, part = quiet(np.nanmean, values), quiet(np.nanmean, values[..., :few])
+    whole = quiet(np.nanmean, values)
+    if few == values.shape[-1]:
+        return whole
     around = full[:, None]
-    with np.errstate(divide='ignore', invalid='ignore'):
-        factor = filled(s, np.where(around, whole / part, np.nan), 1.0)
-        lacking = filled(s, np.where(around, (1 - whole) / (1 - part), np.nan), 1.0)
-    if not share:
-        return np.asarray(np.where(around, whole, part * (1 + (factor - 1) * fade)))
     below = (np.arange(len(full)) < np.argmax(full))[:, None]
-    scaled = np.where(below, 1 - (1 - part) * lacking, part * factor)
-    return np.asarray(np.clip(np.where(around, whole, scaled), 0.0, 1.0))
+    moved = []
+    for one in np.moveaxis(values, -1, 0)[:few]:
+        factor = _carried(s, around, whole, one)
+        if share:
+            lacking = (1 - one) * _carried(s, around, 1 - whole, 1 - one)
+            moved.append(np.clip(np.where(below, 1 - lacking, one * factor), 0.0, 1.0))
+        else:
+            moved.append(one * (1 + (factor - 1) * fade))
+    return np.asarray(np.where(around, whole, quiet(np.nanmean, np.stack(moved, axis=-1))))
+
+
+def _carried(s: Array, around: Flags, whole: Array, one: Array) -> Array:
+    """Return `whole` over `one` where all draws are solved, carried over the other speeds."""
+    with np.errstate(divide='ignore', invalid='ignore'):
+        return filled(s, np.where(around, whole / one, np.nan), 1.0)
 
 
 def middle_spread(
@@ -106,7 +117,8 @@ def moved_share(s: Array, own: Array, middle: Array, mean: Array, full: Flags) -
     """
     Return the mean share [speed] of one load at a temperature with few draws.
 
-    Arguments as for `other_mean`, of one load: read from `mean` at s + a + b s.
+    Arguments as for `other_mean`, of one load: read from `mean` at s + a + b s, where it is known;
+    slower the few draws speak for themselves.
 
     """
     here, there = own.mean(axis=-1), middle.mean(axis=-1)
@@ -122,9 +134,21 @@ def moved_share(s: Array, own: Array, middle: Array, mean: Array, full: Flags) -
     line = least_squares(wrong, np.zeros(2), bounds=(-FARTHEST, FARTHEST), loss='soft_l1').x
     ends = s[fitted][0], s[fitted][-1]
     found = all_draws(s + _moved(np.clip(s, *ends), line))
-    slower = s < s[np.isfinite(there)][0]
-    found = np.where(slower, np.fmax(found, quiet(np.nanmean, own)), found)
-    return np.asarray(np.where(np.isfinite(own).any(axis=-1), found, np.nan))
+    slower = s < s[np.isfinite(mean)][0]
+    return np.asarray(np.where(slower, np.fmax(found, quiet(np.nanmean, own)), found))
+
+
+def joined(s: Array, column: Array, beside: Array, asked: Flags, *, share: bool) -> Array:
+    """
+    Return a column [speed, load] continued where it was not `asked` for by that `beside` it.
+
+    At one mapped speed a temperature differs from the next by a factor that changes little, and in
+    shares next to nothing; so the column goes on in the shape of its neighbour.
+
+    """
+    with np.errstate(divide='ignore', invalid='ignore'):
+        factor = 1.0 if share else filled(s, column / beside, 1.0)
+    return np.asarray(np.where(~asked & np.isnan(column), beside * factor, column))
 
 
 def _moved(s: Array, line: Array) -> Array:

@@ -9,7 +9,15 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.full.columns import Columns, covering, records_by_speed, Results
-from surrogate.full.means import fading, middle_mean, middle_spread, moved_share, other_mean, quiet
+from surrogate.full.means import (
+    fading,
+    joined,
+    middle_mean,
+    middle_spread,
+    moved_share,
+    other_mean,
+    quiet,
+)
 from surrogate.full.temperatures import between, log_viscosity
 from surrogate.surface import FIELDS
 
@@ -69,7 +77,7 @@ def gather_nodes(
         standard_errors=errors,
         worst_contact=worst[:, :, nearest],
         mask=mask,
-        certified=_certified(columns, s, solved[FAR]),
+        certified=_certified(columns, s, solved[FAR], everywhere['rcs'], mask),
     )
 
 
@@ -80,7 +88,7 @@ def _solved(
     shape = (len(s), len(columns.load), len(columns.temperature))
     values = {name: np.full((*shape, columns.draws), np.nan) for name in (*FIELDS, FAR)}
     places: dict[tuple[int, ...], list[int]] = {}
-    for name, (j, k, draw), solved in columns.pieces(s):
+    for name, (j, k, draw), solved in columns.chain_nodes(s):
         sense, chain = SENSES[int(columns.load[j] >= 0)], results.get(name)
         if chain is None:
             continue
@@ -97,30 +105,56 @@ def _solved(
 
 def _means(columns: Columns, s: Array, solved: dict[str, Array]) -> dict[str, Array]:
     """Return the means over all draws at the solved temperatures, continued over all speeds."""
-    full, base = columns.full(s), columns.reference
-    fade = fading(solved['rcs'][:, :, base], full, columns.few)
+    asked = columns.asked(s)
     known = np.isfinite(solved['rcs']).sum(axis=-1)
-    weak = 2 * known < np.maximum(columns.asked(s).sum(axis=-1), 1)
-    means = {}
-    for name in FIELDS:
-        field = solved[name]
-        middle = middle_mean(s, field[:, :, base], full, columns.few, fade, share=name in SHARES)
-        parts = []
-        for k in range(len(columns.temperature)):
-            few = field[:, :, [k, base], : columns.few]
-            if k == base:
-                parts.append(middle)
-            elif name in SHARES:
-                moved = [
-                    moved_share(s, few[:, j, 0], few[:, j, 1], middle[:, j], full)
-                    for j in range(len(columns.load))
-                ]
-                parts.append(np.stack(moved, axis=1))
-            else:
-                parts.append(other_mean(s, few[:, :, 0], few[:, :, 1], middle))
-        mean = np.where(weak, np.nan, np.stack(parts, axis=-1))
-        means[name] = continued(s, mean)
-    return means
+    weak = asked.any(axis=-1) & (2 * known < asked.sum(axis=-1))
+    fade = fading(solved['rcs'][:, :, columns.reference], columns.full(s), columns.few)
+    return {
+        name: continued(
+            s, _joined_means(columns, s, solved[name], weak, fade, share=name in SHARES), ~weak
+        )
+        for name in FIELDS
+    }
+
+
+def _joined_means(
+    columns: Columns, s: Array, field: Array, weak: Flags, fade: Array, *, share: bool
+) -> Array:
+    """Return the means of a field; columns go on in the shape of those beside them."""
+    full, base, few = columns.full(s), columns.reference, columns.few
+    needed = columns.needed(s)
+    middle = middle_mean(s, field[:, :, base], full, few, fade, share=share)
+    parts = [
+        middle
+        if k == base
+        else _other_mean(s, field[:, :, [k, base], :few], middle, full, columns, share=share)
+        for k in range(len(columns.temperature))
+    ]
+    parts = [np.where(weak[:, :, k], np.nan, part) for k, part in enumerate(parts)]
+    for beside in (-1, 0):
+        parts[base] = joined(s, parts[base], parts[beside], needed[:, :, base], share=share)
+    return np.stack(
+        [
+            joined(s, part, parts[base], needed[:, :, k], share=share)
+            for k, part in enumerate(parts)
+        ],
+        axis=-1,
+    )
+
+
+def _other_mean(
+    s: Array, both: Array, middle: Array, full: Flags, columns: Columns, *, share: bool
+) -> Array:
+    """Return the mean [speed, load] at a temperature; `both` holds it and the middle one."""
+    if not share or columns.few == columns.draws:
+        return other_mean(s, both[:, :, 0], both[:, :, 1], middle)
+    return np.stack(
+        [
+            moved_share(s, both[:, j, 0], both[:, j, 1], middle[:, j], full)
+            for j in range(middle.shape[1])
+        ],
+        axis=1,
+    )
 
 
 def _at_all(name: str, values: Array, x: Array, wanted: Array) -> Array:
@@ -156,39 +190,46 @@ def commonest(places: Sequence[int]) -> int:
     return max(sorted(set(places)), key=places.count, default=0)
 
 
-def continued(s: Array, values: Array) -> Array:
+def continued(s: Array, values: Array, free: Flags) -> Array:
     """
     Return `values` [speed, load, temperature] with columns continued beyond their ends.
 
-    As powers of speed, or as constants where a value is zero or falls. Columns of colder and
-    hotter oil reach further, and what lies between two temperatures is read from both.
+    At the fast end as powers of speed, at the slow one as constants, where a node is `free`, that
+    is not one that failed. No lookup reads them, but slopes of the columns beside them do.
 
     """
-    filled = values.copy()
+    held = values.copy()
     for j, k in np.ndindex(values.shape[1:]):
         column = values[:, j, k]
         known = np.flatnonzero(np.isfinite(column))
         if known.size < 2:
             continue
-        for end, inner in ((known[0], known[1]), (known[-1], known[-2])):
-            beyond = np.arange(len(s)) < end if end < inner else np.arange(len(s)) > end
-            power = 0.0
-            if column[end] > 0 and column[inner] > 0 and end > inner:
-                power = math.log(column[end] / column[inner]) / (s[end] - s[inner])
-            filled[beyond, j, k] = column[end] * np.exp(power * (s[beyond] - s[end]))
-    return filled
+        inner, first, last = known[-2], known[0], known[-1]
+        power = 0.0
+        if column[last] > 0 and column[inner] > 0:
+            power = math.log(column[last] / column[inner]) / (s[last] - s[inner])
+        place = np.arange(len(s))
+        slow, fast = ((place < first), (place > last)) & np.broadcast_to(
+            free[:, j, k], (2, len(s))
+        )
+        held[slow, j, k] = column[first]
+        held[fast, j, k] = column[last] * np.exp(power * (s[fast] - s[last]))
+    return held
 
 
-def _certified(columns: Columns, s: Array, film: Array) -> float | None:
+def _certified(columns: Columns, s: Array, film: Array, rcs: Array, mask: Flags) -> float | None:
     """
     Return the least coordinate from which on all that is solved lies far from contact.
 
     At that coordinate itself every draw that was asked for must be known; beyond, where films
-    only grow, a solve that failed is no objection.
+    only grow, a solve that failed is no objection. The `rcs` of all nodes is zero there.
 
     """
-    close = np.flatnonzero((quiet(np.nanmin, film) < CERTAIN).any(axis=(1, 2)))
+    near = (quiet(np.nanmin, film) < CERTAIN).any(axis=(1, 2)) | ((rcs > 0) & ~mask).any(
+        axis=(1, 2)
+    )
     unknown = (columns.asked(s) & ~np.isfinite(film)).any(axis=(1, 2, 3))
-    far = np.arange(len(s)) > (close[-1] if close.size else -1)
+    last = np.flatnonzero(near)
+    far = np.arange(len(s)) > (last[-1] if last.size else -1)
     found = np.flatnonzero(far & ~unknown & columns.full(s))
     return float(s[found[0]]) if found.size else None

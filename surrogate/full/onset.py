@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 from surrogate.build import speed_at_film_ratio
 from surrogate.full.chain import chain_inputs
-from surrogate.full.columns import mean_over_draws, records_by_speed
+from surrogate.full.columns import mean_over_draws, presses, records_by_speed
 from surrogate.full.loads import first_loads, LoadPieces, refine_loads
 from surrogate.full.settings import error_target, FullSettings, Run
 from surrogate.full.speed_nodes import Sample
@@ -60,6 +60,7 @@ class Profiles:
         chains = {
             f'{load!r} N, {temperature:g} K, draw {draw}': self._chain(load, temperature, draw)
             for load in map(float, loads)
+            if presses(self.screw, load)
             for draw in range(min(ONSET_DRAWS, self.settings.draws))
         }
         results = self.run('onset', chains)
@@ -123,7 +124,7 @@ def find_onset(
         pieces, {load: _shift(known[load], onset_rcs) for load in pieces.magnitudes.tolist()}
     )
     by_load = [at_load[load] for load in np.abs(loads).tolist()]
-    least = min(load for load in known if load or profiles.screw.preload)
+    least = min(load for load in known if presses(profiles.screw, load))
     at_heat = [
         known[least] if heat == middle(solved) else profiles.solve([least], heat)[least]
         for heat in solved.tolist()
@@ -132,8 +133,7 @@ def find_onset(
     centred = np.nan_to_num(shifts - shifts[len(shifts) // 2])
     x, wanted = (log_viscosity(profiles.lubricant, heat) for heat in (solved, temperature))
     moved = np.array(by_load)[:, None] + between(x, centred, wanted, smooth=True)
-    low, high = (math.log(speed) for speed in profiles.settings.speed_range)
-    return np.asarray(np.clip(profiles.guess(loads, temperature) + moved, low, high))
+    return np.asarray(profiles.guess(loads, temperature) + moved)
 
 
 def middle(temperatures: Array) -> float:

@@ -51,28 +51,26 @@ class Target:
 
 def refine_nodes(
     first: Array, solve: Callable[[Array], dict[float, Sample]], target: Target, most: int
-) -> tuple[Array, float]:
+) -> Array:
     """
-    Halve the intervals of an axis until their middles are met, or `most` nodes are used.
+    Return nodes of an axis, intervals halved until their middles are met or `most` are used.
 
-    Those given at first stay, also where they are more.
-
-    `solve` returns samples at places, NaN where it fails: there is no node but at those given.
-    Returns the nodes and the largest error over the allowed one that was seen at a middle which
-    did not become a node; NaN where none is known.
+    Those given at first stay, also where they are more. `solve` returns samples at places, NaN
+    where it fails: there is no node but at those given.
 
     """
     known = solve(np.asarray(first))
-    nodes, left = sorted(known), np.nan
+    nodes = sorted(known)
     pending = list(zip(nodes, nodes[1:]))
     while pending:
         middles = solve(np.array([0.5 * (low + high) for low, high in pending]))
-        guessed = {place: interpolate(known, place) for place in middles}
-        wrong = {place: target.worst(guessed[place], middles[place]) for place in middles}
-        worst_first = sorted(middles, key=lambda place: -wrong[place])
+        wrong = {
+            place: target.worst(interpolate(known, place), sample)
+            for place, sample in middles.items()
+        }
+        missed = [place for place in middles if wrong[place] > 1]
         room = max(0, most - len(known))
-        taken = [place for place in worst_first if wrong[place] > 1][:room]
-        left = float(np.fmax.reduce([left, *(wrong[p] for p in middles if p not in taken)]))
+        taken = sorted(missed, key=lambda place: -wrong[place])[:room]
         known |= {place: middles[place] for place in taken}
         pending = [
             half
@@ -81,7 +79,7 @@ def refine_nodes(
             if middle in taken
             for half in ((low, middle), (middle, high))
         ]
-    return np.array(sorted(known)), left
+    return np.array(sorted(known))
 
 
 def interpolate(known: dict[float, Sample], place: float) -> Sample:

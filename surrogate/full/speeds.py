@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.full.columns import Columns, mean_over_draws, records_by_speed
+from surrogate.full.columns import Columns, mean_over_draws, presses, records_by_speed
 from surrogate.full.settings import error_target, FullSettings, Run
 from surrogate.full.speed_nodes import refine_nodes, Sample
 
@@ -31,7 +31,7 @@ def find_speed_nodes(
     colder or hotter has nodes of even distance beyond.
 
     """
-    pressed = [load for load in columns.magnitudes if load or columns.screw.preload]
+    pressed = [load for load in columns.magnitudes if presses(columns.screw, load)]
     j = columns.place_of(pressed[0])
     k = columns.reference
     low, high = (math.log(speed) for speed in settings.speed_range)
@@ -49,7 +49,7 @@ def find_speed_nodes(
         return {float(place): _sample(solved) for place, solved in zip(np.sort(places), records)}
 
     target = error_target(columns.screw, settings)
-    inner, _ = refine_nodes(np.array(first), solve, target, settings.speed_nodes)
+    inner = refine_nodes(np.array(first), solve, target, settings.speed_nodes)
     return _extended(inner, low - log_onset.max(), high - log_onset.min())
 
 

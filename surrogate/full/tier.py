@@ -60,7 +60,7 @@ def solve_full(
     """
     Solve a point [rad/s, N, K] with the draws of a surface and return the means of its fields.
 
-    Nothing where half of the draws or more do not converge, as for a node.
+    Nothing where more than half of the draws do not converge, as for a node.
 
     """
     screw, lubricant = screw_and_oil(header['inputs'])

@@ -146,7 +146,7 @@ def test_info_is_a_page_a_person_reads(capsys):
         'tier         closed_form, format version 1',
         'kinks at     -2800, 0, 2800 N',
         'temperature  10 to 80 degC, nodes at 10, ',
-        'nodes        40 x 27 x 9, 0 not converged',
+        'nodes        40 x 27 x 9, 0 without a number',
         'friction_torque [N m]                        0.00263',
         'roughness draws: none',
         'numpy        ',

@@ -10,7 +10,6 @@ import pytest
 from surrogate import surface_file
 from surrogate.full.build import build_full
 from surrogate.full.chain import chain_inputs
-from surrogate.full.held_out import held_out_points
 from surrogate.full.settings import FullSettings
 from surrogate.parameters import InputError
 from surrogate.surface import Surface, Validity
@@ -82,16 +81,52 @@ def test_every_point_of_the_range_has_an_answer(data):
         assert all(math.isfinite(value) for value in point.values)
 
 
-def test_stated_errors_hold_elsewhere(data, mean, screw):
-    """At points that were not held out the errors are of the stated size."""
-    surface = Surface(data)
-    other = held_out_points(data, screw, replace(SETTINGS, seed=99, held_out=20))
-    worst = {name: surface.errors[name][0] for name in ('friction_torque', 'rcs')}
-    for s, load, heat in other:
-        speed, torque, rcs = mean(s, load, heat)
+def test_every_corner_is_near_what_solves_give(data, screw, oil, stand_in):
+    """Uniform over speed, load and temperature, all of it: also where few columns reach."""
+    surface, drawn = Surface(data), np.random.default_rng(11)
+    for _ in range(150):
+        speed = math.exp(drawn.uniform(*np.log(SETTINGS.speed_range)))
+        load, heat = drawn.uniform(-2000, 2000), drawn.uniform(293.15, 333.15)
+        sense = 'opposing' if load >= 0 else 'assisting'
+        solved = [
+            stand_in.solve(chain_inputs(screw, oil, abs(load), heat, draw, [speed]))[sense][0]
+            for draw in range(SETTINGS.draws)
+        ]
         found = surface.lookup(speed, load, heat)
-        assert abs(found.friction_torque - torque) < 4 * worst['friction_torque']
-        assert abs(found.rcs - rcs) < 4 * worst['rcs'] + 1e-4
+        torque, rcs = (
+            np.mean([record[name] for record in solved]) for name in ('friction_torque', 'rcs')
+        )
+        assert found.friction_torque == pytest.approx(torque, rel=0.05)
+        # Twice what the builder aims at where it looks.
+        assert abs(found.rcs - rcs) < 2 * max(0.003, 0.05 * rcs)
+
+
+@pytest.mark.parametrize(
+    'ranges',
+    [
+        {'load_range': (0.0, 1500.0)},
+        {'load_range': (400.0, 900.0)},
+        {'load_range': (-4000.0, 2800.0)},
+        {'load_range': (3000.0, 3500.0)},
+        {'speed_range': (1.0, 3.0)},
+        {'speed_range': (60.0, 90.0)},
+        {'temperature_range': (312.15, 314.15)},
+        {'draws': 1},
+        {'shared_draws': 9},
+    ],
+)
+def test_any_range_is_built_and_answers(screw, oil, stand_in, ranges):
+    """Lopsided, one-sided, narrow, far from the onset; one draw and all draws everywhere."""
+    settings = replace(SETTINGS, **{'draws': 2, 'held_out': 9, **ranges})
+    data = build_full(screw, oil, settings, stand_in.run)
+    surface, drawn = Surface(data), np.random.default_rng(7)
+    assert math.isfinite(data.header['reached'])
+    for _ in range(40):
+        speed = math.exp(drawn.uniform(*np.log(settings.speed_range)))
+        load = drawn.uniform(*settings.load_range)
+        found = surface.lookup(speed, load, drawn.uniform(*settings.temperature_range))
+        assert found.validity is Validity.VALID
+        assert 0 <= found.rcs <= 1
 
 
 def test_same_work_same_file(data, screw, oil, stand_in):

@@ -57,7 +57,7 @@ def test_the_last_draw_is_solved_around_the_onset_and_at_two_far_speeds(columns)
     assert np.array_equal(asked[..., 1], needed)
     assert not asked[:, :, [0, 2], 2].any()
     assert np.array_equal(asked[:, :, 1, 2], needed[:, :, 1] & full[:, None])
-    near, far = columns.all_drawn(S)
+    near, far = columns.parts_of_draws(S)
     low, high = NEAR_ONSET
     assert (S[near][0] >= low) & (S[near][-2] <= high < S[near][-1])
     assert far.sum() == 2
@@ -69,7 +69,7 @@ def test_the_last_draw_is_solved_around_the_onset_and_at_two_far_speeds(columns)
 def test_chains_are_the_pieces_of_all_columns(columns):
     """Together they hold every speed that is asked for, once per load without its sign."""
     asked, found = columns.asked(S), np.zeros_like(columns.asked(S), dtype=int)
-    for name, (j, k, draw), places in columns.pieces(S):
+    for name, (j, k, draw), places in columns.chain_nodes(S):
         found[places, j, k, draw] += 1
         assert columns.chains(S)[name]['draw'] == draw
     assert np.array_equal(found, asked)
@@ -81,3 +81,21 @@ def test_a_draw_without_speeds_has_no_chain(columns):
     names = slow.chains(S)
     assert len(names) == 2 * 3 * 2
     assert not any('draw 2' in name for name in names)
+
+
+def test_both_signs_of_a_lopsided_range_share_their_chains(columns):
+    """Though a load has another neighbour than its opposite."""
+    loads = np.array([-4000.0, -1000.0, 0.0, 1000.0])
+    onset = np.log([[9.0, 9.0, 9.0], [0.6, 1.2, 3.5], [0.5, 1.0, 3.0], [0.6, 1.2, 3.5]])
+    lopsided = replace(columns, load=loads, log_onset=onset)
+    needed = lopsided.needed(S)
+    assert np.array_equal(needed[:, 1], needed[:, 3])
+    seen = {}
+    for name, _, places in lopsided.chain_nodes(S):
+        assert seen.setdefault(name, places.tolist()) == places.tolist()
+
+
+def test_nothing_is_solved_where_no_ball_is_pressed(columns):
+    """Zero load of a free screw."""
+    free = replace(columns, screw=replace(columns.screw, preload=0.0))
+    assert {chain['load'] for chain in free.chains(S).values()} == {1000.0}

@@ -51,6 +51,16 @@ def test_any_range_has_its_ends_as_nodes(screw, settings, ends):
     assert (0.0 in breaks) == (ends[0] <= 0)
 
 
+@pytest.mark.parametrize('shift', [-0.5, 0.0, 0.5])
+def test_a_range_that_ends_beside_idle_is_covered(screw, settings, shift):
+    """Its end is a node, whichever side of it."""
+    end = (1 + shift * BESIDE) * idle_load(screw)
+    for ends in ((0.0, end), (end, 4000.0)):
+        asked = replace(settings, load_range=ends)
+        nodes, _ = signed_loads(screw, asked, first_loads(screw, asked))
+        assert nodes[[0, -1]].tolist() == list(ends)
+
+
 def test_a_free_screw_has_even_loads(screw, settings):
     """No idle load; zero is a break."""
     free = replace(screw, preload=0.0)

@@ -7,6 +7,7 @@ import pytest
 from surrogate.full.means import (
     fading,
     filled,
+    joined,
     middle_mean,
     middle_spread,
     moved_share,
@@ -81,14 +82,16 @@ def test_a_moved_share_is_found_through_noise():
     assert (np.diff(found) <= 1e-9).all()
 
 
-def test_a_share_that_is_not_known_stays_so():
-    """Where no draw was solved there is no share; without a middle one it is the plain mean."""
+def test_a_share_goes_on_as_that_of_the_middle_temperature():
+    """Where it was not solved; slower than the middle one its own few draws speak."""
     middle = falling(S[:, None] + np.zeros(2))
-    own = middle.copy()
-    own[0] = np.nan
-    found = moved_share(S, own, middle, middle.mean(axis=-1), FULL)
-    assert np.isnan(found[0])
-    assert found[1:] == pytest.approx(middle[1:].mean(axis=-1), abs=1e-6)
+    own, mean = middle.copy(), middle.mean(axis=-1)
+    own[:3] = np.nan
+    assert moved_share(S, own, middle, mean, FULL) == pytest.approx(mean, abs=1e-6)
+    cut = np.where(np.arange(len(S)) < 2, np.nan, mean)
+    found = moved_share(S, middle, np.where(np.isnan(cut)[:, None], np.nan, middle), cut, FULL)
+    assert found[:2] == pytest.approx(mean[:2])
+    own = np.where(np.arange(len(S))[:, None] < 1, np.nan, middle)
     nothing = np.full_like(middle, np.nan)
     assert moved_share(S, own, nothing, nothing[:, 0], FULL)[1:] == pytest.approx(own[1:, 0])
 
@@ -116,6 +119,29 @@ def test_spread_is_that_of_all_draws_and_its_error():
     assert error == pytest.approx(found / 2)
     lone = middle_spread(S, values[..., :1], mean, FULL, WHOLE, share=False)
     assert np.isnan(lone).all()
+
+
+def test_a_lost_draw_moves_nothing():
+    """One of the two that are solved everywhere fails at a far speed: the other is moved alone."""
+    values = only_few_beyond(np.exp(0.6 * S)[:, None, None] * FACTORS)
+    whole = middle_mean(S, values, FULL, 2, WHOLE, share=False)
+    values[9, 0, 1] = np.nan
+    lost = middle_mean(S, values, FULL, 2, WHOLE, share=False)
+    assert lost == pytest.approx(whole, rel=1e-12)
+
+
+def test_columns_go_on_in_the_shape_of_their_neighbour():
+    """Where they were not asked for; what failed stays unknown."""
+    beside = np.exp(0.6 * S)[:, None]
+    column, asked = 1.3 * beside, np.ones((len(S), 1), dtype=bool)
+    column[[0, 1, 4, 10]] = np.nan
+    asked[[0, 1, 10]] = False
+    found = joined(S, column, beside, asked, share=False)
+    known = np.arange(len(S)) != 4
+    assert found[known] == pytest.approx(1.3 * beside[known])
+    assert np.isnan(found[4])
+    shares = joined(S, column, beside, asked, share=True)
+    assert shares[[0, 10]] == pytest.approx(beside[[0, 10]])
 
 
 def test_gaps_are_straight_and_ends_are_held():

@@ -105,12 +105,25 @@ def test_failed_draws_are_left_out_until_too_few_remain(columns, stand_in):
     broken = dict(results)
     first, second = [name for name in chains if name.startswith('1000.0 N, temperature 2')]
     broken[first] = None
-    partly = gather(columns, broken)
-    assert np.array_equal(partly.mask, whole.mask)
+    assert np.array_equal(gather(columns, broken).mask, whole.mask)
     broken[second] = None
     masked = gather(columns, broken).mask
-    assert masked[:, 0, 2].all()
+    assert masked[columns.needed(S)[:, 0, 2], 0, 2].all()
     assert np.array_equal(masked[:, 1], whole.mask[:, 1])
+
+
+def test_ends_that_failed_are_masked_and_not_continued(columns, stand_in):
+    """The two slowest speeds of hot oil without a solution have no number."""
+    results = stand_in.run('', columns.chains(S))
+    slowest = np.flatnonzero(columns.needed(S)[:, 0, 2])[:2]
+    for name in results:
+        if name.startswith('1000.0 N, temperature 2'):
+            for records in results[name].values():
+                for record in records[-2:]:
+                    record['converged'] = False
+    nodes = gather(columns, results)
+    assert nodes.mask[slowest, 0, 2].all()
+    assert not nodes.mask[slowest[-1] + 1, 0, 2]
 
 
 def test_certified_is_free_of_contact_at_every_node_beyond(columns, stand_in):
@@ -125,16 +138,21 @@ def test_certified_is_free_of_contact_at_every_node_beyond(columns, stand_in):
 
 
 def test_columns_go_on_as_powers_and_constants():
-    """Beyond both ends, which only slopes read; zero stays zero."""
+    """Beyond both ends, which only slopes read; zero stays zero, and what failed stays unknown."""
     s = np.arange(6.0)
-    values = np.full((6, 1, 2), np.nan)
+    values = np.full((6, 1, 3), np.nan)
     values[1:5, 0, 0] = 3.0 * np.exp(0.7 * s[1:5])
     values[1:5, 0, 1] = [0.9, 0.4, 0.1, 0.0]
-    found = continued(s, values)
+    values[2:5, 0, 2] = 1.0
+    free = np.ones(values.shape, dtype=bool)
+    free[1, 0, 2] = False
+    found = continued(s, values, free)
     assert found[5, 0, 0] == pytest.approx(3.0 * math.exp(3.5))
+    assert found[0, 0, 0] == values[1, 0, 0]
     assert found[5, 0, 1] == 0.0
     assert found[0, 0, 1] == 0.9
-    assert np.array_equal(found[1:5], values[1:5])
+    assert np.isnan(found[1, 0, 2])
+    assert np.array_equal(found[2:5], values[2:5])
 
 
 def test_commonest_is_the_same_whatever_the_order():

@@ -18,8 +18,7 @@ def step(places):
 
 def test_middles_are_met_and_nodes_crowd_the_step():
     """Between the nodes the step is within the target; most nodes lie where it is."""
-    nodes, left = refine_nodes(np.array([-4.0, 0.0, 4.0]), step, TARGET, 40)
-    assert left <= 1
+    nodes = refine_nodes(np.array([-4.0, 0.0, 4.0]), step, TARGET, 40)
     assert len(nodes) < 40
     assert (np.abs(nodes) < 1).mean() >= 0.6
     known = step(nodes)
@@ -28,19 +27,17 @@ def test_middles_are_met_and_nodes_crowd_the_step():
         assert TARGET.worst(interpolate(known, place), wanted) < 2
 
 
-def test_a_limit_is_kept_and_what_is_left_is_said():
-    """Six nodes cannot follow the step: the error over the allowed one comes back."""
-    nodes, left = refine_nodes(np.array([-4.0, 0.0, 4.0]), step, TARGET, 6)
+def test_a_limit_is_kept_and_the_worst_intervals_have_it():
+    """Six nodes cannot follow the step; none of them is spent beside it."""
+    nodes = refine_nodes(np.array([-4.0, 0.0, 4.0]), step, TARGET, 6)
     assert len(nodes) == 6
-    assert left > 1
+    assert (np.abs(nodes[1:-1]) <= 2).all()
 
 
 def test_first_nodes_stay_where_they_are_more_than_the_limit():
     """No room for others, and none is taken."""
     first = np.linspace(-4.0, 4.0, 9)
-    nodes, left = refine_nodes(first, step, TARGET, 8)
-    assert nodes.tolist() == first.tolist()
-    assert left > 1
+    assert refine_nodes(first, step, TARGET, 8).tolist() == first.tolist()
 
 
 def test_a_straight_line_needs_no_nodes():
@@ -51,21 +48,30 @@ def test_a_straight_line_needs_no_nodes():
         tried.extend(places)
         return {float(s): Sample(0.1 + 0.01 * s, 0.5 - 0.05 * s) for s in places}
 
-    nodes, left = refine_nodes(np.array([-1.0, 0.0, 1.0]), line, TARGET, 40)
+    nodes = refine_nodes(np.array([-1.0, 0.0, 1.0]), line, TARGET, 40)
     assert nodes.tolist() == [-1.0, 0.0, 1.0]
-    assert left < 1e-9
     assert tried == [-1.0, 0.0, 1.0, -0.5, 0.5]
 
 
-def test_a_solve_that_failed_is_not_met():
-    """A middle without a number is no node, and what is left is not known."""
+def test_a_solve_that_failed_is_no_node_and_hides_no_other():
+    """Beside a middle without a number the worst interval still gets the last node."""
 
     def failing(places):
-        return {float(s): Sample(math.nan if abs(s) == 0.5 else 0.1, 0.0) for s in places}
+        samples = step(places)
+        return samples | {place: Sample(math.nan, 0.0) for place in samples if place == -2}
 
-    nodes, left = refine_nodes(np.array([0.0, 1.0]), failing, TARGET, 5)
-    assert nodes.tolist() == [0.0, 1.0]
-    assert math.isnan(left)
+    nodes = refine_nodes(np.array([-4.0, 0.0, 4.0]), failing, TARGET, 4)
+    assert nodes.tolist() == [-4.0, 0.0, 2.0, 4.0]
+
+
+def test_profiles_are_samples_too():
+    """The worst place of a profile decides."""
+    flat, bent = np.zeros(3), np.array([0.0, 0.0, 0.1])
+    torque = np.full(3, 0.05)
+    error = TARGET.worst(Sample(torque, bent), Sample(torque, flat))
+    assert error == pytest.approx(0.1 / 0.003)
+    known = {0.0: Sample(torque, flat), 1.0: Sample(torque, bent)}
+    assert interpolate(known, 0.5).rcs == pytest.approx(bent / 2)
 
 
 def test_errors_are_of_efficiency_and_of_rcs():
