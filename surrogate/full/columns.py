@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter, minimum_filter
 from surrogate.full.chain import chain_inputs
+from surrogate.full.idle import BESIDE, idle_load
 from surrogate.parameters import Lubricant, Screw
 
 Array = NDArray[np.float64]
@@ -131,6 +132,16 @@ class Columns:
                 places = np.flatnonzero(column & wanted)
                 if places.size:
                     yield chain_name(load, k, draw, part), (j, k, draw), places
+
+    def verges(self) -> list[tuple[int, int]]:
+        """Return the loads beside and below the idle one, each with its neighbour towards zero."""
+        below = (1 - BESIDE) * idle_load(self.screw)
+        return [
+            (int(j), int(j) - side)
+            for j in np.flatnonzero(np.isclose(np.abs(self.load), below, rtol=1e-9, atol=0.0))
+            for side in [1 if self.load[j] > 0 else -1]
+            if 0 <= j - side < len(self.load)
+        ]
 
     def place_of(self, magnitude: float) -> int:
         """Return the first load node of a magnitude; onsets do not depend on the sign."""

@@ -10,7 +10,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.full.columns import Columns, mean_over_draws, NEAR_ONSET, Results
-from surrogate.full.loads import idle_load
+from surrogate.full.idle import idle_load
 from surrogate.full.settings import error_target, FullSettings, Run
 from surrogate.full.speed_nodes import Sample
 from surrogate.parameters import Screw

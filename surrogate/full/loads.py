@@ -16,15 +16,12 @@ import math
 
 import numpy as np
 from numpy.typing import NDArray
+from surrogate.full.idle import BESIDE, idle_load
 from surrogate.full.settings import FullSettings
 from surrogate.full.speed_nodes import refine_nodes, Sample, Target
 from surrogate.parameters import Screw
-from surrogate.screw import IDLE_SHARE
 
 Array = NDArray[np.float64]
-
-BESIDE = 1e-4
-"""Distance of the nodes beside the idle load, over that load [-]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,18 +35,6 @@ class LoadPieces:
     def magnitudes(self) -> Array:
         """Return all magnitudes, rising."""
         return np.union1d(self.shared, self.alone)
-
-
-def idle_load(screw: Screw) -> float:
-    """
-    Return the axial load [N] from which on the relieved nut is idle; 0 without preload.
-
-    Where F_R = e F_L with the least share e of `surrogate.screw`, of F_L^(2/3) + F_R^(2/3) = 2
-    F_pre^(2/3).
-
-    """
-    loaded = screw.preload * (2 / (1 + IDLE_SHARE ** (2 / 3))) ** 1.5
-    return float((1 - IDLE_SHARE) * loaded)
 
 
 def first_loads(screw: Screw, settings: FullSettings) -> LoadPieces:
@@ -77,15 +62,17 @@ def refine_loads(
     """
     Return magnitudes with more of them where `solve`, which returns profiles, differs.
 
-    At most `most`, the loads above idle first: there fields are smooth and need few.
+    At most `most`; of these no more than half are above the idle load, where fields are smooth.
 
     """
-    pieces = [first.alone, first.shared]
-    for place, piece in enumerate(pieces):
-        if len(piece) > 1:
-            room = most - len(pieces[1 - place])
-            pieces[place] = refine_nodes(piece, solve, target, room)
-    return LoadPieces(pieces[1], pieces[0])
+    rooms = {'shared': most - most // 2, 'alone': most // 2}
+    pieces = {
+        name: refine_nodes(getattr(first, name), solve, target, room)
+        if len(getattr(first, name)) > 1
+        else getattr(first, name)
+        for name, room in rooms.items()
+    }
+    return LoadPieces(**pieces)
 
 
 def signed_loads(

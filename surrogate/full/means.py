@@ -142,8 +142,8 @@ def joined(s: Array, column: Array, beside: Array, asked: Flags, *, share: bool)
     """
     Return a column [speed, load] continued where it was not `asked` for by that `beside` it.
 
-    At one mapped speed a temperature differs from the next by a factor that changes little, and in
-    shares next to nothing; so the column goes on in the shape of its neighbour.
+    At one mapped speed a temperature, or a load, differs from the next by a factor that changes
+    little, and in shares next to nothing; so the column goes on in the shape of its neighbour.
 
     """
     with np.errstate(divide='ignore', invalid='ignore'):

@@ -109,9 +109,11 @@ def _means(columns: Columns, s: Array, solved: dict[str, Array]) -> dict[str, Ar
     known = np.isfinite(solved['rcs']).sum(axis=-1)
     weak = asked.any(axis=-1) & (2 * known < asked.sum(axis=-1))
     fade = fading(solved['rcs'][:, :, columns.reference], columns.full(s), columns.few)
+    free = ~weak
+    free[:, [j for j, _ in columns.verges()]] = True
     return {
         name: continued(
-            s, _joined_means(columns, s, solved[name], weak, fade, share=name in SHARES), ~weak
+            s, _joined_means(columns, s, solved[name], weak, fade, share=name in SHARES), free
         )
         for name in FIELDS
     }
@@ -133,13 +135,27 @@ def _joined_means(
     parts = [np.where(weak[:, :, k], np.nan, part) for k, part in enumerate(parts)]
     for beside in (-1, 0):
         parts[base] = joined(s, parts[base], parts[beside], needed[:, :, base], share=share)
-    return np.stack(
-        [
-            joined(s, part, parts[base], needed[:, :, k], share=share)
-            for k, part in enumerate(parts)
-        ],
-        axis=-1,
-    )
+    whole = [
+        joined(s, part, parts[base], needed[:, :, k], share=share) for k, part in enumerate(parts)
+    ]
+    return np.stack([_at_verge(columns, s, part, share=share) for part in whole], axis=-1)
+
+
+def _at_verge(columns: Columns, s: Array, values: Array, *, share: bool) -> Array:
+    """
+    Return `values` [speed, load] with the load beside the idle one whole.
+
+    There balls of the relieved nut carry a thousandth of the others, and some solves fail: what is
+    missing of these columns has the shape of the load next to them.
+
+    """
+    found = values.copy()
+    for j, inner in columns.verges():
+        column, beside = values[:, [j]], values[:, [inner]]
+        if 2 * np.isfinite(column).sum() > np.isfinite(beside).sum():
+            failed = np.isnan(column) & np.isfinite(beside)
+            found[:, [j]] = joined(s, column, beside, ~failed, share=share)
+    return found
 
 
 def _other_mean(
@@ -195,7 +211,8 @@ def continued(s: Array, values: Array, free: Flags) -> Array:
     Return `values` [speed, load, temperature] with columns continued beyond their ends.
 
     At the fast end as powers of speed, at the slow one as constants, where a node is `free`, that
-    is not one that failed. No lookup reads them, but slopes of the columns beside them do.
+    is not one that failed, unless beside the idle load. No lookup reads them but there; slopes of
+    the columns beside them do.
 
     """
     held = values.copy()

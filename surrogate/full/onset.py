@@ -120,8 +120,12 @@ def find_onset(
 
     """
     onset_rcs = profiles.settings.onset_rcs
+    # The loads that refinement adds crowd where profiles bend; the line is that of the first ones.
+    fitted = LoadPieces(first_loads(profiles.screw, profiles.settings).shared, pieces.alone)
     at_load = smooth_shifts(
-        pieces, {load: _shift(known[load], onset_rcs) for load in pieces.magnitudes.tolist()}
+        pieces,
+        fitted,
+        {load: _shift(known[load], onset_rcs) for load in fitted.magnitudes.tolist()},
     )
     by_load = [at_load[load] for load in np.abs(loads).tolist()]
     least = min(load for load in known if presses(profiles.screw, load))
@@ -141,16 +145,26 @@ def middle(temperatures: Array) -> float:
     return float(temperatures[len(temperatures) // 2])
 
 
-def smooth_shifts(pieces: LoadPieces, shifts: Mapping[float, float]) -> dict[float, float]:
-    """Return shifts by magnitude on a straight line below the idle load and one level above."""
+def smooth_shifts(
+    pieces: LoadPieces, fitted: LoadPieces, shifts: Mapping[float, float]
+) -> dict[float, float]:
+    """
+    Return shifts by magnitude, on a straight line below the idle load and one level above.
+
+    Both go through the `shifts` of the `fitted` magnitudes.
+
+    """
     smooth: dict[float, float] = {}
-    for piece, degree in ((pieces.shared, 1), (pieces.alone, 0)):
-        found = np.array([shifts[load] for load in piece.tolist()])
+    for piece, through, degree in (
+        (pieces.shared, fitted.shared, 1),
+        (pieces.alone, fitted.alone, 0),
+    ):
+        found = np.array([shifts[load] for load in through.tolist()])
         known = np.isfinite(found)
         line = [0.0]
         if known.any():
             degree = degree if known.sum() > 2 else 0
-            line = np.polyfit(piece[known], found[known], degree).tolist()
+            line = np.polyfit(through[known], found[known], degree).tolist()
         smooth |= dict(zip(piece.tolist(), np.polyval(line, piece).tolist()))
     return smooth
 

@@ -33,13 +33,13 @@ class FullSettings(SurfaceSettings):
     """
 
     speed_nodes: int = 16
-    load_nodes: int = 8
+    load_nodes: int = 11
     load_cells: int = 2
     unloaded_cells: int = 1
     temperature_nodes: int = 7
     draws: int = 16
     shared_draws: int = 2
-    held_out: int = 18
+    held_out: int = 12
     seed: int = 1
     accuracy: float = 1.0
 

@@ -10,7 +10,7 @@ import pytest
 from surrogate.build import build_closed_form
 from surrogate.full.columns import Columns, NEAR_ONSET
 from surrogate.full.held_out import held_out_points, load_bands, measure_errors
-from surrogate.full.loads import idle_load
+from surrogate.full.idle import idle_load
 from surrogate.full.settings import default_full_settings
 from surrogate.surface import Surface
 

@@ -39,8 +39,8 @@ def test_shifts_are_smooth_over_the_load():
     """A line below the idle load, a level above; what is not known is filled, nothing is zero."""
     pieces = LoadPieces(np.array([0.0, 1.0, 2.0, 4.0]), np.array([5.0, 8.0]))
     shifts = {0.0: 0.1, 1.0: 0.2, 2.0: np.nan, 4.0: 0.5, 5.0: 0.0, 8.0: 0.2}
-    smooth = smooth_shifts(pieces, shifts)
+    smooth = smooth_shifts(pieces, pieces, shifts)
     expected = {0.0: 0.1, 1.0: 0.2, 2.0: 0.3, 4.0: 0.5, 5.0: 0.1, 8.0: 0.1}
     assert smooth == pytest.approx(expected)
     unknown = dict.fromkeys(shifts, np.nan)
-    assert set(smooth_shifts(pieces, unknown).values()) == {0.0}
+    assert set(smooth_shifts(pieces, pieces, unknown).values()) == {0.0}
