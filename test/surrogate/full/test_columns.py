@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from surrogate.full.columns import Columns, NEAR_ONSET
+from surrogate.full.idle import BESIDE, idle_load
 from surrogate.parameters import load_lubricant, load_screw
 
 LOADS, HEATS = np.array([-1000.0, 0.0, 1000.0]), np.array([293.15, 313.15, 333.15])
@@ -99,3 +100,12 @@ def test_nothing_is_solved_where_no_ball_is_pressed(columns):
     """Zero load of a free screw."""
     free = replace(columns, screw=replace(columns.screw, preload=0.0))
     assert {chain['load'] for chain in free.chains(S).values()} == {1000.0}
+
+
+def test_loads_beside_the_idle_one_know_their_neighbours(columns):
+    """Of both signs, towards zero; none on a screw without preload."""
+    below = (1 - BESIDE) * idle_load(columns.screw)
+    loads = np.array([-below, -1000.0, 0.0, 1000.0, below, 3000.0])
+    wide = replace(columns, load=loads, log_onset=np.zeros((6, 3)))
+    assert wide.verges() == [(0, 1), (4, 3)]
+    assert columns.verges() == []

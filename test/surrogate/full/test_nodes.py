@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from surrogate.build import speed_at_film_ratio
 from surrogate.full.columns import Columns, covering
+from surrogate.full.idle import BESIDE, idle_load
 from surrogate.full.nodes import commonest, continued, gather_nodes
 from surrogate.parameters import load_lubricant, load_screw
 
@@ -124,6 +125,27 @@ def test_ends_that_failed_are_masked_and_not_continued(columns, stand_in):
     nodes = gather(columns, results)
     assert nodes.mask[slowest, 0, 2].all()
     assert not nodes.mask[slowest[-1] + 1, 0, 2]
+
+
+def test_a_column_beside_the_idle_load_is_completed(columns, stand_in):
+    """A gap and an end that failed come near what solves give; elsewhere they stay masked."""
+    below = (1 - BESIDE) * idle_load(columns.screw)
+    loads = np.array([-0.9 * below, 0.0, 0.9 * below, below])
+    onset = speed_at_film_ratio(columns.screw, columns.lubricant, loads[:, None], HEATS, 0.1)
+    wide = replace(columns, load=loads, log_onset=np.log(onset))
+    results = stand_in.run('', wide.chains(S))
+    whole = gather(wide, results)
+    failing = np.flatnonzero(wide.needed(S)[:, 3, 2])[[0, 3]]
+    for name in results:
+        if name.startswith(f'{below!r} N, temperature 2'):
+            for records in results[name].values():
+                for place in (-1, -4):
+                    records[place]['converged'] = False
+    found = gather(wide, results)
+    assert np.array_equal(found.mask, whole.mask)
+    for name in ('friction_torque', 'central_film'):
+        there = whole.means[name][failing, 3, 2]
+        assert found.means[name][failing, 3, 2] == pytest.approx(there, rel=0.03)
 
 
 def test_certified_is_free_of_contact_at_every_node_beyond(columns, stand_in):
