@@ -35,13 +35,14 @@ def fading(rcs: Array, full: Flags, few: int) -> Array:
     Return what is left [speed, load] of the differences between draws below the onset, 0 to 1.
 
     What `few` draws of the `rcs` [speed, load, draw] lack of 1, over that at the first of the
-    speeds at which all draws are solved.
+    speeds at which all draws are solved; that of the other loads where it is not known.
 
     """
     lacking = 1 - quiet(np.nanmean, rcs[..., :few])
     first = int(np.argmax(full))
     with np.errstate(divide='ignore', invalid='ignore'):
         left = np.clip(lacking / lacking[first], 0.0, 1.0)
+    left = np.where(np.isfinite(left), left, quiet(np.nanmean, left)[:, None])
     below = (np.arange(len(full)) < first)[:, None]
     return np.asarray(np.where(below & np.isfinite(left), left, 1.0))
 

@@ -20,8 +20,8 @@ class ChainRun:
     """
     Solves chains on a pool and keeps their results; call it as a builder's `run`.
 
-    Counts chains, solved points, seconds of the workers [s] and failures with their sentences,
-    what a store had from before left out of seconds.
+    Counts chains, how many of them a store had kept, points, seconds of the workers [s] without
+    those kept, and failures with their sentences.
 
     """
 
@@ -30,6 +30,7 @@ class ChainRun:
     task: Task = solve_chain
     report: Callable[[str, Outcome], None] = lambda purpose, outcome: None
     chains: int = 0
+    kept: int = 0
     points: int = 0
     seconds: float = 0.0
     failures: list[str] = field(default_factory=list)
@@ -42,6 +43,7 @@ class ChainRun:
             progress.step(there=outcome.stored)
             self.report(purpose, outcome)
             self.chains += 1
+            self.kept += outcome.stored
             self.points += len(chains[outcome.name]['speeds'])
             self.seconds += 0.0 if outcome.stored else outcome.seconds
             if outcome.result is None:

@@ -84,6 +84,7 @@ def _provenance(run: ChainRun, seconds: float) -> dict[str, Any]:
         'build_seconds': round(seconds, 3),
         'worker_seconds': round(run.seconds, 3),
         'chains': run.chains,
+        'kept_chains': run.kept,
         'solved_points': run.points,
         'failed_chains': len(run.failures),
         'machine': platform.machine(),

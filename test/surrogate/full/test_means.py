@@ -103,6 +103,9 @@ def test_differences_fade_where_asperities_carry_everything():
     edge = 1 - falling(-1.2)
     assert fade[:2, 0] == pytest.approx((1 - falling(S[:2])) / edge)
     assert (fade[2:] == 1).all()
+    holed = np.concatenate([shares, shares], axis=1)
+    holed[0, 1] = np.nan
+    assert fading(holed, FULL, 2)[0, 1] == fade[0, 0]
     factors = 1 + (FACTORS - 1) * (1 - falling(np.clip(S, -9, -1.2)))[:, None] / edge
     values = factors[:, None, :] * (2 - S)[:, None, None] ** 2
     mean = middle_mean(S, only_few_beyond(values), FULL, 2, fade, share=False)

@@ -48,6 +48,8 @@ def test_an_interrupted_build_resumes_to_the_same_file(screw, oil, tmp_path, cap
         build(screw, oil, tmp_path / 'cut.npz', first)
     resumed = build(screw, oil, tmp_path / 'cut.npz', second)
     assert resumed.sha256 == data.sha256
+    assert resumed.provenance['kept_chains'] >= first.solved
+    assert data.provenance['kept_chains'] < first.solved
     with TaskStore(tmp_path / 'cut.npz', full_tier.WORK) as store:
         kept = len(store)
     assert kept == whole.solved
