@@ -138,7 +138,12 @@ def _joined_means(
     whole = [
         joined(s, part, parts[base], needed[:, :, k], share=share) for k, part in enumerate(parts)
     ]
-    return np.stack([_at_verge(columns, s, part, share=share) for part in whole], axis=-1)
+    found = np.stack([_at_verge(columns, s, part, share=share) for part in whole], axis=-1)
+    if share:
+        # Contact falls with speed; what is left of noise where it is all but complete may not.
+        falling = np.fmax.accumulate(found[::-1])[::-1]
+        found = np.where(np.isnan(found), np.nan, falling)
+    return found
 
 
 def _at_verge(columns: Columns, s: Array, values: Array, *, share: bool) -> Array:

@@ -97,6 +97,8 @@ def test_every_corner_is_near_what_solves_give(data, screw, oil, stand_in):
             np.mean([record[name] for record in solved]) for name in ('friction_torque', 'rcs')
         )
         assert found.friction_torque == pytest.approx(torque, rel=0.05)
+        assert abs(found.friction_torque - torque) < 4 * surface.errors['friction_torque'][0]
+        assert abs(found.rcs - rcs) < 4 * surface.errors['rcs'][0] + 1e-4
         # Twice what the builder aims at where it looks.
         assert abs(found.rcs - rcs) < 2 * max(0.003, 0.05 * rcs)
 

@@ -50,6 +50,12 @@ def test_contact_ends_and_stays_away():
     assert 5 < least * 30 / math.pi < 40
 
 
+def test_rcs_falls_with_speed_at_every_node():
+    """Also beside the idle load, where nodes are completed."""
+    shares = np.where(DATA.mask, np.nan, DATA.fields['rcs'])
+    assert not (np.diff(shares, axis=0) > 0).any()
+
+
 def test_a_node_is_what_the_solver_gives(screw, oil):
     """At 40 degC and preload, contact ended: films exactly, torque of two draws by the scatter."""
     k = int(np.argmin(np.abs(DATA.temperature - oil.reference_temperature)))
