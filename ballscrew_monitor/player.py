@@ -19,12 +19,14 @@ from ballscrew_monitor.bag import Bag
 from ballscrew_monitor.conversions import SECOND
 from ballscrew_monitor.errors import InputError
 from ballscrew_monitor.inputs import message_class
+from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.qos import QoSDurabilityPolicy, QoSHistoryPolicy, QoSProfile, QoSReliabilityPolicy
 from rosgraph_msgs.msg import Clock
 
 CLOCK_PERIOD = 0.01  # [s] of wall time
 MATCH_POLL = 0.02  # [s] between two looks at who has matched
+DELIVERY = 5.0  # [s] that the last messages may take
 CLOCK_QOS = QoSProfile(depth=1, reliability=QoSReliabilityPolicy.BEST_EFFORT)
 DATA_QOS = QoSProfile(
     history=QoSHistoryPolicy.KEEP_LAST,
@@ -117,7 +119,14 @@ class Player:
             self._publishers[message.topic].publish(message.data)
             self._sent[message.topic] += 1
             latest = max(latest, time.monotonic() - due)
+        self._deliver()
         return Played(sent=self._sent, complete=True, lateness=latest)
+
+    def _deliver(self) -> None:
+        """Wait until reliable subscribers have all: what is under way dies with its publisher."""
+        deadline = time.monotonic() + DELIVERY
+        for publisher in self._publishers.values():
+            publisher.wait_for_all_acked(Duration(seconds=max(0.0, deadline - time.monotonic())))
 
     def run_on(self, finished: Callable[[], bool], timeout: float, stop: threading.Event) -> bool:
         """

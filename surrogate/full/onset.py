@@ -3,9 +3,10 @@
 """
 Where contact sets in over load and temperature, and the loads that an interpolation needs.
 
-Both from profiles: chains of few draws over speeds around the onset that a formula gives. The
-onset only decides where nodes lie. It shall be smooth over the load, so that what is left of few
-draws is not carried into fields at one mapped speed: the formula moved by straight lines.
+Both from profiles: chains of few draws over speeds around the onset that a formula gives, on the
+half grid, which moves them but little. The onset only decides where nodes lie. It shall be smooth
+over the load, so that what is left of few draws is not carried into fields at one mapped speed:
+the formula moved by straight lines.
 
 """
 
@@ -17,7 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.build import speed_at_film_ratio
-from surrogate.full.chain import chain_inputs
+from surrogate.full.chain import chain_inputs, HALF
 from surrogate.full.columns import mean_over_draws, presses, records_by_speed
 from surrogate.full.loads import first_loads, LoadPieces, refine_loads
 from surrogate.full.settings import error_target, FullSettings, Run
@@ -74,7 +75,16 @@ class Profiles:
     def _chain(self, load: float, temperature: float, draw: int) -> dict[str, Any]:
         guess = self.guess(np.array([load]), np.array([temperature]))[0, 0]
         speeds = [float(speed) for speed in np.exp(guess + np.array(ONSET_STEPS))]
-        return chain_inputs(self.screw, self.lubricant, load, temperature, draw, speeds)
+        return chain_inputs(
+            self.screw,
+            self.lubricant,
+            load,
+            temperature,
+            draw,
+            speeds,
+            grid=HALF,
+            grid_wavelength=self.settings.grid_wavelength,
+        )
 
 
 def _profile(chains: Sequence[Mapping[str, Any] | None]) -> Sample:
