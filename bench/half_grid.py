@@ -49,8 +49,8 @@ def left_out(s, fine, half, i):
     """Return the mean at a speed from those beside it: by a cubic, and with the half grid."""
     rest = np.delete(np.arange(len(s)), i)
     cubic = float(PchipInterpolator(s[rest], fine[rest])(s[i]))
-    changes = np.interp(s[i], s[[i - 1, i + 1]], (fine / half)[[i - 1, i + 1]])
-    return cubic, half[i] * changes
+    change = np.divide(fine, half, out=np.ones_like(fine), where=half > 0)
+    return cubic, half[i] * np.interp(s[i], s[[i - 1, i + 1]], change[[i - 1, i + 1]])
 
 
 def main():
@@ -68,7 +68,7 @@ def main():
     print('rev/min  RCS fine  deviation  RCS half  deviation  correlation  cubic  half grid')
     for i, speed in enumerate(rpm):
         spread = both[:, i].std(axis=-1, ddof=1)
-        alike = np.corrcoef(both[:, i])[0, 1]
+        alike = np.corrcoef(both[:, i])[0, 1] if spread.all() else math.nan
         errors = (math.nan, math.nan)
         if 0 < i < len(rpm) - 1:
             allowed = max(RCS_TOLERANCE, RCS_RELATIVE_TOLERANCE * fine[i])

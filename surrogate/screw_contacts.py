@@ -61,16 +61,21 @@ def on_half_grid(settings: ScrewSettings) -> ScrewSettings:
     """
     Return the settings with every other node: contacts are found six to ten times faster.
 
-    RCS is off by up to a third and torque by a quarter, but nearly alike for all draws.
+    RCS is off by up to a third and torque by a quarter, but nearly alike for all draws. Smooth
+    contacts keep their nodes across: with less, small ones reach the edge of the domain.
 
     """
-    smooth, rough = (
-        replace(grid, nx=grid.nx // 4 * 2 + 1, ny=grid.ny // 4 * 2 + 1)
-        for grid in (settings.smooth, settings.rough)
-    )
+    rough = settings.rough
     return replace(
-        settings, smooth=smooth, rough=rough, nodes_per_wave=settings.nodes_per_wave / 2
+        settings,
+        smooth=replace(settings.smooth, nx=_half(settings.smooth.nx)),
+        rough=replace(rough, nx=_half(rough.nx), ny=_half(rough.ny)),
+        nodes_per_wave=settings.nodes_per_wave / 2,
     )
+
+
+def _half(nodes: int) -> int:
+    return nodes // 4 * 2 + 1
 
 
 def solve_sides(

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from surrogate.build import speed_at_film_ratio
 from surrogate.full.chain import chain_inputs, HALF
 from surrogate.full.columns import mean_over_draws, presses, records_by_speed
+from surrogate.full.idle import BESIDE, idle_load
 from surrogate.full.loads import first_loads, LoadPieces, refine_loads
 from surrogate.full.settings import error_target, FullSettings, Run
 from surrogate.full.speed_nodes import Sample
@@ -130,8 +131,11 @@ def find_onset(
 
     """
     onset_rcs = profiles.settings.onset_rcs
-    # The loads that refinement adds crowd where profiles bend; the line is that of the first ones.
-    fitted = LoadPieces(first_loads(profiles.screw, profiles.settings).shared, pieces.alone)
+    # The loads that refinement adds crowd where profiles bend; the line is that of the first ones,
+    # without that beside the idle load, where the relieved balls say nothing of the others.
+    first = first_loads(profiles.screw, profiles.settings).shared
+    below = (1 - BESIDE) * idle_load(profiles.screw)
+    fitted = LoadPieces(first[~np.isclose(first, below, rtol=1e-9, atol=0.0)], pieces.alone)
     at_load = smooth_shifts(
         pieces,
         fitted,
