@@ -28,8 +28,6 @@ Start = tuple[ContactSolution | None, ContactSolution | None]
 ACROSS, MOST_NODES = 2.42, 513
 """About the width of a rough domain over the semi-axis across (2.4 to 3.1); most nodes there by
 the wavelength [-]."""
-GRID_WAVELENGTH = 16e-6
-"""Shortest wavelength on the grid [m]; docs/onset.md."""
 WINDOW_SHARE = 0.05
 """Least axial load whose Hertz rectangle is the window of the patch, over the rating [-]."""
 
@@ -51,31 +49,10 @@ class ScrewSettings:
     smooth: Settings = field(default_factory=Settings)
     rough: Settings = field(default_factory=lambda: Settings(nx=129, ny=257, error_estimate=False))
     draw: int | None = 0
-    grid_wavelength: float | None = GRID_WAVELENGTH
+    grid_wavelength: float | None = 16e-6
     nodes_per_wave: float = 6.0
     inlet_heating: bool = False
     coupling_tolerance: float = 0.01
-
-
-def on_half_grid(settings: ScrewSettings) -> ScrewSettings:
-    """
-    Return the settings with every other node: contacts are found six to ten times faster.
-
-    RCS is off by up to a third and torque by a quarter, but nearly alike for all draws. Smooth
-    contacts keep their nodes across: with less, small ones reach the edge of the domain.
-
-    """
-    rough = settings.rough
-    return replace(
-        settings,
-        smooth=replace(settings.smooth, nx=_half(settings.smooth.nx)),
-        rough=replace(rough, nx=_half(rough.nx), ny=_half(rough.ny)),
-        nodes_per_wave=settings.nodes_per_wave / 2,
-    )
-
-
-def _half(nodes: int) -> int:
-    return nodes // 4 * 2 + 1
 
 
 def solve_sides(

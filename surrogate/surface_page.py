@@ -53,7 +53,6 @@ def info_record(path: Path, data: SurfaceData) -> dict[str, Any]:
         },
         'certified_s': data.header.get('certified_s'),
         'accuracy_reached': data.header.get('reached'),
-        'boundary_errors': data.header.get('boundary') or [],
         'settings': dict(data.header['settings']),
         'provenance': dict(data.provenance),
     }
@@ -130,11 +129,6 @@ def _full_tier(record: Mapping[str, Any]) -> Iterator[str]:
         yield (
             f'  accuracy     {asked:g} was aimed at, the worst held-out point reaches '
             f'{record["accuracy_reached"] * asked:.2g}'
-        )
-    for one in record['boundary_errors']:
-        yield (
-            f'  RCS 0.01     is met within {100 * abs(one["error"]):.2g} % of the speed at '
-            f'{one["load"]:.0f} N, {one["temperature"] - ZERO_CELSIUS:.0f} degC'
         )
 
 

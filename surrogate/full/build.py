@@ -4,19 +4,18 @@
 Build a surface of the full tier: every node the mean over draws of solved screws.
 
 First the loads that an interpolation needs and the speeds at which contact sets in, from which the
-mapped speed counts; then speed nodes where a column of few draws needs them; then all columns on
-the half grid, and what the fine grid changes; at last points that are no nodes, solved on the fine
-grid, which measure the error. What is solved, and where, is left to the caller.
+mapped speed counts; then speed nodes where a column of few draws needs them; then all columns; at
+last points that are no nodes, which measure the error. What is solved, and where, is left to the
+caller.
 
 """
 
-from dataclasses import asdict, replace
+from dataclasses import replace
 
 import numpy as np
 from surrogate.build import check_ranges, surface_header
 from surrogate.full.columns import Columns
 from surrogate.full.held_out import measure_errors
-from surrogate.full.levels import solve_levels
 from surrogate.full.loads import signed_loads
 from surrogate.full.nodes import gather_nodes
 from surrogate.full.onset import find_loads, find_onset, middle, Profiles
@@ -36,8 +35,7 @@ def build_full(
     Build the surface of the full tier from chains that `run` solves.
 
     The header says how far the error at the held-out points is from what was aimed at: `reached`
-    is the largest error over the allowed one, `boundary` how far off in speed the limit of RCS of
-    the optimal zone is. Raises InputError for ranges that make no sense, and
+    is the largest error over the allowed one. Raises InputError for ranges that make no sense, and
     for a screw of which no point converges.
 
     """
@@ -61,11 +59,9 @@ def build_full(
         draws=settings.draws,
         shared_draws=settings.shared_draws,
         log_onset=onset[:, np.isin(nodes_and_solved, solved)],
-        grid_wavelength=settings.grid_wavelength,
     )
     s = find_speed_nodes(columns, onset, settings, run)
-    half, fine = solve_levels(columns, s, run)
-    nodes = gather_nodes(columns, s, half, fine, temperature, log_onset)
+    nodes = gather_nodes(columns, s, run('nodes', columns.chains(s)), temperature, log_onset)
     if nodes.mask.all():
         raise InputError('screw: no point of the surface converged, see the reasons above')
     data = SurfaceData(
@@ -85,6 +81,5 @@ def build_full(
         deviations=nodes.deviations,
         standard_errors=nodes.standard_errors,
     )
-    found = measure_errors(data, columns, settings, run)
-    told = {'reached': found.reached, 'boundary': [asdict(one) for one in found.boundary]}
-    return replace(data, errors=found.errors, header={**data.header, **told})
+    errors, reached = measure_errors(data, columns, settings, run)
+    return replace(data, errors=errors, header={**data.header, 'reached': reached})

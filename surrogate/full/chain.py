@@ -15,13 +15,11 @@ from typing import Any
 
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.screw import ScrewSolution, solve_screw
-from surrogate.screw_contacts import GRID_WAVELENGTH, on_half_grid, ScrewSettings
+from surrogate.screw_contacts import ScrewSettings
 from surrogate.tiers import screw_and_oil
 
-WORK = 'full tier 2'
+WORK = 'full tier 1'
 """Solver and version of what a chain returns; part of the key under which it is kept."""
-FINE, HALF = 'fine', 'half'
-"""Grids of the contacts: the one a point is solved on, and that with every other node."""
 SENSES = {'opposing': 1.0, 'assisting': -1.0}
 
 
@@ -32,16 +30,8 @@ def chain_inputs(
     temperature: float,
     draw: int,
     speeds: list[float],
-    *,
-    grid: str = FINE,
-    grid_wavelength: float | None = GRID_WAVELENGTH,
 ) -> dict[str, Any]:
-    """
-    Return a chain: `load` [N] at least 0, `temperature` [K], falling `speeds` [rad/s].
-
-    On the `grid` FINE or HALF; waves shorter than `grid_wavelength` [m] raise the film floor.
-
-    """
+    """Return a chain: `load` [N] at least 0, `temperature` [K], falling `speeds` [rad/s]."""
     return {
         'screw': asdict(screw),
         'lubricant': asdict(lubricant),
@@ -49,8 +39,6 @@ def chain_inputs(
         'temperature': temperature,
         'draw': draw,
         'speeds': speeds,
-        'grid': grid,
-        'grid_wavelength': grid_wavelength,
     }
 
 
@@ -64,9 +52,7 @@ def solve_chain(inputs: Mapping[str, Any]) -> dict[str, Any]:
 
     """
     screw, lubricant = screw_and_oil(inputs)
-    settings = ScrewSettings(draw=inputs['draw'], grid_wavelength=inputs['grid_wavelength'])
-    if inputs['grid'] == HALF:
-        settings = on_half_grid(settings)
+    settings = ScrewSettings(draw=inputs['draw'])
     rows: dict[str, list[dict[str, Any]]] = {sense: [] for sense in SENSES}
     for opposing, assisting in _points(screw, lubricant, settings, inputs):
         rows['opposing'].append(point_record(opposing))

@@ -18,18 +18,14 @@ from scipy.ndimage import maximum_filter, minimum_filter
 from surrogate.full.chain import chain_inputs
 from surrogate.full.idle import BESIDE, idle_load
 from surrogate.parameters import Lubricant, Screw
-from surrogate.screw_contacts import GRID_WAVELENGTH
 
 Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 Chains = dict[str, dict[str, Any]]
 Results = Mapping[str, Mapping[str, Any] | None]
 Place = tuple[int, int, int]
 """Numbers of a load, a temperature and a draw."""
 NEAR_ONSET = (-1.25, 0.75)
 """Speed coordinates between which contact sets in, and draws differ most [-]."""
-ANCHORED, ANCHOR_STEP = (-1.25, 0.5), 0.35
-"""Speed coordinates between which anchors lie, and their least distance [-]."""
 ROUNDING = 1e-9
 """Error of a mapped speed [-]."""
 
@@ -40,9 +36,8 @@ class Columns:
     Load [N] and solved temperature [K] nodes of one screw and oil, speeds [rad/s], onset of both.
 
     Mapped speeds of hot and cold oil differ by far, so that no column needs all speed nodes. All
-    `draws` of the roughness are solved at the middle temperature around the onset on the half
-    grid, `shared_draws` of them at all nodes and temperatures, and on the fine grid all of them at
-    a few speeds. Waves shorter than `grid_wavelength` [m] raise the film floor.
+    `draws` of the roughness are solved at the middle temperature around the onset, and
+    `shared_draws` of them elsewhere.
 
     """
 
@@ -54,7 +49,6 @@ class Columns:
     draws: int
     shared_draws: int
     log_onset: Array
-    grid_wavelength: float | None = GRID_WAVELENGTH
 
     @property
     def magnitudes(self) -> Array:
@@ -75,7 +69,7 @@ class Columns:
         """Return the speeds [rad/s] of the coordinates `s` at load j and temperature k."""
         return np.asarray(np.exp(s + self.log_onset[j, k]))
 
-    def needed(self, s: Array) -> Flags:
+    def needed(self, s: Array) -> NDArray[np.bool_]:
         """Return the nodes [speed, load, temperature] that cover the speed range."""
         magnitudes = self.magnitudes
         onset = self.log_onset[[self.place_of(load) for load in magnitudes.tolist()]]
@@ -83,111 +77,61 @@ class Columns:
         both = covering(s, onset, self.speed_range, (3, 1))
         return np.asarray(both[:, np.searchsorted(magnitudes, np.abs(self.load))])
 
-    def full(self, s: Array) -> Flags:
+    def parts_of_draws(self, s: Array) -> list[NDArray[np.bool_]]:
         """
-        Return the speed nodes at which all draws are solved on the half grid.
+        Return the speed nodes of the chains of those draws that are not solved everywhere.
 
-        Where draws differ most, and one node beyond, where contact has ended; then two far nodes,
-        between which what they differ in changes little.
-
-        """
-        beyond = int(np.searchsorted(s, NEAR_ONSET[1], side='right'))
-        near = (s >= NEAR_ONSET[0]) & (np.arange(len(s)) <= beyond)
-        near[self._far(s)] = True
-        return near
-
-    def anchors(self, s: Array) -> Flags:
-        """
-        Return the speed nodes at which all draws are solved on the fine grid.
-
-        Around the onset, not too near to each other, and a far one, where contact is certified to
-        have ended.
-
-        """
-        found = np.zeros(len(s), dtype=bool)
-        last = -math.inf
-        for i in np.flatnonzero((s >= ANCHORED[0]) & (s <= ANCHORED[1])):
-            if s[i] - last >= ANCHOR_STEP:
-                found[i], last = True, s[i]
-        found[self._far(s)[:1]] = True
-        return found
-
-    def ends(self, s: Array, dry: Flags) -> Flags:
-        """
-        Return the speed nodes at which few draws are solved on the fine grid.
-
-        Those slower than the anchors that are not `dry`, the first beyond the onset and the last.
+        First where draws differ most, and one node beyond, where contact has ended; then two far
+        nodes, between which what they differ in changes little.
 
         """
         place = np.arange(len(s))
-        beyond = np.searchsorted(s, NEAR_ONSET[1], side='right')
-        found = ((s < ANCHORED[0]) & ~dry) | (place == beyond)
-        found[self._far(s)] = True
-        return np.asarray(found & ~self.anchors(s))
-
-    def _far(self, s: Array) -> list[int]:
-        """Return two speed nodes beyond the onset that all loads have: between, and the last."""
         beyond = int(np.searchsorted(s, NEAR_ONSET[1], side='right'))
+        near = (s >= NEAR_ONSET[0]) & (place <= beyond)
         common = np.flatnonzero(self.needed(s)[:, :, self.reference].all(axis=1))
         last = int(common[-1]) if common.size else 0
-        return [(beyond + last) // 2, last] if last > beyond else []
+        far = [(beyond + last) // 2, last] if last > beyond else []
+        return [near, np.isin(place, far) & ~near]
 
-    def asked_half(self, s: Array) -> Flags:
-        """Return what is solved on the half grid, over [speed, load, temperature, draw]."""
+    def full(self, s: Array) -> NDArray[np.bool_]:
+        """Return the speed nodes at which all draws are solved."""
+        return np.asarray(np.any(self.parts_of_draws(s), axis=0))
+
+    def asked(self, s: Array) -> NDArray[np.bool_]:
+        """Return what is solved, over [speed, load, temperature, draw]."""
         draw = np.arange(self.draws)
-        more = self._at_middle & self.full(s)[:, None, None, None]
+        at_middle = np.arange(len(self.temperature)) == self.reference
+        more = at_middle[:, None] & self.full(s)[:, None, None, None]
         return np.asarray(self.needed(s)[..., None] & ((draw < self.few) | more))
 
-    def asked_fine(self, s: Array, dry: Flags) -> Flags:
-        """
-        Return what is solved on the fine grid, over [speed, load, temperature, draw].
-
-        At the middle temperature, and not where the surfaces are all but `dry` [speed].
-
-        """
-        draw = np.arange(self.draws)
-        anchors, ends = (
-            flags[:, None, None, None] for flags in (self.anchors(s), self.ends(s, dry))
-        )
-        wanted = self._at_middle & (anchors | (ends & (draw < self.few)))
-        return np.asarray(self.needed(s)[..., None] & wanted)
-
-    @property
-    def _at_middle(self) -> Flags:
-        """Return which temperature is the middle one, for [speed, load, temperature, draw]."""
-        return np.asarray((np.arange(len(self.temperature)) == self.reference)[:, None])
-
-    def chain(
-        self, load: float, temperature: float, draw: int, speeds: Array, grid: str
-    ) -> dict[str, Any]:
+    def chain(self, load: float, temperature: float, draw: int, speeds: Array) -> dict[str, Any]:
         """Return a chain at a load [N] and temperature [K] with falling `speeds` [rad/s]."""
         falling = sorted((float(speed) for speed in speeds), reverse=True)
         return chain_inputs(
-            self.screw,
-            self.lubricant,
-            float(load),
-            float(temperature),
-            draw,
-            falling,
-            grid=grid,
-            grid_wavelength=self.grid_wavelength,
+            self.screw, self.lubricant, float(load), float(temperature), draw, falling
         )
 
-    def chains(self, s: Array, asked: Flags, grid: str) -> Chains:
-        """Return the chains of what is `asked` for on a grid, by the name of `chain_name`."""
+    def chains(self, s: Array) -> Chains:
+        """Return the chains of all columns, by the name of `chain_name`."""
         return {
             name: self.chain(
-                abs(self.load[j]), self.temperature[k], draw, self.speeds(s[places], j, k), grid
+                abs(self.load[j]), self.temperature[k], draw, self.speeds(s[places], j, k)
             )
-            for name, (j, k, draw), places in self.chain_nodes(asked)
+            for name, (j, k, draw), places in self.chain_nodes(s)
         }
 
-    def chain_nodes(self, asked: Flags) -> Iterator[tuple[str, Place, NDArray[np.intp]]]:
+    def chain_nodes(self, s: Array) -> Iterator[tuple[str, Place, NDArray[np.intp]]]:
         """Yield, for every load that presses a ball, the chains' names, places, speed nodes."""
+        asked, parts = self.asked(s), self.parts_of_draws(s)
         for j, k, draw in np.ndindex(asked.shape[1:]):
-            load, places = float(abs(self.load[j])), np.flatnonzero(asked[:, j, k, draw])
-            if presses(self.screw, load) and places.size:
-                yield chain_name(load, k, draw), (j, k, draw), places
+            load = float(abs(self.load[j]))
+            if not presses(self.screw, load):
+                continue
+            column = asked[:, j, k, draw]
+            for part, wanted in enumerate([column] if draw < self.few else parts):
+                places = np.flatnonzero(column & wanted)
+                if places.size:
+                    yield chain_name(load, k, draw, part), (j, k, draw), places
 
     def verges(self) -> list[tuple[int, int]]:
         """Return the loads beside and below the idle one, each with its neighbour towards zero."""
@@ -206,7 +150,7 @@ class Columns:
 
 def covering(
     s: Array, log_onset: Array, speed_range: tuple[float, float], reach: tuple[int, int]
-) -> Flags:
+) -> NDArray[np.bool_]:
     """
     Return the nodes [speed, load, temperature] that lookups in the speed range [rad/s] read.
 
@@ -227,9 +171,9 @@ def presses(screw: Screw, load: float) -> bool:
     return load > 0 or screw.preload > 0
 
 
-def chain_name(load: float, heat: int, draw: int) -> str:
-    """Return the name of a chain: load [N], number of the temperature node, draw."""
-    return f'{load!r} N, temperature {heat}, draw {draw}'
+def chain_name(load: float, heat: int, draw: int, part: int = 0) -> str:
+    """Return the name of a chain: load [N], number of the temperature node, draw, its part."""
+    return f'{load!r} N, temperature {heat}, draw {draw}, part {part}'
 
 
 def records_by_speed(

@@ -9,8 +9,6 @@ import math
 
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.full.boundary import boundary_error, boundary_speed, BoundaryError, Point
-from surrogate.full.chain import FINE
 from surrogate.full.columns import Columns, mean_over_draws, NEAR_ONSET, Results
 from surrogate.full.idle import idle_load
 from surrogate.full.settings import error_target, FullSettings, Run
@@ -21,26 +19,15 @@ from surrogate.surface_file import SurfaceData
 
 Array = NDArray[np.float64]
 Ends = tuple[float, float]
+Point = tuple[float, float, float]
+"""Speed [rad/s], load [N], temperature [K]."""
+
 NEAR_IDLE = 0.8
 """Part of the idle load from which on the relieved nut is near unloading [-]."""
 SPEEDS = (NEAR_ONSET, (NEAR_ONSET[1], math.inf), (-math.inf, NEAR_ONSET[0]))
 """Ends of the speed coordinates within which errors are alike [-]."""
 TRIES = 20
 """Loads and temperatures that are tried for a point of a stratum."""
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Measured:
-    """
-    Errors per field and cell; the largest of torque or RCS over the allowed one [-].
-
-    And those of the limit of RCS of the optimal zone. None and nothing where no point was solved.
-
-    """
-
-    errors: dict[str, Array]
-    reached: float | None
-    boundary: list[BoundaryError]
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,46 +42,34 @@ class HeldOut:
 
 def measure_errors(
     data: SurfaceData, columns: Columns, settings: FullSettings, run: Run
-) -> Measured:
+) -> tuple[dict[str, Array], float | None]:
     """
-    Return the errors of a surface, |lookup - solve| with the same draws at no nodes.
+    Return the errors per field and cell, and the largest of torque or RCS over the allowed one.
 
-    At points from all strata, and one per band of loads on the limit of RCS of the optimal zone. A
-    cell without a point of its own has the largest of its stratum; NaN where none was.
+    The latter is None where no point was solved. Errors are |lookup - solve| with the same draws
+    at points that are no nodes. A cell without a point of its own has the largest of its stratum;
+    NaN where none was.
 
     """
     surface = Surface(data)
-    on_limit = boundary_points(surface, columns.screw, settings)
-    points = held_out_points(surface, columns.screw, settings) + on_limit
+    points = held_out_points(surface, columns.screw, settings)
     chains = {
-        f'{place} {draw}': columns.chain(abs(load), heat, draw, np.array([speed]), FINE)
+        f'{place} {draw}': columns.chain(abs(load), heat, draw, np.array([speed]))
         for place, (speed, load, heat) in enumerate(points)
         for draw in range(settings.draws)
     }
     solved = _compare(data, points, run('held-out points', chains), settings.draws)
-    bands = load_bands(columns.screw, settings)
-    return Measured(
-        errors={name: _errors(name, data, solved, bands) for name in FIELDS},
-        reached=_reached(solved, columns.screw, settings),
-        boundary=[
-            boundary_error(surface, one.point, one.mean['rcs'])
-            for one in solved
-            if one.point in on_limit
-        ],
-    )
-
-
-def _reached(solved: Sequence[HeldOut], screw: Screw, settings: FullSettings) -> float | None:
-    """Return the largest error of torque or RCS over the allowed one, None without a point."""
-    target = error_target(screw, settings)
-    ratios = [
+    target = error_target(columns.screw, settings)
+    reached = [
         replace(target, ideal_torque=max(target.ideal_torque, ideal)).worst(
             *(Sample(which['friction_torque'], which['rcs']) for which in (one.found, one.mean))
         )
         for one in solved
-        for ideal in [abs(one.point[1]) * screw.lead / (2 * math.pi)]
+        for ideal in [abs(one.point[1]) * columns.screw.lead / (2 * math.pi)]
     ]
-    return max(ratios, default=None)
+    bands = load_bands(columns.screw, settings)
+    errors = {name: _errors(name, data, solved, bands) for name in FIELDS}
+    return errors, max(reached, default=None)
 
 
 def load_bands(screw: Screw, settings: FullSettings) -> list[Ends]:
@@ -120,25 +95,6 @@ def held_out_points(surface: Surface, screw: Screw, settings: FullSettings) -> l
         for place in range(settings.held_out)
     )
     return [point for point in points if point is not None]
-
-
-def boundary_points(surface: Surface, screw: Screw, settings: FullSettings) -> list[Point]:
-    """Return a point on the limit of RCS per band of loads, fewer where none is found."""
-    drawn = np.random.default_rng((settings.seed, 1))
-    points = (_on_limit(surface, drawn, band, settings) for band in load_bands(screw, settings))
-    return [point for point in points if point is not None]
-
-
-def _on_limit(
-    surface: Surface, drawn: np.random.Generator, loads: Ends, settings: FullSettings
-) -> Point | None:
-    for _ in range(TRIES):
-        load = _signed(drawn, loads, settings.load_range)
-        heat = float(drawn.uniform(*settings.temperature_range))
-        speed = boundary_speed(surface, load, heat)
-        if speed is not None:
-            return speed, load, heat
-    return None
 
 
 def _point(

@@ -1,15 +1,14 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Means over all draws on the fine grid, also where few of them or the half grid alone are solved.
+Means over all draws, also where few of them are solved.
 
-On the half grid all are solved at the middle temperature around the onset, and at two speeds
-beyond. What they differ from the few there is carried to other speeds as a factor, which fades as
-contact grows below the onset: where asperities carry everything, draws and grids are alike. What
-the fine grid changes is carried from its anchors in the same way. To other temperatures the mean
-is carried as a factor, too, but for shares: at one mapped speed they are nearly those of the
-middle temperature, so theirs are read there at a coordinate that is moved by a straight line. The
-line is fitted to the few draws, which leaves their noise behind.
+All are solved at the middle temperature around the onset, and at two speeds beyond. What they
+differ from the few there is carried to other speeds as a factor, which fades as contact grows
+below the onset: where asperities carry everything, draws are alike. To other temperatures it is
+carried as a factor, too, but for shares: at one mapped speed they are nearly those of the middle
+temperature, so theirs are read there at a coordinate that is moved by a straight line. The line is
+fitted to the few draws, which leaves their noise behind.
 
 """
 
@@ -27,8 +26,6 @@ Flags = NDArray[np.bool_]
 
 LEAST_WEIGHED, RELATIVE = 0.003, 0.05
 """Errors of a share that count as equal in a fit: absolute, and of the share where more [-]."""
-LEAST_LACKING = 1e-9
-"""Least that a share lacks of 1 where that is divided by [-]."""
 FARTHEST = np.array([0.5, 0.3])
 """Largest shift and stretch of a coordinate that a fit may find [-]."""
 
@@ -57,80 +54,30 @@ def middle_mean(
     Return the mean [speed, load] of `values` [speed, load, draw] at the middle temperature.
 
     `full` tells at which speeds all draws are solved; elsewhere the first `few` are, each moved by
-    what the mean differs from it, so that one that is lost moves nothing.
+    what the mean differs from it, so that one that is lost moves nothing. A share is scaled below
+    the onset by what it lacks of 1, as `fade` is.
 
     """
     whole = quiet(np.nanmean, values)
     if few == values.shape[-1]:
         return whole
-    around = np.where(full[:, None], whole, np.nan)
-    moved = [
-        moved_towards(s, one, around, fade, share=share)
-        for one in np.moveaxis(values, -1, 0)[:few]
-    ]
-    return quiet(np.nanmean, np.stack(moved, axis=-1))
+    around = full[:, None]
+    below = (np.arange(len(full)) < np.argmax(full))[:, None]
+    moved = []
+    for one in np.moveaxis(values, -1, 0)[:few]:
+        factor = _carried(s, around, whole, one)
+        if share:
+            lacking = (1 - one) * _carried(s, around, 1 - whole, 1 - one)
+            moved.append(np.clip(np.where(below, 1 - lacking, one * factor), 0.0, 1.0))
+        else:
+            moved.append(one * (1 + (factor - 1) * fade))
+    return np.asarray(np.where(around, whole, quiet(np.nanmean, np.stack(moved, axis=-1))))
 
 
-def moved_towards(s: Array, one: Array, wanted: Array, fade: Array, *, share: bool) -> Array:
-    """
-    Return `one` [speed, load] moved by what `wanted` differs from it where that is known.
-
-    The factor is carried over the other speeds and fades below the slowest that is known; a share
-    is scaled there by what it lacks of 1.
-
-    """
-    known = np.isfinite(wanted)
-    factor = _carried(s, wanted, one)
-    if not share:
-        return np.asarray(np.where(known, wanted, one * (1 + (factor - 1) * fade)))
-    lacking = (1 - one) * _carried(s, 1 - wanted, 1 - one)
-    below = np.maximum.accumulate(known) < known.any(axis=0)
-    found = np.clip(np.where(below, 1 - lacking, one * factor), 0.0, 1.0)
-    return np.asarray(np.where(known, wanted, found))
-
-
-def _carried(s: Array, wanted: Array, one: Array) -> Array:
-    """Return `wanted` over `one` where both are known, carried over the other speeds."""
+def _carried(s: Array, around: Flags, whole: Array, one: Array) -> Array:
+    """Return `whole` over `one` where all draws are solved, carried over the other speeds."""
     with np.errstate(divide='ignore', invalid='ignore'):
-        return filled(s, wanted / one, 1.0)
-
-
-def fine_mean(
-    s: Array,
-    half_mean: Array,
-    half: Array,
-    fine: Array,
-    anchors: Array,
-    fade: Callable[[Flags], Array],
-    *,
-    share: bool,
-) -> Array:
-    """
-    Return the mean [speed, load] over all draws on the fine grid at the middle temperature.
-
-    `half_mean` [speed, load] is that on the half grid, `half` and `fine` [speed, load, draw] are
-    the few draws on both. At `anchors` [speed, load] the mean is known, NaN elsewhere. Where the
-    few are solved on both, `half_mean` is moved by what they change and by what that misses at the
-    anchors; elsewhere by what is found beside. `fade` is `fading` from flagged speeds on. Few say
-    nothing of the shares around the onset: there the anchors speak alone.
-
-    """
-    both = np.isfinite(half) & np.isfinite(fine)
-    theirs, own = (quiet(np.nanmean, np.where(both, some, np.nan)) for some in (half, fine))
-    if share:
-        moved = 1 - (1 - half_mean) * (1 - own) / np.maximum(1 - theirs, LEAST_LACKING)
-        known = np.isfinite(anchors)
-        slower = np.maximum.accumulate(known) <= known
-        moved = np.where(slower, np.clip(moved, 0.0, 1.0), np.nan)
-    else:
-        moved = half_mean * own / theirs
-    found = moved_towards(s, moved, anchors, fade(_anywhere(anchors)), share=share)
-    return moved_towards(s, half_mean, found, fade(_anywhere(found)), share=share)
-
-
-def _anywhere(known: Array) -> Flags:
-    """Return the speeds at which a load is known."""
-    return np.asarray(np.isfinite(known).any(axis=1))
+        return filled(s, np.where(around, whole / one, np.nan), 1.0)
 
 
 def middle_spread(

@@ -8,11 +8,9 @@ import math
 
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.full.columns import Columns, covering
-from surrogate.full.levels import FILM, Level, worst_contacts
+from surrogate.full.columns import Columns, covering, records_by_speed, Results
 from surrogate.full.means import (
     fading,
-    fine_mean,
     joined,
     middle_mean,
     middle_spread,
@@ -29,6 +27,8 @@ SPREAD = ('friction_torque', 'rcs', 'asperity_share', 'friction_coefficient')
 """Fields whose scatter over draws is kept."""
 SHARES = ('rcs', 'asperity_share')
 """Fields from 0 to 1."""
+FAR = 'film_over_floor'
+SENSES = ('assisting', 'opposing')
 CERTAIN = 2.0
 """Least rough film over the floor at which no asperity is near [-]."""
 
@@ -53,72 +53,83 @@ class Nodes:
 
 
 def gather_nodes(
-    columns: Columns, s: Array, half: Level, fine: Level, temperature: Array, log_onset: Array
+    columns: Columns, s: Array, results: Results, temperature: Array, log_onset: Array
 ) -> Nodes:
     """
-    Return the fields at all `temperature` [K] nodes from what was solved on both grids.
+    Return the fields at all `temperature` [K] nodes from the results of `columns.chains(s)`.
 
     `log_onset` [load, temperature] is the logarithm of the onset speed [rad/s] at these.
 
     """
-    means = _means(columns, s, half, fine)
+    solved, worst = _solved(columns, s, results)
+    means = _means(columns, s, solved)
     x, wanted = (
         log_viscosity(columns.lubricant, heat) for heat in (columns.temperature, temperature)
     )
     everywhere = {name: _at_all(name, values, x, wanted) for name, values in means.items()}
     mask = ~covering(s, log_onset, columns.speed_range, (3, 3))
     mask |= ~np.all([np.isfinite(values) for values in everywhere.values()], axis=0)
-    deviations, errors = _spreads(columns, s, half, fine, means, mask)
+    deviations, errors = _spreads(columns, s, solved, means, mask)
     nearest = np.argmin(np.abs(x - wanted[:, None]), axis=1)
     return Nodes(
         means=everywhere,
         deviations=deviations,
         standard_errors=errors,
-        worst_contact=worst_contacts((half, fine))[:, :, nearest],
+        worst_contact=worst[:, :, nearest],
         mask=mask,
-        certified=_certified(columns, s, (half, fine), everywhere['rcs'], mask),
+        certified=_certified(columns, s, solved[FAR], everywhere['rcs'], mask),
     )
 
 
-def _means(columns: Columns, s: Array, half: Level, fine: Level) -> dict[str, Array]:
+def _solved(
+    columns: Columns, s: Array, results: Results
+) -> tuple[dict[str, Array], NDArray[np.uint8]]:
+    """Return the fields [speed, load, temperature, draw], NaN unless solved, and the contacts."""
+    shape = (len(s), len(columns.load), len(columns.temperature))
+    values = {name: np.full((*shape, columns.draws), np.nan) for name in (*FIELDS, FAR)}
+    places: dict[tuple[int, ...], list[int]] = {}
+    for name, (j, k, draw), solved in columns.chain_nodes(s):
+        sense, chain = SENSES[int(columns.load[j] >= 0)], results.get(name)
+        if chain is None:
+            continue
+        for i, (record,) in zip(solved.tolist(), records_by_speed([chain], sense, len(solved))):
+            if record['converged']:
+                places.setdefault((i, j, k), []).append(record['worst_contact'])
+                for field, column in values.items():
+                    column[i, j, k, draw] = record[field]
+    worst = np.zeros(shape, dtype=np.uint8)
+    for node, contacts in places.items():
+        worst[node] = commonest(contacts)
+    return values, worst
+
+
+def _means(columns: Columns, s: Array, solved: dict[str, Array]) -> dict[str, Array]:
     """Return the means over all draws at the solved temperatures, continued over all speeds."""
-    weak = half.weak | fine.weak
+    asked = columns.asked(s)
+    known = np.isfinite(solved['rcs']).sum(axis=-1)
+    weak = asked.any(axis=-1) & (2 * known < asked.sum(axis=-1))
+    fade = fading(solved['rcs'][:, :, columns.reference], columns.full(s), columns.few)
     free = ~weak
     free[:, [j for j, _ in columns.verges()]] = True
-    found = {}
-    for name in FIELDS:
-        share = name in SHARES
-        middle = _middle_mean(columns, s, half, fine, name)
-        whole = _joined_means(columns, s, half.values[name], middle, weak, share=share)
-        found[name] = continued(s, whole, free)
-    return found
-
-
-def _middle_mean(columns: Columns, s: Array, half: Level, fine: Level, name: str) -> Array:
-    """Return the mean [speed, load] of a field at the middle temperature on the fine grid."""
-    base, few, share = columns.reference, columns.few, name in SHARES
-    rcs = half.values['rcs'][:, :, base]
-    on_half, on_fine = (level.values[name][:, :, base] for level in (half, fine))
-
-    def fade(known: Flags) -> Array:
-        return fading(rcs, known, few)
-
-    full = columns.full(s)
-    mean = middle_mean(s, on_half, full, few, fade(full), share=share)
-    anchors = np.where(columns.anchors(s)[:, None], quiet(np.nanmean, on_fine), np.nan)
-    return fine_mean(s, mean, on_half[..., :few], on_fine[..., :few], anchors, fade, share=share)
+    return {
+        name: continued(
+            s, _joined_means(columns, s, solved[name], weak, fade, share=name in SHARES), free
+        )
+        for name in FIELDS
+    }
 
 
 def _joined_means(
-    columns: Columns, s: Array, half: Array, middle: Array, weak: Flags, *, share: bool
+    columns: Columns, s: Array, field: Array, weak: Flags, fade: Array, *, share: bool
 ) -> Array:
     """Return the means of a field; columns go on in the shape of those beside them."""
-    base, few, needed = columns.reference, columns.few, columns.needed(s)
-    full = columns.full(s)
+    full, base, few = columns.full(s), columns.reference, columns.few
+    needed = columns.needed(s)
+    middle = middle_mean(s, field[:, :, base], full, few, fade, share=share)
     parts = [
         middle
         if k == base
-        else _other_mean(s, half[:, :, [k, base], :few], middle, full, columns, share=share)
+        else _other_mean(s, field[:, :, [k, base], :few], middle, full, columns, share=share)
         for k in range(len(columns.temperature))
     ]
     parts = [np.where(weak[:, :, k], np.nan, part) for k, part in enumerate(parts)]
@@ -128,12 +139,11 @@ def _joined_means(
         joined(s, part, parts[base], needed[:, :, k], share=share) for k, part in enumerate(parts)
     ]
     found = np.stack([_at_verge(columns, s, part, share=share) for part in whole], axis=-1)
-    return _falling(found) if share else found
-
-
-def _falling(shares: Array) -> Array:
-    """Return shares that never rise with speed: noise where contact is all but complete may."""
-    return np.where(np.isnan(shares), np.nan, np.fmax.accumulate(shares[::-1])[::-1])
+    if share:
+        # Contact falls with speed; what is left of noise where it is all but complete may not.
+        falling = np.fmax.accumulate(found[::-1])[::-1]
+        found = np.where(np.isnan(found), np.nan, falling)
+    return found
 
 
 def _at_verge(columns: Columns, s: Array, values: Array, *, share: bool) -> Array:
@@ -180,29 +190,25 @@ def _at_all(name: str, values: Array, x: Array, wanted: Array) -> Array:
 
 
 def _spreads(
-    columns: Columns, s: Array, half: Level, fine: Level, means: dict[str, Array], mask: Flags
+    columns: Columns, s: Array, solved: dict[str, Array], means: dict[str, Array], mask: Flags
 ) -> tuple[dict[str, Array], dict[str, Array]]:
     """Return deviations and standard errors at all nodes: those of the middle temperature."""
-    full, anchors, base = columns.full(s), columns.anchors(s), columns.reference
-    fade = fading(half.values['rcs'][:, :, base], full, columns.few)
+    full, base = columns.full(s), columns.reference
+    fade = fading(solved['rcs'][:, :, base], full, columns.few)
     deviations: dict[str, Array] = {}
     errors: dict[str, Array] = {}
     for name in SPREAD:
-        mean = means[name][:, :, base]
-        on_half, on_fine = (level.values[name][:, :, base] for level in (half, fine))
-        drawn = np.where(anchors[:, None, None], on_fine, _scaled(on_half, mean))
-        found = middle_spread(s, drawn, mean, full | anchors, fade, share=name in SHARES)
+        found = middle_spread(
+            s, solved[name][:, :, base], means[name][:, :, base], full, fade, share=name in SHARES
+        )
         for kept, values in zip((deviations, errors), found):
             kept[name] = np.where(mask, np.nan, values[:, :, None])
     return deviations, errors
 
 
-def _scaled(draws: Array, mean: Array) -> Array:
-    """Return draws [speed, load, draw] scaled to a `mean` [speed, load]; those of zero stay."""
-    own = quiet(np.nanmean, draws)
-    with np.errstate(divide='ignore', invalid='ignore'):
-        factor = np.where(own > 0, mean / own, 1.0)
-    return np.asarray(draws * factor[..., None])
+def commonest(places: Sequence[int]) -> int:
+    """Return the value that stands most often, the least of equals."""
+    return max(sorted(set(places)), key=places.count, default=0)
 
 
 def continued(s: Array, values: Array, free: Flags) -> Array:
@@ -233,24 +239,19 @@ def continued(s: Array, values: Array, free: Flags) -> Array:
     return held
 
 
-def _certified(
-    columns: Columns, s: Array, levels: Sequence[Level], rcs: Array, mask: Flags
-) -> float | None:
+def _certified(columns: Columns, s: Array, film: Array, rcs: Array, mask: Flags) -> float | None:
     """
     Return the least coordinate from which on all that is solved lies far from contact.
 
-    At that coordinate itself every draw that was asked for must be known, all of them on the fine
-    grid; beyond, where films only grow, a solve that failed is no objection. The `rcs` of all
-    nodes is zero there.
+    At that coordinate itself every draw that was asked for must be known; beyond, where films
+    only grow, a solve that failed is no objection. The `rcs` of all nodes is zero there.
 
     """
-    near = ((rcs > 0) & ~mask).any(axis=(1, 2))
-    unknown = ~columns.anchors(s)
-    for level in levels:
-        film = level.values[FILM]
-        near |= (quiet(np.nanmin, film) < CERTAIN).any(axis=(1, 2))
-        unknown |= (level.asked & ~np.isfinite(film)).any(axis=(1, 2, 3))
+    near = (quiet(np.nanmin, film) < CERTAIN).any(axis=(1, 2)) | ((rcs > 0) & ~mask).any(
+        axis=(1, 2)
+    )
+    unknown = (columns.asked(s) & ~np.isfinite(film)).any(axis=(1, 2, 3))
     last = np.flatnonzero(near)
     far = np.arange(len(s)) > (last[-1] if last.size else -1)
-    found = np.flatnonzero(far & ~unknown)
+    found = np.flatnonzero(far & ~unknown & columns.full(s))
     return float(s[found[0]]) if found.size else None

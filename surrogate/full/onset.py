@@ -3,10 +3,9 @@
 """
 Where contact sets in over load and temperature, and the loads that an interpolation needs.
 
-Both from profiles: chains of few draws over speeds around the onset that a formula gives, on the
-half grid, which moves them but little. The onset only decides where nodes lie. It shall be smooth
-over the load, so that what is left of few draws is not carried into fields at one mapped speed:
-the formula moved by straight lines.
+Both from profiles: chains of few draws over speeds around the onset that a formula gives. The
+onset only decides where nodes lie. It shall be smooth over the load, so that what is left of few
+draws is not carried into fields at one mapped speed: the formula moved by straight lines.
 
 """
 
@@ -18,9 +17,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.build import speed_at_film_ratio
-from surrogate.full.chain import chain_inputs, HALF
+from surrogate.full.chain import chain_inputs
 from surrogate.full.columns import mean_over_draws, presses, records_by_speed
-from surrogate.full.idle import BESIDE, idle_load
 from surrogate.full.loads import first_loads, LoadPieces, refine_loads
 from surrogate.full.settings import error_target, FullSettings, Run
 from surrogate.full.speed_nodes import Sample
@@ -76,16 +74,7 @@ class Profiles:
     def _chain(self, load: float, temperature: float, draw: int) -> dict[str, Any]:
         guess = self.guess(np.array([load]), np.array([temperature]))[0, 0]
         speeds = [float(speed) for speed in np.exp(guess + np.array(ONSET_STEPS))]
-        return chain_inputs(
-            self.screw,
-            self.lubricant,
-            load,
-            temperature,
-            draw,
-            speeds,
-            grid=HALF,
-            grid_wavelength=self.settings.grid_wavelength,
-        )
+        return chain_inputs(self.screw, self.lubricant, load, temperature, draw, speeds)
 
 
 def _profile(chains: Sequence[Mapping[str, Any] | None]) -> Sample:
@@ -131,11 +120,8 @@ def find_onset(
 
     """
     onset_rcs = profiles.settings.onset_rcs
-    # The loads that refinement adds crowd where profiles bend; the line is that of the first ones,
-    # without that beside the idle load, where the relieved balls say nothing of the others.
-    first = first_loads(profiles.screw, profiles.settings).shared
-    below = (1 - BESIDE) * idle_load(profiles.screw)
-    fitted = LoadPieces(first[~np.isclose(first, below, rtol=1e-9, atol=0.0)], pieces.alone)
+    # The loads that refinement adds crowd where profiles bend; the line is that of the first ones.
+    fitted = LoadPieces(first_loads(profiles.screw, profiles.settings).shared, pieces.alone)
     at_load = smooth_shifts(
         pieces,
         fitted,

@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.full.chain import HALF
 from surrogate.full.columns import Columns, mean_over_draws, presses, records_by_speed
 from surrogate.full.settings import error_target, FullSettings, Run
 from surrogate.full.speed_nodes import refine_nodes, Sample
@@ -42,7 +41,7 @@ def find_speed_nodes(
     def solve(places: Array) -> dict[float, Sample]:
         speeds = columns.speeds(places, j, k)
         chains = {
-            str(draw): columns.chain(pressed[0], columns.temperature[k], draw, speeds, HALF)
+            str(draw): columns.chain(pressed[0], columns.temperature[k], draw, speeds)
             for draw in range(min(REFERENCE_DRAWS, settings.draws))
         }
         results = run('speed nodes', chains)

@@ -66,19 +66,12 @@ def solve_full(
     screw, lubricant = screw_and_oil(header['inputs'])
     draws = int(header['settings']['draws'])
     sense = 'opposing' if load >= 0 else 'assisting'
-    chains = (
-        chain_inputs(
-            screw,
-            lubricant,
-            abs(load),
-            temperature,
-            draw,
-            [speed],
-            grid_wavelength=header['settings']['grid_wavelength'],
-        )
+    records = [
+        solve_chain(chain_inputs(screw, lubricant, abs(load), temperature, draw, [speed]))[sense][
+            0
+        ]
         for draw in range(draws)
-    )
-    records = [solve_chain(chain)[sense][0] for chain in chains]
+    ]
     solved = [record for record in records if record['converged']]
     if 2 * len(solved) < draws:
         return {}

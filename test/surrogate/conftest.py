@@ -64,14 +64,11 @@ def solve_stand_in(inputs: Mapping[str, Any]) -> dict[str, Any]:
     """
     Return what `solve_chain` returns, fast: formulas and a logistic share of contact.
 
-    Smooth in all inputs, with draws that scatter. The half grid has thicker films and more
-    friction, a little else for every draw.
+    Smooth in all inputs, with draws that scatter.
 
     """
     drawn = np.random.default_rng(inputs['draw'])
     scale, shift = np.exp(drawn.normal(0.0, 0.1, size=2))
-    if inputs['grid'] == 'half':
-        scale, shift = np.array([scale, shift]) * np.exp(drawn.normal(0.06, 0.015, size=2))
     return {
         sense: [stand_in_record(inputs, speed, sign, scale, shift) for speed in inputs['speeds']]
         for sense, sign in SENSES.items()

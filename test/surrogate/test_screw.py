@@ -11,7 +11,7 @@ from surrogate.drag.model import thickened
 from surrogate.ehl import Settings
 from surrogate.parameters import InputError, load_lubricant, load_screw, OperatingPoint
 from surrogate.screw import rebalance_screw, solve_screw
-from surrogate.screw_contacts import on_half_grid, raceway_patch, ScrewSettings
+from surrogate.screw_contacts import raceway_patch, ScrewSettings
 
 SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
 SMALL = Settings(nx=65, ny=65, error_estimate=False)
@@ -218,16 +218,3 @@ def test_contacts_of_another_load_are_not_rebalanced():
     same = replace(point, load=3.0 * SCREW.preload)
     again = rebalance_screw(SCREW, OIL, same, idle)
     assert again.friction_torque == pytest.approx(idle.friction_torque, rel=1e-9)
-
-
-def test_half_grid_has_every_other_node_and_the_same_small_contacts():
-    """Smooth contacts of a nearly idle nut converge, with nearly the same film."""
-    whole = ScrewSettings(draw=None)
-    half = on_half_grid(whole)
-    assert (half.smooth.nx, half.smooth.ny) == (129, whole.smooth.ny)
-    assert (half.rough.nx, half.rough.ny) == (65, 129)
-    assert half.nodes_per_wave == whole.nodes_per_wave / 2
-    for load in (0.0, 2411.2, 2750.0):
-        films = [at(77.0, load, settings) for settings in (whole, half)]
-        assert all(found.converged for found in films)
-        assert films[1].film_ratio == pytest.approx(films[0].film_ratio, rel=0.02)

@@ -99,9 +99,8 @@ def test_errors_stand_in_their_cells_and_strata(coarse, screw, oil, settings, st
             }
         return results
 
-    found = measure_errors(coarse, columns, settings, run)
-    errors = found.errors
-    assert found.reached == pytest.approx(0.01 / 0.003, rel=0.3)
+    errors, reached = measure_errors(coarse, columns, settings, run)
+    assert reached == pytest.approx(0.01 / 0.003, rel=0.3)
     s, load = (0.5 * (axis[1:] + axis[:-1]) for axis in (coarse.speed_coordinate, coarse.load))
     beyond = np.ix_(s > NEAR_ONSET[1], np.abs(load) > idle_load(screw))
     assert errors['rcs'][beyond] == pytest.approx(0.01, abs=1e-9)

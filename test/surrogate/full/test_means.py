@@ -7,7 +7,6 @@ import pytest
 from surrogate.full.means import (
     fading,
     filled,
-    fine_mean,
     joined,
     middle_mean,
     middle_spread,
@@ -58,63 +57,6 @@ def test_all_draws_everywhere_is_the_plain_mean():
     for share in (False, True):
         found = middle_mean(S, values, FULL, 4, WHOLE, share=share)
         assert found == pytest.approx(values.mean(axis=-1), rel=1e-12)
-
-
-def on_both(values, change, solved):
-    """Return the few draws on the half and, changed and where `solved`, on the fine grid."""
-    fine = np.where(solved[:, None, None], values * change, np.nan)
-    return values[..., :2], fine[..., :2]
-
-
-def told(values, change, anchors, ends, *, share=False):
-    """Return what `fine_mean` makes of draws on the half grid and few solves on the fine one."""
-    half, fine = on_both(values, change, anchors | ends)
-    known = np.where(anchors[:, None], (values * change).mean(axis=-1), np.nan)
-
-    def fade(flags):
-        return fading(values if share else np.zeros_like(values), flags, 2)
-
-    return fine_mean(S, values.mean(axis=-1), half, fine, known, fade, share=share)
-
-
-ANCHORS, ENDS = np.isin(S, [-1.2, -0.6, 0.2]), np.isin(S, [-2.0, 5.0])
-
-
-def test_a_grid_that_changes_all_by_a_factor_is_found_everywhere():
-    """From three anchors and two draws at both ends; the factor may drift with the speed."""
-    values = np.exp(0.6 * S)[:, None, None] * FACTORS * np.array([[1.0], [2.0]])
-    for drift in (0.0, 0.02):
-        change = (0.9 + drift * S)[:, None, None]
-        found = told(values, change, ANCHORS, ENDS)
-        wanted = (values * change).mean(axis=-1)
-        # Beyond the ends the factor is held.
-        assert found[1:] == pytest.approx(wanted[1:], rel=1e-9 + 0.1 * drift)
-
-
-def test_what_few_draws_miss_of_the_grid_is_told_by_the_anchors():
-    """The two draws are changed by another factor than the rest: held beyond the anchors."""
-    values = np.exp(0.6 * S)[:, None, None] * FACTORS
-    change = np.array([0.8, 0.9, 1.0, 1.1])
-    found = told(values, change, ANCHORS, ENDS)
-    assert found == pytest.approx((values * change).mean(axis=-1), rel=1e-12)
-
-
-def test_shares_between_anchors_follow_the_half_grid_and_dry_ones_are_left_alone():
-    """Where asperities carry everything the grid changes nothing; never outside 0 to 1."""
-    values = falling(S)[:, None, None] * np.ones((1, 4))
-    wanted = falling(S - 0.1)
-    found = told(values, (wanted / falling(S))[:, None, None], ANCHORS, ENDS, share=True)[:, 0]
-    assert found[ANCHORS | (S == -2.0)] == pytest.approx(wanted[ANCHORS | (S == -2.0)])
-    left, changed = np.abs(found - wanted), np.abs(falling(S) - wanted)
-    assert (left <= 0.1 * changed + 1e-9).all()
-    assert ((found >= 0) & (found <= 1)).all()
-
-
-def test_without_anchors_few_draws_speak_for_the_grid():
-    """A narrow range has none."""
-    values = np.exp(0.6 * S)[:, None, None] * FACTORS
-    found = told(values, 0.9, np.zeros(len(S), dtype=bool), ENDS)
-    assert found == pytest.approx(0.9 * values.mean(axis=-1), rel=1e-12)
 
 
 def test_another_temperature_has_the_factor_of_the_middle_one():

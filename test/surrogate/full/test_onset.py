@@ -4,11 +4,9 @@
 
 import numpy as np
 import pytest
-from surrogate.full.idle import idle_load
 from surrogate.full.loads import LoadPieces, signed_loads
 from surrogate.full.onset import find_loads, find_onset, Profiles, smooth_shifts
 from surrogate.full.settings import default_full_settings
-from surrogate.full.speed_nodes import Sample
 
 
 @pytest.fixture(name='profiles')
@@ -35,20 +33,6 @@ def test_onset_is_where_the_share_is_one_percent(profiles, screw, stand_in):
         solved = stand_in.run('', chains).values()
         share = np.mean([chain['opposing'][0]['rcs'] for chain in solved])
         assert 0.007 < share < 0.014
-
-
-def test_the_load_beside_the_idle_one_moves_no_onset(profiles, screw):
-    """Whatever its relieved balls do; another load does move it."""
-    heats = np.array([313.15])
-    pieces, known = find_loads(profiles, 313.15)
-    loads, _ = signed_loads(screw, profiles.settings, pieces)
-    below = max(load for load in known if load < idle_load(screw))
-    onset = find_onset(profiles, pieces, known, loads, heats, heats)
-    late = Sample(known[below].torque, np.sqrt(known[below].rcs))
-    same = find_onset(profiles, pieces, {**known, below: late}, loads, heats, heats)
-    assert np.array_equal(same, onset)
-    moved = find_onset(profiles, pieces, {**known, 0.0: late}, loads, heats, heats)
-    assert not np.array_equal(moved, onset)
 
 
 def test_shifts_are_smooth_over_the_load():
