@@ -28,6 +28,8 @@ Start = tuple[ContactSolution | None, ContactSolution | None]
 ACROSS, MOST_NODES = 2.42, 513
 """About the width of a rough domain over the semi-axis across (2.4 to 3.1); most nodes there by
 the wavelength [-]."""
+GRID_WAVELENGTH = 16e-6
+"""Shortest wavelength on the grid [m]; docs/onset.md."""
 WINDOW_SHARE = 0.05
 """Least axial load whose Hertz rectangle is the window of the patch, over the rating [-]."""
 
@@ -49,7 +51,7 @@ class ScrewSettings:
     smooth: Settings = field(default_factory=Settings)
     rough: Settings = field(default_factory=lambda: Settings(nx=129, ny=257, error_estimate=False))
     draw: int | None = 0
-    grid_wavelength: float | None = 16e-6
+    grid_wavelength: float | None = GRID_WAVELENGTH
     nodes_per_wave: float = 6.0
     inlet_heating: bool = False
     coupling_tolerance: float = 0.01

@@ -20,8 +20,12 @@ from surrogate.surface_inspect_command import add_inspect_commands
 from surrogate.sweep_command import add_sweep_command, add_workers
 from surrogate.tiers import build_surface, default_settings, find_tier, TIERS
 
-FULL_ONLY = ('accuracy', 'draws')
-"""Options of the full tier alone."""
+FULL_ONLY = {
+    'accuracy': ('accuracy', 1),
+    'draws': ('draws', 1),
+    'wavelength_um': ('grid_wavelength', 1e-6),
+}
+"""Options of the full tier alone: the setting each is for, and its unit in SI."""
 
 
 def add_surface_command(subparsers: Any) -> None:
@@ -62,6 +66,13 @@ def _add_build(parser: argparse.ArgumentParser) -> None:
         metavar='K',
         help='full tier: draws of the roughness that are averaged (default 16)',
     )
+    parser.add_argument(
+        '--wavelength-um',
+        type=float,
+        metavar='L',
+        help='full tier: shortest wave of the roughness that is solved [um]; shorter ones '
+        'raise the film floor (default 16)',
+    )
     parser.add_argument('--out', type=Path, help='file to write (default SCREW_OIL.npz)')
     add_workers(parser)
     parser.set_defaults(handler=_build)
@@ -91,11 +102,11 @@ def _build(args: argparse.Namespace) -> int:
     if args.temperature_range:
         low, high = _range('--temperature-range', 'degC', args.temperature_range)
         ranges['temperature_range'] = (low + ZERO_CELSIUS, high + ZERO_CELSIUS)
-    for name in FULL_ONLY:
+    for name, (setting, unit) in FULL_ONLY.items():
         if getattr(args, name) is not None:
             if args.tier != 'full':
-                raise InputError(f'--{name} needs --tier full')
-            ranges[name] = getattr(args, name)
+                raise InputError(f'--{name.replace("_", "-")} needs --tier full')
+            ranges[setting] = getattr(args, name) * unit
     out = args.out or Path(f'{screw.name}_{lubricant.name}.npz')
     settings = default_settings(args.tier, screw, ranges)
     with _workers(args) as pool:

@@ -46,6 +46,13 @@ def _add_check(parser: argparse.ArgumentParser) -> None:
         help='begin no other point after this time [s] and judge what was done (default 60); one '
         'of the full tier takes about a minute',
     )
+    parser.add_argument(
+        '--limit-points',
+        type=int,
+        default=0,
+        metavar='K',
+        help='also solve points at RCS 0.01 and say how far off it is in speed (default 0)',
+    )
     parser.set_defaults(handler=_check)
 
 
@@ -108,10 +115,13 @@ def _add_export(parser: argparse.ArgumentParser) -> None:
 
 def _check(args: argparse.Namespace) -> int:
     from surrogate.surface_check import check_surface
+    from surrogate.surface_limit import limit_errors
 
     path = find_surface(args.file)
     if args.points < 1:
         raise InputError(f'--points is {args.points}, allowed is 1 or more')
+    if args.limit_points < 0:
+        raise InputError(f'--limit-points is {args.limit_points}, allowed is 0 or more')
     if not 0.0 < args.max_seconds < math.inf:
         raise InputError(f'--max-seconds is {args.max_seconds:g} s, allowed is above 0')
     data = read(path)
@@ -125,6 +135,14 @@ def _check(args: argparse.Namespace) -> int:
         Progress(args.points, 'points').step if slow else lambda: None,
     )
     print(f'{path}: {result.sentence()}')
+    for one in limit_errors(
+        data, args.limit_points, args.seed, lambda: time.monotonic() < deadline
+    ):
+        print(
+            f'RCS is 0.01 at {one.speed * 30 / math.pi:.3g} rev/min, {one.load:.0f} N, '
+            f'{one.temperature - ZERO_CELSIUS:.0f} degC; that is off by {100 * one.error:+.2g} % '
+            f'of the speed'
+        )
     return 0 if result.passed else 1
 
 

@@ -59,6 +59,7 @@ def build_full(
         draws=settings.draws,
         shared_draws=settings.shared_draws,
         log_onset=onset[:, np.isin(nodes_and_solved, solved)],
+        grid_wavelength=settings.grid_wavelength,
     )
     s = find_speed_nodes(columns, onset, settings, run)
     nodes = gather_nodes(columns, s, run('nodes', columns.chains(s)), temperature, log_onset)

@@ -15,10 +15,10 @@ from typing import Any
 
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.screw import ScrewSolution, solve_screw
-from surrogate.screw_contacts import ScrewSettings
+from surrogate.screw_contacts import GRID_WAVELENGTH, ScrewSettings
 from surrogate.tiers import screw_and_oil
 
-WORK = 'full tier 1'
+WORK = 'full tier 2'
 """Solver and version of what a chain returns; part of the key under which it is kept."""
 SENSES = {'opposing': 1.0, 'assisting': -1.0}
 
@@ -30,8 +30,14 @@ def chain_inputs(
     temperature: float,
     draw: int,
     speeds: list[float],
+    grid_wavelength: float | None = GRID_WAVELENGTH,
 ) -> dict[str, Any]:
-    """Return a chain: `load` [N] at least 0, `temperature` [K], falling `speeds` [rad/s]."""
+    """
+    Return a chain: `load` [N] at least 0, `temperature` [K], falling `speeds` [rad/s].
+
+    Waves of the roughness shorter than `grid_wavelength` [m] raise the film floor.
+
+    """
     return {
         'screw': asdict(screw),
         'lubricant': asdict(lubricant),
@@ -39,6 +45,7 @@ def chain_inputs(
         'temperature': temperature,
         'draw': draw,
         'speeds': speeds,
+        'grid_wavelength': grid_wavelength,
     }
 
 
@@ -52,7 +59,7 @@ def solve_chain(inputs: Mapping[str, Any]) -> dict[str, Any]:
 
     """
     screw, lubricant = screw_and_oil(inputs)
-    settings = ScrewSettings(draw=inputs['draw'])
+    settings = ScrewSettings(draw=inputs['draw'], grid_wavelength=inputs['grid_wavelength'])
     rows: dict[str, list[dict[str, Any]]] = {sense: [] for sense in SENSES}
     for opposing, assisting in _points(screw, lubricant, settings, inputs):
         rows['opposing'].append(point_record(opposing))

@@ -18,6 +18,7 @@ from scipy.ndimage import maximum_filter, minimum_filter
 from surrogate.full.chain import chain_inputs
 from surrogate.full.idle import BESIDE, idle_load
 from surrogate.parameters import Lubricant, Screw
+from surrogate.screw_contacts import GRID_WAVELENGTH
 
 Array = NDArray[np.float64]
 Chains = dict[str, dict[str, Any]]
@@ -37,7 +38,7 @@ class Columns:
 
     Mapped speeds of hot and cold oil differ by far, so that no column needs all speed nodes. All
     `draws` of the roughness are solved at the middle temperature around the onset, and
-    `shared_draws` of them elsewhere.
+    `shared_draws` of them elsewhere. Waves shorter than `grid_wavelength` [m] raise the floor.
 
     """
 
@@ -49,6 +50,7 @@ class Columns:
     draws: int
     shared_draws: int
     log_onset: Array
+    grid_wavelength: float | None = GRID_WAVELENGTH
 
     @property
     def magnitudes(self) -> Array:
@@ -108,7 +110,13 @@ class Columns:
         """Return a chain at a load [N] and temperature [K] with falling `speeds` [rad/s]."""
         falling = sorted((float(speed) for speed in speeds), reverse=True)
         return chain_inputs(
-            self.screw, self.lubricant, float(load), float(temperature), draw, falling
+            self.screw,
+            self.lubricant,
+            float(load),
+            float(temperature),
+            draw,
+            falling,
+            self.grid_wavelength,
         )
 
     def chains(self, s: Array) -> Chains:

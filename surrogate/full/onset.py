@@ -74,7 +74,10 @@ class Profiles:
     def _chain(self, load: float, temperature: float, draw: int) -> dict[str, Any]:
         guess = self.guess(np.array([load]), np.array([temperature]))[0, 0]
         speeds = [float(speed) for speed in np.exp(guess + np.array(ONSET_STEPS))]
-        return chain_inputs(self.screw, self.lubricant, load, temperature, draw, speeds)
+        wavelength = self.settings.grid_wavelength
+        return chain_inputs(
+            self.screw, self.lubricant, load, temperature, draw, speeds, wavelength
+        )
 
 
 def _profile(chains: Sequence[Mapping[str, Any] | None]) -> Sample:

@@ -11,6 +11,7 @@ from surrogate.build import default_settings, SurfaceSettings
 from surrogate.full.columns import Results
 from surrogate.full.speed_nodes import Target
 from surrogate.parameters import InputError, Screw
+from surrogate.screw_contacts import GRID_WAVELENGTH
 from surrogate.surface_check import EFFICIENCY_TOLERANCE, RCS_RELATIVE_TOLERANCE, RCS_TOLERANCE
 
 Run = Callable[[str, Mapping[str, Mapping[str, Any]]], Results]
@@ -29,6 +30,8 @@ class FullSettings(SurfaceSettings):
     `unloaded_cells` above. Draws of the roughness from 0, and how many of them are solved where
     draws differ little; number of held-out points and the seed that draws them; accuracy aimed at
     as a multiple of 0.003 in efficiency and of 0.003 or, where that is more, 5 % in RCS [-].
+    Shortest wavelength of the roughness that is solved [m], None for all; shorter ones raise the
+    film floor.
 
     """
 
@@ -42,6 +45,7 @@ class FullSettings(SurfaceSettings):
     held_out: int = 12
     seed: int = 1
     accuracy: float = 1.0
+    grid_wavelength: float | None = GRID_WAVELENGTH
 
     def __post_init__(self) -> None:
         """Check the numbers that are not ranges."""
@@ -59,6 +63,10 @@ class FullSettings(SurfaceSettings):
                 raise InputError(f'{name} is {getattr(self, name)}, allowed is {least} or more')
         if not 0.1 <= self.accuracy <= 100:
             raise InputError(f'accuracy is {self.accuracy:g}, allowed is 0.1 to 100')
+        if not (self.grid_wavelength is None or 1e-6 <= self.grid_wavelength <= 1e-3):
+            raise InputError(
+                f'wavelength is {self.grid_wavelength * 1e6:g} um, allowed is 1 to 1000 um'
+            )
 
 
 def default_full_settings(screw: Screw) -> FullSettings:

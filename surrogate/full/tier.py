@@ -19,6 +19,7 @@ from surrogate.full.columns import mean_over_draws
 from surrogate.full.run import ChainRun
 from surrogate.full.settings import FullSettings
 from surrogate.parameters import Lubricant, Screw
+from surrogate.screw_contacts import GRID_WAVELENGTH
 from surrogate.surface import FIELDS
 from surrogate.surface_file import SurfaceData
 from surrogate.tasks.pool import Pool
@@ -66,12 +67,13 @@ def solve_full(
     screw, lubricant = screw_and_oil(header['inputs'])
     draws = int(header['settings']['draws'])
     sense = 'opposing' if load >= 0 else 'assisting'
-    records = [
-        solve_chain(chain_inputs(screw, lubricant, abs(load), temperature, draw, [speed]))[sense][
-            0
-        ]
+    # Files of builders that had no such setting were solved with its default.
+    wavelength = header['settings'].get('grid_wavelength', GRID_WAVELENGTH)
+    chains = (
+        chain_inputs(screw, lubricant, abs(load), temperature, draw, [speed], wavelength)
         for draw in range(draws)
-    ]
+    )
+    records = [solve_chain(chain)[sense][0] for chain in chains]
     solved = [record for record in records if record['converged']]
     if 2 * len(solved) < draws:
         return {}

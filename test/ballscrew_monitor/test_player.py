@@ -142,7 +142,10 @@ class Publishers:
 
     def create_publisher(self, kind, topic, qos):
         sent = self.sent.setdefault(topic, [])
-        return type('Publisher', (), {'publish': staticmethod(sent.append)})
+        acked = staticmethod(lambda timeout: True)
+        return type(
+            'Publisher', (), {'publish': staticmethod(sent.append), 'wait_for_all_acked': acked}
+        )
 
 
 def test_the_clock_is_never_behind_a_message_and_runs_on_after_the_end(short_bag):

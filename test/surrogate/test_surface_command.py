@@ -66,6 +66,19 @@ def test_check_of_a_shipped_tier_is_of_twenty_points(capsys):
     assert '20 of 20 points' in out
 
 
+def test_check_tells_how_far_off_the_limit_of_the_zone_is(capsys):
+    """In per cent of the speed, at as many points as asked for."""
+    words = ('surface', 'check', 'closed_form', '--points', '2', '--limit-points')
+    assert run(*words, '2') == 0
+    _, *limits = capsys.readouterr().out.splitlines()
+    assert len(limits) == 2
+    for line in limits:
+        assert line.startswith('RCS is 0.01 at ')
+        assert abs(float(line.split()[-5])) < 0.1
+    with pytest.raises(InputError, match='--limit-points is -1, allowed is 0 or more'):
+        run(*words, '-1')
+
+
 def test_check_finds_a_wrong_surface(tmp_path: Path, capsys):
     """A surface whose numbers are not those of its datasheets fails with exit code 1."""
     from dataclasses import replace

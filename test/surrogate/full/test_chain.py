@@ -57,3 +57,15 @@ def test_record_of_a_point():
     )
     assert not point_record(free)['converged']
     assert math.isnan(point_record(free)['film_over_floor'])
+
+
+def test_shorter_waves_are_solved_when_asked_for():
+    """What is left out raises the floor, so that the film keeps further from it without."""
+    films = [
+        solve_chain(chain_inputs(SCREW, OIL, 0.0, WARM, 0, [60.0], wavelength))['opposing'][0]
+        for wavelength in (40e-6, 16e-6)
+    ]
+    assert all(record['converged'] for record in films)
+    assert films[0]['friction_torque'] != films[1]['friction_torque']
+    default = solve_chain(chain_inputs(SCREW, OIL, 0.0, WARM, 0, [60.0]))['opposing'][0]
+    assert default == films[1]

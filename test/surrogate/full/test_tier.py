@@ -11,6 +11,7 @@ from surrogate.full import tier as full_tier
 from surrogate.full.run import ChainRun
 from surrogate.full.settings import default_full_settings, FullSettings
 from surrogate.parameters import InputError
+from surrogate.screw_contacts import GRID_WAVELENGTH
 from surrogate.surface import FIELDS
 from surrogate.surface_check import check_surface
 from surrogate.tasks.store import TaskStore
@@ -103,3 +104,25 @@ def test_defaults_cover_what_the_closed_form_covers(screw):
         tiers.default_settings('full', screw, {'draws': 0})
     with pytest.raises(InputError, match='accuracy is 0, allowed is 0.1 to 100'):
         tiers.default_settings('full', screw, {'accuracy': 0.0})
+
+
+def test_waves_that_are_solved_are_a_setting(screw, oil, tmp_path, stand_in, monkeypatch, here):
+    """They reach every chain and the check; those that no grid holds are refused."""
+    seen = []
+
+    def solve(inputs):
+        seen.append(inputs['grid_wavelength'])
+        return stand_in.solve(inputs)
+
+    monkeypatch.setattr(full_tier, 'ChainRun', partial(ChainRun, task=solve))
+    monkeypatch.setattr(full_tier, 'solve_chain', solve)
+    data = build(screw, oil, tmp_path / 'a.npz', here(), replace(SETTINGS, grid_wavelength=8e-6))
+    full_tier.solve_full(data.header, 10.0, 300.0, 310.0)
+    assert set(seen) == {8e-6}
+    assert data.header['settings']['grid_wavelength'] == 8e-6
+    older = {key: one for key, one in data.header['settings'].items() if key != 'grid_wavelength'}
+    seen.clear()
+    full_tier.solve_full({**data.header, 'settings': older}, 10.0, 300.0, 310.0)
+    assert set(seen) == {GRID_WAVELENGTH}
+    with pytest.raises(InputError, match='wavelength is 0.5 um, allowed is 1 to 1000 um'):
+        replace(SETTINGS, grid_wavelength=0.5e-6)
