@@ -138,10 +138,11 @@ def _check(args: argparse.Namespace) -> int:
     for one in limit_errors(
         data, args.limit_points, args.seed, lambda: time.monotonic() < deadline
     ):
+        off = f'is off by {100 * one.error:+.2g} % of the speed'
         print(
             f'RCS is 0.01 at {one.speed * 30 / math.pi:.3g} rev/min, {one.load:.0f} N, '
-            f'{one.temperature - ZERO_CELSIUS:.0f} degC; that is off by {100 * one.error:+.2g} % '
-            f'of the speed'
+            f'{one.temperature - ZERO_CELSIUS:.0f} degC; that '
+            + (off if math.isfinite(one.error) else 'has no solution')
         )
     return 0 if result.passed else 1
 

@@ -138,11 +138,11 @@ class Publishers:
     """A node whose publishers only keep what they are given."""
 
     def __init__(self):
-        self.sent = {}
+        self.sent, self.awaited = {}, []
 
     def create_publisher(self, kind, topic, qos):
         sent = self.sent.setdefault(topic, [])
-        acked = staticmethod(lambda timeout: True)
+        acked = staticmethod(lambda timeout: self.awaited.append(topic))
         return type(
             'Publisher', (), {'publish': staticmethod(sent.append), 'wait_for_all_acked': acked}
         )
@@ -153,6 +153,7 @@ def test_the_clock_is_never_behind_a_message_and_runs_on_after_the_end(short_bag
     player = Player(node, bag, rate=1000.0)
     played = player.play(threading.Event())
     assert played.complete
+    assert sorted(node.awaited) == sorted(bag.topics)  # until all have arrived
     assert player.now == bag.end_time
     assert player.elapsed == pytest.approx(bag.duration)
     stamps = [clock.clock.sec * 10**9 + clock.clock.nanosec for clock in node.sent['/clock']]
@@ -166,8 +167,10 @@ def test_the_clock_is_never_behind_a_message_and_runs_on_after_the_end(short_bag
 def test_a_stop_ends_it_at_once(short_bag):
     stop = threading.Event()
     stop.set()
-    played = Player(Publishers(), Bag(short_bag)).play(stop)
+    node = Publishers()
+    played = Player(node, Bag(short_bag)).play(stop)
     assert not played.complete
+    assert not node.awaited
     assert sum(played.sent.values()) == 0
 
 

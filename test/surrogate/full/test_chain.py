@@ -60,7 +60,7 @@ def test_record_of_a_point():
 
 
 def test_shorter_waves_are_solved_when_asked_for():
-    """What is left out raises the floor, so that the film keeps further from it without."""
+    """The wavelength reaches the contacts; without one it is that of the solver."""
     films = [
         solve_chain(chain_inputs(SCREW, OIL, 0.0, WARM, 0, [60.0], wavelength))['opposing'][0]
         for wavelength in (40e-6, 16e-6)
