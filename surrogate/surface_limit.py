@@ -78,7 +78,7 @@ def limit_speed(surface: Surface, load: float, temperature: float) -> float | No
     """
     Return the speed [rad/s] at which RCS falls through its limit, at a load [N] and temperature.
 
-    None where it does not well inside the speeds of the surface.
+    None where it does not well inside the speeds of the surface, or an answer is missing there.
 
     """
 
@@ -89,7 +89,10 @@ def limit_speed(surface: Surface, load: float, temperature: float) -> float | No
     low, high = low + INSIDE, high - INSIDE
     if not above(low) > 0 > above(high):
         return None
-    found = float(brentq(above, low, high))
+    try:
+        found = float(brentq(above, low, high))
+    except ValueError:  # a masked node on the way, whose lookup is NaN
+        return None
     inside = low < found - STEP and found + STEP < high
     return math.exp(found) if inside and above(found - STEP) > above(found + STEP) else None
 

@@ -33,6 +33,14 @@ def test_no_limit_where_rcs_stays_on_one_side(surface_data):
     assert not list(limit_errors(calm, 3, 1, lambda: True))
 
 
+def test_no_limit_where_an_answer_is_missing(surface_data, surface):
+    """A masked node beside the limit is no error of the search."""
+    s = math.log(limit_speed(surface, 0.0, 313.15) / surface.onset_speed(0.0, 313.15))
+    mask = surface_data.mask.copy()
+    mask[np.searchsorted(surface_data.speed_coordinate, s) - 1] = True
+    assert limit_speed(Surface(replace(surface_data, mask=mask)), 0.0, 313.15) is None
+
+
 @pytest.mark.parametrize('shift', [-0.03, 0.02])
 def test_a_curve_that_is_moved_along_the_speed_is_off_by_as_much(surface, shift):
     """A surface that has the limit at too slow a speed has a negative error."""
