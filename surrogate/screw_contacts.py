@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 import math
 
 from surrogate.ehl import Condition, ContactLubricant, ContactSolution, Settings, solve_contact
-from surrogate.geometry import hertz, screw_contact, Side, SIDES
+from surrogate.geometry import Contact, hertz, screw_contact, Side, SIDES
 from surrogate.inlet_heating import heated_speed
 from surrogate.kinematics import no_slip_rates
 from surrogate.load_sharing import normal_force, UNLOADING_RATIO
@@ -68,7 +68,8 @@ def solve_sides(
     """
     Solve the contacts of a nut under their normal forces [N], with the screw and with the nut.
 
-    `start` holds both pairs of a neighbouring point. No pairs for a nut without load.
+    `start` holds both pairs of a neighbouring point; a smooth contact of this very point is taken
+    as it is. No pairs for a nut without load.
 
     """
     if not any(loads):
@@ -104,13 +105,12 @@ def _solve_side(
         speed = heated_speed(screw, lubricant, side, load, speed, point.temperature)
     condition = Condition(load=load, entrainment_speed=speed)
     fluid = fluid_at(lubricant, point.temperature)
-    smooth = solve_contact(
-        contact,
-        fluid,
-        condition,
-        settings=replace(settings.smooth, film_floor=screw.roughness.film_floor),
-        start=start[0],
-    )
+    even = replace(settings.smooth, film_floor=screw.roughness.film_floor)
+    known = start[0]
+    if known is not None and _is_of(known, (contact, fluid, condition, even)):
+        smooth = known
+    else:
+        smooth = solve_contact(contact, fluid, condition, settings=even, start=known)
     if settings.draw is None or not smooth.converged:
         return smooth, smooth
     surface = raceway_patch(screw, side, settings.draw)
@@ -132,6 +132,18 @@ def _solve_side(
         start=start[1],
     )
     return smooth, rough
+
+
+def _is_of(
+    known: ContactSolution, case: tuple[Contact, ContactLubricant, Condition, Settings]
+) -> bool:
+    """Tell whether a smooth solution converged and is that of a case."""
+    return known.converged and case == (
+        known.contact,
+        known.lubricant,
+        known.condition,
+        known.settings,
+    )
 
 
 def fluid_at(lubricant: Lubricant, temperature: float) -> ContactLubricant:

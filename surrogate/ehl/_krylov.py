@@ -27,27 +27,16 @@ from surrogate.ehl._level import (
 )
 
 Array = NDArray[np.floating]
-CHUNK = 32
-"""Partial sums of a dot product."""
-
 COARSE_TOLERANCE, COARSE_LIMIT = 0.1, 40
 """Relative residual and most iterations of a solve on a coarser grid [-]."""
 
 
-@njit(cache=True, error_model='numpy')
+@njit(cache=True, error_model='numpy', fastmath={'reassoc', 'contract', 'nsz'})
 def dot(a: Array, b: Array) -> np.floating:
-    """Sum a b over `CHUNK` partial sums, which vectorises without reordering rights."""
-    size, zero = a.size, a.dtype.type(0)
-    partial = np.zeros(CHUNK, a.dtype)
-    whole = size - size % CHUNK
-    for start in range(0, whole, CHUNK):
-        for lane in range(CHUNK):
-            partial[lane] += a[start + lane] * b[start + lane]
-    total = zero
-    for lane in range(CHUNK):
-        total += partial[lane]
-    for k in range(whole, size):
-        total += a[k] * b[k]
+    """Sum a b in any order, which vectorises."""
+    total = a.dtype.type(0)
+    for n in range(a.size):
+        total += a[n] * b[n]
     return total
 
 

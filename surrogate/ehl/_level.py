@@ -14,6 +14,7 @@ from typing import NamedTuple
 from numba import njit
 import numpy as np
 from numpy.typing import NDArray
+from surrogate.ehl._bands import bands_across, factor_bands, mark_thick_film, solve_bands
 from surrogate.ehl._line import line_factors, mirror, solve_film_lines, solve_lines
 from surrogate.ehl._transfer import prolong, restrict
 from surrogate.ehl.half_space import deform, HalfSpace
@@ -22,6 +23,8 @@ Array = NDArray[np.floating]
 Mask = NDArray[np.bool_]
 LINE_STEPS = 3
 """Line-Jacobi steps of the preconditioner."""
+FEW_IN_CONTACT = 0.1
+"""Share of nodes in contact up to which bands of thick film help; with more they do harm [-]."""
 
 
 class Workspace(NamedTuple):
@@ -29,7 +32,8 @@ class Workspace(NamedTuple):
     Arrays of the linear solver of one grid, in its precision and in Hertz units [-].
 
     From `upper` on, the least squares problem of GMRES: triangle, rotations, right-hand side with
-    the norm of the system last, iterations used and whether they broke down.
+    the norm of the system last, iterations used, whether they broke down, whether bands of thick
+    film start the lines.
 
     """
 
@@ -38,6 +42,10 @@ class Workspace(NamedTuple):
     bands: Array
     sides: Array
     film_bands: Array
+    thick: Array
+    thick_rows: Array
+    thick_lower: Array
+    thick_values: Array
     scratch: Array
     total: Array
     film: Array
@@ -77,13 +85,17 @@ def make_workspace(nx: int, ny: int, krylov: int, flexible: bool, dtype: type) -
     def planes(count: int) -> Array:
         return np.zeros((count, nx, ny), dtype)
 
-    longest = 2 * nx * ny + 1
+    longest, across = 2 * nx * ny + 1, bands_across(ny)
     return Workspace(
         by_pressure=planes(6),
         by_gap=planes(6),
         bands=planes(5),
         sides=planes(6),
         film_bands=planes(3),
+        thick=planes(1)[0],
+        thick_rows=np.zeros((nx * across, 2 * across + 1), dtype),
+        thick_lower=np.zeros((nx * across, across), dtype),
+        thick_values=np.zeros((nx + 1) * across, dtype),
         scratch=planes(3),
         total=planes(1)[0],
         film=planes(1)[0],
@@ -96,7 +108,7 @@ def make_workspace(nx: int, ny: int, krylov: int, flexible: bool, dtype: type) -
         upper=np.zeros((krylov + 1, krylov)),
         turns=np.zeros((2, krylov)),
         reduced=np.zeros(krylov + 2),
-        used=np.zeros(2, np.int64),
+        used=np.zeros(3, np.int64),
     )
 
 
@@ -178,11 +190,24 @@ def apply_lines(level: Level, x: Array, out: Array) -> None:
     size, count = nx * ny, nodes.size
     rhs, total = x[:size].reshape(nx, ny), out[:size].reshape(nx, ny)
     if count == 0:
-        solve_lines(work.bands, work.sides, rhs, LINE_STEPS, symmetric, work.scratch, total)
+        _solve_total(level, rhs, total)
     else:
         _apply_contact_lines(level, x, out)
     if symmetric:
         total[:, 0] = 0
+
+
+@njit(cache=True, error_model='numpy')
+def _solve_total(level: Level, rhs: Array, total: Array) -> None:
+    """Precondition the total pressure: bands of thick film, then the lines from there."""
+    work, started = level.work, level.work.used[2] == 1
+    if started:
+        rows, lower = work.thick_rows, work.thick_lower
+        solve_bands(rows, lower, work.thick, rhs, work.thick_values, total)
+    symmetric = level.space.symmetric
+    solve_lines(
+        work.bands, work.sides, rhs, LINE_STEPS, started, symmetric, work.scratch, total
+    )
 
 
 @njit(cache=True, error_model='numpy')
@@ -195,7 +220,7 @@ def _apply_contact_lines(level: Level, x: Array, out: Array) -> None:
     flat = mixed.reshape(size)
     for k in range(count):
         flat[nodes[k]] = x[size + k]
-    solve_lines(work.bands, work.sides, mixed, LINE_STEPS, symmetric, work.scratch, total)
+    _solve_total(level, mixed, total)
     solve_film_lines(
         work.by_pressure,
         work.film_bands,
@@ -228,8 +253,25 @@ def precondition(level: Level, x: Array, out: Array) -> None:
 
 
 @njit(cache=True, error_model='numpy')
+def _factor_thick_film(level: Level) -> None:
+    """Factor the bands of thick film; a symmetric grid has coarser ones instead."""
+    work, few = level.work, level.nodes.size < FEW_IN_CONTACT * level.contact.size
+    work.used[2] = 0
+    if few and not level.space.symmetric and mark_thick_film(
+        work.by_pressure,
+        work.by_gap,
+        level.contact,
+        level.sizes,
+        level.space.near,
+        work.thick,
+    ):
+        factor_bands(work.by_pressure, work.thick, work.thick_rows, work.thick_lower)
+        work.used[2] = 1
+
+
+@njit(cache=True, error_model='numpy')
 def factor(level: Level) -> None:
-    """Factor the lines of a level and precondition its approach column."""
+    """Factor the lines and bands of a level and precondition its approach column."""
     work, nodes = level.work, level.nodes
     nx, ny = work.total.shape
     size, count = nx * ny, nodes.size
@@ -243,6 +285,7 @@ def factor(level: Level) -> None:
         work.sides,
         work.film_bands,
     )
+    _factor_thick_film(level)
     raised = np.zeros(size + count + 1, work.border.dtype)
     column = raised[:size].reshape(nx, ny)
     for i in range(1, nx - 1):

@@ -100,17 +100,28 @@ def mirror(values: Array) -> None:
 
 @njit(cache=True, error_model='numpy')
 def solve_lines(
-    bands: Array, sides: Array, rhs: Array, steps: int, symmetric: bool, work: Array, value: Array
+    bands: Array,
+    sides: Array,
+    rhs: Array,
+    steps: int,
+    started: bool,
+    symmetric: bool,
+    work: Array,
+    value: Array,
 ) -> None:
-    """Apply `steps` line-Jacobi steps from zero to the system of the total pressure."""
+    """Apply `steps` line-Jacobi steps to the total pressure, from `value` if started or zero."""
     nx, ny = rhs.shape
     pair = work[1]
     work = work[0]
     for step in range(steps):
+        if step > 0 or started:
+            for i in range(1, nx - 1):
+                for j in range(1, ny - 1):
+                    pair[i, j] = value[i, j - 1] + value[i, j + 1]
         for i in range(1, nx - 1):
             for j in range(1, ny - 1):
                 work[i, j] = rhs[i, j]
-            if step > 0:
+            if step > 0 or started:
                 for j in range(1, ny - 1):
                     work[i, j] -= (
                         sides[4, i, j] * value[i, j - 1]
@@ -142,10 +153,6 @@ def solve_lines(
                 value[i, j] = (work[i, j] - bands[4, i, j] * value[i + 1, j]) * bands[3, i, j]
         if symmetric:
             mirror(value)
-        if step + 1 < steps:
-            for i in range(1, nx - 1):
-                for j in range(1, ny - 1):
-                    pair[i, j] = value[i, j - 1] + value[i, j + 1]
 
 
 @njit(cache=True, error_model='numpy')

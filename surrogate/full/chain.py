@@ -10,16 +10,19 @@ from the one before it; the chain is a fixed unit, and its numbers do not depend
 
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, replace
+from functools import lru_cache
 import math
 from typing import Any
 
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
-from surrogate.screw import ScrewSolution, solve_screw
+from surrogate.screw import rebalance_screw, ScrewSolution, solve_screw
 from surrogate.screw_contacts import GRID_WAVELENGTH, ScrewSettings
 from surrogate.tiers import screw_and_oil
 
-WORK = 'full tier 2'
+WORK = 'full tier 3'
 """Solver and version of what a chain returns; part of the key under which it is kept."""
+FLUX_TOLERANCE = 3e-3
+"""Rest of the flux of a rough contact per line over that of the film [-]; docs/surface.md."""
 SENSES = {'opposing': 1.0, 'assisting': -1.0}
 
 
@@ -59,7 +62,7 @@ def solve_chain(inputs: Mapping[str, Any]) -> dict[str, Any]:
 
     """
     screw, lubricant = screw_and_oil(inputs)
-    settings = ScrewSettings(draw=inputs['draw'], grid_wavelength=inputs['grid_wavelength'])
+    settings = chain_settings(inputs['draw'], inputs['grid_wavelength'])
     rows: dict[str, list[dict[str, Any]]] = {sense: [] for sense in SENSES}
     for opposing, assisting in _points(screw, lubricant, settings, inputs):
         rows['opposing'].append(point_record(opposing))
@@ -67,20 +70,72 @@ def solve_chain(inputs: Mapping[str, Any]) -> dict[str, Any]:
     return dict(rows)
 
 
+def chain_settings(draw: int | None, grid_wavelength: float | None) -> ScrewSettings:
+    """Return how chains are solved: as a point is, but for the tolerance of rough contacts."""
+    rough = replace(ScrewSettings().rough, flux_tolerance=FLUX_TOLERANCE)
+    return ScrewSettings(draw=draw, grid_wavelength=grid_wavelength, rough=rough)
+
+
 def _points(
     screw: Screw, lubricant: Lubricant, settings: ScrewSettings, inputs: Mapping[str, Any]
 ) -> Iterator[tuple[ScrewSolution, ScrewSolution]]:
     """Yield both solutions of each speed; they share their contacts and differ by the balance."""
     last: ScrewSolution | None = None
-    for speed in inputs['speeds']:
-        point = OperatingPoint(speed=speed, load=inputs['load'], temperature=inputs['temperature'])
-        opposing = solve_screw(screw, lubricant, point, settings=settings, start=last)
+    points = tuple(
+        OperatingPoint(speed=speed, load=inputs['load'], temperature=inputs['temperature'])
+        for speed in inputs['speeds']
+    )
+    for point, smooth in zip(points, _smooth(screw, lubricant, points), strict=True):
+        start = _with_rough(smooth, last)
+        opposing = solve_screw(screw, lubricant, point, settings=settings, start=start)
         last = opposing if opposing.converged else None
         assisting = opposing
         if point.load:
-            against = replace(point, load=-point.load)
-            assisting = solve_screw(screw, lubricant, against, settings=settings, start=last)
+            assisting = _turned(screw, lubricant, settings, point, opposing)
         yield opposing, assisting
+
+
+def _turned(
+    screw: Screw,
+    lubricant: Lubricant,
+    settings: ScrewSettings,
+    point: OperatingPoint,
+    found: ScrewSolution,
+) -> ScrewSolution:
+    """Return the solution with the load turned round: of the same contacts, if friction lets."""
+    against = replace(point, load=-point.load)
+    if found.load_change <= settings.coupling_tolerance:
+        balanced = rebalance_screw(screw, lubricant, against, found)
+        if balanced.load_change <= settings.coupling_tolerance:
+            return balanced
+    start = found if found.converged else None
+    return solve_screw(screw, lubricant, against, settings=settings, start=start)
+
+
+@lru_cache(maxsize=2)
+def _smooth(
+    screw: Screw, lubricant: Lubricant, points: tuple[OperatingPoint, ...]
+) -> tuple[ScrewSolution, ...]:
+    """Solve a chain with smooth raceways, which all draws share."""
+    found: list[ScrewSolution] = []
+    for point in points:
+        last = found[-1] if found and found[-1].converged else None
+        found.append(
+            solve_screw(screw, lubricant, point, settings=chain_settings(None, None), start=last)
+        )
+    return tuple(found)
+
+
+def _with_rough(smooth: ScrewSolution, last: ScrewSolution | None) -> ScrewSolution:
+    """Return the smooth contacts of a point, with the rough ones of the last point."""
+    rough = [contact.rough for contact in last.contacts] if last else [None] * len(smooth.contacts)
+    return replace(
+        smooth,
+        contacts=tuple(
+            replace(contact, rough=before)
+            for contact, before in zip(smooth.contacts, rough, strict=True)
+        ),
+    )
 
 
 def point_record(found: ScrewSolution) -> dict[str, Any]:
