@@ -79,32 +79,51 @@ class Columns:
         both = covering(s, onset, self.speed_range, (3, 1))
         return np.asarray(both[:, np.searchsorted(magnitudes, np.abs(self.load))])
 
-    def parts_of_draws(self, s: Array) -> list[NDArray[np.bool_]]:
+    def sought(self, s: Array) -> NDArray[np.bool_]:
         """
-        Return the speed nodes of the chains of those draws that are not solved everywhere.
+        Return the nodes [speed, load, temperature] that are solved with some draws.
 
-        First where draws differ most, and one node beyond, where contact has ended; then two far
-        nodes, between which what they differ in changes little.
+        Away from the middle temperature, every second speed that all loads need there, too, is
+        left out: at one mapped speed temperatures differ by a factor that changes slowly.
+
+        """
+        sought, common = self.needed(s), self._common(s)
+        skipped = np.setdiff1d(common[1:-1:2], self._far(s))
+        others = np.arange(len(self.temperature)) != self.reference
+        sought[np.ix_(skipped, np.arange(len(self.load)), np.flatnonzero(others))] = False
+        return sought
+
+    def full(self, s: Array) -> NDArray[np.bool_]:
+        """
+        Return the speed nodes at which all draws are solved.
+
+        Where draws differ most, one node beyond, where contact has ended, and a far one, from
+        which on what they differ in changes little.
 
         """
         place = np.arange(len(s))
-        beyond = int(np.searchsorted(s, NEAR_ONSET[1], side='right'))
-        near = (s >= NEAR_ONSET[0]) & (place <= beyond)
-        common = np.flatnonzero(self.needed(s)[:, :, self.reference].all(axis=1))
-        last = int(common[-1]) if common.size else 0
-        far = [(beyond + last) // 2, last] if last > beyond else []
-        return [near, np.isin(place, far) & ~near]
+        near = (s >= NEAR_ONSET[0]) & (place <= self._beyond(s))
+        return np.asarray(near | np.isin(place, self._far(s)))
 
-    def full(self, s: Array) -> NDArray[np.bool_]:
-        """Return the speed nodes at which all draws are solved."""
-        return np.asarray(np.any(self.parts_of_draws(s), axis=0))
+    def _common(self, s: Array) -> NDArray[np.intp]:
+        """Return the speed nodes that all loads need at the middle temperature."""
+        return np.flatnonzero(self.needed(s)[:, :, self.reference].all(axis=1))
+
+    def _beyond(self, s: Array) -> int:
+        return int(np.searchsorted(s, NEAR_ONSET[1], side='right'))
+
+    def _far(self, s: Array) -> list[int]:
+        """Return the speed node halfway from the end of contact to the fastest common one."""
+        common, beyond = self._common(s), self._beyond(s)
+        last = int(common[-1]) if common.size else 0
+        return [(beyond + last) // 2] if last > beyond else []
 
     def asked(self, s: Array) -> NDArray[np.bool_]:
         """Return what is solved, over [speed, load, temperature, draw]."""
         draw = np.arange(self.draws)
         at_middle = np.arange(len(self.temperature)) == self.reference
         more = at_middle[:, None] & self.full(s)[:, None, None, None]
-        return np.asarray(self.needed(s)[..., None] & ((draw < self.few) | more))
+        return np.asarray(self.sought(s)[..., None] & ((draw < self.few) | more))
 
     def chain(self, load: float, temperature: float, draw: int, speeds: Array) -> dict[str, Any]:
         """Return a chain at a load [N] and temperature [K] with falling `speeds` [rad/s]."""
@@ -130,16 +149,11 @@ class Columns:
 
     def chain_nodes(self, s: Array) -> Iterator[tuple[str, Place, NDArray[np.intp]]]:
         """Yield, for every load that presses a ball, the chains' names, places, speed nodes."""
-        asked, parts = self.asked(s), self.parts_of_draws(s)
+        asked = self.asked(s)
         for j, k, draw in np.ndindex(asked.shape[1:]):
-            load = float(abs(self.load[j]))
-            if not presses(self.screw, load):
-                continue
-            column = asked[:, j, k, draw]
-            for part, wanted in enumerate([column] if draw < self.few else parts):
-                places = np.flatnonzero(column & wanted)
-                if places.size:
-                    yield chain_name(load, k, draw, part), (j, k, draw), places
+            load, places = float(abs(self.load[j])), np.flatnonzero(asked[:, j, k, draw])
+            if presses(self.screw, load) and places.size:
+                yield chain_name(load, k, draw), (j, k, draw), places
 
     def verges(self) -> list[tuple[int, int]]:
         """Return the loads beside and below the idle one, each with its neighbour towards zero."""
@@ -179,9 +193,9 @@ def presses(screw: Screw, load: float) -> bool:
     return load > 0 or screw.preload > 0
 
 
-def chain_name(load: float, heat: int, draw: int, part: int = 0) -> str:
-    """Return the name of a chain: load [N], number of the temperature node, draw, its part."""
-    return f'{load!r} N, temperature {heat}, draw {draw}, part {part}'
+def chain_name(load: float, heat: int, draw: int) -> str:
+    """Return the name of a chain: load [N], number of the temperature node, draw."""
+    return f'{load!r} N, temperature {heat}, draw {draw}'
 
 
 def records_by_speed(

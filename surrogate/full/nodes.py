@@ -124,7 +124,7 @@ def _joined_means(
 ) -> Array:
     """Return the means of a field; columns go on in the shape of those beside them."""
     full, base, few = columns.full(s), columns.reference, columns.few
-    needed = columns.needed(s)
+    sought = columns.sought(s)
     middle = middle_mean(s, field[:, :, base], full, few, fade, share=share)
     parts = [
         middle
@@ -134,9 +134,9 @@ def _joined_means(
     ]
     parts = [np.where(weak[:, :, k], np.nan, part) for k, part in enumerate(parts)]
     for beside in (-1, 0):
-        parts[base] = joined(s, parts[base], parts[beside], needed[:, :, base], share=share)
+        parts[base] = joined(s, parts[base], parts[beside], sought[:, :, base], share=share)
     whole = [
-        joined(s, part, parts[base], needed[:, :, k], share=share) for k, part in enumerate(parts)
+        joined(s, part, parts[base], sought[:, :, k], share=share) for k, part in enumerate(parts)
     ]
     found = np.stack([_at_verge(columns, s, part, share=share) for part in whole], axis=-1)
     if share:

@@ -30,10 +30,10 @@ def make_columns():
 
 
 def test_loads_of_either_sign_share_their_chains(columns):
-    """Two magnitudes; a third draw, in two parts, at the middle temperature; speeds fall."""
+    """Two magnitudes; a third draw at the middle temperature; speeds fall."""
     chains = columns.chains(S)
     assert columns.reference == 1
-    assert len(chains) == 2 * (2 + 4 + 2)
+    assert len(chains) == 2 * (2 + 3 + 2)
     for chain in chains.values():
         assert chain['load'] >= 0
         assert chain['speeds'] == sorted(chain['speeds'], reverse=True)
@@ -51,20 +51,31 @@ def test_what_a_lookup_reads_is_solved_and_little_else(columns):
     assert not needed.all()
 
 
-def test_the_last_draw_is_solved_around_the_onset_and_at_two_far_speeds(columns):
-    """At the middle temperature; the others everywhere needed."""
-    asked, needed, full = columns.asked(S), columns.needed(S), columns.full(S)
-    assert np.array_equal(asked[..., 0], needed)
-    assert np.array_equal(asked[..., 1], needed)
+def test_the_last_draw_is_solved_around_the_onset_and_at_a_far_speed(columns):
+    """At the middle temperature; the others wherever any is."""
+    asked, sought, full = columns.asked(S), columns.sought(S), columns.full(S)
+    assert np.array_equal(asked[..., 0], sought)
+    assert np.array_equal(asked[..., 1], sought)
     assert not asked[:, :, [0, 2], 2].any()
-    assert np.array_equal(asked[:, :, 1, 2], needed[:, :, 1] & full[:, None])
-    near, far = columns.parts_of_draws(S)
+    assert np.array_equal(asked[:, :, 1, 2], sought[:, :, 1] & full[:, None])
     low, high = NEAR_ONSET
-    assert (S[near][0] >= low) & (S[near][-2] <= high < S[near][-1])
-    assert far.sum() == 2
-    assert needed[far][:, :, 1].all()
-    assert S[far][0] > S[near][-1]
-    assert not needed[np.flatnonzero(far)[-1] + 1, :, 1].all()
+    near, far = S[full][:-1], S[full][-1]
+    assert (near[0] >= low) & (near[-2] <= high < near[-1] < far)
+    assert columns.needed(S)[full][:, :, 1].all()
+    assert columns.needed(S)[S > far][0, :, 1].all()
+
+
+def test_hot_and_cold_oil_leave_out_every_second_speed_of_the_middle(columns):
+    """Not the ends, nor what only they need, nor the far speed of all draws."""
+    needed, sought = columns.needed(S), columns.sought(S)
+    assert np.array_equal(sought[:, :, 1], needed[:, :, 1])
+    common = np.flatnonzero(needed[:, :, 1].all(axis=1))
+    for k in (0, 2):
+        left_out = np.flatnonzero((needed & ~sought)[:, :, k].any(axis=1))
+        assert left_out.size
+        assert set(left_out) <= set(common[1:-1:2])
+        assert np.flatnonzero(columns.full(S))[-1] not in left_out
+        assert (np.diff(np.flatnonzero(sought[common][:, 1, k])) <= 2).all()
 
 
 def test_chains_are_the_pieces_of_all_columns(columns):

@@ -109,7 +109,7 @@ def test_failed_draws_are_left_out_until_too_few_remain(columns, stand_in):
     assert np.array_equal(gather(columns, broken).mask, whole.mask)
     broken[second] = None
     masked = gather(columns, broken).mask
-    assert masked[columns.needed(S)[:, 0, 2], 0, 2].all()
+    assert masked[columns.sought(S)[:, 0, 2], 0, 2].all()
     assert np.array_equal(masked[:, 1], whole.mask[:, 1])
 
 
