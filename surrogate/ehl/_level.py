@@ -205,9 +205,7 @@ def _solve_total(level: Level, rhs: Array, total: Array) -> None:
         rows, lower = work.thick_rows, work.thick_lower
         solve_bands(rows, lower, work.thick, rhs, work.thick_values, total)
     symmetric = level.space.symmetric
-    solve_lines(
-        work.bands, work.sides, rhs, LINE_STEPS, started, symmetric, work.scratch, total
-    )
+    solve_lines(work.bands, work.sides, rhs, LINE_STEPS, started, symmetric, work.scratch, total)
 
 
 @njit(cache=True, error_model='numpy')
@@ -257,13 +255,12 @@ def _factor_thick_film(level: Level) -> None:
     """Factor the bands of thick film; a symmetric grid has coarser ones instead."""
     work, few = level.work, level.nodes.size < FEW_IN_CONTACT * level.contact.size
     work.used[2] = 0
-    if few and not level.space.symmetric and mark_thick_film(
-        work.by_pressure,
-        work.by_gap,
-        level.contact,
-        level.sizes,
-        level.space.near,
-        work.thick,
+    if (
+        few
+        and not level.space.symmetric
+        and mark_thick_film(
+            work.by_pressure, work.by_gap, level.contact, level.sizes, level.space.near, work.thick
+        )
     ):
         factor_bands(work.by_pressure, work.thick, work.thick_rows, work.thick_lower)
         work.used[2] = 1
