@@ -5,7 +5,8 @@ Correction on bands of neighbouring lines, where the film is thick; compiled.
 
 In front of and beside the contact Poiseuille flow evens out the pressure across the lines, which
 line-Jacobi steps pass on by one line at a time. There `BAND` lines share one unknown per node
-along x. The bands are coupled by the flow alone and solved directly, by node along x, then by band.
+along x. The bands are coupled by the flow alone and solved directly, ordered by node along x and
+then by band.
 
 """
 

@@ -62,10 +62,10 @@ def refine_loads(
     """
     Return magnitudes with more of them where `solve`, which returns profiles, differs.
 
-    At most `most`; of these no more than half are above the idle load, where fields are smooth.
+    At most `most`; of these no more than a third are above the idle load, where fields are smooth.
 
     """
-    rooms = {'shared': most - most // 2, 'alone': most // 2}
+    rooms = {'shared': most - most // 3, 'alone': most // 3}
     pieces = {
         name: refine_nodes(getattr(first, name), solve, target, room)
         if len(getattr(first, name)) > 1

@@ -42,7 +42,7 @@ class FullSettings(SurfaceSettings):
     temperature_nodes: int = 7
     draws: int = 16
     shared_draws: int = 2
-    held_out: int = 12
+    held_out: int = 18
     seed: int = 1
     accuracy: float = 1.0
     grid_wavelength: float | None = GRID_WAVELENGTH
