@@ -7,7 +7,9 @@ import json
 import math
 
 import pytest
+from surrogate import screw_contacts
 from surrogate.ehl import Settings
+from surrogate.full import chain as full_chain
 from surrogate.full.chain import chain_inputs, point_record, solve_chain
 from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
 from surrogate.screw import solve_screw
@@ -38,6 +40,36 @@ def test_a_chain_is_the_points_it_says():
             assert record['friction_torque'] == pytest.approx(found.friction_torque, rel=1e-4)
             assert record['film_ratio'] == pytest.approx(found.film_ratio, rel=1e-4)
     assert chain['opposing'][0]['friction_torque'] != chain['assisting'][0]['friction_torque']
+
+
+def test_draws_share_their_smooth_contacts(monkeypatch):
+    """Two contacts at preload: solved smooth for the first draw, rough for each."""
+    kinds, solve = [], screw_contacts.solve_contact
+
+    def count(*case, roughness=None, **options):
+        kinds.append('smooth' if roughness is None else 'rough')
+        return solve(*case, roughness=roughness, **options)
+
+    monkeypatch.setattr(screw_contacts, 'solve_contact', count)
+    full_chain._smooth.cache_clear()
+    chains = [solve_chain(chain_inputs(SCREW, OIL, 0.0, WARM, draw, [60.0])) for draw in (0, 1)]
+    assert sorted(kinds) == ['rough'] * 4 + ['smooth'] * 2
+    (first,), (second,) = (chain['opposing'] for chain in chains)
+    assert first['film_ratio'] == second['film_ratio']
+    assert first['friction_torque'] != second['friction_torque']
+
+
+def test_the_looser_flux_of_chains_leaves_contact_alone():
+    """A tenth of what a surface is allowed, where some of the load is on asperities."""
+    speeds = [1.8, 1.0]
+    chain = solve_chain(chain_inputs(SCREW, OIL, 0.0, WARM, 0, speeds))['opposing']
+    start = None
+    for record, speed in zip(chain, speeds, strict=True):
+        point = OperatingPoint(speed=speed, load=0.0, temperature=WARM)
+        start = solve_screw(SCREW, OIL, point, settings=ScrewSettings(draw=0), start=start)
+        assert 0.001 < start.rcs < 0.3
+        assert abs(record['rcs'] - start.rcs) < 0.1 * max(0.003, 0.05 * start.rcs)
+        assert record['friction_torque'] == pytest.approx(start.friction_torque, rel=1e-3)
 
 
 def test_record_of_a_point():
