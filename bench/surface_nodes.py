@@ -130,10 +130,12 @@ def draw(rows: list[Thinned], path: Path) -> None:
     axes.set(
         xlabel='points solved for the nodes (16 draws around the onset)',
         ylabel='difference from all nodes, over the allowed [-]',
-        title='Shipped surface with fewer nodes along speed x load',
+        title='Shipped surface with fewer nodes along speed x load (of either sign)',
     )
     axes.grid(alpha=0.3, which='both')
-    axes.legend(fontsize=8)
+    axes.set_ylim(0.3, None)
+    axes.set_xlim(None, 1.08 * max(points))
+    axes.legend(fontsize=8, loc='lower left')
     figure.savefig(path, dpi=110)
 
 

@@ -32,7 +32,7 @@ def bands_across(ny: int) -> int:
 def mark_thick_film(
     by_pressure: Array, by_gap: Array, contact: Mask, sizes: Array, near: Array, thick: Array
 ) -> bool:
-    """Set 1 on the nodes of thick film, without contact nor cavity, else 0; tell if any is."""
+    """Set 1 on nodes of thick film, without contact nor cavity, else 0 [-]; tell if any is."""
     nx, ny = thick.shape
     stiffness, limit = near[0], near.dtype.type(THICK)
     zero, one = thick.dtype.type(0), thick.dtype.type(1)
@@ -49,7 +49,7 @@ def mark_thick_film(
 @njit(cache=True, error_model='numpy')
 def factor_bands(by_pressure: Array, thick: Array, rows: Array, lower: Array) -> None:
     """
-    Assemble and factor the equations of the bands.
+    Assemble and factor the equations of the bands, in Hertz units [-].
 
     Row k of `rows` holds columns k - count to k + count, after the factorisation the inverse pivot
     and the columns behind it; `lower` the factors of the rows below each pivot.
@@ -57,17 +57,18 @@ def factor_bands(by_pressure: Array, thick: Array, rows: Array, lower: Array) ->
     """
     _assemble(by_pressure, thick, rows)
     size, count = lower.shape
-    one = rows.dtype.type(1)
+    one, first = rows.dtype.type(1), count + 1
     for k in range(size):
         if rows[k, count] == 0:
             rows[k, count] = one
-        pivot, ahead = one / rows[k, count], rows[k, count + 1 :]
+        pivot, ahead = one / rows[k, count], rows[k, first:]
         rows[k, count] = pivot
         for below in range(1, min(count, size - 1 - k) + 1):
             factor = rows[k + below, count - below] * pivot
             lower[k, below - 1] = factor
             if factor != 0:
-                under = rows[k + below, count - below + 1 : 2 * count - below + 1]
+                start, end = first - below, first - below + count
+                under = rows[k + below, start:end]
                 for n in range(count):
                     under[n] -= factor * ahead[n]
 
@@ -114,9 +115,10 @@ def _assemble(by_pressure: Array, thick: Array, rows: Array) -> None:
 def solve_bands(
     rows: Array, lower: Array, thick: Array, rhs: Array, bands: Array, value: Array
 ) -> None:
-    """Solve for the bands and hand the answer to the nodes of thick film; zero elsewhere."""
+    """Solve for the bands and hand the answer [-] to the nodes of thick film; else zero."""
     nx, ny = thick.shape
     size, count = lower.shape
+    behind = count + 1
     bands[:] = 0
     for i in range(1, nx - 1):
         for band in range(count):
@@ -127,11 +129,13 @@ def solve_bands(
                 total += here[n] * known[n]
             bands[i * count + band] = total
     for k in range(size):
-        known, below, factors = bands[k], bands[k + 1 : k + 1 + count], lower[k]
+        first, last = k + 1, k + 1 + count
+        known, below, factors = bands[k], bands[first:last], lower[k]
         for n in range(count):
             below[n] -= factors[n] * known
     for k in range(size - 1, -1, -1):
-        total, ahead, row = bands[k], bands[k + 1 : k + 1 + count], rows[k, count + 1 :]
+        first, last = k + 1, k + 1 + count
+        total, ahead, row = bands[k], bands[first:last], rows[k, behind:]
         for n in range(count):
             total -= row[n] * ahead[n]
         bands[k] = total * rows[k, count]
