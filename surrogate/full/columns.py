@@ -38,8 +38,7 @@ class Columns:
 
     Mapped speeds of hot and cold oil differ by far, so that no column needs all speed nodes. All
     `draws` of the roughness are solved at the middle temperature around the onset, and
-    `shared_draws` of them elsewhere, and beside the idle load, where most solves fail slowly.
-    Waves shorter than `grid_wavelength` [m] raise the floor.
+    `shared_draws` of them elsewhere. Waves shorter than `grid_wavelength` [m] raise the floor.
 
     """
 
@@ -123,9 +122,7 @@ class Columns:
         """Return what is solved, over [speed, load, temperature, draw]."""
         draw = np.arange(self.draws)
         at_middle = np.arange(len(self.temperature)) == self.reference
-        whole = np.ones((len(self.load), 1, 1), bool)
-        whole[[j for j, _ in self.verges()]] = False
-        more = whole & at_middle[:, None] & self.full(s)[:, None, None, None]
+        more = at_middle[:, None] & self.full(s)[:, None, None, None]
         return np.asarray(self.sought(s)[..., None] & ((draw < self.few) | more))
 
     def chain(self, load: float, temperature: float, draw: int, speeds: Array) -> dict[str, Any]:
