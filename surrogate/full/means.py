@@ -3,7 +3,7 @@
 """
 Means over all draws, also where few of them are solved.
 
-All are solved at the middle temperature around the onset, and at two speeds beyond. What they
+All are solved at the middle temperature around the onset, and at a speed far beyond. What they
 differ from the few there is carried to other speeds as a factor, which fades as contact grows
 below the onset: where asperities carry everything, draws are alike. To other temperatures it is
 carried as a factor, too, but for shares: at one mapped speed they are nearly those of the middle
