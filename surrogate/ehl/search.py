@@ -29,6 +29,9 @@ WARM_CUT = 1 / 4
 """Shortest step from a neighbouring solution of a rough contact, as a share of the path [-]."""
 SAME_LOAD = 0.02
 """Largest relative difference of loads at which a rough contact starts from another [-]."""
+SAME_SPEED = 1.0
+"""Largest difference of the logarithms of speeds at which a rough contact starts from another [-];
+docs/contact_solver.md."""
 WARM_NEWTON = 25
 """Most Newton iterations of one step from a neighbouring solution [-]."""
 PARTING = 1.5
@@ -48,7 +51,7 @@ class Search:
     def limits(self, *, rough: bool, final: bool) -> Limits:
         """Return the tolerances of a smooth or rough solve, on the way or at the end."""
         settings, stiff = self.case.settings, self.case.fluid_numbers(0.0)[0] > STIFF
-        steps = (1.0, 12.0, 1.0) if rough else (0.5, 3.0 if stiff else 6.0, 0.3)
+        steps = (10.0, 12.0, 1.0) if rough else (0.5, 3.0 if stiff else 6.0, 0.3)
         return Limits(
             flux=settings.flux_tolerance if final else max(1e-2, settings.flux_tolerance),
             load=settings.load_tolerance,
@@ -306,7 +309,7 @@ class Search:
         """
         case, settings = self.case, self.case.settings
         rough = case.roughness is not None
-        if rough and abs(start.condition.load / case.condition.load - 1) > SAME_LOAD:
+        if rough and not self._is_near(start):
             return None
         grid = case.grid(settings.nx, settings.ny, symmetric=not rough)
         heights = case.shape_heights(grid)
@@ -324,6 +327,16 @@ class Search:
             problem = case.problem(grid, speed, heights, case.order)
             outcome = self.solve(grid, problem, state, limits)
         return (grid, outcome) if outcome.converged else None
+
+    def _is_near(self, start: ContactSolution) -> bool:
+        """Tell whether load and speed of a rough solution are near enough to start from it."""
+        here, there = self.case.condition, start.condition
+        if abs(there.load / here.load - 1) > SAME_LOAD:
+            return False
+        moving = here.entrainment_speed > 0 and there.entrainment_speed > 0
+        if not moving:
+            return True
+        return abs(math.log(there.entrainment_speed / here.entrainment_speed)) <= SAME_SPEED
 
     def estimate(self, grid: Grid, outcome: Outcome) -> None:
         """Solve the half grid from the solution, unless it was solved on the way."""

@@ -14,12 +14,13 @@ from functools import lru_cache
 import math
 from typing import Any
 
+from surrogate.nut import ScrewContact
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.screw import rebalance_screw, ScrewSolution, solve_screw
 from surrogate.screw_contacts import GRID_WAVELENGTH, ScrewSettings
 from surrogate.tiers import screw_and_oil
 
-WORK = 'full tier 3'
+WORK = 'full tier 4'
 """Solver and version of what a chain returns; part of the key under which it is kept."""
 FLUX_TOLERANCE = 3e-3
 """Rest of the flux of a rough contact per line over that of the film [-]; docs/surface.md."""
@@ -81,15 +82,11 @@ def _points(
 ) -> Iterator[tuple[ScrewSolution, ScrewSolution]]:
     """Yield both solutions of each speed; they share their contacts and differ by the balance."""
     last: ScrewSolution | None = None
-    points = tuple(
-        OperatingPoint(speed=speed, load=inputs['load'], temperature=inputs['temperature'])
-        for speed in inputs['speeds']
-    )
-    for point, smooth in zip(points, _smooth(screw, lubricant, points), strict=True):
-        start = _with_rough(smooth, last)
+    for speed in inputs['speeds']:
+        point = OperatingPoint(speed=speed, load=inputs['load'], temperature=inputs['temperature'])
+        start = _with_rough(_smooth(screw, lubricant, point), last)
         opposing = solve_screw(screw, lubricant, point, settings=settings, start=start)
-        last = opposing if opposing.converged else None
-        assisting = opposing
+        last = assisting = opposing
         if point.load:
             assisting = _turned(screw, lubricant, settings, point, opposing)
         yield opposing, assisting
@@ -103,37 +100,35 @@ def _turned(
     found: ScrewSolution,
 ) -> ScrewSolution:
     """Return the solution with the load turned round: of the same contacts, if friction lets."""
+    if any(_has_failed(contact) for contact in found.contacts):
+        return found
     against = replace(point, load=-point.load)
     if found.load_change <= settings.coupling_tolerance:
         balanced = rebalance_screw(screw, lubricant, against, found)
         if balanced.load_change <= settings.coupling_tolerance:
             return balanced
-    start = found if found.converged else None
-    return solve_screw(screw, lubricant, against, settings=settings, start=start)
+    return solve_screw(screw, lubricant, against, settings=settings, start=found)
 
 
-@lru_cache(maxsize=2)
-def _smooth(
-    screw: Screw, lubricant: Lubricant, points: tuple[OperatingPoint, ...]
-) -> tuple[ScrewSolution, ...]:
-    """Solve a chain with smooth raceways, which all draws share."""
-    found: list[ScrewSolution] = []
-    for point in points:
-        last = found[-1] if found and found[-1].converged else None
-        found.append(
-            solve_screw(screw, lubricant, point, settings=chain_settings(None, None), start=last)
-        )
-    return tuple(found)
+def _has_failed(contact: ScrewContact) -> bool:
+    """Tell whether the rough solution of a contact is of no use."""
+    return contact.rough is not None and not contact.rough.converged
+
+
+@lru_cache(maxsize=24)
+def _smooth(screw: Screw, lubricant: Lubricant, point: OperatingPoint) -> ScrewSolution:
+    """Solve a point with smooth raceways, which all draws share."""
+    return solve_screw(screw, lubricant, point, settings=chain_settings(None, None))
 
 
 def _with_rough(smooth: ScrewSolution, last: ScrewSolution | None) -> ScrewSolution:
-    """Return the smooth contacts of a point, with the rough ones of the last point."""
-    rough = [contact.rough for contact in last.contacts] if last else [None] * len(smooth.contacts)
+    """Return the smooth contacts of a point, with the rough ones of the last that converged."""
+    before = last.contacts if last else smooth.contacts
     return replace(
         smooth,
         contacts=tuple(
-            replace(contact, rough=before)
-            for contact, before in zip(smooth.contacts, rough, strict=True)
+            replace(contact, rough=None if not last or _has_failed(near) else near.rough)
+            for contact, near in zip(smooth.contacts, before, strict=True)
         ),
     )
 

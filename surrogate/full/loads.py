@@ -4,9 +4,9 @@
 Loads of a full-tier surface: zero, the load at which the relieved nut becomes idle, and others.
 
 At that load torque and RCS jump, because the balls of the relieved nut are no longer solved; so a
-node lies on either side of it. Loads between are where interpolation over the load fails, seen on
-chains of few draws. Loads of either sign share their chains: all here are magnitudes but the nodes
-of the file.
+node lies on either side of it, and some crowd below, where the contacts of that nut shrink to
+nothing. Loads between are where interpolation over the load fails, seen on chains of few draws.
+Loads of either sign share their chains: all here are magnitudes but the nodes of the file.
 
 """
 
@@ -47,6 +47,8 @@ def first_loads(screw: Screw, settings: FullSettings) -> LoadPieces:
     shared = alone = np.empty(0)
     if least < below:
         shared = np.linspace(least, below if most > above else most, settings.load_cells + 1)
+        if most > above:
+            shared = np.union1d(shared, _towards(shared, settings.idle_halvings))
     if most > above or least >= below:
         cells = settings.unloaded_cells if below > 0 else settings.load_cells
         alone = np.linspace(above if least < below else least, most, cells + 1)
@@ -54,6 +56,11 @@ def first_loads(screw: Screw, settings: FullSettings) -> LoadPieces:
         np.union1d(shared, [end for end in ends if end <= below]),
         np.union1d(alone, [end for end in ends if end >= above]),
     )
+
+
+def _towards(loads: Array, times: int) -> Array:
+    """Return loads [N] that halve `times` what is left from the last but one to the last."""
+    return np.asarray(loads[-1] - (loads[-1] - loads[-2]) * 0.5 ** np.arange(1, times + 1))
 
 
 def refine_loads(

@@ -10,7 +10,7 @@ draws is not carried into fields at one mapped speed: the formula moved by strai
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 import math
 from typing import Any
 
@@ -123,8 +123,9 @@ def find_onset(
 
     """
     onset_rcs = profiles.settings.onset_rcs
-    # The loads that refinement adds crowd where profiles bend; the line is that of the first ones.
-    fitted = LoadPieces(first_loads(profiles.screw, profiles.settings).shared, pieces.alone)
+    # Loads crowd where profiles bend; the line is that of even ones.
+    even = first_loads(profiles.screw, replace(profiles.settings, idle_halvings=0))
+    fitted = LoadPieces(even.shared, pieces.alone)
     at_load = smooth_shifts(
         pieces,
         fitted,

@@ -26,18 +26,19 @@ class FullSettings(SurfaceSettings):
     Ranges and nodes of a full-tier surface.
 
     As for formulas, but `speed_nodes` is the most that refinement reaches, and `load_nodes` that
-    over the loads without their sign, beginning with `load_cells` below unloading and
-    `unloaded_cells` above. Draws of the roughness from 0, and how many of them are solved where
-    draws differ little; number of held-out points and the seed that draws them; accuracy aimed at
-    as a multiple of 0.003 in efficiency and of 0.003 or, where that is more, 5 % in RCS [-].
-    Shortest wavelength of the roughness that is solved [m], None for all; shorter ones raise the
-    film floor.
+    over the loads without their sign, beginning with `load_cells` below unloading, the last of
+    which is halved `idle_halvings` times towards it, and `unloaded_cells` above. Draws of the
+    roughness from 0, and how many of them are solved where draws differ little; number of held-out
+    points and the seed that draws them; accuracy aimed at as a multiple of 0.003 in efficiency and
+    of 0.003 or, where that is more, 5 % in RCS [-]. Shortest wavelength of the roughness that is
+    solved [m], None for all; shorter ones raise the film floor.
 
     """
 
     speed_nodes: int = 16
     load_nodes: int = 11
     load_cells: int = 2
+    idle_halvings: int = 3
     unloaded_cells: int = 1
     temperature_nodes: int = 7
     draws: int = 16
@@ -56,6 +57,7 @@ class FullSettings(SurfaceSettings):
             ('speed_nodes', 2),
             ('load_nodes', 2),
             ('load_cells', 1),
+            ('idle_halvings', 0),
             ('unloaded_cells', 1),
             ('temperature_nodes', 2),
         ):

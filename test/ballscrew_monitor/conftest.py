@@ -268,7 +268,9 @@ class NodeProcess:
         # A best-effort sample is lost unless both sides know of each other.
         self.until(
             lambda: (
-                told
+                speeds.get_subscription_count()
+                and loads.get_subscription_count()
+                and told
                 and {'Speed publishers [-]', 'Load publishers [-]'}
                 <= {
                     pair.key

@@ -180,3 +180,16 @@ def test_a_start_of_another_load_is_not_taken(chain, nominal, raceway):
     near = solve_contact(*nominal, condition, roughness=raceway, settings=settings, start=chain[5])
     assert near.newton_iterations == cold.newton_iterations
     assert np.array_equal(near.film, cold.film)
+
+
+@pytest.mark.parametrize(('place', 'taken'), [(1, True), (2, False), (11, True)])
+def test_a_start_of_a_far_speed_is_not_taken(chain, nominal, raceway, place, taken):
+    """From 1 m/s the way to 0.25 m/s is longer than that from cold, to 0.5 m/s it is not."""
+    condition = Condition(load=27.6, entrainment_speed=SPEEDS[place])
+    settings = replace(SETTINGS, error_estimate=False)
+    start = chain[0] if place < 11 else chain[10]
+    cold = solve_contact(*nominal, condition, roughness=raceway, settings=settings)
+    found = solve_contact(*nominal, condition, roughness=raceway, settings=settings, start=start)
+    assert (found.krylov_iterations < cold.krylov_iterations) == taken
+    assert np.array_equal(found.film, cold.film) != taken
+    assert found.rcs == pytest.approx(cold.rcs, abs=1e-4)
