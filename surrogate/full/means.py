@@ -139,17 +139,36 @@ def moved_share(s: Array, own: Array, middle: Array, mean: Array, full: Flags) -
     return np.asarray(np.where(slower, np.fmax(found, quiet(np.nanmean, own)), found))
 
 
-def joined(s: Array, column: Array, beside: Array, asked: Flags, *, share: bool) -> Array:
+def joined(
+    s: Array, column: Array, beside: Array, asked: Flags, *, share: bool, fade: Array | None = None
+) -> Array:
     """
     Return a column [speed, load] continued where it was not `asked` for by that `beside` it.
 
     At one mapped speed a temperature, or a load, differs from the next by a factor that changes
     little, and in shares next to nothing; so the column goes on in the shape of its neighbour.
+    What the factor differs from 1 at the slowest known speed falls below it as `fade` does.
 
     """
-    with np.errstate(divide='ignore', invalid='ignore'):
-        factor = 1.0 if share else filled(s, column / beside, 1.0)
+    if share:
+        factor = np.ones_like(beside)
+    else:
+        with np.errstate(divide='ignore', invalid='ignore'):
+            ratio = column / beside
+        factor = filled(s, ratio, 1.0)
+        if fade is not None:
+            factor = 1 + (factor - 1) * _left_below(np.isfinite(ratio), fade)
     return np.asarray(np.where(~asked & np.isnan(column), beside * factor, column))
+
+
+def _left_below(known: Flags, fade: Array) -> Array:
+    """Return `fade` [speed, load] over that at the slowest known speed, never rising, else 1."""
+    first = np.argmax(known, axis=0)
+    below = np.arange(len(fade))[:, None] < first
+    with np.errstate(divide='ignore', invalid='ignore'):
+        share = np.nan_to_num(fade / np.take_along_axis(fade, first[None], axis=0))
+    falling = np.minimum.accumulate(np.where(below, share, 1.0)[::-1])[::-1]
+    return np.asarray(falling)
 
 
 def _moved(s: Array, line: Array) -> Array:

@@ -27,6 +27,8 @@ SPREAD = ('friction_torque', 'rcs', 'asperity_share', 'friction_coefficient')
 """Fields whose scatter over draws is kept."""
 SHARES = ('rcs', 'asperity_share')
 """Fields from 0 to 1."""
+FRICTION = ('friction_torque', 'friction_coefficient')
+"""Fields that do not know of the oil where asperities carry everything."""
 FAR = 'film_over_floor'
 SENSES = ('assisting', 'opposing')
 CERTAIN = 2.0
@@ -112,17 +114,16 @@ def _means(columns: Columns, s: Array, solved: dict[str, Array]) -> dict[str, Ar
     free = ~weak
     free[:, [j for j, _ in columns.verges()]] = True
     return {
-        name: continued(
-            s, _joined_means(columns, s, solved[name], weak, fade, share=name in SHARES), free
-        )
+        name: continued(s, _joined_means(columns, s, solved[name], weak, fade, name), free)
         for name in FIELDS
     }
 
 
 def _joined_means(
-    columns: Columns, s: Array, field: Array, weak: Flags, fade: Array, *, share: bool
+    columns: Columns, s: Array, field: Array, weak: Flags, fade: Array, name: str
 ) -> Array:
     """Return the means of a field; columns go on in the shape of those beside them."""
+    share, dry = name in SHARES, fade if name in FRICTION else None
     full, base, few = columns.full(s), columns.reference, columns.few
     sought = columns.sought(s)
     middle = middle_mean(s, field[:, :, base], full, few, fade, share=share)
@@ -134,9 +135,11 @@ def _joined_means(
     ]
     parts = [np.where(weak[:, :, k], np.nan, part) for k, part in enumerate(parts)]
     for beside in (-1, 0):
-        parts[base] = joined(s, parts[base], parts[beside], sought[:, :, base], share=share)
+        asked = sought[:, :, base]
+        parts[base] = joined(s, parts[base], parts[beside], asked, share=share, fade=dry)
     whole = [
-        joined(s, part, parts[base], sought[:, :, k], share=share) for k, part in enumerate(parts)
+        joined(s, part, parts[base], sought[:, :, k], share=share, fade=dry)
+        for k, part in enumerate(parts)
     ]
     found = np.stack([_at_verge(columns, s, part, share=share) for part in whole], axis=-1)
     if share:

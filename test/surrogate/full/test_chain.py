@@ -8,7 +8,7 @@ import math
 
 import pytest
 from surrogate import screw_contacts
-from surrogate.ehl import Settings
+from surrogate.ehl import Settings, Status
 from surrogate.full import chain as full_chain
 from surrogate.full.chain import chain_inputs, point_record, solve_chain
 from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
@@ -43,7 +43,7 @@ def test_a_chain_is_the_points_it_says():
 
 
 def test_draws_share_their_smooth_contacts(monkeypatch):
-    """Two contacts at preload: solved smooth for the first draw, rough for each."""
+    """Two contacts at preload: solved smooth for the first draw, rough for each speed of each."""
     kinds, solve = [], screw_contacts.solve_contact
 
     def count(*case, roughness=None, **options):
@@ -52,11 +52,44 @@ def test_draws_share_their_smooth_contacts(monkeypatch):
 
     monkeypatch.setattr(screw_contacts, 'solve_contact', count)
     full_chain._smooth.cache_clear()
-    chains = [solve_chain(chain_inputs(SCREW, OIL, 0.0, WARM, draw, [60.0])) for draw in (0, 1)]
-    assert sorted(kinds) == ['rough'] * 4 + ['smooth'] * 2
-    (first,), (second,) = (chain['opposing'] for chain in chains)
+    chains = [
+        solve_chain(chain_inputs(SCREW, OIL, 0.0, WARM, draw, speeds))
+        for draw, speeds in enumerate(([60.0, 30.0], [60.0]))
+    ]
+    assert sorted(kinds) == ['rough'] * 6 + ['smooth'] * 4
+    first, second = (chain['opposing'][0] for chain in chains)
     assert first['film_ratio'] == second['film_ratio']
     assert first['friction_torque'] != second['friction_torque']
+
+
+def test_a_far_speed_leaves_no_trace():
+    """Contacts start from cold at an eighth of the last speed: the same bit for bit."""
+    both, alone = (
+        solve_chain(chain_inputs(SCREW, OIL, 0.0, WARM, 2, speeds))['opposing'][-1]
+        for speeds in ([48.0, 6.0], [6.0])
+    )
+    assert both['converged']
+    assert both == alone
+
+
+def test_a_contact_that_fails_costs_the_others_nothing(monkeypatch):
+    """Those of the last speed that converged start the next, and the load is not turned round."""
+    starts, solve = [], screw_contacts.solve_contact
+
+    def fail_first(*case, roughness=None, start=None, **options):
+        found = solve(*case, roughness=roughness, start=start, **options)
+        if roughness is None:
+            return found
+        starts.append(start)
+        failed = len(starts) == 1
+        return replace(found, status=Status.DOMAIN_TOO_SMALL) if failed else found
+
+    monkeypatch.setattr(screw_contacts, 'solve_contact', fail_first)
+    chain = solve_chain(chain_inputs(SCREW, OIL, 3000.0, WARM, 0, [60.0, 40.0]))
+    assert [start is None for start in starts] == [True, True, True, False]
+    for sense in ('opposing', 'assisting'):
+        assert [record['converged'] for record in chain[sense]] == [False, True]
+        assert Status.DOMAIN_TOO_SMALL.value in chain[sense][0]['status']
 
 
 def test_the_looser_flux_of_chains_leaves_contact_alone():

@@ -42,6 +42,16 @@ def test_nodes_sit_on_zero_and_on_both_sides_of_idle(screw, settings):
     assert (nodes[0], nodes[-1]) == settings.load_range
 
 
+def test_loads_crowd_towards_the_idle_one(screw, settings):
+    """Each time they halve what is left of the last even cell, and no times change nothing."""
+    even = first_loads(screw, replace(settings, idle_halvings=0)).shared
+    crowded = first_loads(screw, settings).shared
+    assert even == pytest.approx(even[-1] * np.array([0, 0.5, 1]))
+    assert crowded == pytest.approx(even[-1] * np.array([0, 8, 12, 14, 15, 16]) / 16)
+    below = replace(settings, load_range=(0.0, 1500.0))
+    assert first_loads(screw, below).shared.tolist() == [0.0, 750.0, 1500.0]
+
+
 @pytest.mark.parametrize('ends', [(0.0, 1500.0), (-300.0, 5000.0), (400.0, 900.0), (3e3, 4e3)])
 def test_any_range_has_its_ends_as_nodes(screw, settings, ends):
     """One-sided ones too, below and above idle."""

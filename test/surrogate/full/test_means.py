@@ -147,6 +147,19 @@ def test_columns_go_on_in_the_shape_of_their_neighbour():
     assert shares[[0, 10]] == pytest.approx(beside[[0, 10]])
 
 
+def test_the_oil_is_forgotten_where_asperities_carry_everything():
+    """A factor between temperatures is held among known speeds and beyond, and fades below."""
+    beside = np.exp(0.6 * S)[:, None]
+    column, asked = 1.3 * beside, np.ones((len(S), 1), dtype=bool)
+    column[[0, 1, 2, 6, 10]] = np.nan
+    asked[[0, 1, 2, 6, 10]] = False
+    fade = np.ones((len(S), 1))
+    fade[:5, 0] = [0.0, 0.3, 0.2, 0.4, 0.8]
+    found = joined(S, column, beside, asked, share=False, fade=fade)
+    assert (found / beside)[[6, 10], 0] == pytest.approx(1.3)
+    assert (found / beside)[:4, 0] == pytest.approx([1.0, 1.15, 1.15, 1.3])
+
+
 def test_gaps_are_straight_and_ends_are_held():
     """Each column for itself; one without anything has what is given."""
     values = np.array([[np.nan, 1.0, np.nan], [2.0, np.nan, np.nan], [np.nan, 4.0, np.nan]])
