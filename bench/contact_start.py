@@ -17,8 +17,8 @@ from surrogate.ehl import Condition, search, solve_contact
 from surrogate.geometry import screw_contact
 from surrogate.load_sharing import normal_force
 from surrogate.parameters import load_lubricant, load_screw
-from surrogate.roughness import without_short_waves
 from surrogate.screw_contacts import fluid_at, GRID_WAVELENGTH, raceway_patch, ScrewSettings
+from surrogate.subgrid import without_short_waves
 
 SLOWEST, STEP, COUNT, STEPS = 0.002, 0.5, 14, 4
 """Speed [m/s], step of its logarithm, speeds, most steps of a start [-]."""

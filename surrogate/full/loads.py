@@ -69,10 +69,12 @@ def refine_loads(
     """
     Return magnitudes with more of them where `solve`, which returns profiles, differs.
 
-    At most `most`; of these no more than a third are above the idle load, where fields are smooth.
+    At most `most`; of these no more than a third are above the idle load, where fields are smooth,
+    unless there were more at first.
 
     """
-    rooms = {'shared': most - most // 3, 'alone': most // 3}
+    alone = max(most // 3, len(first.alone))
+    rooms = {'shared': most - alone, 'alone': alone}
     pieces = {
         name: refine_nodes(getattr(first, name), solve, target, room)
         if len(getattr(first, name)) > 1

@@ -62,14 +62,14 @@ def refine_nodes(
     known = solve(np.asarray(first))
     nodes = sorted(known)
     pending = list(zip(nodes, nodes[1:]))
-    while pending:
+    while pending and len(known) < most:
         middles = solve(np.array([0.5 * (low + high) for low, high in pending]))
         wrong = {
             place: target.worst(interpolate(known, place), sample)
             for place, sample in middles.items()
         }
         missed = [place for place in middles if wrong[place] > 1]
-        room = max(0, most - len(known))
+        room = most - len(known)
         taken = sorted(missed, key=lambda place: -wrong[place])[:room]
         known |= {place: middles[place] for place in taken}
         pending = [

@@ -92,7 +92,7 @@ def test_loads_crowd_where_profiles_change(screw, settings):
 
     first = first_loads(screw, settings)
     pieces = refine_loads(first, solve, error_target(screw, settings), 12)
-    assert len(pieces.shared) == 12 - 12 // 3
+    assert len(pieces.shared) == 12 - len(first.alone)
     assert len(pieces.alone) == len(first.alone)
     added = np.setdiff1d(pieces.shared, first.shared)
     assert (np.abs(added - 2000) < 700).all()
