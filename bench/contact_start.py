@@ -49,7 +49,7 @@ def main():
     for place in reversed(range(COUNT)):
         speed = SLOWEST * math.exp(STEP * place)
         cold, seconds = timed(screw, speed)
-        ratios = [timed(screw, speed, start)[1] / seconds for start in known[: -STEPS - 1 : -1]]
+        ratios = [timed(screw, speed, start)[1] / seconds for start in reversed(known[-STEPS:])]
         known.append(cold)
         print(f'{speed:11.4f} {cold.rcs:6.3f} {seconds:10.2f}', end='   ')
         print('  '.join(f'{ratio:5.1f}' for ratio in ratios))

@@ -27,7 +27,9 @@ def many(screw):
 def build_coarse(screw, oil):
     """Return a surface of formulas whose errors are far from nothing."""
     ranges = default_full_settings(screw)
-    return build_closed_form(screw, oil, replace(ranges, speed_nodes=9, load_cells=2))
+    return build_closed_form(
+        screw, oil, replace(ranges, speed_nodes=9, load_cells=2, unloaded_cells=1)
+    )
 
 
 def test_bands_part_the_loads_of_a_range(screw, settings):
