@@ -24,6 +24,8 @@ ROELANDS_PRESSURE = 1.96e8
 """Reference pressure of the Roelands law [Pa]."""
 STIFF = 2.5
 """Logarithm of viscosity over which a limited second order fades [-]."""
+LEAST_REACTION = 0.1
+"""Least weight of a row in the flux error, where flow outweighs the film by far [-]."""
 
 
 @njit(cache=True, error_model='numpy')
@@ -283,9 +285,12 @@ def free_boundary_rows(
     """
     Replace the rows of the cavitated set by dp = -p and scale all rows.
 
-    Returns the sum of |F|/h over the other rows [-]. Cavitated where p times the size of the row
-    is below F, everywhere when dry. That size counts the film, too: the flow factor of a stiff
-    fluid vanishes inside the contact. `sizes` keeps it, zero on the border and where cavitated.
+    Returns the sum of |F|/h over the other rows [-], each weighted by the share of its size that
+    the film has: where flow outweighs it, an imbalance moves the pressure by next to nothing, and
+    the film by less. At least `LEAST_REACTION`, and 1 on contact nodes. Cavitated where p times
+    the size of the row is below F, everywhere when dry. That size counts the film, too: the flow
+    factor of a stiff fluid vanishes inside the contact. `sizes` keeps it, zero on the border and
+    where cavitated.
 
     """
     nx, ny = pressure.shape
@@ -295,7 +300,8 @@ def free_boundary_rows(
     for i in range(1, nx - 1):
         for j in range(1, ny - 1):
             f = residual[i, j]
-            scale = max(abs(by_pressure[0, i, j]) + abs(by_gap[0, i, j]) * stiffness, 1e-300)
+            lift = abs(by_gap[0, i, j]) * stiffness
+            scale = max(abs(by_pressure[0, i, j]) + lift, 1e-300)
             if dry or pressure[i, j] * scale < f:
                 cavitated[i, j] = True
                 by_pressure[:, i, j] = 0.0
@@ -304,7 +310,8 @@ def free_boundary_rows(
                 residual[i, j] = pressure[i, j]
                 continue
             sizes[i, j] = scale
-            total += abs(f) / film[i, j] * weights[j]
+            reacts = max(lift / scale, LEAST_REACTION) if lift > 0.0 else 1.0
+            total += reacts * abs(f) / film[i, j] * weights[j]
             factor = 1.0 / scale
             for plane in range(6):
                 by_pressure[plane, i, j] *= factor

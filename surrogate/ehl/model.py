@@ -142,10 +142,10 @@ class ContactSolution:
     pressure, Hertz pressure [Pa], semi-axes and approach [m]; `rcs`, share of the load on
     punctured nodes [-], `rcs_error`, what it differs by on the half grid [-], `asperity_share`,
     integral of pa over the load [-]; relative load error, `residual`, sum over a line of the flux
-    imbalance over the local flow, contact gap error over the floor [-]; rolling force on each
-    surface [N] from the domain and from the tail between inlet and meniscus; iterations, wall time
-    [s]. Unless converged the films, shares, largest pressure and force are NaN and the arrays
-    those of the last iterate.
+    imbalance over the local flow, weighted by how far the film gives way to it, contact gap error
+    over the floor [-]; rolling force on each surface [N] from the domain and from the tail between
+    inlet and meniscus; iterations, wall time [s]. Unless converged the films, shares, largest
+    pressure and force are NaN and the arrays those of the last iterate.
 
     """
 

@@ -14,6 +14,8 @@ from surrogate.ehl.system import Array, evaluate, Evaluation, Mask, Problem
 
 HOPELESS = 5
 """Linear solves cut at their limit after which an iteration is given up [-]."""
+OVERSHOOT = 2.0
+"""Largest fall of the film pressure over that which is exact for exponential viscosity [-]."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -104,7 +106,7 @@ def _step(
         film_change = -state.film_pressure
     asperity_change = total_change - film_change
     if contact.any():
-        limited = _limit_on_contact(
+        limited = limit_on_contact(
             problem, state.film_pressure[contact], film_change[contact], limits.rise
         )
         asperity_change[contact] += film_change[contact] - limited
@@ -126,12 +128,13 @@ def _stiffening(problem: Problem) -> float:
     return max(float(slope), 1e-30)
 
 
-def _limit_on_contact(problem: Problem, pressure: Array, change: Array, rise: float) -> Array:
+def limit_on_contact(problem: Problem, pressure: Array, change: Array, rise: float) -> Array:
     """
-    Limit the change of film pressure where the viscosity law would throw it about.
+    Limit the `change` of film `pressure` [-] where the viscosity law would throw it about.
 
-    As for the diode in circuit simulation: a fall is followed in the logarithm of the viscosity, a
-    rise is capped; the asperity pressure takes the rest, so that elasticity is untouched.
+    As for the diode in circuit simulation: a large fall is followed in the logarithm of the
+    viscosity, `OVERSHOOT` times as far, and a rise is capped; the asperity pressure takes the
+    rest, so that elasticity is untouched.
 
     """
     base = 1.0 + pressure * problem.pressure_scale / ROELANDS_PRESSURE
@@ -142,5 +145,5 @@ def _limit_on_contact(problem: Problem, pressure: Array, change: Array, rise: fl
         * problem.pressure_scale
         / ROELANDS_PRESSURE
     )
-    fall = -np.log1p(slope * np.abs(change)) / slope
+    fall = np.maximum(change, -OVERSHOOT * np.log1p(slope * np.abs(change)) / slope)
     return np.maximum(np.where(change < 0, fall, np.minimum(change, rise)), -pressure)

@@ -89,7 +89,9 @@ def evaluate(grid: Grid, problem: Problem, state: State) -> Evaluation:
         cavitated,
         sizes,
     )
-    gap_error = float((np.where(contact, 0.0, state.asperity_pressure) * grid.stiffness).max())
+    # A node that is about to leave contact may still be drawn there, below the floor.
+    loose = np.where(contact, 0.0, state.asperity_pressure)
+    gap_error = float(np.abs(loose).max() * grid.stiffness)
     if count:
         gap_error = max(gap_error, float(np.abs(gap[contact] - problem.floor).max()))
     return Evaluation(

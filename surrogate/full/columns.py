@@ -97,13 +97,13 @@ class Columns:
         """
         Return the speed nodes at which all draws are solved.
 
-        Where draws differ most, one node beyond, where contact has ended, and a far one, from
-        which on what they differ in changes little.
+        Where draws differ most, and a far one, where contact has ended and from which on what they
+        differ in changes little; one node beyond the onset where there is none so far.
 
         """
-        place = np.arange(len(s))
-        near = (s >= NEAR_ONSET[0]) & (place <= self._beyond(s))
-        return np.asarray(near | np.isin(place, self._far(s)))
+        place, far = np.arange(len(s)), self._far(s)
+        last = self._beyond(s) - 1 if far else self._beyond(s)
+        return np.asarray((s >= NEAR_ONSET[0]) & (place <= last) | np.isin(place, far))
 
     def _common(self, s: Array) -> NDArray[np.intp]:
         """Return the speed nodes that all loads need at the middle temperature."""

@@ -9,6 +9,7 @@ from surrogate.ehl._reynolds import (
     film_properties,
     fluid_at,
     free_boundary_rows,
+    LEAST_REACTION,
     reynolds_rows,
 )
 from surrogate.lubricant import viscosity_roelands_1966
@@ -131,27 +132,32 @@ def test_fluid_is_the_published_law():
     assert (density, compression) == (1.0, 0.0)
 
 
-def test_sets_and_row_scaling(fields):
-    """Contact by pa T > h - floor, rupture by p times the row size < F, rows of size one."""
+@pytest.mark.parametrize(('stiffness', 'least'), [(2.0, 0.9), (2e-3, LEAST_REACTION)])
+def test_sets_and_row_scaling(fields, stiffness, least):
+    """Contact by pa T > h - floor, rupture by p times the row size < F, rows of size one; flux."""
     pressure, gap, contact, inlet = fields
     asperity = np.where(contact, 0.01, 0.0)
     found = np.zeros_like(contact)
-    count = contact_set(asperity, gap, FLOOR, 2.0, False, found)
+    count = contact_set(asperity, gap, FLOOR, stiffness, False, found)
     inner = np.zeros_like(contact)
     inner[1:-1, 1:-1] = True
-    assert (found == (inner & (2.0 * asperity > gap - FLOOR))).all()
+    assert (found == (inner & (stiffness * asperity > gap - FLOOR))).all()
     assert count == found.sum()
     rows, by_p, by_h = assembled(pressure, gap, contact, LAWS['roelands_dh'], 1.0, inlet)
-    size = np.abs(by_p[0]) + np.abs(by_h[0]) * 2.0
+    size = np.abs(by_p[0]) + np.abs(by_h[0]) * stiffness
     ruptured = inner & (pressure * size < rows)
-    flux = np.abs(rows[inner & ~ruptured]).sum() / 0.5
+    lift = np.abs(by_h[0])[inner & ~ruptured] * stiffness
+    share = np.where(lift > 0, np.maximum(lift / size[inner & ~ruptured], LEAST_REACTION), 1.0)
+    assert (lift == 0).any()
+    assert least <= share.min() < least + 0.1
+    flux = (share * np.abs(rows[inner & ~ruptured])).sum() / 0.5
     mask, sizes = np.zeros_like(contact), np.ones((9, 8))
     total = free_boundary_rows(
-        pressure, np.full((9, 8), 0.5), False, 2.0, np.ones(8), rows, by_p, by_h, mask, sizes
+        pressure, np.full((9, 8), 0.5), False, stiffness, np.ones(8), rows, by_p, by_h, mask, sizes
     )
     assert total == pytest.approx(flux)
     assert (mask == ruptured).all()
     assert (rows[ruptured] == pressure[ruptured]).all()
     kept = inner & ~ruptured
     assert sizes == pytest.approx(np.where(kept, size, 0.0))
-    assert (np.abs(by_p[0]) + np.abs(by_h[0]) * 2.0)[kept] == pytest.approx(1.0)
+    assert (np.abs(by_p[0]) + np.abs(by_h[0]) * stiffness)[kept] == pytest.approx(1.0)

@@ -60,9 +60,15 @@ def test_the_last_draw_is_solved_around_the_onset_and_at_a_far_speed(columns):
     assert np.array_equal(asked[:, :, 1, 2], sought[:, :, 1] & full[:, None])
     low, high = NEAR_ONSET
     near, far = S[full][:-1], S[full][-1]
-    assert (near[0] >= low) & (near[-2] <= high < near[-1] < far)
+    assert (near[0] >= low) & (near[-1] <= high < far)
     assert columns.needed(S)[full][:, :, 1].all()
     assert columns.needed(S)[S > far][0, :, 1].all()
+
+
+def test_without_a_far_speed_the_first_beyond_the_onset_tells_where_contact_ends(columns):
+    """A range that ends there has no other."""
+    short = replace(columns, speed_range=(0.2, 2.2))
+    assert S[short.full(S)].tolist() == [-1.0, 0.0, 1.0]
 
 
 def test_hot_and_cold_oil_leave_out_every_second_speed_of_the_middle(columns):
