@@ -20,6 +20,7 @@ import sys
 
 import numpy as np
 from surrogate.full.columns import Columns
+from surrogate.full.finer import with_nodes
 from surrogate.full.settings import default_full_settings, error_target
 from surrogate.full.speed_nodes import Sample
 from surrogate.full.temperatures import solved_temperatures
@@ -49,24 +50,7 @@ def thin(data: SurfaceData, speed_step: int, load_step: int) -> SurfaceData:
     fixed = np.flatnonzero(np.isin(data.load, data.header['load_breaks']))
     zero = int(np.argmin(np.abs(data.load)))
     side = kept(len(data.load) - zero, load_step, [j - zero for j in fixed if j >= zero])
-    j = np.union1d(zero + side, zero - side)
-
-    def part(values: np.ndarray) -> np.ndarray:
-        return values[np.ix_(s, j)]
-
-    cells = (len(s) - 1, len(j) - 1, len(data.temperature) - 1)
-    return replace(
-        data,
-        speed_coordinate=data.speed_coordinate[s],
-        load=data.load[j],
-        log_onset=data.log_onset[j],
-        fields={name: part(values) for name, values in data.fields.items()},
-        errors={name: np.full(cells, np.nan) for name in data.errors},
-        worst_contact=part(data.worst_contact),
-        mask=part(data.mask),
-        deviations={name: part(values) for name, values in data.deviations.items()},
-        standard_errors={name: part(values) for name, values in data.standard_errors.items()},
-    )
+    return with_nodes(data, s, np.union1d(zero + side, zero - side))
 
 
 def kept(count: int, step: int, fixed: Sequence[int]) -> np.ndarray:

@@ -7,7 +7,7 @@ Loads of either sign share their chains: the contacts are the same, only the bal
 
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 import math
 from typing import Any
@@ -25,6 +25,10 @@ Chains = dict[str, dict[str, Any]]
 Results = Mapping[str, Mapping[str, Any] | None]
 Place = tuple[int, int, int]
 """Numbers of a load, a temperature and a draw."""
+Node = tuple[float, float, int, int]
+"""Speed coordinate [-], magnitude of the load [N], numbers of a temperature and a draw."""
+Records = Mapping[Node, Mapping[str, Mapping[str, Any]] | None]
+"""By node what a chain says of both senses of the load, None where it failed."""
 NEAR_ONSET = (-1.25, 0.75)
 """Speed coordinates between which contact sets in, and draws differ most [-]."""
 ROUNDING = 1e-9
@@ -138,22 +142,39 @@ class Columns:
             self.grid_wavelength,
         )
 
-    def chains(self, s: Array) -> Chains:
-        """Return the chains of all columns, by the name of `chain_name`."""
+    def chains(self, s: Array, known: Collection[Node] = ()) -> Chains:
+        """Return the chains of what is asked for and not `known`, by the name of `chain_name`."""
         return {
             name: self.chain(
                 abs(self.load[j]), self.temperature[k], draw, self.speeds(s[places], j, k)
             )
-            for name, (j, k, draw), places in self.chain_nodes(s)
+            for name, (j, k, draw), places in self.chain_nodes(s, known)
         }
 
-    def chain_nodes(self, s: Array) -> Iterator[tuple[str, Place, NDArray[np.intp]]]:
+    def chain_nodes(
+        self, s: Array, known: Collection[Node] = ()
+    ) -> Iterator[tuple[str, Place, NDArray[np.intp]]]:
         """Yield, for every load that presses a ball, the chains' names, places, speed nodes."""
         asked = self.asked(s)
         for j, k, draw in np.ndindex(asked.shape[1:]):
-            load, places = float(abs(self.load[j])), np.flatnonzero(asked[:, j, k, draw])
+            load = float(abs(self.load[j]))
+            lacking = [float(place) for place in s if (float(place), load, k, draw) not in known]
+            places = np.flatnonzero(asked[:, j, k, draw] & np.isin(s, lacking))
             if presses(self.screw, load) and places.size:
                 yield chain_name(load, k, draw), (j, k, draw), places
+
+    def records(
+        self, s: Array, results: Results, known: Collection[Node] = ()
+    ) -> dict[Node, dict[str, Any] | None]:
+        """Return the records of the nodes in the results of `chains` of the same arguments."""
+        found: dict[Node, dict[str, Any] | None] = {}
+        for name, (j, k, draw), places in self.chain_nodes(s, known):
+            chain = results.get(name)
+            for fast, i in enumerate(places[::-1]):
+                found[float(s[i]), float(abs(self.load[j])), k, draw] = (
+                    None if chain is None else {sense: chain[sense][fast] for sense in chain}
+                )
+        return found
 
     def verges(self) -> list[tuple[int, int]]:
         """Return the loads beside and below the idle one, each with its neighbour towards zero."""

@@ -3,16 +3,17 @@
 """Error of a full-tier surface, measured at points that are no nodes, with the same draws."""
 
 from bisect import bisect_right
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.full.columns import Columns, mean_over_draws, NEAR_ONSET, Results
+from surrogate.full.columns import Columns, mean_over_draws, NEAR_ONSET
 from surrogate.full.idle import idle_load
 from surrogate.full.settings import error_target, FullSettings, Run
-from surrogate.full.speed_nodes import Sample
+from surrogate.full.speed_nodes import Sample, Target
 from surrogate.parameters import Screw
 from surrogate.surface import FIELDS, Surface, Validity
 from surrogate.surface_file import SurfaceData
@@ -32,44 +33,79 @@ TRIES = 20
 
 @dataclass(frozen=True, slots=True)
 class HeldOut:
-    """A solved point: where, its cell, what the lookup and what the mean of the draws says."""
+    """
+    A solved point: where, its cell, what the lookup and what the mean of the draws says.
+
+    `miss` is the larger error of torque and RCS over the allowed one [-].
+
+    """
 
     point: Point
     cell: tuple[int, int, int]
     found: dict[str, float]
     mean: dict[str, float]
+    miss: float
 
 
-def measure_errors(
-    data: SurfaceData, columns: Columns, settings: FullSettings, run: Run
-) -> tuple[dict[str, Array], float | None]:
+def solve_held_out(
+    data: SurfaceData, points: Sequence[Point], columns: Columns, settings: FullSettings, run: Run
+) -> list[HeldOut]:
     """
-    Return the errors per field and cell, and the largest of torque or RCS over the allowed one.
+    Solve `points` that are no nodes with the draws of a surface, and compare it with them.
 
-    The latter is None where no point was solved. Errors are |lookup - solve| with the same draws
-    at points that are no nodes. A cell without a point of its own has the largest of its stratum;
-    NaN where none was.
+    Leaves out those at which fewer than half of the draws are solved, or the surface is masked.
 
     """
-    surface = Surface(data)
-    points = held_out_points(surface, columns.screw, settings)
     chains = {
         f'{place} {draw}': columns.chain(abs(load), heat, draw, np.array([speed]))
         for place, (speed, load, heat) in enumerate(points)
         for draw in range(settings.draws)
     }
-    solved = _compare(data, points, run('held-out points', chains), settings.draws)
-    target = error_target(columns.screw, settings)
-    reached = [
-        replace(target, ideal_torque=max(target.ideal_torque, ideal)).worst(
-            *(Sample(which['friction_torque'], which['rcs']) for which in (one.found, one.mean))
+    results = run('held-out points', chains)
+    surface, target = Surface(data), error_target(columns.screw, settings)
+    compared = []
+    for place, point in enumerate(points):
+        mean = _mean_of_draws(
+            [results.get(f'{place} {draw}') for draw in range(settings.draws)], point[1]
         )
-        for one in solved
-        for ideal in [abs(one.point[1]) * columns.screw.lead / (2 * math.pi)]
-    ]
+        found = surface.lookup(*point)
+        if mean and found.validity is Validity.VALID:
+            here = {name: float(getattr(found, name)) for name in FIELDS}
+            s = math.log(point[0] / surface.onset_speed(*point[1:]))
+            cell = _cell(data, (s, *point[1:]))
+            miss = judged(target, point[1], columns.screw.lead).worst(*map(_sample, (here, mean)))
+            compared.append(HeldOut(point, cell, here, mean, miss))
+    return compared
+
+
+def judged(target: Target, load: float, lead: float) -> Target:
+    """Return the target at a load [N]: its efficiency is that load's, unless it is small."""
+    return replace(target, ideal_torque=max(target.ideal_torque, abs(load) * lead / (2 * math.pi)))
+
+
+def _sample(fields: Mapping[str, float]) -> Sample:
+    return Sample(fields['friction_torque'], fields['rcs'])
+
+
+def _mean_of_draws(chains: Sequence[Mapping[str, Any] | None], load: float) -> dict[str, float]:
+    """Return the means of the fields, none where fewer than half of the draws were solved."""
+    sense = 'opposing' if load >= 0 else 'assisting'
+    solved = [chain[sense][0] for chain in chains if chain and chain[sense][0]['converged']]
+    enough = 2 * len(solved) >= len(chains)
+    return {name: mean_over_draws(solved, name) for name in FIELDS if enough}
+
+
+def cell_errors(
+    data: SurfaceData, solved: Sequence[HeldOut], columns: Columns, settings: FullSettings
+) -> dict[str, Array]:
+    """
+    Return the errors per field and cell: |lookup - solve|.
+
+    A cell without a point of its own has the largest of its stratum; NaN where none was.
+
+    """
     bands = load_bands(columns.screw, settings)
-    errors = {name: _errors(name, data, solved, bands) for name in FIELDS}
-    return errors, max(reached, default=None)
+    return {name: _errors(name, data, solved, bands) for name in FIELDS}
 
 
 def load_bands(screw: Screw, settings: FullSettings) -> list[Ends]:
@@ -120,29 +156,6 @@ def _signed(drawn: np.random.Generator, band: Ends, load_range: Ends) -> float:
     ]
     inside = [piece for piece in pieces if piece[0] < piece[1]]
     return float(drawn.uniform(*inside[int(drawn.integers(len(inside)))]))
-
-
-def _compare(
-    data: SurfaceData, points: Sequence[Point], results: Results, draws: int
-) -> list[HeldOut]:
-    """Return the points that at least half of the draws were solved at."""
-    surface, compared = Surface(data), []
-    for place, point in enumerate(points):
-        sense = 'opposing' if point[1] >= 0 else 'assisting'
-        chains = [results.get(f'{place} {draw}') for draw in range(draws)]
-        solved = [chain[sense][0] for chain in chains if chain and chain[sense][0]['converged']]
-        found = surface.lookup(*point)
-        if found.validity is Validity.VALID and 2 * len(solved) >= draws:
-            s = math.log(point[0] / surface.onset_speed(*point[1:]))
-            compared.append(
-                HeldOut(
-                    point,
-                    _cell(data, (s, *point[1:])),
-                    {name: float(getattr(found, name)) for name in FIELDS},
-                    {name: mean_over_draws(solved, name) for name in FIELDS},
-                )
-            )
-    return compared
 
 
 def _cell(data: SurfaceData, place: Sequence[float]) -> tuple[int, int, int]:

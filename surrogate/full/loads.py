@@ -36,6 +36,14 @@ class LoadPieces:
         """Return all magnitudes, rising."""
         return np.union1d(self.shared, self.alone)
 
+    def with_more(self, loads: Array) -> 'LoadPieces':
+        """Return the pieces with more magnitudes [N], each in the piece that it lies within."""
+        ends = self.shared[-1] if self.shared.size else -math.inf
+        return LoadPieces(
+            np.union1d(self.shared, loads[loads < ends]),
+            np.union1d(self.alone, loads[loads >= ends]),
+        )
+
 
 def first_loads(screw: Screw, settings: FullSettings) -> LoadPieces:
     """Return the magnitudes that refinement begins with."""

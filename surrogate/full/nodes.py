@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.full.columns import Columns, covering, records_by_speed, Results
+from surrogate.full.columns import Columns, covering, Records
 from surrogate.full.means import (
     fading,
     joined,
@@ -55,15 +55,15 @@ class Nodes:
 
 
 def gather_nodes(
-    columns: Columns, s: Array, results: Results, temperature: Array, log_onset: Array
+    columns: Columns, s: Array, records: Records, temperature: Array, log_onset: Array
 ) -> Nodes:
     """
-    Return the fields at all `temperature` [K] nodes from the results of `columns.chains(s)`.
+    Return the fields at all `temperature` [K] nodes from the `records` of those solved.
 
     `log_onset` [load, temperature] is the logarithm of the onset speed [rad/s] at these.
 
     """
-    solved, worst = _solved(columns, s, results)
+    solved, worst = _solved(columns, s, records)
     means = _means(columns, s, solved)
     x, wanted = (
         log_viscosity(columns.lubricant, heat) for heat in (columns.temperature, temperature)
@@ -84,21 +84,20 @@ def gather_nodes(
 
 
 def _solved(
-    columns: Columns, s: Array, results: Results
+    columns: Columns, s: Array, records: Records
 ) -> tuple[dict[str, Array], NDArray[np.uint8]]:
     """Return the fields [speed, load, temperature, draw], NaN unless solved, and the contacts."""
     shape = (len(s), len(columns.load), len(columns.temperature))
     values = {name: np.full((*shape, columns.draws), np.nan) for name in (*FIELDS, FAR)}
     places: dict[tuple[int, ...], list[int]] = {}
-    for name, (j, k, draw), solved in columns.chain_nodes(s):
-        sense, chain = SENSES[int(columns.load[j] >= 0)], results.get(name)
-        if chain is None:
-            continue
-        for i, (record,) in zip(solved.tolist(), records_by_speed([chain], sense, len(solved))):
-            if record['converged']:
-                places.setdefault((i, j, k), []).append(record['worst_contact'])
-                for field, column in values.items():
-                    column[i, j, k, draw] = record[field]
+    for i, j, k, draw in np.ndindex(*shape, columns.draws):
+        load = float(columns.load[j])
+        both = records.get((float(s[i]), abs(load), k, draw))
+        record = both[SENSES[int(load >= 0)]] if both else {'converged': False}
+        if record['converged']:
+            places.setdefault((i, j, k), []).append(record['worst_contact'])
+            for field, column in values.items():
+                column[i, j, k, draw] = record[field]
     worst = np.zeros(shape, dtype=np.uint8)
     for node, contacts in places.items():
         worst[node] = commonest(contacts)

@@ -11,7 +11,7 @@ from surrogate.full.chain import solve_chain
 from surrogate.full.columns import Results
 from surrogate.progress import Progress
 from surrogate.tasks.pool import Outcome, Pool, run_tasks
-from surrogate.tasks.store import TaskStore
+from surrogate.tasks.store import task_key, TaskStore
 from surrogate.tasks.worker import Task
 
 
@@ -52,3 +52,19 @@ class ChainRun:
 
         done = run_tasks(self.pool, self.task, chains, store=self.store, report=count)
         return {name: outcome.result for name, outcome in done.items()}
+
+
+@dataclass(slots=True)
+class Once:
+    """Asks a builder's `run` for no chain twice; call it as that `run`."""
+
+    run: Callable[[str, Mapping[str, Mapping[str, Any]]], Results]
+    known: dict[str, Mapping[str, Any] | None] = field(default_factory=dict)
+
+    def __call__(self, purpose: str, chains: Mapping[str, Mapping[str, Any]]) -> Results:
+        """Return the results of named chains, solved now or before."""
+        keys = {name: task_key('', chain) for name, chain in chains.items()}
+        new = {name: chain for name, chain in chains.items() if keys[name] not in self.known}
+        if new:
+            self.known |= {keys[name]: found for name, found in self.run(purpose, new).items()}
+        return {name: self.known[key] for name, key in keys.items()}

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.full.columns import Columns, mean_over_draws, presses, records_by_speed
+from surrogate.full.columns import Columns, mean_over_draws, presses, records_by_speed, ROUNDING
 from surrogate.full.settings import error_target, FullSettings, Run
 from surrogate.full.speed_nodes import refine_nodes, Sample
 
@@ -51,6 +51,15 @@ def find_speed_nodes(
     target = error_target(columns.screw, settings)
     inner = refine_nodes(np.array(first), solve, target, settings.speed_nodes)
     return _extended(inner, low - log_onset.max(), high - log_onset.min())
+
+
+def speed_room(columns: Columns, s: Array, settings: FullSettings) -> int:
+    """Return how many more nodes `speed_nodes` allows within the range of the reference column."""
+    pressed = min(load for load in columns.magnitudes if presses(columns.screw, load))
+    onset = columns.log_onset[columns.place_of(pressed), columns.reference]
+    low, high = (math.log(speed) - onset for speed in settings.speed_range)
+    inside = (s > low - ROUNDING) & (s < high + ROUNDING)
+    return max(0, settings.speed_nodes - int(inside.sum()))
 
 
 def _extended(inner: Array, low: float, high: float) -> Array:
