@@ -10,15 +10,14 @@ for more nodes, these are solved, too. What is solved, and where, is left to the
 
 """
 
-from collections import defaultdict
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
-import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.build import check_ranges, surface_header
-from surrogate.full.columns import Columns, Records
+from surrogate.full.columns import Columns, Node, Records
 from surrogate.full.finer import nodes_for_misses, Room
 from surrogate.full.held_out import cell_errors, held_out_points, HeldOut, Point, solve_held_out
 from surrogate.full.loads import LoadPieces, signed_loads
@@ -69,14 +68,72 @@ class Measured:
     held_out: list[HeldOut]
 
     @property
-    def misses(self) -> dict[Point, float]:
-        """Return the errors over the allowed ones by point, infinite where not known [-]."""
-        return defaultdict(lambda: math.inf, {one.point: one.miss for one in self.held_out})
-
-    @property
     def reached(self) -> float | None:
         """Return the largest error at a held-out point over the allowed one, None without any."""
-        return max((one.miss for one in self.held_out), default=None)
+        return max(self.misses.values(), default=None)
+
+    @property
+    def misses(self) -> dict[Point, float]:
+        """Return the errors over the allowed ones by point [-]."""
+        return {one.point: one.miss for one in self.held_out}
+
+    def is_worse_than(self, other: 'Measured') -> bool:
+        """Tell whether a point is lost or the largest error has grown."""
+        lost = other.misses.keys() - self.misses.keys()
+        return bool(lost) or (self.reached or 0.0) > (other.reached or 0.0)
+
+
+@dataclass(slots=True)
+class Builder:
+    """
+    Solves and measures a surface, with more nodes each time; no node is solved twice.
+
+    `known` are the profiles by the magnitude of the load [N], `heats` the solved temperatures [K],
+    `first` the speed nodes [-] of the first time, `points` those held out then.
+
+    """
+
+    profiles: Profiles
+    known: Mapping[float, Sample]
+    heats: Array
+    first: Array | None = None
+    points: list[Point] | None = None
+    records: dict[Node, Any] = field(default_factory=dict)
+
+    def plan(self, pieces: LoadPieces) -> Plan:
+        """Return the columns of some loads."""
+        screw, lubricant = self.profiles.screw, self.profiles.lubricant
+        settings, heats = self.profiles.settings, self.heats
+        temperature = file_temperatures(
+            lubricant, settings.temperature_range, heats, settings.temperature_nodes
+        )
+        load, breaks = signed_loads(screw, settings, pieces)
+        both = np.union1d(temperature, heats)
+        onset = find_onset(self.profiles, pieces, self.known, load, heats, both)
+        columns = Columns(
+            screw=screw,
+            lubricant=lubricant,
+            load=load,
+            temperature=heats,
+            speed_range=settings.speed_range,
+            draws=settings.draws,
+            shared_draws=settings.shared_draws,
+            log_onset=onset[:, np.isin(both, heats)],
+            grid_wavelength=settings.grid_wavelength,
+            first=self.first,
+        )
+        return Plan(columns, temperature, breaks, onset, both)
+
+    def measure(self, pieces: LoadPieces, s: Array) -> Measured:
+        """Solve what is not known of the speed nodes `s` [-] at some loads, then the points."""
+        plan, settings, run = self.plan(pieces), self.profiles.settings, self.profiles.run
+        columns, purpose = plan.columns, 'more nodes' if self.records else 'nodes'
+        results = run(purpose, columns.chains(s, self.records))
+        self.records |= columns.records(s, results, self.records)
+        data = _surface(plan, s, self.records, settings)
+        if self.points is None:
+            self.points = held_out_points(Surface(data), columns.screw, settings)
+        return Measured(data, solve_held_out(data, self.points, columns, settings, run))
 
 
 def build_full(
@@ -94,76 +151,38 @@ def build_full(
     profiles = Profiles(screw=screw, lubricant=lubricant, settings=settings, run=Once(run))
     heats = solved_temperatures(lubricant, settings.temperature_range)
     pieces, known = find_loads(profiles, middle(heats))
-    plan = _plan(profiles, pieces, known, heats)
-    s = find_speed_nodes(plan.columns, plan.onset, settings, profiles.run)
-    best = _refined(profiles, pieces, known, plan, s)
-    errors = cell_errors(best.data, best.held_out, plan.columns, settings)
-    return replace(best.data, errors=errors, header={**best.data.header, 'reached': best.reached})
+    builder = Builder(profiles, known, heats)
+    plan = builder.plan(pieces)
+    builder.first = find_speed_nodes(plan.columns, plan.onset, settings, profiles.run)
+    first, last = _refined(builder, pieces, speed_room(plan.columns, builder.first, settings))
+    before = first.held_out if last is not first else []
+    errors = cell_errors(last.data, last.held_out, screw, settings, before)
+    return replace(last.data, errors=errors, header={**last.data.header, 'reached': last.reached})
 
 
-def _plan(
-    profiles: Profiles, pieces: LoadPieces, known: Mapping[float, Sample], heats: Array
-) -> Plan:
-    """Return the columns of some loads at the solved temperatures `heats` [K]."""
-    screw, lubricant, settings = profiles.screw, profiles.lubricant, profiles.settings
-    temperature = file_temperatures(
-        lubricant, settings.temperature_range, heats, settings.temperature_nodes
-    )
-    load, breaks = signed_loads(screw, settings, pieces)
-    both = np.union1d(temperature, heats)
-    onset = find_onset(profiles, pieces, known, load, heats, both)
-    columns = Columns(
-        screw=screw,
-        lubricant=lubricant,
-        load=load,
-        temperature=heats,
-        speed_range=settings.speed_range,
-        draws=settings.draws,
-        shared_draws=settings.shared_draws,
-        log_onset=onset[:, np.isin(both, heats)],
-        grid_wavelength=settings.grid_wavelength,
-    )
-    return Plan(columns, temperature, breaks, onset, both)
+def _refined(builder: Builder, pieces: LoadPieces, speeds: int) -> tuple[Measured, Measured]:
+    """
+    Return the surface at first and with nodes added as long as held-out points come nearer by it.
 
+    `speeds` more speed nodes at most [-].
 
-def _refined(
-    profiles: Profiles, pieces: LoadPieces, known: Mapping[float, Sample], plan: Plan, s: Array
-) -> Measured:
-    """Return the surface with nodes added as long as held-out points come nearer by them."""
-    settings, run, heats = profiles.settings, profiles.run, plan.columns.temperature
-    records = _solve(plan.columns, s, {}, run)
-    data = _surface(plan, s, records, settings)
-    points = held_out_points(Surface(data), profiles.screw, settings)
-    found = Measured(data, solve_held_out(data, points, plan.columns, settings, run))
-    asking = found.held_out
+    """
+    settings, screw = builder.profiles.settings, builder.profiles.screw
+    s, target = np.asarray(builder.first), error_target(screw, settings)
+    room = Room(speeds, max(0, settings.load_nodes - len(pieces.magnitudes)))
+    first = last = builder.measure(pieces, s)
+    asking = first.held_out
     while True:
-        more_s, more_loads = _wanted(data, asking, plan.columns, settings)
+        more_s, more_loads = nodes_for_misses(last.data, asking, target, screw.lead, room)
         if not (more_s.size or more_loads.size):
-            return found
+            return first, last
+        room = Room(room.speeds - more_s.size, room.loads - more_loads.size)
         s, pieces = np.union1d(s, more_s), pieces.with_more(more_loads)
-        plan = _plan(profiles, pieces, known, heats)
-        records = {**records, **_solve(plan.columns, s, records, run)}
-        data = _surface(plan, s, records, settings)
-        before = found.misses
-        found = Measured(data, solve_held_out(data, points, plan.columns, settings, run))
-        asking = [one for one in found.held_out if one.miss < GAIN * before[one.point]]
-
-
-def _wanted(
-    data: SurfaceData, asking: Sequence[HeldOut], columns: Columns, settings: FullSettings
-) -> tuple[Array, Array]:
-    """Return speed coordinates [-] and magnitudes of the load [N] for which there is room."""
-    screw = columns.screw
-    speeds = speed_room(columns, data.speed_coordinate, settings)
-    loads = max(0, settings.load_nodes - len(columns.magnitudes))
-    target = error_target(screw, settings)
-    return nodes_for_misses(data, asking, target, screw.lead, Room(speeds, loads))
-
-
-def _solve(columns: Columns, s: Array, known: Records, run: Run) -> Records:
-    """Return the records of nodes that are asked for and not known."""
-    purpose = 'more nodes' if known else 'nodes'
-    return columns.records(s, run(purpose, columns.chains(s, known)), known)
+        found = builder.measure(pieces, s)
+        if found.is_worse_than(last):
+            return first, last
+        misses, last = last.misses, found
+        asking = [one for one in found.held_out if one.miss < GAIN * misses.get(one.point, np.inf)]
 
 
 def _surface(plan: Plan, s: Array, records: Records, settings: FullSettings) -> SurfaceData:

@@ -23,7 +23,8 @@ from surrogate.tiers import screw_and_oil
 WORK = 'full tier 5'
 """Solver and version of what a chain returns; part of the key under which it is kept."""
 FLUX_TOLERANCE = 3e-3
-"""Rest of the flux of a rough contact per line over that of the film [-]; docs/surface.md."""
+"""Rest of the flux of a rough contact per line over that of the film, weighted as there [-];
+docs/contact_solver.md."""
 SENSES = {'opposing': 1.0, 'assisting': -1.0}
 
 

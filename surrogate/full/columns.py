@@ -43,6 +43,7 @@ class Columns:
     Mapped speeds of hot and cold oil differ by far, so that no column needs all speed nodes. All
     `draws` of the roughness are solved at the middle temperature around the onset, and
     `shared_draws` of them elsewhere. Waves shorter than `grid_wavelength` [m] raise the floor.
+    `first` are the speed coordinates [-] before more were added, None for those asked about.
 
     """
 
@@ -55,6 +56,7 @@ class Columns:
     shared_draws: int
     log_onset: Array
     grid_wavelength: float | None = GRID_WAVELENGTH
+    first: Array | None = None
 
     @property
     def magnitudes(self) -> Array:
@@ -91,8 +93,9 @@ class Columns:
         left out: at one mapped speed temperatures differ by a factor that changes slowly.
 
         """
-        sought, common = self.needed(s), self._common(s)
-        skipped = np.setdiff1d(common[1:-1:2], self._far(s))
+        first = s if self.first is None else self.first
+        common, sought = self._common(first), self.needed(s)
+        skipped = np.flatnonzero(np.isin(s, np.setdiff1d(common[1:-1:2], self._far(s))))
         others = np.arange(len(self.temperature)) != self.reference
         sought[np.ix_(skipped, np.arange(len(self.load)), np.flatnonzero(others))] = False
         return sought
@@ -102,25 +105,24 @@ class Columns:
         Return the speed nodes at which all draws are solved.
 
         Where draws differ most, and a far one, where contact has ended and from which on what they
-        differ in changes little; one node beyond the onset where there is none so far.
+        differ in changes little. Both are solved from cold, and what they differ in is much the
+        same just beyond the onset, so the first node there is one of these only if it is the last.
 
         """
-        place, far = np.arange(len(s)), self._far(s)
-        last = self._beyond(s) - 1 if far else self._beyond(s)
-        return np.asarray((s >= NEAR_ONSET[0]) & (place <= last) | np.isin(place, far))
+        near = (s >= NEAR_ONSET[0]) & (s <= NEAR_ONSET[1])
+        return np.asarray(near | np.isin(s, self._far(s)))
 
-    def _common(self, s: Array) -> NDArray[np.intp]:
-        """Return the speed nodes that all loads need at the middle temperature."""
-        return np.flatnonzero(self.needed(s)[:, :, self.reference].all(axis=1))
+    def _common(self, s: Array) -> Array:
+        """Return those of speed nodes that all loads need at the middle temperature."""
+        return np.asarray(s[self.needed(s)[:, :, self.reference].all(axis=1)])
 
-    def _beyond(self, s: Array) -> int:
-        return int(np.searchsorted(s, NEAR_ONSET[1], side='right'))
-
-    def _far(self, s: Array) -> list[int]:
-        """Return the speed node halfway from the end of contact to the fastest common one."""
-        common, beyond = self._common(s), self._beyond(s)
-        last = int(common[-1]) if common.size else 0
-        return [(beyond + last) // 2] if last > beyond else []
+    def _far(self, s: Array) -> Array:
+        """Return the first node halfway from the end of contact to the fastest common one."""
+        first = s if self.first is None else self.first
+        common = self._common(first)
+        beyond = first[first > NEAR_ONSET[1]]
+        ahead = beyond[beyond <= common[-1]] if common.size else beyond[:0]
+        return np.asarray(ahead[[(len(ahead) - 1) // 2]] if len(ahead) > 1 else beyond[:1])
 
     def asked(self, s: Array) -> NDArray[np.bool_]:
         """Return what is solved, over [speed, load, temperature, draw]."""

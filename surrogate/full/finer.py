@@ -5,13 +5,15 @@ More nodes where a held-out point is missed: the axis that is to blame, and the 
 
 To blame is the axis along which the surface moves at the point when one of the nodes beside it is
 left out, by more than the point is missed: with intervals of twice the length errors are four
-times as large and more. That takes no solve. Where no axis is to blame, as with few draws in hot
-and cold oil, nodes would not help.
+times as large and more. That takes no solve. Failing that it is an axis that cannot be tested so,
+as both nodes are ends or breaks. Where no axis is to blame, as with few draws in hot and cold oil,
+nodes would not help.
 
 """
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+import math
 from typing import TypeVar
 
 import numpy as np
@@ -67,18 +69,31 @@ def _to_blame(data: SurfaceData, one: HeldOut, target: Target) -> str | None:
     """
     Return the axis along which a node less moves the surface by more than a miss, if any.
 
-    If there is none, one of whose nodes beside the point none can be left out.
+    Failing that, the first of which nothing is known.
 
     """
-    whole, unknown, changes = _sample(data, one.point), [], {}
-    for axis in AXES:
-        less = [_sample(lacking, one.point) for lacking in _lacking(data, one, axis)]
-        changes[axis] = max((target.worst(sample, whole) for sample in less), default=0.0)
-        unknown += [] if less else [axis]
-    worst = max(changes, key=lambda axis: np.nan_to_num(changes[axis]))
-    if changes[worst] > one.miss:
+    whole = _sample(data, one.point)
+    moved = {
+        axis: [
+            change
+            for less in _lacking(data, one, axis)
+            for change in [target.worst(_sample(less, one.point), whole)]
+            if math.isfinite(change)
+        ]
+        for axis in AXES
+        if not _is_jump(data, one, axis)
+    }
+    worst = max(moved, key=lambda axis: max(moved[axis], default=0.0))
+    if max(moved[worst], default=0.0) > one.miss:
         return worst
-    return unknown[0] if unknown else None
+    return next((axis for axis, changes in moved.items() if not changes), None)
+
+
+def _is_jump(data: SurfaceData, one: HeldOut, axis: str) -> bool:
+    """Tell whether a cell is that across the idle load, between two breaks of one sign."""
+    ends = data.load[[one.cell[1], one.cell[1] + 1]]
+    breaks = np.isin(ends, data.header['load_breaks'])
+    return bool(axis == 'load' and breaks.all() and (ends != 0).all() and ends.prod() > 0)
 
 
 def _lacking(data: SurfaceData, one: HeldOut, axis: str) -> Iterator[SurfaceData]:
@@ -87,7 +102,7 @@ def _lacking(data: SurfaceData, one: HeldOut, axis: str) -> Iterator[SurfaceData
     fixed = [0, len(_axis(data, axis)) - 1]
     if axis == 'load':
         fixed += np.flatnonzero(np.isin(data.load, data.header['load_breaks'])).tolist()
-    for left_out in {place, place + 1} - set(fixed):
+    for left_out in sorted({place, place + 1} - set(fixed)):
         kept = [
             np.setdiff1d(np.arange(len(_axis(data, name))), left_out if name == axis else [])
             for name in AXES

@@ -36,11 +36,12 @@ class HeldOut:
     """
     A solved point: where, its cell, what the lookup and what the mean of the draws says.
 
-    `miss` is the larger error of torque and RCS over the allowed one [-].
+    `miss` is the larger error of efficiency and RCS over the allowed one [-].
 
     """
 
     point: Point
+    speed_coordinate: float
     cell: tuple[int, int, int]
     found: dict[str, float]
     mean: dict[str, float]
@@ -74,7 +75,7 @@ def solve_held_out(
             s = math.log(point[0] / surface.onset_speed(*point[1:]))
             cell = _cell(data, (s, *point[1:]))
             miss = judged(target, point[1], columns.screw.lead).worst(*map(_sample, (here, mean)))
-            compared.append(HeldOut(point, cell, here, mean, miss))
+            compared.append(HeldOut(point, s, cell, here, mean, miss))
     return compared
 
 
@@ -91,21 +92,27 @@ def _mean_of_draws(chains: Sequence[Mapping[str, Any] | None], load: float) -> d
     """Return the means of the fields, none where fewer than half of the draws were solved."""
     sense = 'opposing' if load >= 0 else 'assisting'
     solved = [chain[sense][0] for chain in chains if chain and chain[sense][0]['converged']]
-    enough = 2 * len(solved) >= len(chains)
-    return {name: mean_over_draws(solved, name) for name in FIELDS if enough}
+    if 2 * len(solved) < len(chains):
+        return {}
+    return {name: mean_over_draws(solved, name) for name in FIELDS}
 
 
 def cell_errors(
-    data: SurfaceData, solved: Sequence[HeldOut], columns: Columns, settings: FullSettings
+    data: SurfaceData,
+    solved: Sequence[HeldOut],
+    screw: Screw,
+    settings: FullSettings,
+    before: Sequence[HeldOut] = (),
 ) -> dict[str, Array]:
     """
     Return the errors per field and cell: |lookup - solve|.
 
-    A cell without a point of its own has the largest of its stratum; NaN where none was.
+    A cell without a point of its own has the largest of its stratum, also of the points `before`
+    nodes were added where they lie: those say what to expect elsewhere. NaN where none was.
 
     """
-    bands = load_bands(columns.screw, settings)
-    return {name: _errors(name, data, solved, bands) for name in FIELDS}
+    bands = load_bands(screw, settings)
+    return {name: _errors(name, data, solved, [*solved, *before], bands) for name in FIELDS}
 
 
 def load_bands(screw: Screw, settings: FullSettings) -> list[Ends]:
@@ -168,23 +175,35 @@ def _cell(data: SurfaceData, place: Sequence[float]) -> tuple[int, int, int]:
 
 
 def _errors(
-    name: str, data: SurfaceData, solved: Sequence[HeldOut], bands: Sequence[Ends]
+    name: str,
+    data: SurfaceData,
+    solved: Sequence[HeldOut],
+    judging: Sequence[HeldOut],
+    bands: Sequence[Ends],
 ) -> Array:
     """Return the errors of a field per cell, with unmeasured cells filled from their stratum."""
     axes = (data.speed_coordinate, data.load, data.temperature)
     error = np.full([len(axis) - 1 for axis in axes], np.nan)
     for one in solved:
-        here = abs(one.found[name] - one.mean[name])
-        error[one.cell] = np.fmax(error[one.cell], here)
+        error[one.cell] = np.fmax(error[one.cell], _wrong(one, name))
     s, load, _ = (0.5 * (axis[1:] + axis[:-1]) for axis in axes)
     filled = error.copy()
     for speeds in SPEEDS:
         for loads in bands:
             part = np.ix_(_within(s, speeds), _within(np.abs(load), loads))
-            known = error[part][np.isfinite(error[part])]
-            if known.size:
-                filled[part] = np.where(np.isfinite(error[part]), error[part], known.max())
+            alike = [
+                _wrong(one, name)
+                for one in judging
+                if _within(np.array(one.speed_coordinate), speeds)
+                and _within(np.array(abs(one.point[1])), loads)
+            ]
+            if alike:
+                filled[part] = np.where(np.isfinite(error[part]), error[part], max(alike))
     return filled
+
+
+def _wrong(one: HeldOut, name: str) -> float:
+    return abs(one.found[name] - one.mean[name])
 
 
 def _within(places: Array, ends: Ends) -> NDArray[np.bool_]:

@@ -87,7 +87,7 @@ def middle_spread(
     Return the deviation of draws and the standard error of their mean [speed, load].
 
     Known where all draws are solved; elsewhere carried over the speed, relative to the `mean` but
-    for shares, and fading as the differences do.
+    for shares, which do not deviate where there is no contact, and fading as the differences do.
 
     """
     count = np.where(full[:, None], np.isfinite(values).sum(axis=-1), 0)
@@ -95,7 +95,7 @@ def middle_spread(
     with np.errstate(divide='ignore', invalid='ignore'):
         spread = quiet(np.nanstd, values) * np.sqrt(count / (count - 1.0))
         one = np.where(count > 1, spread if share else spread / mean, np.nan)
-        found = filled(s, one, np.nan) * fade * (1.0 if share else mean)
+        found = filled(s, one, np.nan) * fade * ((mean != 0) if share else mean)
         error = found / np.sqrt(filled(s, np.where(count > 1, count, np.nan), np.nan))
     return np.asarray(found), np.asarray(error)
 

@@ -9,6 +9,7 @@ from typing import Any
 
 from surrogate.full.chain import solve_chain
 from surrogate.full.columns import Results
+from surrogate.full.settings import Run
 from surrogate.progress import Progress
 from surrogate.tasks.pool import Outcome, Pool, run_tasks
 from surrogate.tasks.store import task_key, TaskStore
@@ -56,15 +57,16 @@ class ChainRun:
 
 @dataclass(slots=True)
 class Once:
-    """Asks a builder's `run` for no chain twice; call it as that `run`."""
+    """Asks a builder's `run` for no chain twice, by whatever name; call it as that `run`."""
 
-    run: Callable[[str, Mapping[str, Mapping[str, Any]]], Results]
+    run: Run
     known: dict[str, Mapping[str, Any] | None] = field(default_factory=dict)
 
     def __call__(self, purpose: str, chains: Mapping[str, Mapping[str, Any]]) -> Results:
         """Return the results of named chains, solved now or before."""
         keys = {name: task_key('', chain) for name, chain in chains.items()}
-        new = {name: chain for name, chain in chains.items() if keys[name] not in self.known}
-        if new:
-            self.known |= {keys[name]: found for name, found in self.run(purpose, new).items()}
+        names = {key: name for name, key in keys.items() if key not in self.known}
+        if names:
+            found = self.run(purpose, {name: chains[name] for name in names.values()})
+            self.known |= {key: found[name] for key, name in names.items()}
         return {name: self.known[key] for name, key in keys.items()}

@@ -45,6 +45,31 @@ def test_every_speed_converges_and_keeps_its_promises(chain):
         assert -1e-9 <= found.asperity_share <= found.rcs + 1e-9 <= 1 + 1e-6
 
 
+@pytest.mark.parametrize(
+    ('place', 'tolerance', 'films', 'shares'),
+    [(3, 1e-4, 2e-5, 1e-5), (3, 3e-3, 1e-3, 1e-4), (6, 1e-4, 2e-5, 1e-5), (6, 3e-3, 1e-3, 1e-3)],
+)
+def test_what_is_left_of_the_flux_moves_nothing(
+    chain, nominal, raceway, place, tolerance, films, shares
+):
+    """Against a thousandth of the tolerance: thin films and RCS, as contact begins and grows."""
+    exact, found = (
+        solve_contact(
+            *nominal,
+            Condition(load=27.6, entrainment_speed=SPEEDS[place]),
+            roughness=raceway,
+            settings=replace(SETTINGS, flux_tolerance=flux, error_estimate=False),
+            start=chain[place - 1],
+        )
+        for flux in (1e-3 * tolerance, tolerance)
+    )
+    assert found.residual > 10 * exact.residual
+    assert found.central_film == pytest.approx(exact.central_film, rel=films)
+    assert found.rcs == pytest.approx(exact.rcs, abs=shares)
+    thin = exact.film < 3 * exact.central_film
+    assert found.film[thin] == pytest.approx(exact.film[thin], rel=20 * films)
+
+
 def test_rcs_grows_as_the_speed_falls(chain):
     """From exactly nothing at 1 m/s to all of the load at rest."""
     shares = [found.rcs for found in chain]

@@ -71,6 +71,17 @@ def test_without_a_far_speed_the_first_beyond_the_onset_tells_where_contact_ends
     assert S[short.full(S)].tolist() == [-1.0, 0.0, 1.0]
 
 
+def test_more_speeds_change_nothing_that_was_asked_for(columns):
+    """Those left out in hot and cold oil and the far one stay; every new one is asked for."""
+    more = np.union1d(S, [-1.5, 0.5, 3.5])
+    later = replace(columns, first=S)
+    old, new = np.isin(more, S), np.isin(more, [-1.5, 0.5, 3.5])
+    assert not (later.sought(more)[old] & ~columns.sought(S)).any()
+    assert np.array_equal(later.sought(more)[new], columns.needed(more)[new])
+    assert set(S[columns.full(S)]) < set(more[later.full(more)])
+    assert set(more[later.full(more)]) - set(S) == {0.5}
+
+
 def test_hot_and_cold_oil_leave_out_every_second_speed_of_the_middle(columns):
     """Not the ends, nor what only they need, nor the far speed of all draws."""
     needed, sought = columns.needed(S), columns.sought(S)

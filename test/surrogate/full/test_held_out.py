@@ -103,7 +103,7 @@ def test_errors_stand_in_their_cells_and_strata(coarse, screw, oil, settings, st
 
     points = held_out_points(Surface(coarse), screw, settings)
     solved = solve_held_out(coarse, points, columns, settings, run)
-    errors = cell_errors(coarse, solved, columns, settings)
+    errors = cell_errors(coarse, solved, screw, settings)
     assert max(one.miss for one in solved) == pytest.approx(0.01 / 0.003, rel=0.3)
     s, load = (0.5 * (axis[1:] + axis[:-1]) for axis in (coarse.speed_coordinate, coarse.load))
     beyond = np.ix_(s > NEAR_ONSET[1], np.abs(load) > idle_load(screw))
@@ -111,3 +111,9 @@ def test_errors_stand_in_their_cells_and_strata(coarse, screw, oil, settings, st
     shared = np.ix_(s < NEAR_ONSET[1], np.abs(load) < 0.8 * idle_load(screw))
     assert errors['rcs'][shared].max() < 1e-9
     assert errors['friction_torque'].max() < 1e-9
+    worse = [replace(one, found={**one.found, 'rcs': one.mean['rcs'] + 0.5}) for one in solved[:9]]
+    widened = cell_errors(coarse, solved, screw, settings, worse)['rcs']
+    own = {one.cell for one in solved}
+    assert all(widened[cell] == errors['rcs'][cell] for cell in own)
+    others = [cell for cell in np.ndindex(widened.shape) if cell not in own]
+    assert {round(widened[cell], 9) for cell in others if np.isfinite(widened[cell])} == {0.5}

@@ -5,8 +5,10 @@
 from dataclasses import replace
 from functools import partial
 
+import numpy as np
 import pytest
 from surrogate import tiers
+from surrogate.full import build as full_build
 from surrogate.full import tier as full_tier
 from surrogate.full.run import ChainRun
 from surrogate.full.settings import default_full_settings, FullSettings
@@ -56,6 +58,32 @@ def test_an_interrupted_build_resumes_to_the_same_file(screw, oil, tmp_path, cap
     assert kept == whole.solved
     assert second.solved < whole.solved
     assert 'chains, nodes' in capsys.readouterr().err
+
+
+def test_a_build_interrupted_while_nodes_are_added_resumes_to_the_same_file(
+    screw, oil, tmp_path, here
+):
+    """The last task is one of those: held-out points that were missed are judged as before."""
+    finer = replace(
+        SETTINGS,
+        speed_range=(0.5, 100.0),
+        load_range=(-2000.0, 1000.0),
+        temperature_range=(293.15, 333.15),
+        load_cells=1,
+        held_out=12,
+        accuracy=0.25,
+    )
+    whole, plain = here(), here()
+    data = build(screw, oil, tmp_path / 'whole.npz', whole, finer)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(full_build, 'nodes_for_misses', lambda *of_any: (np.empty(0), np.empty(0)))
+        build(screw, oil, tmp_path / 'plain.npz', plain, finer)
+    assert plain.solved < whole.solved
+    first, second = here(most=whole.solved - 1), here()
+    with pytest.raises(KeyboardInterrupt):
+        build(screw, oil, tmp_path / 'cut.npz', first, finer)
+    assert build(screw, oil, tmp_path / 'cut.npz', second, finer).sha256 == data.sha256
+    assert 0 < second.solved <= whole.solved - plain.solved
 
 
 def test_provenance_counts_the_work_and_is_not_hashed(screw, oil, tmp_path, here):
