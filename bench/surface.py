@@ -6,13 +6,15 @@ Cost of a full-tier surface against the accuracy asked for, and the error that w
 Run `python bench/surface.py [--workers N] [--draws K] [--out DIR] [--accuracy A ...]`: nominal
 screw, ISO VG 68, 39 to 41 degC, which is one solved temperature, full range of speed and load.
 Prints nodes, solved points, processor time of the workers, wall time, how busy the workers were,
-and the errors at held-out points, the largest also over what an accuracy of 1 allows; draws cost
-against error. Each accuracy takes minutes.
+and the errors at held-out points, the largest also over what an accuracy of 1 allows. Each
+accuracy takes minutes, so its row is kept in DIR/surface_cost.csv as soon as it is known, in place
+of the one of the same accuracy and draws; the picture of cost against error shows all rows.
 
 """
 
 import argparse
-from dataclasses import dataclass, replace
+import csv
+from dataclasses import asdict, astuple, dataclass, fields, replace
 from pathlib import Path
 import time
 
@@ -34,6 +36,7 @@ class Cost:
     """One surface: what was asked for, what it took, what it reached."""
 
     accuracy: float
+    draws: int
     nodes: int
     points: int
     seconds: float
@@ -59,6 +62,7 @@ def measure(accuracy, workers, draws):
     errors = Surface(data).errors
     return Cost(
         accuracy=accuracy,
+        draws=draws,
         nodes=int((~data.mask).sum()),
         points=run.points,
         seconds=run.seconds,
@@ -67,6 +71,26 @@ def measure(accuracy, workers, draws):
         rcs_error=errors['rcs'][0],
         reached=(data.header['reached'] or np.nan) * accuracy,
     )
+
+
+def keep(cost, path):
+    """Write the rows of a file with `cost` in place of that of its accuracy and draws."""
+    same = (cost.accuracy, cost.draws)
+    costs = [one for one in kept(path) if (one.accuracy, one.draws) != same] + [cost]
+    with path.open('w', newline='') as file:
+        rows = csv.DictWriter(file, [one.name for one in fields(Cost)], lineterminator='\n')
+        rows.writeheader()
+        rows.writerows(asdict(one) for one in sorted(costs, key=astuple, reverse=True))
+
+
+def kept(path):
+    """Return the rows of a file, none where there is none."""
+    if not path.exists():
+        return []
+    kinds = {one.name: one.type for one in fields(Cost)}
+    with path.open(newline='') as file:
+        rows = list(csv.DictReader(file))
+    return [Cost(**{name: kinds[name](float(row[name])) for name in kinds}) for row in rows]
 
 
 def draw(costs, path):
@@ -83,7 +107,7 @@ def draw(costs, path):
     axes.axhline(1, color='0.4', linestyle=':', label='0.003 in efficiency, 0.003 or 5 % in RCS')
     for cost, minute in zip(costs, minutes):
         axes.annotate(
-            f'{cost.nodes} nodes, {cost.points} points',
+            f'{cost.draws} draws, {cost.points} points, {cost.wall / 60:.0f} min',
             (minute, cost.reached),
             (6, 6),
             textcoords='offset points',
@@ -111,17 +135,17 @@ def main():
     print(
         'accuracy  nodes  points  worker s  wall s  busy  torque error [N m]  RCS error  reached'
     )
-    costs = []
+    table = args.out / 'surface_cost.csv'
     for accuracy in args.accuracy:
         cost = measure(accuracy, args.workers, args.draws)
-        costs.append(cost)
+        keep(cost, table)
         print(
             f'{accuracy:8.1f} {cost.nodes:6d} {cost.points:7d} {cost.seconds:9.0f} '
             f'{cost.wall:7.0f} {cost.seconds / cost.wall / args.workers:5.2f} '
             f'{cost.torque_error:19.2g} {cost.rcs_error:10.2g} {cost.reached:8.2g}',
             flush=True,
         )
-    draw(costs, args.out / 'surface_cost.png')
+    draw(kept(table), args.out / 'surface_cost.png')
 
 
 if __name__ == '__main__':

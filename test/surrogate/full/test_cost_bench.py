@@ -35,4 +35,16 @@ def test_cost_is_measured_and_drawn(bench, stand_in, here, monkeypatch, tmp_path
     coarse, fine = ([float(word) for word in row.split()] for row in rows)
     assert fine[1] > coarse[1]
     assert fine[-1] < coarse[-1]
-    assert [path.name for path in tmp_path.iterdir()] == ['surface_cost.png']
+    files = sorted(path.name for path in tmp_path.iterdir())
+    assert files == ['surface_cost.csv', 'surface_cost.png']
+
+
+def test_rows_are_kept_and_replaced(bench, tmp_path):
+    """By accuracy and draws; numbers come back as they were."""
+    cost = bench.Cost(2.0, 4, 100, 200, 61.5, 31.25, 1e-3, 2e-3, 1.75)
+    finer, other = bench.replace(cost, accuracy=1.0), bench.replace(cost, draws=2)
+    table = tmp_path / 'surface_cost.csv'
+    assert bench.kept(table) == []
+    for one in (finer, cost, other, bench.replace(finer, nodes=7)):
+        bench.keep(one, table)
+    assert bench.kept(table) == [cost, other, bench.replace(finer, nodes=7)]
