@@ -102,8 +102,8 @@ def draw(costs, path):
 
     figure, axes = pyplot.subplots(figsize=(7, 3.6), layout='constrained')
     minutes = np.array([cost.seconds for cost in costs]) / 60
-    axes.loglog(minutes, [cost.reached for cost in costs], 'o', label='reached')
-    axes.loglog(minutes, [cost.accuracy for cost in costs], 'k_', ms=14, label='asked for')
+    axes.semilogy(minutes, [cost.reached for cost in costs], 'o', label='reached')
+    axes.semilogy(minutes, [cost.accuracy for cost in costs], 'k_', ms=14, label='asked for')
     axes.axhline(1, color='0.4', linestyle=':', label='0.003 in efficiency, 0.003 or 5 % in RCS')
     for cost, minute in zip(costs, minutes):
         axes.annotate(
@@ -118,7 +118,8 @@ def draw(costs, path):
         ylabel='largest error over the allowed one [-]',
         title='Full tier, nominal screw, one temperature: cost and error',
     )
-    axes.margins(0.25)
+    axes.margins(y=0.25)
+    axes.set_xlim(0, 1.5 * minutes.max())
     axes.grid(alpha=0.3, which='both')
     axes.legend(fontsize=8)
     figure.savefig(path, dpi=110)
