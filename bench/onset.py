@@ -32,7 +32,8 @@ class Variation:
     """
     One setting of the study.
 
-    Load [N], floor [nm], wavelength [um], grid, patch, window [-], draws.
+    Load [N], floor [nm], wavelength [um], grid, logarithm of viscosity over which the wedge fades,
+    patch, window [-], draws.
 
     """
 
@@ -42,6 +43,7 @@ class Variation:
     shortest_um: float = 16.0
     nx: int = 129
     ny: int = 257
+    fading: float = 2.5
     patch: str = 'rescaled'
     window: float = 1.0
     side: str = 'screw'
@@ -67,6 +69,9 @@ STUDY = (
     replace(BASE, name='window x 2', window=2.0, draws=8, slowest=0.0049),
     replace(FINE, name='load 400 N', load=400.0, ny=513),
     replace(FINE, name='grid 257 x 513', nx=257, ny=513, draws=2),
+    replace(BASE, name='surface grid', nx=97, ny=215, fading=4.0),
+    replace(BASE, name='the same, wedge as base', nx=97, ny=215),
+    replace(FINE, name='100 N, surface grid', load=100.0, nx=97, ny=331, fading=4.0, draws=16),
 )
 
 
@@ -108,6 +113,7 @@ def chain(variation: Variation, draw: int, done: set[tuple[str, int, float]]):
         nx=variation.nx,
         ny=variation.ny,
         film_floor=variation.floor_nm * 1e-9,
+        wedge_fading=variation.fading,
         error_estimate=False,
         time_cap=120.0,
     )

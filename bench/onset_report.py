@@ -205,7 +205,7 @@ def draw_curves(table: dict[str, dict[int, dict[float, float]]], path: Path) -> 
     from matplotlib import pyplot
 
     panels = {
-        'grid': ('base', 'grid 193 x 385', 'grid 257 x 513'),
+        'grid': ('base', 'grid 193 x 385', 'grid 257 x 513', 'surface grid'),
         'shortest wave': ('wave 31 um', 'base', 'wave 14 um', 'wave 9.1 um'),
         'film floor': tuple(FLOORS),
         'load': ('base', 'load 100 N', 'load 400 N'),

@@ -5,7 +5,7 @@ Fourier transforms of many columns at once, compiled, in place, one thread.
 
 Real and imaginary parts are separate arrays of shape (length, columns); every inner loop runs over
 the columns and vectorises. The forward transform leaves its output in digit-reversed order and the
-inverse takes it from there, so a convolution needs no reordering. Lengths are 2^k or 3 * 2^k.
+inverse takes it from there, so a convolution needs no reordering. Lengths are 3^n * 2^k.
 
 """
 
@@ -27,12 +27,16 @@ class Fft(NamedTuple):
 
 
 def good_length(least: int) -> int:
-    """Return the smallest length 2^k or 3 * 2^k, at least 4, that is not below `least`."""
-    power = 4
-    while power < least:
-        power *= 2
-    three_quarters = 3 * power // 4
-    return three_quarters if three_quarters >= max(least, 6) else power
+    """Return the smallest length 3^n * 2^k, k at least 2, that is not below `least`."""
+    best, odd = 4, 1
+    while best < least:
+        best *= 2
+    while 4 * odd < best:
+        length = 4 * odd
+        while length < least:
+            length *= 2
+        best, odd = min(best, length), 3 * odd
+    return best
 
 
 def make_fft(length: int, dtype: DTypeLike) -> Fft:
@@ -44,8 +48,10 @@ def make_fft(length: int, dtype: DTypeLike) -> Fft:
 
 
 def _radices(length: int) -> list[int]:
-    radices = [3] if length % 3 == 0 else []
-    length //= 3 if radices else 1
+    radices = []
+    while length % 3 == 0:
+        radices.append(3)
+        length //= 3
     while length >= 4:
         radices.append(4)
         length //= 4
@@ -68,7 +74,7 @@ def fft_forward(re: Array, im: Array, cos: Array, sin: Array) -> None:
     """Transform the columns; the output is digit-reversed."""
     size = re.shape[0]
     length = size
-    if length % 3 == 0:
+    while length % 3 == 0:
         _forward_3(re, im, length, cos, sin)
         length //= 3
     while length >= 4:
@@ -82,16 +88,18 @@ def fft_forward(re: Array, im: Array, cos: Array, sin: Array) -> None:
 def fft_inverse(re: Array, im: Array, cos: Array, sin: Array) -> None:
     """Invert `fft_forward` but for the factor 1/length, from digit-reversed input."""
     size = re.shape[0]
-    length = 1
-    top = size // 3 if size % 3 == 0 else size
+    length, top = 1, size
+    while top % 3 == 0:
+        top //= 3
     if (top & 0x55555555) == 0:
         _butterfly_2(re, im)
         length = 2
     while length < top:
         length *= 4
         _inverse_4(re, im, length, cos, sin)
-    if top < size:
-        _inverse_3(re, im, size, cos, sin)
+    while length < size:
+        length *= 3
+        _inverse_3(re, im, length, cos, sin)
 
 
 @njit(cache=True, error_model='numpy')

@@ -22,8 +22,6 @@ DENSITY_PRESSURE = 5.9e8
 """Pressure constant of the Dowson-Higginson density [Pa]."""
 ROELANDS_PRESSURE = 1.96e8
 """Reference pressure of the Roelands law [Pa]."""
-STIFF = 2.5
-"""Logarithm of viscosity over which a limited second order fades [-]."""
 LEAST_REACTION = 0.1
 """Least weight of a row in the flux error, where flow outweighs the film by far [-]."""
 
@@ -166,30 +164,31 @@ def limited_change(here: float, before: float) -> tuple[float, float, float]:
 
 @njit(cache=True, error_model='numpy', inline='always')
 def carried_mass(
-    film: Array, i: int, j: int, order: float, limited: bool
+    film: Array, i: int, j: int, order: float, fading: float
 ) -> tuple[float, float, float, float, float]:
     """
     Return rho h [-] that leaves node (i, j) downstream, its slopes in p, h here, p, h before.
 
-    Order 2 extrapolates rho h from the node before, order 1 does not. A `limited` extrapolation
-    is cut where the change is large, and fades where the viscosity is: there the flow hardly
-    depends on pressure, rho h is constant along x and order 1 exact.
+    Order 2 extrapolates rho h from the node before, order 1 does not. With `fading` above 0 what
+    is extrapolated is limited where the change is large, and fades where the logarithm of the
+    viscosity passes that: there the flow hardly depends on pressure, rho h is constant along x
+    and order 1 exact.
 
     """
     k = max(i - 1, 0)
     here, before = film[0, i, j] * film[2, i, j], film[0, k, j] * film[2, k, j]
     drop, in_here, in_before = before - here, -1.0, 1.0
-    share, fading = 0.5 * (order - 1.0), 0.0
-    if limited:
+    share, by_stiffness = 0.5 * (order - 1.0), 0.0
+    if fading > 0.0:
         drop, in_here, in_before = limited_change(here, before)
-        stiff = film[3, i, j] / STIFF
+        stiff = film[3, i, j] / fading
         kept = 1.0 / (1.0 + stiff**4)
-        fading = 4.0 * share * kept * kept * stiff**3 / STIFF * film[4, i, j]
+        by_stiffness = 4.0 * share * kept * kept * stiff**3 / fading * film[4, i, j]
         share *= kept
     by_here, by_before = 1.0 - share * in_here, -share * in_before
     return (
         here - share * drop,
-        by_here * film[1, i, j] * film[2, i, j] + fading * drop,
+        by_here * film[1, i, j] * film[2, i, j] + by_stiffness * drop,
         by_here * film[0, i, j] * film[6, i, j],
         by_before * film[1, k, j] * film[2, k, j],
         by_before * film[0, k, j] * film[6, k, j],
@@ -203,7 +202,7 @@ def reynolds_rows(
     mobility: float,
     aspect: float,
     order: float,
-    limited: bool,
+    fading: float,
     inlet: Array,
     residual: Array,
     by_pressure: Array,
@@ -212,22 +211,23 @@ def reynolds_rows(
     """
     Assemble F = -div(flow grad p) dx + d(rho h)/dx dx and its planes dF/dp, dF/dh.
 
-    `mobility` multiplies all flow factors, `aspect` is (dx/dy)^2; `order` and `limited` as in
-    `carried_mass`. Just outside the first row the pressure is `inlet` times that inside it. Border
-    rows get zero planes. Hertz units [-].
+    `mobility` multiplies all flow factors, `aspect` is (dx/dy)^2; `order` and `fading` as in
+    `carried_mass`, flow factors are limited with it. Just outside the first row the pressure is
+    `inlet` times that inside it. Border rows get zero planes. Hertz units [-].
 
     """
     nx, ny = pressure.shape
+    limited = fading > 0.0
     residual[:] = 0.0
     by_pressure[:] = 0.0
     by_gap[:] = 0.0
     for i in range(1, nx - 1):
         for j in range(1, ny - 1):
             out, out_p, out_h, out_p1, out_h1 = carried_mass(
-                film, i, j, order if i > 1 else 1.0, limited
+                film, i, j, order if i > 1 else 1.0, fading
             )
             come, come_p, come_h, come_p1, come_h1 = carried_mass(
-                film, i - 1, j, order if i > 2 else 1.0, limited
+                film, i - 1, j, order if i > 2 else 1.0, fading
             )
             residual[i, j] = out - come
             by_pressure[0, i, j], by_gap[0, i, j] = out_p, out_h

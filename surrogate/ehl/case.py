@@ -221,7 +221,7 @@ class Case:
             density_gain=gain,
             growth=lubricant.pressure_viscosity * ROELANDS_PRESSURE / exponent,
             order=order,
-            limited=self.limits,
+            fading=self.settings.wedge_fading if self.limits else 0.0,
             inlet=self.inlet(grid),
         )
 

@@ -28,8 +28,8 @@ class Problem:
 
     Heights of the undeformed gap, film floor, load, pressed width along y; dry or not; mobility
     (flow factor over rho h^3/eta, times dx), the numbers of the fluid laws, order of the wedge (1
-    to 2), whether wedge and flow factors are limited, pressure just outside the inlet over that
-    inside per column.
+    to 2), logarithm of the viscosity over which a limited wedge fades to order 1, 0 where wedge
+    and flow factors are not limited, pressure just outside the inlet over that inside per column.
 
     """
 
@@ -44,7 +44,7 @@ class Problem:
     exponent: float
     density_gain: float
     order: float
-    limited: bool
+    fading: float
     inlet: Array
 
 
@@ -132,7 +132,7 @@ def film_rows(
             problem.mobility,
             (grid.dx / grid.dy) ** 2,
             problem.order,
-            problem.limited,
+            problem.fading,
             problem.inlet,
             residual,
             by_pressure,

@@ -20,7 +20,7 @@ from surrogate.screw import rebalance_screw, ScrewSolution, solve_screw
 from surrogate.screw_contacts import GRID_WAVELENGTH, ScrewSettings
 from surrogate.tiers import screw_and_oil
 
-WORK = 'full tier 5'
+WORK = 'full tier 6'
 """Solver and version of what a chain returns; part of the key under which it is kept."""
 FLUX_TOLERANCE = 3e-3
 """Rest of the flux of a rough contact per line over that of the film, weighted as there [-];

@@ -41,6 +41,17 @@ def test_heights_at_nodes_leave_the_domain_alone(nominal):
     assert domain(nominal, wall) == pytest.approx(domain(nominal, lambda x, y: 0 * x))
 
 
+def test_a_tiny_contact_has_room_for_summits_far_from_it(nominal):
+    """A thousandth of the load: the ball rests on a summit four semi-axes beside the middle."""
+    light = Condition(load=0.03, entrainment_speed=0.005)
+    axis = make_case(*nominal, light, Settings(), None).semi_axis_y
+    summit = bump(0.0, 4.0 * axis, 0.2e-6)
+    found = solve_contact(*nominal, light, settings=Settings(nx=97, ny=129), roughness=summit)
+    assert found.converged, found.status.value
+    assert found.asperity_pressure[:, found.y > 3 * axis].max() > 0
+    assert found.y[-1] > 4.5 * axis
+
+
 def test_summits_behind_the_contact_are_solved(nominal):
     """A summit at 1.6 semi-axes touches when dry; on the domain of a smooth contact it is cut."""
     case = make_case(*nominal, SLOW, Settings(), None)

@@ -16,6 +16,7 @@ from surrogate.lubricant import viscosity_roelands_1966
 
 LAWS = {'roelands_dh': (np.log(0.04) + 9.67, 0.55, 0.34), 'barus_incompressible': (4.0, 1.0, 0.0)}
 SCALE, FLOOR, MOBILITY, ASPECT = 0.7e9, 0.02, 3.0, 0.4
+FADING = 2.5
 
 
 def plain_mean(a, b, climbs):
@@ -25,12 +26,12 @@ def plain_mean(a, b, climbs):
     return (np.exp(-a) - np.exp(-b)) / (b - a)
 
 
-def plain_mass(mass, logs, i, j, order, limited):
+def plain_mass(mass, logs, i, j, order, fading):
     """Return what leaves node (i, j) downstream."""
     change, share = mass[i - 1, j] - mass[i, j], 0.5 * (order - 1)
-    if limited:
+    if fading:
         change *= mass[i, j] / (mass[i, j] + abs(change))
-        share /= 1 + (logs[i, j] / 2.5) ** 4
+        share /= 1 + (logs[i, j] / fading) ** 4
     return mass[i, j] - share * change
 
 
@@ -39,8 +40,9 @@ def plain_cube(a, b, series):
     return 2 * (a * b) ** 2 / (a + b) if series else 0.5 * (a**3 + b**3)
 
 
-def plain_rows(pressure, gap, contact, law, order, inlet, limited=True):
+def plain_rows(pressure, gap, contact, law, order, inlet, fading=FADING):
     """Return F of the docstring, node by node."""
+    limited = fading > 0
     growth, exponent, gain = law
     film = np.where(contact, FLOOR, np.maximum(gap, FLOOR))
     density = 1 + gain * pressure * SCALE / (5.9e8 + pressure * SCALE)
@@ -57,8 +59,8 @@ def plain_rows(pressure, gap, contact, law, order, inlet, limited=True):
                 face = MOBILITY * 0.5 * (density[here] + density[there]) * cube
                 face *= plain_mean(logs[here], logs[there], climbs)
                 rows[here] -= weight * face * (outside - pressure[here])
-            rows[i, j] += plain_mass(mass, logs, i, j, order if i > 1 else 1.0, limited)
-            come = plain_mass(mass, logs, i - 1, j, order, limited) if i > 2 else mass[i - 1, j]
+            rows[i, j] += plain_mass(mass, logs, i, j, order if i > 1 else 1.0, fading)
+            come = plain_mass(mass, logs, i - 1, j, order, fading) if i > 2 else mass[i - 1, j]
             rows[i, j] -= come
     return rows
 
@@ -75,32 +77,32 @@ def fields():
     return pressure, gap, contact, np.linspace(0, 0.9, 8)
 
 
-def assembled(pressure, gap, contact, law, order, inlet, limited=True):
+def assembled(pressure, gap, contact, law, order, inlet, fading=FADING):
     """Return F, dF/dp and dF/dh of the kernels."""
     film = np.empty((7, *gap.shape))
     film_properties(pressure, gap, contact, FLOOR, SCALE, *law, film)
     rows, by_p, by_h = np.empty_like(gap), np.empty((6, *gap.shape)), np.empty((6, *gap.shape))
-    reynolds_rows(pressure, film, MOBILITY, ASPECT, order, limited, inlet, rows, by_p, by_h)
+    reynolds_rows(pressure, film, MOBILITY, ASPECT, order, fading, inlet, rows, by_p, by_h)
     return rows, by_p, by_h
 
 
 @pytest.mark.parametrize('law', LAWS.values(), ids=LAWS)
 @pytest.mark.parametrize('order', [1.0, 1.3, 2.0])
-@pytest.mark.parametrize('limited', [False, True])
-def test_rows_are_the_plain_twins(fields, law, order, limited):
+@pytest.mark.parametrize('fading', [0.0, 2.5, 4.0])
+def test_rows_are_the_plain_twins(fields, law, order, fading):
     """Same numbers for both laws and every order of the wedge."""
     pressure, gap, contact, inlet = fields
-    rows, _, _ = assembled(pressure, gap, contact, law, order, inlet, limited)
-    twin = plain_rows(pressure, gap, contact, law, order, inlet, limited)
+    rows, _, _ = assembled(pressure, gap, contact, law, order, inlet, fading)
+    twin = plain_rows(pressure, gap, contact, law, order, inlet, fading)
     assert rows == pytest.approx(twin, rel=1e-12)
 
 
 @pytest.mark.parametrize('law', LAWS.values(), ids=LAWS)
-@pytest.mark.parametrize('limited', [False, True])
-def test_planes_are_the_derivatives(fields, law, limited):
+@pytest.mark.parametrize('fading', [0.0, 2.5, 4.0])
+def test_planes_are_the_derivatives(fields, law, fading):
     """Central differences of every row in every pressure and gap."""
     pressure, gap, contact, inlet = fields
-    _, by_p, by_h = assembled(pressure, gap, contact, law, 2.0, inlet, limited)
+    _, by_p, by_h = assembled(pressure, gap, contact, law, 2.0, inlet, fading)
     steps = ((0, 0), (-1, 0), (1, 0), (0, -1), (0, 1), (-2, 0))
     for field, planes in ((pressure, by_p), (gap, by_h)):
         for i, j in ((1, 3), (2, 2), (3, 3), (5, 4), (7, 6)):
@@ -113,7 +115,7 @@ def test_planes_are_the_derivatives(fields, law, limited):
                     moved = field.copy()
                     moved[place] += sign * 1e-7
                     both = (moved, gap) if field is pressure else (pressure, moved)
-                    ends.append(plain_rows(*both, contact, law, 2.0, inlet, limited)[i, j])
+                    ends.append(plain_rows(*both, contact, law, 2.0, inlet, fading)[i, j])
                 slope = (ends[0] - ends[1]) / 2e-7
                 assert planes[plane, i, j] == pytest.approx(slope, rel=1e-5, abs=1e-6)
 
