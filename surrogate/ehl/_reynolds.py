@@ -195,6 +195,64 @@ def carried_mass(
     )
 
 
+@njit(cache=True, error_model='numpy', inline='always')
+def _pass_on(
+    film: Array,
+    i: int,
+    j: int,
+    order: float,
+    fading: float,
+    residual: Array,
+    by_pressure: Array,
+    by_gap: Array,
+) -> None:
+    """Let the mass that node (i, j) carries downstream leave it and enter the next [-]."""
+    mass, in_p, in_h, in_p1, in_h1 = carried_mass(film, i, j, order, fading)
+    residual[i, j] += mass
+    by_pressure[0, i, j] += in_p
+    by_pressure[1, i, j] += in_p1
+    by_gap[0, i, j] += in_h
+    by_gap[1, i, j] += in_h1
+    k = i + 1
+    residual[k, j] -= mass
+    by_pressure[1, k, j] -= in_p
+    by_pressure[5, k, j] -= in_p1
+    by_gap[1, k, j] -= in_h
+    by_gap[5, k, j] -= in_h1
+
+
+@njit(cache=True, error_model='numpy', inline='always')
+def _push(
+    film: Array,
+    i: int,
+    j: int,
+    k: int,
+    n: int,
+    climbs: bool,
+    series: bool,
+    weight: float,
+    rise: float,
+    residual: Array,
+    by_pressure: Array,
+    by_gap: Array,
+) -> float:
+    """Let the flow that the `rise` of the pressure drives enter (i, j), leave the next (k, n)."""
+    ahead, back = (2, 1) if k > i else (4, 3)
+    flow, in_p, in_p1, in_h, in_h1 = face_flow(film, i, j, k, n, climbs, series)
+    pull, flow = weight * rise, weight * flow
+    residual[i, j] -= flow * rise
+    by_pressure[0, i, j] += flow - in_p * pull
+    by_pressure[ahead, i, j] -= flow + in_p1 * pull
+    by_gap[0, i, j] -= in_h * pull
+    by_gap[ahead, i, j] -= in_h1 * pull
+    residual[k, n] += flow * rise
+    by_pressure[0, k, n] += flow + in_p1 * pull
+    by_pressure[back, k, n] -= flow - in_p * pull
+    by_gap[0, k, n] += in_h1 * pull
+    by_gap[back, k, n] += in_h * pull
+    return flow
+
+
 @njit(cache=True, error_model='numpy')
 def reynolds_rows(
     pressure: Array,
@@ -209,7 +267,7 @@ def reynolds_rows(
     by_gap: Array,
 ) -> None:
     """
-    Assemble F = -div(flow grad p) dx + d(rho h)/dx dx and its planes dF/dp, dF/dh.
+    Assemble F = -div(flow grad p) dx + d(rho h)/dx dx and its planes dF/dp, dF/dh, face by face.
 
     `mobility` multiplies all flow factors, `aspect` is (dx/dy)^2; `order` and `fading` as in
     `carried_mass`, flow factors are limited with it. Just outside the first row the pressure is
@@ -221,34 +279,52 @@ def reynolds_rows(
     residual[:] = 0.0
     by_pressure[:] = 0.0
     by_gap[:] = 0.0
-    for i in range(1, nx - 1):
+    for i in range(nx - 1):
         for j in range(1, ny - 1):
-            out, out_p, out_h, out_p1, out_h1 = carried_mass(
-                film, i, j, order if i > 1 else 1.0, fading
+            _pass_on(film, i, j, order if i > 1 else 1.0, fading, residual, by_pressure, by_gap)
+            before = pressure[i, j] if i > 0 else inlet[j] * pressure[1, j]
+            rise = pressure[i + 1, j] - before
+            flow = _push(
+                film,
+                i,
+                j,
+                i + 1,
+                j,
+                rise > 0.0,
+                limited,
+                mobility,
+                rise,
+                residual,
+                by_pressure,
+                by_gap,
             )
-            come, come_p, come_h, come_p1, come_h1 = carried_mass(
-                film, i - 1, j, order if i > 2 else 1.0, fading
-            )
-            residual[i, j] = out - come
-            by_pressure[0, i, j], by_gap[0, i, j] = out_p, out_h
-            by_pressure[1, i, j], by_gap[1, i, j] = out_p1 - come_p, out_h1 - come_h
-            by_pressure[5, i, j], by_gap[5, i, j] = -come_p1, -come_h1
-            for plane in range(1, 5):
-                k = i + (plane == 2) - (plane == 1)
-                n = j + (plane == 4) - (plane == 3)
-                outside = inlet[j] * pressure[i, j] if k == 0 else pressure[k, n]
-                rise = outside - pressure[i, j]
-                climbs = rise < 0.0 if plane == 1 else rise > 0.0 if plane == 2 else limited
-                flow, in_p, in_p1, in_h, in_h1 = face_flow(film, i, j, k, n, climbs, limited)
-                weight = mobility * (aspect if plane > 2 else 1.0)
-                pull = weight * rise
-                residual[i, j] -= flow * pull
-                by_pressure[0, i, j] += weight * flow - in_p * pull
-                by_pressure[plane, i, j] -= weight * flow + in_p1 * pull
-                by_gap[0, i, j] -= in_h * pull
-                by_gap[plane, i, j] -= in_h1 * pull
-                if k == 0:
-                    by_pressure[0, i, j] -= weight * flow * inlet[j]
+            if i == 0:
+                by_pressure[0, 1, j] -= flow * inlet[j]
+        if i > 0:
+            for j in range(ny - 1):
+                rise = pressure[i, j + 1] - pressure[i, j]
+                _push(
+                    film,
+                    i,
+                    j,
+                    i,
+                    j + 1,
+                    limited,
+                    limited,
+                    mobility * aspect,
+                    rise,
+                    residual,
+                    by_pressure,
+                    by_gap,
+                )
+    for j in (0, ny - 1):
+        residual[:, j] = 0.0
+        by_pressure[:, :, j] = 0.0
+        by_gap[:, :, j] = 0.0
+    for i in (0, nx - 1):
+        residual[i] = 0.0
+        by_pressure[:, i] = 0.0
+        by_gap[:, i] = 0.0
 
 
 @njit(cache=True, error_model='numpy')
