@@ -10,6 +10,7 @@ the grid is too coarse for raise the film floor.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 import math
 
 from surrogate.ehl import Condition, ContactLubricant, ContactSolution, Settings, solve_contact
@@ -115,12 +116,7 @@ def _solve_side(
         smooth = solve_contact(contact, fluid, condition, settings=even, start=known)
     if settings.draw is None or not smooth.converged:
         return smooth, smooth
-    surface = raceway_patch(screw, side, settings.draw)
-    floor = screw.roughness.film_floor
-    cut = settings.grid_wavelength
-    if cut is not None and cut < screw.roughness.sample_length:
-        floor += subgrid_floor(surface, cut)
-        surface = without_short_waves(surface, cut)
+    surface, raised = _on_grid(screw, side, settings.draw, settings.grid_wavelength)
     rough = solve_contact(
         contact,
         fluid,
@@ -128,12 +124,23 @@ def _solve_side(
         roughness=surface.heights,
         settings=replace(
             settings.rough,
-            film_floor=floor,
+            film_floor=screw.roughness.film_floor + raised,
             ny=_nodes_across(settings, smooth.semi_axis_y, surface.shortest_wavelength),
         ),
         start=start[1],
     )
     return smooth, rough
+
+
+@lru_cache(maxsize=8)
+def _on_grid(
+    screw: Screw, side: Side, draw: int, cut: float | None
+) -> tuple[FractalSurface, float]:
+    """Return the raceway with waves down to `cut` [m] and what others lift the floor by [m]."""
+    surface = raceway_patch(screw, side, draw)
+    if cut is None or cut >= screw.roughness.sample_length:
+        return surface, 0.0
+    return without_short_waves(surface, cut), subgrid_floor(surface, cut)
 
 
 def _is_of(

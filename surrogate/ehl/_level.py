@@ -65,8 +65,9 @@ class Level(NamedTuple):
     """
     Jacobian on one grid with what it takes to apply and precondition it.
 
-    Contact nodes by index and as a mask, area of the nodes of a column, row factor of the gap
-    rows; what the Reynolds rows were divided by, zero on the border and on cavitated nodes [-].
+    Contact nodes by index and as a mask, first and last but one row and column of a box with a
+    node to spare around them, area of the nodes of a column, row factor of the gap rows; what the
+    Reynolds rows were divided by, zero on the border and on cavitated nodes [-].
 
     """
 
@@ -74,6 +75,7 @@ class Level(NamedTuple):
     work: Workspace
     nodes: NDArray[np.int64]
     contact: Mask
+    box: tuple[int, int, int, int]
     weights: Array
     inverse: np.floating
     sizes: Array
@@ -223,6 +225,7 @@ def _apply_contact_lines(level: Level, x: Array, out: Array) -> None:
         work.by_pressure,
         work.film_bands,
         level.contact,
+        level.box,
         rhs,
         total,
         LINE_STEPS,

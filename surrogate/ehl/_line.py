@@ -160,6 +160,7 @@ def solve_film_lines(
     by_pressure: Array,
     film_bands: Array,
     contact: Mask,
+    box: tuple[int, int, int, int],
     rhs: Array,
     total: Array,
     steps: int,
@@ -167,26 +168,28 @@ def solve_film_lines(
     work: Array,
     value: Array,
 ) -> None:
-    """Solve for the film pressure [-] on contact nodes; elsewhere it is the total."""
+    """Solve for the film pressure [-] on contact nodes, in `box`; elsewhere it is the total."""
     nx, ny = rhs.shape
+    first, last, left, right = box
     zero = rhs.dtype.type(0)
     work = work[0]
     for i in range(nx):
         for j in range(ny):
             value[i, j] = zero if contact[i, j] else total[i, j]
     for _ in range(steps):
-        for i in range(1, nx - 1):
-            for j in range(1, ny - 1):
+        for i in range(first, last):
+            for j in range(left, right):
                 free = (
                     rhs[i, j]
                     - by_pressure[3, i, j] * value[i, j - 1]
                     - by_pressure[4, i, j] * value[i, j + 1]
                 )
                 work[i, j] = free if contact[i, j] else total[i, j]
-            for j in range(1, ny - 1):
-                work[i, j] -= film_bands[0, i, j] * work[i - 1, j]
-        for i in range(nx - 2, 0, -1):
-            for j in range(1, ny - 1):
+            if i > first:
+                for j in range(left, right):
+                    work[i, j] -= film_bands[0, i, j] * work[i - 1, j]
+        for i in range(last - 1, first - 1, -1):
+            for j in range(left, right):
                 value[i, j] = (work[i, j] - film_bands[2, i, j] * value[i + 1, j]) * film_bands[
                     1, i, j
                 ]

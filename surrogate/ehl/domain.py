@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 RIGID = 1.5
 """Width of the pressure over the semi-axis from which bodies hardly deform [-]."""
-FARTHEST, LINES, PLACES = 6.0, 121, 129
+FARTHEST, LINES, PLACES = 6.0, 61, 129
 """How far outside the Hertz zone summits are sought, over a semi-axis; lines and places on one."""
 
 

@@ -58,10 +58,23 @@ def _level(grid: Grid, contact: Mask, by_pressure: Array, by_gap: Array, sizes: 
         work=work,
         nodes=np.flatnonzero(_own_nodes(grid, contact)),
         contact=contact,
+        box=contact_box(contact),
         weights=grid.weights.astype(KRYLOV_TYPE),
         inverse=KRYLOV_TYPE(1.0 / grid.stiffness),
         sizes=sizes.astype(KRYLOV_TYPE),
     )
+
+
+def contact_box(contact: Mask) -> tuple[int, int, int, int]:
+    """Return first and last row and column about the contact, ends excluded, off the border."""
+    ends: list[int] = []
+    for axis in (1, 0):
+        found = np.flatnonzero(contact.any(axis=axis))
+        last = contact.shape[1 - axis] - 1
+        ends += (
+            [max(int(found[0]) - 1, 1), min(int(found[-1]) + 2, last)] if found.size else [1, 1]
+        )
+    return ends[0], ends[1], ends[2], ends[3]
 
 
 def _coarser(problem: Problem) -> Problem:

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter, minimum_filter
 from surrogate.full.chain import chain_inputs
+from surrogate.full.draws import Calibration
 from surrogate.full.idle import BESIDE, idle_load
 from surrogate.parameters import Lubricant, Screw
 from surrogate.screw_contacts import GRID_WAVELENGTH
@@ -43,7 +44,8 @@ class Columns:
     Mapped speeds of hot and cold oil differ by far, so that no column needs all speed nodes. All
     `draws` of the roughness are solved at the middle temperature around the onset, and
     `shared_draws` of them elsewhere. Waves shorter than `grid_wavelength` [m] raise the floor.
-    `first` are the speed coordinates [-] before more were added, None for those asked about.
+    `first` are the speed coordinates [-] before more were added, None for those asked about;
+    `weigh` weights the draws, None for plain means.
 
     """
 
@@ -57,6 +59,7 @@ class Columns:
     log_onset: Array
     grid_wavelength: float | None = GRID_WAVELENGTH
     first: Array | None = None
+    weigh: Calibration | None = None
 
     @property
     def magnitudes(self) -> Array:

@@ -6,11 +6,11 @@ from bisect import bisect_right
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 import math
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.full.columns import Columns, mean_over_draws, NEAR_ONSET
+from surrogate.full.columns import Columns, NEAR_ONSET
+from surrogate.full.draws import mean_of_draws
 from surrogate.full.idle import idle_load
 from surrogate.full.settings import error_target, FullSettings, Run
 from surrogate.full.speed_nodes import Sample, Target
@@ -66,9 +66,10 @@ def solve_held_out(
     surface, target = Surface(data), error_target(columns.screw, settings)
     compared = []
     for place, point in enumerate(points):
-        mean = _mean_of_draws(
-            [results.get(f'{place} {draw}') for draw in range(settings.draws)], point[1]
-        )
+        sense = 'opposing' if point[1] >= 0 else 'assisting'
+        solved = [results.get(f'{place} {draw}') for draw in range(settings.draws)]
+        records = [chain and chain[sense][0] for chain in solved]
+        mean = mean_of_draws(records, FIELDS, columns.weigh)
         found = surface.lookup(*point)
         if mean and found.validity is Validity.VALID:
             here = {name: float(getattr(found, name)) for name in FIELDS}
@@ -86,15 +87,6 @@ def judged(target: Target, load: float, lead: float) -> Target:
 
 def _sample(fields: Mapping[str, float]) -> Sample:
     return Sample(fields['friction_torque'], fields['rcs'])
-
-
-def _mean_of_draws(chains: Sequence[Mapping[str, Any] | None], load: float) -> dict[str, float]:
-    """Return the means of the fields, none where fewer than half of the draws were solved."""
-    sense = 'opposing' if load >= 0 else 'assisting'
-    solved = [chain[sense][0] for chain in chains if chain and chain[sense][0]['converged']]
-    if 2 * len(solved) < len(chains):
-        return {}
-    return {name: mean_over_draws(solved, name) for name in FIELDS}
 
 
 def cell_errors(

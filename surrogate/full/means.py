@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 from scipy.optimize import least_squares
+from surrogate.full.draws import Calibration, draw_weights, standard_error, weighted_mean
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -48,17 +49,24 @@ def fading(rcs: Array, full: Flags, few: int) -> Array:
 
 
 def middle_mean(
-    s: Array, values: Array, full: Flags, few: int, fade: Array, *, share: bool
+    s: Array,
+    values: Array,
+    full: Flags,
+    few: int,
+    fade: Array,
+    *,
+    share: bool,
+    weigh: Calibration | None = None,
 ) -> Array:
     """
     Return the mean [speed, load] of `values` [speed, load, draw] at the middle temperature.
 
     `full` tells at which speeds all draws are solved; elsewhere the first `few` are, each moved by
     what the mean differs from it, so that one that is lost moves nothing. A share is scaled below
-    the onset by what it lacks of 1, as `fade` is.
+    the onset by what it lacks of 1, as `fade` is. The mean over all draws weighs them by `weigh`.
 
     """
-    whole = quiet(np.nanmean, values)
+    whole = weighted_mean(values, draw_weights(values, weigh))
     if few == values.shape[-1]:
         return whole
     around = full[:, None]
@@ -81,7 +89,14 @@ def _carried(s: Array, around: Flags, whole: Array, one: Array) -> Array:
 
 
 def middle_spread(
-    s: Array, values: Array, mean: Array, full: Flags, fade: Array, *, share: bool
+    s: Array,
+    values: Array,
+    mean: Array,
+    full: Flags,
+    fade: Array,
+    *,
+    share: bool,
+    weigh: Calibration | None = None,
 ) -> tuple[Array, Array]:
     """
     Return the deviation of draws and the standard error of their mean [speed, load].
@@ -90,14 +105,17 @@ def middle_spread(
     for shares, which do not deviate where there is no contact, and fading as the differences do.
 
     """
-    count = np.where(full[:, None], np.isfinite(values).sum(axis=-1), 0)
+    weights, count = draw_weights(values, weigh), np.isfinite(values).sum(axis=-1)
+    off = values - weighted_mean(values, weights)[..., None]
     # With one draw there is no deviation: 0/0 is the answer.
     with np.errstate(divide='ignore', invalid='ignore'):
-        spread = quiet(np.nanstd, values) * np.sqrt(count / (count - 1.0))
-        one = np.where(count > 1, spread if share else spread / mean, np.nan)
-        found = filled(s, one, np.nan) * fade * ((mean != 0) if share else mean)
-        error = found / np.sqrt(filled(s, np.where(count > 1, count, np.nan), np.nan))
-    return np.asarray(found), np.asarray(error)
+        spread = np.sqrt(weighted_mean(off**2, weights) * count / (count - 1.0))
+        own = [spread, standard_error(values, weights, weigh)]
+        known = [np.where(full[:, None], one if share else one / mean, np.nan) for one in own]
+    spread, error = (
+        filled(s, one, np.nan) * fade * ((mean != 0) if share else mean) for one in known
+    )
+    return np.asarray(spread), np.asarray(error)
 
 
 def other_mean(s: Array, own: Array, middle: Array, mean: Array) -> Array:

@@ -125,7 +125,7 @@ def _joined_means(
     share, dry = name in SHARES, fade if name in FRICTION else None
     full, base, few = columns.full(s), columns.reference, columns.few
     sought = columns.sought(s)
-    middle = middle_mean(s, field[:, :, base], full, few, fade, share=share)
+    middle = middle_mean(s, field[:, :, base], full, few, fade, share=share, weigh=columns.weigh)
     parts = [
         middle
         if k == base
@@ -200,8 +200,9 @@ def _spreads(
     deviations: dict[str, Array] = {}
     errors: dict[str, Array] = {}
     for name in SPREAD:
+        values, mean = solved[name][:, :, base], means[name][:, :, base]
         found = middle_spread(
-            s, solved[name][:, :, base], means[name][:, :, base], full, fade, share=name in SHARES
+            s, values, mean, full, fade, share=name in SHARES, weigh=columns.weigh
         )
         for kept, values in zip((deviations, errors), found):
             kept[name] = np.where(mask, np.nan, values[:, :, None])

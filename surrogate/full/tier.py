@@ -15,7 +15,7 @@ import numpy as np
 import scipy
 from surrogate.full.build import build_full
 from surrogate.full.chain import chain_inputs, solve_chain, WORK
-from surrogate.full.columns import mean_over_draws
+from surrogate.full.draws import Calibration, mean_of_draws
 from surrogate.full.run import ChainRun
 from surrogate.full.settings import FullSettings
 from surrogate.parameters import Lubricant, Screw
@@ -74,10 +74,9 @@ def solve_full(
         for draw in range(draws)
     )
     records = [solve_chain(chain)[sense][0] for chain in chains]
-    solved = [record for record in records if record['converged']]
-    if 2 * len(solved) < draws:
-        return {}
-    return {name: mean_over_draws(solved, name) for name in FIELDS}
+    factors = header.get('draw_factors')
+    weigh = Calibration(tuple(factors['squares']), factors['mean']) if factors else None
+    return mean_of_draws(records, FIELDS, weigh)
 
 
 def _provenance(run: ChainRun, seconds: float) -> dict[str, Any]:

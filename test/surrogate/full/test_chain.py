@@ -19,6 +19,8 @@ from surrogate.tiers import screw_and_oil
 
 SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
 WARM = 313.15
+LOOSE = 6e-4
+"""What 0.3 % of the flux changes the torque by at most [-]; docs/surface.md."""
 
 
 def test_sheets_survive_json():
@@ -37,7 +39,7 @@ def test_a_chain_is_the_points_it_says():
             point = OperatingPoint(speed=speed, load=sign * 500.0, temperature=WARM)
             found = solve_screw(SCREW, OIL, point, settings=ScrewSettings(draw=1))
             assert record['converged']
-            assert record['friction_torque'] == pytest.approx(found.friction_torque, rel=1e-4)
+            assert record['friction_torque'] == pytest.approx(found.friction_torque, rel=LOOSE)
             assert record['film_ratio'] == pytest.approx(found.film_ratio, rel=1e-4)
     assert chain['opposing'][0]['friction_torque'] != chain['assisting'][0]['friction_torque']
 
