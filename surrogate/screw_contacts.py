@@ -50,12 +50,10 @@ class ScrewSettings:
     """
 
     smooth: Settings = field(default_factory=Settings)
-    rough: Settings = field(
-        default_factory=lambda: Settings(nx=97, ny=129, wedge_fading=4.0, error_estimate=False)
-    )
+    rough: Settings = field(default_factory=lambda: Settings(nx=129, ny=257, error_estimate=False))
     draw: int | None = 0
     grid_wavelength: float | None = GRID_WAVELENGTH
-    nodes_per_wave: float = 5.0
+    nodes_per_wave: float = 6.0
     inlet_heating: bool = False
     coupling_tolerance: float = 0.01
 

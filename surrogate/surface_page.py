@@ -51,6 +51,7 @@ def info_record(path: Path, data: SurfaceData) -> dict[str, Any]:
             for name in FIELD_TEXTS
             if name in data.deviations or name in data.standard_errors
         },
+        'draw_factors': data.header.get('draw_factors'),
         'certified_s': data.header.get('certified_s'),
         'accuracy_reached': data.header.get('reached'),
         'settings': dict(data.header['settings']),
@@ -121,6 +122,12 @@ def _head(record: Mapping[str, Any]) -> Iterator[str]:
 
 def _full_tier(record: Mapping[str, Any]) -> Iterator[str]:
     """Yield what a full-tier builder says of its result."""
+    factors = record['draw_factors']
+    if factors is not None:
+        yield (
+            f'  draws        {len(factors["squares"])}, weighted so that the mean square of their '
+            f'scale is that of many: {factors["mean"]:.3g}'
+        )
     if record['certified_s'] is not None:
         times = math.exp(record['certified_s'])
         yield f'  certified    no draw is near contact from {times:.3g} times the onset speed on'
