@@ -125,8 +125,8 @@ def _full_tier(record: Mapping[str, Any]) -> Iterator[str]:
     factors = record['draw_factors']
     if factors is not None:
         yield (
-            f'  draws        {len(factors["squares"])}, weighted so that the mean square of their '
-            f'scale is that of many: {factors["mean"]:.3g}'
+            f'  draws        {len(factors["powers"])}, weighted so that their patches are scaled '
+            f'as those of many are: mean fourth power {factors["mean"]:.3g}'
         )
     if record['certified_s'] is not None:
         times = math.exp(record['certified_s'])

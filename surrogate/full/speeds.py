@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 REFERENCE_DRAWS = 4
 OUTER_STEP = 2.0
 """Distance of speed nodes beyond those of the reference column [-]."""
-FIRST_NODES = (-1.2, -0.6, -0.2, 0.0, 0.2, 0.6, 1.5)
+FIRST_NODES = (-1.2, -0.6, -0.2, 0.0, 0.2, 0.4, 0.8, 1.5)
 """Speed coordinates between the ends with which the refinement begins [-]."""
 
 

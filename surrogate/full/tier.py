@@ -75,7 +75,7 @@ def solve_full(
     )
     records = [solve_chain(chain)[sense][0] for chain in chains]
     factors = header.get('draw_factors')
-    weigh = Calibration(tuple(factors['squares']), factors['mean']) if factors else None
+    weigh = Calibration(tuple(factors['powers']), factors['mean']) if factors else None
     return mean_of_draws(records, FIELDS, weigh)
 
 

@@ -68,6 +68,7 @@ def test_impossible_oils_are_refused(nominal, change):
         {'film_floor': 0.0},
         {'time_cap': -1.0},
         {'wedge_order': 3},
+        {'wedge_fading': 0.0},
     ],
 )
 def test_impossible_settings_are_refused(change):

@@ -69,7 +69,7 @@ def test_draws_from_eight_on_are_weighted(screw, oil, stand_in, monkeypatch):
     few = replace(SETTINGS, draws=8, held_out=3, load_range=(0.0, 900.0))
     data = build_full(screw, oil, few, stand_in.run)
     weigh = calibration(screw, 8)
-    assert data.header['draw_factors'] == {'squares': weigh.squares, 'mean': weigh.mean}
+    assert data.header['draw_factors'] == {'powers': weigh.powers, 'mean': weigh.mean}
     i, j, k = int(np.argmin(np.abs(data.speed_coordinate))), 0, 1
     speed = math.exp(data.speed_coordinate[i] + data.log_onset[j, k])
     load, heat = float(data.load[j]), float(data.temperature[k])
@@ -187,13 +187,13 @@ def test_info_says_what_is_certified_and_what_was_reached(data, tmp_path):
     path = tmp_path / 'full.npz'
     for known in (True, False):
         told = {'certified_s': 1.0, 'reached': 2.5} if known else {}
-        told |= {'draw_factors': {'squares': [3.0, 4.0], 'mean': 3.8}} if known else {}
+        told |= {'draw_factors': {'powers': [13.0, 24.0], 'mean': 18.0}} if known else {}
         header = {**data.header, 'certified_s': None, 'reached': None, **told}
         surface_file.write(path, replace(data, header=header))
         page = info_page(info_record(path, surface_file.read(path)))
         assert ('from 2.72 times the onset speed on' in page) is known
         assert ('1 was aimed at, the worst held-out point reaches 2.5' in page) is known
-        assert ('2, weighted so that the mean square of their scale' in page) is known
+        assert ('2, weighted so that their patches' in page) is known
 
 
 def test_accuracy_is_not_known_without_a_held_out_point(screw, oil, stand_in):

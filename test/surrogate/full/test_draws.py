@@ -22,25 +22,25 @@ from surrogate.full.draws import (
 from surrogate.parameters import load_screw
 from surrogate.screw_contacts import raceway_patch
 
-SQUARES = (1.4, 5.1, 3.3, 2.0, 4.4, 2.9, 6.2, 3.8, 1.9, 2.4)
-WEIGH = Calibration(SQUARES, 3.9)
-ALL = np.ones(len(SQUARES), bool)
+POWERS = (1.4, 5.1, 3.3, 2.0, 4.4, 2.9, 6.2, 3.8, 1.9, 2.4)
+WEIGH = Calibration(POWERS, 3.9)
+ALL = np.ones(len(POWERS), bool)
 
 
 @given(
-    squares=st.lists(st.floats(1.0, 9.0), min_size=2, max_size=24),
+    powers=st.lists(st.floats(1.0, 9.0), min_size=2, max_size=24),
     place=st.floats(0.05, 0.95),
     lost=st.integers(0, 23),
 )
 @settings(deadline=None, max_examples=200)
-def test_known_draws_have_the_mean_of_the_population(squares, place, lost):
+def test_known_draws_have_the_mean_of_the_population(powers, place, lost):
     """Positive weights with the sum 1; even ones where no such weights are moderate."""
-    known = np.arange(len(squares)) != lost
-    x = np.array(squares)[known]
+    known = np.arange(len(powers)) != lost
+    x = np.array(powers)[known]
     if np.ptp(x) < 1e-3:
         return
     mean = float(x.min() + place * np.ptp(x))
-    weights = Calibration(tuple(squares), mean).weights(known)
+    weights = Calibration(tuple(powers), mean).weights(known)
     assert weights.sum() == pytest.approx(1.0)
     assert (weights[known] > 0).all()
     assert not weights[~known].any()
@@ -48,14 +48,14 @@ def test_known_draws_have_the_mean_of_the_population(squares, place, lost):
     assert even or weights[known] @ x == pytest.approx(mean, rel=1e-9)
 
 
-def test_a_field_that_is_linear_in_the_square_is_found_without_error():
+def test_a_field_that_is_linear_in_the_power_is_found_without_error():
     """Whatever draws failed; the error that is left is that of the population's mean."""
-    values = np.tile(0.2 + 0.3 * np.array(SQUARES), (4, 1))
+    values = np.tile(0.2 + 0.3 * np.array(POWERS), (4, 1))
     values[1, 2] = values[2, [0, 7]] = np.nan
     weights = draw_weights(values, WEIGH)
     assert weighted_mean(values, weights) == pytest.approx(0.2 + 0.3 * WEIGH.mean, rel=1e-9)
     error = standard_error(values, weights, WEIGH)
-    x, own = np.array(SQUARES), weights[0]
+    x, own = np.array(POWERS), weights[0]
     spread = math.sqrt(own @ (x - own @ x) ** 2)
     assert error[0] == pytest.approx(0.3 * spread / math.sqrt(POPULATION), rel=1e-6)
 
@@ -79,8 +79,8 @@ def test_the_stated_error_is_the_scatter_of_the_mean():
     x = drawn.gamma(9.0, 0.4, (2000, 16))
     values = 0.02 * x + 0.02 * drawn.normal(size=x.shape)
     calibrated, plain, stated = [], values.mean(axis=-1).std(), []
-    for squares, row in zip(x, values, strict=True):
-        weigh = Calibration(tuple(squares), 3.6)
+    for powers, row in zip(x, values, strict=True):
+        weigh = Calibration(tuple(powers), 3.6)
         weights = draw_weights(row, weigh)
         calibrated.append(weighted_mean(row, weights))
         stated.append(standard_error(row, weights, weigh))
@@ -92,7 +92,7 @@ def test_the_stated_error_is_the_scatter_of_the_mean():
 
 def test_no_weights_where_all_known_draws_lie_on_one_side():
     """Then nothing is known of the other, and the mean is the plain one."""
-    known = np.array(SQUARES) < WEIGH.mean
+    known = np.array(POWERS) < WEIGH.mean
     assert WEIGH.weights(known)[known] == pytest.approx(1 / known.sum())
     assert not WEIGH.weights(~ALL).any()
 
@@ -102,19 +102,17 @@ def test_factors_are_those_of_the_raceway():
     screw = load_screw('nominal')
     assert calibration(screw, LEAST_DRAWS - 1) is None
     weigh = calibration(screw, LEAST_DRAWS)
-    assert weigh.squares[3] == raceway_patch(screw, 'screw', 3).scale ** 2
-    assert len(weigh.squares) == LEAST_DRAWS
-    nut = [raceway_patch(screw, 'nut', draw).scale ** 2 for draw in range(LEAST_DRAWS)]
-    assert nut == pytest.approx(weigh.squares, rel=0.06)
+    assert weigh.powers[3] == raceway_patch(screw, 'screw', 3).scale ** 4
+    assert len(weigh.powers) == LEAST_DRAWS
+    nut = [raceway_patch(screw, 'nut', draw).scale ** 4 for draw in range(LEAST_DRAWS)]
+    assert nut == pytest.approx(weigh.powers, rel=0.12)
     assert calibration(screw, 16).mean == weigh.mean
     assert Calibration(**asdict(weigh)) == weigh
 
 
 def test_records_of_draws_have_one_mean():
     """A chain that failed or a draw that did not converge is left out, half of them at most."""
-    records = [
-        {'converged': True, 'rcs': 0.1 * square, 'torque': 2.0 - square} for square in SQUARES
-    ]
+    records = [{'converged': True, 'rcs': 0.1 * power, 'torque': 2.0 - power} for power in POWERS]
     records[1] = None
     records[4] = {'converged': False, 'rcs': math.nan, 'torque': math.nan}
     found = mean_of_draws(records, ('rcs', 'torque'), WEIGH)
