@@ -18,7 +18,6 @@ import numpy as np
 from numpy.typing import NDArray
 from surrogate.build import check_ranges, surface_header
 from surrogate.full.columns import Columns, Node, Records
-from surrogate.full.draws import calibration
 from surrogate.full.finer import nodes_for_misses, Room
 from surrogate.full.held_out import cell_errors, held_out_points, HeldOut, Point, solve_held_out
 from surrogate.full.loads import LoadPieces, signed_loads
@@ -122,7 +121,6 @@ class Builder:
             log_onset=onset[:, np.isin(both, heats)],
             grid_wavelength=settings.grid_wavelength,
             first=self.first,
-            weigh=calibration(screw, settings.draws),
         )
         return Plan(columns, temperature, breaks, onset, both)
 
@@ -195,8 +193,9 @@ def _surface(plan: Plan, s: Array, records: Records, settings: FullSettings) -> 
         raise InputError('screw: no point of the surface converged, see the reasons above')
     header = surface_header(columns.screw, columns.lubricant, settings, plan.breaks, TIER)
     header |= {'format_version': format_version(True), 'certified_s': nodes.certified}
-    if columns.weigh is not None:
-        header['draw_factors'] = asdict(columns.weigh)
+    weigh = columns.weigh
+    if weigh is not None:
+        header['draw_factors'] = asdict(weigh)
     cells = [len(axis) - 1 for axis in (s, columns.load, temperature)]
     return SurfaceData(
         header=header,

@@ -88,9 +88,9 @@ def _solved(
 ) -> tuple[dict[str, Array], NDArray[np.uint8]]:
     """Return the fields [speed, load, temperature, draw], NaN unless solved, and the contacts."""
     shape = (len(s), len(columns.load), len(columns.temperature))
-    values = {name: np.full((*shape, columns.draws), np.nan) for name in (*FIELDS, FAR)}
+    values = {name: np.full((*shape, columns.most), np.nan) for name in (*FIELDS, FAR)}
     places: dict[tuple[int, ...], list[int]] = {}
-    for i, j, k, draw in np.ndindex(*shape, columns.draws):
+    for i, j, k, draw in np.ndindex(*shape, columns.most):
         load = float(columns.load[j])
         both = records.get((float(s[i]), abs(load), k, draw))
         record = both[SENSES[int(load >= 0)]] if both else {'converged': False}

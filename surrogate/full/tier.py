@@ -15,7 +15,7 @@ import numpy as np
 import scipy
 from surrogate.full.build import build_full
 from surrogate.full.chain import chain_inputs, solve_chain, WORK
-from surrogate.full.draws import Calibration, mean_of_draws
+from surrogate.full.draws import Calibration, draws_at, mean_of_draws
 from surrogate.full.run import ChainRun
 from surrogate.full.settings import FullSettings
 from surrogate.parameters import Lubricant, Screw
@@ -65,7 +65,10 @@ def solve_full(
 
     """
     screw, lubricant = screw_and_oil(header['inputs'])
+    factors = header.get('draw_factors')
     draws = int(header['settings']['draws'])
+    # Files of builders that did not weight draws had as many at all loads.
+    draws = draws_at(screw, draws, load) if factors else draws
     sense = 'opposing' if load >= 0 else 'assisting'
     # Files of builders that had no such setting were solved with its default.
     wavelength = header['settings'].get('grid_wavelength', GRID_WAVELENGTH)
@@ -74,7 +77,6 @@ def solve_full(
         for draw in range(draws)
     )
     records = [solve_chain(chain)[sense][0] for chain in chains]
-    factors = header.get('draw_factors')
     weigh = Calibration(tuple(factors['powers']), factors['mean']) if factors else None
     return mean_of_draws(records, FIELDS, weigh)
 

@@ -65,27 +65,31 @@ def test_file_of_the_full_tier_is_read_back(data, tmp_path):
 
 
 def test_draws_from_eight_on_are_weighted(screw, oil, stand_in, monkeypatch):
-    """Nodes, a check of the file and held-out points take the same weights."""
-    few = replace(SETTINGS, draws=8, held_out=3, load_range=(0.0, 900.0))
+    """Nodes and a check of the file take the same weights; at the last load of twice as many."""
+    few = replace(SETTINGS, draws=8, held_out=3, load_range=(0.0, 2700.0))
     data = build_full(screw, oil, few, stand_in.run)
-    weigh = calibration(screw, 8)
+    weigh = calibration(screw, 16)
     assert data.header['draw_factors'] == {'powers': weigh.powers, 'mean': weigh.mean}
-    i, j, k = int(np.argmin(np.abs(data.speed_coordinate))), 0, 1
-    speed = math.exp(data.speed_coordinate[i] + data.log_onset[j, k])
-    load, heat = float(data.load[j]), float(data.temperature[k])
-    records = [
-        stand_in.solve(chain_inputs(screw, oil, load, heat, draw, [speed]))['opposing'][0]
-        for draw in range(8)
-    ]
-    mean = mean_of_draws(records, FIELDS, weigh)
-    plain = float(np.mean([record['rcs'] for record in records]))
-    assert data.fields['rcs'][i, j, k] == pytest.approx(mean['rcs'], rel=1e-9)
-    assert mean['rcs'] != pytest.approx(plain, rel=1e-3)
-    monkeypatch.setattr(tier, 'solve_chain', stand_in.solve)
     header = json.loads(json.dumps(data.header))
-    assert tier.solve_full(header, speed, load, heat) == pytest.approx(mean, rel=1e-9)
     without = {name: value for name, value in header.items() if name != 'draw_factors'}
-    assert tier.solve_full(without, speed, load, heat)['rcs'] == pytest.approx(plain, rel=1e-9)
+    monkeypatch.setattr(tier, 'solve_chain', stand_in.solve)
+    i, k = int(np.argmin(np.abs(data.speed_coordinate))), 1
+    heat = float(data.temperature[k])
+    for j, draws in ((0, 8), (-1, 16)):
+        load, speed = (
+            float(data.load[j]),
+            math.exp(data.speed_coordinate[i] + data.log_onset[j, k]),
+        )
+        records = [
+            stand_in.solve(chain_inputs(screw, oil, load, heat, draw, [speed]))['opposing'][0]
+            for draw in range(draws)
+        ]
+        mean = mean_of_draws(records, FIELDS, weigh)
+        plain = float(np.mean([record['rcs'] for record in records[:8]]))
+        assert data.fields['rcs'][i, j, k] == pytest.approx(mean['rcs'], rel=1e-9)
+        assert mean['rcs'] != pytest.approx(plain, rel=1e-3)
+        assert tier.solve_full(header, speed, load, heat) == pytest.approx(mean, rel=1e-9)
+        assert tier.solve_full(without, speed, load, heat)['rcs'] == pytest.approx(plain, rel=1e-9)
 
 
 def test_onset_is_near_rcs_of_one_percent(mean):

@@ -13,12 +13,14 @@ from surrogate.full.draws import (
     Calibration,
     calibration,
     draw_weights,
+    draws_at,
     LEAST_DRAWS,
     mean_of_draws,
     POPULATION,
     standard_error,
     weighted_mean,
 )
+from surrogate.full.idle import idle_load
 from surrogate.parameters import load_screw
 from surrogate.screw_contacts import raceway_patch
 
@@ -110,6 +112,15 @@ def test_factors_are_those_of_the_raceway():
     assert Calibration(**asdict(weigh)) == weigh
 
 
+def test_draws_are_doubled_on_the_verge_of_the_idle_load():
+    """From eight on; not beyond it, where the relieved balls carry nothing."""
+    screw = load_screw('nominal')
+    idle = idle_load(screw)
+    loads = [0.0, 0.9 * idle, 0.97 * idle, -0.999 * idle, 1.001 * idle, 2 * idle]
+    assert [draws_at(screw, 16, load) for load in loads] == [16, 16, 32, 32, 16, 16]
+    assert {draws_at(screw, 7, load) for load in loads} == {7}
+
+
 def test_records_of_draws_have_one_mean():
     """A chain that failed or a draw that did not converge is left out, half of them at most."""
     records = [{'converged': True, 'rcs': 0.1 * power, 'torque': 2.0 - power} for power in POWERS]
@@ -118,3 +129,5 @@ def test_records_of_draws_have_one_mean():
     found = mean_of_draws(records, ('rcs', 'torque'), WEIGH)
     assert found == pytest.approx({'rcs': 0.39, 'torque': -1.9}, rel=1e-9)
     assert mean_of_draws([None] * 6 + records[6:], ('rcs',), WEIGH) == {}
+    more = Calibration((*POWERS, 3.0, 4.0), WEIGH.mean)
+    assert mean_of_draws(records, ('rcs', 'torque'), more) == pytest.approx(found, rel=1e-12)
