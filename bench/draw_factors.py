@@ -11,7 +11,6 @@ with their standard errors, and that of all, and draws RCS over the factor. Take
 
 import argparse
 from concurrent.futures import ProcessPoolExecutor
-from functools import partial
 import math
 import multiprocessing
 from pathlib import Path
@@ -19,7 +18,7 @@ import sys
 
 import numpy as np
 from surrogate.full.chain import chain_inputs, solve_chain
-from surrogate.full.draws import calibration, draw_weights, standard_error, weighted_mean
+from surrogate.full.draws import Draws, draws_of, weighted_mean
 from surrogate.parameters import load_lubricant, load_screw
 
 FEW = 16
@@ -35,10 +34,11 @@ def rcs_of(draw: int) -> list[float]:
     return [row['rcs'] if row['converged'] else math.nan for row in chain['opposing']]
 
 
-def summary(rcs: np.ndarray, weigh) -> tuple[float, float]:
-    """Return the mean over draws and its standard error [-]."""
-    weights = draw_weights(rcs, weigh)
-    return float(weighted_mean(rcs, weights)), float(standard_error(rcs, weights, weigh))
+def summary(rcs: np.ndarray, draws: Draws) -> tuple[float, float]:
+    """Return the mean over the first draws and its standard error [-]."""
+    known = rcs[: draws.count]
+    weights = draws.weights(known, 0.0)
+    return float(weighted_mean(known, weights)), float(draws.standard_error(known, weights))
 
 
 def draw_figure(rcs: np.ndarray, factors: np.ndarray, path: Path) -> None:
@@ -77,25 +77,23 @@ def main() -> None:
     parser.add_argument('--workers', type=int, default=2)
     parser.add_argument('--out', type=Path, default=Path('docs'))
     args = parser.parse_args()
+    if args.draws < FEW:
+        parser.error(f'--draws is {args.draws}, allowed is {FEW} or more')
+    screw = load_screw('nominal')
     spawn = multiprocessing.get_context('spawn')
     with ProcessPoolExecutor(args.workers, mp_context=spawn) as pool:
         rcs = np.array(list(pool.map(rcs_of, range(args.draws))))
-    weigh = partial(calibration, load_screw('nominal'))
+    few, every = draws_of(screw, FEW), draws_of(screw, args.draws)
+    powers = np.array(every.powers[: args.draws])
     print('rev/min  correlation  plain 16         weighted 16      plain all        weighted all')
     for rpm, column in zip(RPM, rcs.T, strict=True):
-        powers = np.array(weigh(args.draws).powers)
         known = np.isfinite(column)
         alike = float(np.corrcoef(powers[known], column[known])[0, 1])
-        cases = (
-            (FEW, None),
-            (FEW, weigh(FEW)),
-            (args.draws, None),
-            (args.draws, weigh(args.draws)),
-        )
-        told = (summary(column[:count], calibrated) for count, calibrated in cases)
+        cases = (Draws(FEW), few, Draws(args.draws), every)
+        told = (summary(column, draws) for draws in cases)
         texts = (f'{mean:.4f} +- {error:.4f}' for mean, error in told)
         print(f'{rpm:7g}  {alike:11.2f}  {"  ".join(texts)}', flush=True)
-    draw_figure(rcs, np.array(weigh(args.draws).powers) ** 0.25, args.out / 'draw_factors.png')
+    draw_figure(rcs, powers**0.25, args.out / 'draw_factors.png')
 
 
 if __name__ == '__main__':

@@ -51,7 +51,7 @@ def info_record(path: Path, data: SurfaceData) -> dict[str, Any]:
             for name in FIELD_TEXTS
             if name in data.deviations or name in data.standard_errors
         },
-        'draw_factors': data.header.get('draw_factors'),
+        'weighted_draws': data.header.get('weighted_draws'),
         'certified_s': data.header.get('certified_s'),
         'accuracy_reached': data.header.get('reached'),
         'settings': dict(data.header['settings']),
@@ -122,11 +122,11 @@ def _head(record: Mapping[str, Any]) -> Iterator[str]:
 
 def _full_tier(record: Mapping[str, Any]) -> Iterator[str]:
     """Yield what a full-tier builder says of its result."""
-    factors = record['draw_factors']
-    if factors is not None:
+    weighted = record['weighted_draws']
+    if weighted is not None:
         yield (
-            f'  draws        {len(factors["powers"])}, weighted so that their patches are scaled '
-            f'as those of many are: mean fourth power {factors["mean"]:.3g}'
+            f'  draws        {weighted["count"]}, {len(weighted["powers"])} near the idle load, '
+            'weighted so that their patches are scaled as those of many'
         )
     if record['certified_s'] is not None:
         times = math.exp(record['certified_s'])

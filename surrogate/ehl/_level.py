@@ -65,9 +65,10 @@ class Level(NamedTuple):
     """
     Jacobian on one grid with what it takes to apply and precondition it.
 
-    Contact nodes by index and as a mask, first and last but one row and column of a box with a
-    node to spare around them, area of the nodes of a column, row factor of the gap rows; what the
-    Reynolds rows were divided by, zero on the border and on cavitated nodes [-].
+    Contact nodes by index and as a mask, first row, end of the rows, first column and end of the
+    columns of a box with a node to spare around them, area of the nodes of a column, row factor of
+    the gap rows; what the Reynolds rows were divided by, zero on the border and on cavitated nodes
+    [-].
 
     """
 

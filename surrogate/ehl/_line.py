@@ -170,14 +170,14 @@ def solve_film_lines(
 ) -> None:
     """Solve for the film pressure [-] on contact nodes, in `box`; elsewhere it is the total."""
     nx, ny = rhs.shape
-    first, last, left, right = box
+    first, end, left, right = box
     zero = rhs.dtype.type(0)
     work = work[0]
     for i in range(nx):
         for j in range(ny):
             value[i, j] = zero if contact[i, j] else total[i, j]
     for _ in range(steps):
-        for i in range(first, last):
+        for i in range(first, end):
             for j in range(left, right):
                 free = (
                     rhs[i, j]
@@ -188,7 +188,7 @@ def solve_film_lines(
             if i > first:
                 for j in range(left, right):
                     work[i, j] -= film_bands[0, i, j] * work[i - 1, j]
-        for i in range(last - 1, first - 1, -1):
+        for i in range(end - 1, first - 1, -1):
             for j in range(left, right):
                 value[i, j] = (work[i, j] - film_bands[2, i, j] * value[i + 1, j]) * film_bands[
                     1, i, j

@@ -66,7 +66,7 @@ def _level(grid: Grid, contact: Mask, by_pressure: Array, by_gap: Array, sizes: 
 
 
 def contact_box(contact: Mask) -> tuple[int, int, int, int]:
-    """Return first and last row and column about the contact, ends excluded, off the border."""
+    """Return first row, end of the rows, first column, end of the columns about the contact."""
     ends: list[int] = []
     for axis in (1, 0):
         found = np.flatnonzero(contact.any(axis=axis))

@@ -193,9 +193,10 @@ def _surface(plan: Plan, s: Array, records: Records, settings: FullSettings) -> 
         raise InputError('screw: no point of the surface converged, see the reasons above')
     header = surface_header(columns.screw, columns.lubricant, settings, plan.breaks, TIER)
     header |= {'format_version': format_version(True), 'certified_s': nodes.certified}
-    weigh = columns.weigh
-    if weigh is not None:
-        header['draw_factors'] = asdict(weigh)
+    if columns.ensemble.powers:
+        header['weighted_draws'] = asdict(columns.ensemble) | {
+            'powers': [*columns.ensemble.powers]
+        }
     cells = [len(axis) - 1 for axis in (s, columns.load, temperature)]
     return SurfaceData(
         header=header,

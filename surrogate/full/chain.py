@@ -77,8 +77,9 @@ def chain_settings(draw: int | None, grid_wavelength: float | None) -> ScrewSett
     """
     Return how chains are solved: as a point is, but for grid and tolerance of rough contacts.
 
-    A quarter fewer nodes along, a sixth fewer across and a limited wedge that fades later are
-    as near to the finest grid, in half the time; docs/onset.md.
+    A quarter fewer nodes along, a sixth fewer across, for light contacts half as many, and a
+    limited wedge that fades later: as near to the finest grid at 27.6 N and as the grid of a point
+    at 100 N, in half the time; docs/onset.md.
 
     """
     rough = Settings(

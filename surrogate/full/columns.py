@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter, minimum_filter
 from surrogate.full.chain import chain_inputs
-from surrogate.full.draws import Calibration, calibration, draws_at
+from surrogate.full.draws import Draws, draws_of
 from surrogate.full.idle import BESIDE, idle_load
 from surrogate.parameters import Lubricant, Screw
 from surrogate.screw_contacts import GRID_WAVELENGTH
@@ -42,10 +42,10 @@ class Columns:
     Load [N] and solved temperature [K] nodes of one screw and oil, speeds [rad/s], onset of both.
 
     Mapped speeds of hot and cold oil differ by far, so that no column needs all speed nodes. All
-    `draws` of the roughness are solved at the middle temperature around the onset, more where
-    `draws_at` says so, and `shared_draws` of them elsewhere. Waves shorter than `grid_wavelength`
-    [m] raise the floor. `first` are the speed coordinates [-] before more were added, None for
-    those asked about.
+    `draws` of the roughness are solved at the middle temperature around the onset, more on the
+    verge of the idle load, and `shared_draws` of them elsewhere. Waves shorter than
+    `grid_wavelength` [m] raise the floor. `first` are the speed coordinates [-] before more were
+    added, None for those asked about.
 
     """
 
@@ -71,14 +71,9 @@ class Columns:
         return len(self.temperature) // 2
 
     @property
-    def most(self) -> int:
-        """Return how many draws are solved at most."""
-        return max(draws_at(self.screw, self.draws, load) for load in self.magnitudes.tolist())
-
-    @property
-    def weigh(self) -> Calibration | None:
-        """Return the weights of the draws, None for plain means."""
-        return calibration(self.screw, self.most)
+    def ensemble(self) -> Draws:
+        """Return the draws, with their weights."""
+        return draws_of(self.screw, self.draws)
 
     @property
     def few(self) -> int:
@@ -138,8 +133,8 @@ class Columns:
 
     def asked(self, s: Array) -> NDArray[np.bool_]:
         """Return what is solved, over [speed, load, temperature, draw]."""
-        draw = np.arange(self.most)
-        loads = [draws_at(self.screw, self.draws, load) for load in self.load.tolist()]
+        draw = np.arange(self.ensemble.most)
+        loads = [self.ensemble.at(load) for load in self.load.tolist()]
         at_middle = np.arange(len(self.temperature)) == self.reference
         more = at_middle[:, None] & self.full(s)[:, None, None, None]
         more = more & (draw < np.array(loads)[:, None, None])

@@ -10,7 +10,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.full.columns import Columns, NEAR_ONSET
-from surrogate.full.draws import draws_at, mean_of_draws
+from surrogate.full.draws import mean_of_draws
 from surrogate.full.idle import idle_load
 from surrogate.full.settings import error_target, FullSettings, Run
 from surrogate.full.speed_nodes import Sample, Target
@@ -57,20 +57,20 @@ def solve_held_out(
     Leaves out those at which fewer than half of the draws are solved, or the surface is masked.
 
     """
-    draws = [draws_at(columns.screw, settings.draws, load) for _, load, _ in points]
+    draws = columns.ensemble
     chains = {
         f'{place} {draw}': columns.chain(abs(load), heat, draw, np.array([speed]))
         for place, (speed, load, heat) in enumerate(points)
-        for draw in range(draws[place])
+        for draw in range(draws.at(load))
     }
     results = run('held-out points', chains)
     surface, target = Surface(data), error_target(columns.screw, settings)
     compared = []
     for place, point in enumerate(points):
         sense = 'opposing' if point[1] >= 0 else 'assisting'
-        solved = [results.get(f'{place} {draw}') for draw in range(draws[place])]
+        solved = [results.get(f'{place} {draw}') for draw in range(draws.at(point[1]))]
         records = [chain and chain[sense][0] for chain in solved]
-        mean = mean_of_draws(records, FIELDS, columns.weigh)
+        mean = mean_of_draws(records, FIELDS, draws, point[1])
         found = surface.lookup(*point)
         if mean and found.validity is Validity.VALID:
             here = {name: float(getattr(found, name)) for name in FIELDS}

@@ -20,7 +20,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 from scipy.optimize import least_squares
-from surrogate.full.draws import Calibration, draw_weights, standard_error, weighted_mean
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -49,26 +48,16 @@ def fading(rcs: Array, full: Flags, few: int) -> Array:
 
 
 def middle_mean(
-    s: Array,
-    values: Array,
-    full: Flags,
-    few: int,
-    fade: Array,
-    *,
-    share: bool,
-    weigh: Calibration | None = None,
+    s: Array, values: Array, whole: Array, full: Flags, few: int, fade: Array, *, share: bool
 ) -> Array:
     """
     Return the mean [speed, load] of `values` [speed, load, draw] at the middle temperature.
 
-    `full` tells at which speeds all draws are solved; elsewhere the first `few` are, each moved by
-    what the mean differs from it, so that one that is lost moves nothing. A share is scaled below
-    the onset by what it lacks of 1, as `fade` is. The mean over all draws weighs them by `weigh`.
+    `full` tells at which speeds all draws are solved, with the mean `whole`; elsewhere the first
+    `few` are, each moved by what that mean differs from it, so that one that is lost moves
+    nothing. A share is scaled below the onset by what it lacks of 1, as `fade` is.
 
     """
-    whole = weighted_mean(values, draw_weights(values, weigh))
-    if few == values.shape[-1]:
-        return whole
     around = full[:, None]
     below = (np.arange(len(full)) < np.argmax(full))[:, None]
     moved = []
@@ -88,34 +77,20 @@ def _carried(s: Array, around: Flags, whole: Array, one: Array) -> Array:
         return filled(s, np.where(around, whole / one, np.nan), 1.0)
 
 
-def middle_spread(
-    s: Array,
-    values: Array,
-    mean: Array,
-    full: Flags,
-    fade: Array,
-    *,
-    share: bool,
-    weigh: Calibration | None = None,
-) -> tuple[Array, Array]:
+def carried_spread(
+    s: Array, own: Array, mean: Array, full: Flags, fade: Array, *, share: bool
+) -> Array:
     """
-    Return the deviation of draws and the standard error of their mean [speed, load].
+    Return a deviation of draws or an error of their mean [speed, load].
 
-    Known where all draws are solved; elsewhere carried over the speed, relative to the `mean` but
-    for shares, which do not deviate where there is no contact, and fading as the differences do.
+    Known, as `own`, where all draws are solved; elsewhere carried over the speed, relative to the
+    `mean` but for shares, which do not deviate where there is no contact, and fading as the
+    differences do.
 
     """
-    weights, count = draw_weights(values, weigh), np.isfinite(values).sum(axis=-1)
-    off = values - weighted_mean(values, weights)[..., None]
-    # With one draw there is no deviation: 0/0 is the answer.
     with np.errstate(divide='ignore', invalid='ignore'):
-        spread = np.sqrt(weighted_mean(off**2, weights) * count / (count - 1.0))
-        own = [spread, standard_error(values, weights, weigh)]
-        known = [np.where(full[:, None], one if share else one / mean, np.nan) for one in own]
-    spread, error = (
-        filled(s, one, np.nan) * fade * ((mean != 0) if share else mean) for one in known
-    )
-    return np.asarray(spread), np.asarray(error)
+        known = np.where(full[:, None], own if share else own / mean, np.nan)
+    return np.asarray(filled(s, known, np.nan) * fade * ((mean != 0) if share else mean))
 
 
 def other_mean(s: Array, own: Array, middle: Array, mean: Array) -> Array:

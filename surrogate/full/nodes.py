@@ -9,11 +9,12 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.full.columns import Columns, covering, Records
+from surrogate.full.draws import deviation, weighted_mean
 from surrogate.full.means import (
+    carried_spread,
     fading,
     joined,
     middle_mean,
-    middle_spread,
     moved_share,
     other_mean,
     quiet,
@@ -88,9 +89,10 @@ def _solved(
 ) -> tuple[dict[str, Array], NDArray[np.uint8]]:
     """Return the fields [speed, load, temperature, draw], NaN unless solved, and the contacts."""
     shape = (len(s), len(columns.load), len(columns.temperature))
-    values = {name: np.full((*shape, columns.most), np.nan) for name in (*FIELDS, FAR)}
+    most = columns.ensemble.most
+    values = {name: np.full((*shape, most), np.nan) for name in (*FIELDS, FAR)}
     places: dict[tuple[int, ...], list[int]] = {}
-    for i, j, k, draw in np.ndindex(*shape, columns.most):
+    for i, j, k, draw in np.ndindex(*shape, most):
         load = float(columns.load[j])
         both = records.get((float(s[i]), abs(load), k, draw))
         record = both[SENSES[int(load >= 0)]] if both else {'converged': False}
@@ -123,29 +125,37 @@ def _joined_means(
 ) -> Array:
     """Return the means of a field; columns go on in the shape of those beside them."""
     share, dry = name in SHARES, fade if name in FRICTION else None
-    full, base, few = columns.full(s), columns.reference, columns.few
-    sought = columns.sought(s)
-    middle = middle_mean(s, field[:, :, base], full, few, fade, share=share, weigh=columns.weigh)
+    base, sought = columns.reference, columns.sought(s)
+    middle = _middle_mean(columns, s, field[:, :, base], fade, share=share)
     parts = [
         middle
         if k == base
-        else _other_mean(s, field[:, :, [k, base], :few], middle, full, columns, share=share)
+        else _other_mean(columns, s, field[:, :, [k, base]], middle, share=share)
         for k in range(len(columns.temperature))
     ]
     parts = [np.where(weak[:, :, k], np.nan, part) for k, part in enumerate(parts)]
     for beside in (-1, 0):
         asked = sought[:, :, base]
         parts[base] = joined(s, parts[base], parts[beside], asked, share=share, fade=dry)
-    whole = [
+    longer = [
         joined(s, part, parts[base], sought[:, :, k], share=share, fade=dry)
         for k, part in enumerate(parts)
     ]
-    found = np.stack([_at_verge(columns, s, part, share=share) for part in whole], axis=-1)
+    found = np.stack([_at_verge(columns, s, part, share=share) for part in longer], axis=-1)
     if share:
         # Contact falls with speed; what is left of noise where it is all but complete may not.
         falling = np.fmax.accumulate(found[::-1])[::-1]
         found = np.where(np.isnan(found), np.nan, falling)
     return found
+
+
+def _middle_mean(columns: Columns, s: Array, values: Array, fade: Array, *, share: bool) -> Array:
+    """Return the mean [speed, load] of `values` [speed, load, draw] at the middle temperature."""
+    whole = weighted_mean(values, columns.ensemble.weights(values, columns.load))
+    # Where the few are all there are, none has to be moved.
+    if columns.few == columns.draws:
+        return whole
+    return middle_mean(s, values, whole, columns.full(s), columns.few, fade, share=share)
 
 
 def _at_verge(columns: Columns, s: Array, values: Array, *, share: bool) -> Array:
@@ -165,10 +175,9 @@ def _at_verge(columns: Columns, s: Array, values: Array, *, share: bool) -> Arra
     return found
 
 
-def _other_mean(
-    s: Array, both: Array, middle: Array, full: Flags, columns: Columns, *, share: bool
-) -> Array:
+def _other_mean(columns: Columns, s: Array, both: Array, middle: Array, *, share: bool) -> Array:
     """Return the mean [speed, load] at a temperature; `both` holds it and the middle one."""
+    both, full = both[..., : columns.few], columns.full(s)
     if not share or columns.few == columns.draws:
         return other_mean(s, both[:, :, 0], both[:, :, 1], middle)
     return np.stack(
@@ -201,11 +210,11 @@ def _spreads(
     errors: dict[str, Array] = {}
     for name in SPREAD:
         values, mean = solved[name][:, :, base], means[name][:, :, base]
-        found = middle_spread(
-            s, values, mean, full, fade, share=name in SHARES, weigh=columns.weigh
-        )
-        for kept, values in zip((deviations, errors), found):
-            kept[name] = np.where(mask, np.nan, values[:, :, None])
+        weights = columns.ensemble.weights(values, columns.load)
+        own = deviation(values, weights), columns.ensemble.standard_error(values, weights)
+        for kept, spread in zip((deviations, errors), own):
+            found = carried_spread(s, spread, mean, full, fade, share=name in SHARES)
+            kept[name] = np.where(mask, np.nan, found[:, :, None])
     return deviations, errors
 
 

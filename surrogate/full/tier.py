@@ -15,7 +15,7 @@ import numpy as np
 import scipy
 from surrogate.full.build import build_full
 from surrogate.full.chain import chain_inputs, solve_chain, WORK
-from surrogate.full.draws import Calibration, draws_at, mean_of_draws
+from surrogate.full.draws import Draws, mean_of_draws
 from surrogate.full.run import ChainRun
 from surrogate.full.settings import FullSettings
 from surrogate.parameters import Lubricant, Screw
@@ -65,20 +65,23 @@ def solve_full(
 
     """
     screw, lubricant = screw_and_oil(header['inputs'])
-    factors = header.get('draw_factors')
-    draws = int(header['settings']['draws'])
-    # Files of builders that did not weight draws had as many at all loads.
-    draws = draws_at(screw, draws, load) if factors else draws
-    sense = 'opposing' if load >= 0 else 'assisting'
+    draws, sense = drawn(header), 'opposing' if load >= 0 else 'assisting'
     # Files of builders that had no such setting were solved with its default.
     wavelength = header['settings'].get('grid_wavelength', GRID_WAVELENGTH)
     chains = (
         chain_inputs(screw, lubricant, abs(load), temperature, draw, [speed], wavelength)
-        for draw in range(draws)
+        for draw in range(draws.at(load))
     )
     records = [solve_chain(chain)[sense][0] for chain in chains]
-    weigh = Calibration(tuple(factors['powers']), factors['mean']) if factors else None
-    return mean_of_draws(records, FIELDS, weigh)
+    return mean_of_draws(records, FIELDS, draws, load)
+
+
+def drawn(header: Mapping[str, Any]) -> Draws:
+    """Return the draws of a surface; files of builders without weights say how many alone."""
+    kept = header.get('weighted_draws')
+    if kept is None:
+        return Draws(int(header['settings']['draws']))
+    return Draws(**{**kept, 'powers': tuple(kept['powers'])})
 
 
 def _provenance(run: ChainRun, seconds: float) -> dict[str, Any]:

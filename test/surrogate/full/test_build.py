@@ -12,7 +12,7 @@ from surrogate import surface_file
 from surrogate.full import tier
 from surrogate.full.build import build_full
 from surrogate.full.chain import chain_inputs
-from surrogate.full.draws import calibration, mean_of_draws
+from surrogate.full.draws import draws_of, mean_of_draws
 from surrogate.full.settings import FullSettings
 from surrogate.parameters import InputError
 from surrogate.surface import FIELDS, Surface, Validity
@@ -68,10 +68,11 @@ def test_draws_from_eight_on_are_weighted(screw, oil, stand_in, monkeypatch):
     """Nodes and a check of the file take the same weights; at the last load of twice as many."""
     few = replace(SETTINGS, draws=8, held_out=3, load_range=(0.0, 2700.0))
     data = build_full(screw, oil, few, stand_in.run)
-    weigh = calibration(screw, 16)
-    assert data.header['draw_factors'] == {'powers': weigh.powers, 'mean': weigh.mean}
+    ensemble = draws_of(screw, 8)
+    assert tier.drawn(data.header) == ensemble
     header = json.loads(json.dumps(data.header))
-    without = {name: value for name, value in header.items() if name != 'draw_factors'}
+    assert header == data.header
+    without = {name: value for name, value in header.items() if name != 'weighted_draws'}
     monkeypatch.setattr(tier, 'solve_chain', stand_in.solve)
     i, k = int(np.argmin(np.abs(data.speed_coordinate))), 1
     heat = float(data.temperature[k])
@@ -84,7 +85,7 @@ def test_draws_from_eight_on_are_weighted(screw, oil, stand_in, monkeypatch):
             stand_in.solve(chain_inputs(screw, oil, load, heat, draw, [speed]))['opposing'][0]
             for draw in range(draws)
         ]
-        mean = mean_of_draws(records, FIELDS, weigh)
+        mean = mean_of_draws(records, FIELDS, ensemble, load)
         plain = float(np.mean([record['rcs'] for record in records[:8]]))
         assert data.fields['rcs'][i, j, k] == pytest.approx(mean['rcs'], rel=1e-9)
         assert mean['rcs'] != pytest.approx(plain, rel=1e-3)
@@ -191,13 +192,13 @@ def test_info_says_what_is_certified_and_what_was_reached(data, tmp_path):
     path = tmp_path / 'full.npz'
     for known in (True, False):
         told = {'certified_s': 1.0, 'reached': 2.5} if known else {}
-        told |= {'draw_factors': {'powers': [13.0, 24.0], 'mean': 18.0}} if known else {}
+        told |= {'weighted_draws': {'count': 1, 'powers': [13.0, 24.0]}} if known else {}
         header = {**data.header, 'certified_s': None, 'reached': None, **told}
         surface_file.write(path, replace(data, header=header))
         page = info_page(info_record(path, surface_file.read(path)))
         assert ('from 2.72 times the onset speed on' in page) is known
         assert ('1 was aimed at, the worst held-out point reaches 2.5' in page) is known
-        assert ('2, weighted so that their patches' in page) is known
+        assert ('1, 2 near the idle load, weighted' in page) is known
 
 
 def test_accuracy_is_not_known_without_a_held_out_point(screw, oil, stand_in):

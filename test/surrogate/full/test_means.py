@@ -2,14 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """Means over all draws from few of them: exact where draws differ as is assumed."""
 
+import warnings
+
 import numpy as np
 import pytest
 from surrogate.full.means import (
+    carried_spread,
     fading,
     filled,
     joined,
     middle_mean,
-    middle_spread,
     moved_share,
     other_mean,
 )
@@ -32,31 +34,31 @@ def only_few_beyond(values):
     return solved
 
 
+def mean_of(values, few, fade, *, share):
+    """Return the mean at all speeds with the plain one where all draws are solved."""
+    with warnings.catch_warnings():
+        warnings.simplefilter('ignore', RuntimeWarning)
+        whole = np.nanmean(values, axis=-1)
+    return middle_mean(S, values, whole, FULL, few, fade, share=share)
+
+
 def test_draws_that_differ_by_a_factor_have_their_plain_mean():
     """Everywhere, though two of four are solved beyond the onset."""
     values = np.exp(0.6 * S)[:, None, None] * FACTORS * np.array([[1.0], [2.0]])
-    mean = middle_mean(S, only_few_beyond(values), FULL, 2, WHOLE, share=False)
+    mean = mean_of(only_few_beyond(values), 2, WHOLE, share=False)
     assert mean == pytest.approx(values.mean(axis=-1), rel=1e-12)
 
 
 def test_shares_are_scaled_by_what_they_lack_of_one_below_the_onset():
     """Exact where draws differ by a factor there, and never outside 0 to 1."""
     lacking = (1 - falling(S))[:, None, None] * np.array([0.7, 0.9, 0.8, 1.0])
-    mean = middle_mean(S, only_few_beyond(1 - lacking), FULL, 2, WHOLE, share=True)
+    mean = mean_of(only_few_beyond(1 - lacking), 2, WHOLE, share=True)
     slow = FULL | (S < 0)
     assert mean[slow] == pytest.approx(1 - lacking[slow].mean(axis=-1), rel=1e-12)
     steep = np.clip(falling(S)[:, None, None] * FACTORS, 0, 1)
-    mean = middle_mean(S, only_few_beyond(steep), FULL, 2, WHOLE, share=True)
+    mean = mean_of(only_few_beyond(steep), 2, WHOLE, share=True)
     assert ((mean >= 0) & (mean <= 1)).all()
     assert mean[-1] == pytest.approx(0.0, abs=1e-6)
-
-
-def test_all_draws_everywhere_is_the_plain_mean():
-    """Nothing is carried anywhere."""
-    values = np.random.default_rng(2).uniform(0.1, 0.9, (len(S), 3, 4))
-    for share in (False, True):
-        found = middle_mean(S, values, FULL, 4, WHOLE, share=share)
-        assert found == pytest.approx(values.mean(axis=-1), rel=1e-12)
 
 
 def test_another_temperature_has_the_factor_of_the_middle_one():
@@ -108,28 +110,27 @@ def test_differences_fade_where_asperities_carry_everything():
     assert fading(holed, FULL, 2)[0, 1] == fade[0, 0]
     factors = 1 + (FACTORS - 1) * (1 - falling(np.clip(S, -9, -1.2)))[:, None] / edge
     values = factors[:, None, :] * (2 - S)[:, None, None] ** 2
-    mean = middle_mean(S, only_few_beyond(values), FULL, 2, fade, share=False)
+    mean = mean_of(only_few_beyond(values), 2, fade, share=False)
     slow = S < 0
     assert mean[slow, 0] == pytest.approx(values.mean(axis=-1)[slow, 0], rel=0.03)
 
 
-def test_spread_is_that_of_all_draws_and_its_error():
-    """Exact for a constant relative spread, at every speed."""
+def test_a_spread_is_carried_relative_to_the_mean():
+    """Exact for a constant relative spread, at every speed; unknown where it never is known."""
     values = np.exp(0.6 * S)[:, None, None] * FACTORS
-    mean = values.mean(axis=-1)
-    found, error = middle_spread(S, only_few_beyond(values), mean, FULL, WHOLE, share=False)
-    assert found == pytest.approx(values.std(axis=-1, ddof=1))
-    assert error == pytest.approx(found / 2)
-    lone = middle_spread(S, values[..., :1], mean, FULL, WHOLE, share=False)
-    assert np.isnan(lone).all()
+    mean, own = values.mean(axis=-1), values.std(axis=-1, ddof=1)
+    known = np.where(FULL[:, None], own, 7.0)
+    assert carried_spread(S, known, mean, FULL, WHOLE, share=False) == pytest.approx(own)
+    nothing = carried_spread(S, np.full_like(own, np.nan), mean, FULL, WHOLE, share=False)
+    assert np.isnan(nothing).all()
 
 
 def test_a_lost_draw_moves_nothing():
     """One of the two that are solved everywhere fails at a far speed: the other is moved alone."""
     values = only_few_beyond(np.exp(0.6 * S)[:, None, None] * FACTORS)
-    whole = middle_mean(S, values, FULL, 2, WHOLE, share=False)
+    whole = mean_of(values, 2, WHOLE, share=False)
     values[9, 0, 1] = np.nan
-    lost = middle_mean(S, values, FULL, 2, WHOLE, share=False)
+    lost = mean_of(values, 2, WHOLE, share=False)
     assert lost == pytest.approx(whole, rel=1e-12)
 
 
