@@ -18,7 +18,7 @@ import sys
 
 import numpy as np
 from surrogate.full.chain import chain_inputs, solve_chain
-from surrogate.full.draws import Draws, draws_of, weighted_mean
+from surrogate.full.draws import Draws, draws_of, POWER, weighted_mean
 from surrogate.parameters import load_lubricant, load_screw
 
 FEW = 16
@@ -93,7 +93,7 @@ def main() -> None:
         told = (summary(column, draws) for draws in cases)
         texts = (f'{mean:.4f} +- {error:.4f}' for mean, error in told)
         print(f'{rpm:7g}  {alike:11.2f}  {"  ".join(texts)}', flush=True)
-    draw_figure(rcs, powers**0.25, args.out / 'draw_factors.png')
+    draw_figure(rcs, powers ** (1 / POWER), args.out / 'draw_factors.png')
 
 
 if __name__ == '__main__':

@@ -80,13 +80,14 @@ def balance_ball(
 
     Either the normal force on the screw [N] or the axial force per ball [N] is given, at least 0.
     The load opposes the motion where flank times speed is positive. Rolling forces [N] on each
-    surface of a contact enter as couples. Raises InputError for numbers that make no sense;
-    failure to converge is a status.
+    surface of a contact enter as couples; where a summit carries a small contact behind its centre
+    they are negative. Raises InputError for numbers that make no sense; failure to converge is a
+    status.
 
     """
     _check(speed, flank, normal_force, axial_force)
-    _check_force('screw_rolling_force', screw_rolling_force)
-    _check_force('nut_rolling_force', nut_rolling_force)
+    _check_rolling('screw_rolling_force', screw_rolling_force)
+    _check_rolling('nut_rolling_force', nut_rolling_force)
     problem = BallProblem(
         screw=screw,
         speed=float(speed),
@@ -215,6 +216,11 @@ def _check(
         raise InputError('give either normal_force or axial_force, not both and not none')
     for name, force in (('normal_force', normal_force), ('axial_force', axial_force)):
         _check_force(name, 0.0 if force is None else force)
+
+
+def _check_rolling(name: str, force: float) -> None:
+    if not math.isfinite(force):
+        raise InputError(f'{name} is {force!r} N, allowed is any finite number')
 
 
 def _check_force(name: str, force: float) -> None:

@@ -6,7 +6,7 @@ Draws of the roughness: how many are solved, and weights with which few of them 
 A patch of the raceway is rescaled to one rms over a window, which its long waves decide. The short
 waves, which touch, are scaled with them, by a factor that differs from draw to draw and decides
 how much they touch. It is known of any draw without a solve: so draws are weighted until the mean
-of its fourth power is that of a large population, and what they scatter by beside it is left.
+of its sixth power is that of a large population, and what they scatter by beside it is left.
 
 Calibration by exponential weights (raking): Deville, Sarndal, J. Am. Stat. Assoc. 87 (1992) 376.
 
@@ -28,7 +28,7 @@ from surrogate.screw_contacts import raceway_patch
 Array = NDArray[np.float64]
 POPULATION = 1000
 """Draws whose mean the weights aim at [-]."""
-POWER = 4
+POWER = 6
 """Power of the factor [-]: RCS grows with the second where it is 0.5, the fourth at 0.1, the
 eighth at 0.01."""
 LEAST_DRAWS = 8

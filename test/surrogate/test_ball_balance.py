@@ -122,7 +122,7 @@ def test_forces_and_moments_balance_by_vectors(screw, friction, speed, load, sen
 
 
 @FEW
-@given(SCREWS, FRICTION, SPEEDS, LOADS, SIGNS, SIGNS, st.booleans(), st.floats(0.0, 0.2))
+@given(SCREWS, FRICTION, SPEEDS, LOADS, SIGNS, SIGNS, st.booleans(), st.floats(-0.1, 0.2))
 def test_torque_is_load_and_lost_power(screw, friction, speed, load, sense, flank, axial, rolling):
     """(iii) The torque on the screw is F_z L/(2 pi) and the lost power over speed, to rounding."""
     given_load = {'axial_force' if axial else 'normal_force': load}
@@ -141,7 +141,7 @@ def test_torque_is_load_and_lost_power(screw, friction, speed, load, sense, flan
     assert abs(found.torque - found.energy_torque) <= 1e-9 * scale
     for contact in (found.screw, found.nut):
         assert contact.slip_power > 0
-        assert contact.rolling_power >= 0
+        assert contact.rolling_power * rolling >= 0
     if axial:
         assert found.axial_force == pytest.approx(load, rel=1e-9)
 
@@ -341,7 +341,7 @@ def test_an_unloaded_ball_is_legal(screw):
         ({'normal_force': 1.0, 'axial_force': 1.0}, 'either normal_force or axial_force'),
         ({'normal_force': -1.0}, 'normal_force is -1.0 N'),
         ({'axial_force': math.inf}, 'axial_force is inf N'),
-        ({'axial_force': 1.0, 'nut_rolling_force': -1.0}, 'nut_rolling_force is -1.0 N'),
+        ({'axial_force': 1.0, 'nut_rolling_force': math.nan}, 'nut_rolling_force is nan N'),
     ],
 )
 def test_inputs_that_make_no_sense_are_refused(screw, given_input, text):
