@@ -107,25 +107,49 @@ def other_mean(s: Array, own: Array, middle: Array, mean: Array) -> Array:
         return np.asarray(quiet(np.nanmean, own) * filled(s, mean / few, 1.0))
 
 
-def moved_share(s: Array, own: Array, middle: Array, mean: Array, full: Flags) -> Array:
+def moved_shares(s: Array, own: Array, middle: Array, mean: Array, full: Flags) -> Array:
     """
-    Return the mean share [speed] of one load at a temperature with few draws.
+    Return the mean shares [speed, load] at a temperature with few draws.
 
-    Arguments as for `other_mean`, of one load: read from `mean` at s + a + b s, where it is known;
-    slower the few draws speak for themselves.
+    Arguments as for `other_mean`: read from `mean` at s + a + b s, where it is known; slower the
+    few draws speak for themselves. One line serves all loads: theirs differ by noise alone.
 
     """
-    here, there = own.mean(axis=-1), middle.mean(axis=-1)
-    fitted = np.isfinite(here) & full
-    few, all_draws = _curve(s, there), _curve(s, mean)
-    if few is None or all_draws is None or not fitted.any():
-        return quiet(np.nanmean, own)
-    weight = 1 / np.maximum(LEAST_WEIGHED, RELATIVE * here[fitted])
+    here = own.mean(axis=-1)
+    fitted = np.isfinite(here) & full[:, None]
+    line = _common_line(s, here, middle.mean(axis=-1), fitted)
+    columns = [
+        _moved_share(s, one, known, mean[:, j], line)
+        for j, (one, known) in enumerate(zip(np.moveaxis(own, 1, 0), fitted.T))
+    ]
+    return np.stack(columns, axis=1)
+
+
+def _common_line(s: Array, here: Array, there: Array, fitted: Flags) -> Array:
+    """Return a and b [-] with which `there` at s + a + b s is `here` at s, over all loads."""
+    curves = [_curve(s, column) for column in there.T]
+    known = [(f, one, part) for f, one, part in zip(curves, here.T, fitted.T) if f and part.any()]
+    if not known:
+        return np.zeros(2)
 
     def wrong(line: Array) -> Array:
-        return np.asarray(weight * (few(s[fitted] + _moved(s[fitted], line)) - here[fitted]))
+        return np.concatenate(
+            [
+                (few(s[part] + _moved(s[part], line)) - one[part])
+                / np.maximum(LEAST_WEIGHED, RELATIVE * one[part])
+                for few, one, part in known
+            ]
+        )
 
-    line = least_squares(wrong, np.zeros(2), bounds=(-FARTHEST, FARTHEST), loss='soft_l1').x
+    found = least_squares(wrong, np.zeros(2), bounds=(-FARTHEST, FARTHEST), loss='soft_l1')
+    return np.asarray(found.x)
+
+
+def _moved_share(s: Array, own: Array, fitted: Flags, mean: Array, line: Array) -> Array:
+    """Return the mean share [speed] of one load, that of its own few draws where none is known."""
+    all_draws = _curve(s, mean)
+    if all_draws is None or not fitted.any():
+        return quiet(np.nanmean, own)
     ends = s[fitted][0], s[fitted][-1]
     found = all_draws(s + _moved(np.clip(s, *ends), line))
     slower = s < s[np.isfinite(mean)][0]

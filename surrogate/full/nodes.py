@@ -15,7 +15,7 @@ from surrogate.full.means import (
     fading,
     joined,
     middle_mean,
-    moved_share,
+    moved_shares,
     other_mean,
     quiet,
 )
@@ -180,13 +180,7 @@ def _other_mean(columns: Columns, s: Array, both: Array, middle: Array, *, share
     both, full = both[..., : columns.few], columns.full(s)
     if not share or columns.few == columns.draws:
         return other_mean(s, both[:, :, 0], both[:, :, 1], middle)
-    return np.stack(
-        [
-            moved_share(s, both[:, j, 0], both[:, j, 1], middle[:, j], full)
-            for j in range(middle.shape[1])
-        ],
-        axis=1,
-    )
+    return moved_shares(s, both[:, :, 0], both[:, :, 1], middle, full)
 
 
 def _at_all(name: str, values: Array, x: Array, wanted: Array) -> Array:

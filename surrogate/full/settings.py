@@ -37,7 +37,7 @@ class FullSettings(SurfaceSettings):
 
     speed_nodes: int = 16
     load_nodes: int = 13
-    load_cells: int = 2
+    load_cells: int = 4
     idle_halvings: int = 3
     unloaded_cells: int = 4
     temperature_nodes: int = 7

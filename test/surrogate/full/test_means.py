@@ -12,7 +12,7 @@ from surrogate.full.means import (
     filled,
     joined,
     middle_mean,
-    moved_share,
+    moved_shares,
     other_mean,
 )
 
@@ -40,6 +40,11 @@ def mean_of(values, few, fade, *, share):
         warnings.simplefilter('ignore', RuntimeWarning)
         whole = np.nanmean(values, axis=-1)
     return middle_mean(S, values, whole, FULL, few, fade, share=share)
+
+
+def moved_share(own, middle, mean):
+    """Return the mean share of a single load."""
+    return moved_shares(S, own[:, None], middle[:, None], mean[:, None], FULL)[:, 0]
 
 
 def test_draws_that_differ_by_a_factor_have_their_plain_mean():
@@ -77,11 +82,30 @@ def test_a_moved_share_is_found_through_noise():
     middle = falling(S[:, None] + shifts)
     noise = np.random.default_rng(4).normal(0, 0.003, (len(S), 2)) * FULL[:, None]
     own = falling(moved[:, None] + shifts[:2]) + noise
-    found = moved_share(S, own, middle[:, :2], middle.mean(axis=-1), FULL)
+    found = moved_share(own, middle[:, :2], middle.mean(axis=-1))
     wanted = falling(moved[:, None] + shifts).mean(axis=-1)
     # What a cubic between these nodes makes of the curve is most of the difference.
     assert np.abs(found - wanted)[FULL].max() < 0.008
     assert (np.diff(found) <= 1e-9).all()
+
+
+def test_loads_share_the_line_that_moves_their_shares():
+    """Noise that would move a single load by far is averaged over twelve of them."""
+    middle = np.stack([falling(S + shift) for shift in np.linspace(-0.2, 0.2, 12)], axis=1)
+    middle = np.repeat(middle[..., None], 2, axis=-1)
+    noise = np.random.default_rng(3).normal(0, 0.02, middle.shape) * FULL[:, None, None]
+    found = moved_shares(S, middle + noise, middle, middle.mean(axis=-1), FULL)
+    wrong = np.abs(found - middle[..., 0])[FULL].max(axis=0)
+    alone = [
+        np.abs(
+            moved_share(middle[:, j] + noise[:, j], middle[:, j], middle[:, j, 0])
+            - middle[:, j, 0]
+        )
+        for j in range(12)
+    ]
+    # The mean of two draws alone is off by 0.02 over the root of two.
+    assert wrong.max() < 0.014
+    assert np.max([one[FULL].max() for one in alone]) > 2 * wrong.max()
 
 
 def test_a_share_goes_on_as_that_of_the_middle_temperature():
@@ -89,13 +113,13 @@ def test_a_share_goes_on_as_that_of_the_middle_temperature():
     middle = falling(S[:, None] + np.zeros(2))
     own, mean = middle.copy(), middle.mean(axis=-1)
     own[:3] = np.nan
-    assert moved_share(S, own, middle, mean, FULL) == pytest.approx(mean, abs=1e-6)
+    assert moved_share(own, middle, mean) == pytest.approx(mean, abs=1e-6)
     cut = np.where(np.arange(len(S)) < 2, np.nan, mean)
-    found = moved_share(S, middle, np.where(np.isnan(cut)[:, None], np.nan, middle), cut, FULL)
+    found = moved_share(middle, np.where(np.isnan(cut)[:, None], np.nan, middle), cut)
     assert found[:2] == pytest.approx(mean[:2])
     own = np.where(np.arange(len(S))[:, None] < 1, np.nan, middle)
     nothing = np.full_like(middle, np.nan)
-    assert moved_share(S, own, nothing, nothing[:, 0], FULL)[1:] == pytest.approx(own[1:, 0])
+    assert moved_share(own, nothing, nothing[:, 0])[1:] == pytest.approx(own[1:, 0])
 
 
 def test_differences_fade_where_asperities_carry_everything():
