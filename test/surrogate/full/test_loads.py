@@ -46,10 +46,10 @@ def test_loads_crowd_towards_the_idle_one(screw, settings):
     """Each time they halve what is left of the last even cell, and no times change nothing."""
     even = first_loads(screw, replace(settings, idle_halvings=0)).shared
     crowded = first_loads(screw, settings).shared
-    assert even == pytest.approx(even[-1] * np.array([0, 0.5, 1]))
-    assert crowded == pytest.approx(even[-1] * np.array([0, 8, 12, 14, 15, 16]) / 16)
+    assert even == pytest.approx(even[-1] * np.array([0, 0.25, 0.5, 0.75, 1]))
+    assert crowded == pytest.approx(even[-1] * np.array([0, 8, 16, 24, 28, 30, 31, 32]) / 32)
     below = replace(settings, load_range=(0.0, 1500.0))
-    assert first_loads(screw, below).shared.tolist() == [0.0, 750.0, 1500.0]
+    assert first_loads(screw, below).shared.tolist() == [0.0, 375.0, 750.0, 1125.0, 1500.0]
 
 
 @pytest.mark.parametrize('ends', [(0.0, 1500.0), (-300.0, 5000.0), (400.0, 900.0), (3e3, 4e3)])
@@ -91,8 +91,8 @@ def test_loads_crowd_where_profiles_change(screw, settings):
         }
 
     first = first_loads(screw, settings)
-    pieces = refine_loads(first, solve, error_target(screw, settings), 12)
-    assert len(pieces.shared) == 12 - len(first.alone)
+    pieces = refine_loads(first, solve, error_target(screw, settings), 16)
+    assert len(pieces.shared) == 16 - len(first.alone)
     assert len(pieces.alone) == len(first.alone)
     added = np.setdiff1d(pieces.shared, first.shared)
     assert (np.abs(added - 2000) < 700).all()
