@@ -16,8 +16,9 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 RIGID = 1.5
 """Width of the pressure over the semi-axis from which bodies hardly deform [-]."""
-FARTHEST, LINES, PLACES = 6.0, 61, 129
-"""How far outside the Hertz zone summits are sought, over a semi-axis; lines and places on one."""
+FINEST, MOST_LINES, PLACES = 0.05, 60, 129
+"""Least distance of lines on which summits are sought, over a semi-axis; most lines, places on one
+[-]."""
 
 
 def production_domain(case: Case) -> tuple[float, float, float]:
@@ -56,7 +57,8 @@ def _summit_reaches(case: Case) -> tuple[float, float, float]:
     """
     if not callable(case.roughness):
         return 0.0, 0.0, 0.0
-    out = np.linspace(0, FARTHEST, LINES)
+    reach = case.settings.summit_reach
+    out = np.linspace(0, reach, 1 + round(min(reach / FINEST, MOST_LINES)))
     across = np.linspace(-1.3, 1.3, PLACES)
     unit = case.ellipticity**2 * case.contact.radius_x / case.contact.radius_y
     before, behind = (

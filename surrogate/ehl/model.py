@@ -91,8 +91,9 @@ class Settings:
     [s]; `error_estimate` also solves the half grid; `refine` solves a smooth contact that touches
     on grids up to four times as fine (the result then has more nodes than asked for); order of the
     upstream wedge, 1 or 2 (None: 2, but 1 where all of a smooth contact touches); logarithm of the
-    viscosity at which a limited wedge fades to order 1 [-], docs/contact_solver.md; distance of
-    the inlet meniscus from the centre [m], for the rolling tail.
+    viscosity at which a limited wedge fades to order 1 [-], docs/contact_solver.md; how far
+    outside the Hertz zone summits are sought that need room on the production domain, over the
+    semi-axes; distance of the inlet meniscus from the centre [m], for the rolling tail.
 
     """
 
@@ -110,6 +111,7 @@ class Settings:
     refine: bool = True
     wedge_order: int | None = None
     wedge_fading: float = 2.5
+    summit_reach: float = 2.0
     meniscus_length: float = 1e-3
 
     def __post_init__(self) -> None:
@@ -128,6 +130,7 @@ class Settings:
         _require('newton_limit', self.newton_limit, '-', 1, 1000)
         _require('time_cap', self.time_cap, 's', 1e-3, 1e6)
         _require('wedge_fading', self.wedge_fading, '-', 0.1, 100)
+        _require('summit_reach', self.summit_reach, '-', 0.1, 20)
         _require('meniscus_length', self.meniscus_length, 'm', 0.0, 1.0)
         if self.wedge_order not in (None, 1, 2):
             raise InputError(f'wedge_order is {self.wedge_order!r}, allowed is 1, 2 or None')

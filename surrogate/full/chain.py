@@ -79,11 +79,17 @@ def chain_settings(draw: int | None, grid_wavelength: float | None) -> ScrewSett
 
     A quarter fewer nodes along, a sixth fewer across, for light contacts half as many, and a
     limited wedge that fades later: as near to the finest grid at 27.6 N and as the grid of a point
-    at 100 N, in half the time; docs/onset.md.
+    at 100 N, in half the time; docs/onset.md. Balls with a thousandth of the load rest on summits
+    far beside the middle.
 
     """
     rough = Settings(
-        nx=97, ny=129, wedge_fading=4.0, flux_tolerance=FLUX_TOLERANCE, error_estimate=False
+        nx=97,
+        ny=129,
+        wedge_fading=4.0,
+        summit_reach=6.0,
+        flux_tolerance=FLUX_TOLERANCE,
+        error_estimate=False,
     )
     return ScrewSettings(
         draw=draw, grid_wavelength=grid_wavelength, rough=rough, nodes_per_wave=5.0

@@ -87,7 +87,7 @@ class Draws:
         if not self.powers:
             return _even(np.isfinite(values))
         some = values.copy()
-        some[..., self.count :] = np.nan
+        some[..., np.arange(values.shape[-1]) >= self.count] = np.nan
         few, more = self._calibrated(some), self._calibrated(values)
         return np.asarray(few + self._verge(load)[..., None] * (more - few))
 

@@ -69,6 +69,7 @@ def test_impossible_oils_are_refused(nominal, change):
         {'time_cap': -1.0},
         {'wedge_order': 3},
         {'wedge_fading': 0.0},
+        {'summit_reach': math.nan},
     ],
 )
 def test_impossible_settings_are_refused(change):
