@@ -43,9 +43,10 @@ class ScrewSettings:
     Settings of the smooth and of the rough contacts, but for the film floor, which is that of the
     datasheet; draw of the roughness, None for smooth raceways; shortest wavelength on the grid
     [m], shorter ones raise the floor, None to solve them all; nodes per such wave across the
-    track, up to `MOST_NODES`, if that is more than the rough settings have [-]; `inlet_heating`
-    thins films by shear heating of the inlet; contacts are solved again where friction changes
-    their normal force by more than `coupling_tolerance` [-].
+    track, up to `MOST_NODES`, if that is more than the rough settings have [-]; `same_places`
+    puts them at the same places of the raceway whatever the load; `inlet_heating` thins films by
+    shear heating of the inlet; contacts are solved again where friction changes their normal force
+    by more than `coupling_tolerance` [-].
 
     """
 
@@ -54,6 +55,7 @@ class ScrewSettings:
     draw: int | None = 0
     grid_wavelength: float | None = GRID_WAVELENGTH
     nodes_per_wave: float = 6.0
+    same_places: bool = False
     inlet_heating: bool = False
     coupling_tolerance: float = 0.01
 
@@ -121,9 +123,8 @@ def _solve_side(
         condition,
         roughness=surface.heights,
         settings=replace(
-            settings.rough,
+            _across(settings, smooth.semi_axis_y, surface.shortest_wavelength),
             film_floor=screw.roughness.film_floor + raised,
-            ny=_nodes_across(settings, smooth.semi_axis_y, surface.shortest_wavelength),
         ),
         start=start[1],
     )
@@ -178,10 +179,14 @@ def shortest_on_grid(screw: Screw, settings: ScrewSettings) -> float:
     return surface.shortest_wavelength
 
 
-def _nodes_across(settings: ScrewSettings, semi_axis: float, wave: float) -> int:
-    """Return the nodes that a semi-axis and a shortest wave [m] ask for, within the bounds."""
-    wanted = 2 * math.ceil(settings.nodes_per_wave * ACROSS * semi_axis / wave / 2) + 1
-    return max(settings.rough.ny, min(wanted, MOST_NODES))
+def _across(settings: ScrewSettings, semi_axis: float, wave: float) -> Settings:
+    """Return the rough settings with the nodes across that a semi-axis and a wave [m] ask for."""
+    rough, width = settings.rough, ACROSS * semi_axis
+    spacing = max(wave / settings.nodes_per_wave, width / MOST_NODES)
+    if settings.same_places:
+        return replace(rough, spacing=spacing)
+    wanted = 2 * math.ceil(width / spacing / 2) + 1
+    return replace(rough, ny=max(rough.ny, min(wanted, MOST_NODES)))
 
 
 def raceway_patch(screw: Screw, side: Side, draw: int) -> FractalSurface:

@@ -2,12 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """One contact case in Hertz units: scales, domain, grids, equations at any speed and roughness."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 import math
 
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.ehl.domain import production_domain
+from surrogate.ehl.domain import nodes_at_multiples, production_domain
 from surrogate.ehl.grid import Grid, make_grid, State
 from surrogate.ehl.half_space import deform
 from surrogate.ehl.model import Condition, ContactLubricant, Roughness, Settings
@@ -293,11 +293,16 @@ def make_case(
         open_inlet=False,
     )
     domain = settings.domain or production_domain(case)
+    if settings.spacing:
+        b = case.semi_axis_y
+        ny, side = nodes_at_multiples(settings, domain[2] * b, b)
+        settings, domain = replace(settings, ny=ny), (*domain[:2], side / b)
     open_inlet = settings.domain is None if settings.open_inlet is None else settings.open_inlet
     k = case.ellipticity
     return Case(
         **{
             **{name: getattr(case, name) for name in Case.__slots__},
+            'settings': settings,
             'domain': (domain[0], domain[1], domain[2] * k),
             'open_inlet': open_inlet,
         }

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 if TYPE_CHECKING:
     from surrogate.ehl.case import Case
+    from surrogate.ehl.model import Settings
 
 Array = NDArray[np.float64]
 RIGID = 1.5
@@ -19,6 +20,9 @@ RIGID = 1.5
 FINEST, MOST_LINES, PLACES = 0.05, 60, 129
 """Least distance of lines on which summits are sought, over a semi-axis; most lines, places on one
 [-]."""
+
+WIDE = 1.6
+"""Side of a domain over the semi-axis from which on its nodes may lie further apart [-]."""
 
 
 def production_domain(case: Case) -> tuple[float, float, float]:
@@ -46,6 +50,22 @@ def production_domain(case: Case) -> tuple[float, float, float]:
         max(1.25 + min(0.03 * reach**2, 0.9 * thick), 1 + behind),
         max(1.2 + side + 4.0 * rigid, 1 + beside),
     )
+
+
+def nodes_at_multiples(settings: Settings, side: float, semi_axis: float) -> tuple[int, float]:
+    """
+    Return the nodes [-] across that `spacing` asks for, and the side [m], widened to the last one.
+
+    A summit at the limit of contact touches or not by where the nodes lie on it. With nodes that
+    move as the load does, RCS near 0.01 scatters by a tenth between neighbouring loads.
+
+    """
+    assert settings.spacing
+    coarser = max(0, math.ceil(2 * math.log2(side / (WIDE * semi_axis))))
+    finest = 2 * math.log2(2 * side / ((settings.ny - 1) * settings.spacing))
+    distance = settings.spacing * math.sqrt(2) ** min(coarser, math.floor(finest))
+    half = math.ceil(side / distance)
+    return 2 * half + 1, half * distance
 
 
 def _summit_reaches(case: Case) -> tuple[float, float, float]:

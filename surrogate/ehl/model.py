@@ -93,7 +93,10 @@ class Settings:
     upstream wedge, 1 or 2 (None: 2, but 1 where all of a smooth contact touches); logarithm of the
     viscosity at which a limited wedge fades to order 1 [-], docs/contact_solver.md; how far
     outside the Hertz zone summits are sought that need room on the production domain, over the
-    semi-axes; distance of the inlet meniscus from the centre [m], for the rolling tail.
+    semi-axes; `spacing` puts nodes across the track of that domain at multiples of it [m], at the
+    same places of a rough surface whatever the load, or of it times a power of sqrt(2): down to
+    `ny` nodes, up where the domain is much wider than the contact; distance of the inlet meniscus
+    from the centre [m], for the rolling tail.
 
     """
 
@@ -112,6 +115,7 @@ class Settings:
     wedge_order: int | None = None
     wedge_fading: float = 2.5
     summit_reach: float = 2.0
+    spacing: float | None = None
     meniscus_length: float = 1e-3
 
     def __post_init__(self) -> None:
@@ -131,6 +135,10 @@ class Settings:
         _require('time_cap', self.time_cap, 's', 1e-3, 1e6)
         _require('wedge_fading', self.wedge_fading, '-', 0.1, 100)
         _require('summit_reach', self.summit_reach, '-', 0.1, 20)
+        if self.spacing is not None:
+            _require('spacing', self.spacing, 'm', 1e-9, 1e-2)
+            if self.domain is not None:
+                raise InputError(f'spacing is {self.spacing!r} m, allowed is None with a domain')
         _require('meniscus_length', self.meniscus_length, 'm', 0.0, 1.0)
         if self.wedge_order not in (None, 1, 2):
             raise InputError(f'wedge_order is {self.wedge_order!r}, allowed is 1, 2 or None')

@@ -21,7 +21,7 @@ from surrogate.screw import rebalance_screw, ScrewSolution, solve_screw
 from surrogate.screw_contacts import GRID_WAVELENGTH, ScrewSettings
 from surrogate.tiers import screw_and_oil
 
-WORK = 'full tier 6'
+WORK = 'full tier 7'
 """Solver and version of what a chain returns; part of the key under which it is kept."""
 FLUX_TOLERANCE = 3e-3
 """Rest of the flux of a rough contact per line over that of the film, weighted as there [-];
@@ -92,7 +92,11 @@ def chain_settings(draw: int | None, grid_wavelength: float | None) -> ScrewSett
         error_estimate=False,
     )
     return ScrewSettings(
-        draw=draw, grid_wavelength=grid_wavelength, rough=rough, nodes_per_wave=5.0
+        draw=draw,
+        grid_wavelength=grid_wavelength,
+        rough=rough,
+        nodes_per_wave=5.0,
+        same_places=True,
     )
 
 

@@ -132,12 +132,19 @@ class Columns:
         return np.asarray(ahead[[(len(ahead) - 1) // 2]] if len(ahead) > 1 else beyond[:1])
 
     def asked(self, s: Array) -> NDArray[np.bool_]:
-        """Return what is solved, over [speed, load, temperature, draw]."""
+        """
+        Return what is solved, over [speed, load, temperature, draw].
+
+        Draws that are solved on the verge of the idle load alone are so around the onset alone.
+
+        """
         draw = np.arange(self.ensemble.most)
-        loads = [self.ensemble.at(load) for load in self.load.tolist()]
+        loads = np.array([self.ensemble.at(load) for load in self.load.tolist()])
+        far = np.isin(s, self._far(s))[:, None]
+        counts = np.where(far, np.minimum(loads, self.draws), loads)
         at_middle = np.arange(len(self.temperature)) == self.reference
         more = at_middle[:, None] & self.full(s)[:, None, None, None]
-        more = more & (draw < np.array(loads)[:, None, None])
+        more = more & (draw < counts[..., None, None])
         return np.asarray(self.sought(s)[..., None] & ((draw < self.few) | more))
 
     def chain(self, load: float, temperature: float, draw: int, speeds: Array) -> dict[str, Any]:

@@ -33,7 +33,7 @@ POWER = 6
 eighth at 0.01."""
 LEAST_DRAWS = 8
 """Draws from which on they are weighted [-]."""
-VERGE = (0.9375, 0.96875)
+VERGE = (0.875, 0.9375)
 """Parts of the idle load between which draws that are solved only near it gain weight [-]."""
 STEEPEST = 2.0
 """Largest exponent of a weight per standard deviation of the powers [-]: with more one draw

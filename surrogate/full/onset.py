@@ -118,14 +118,17 @@ def find_onset(
     """
     Return the logarithm of the onset speed [rad/s] over load [N] and temperature [K] nodes.
 
-    By formula, moved along the load by `known` profiles at the middle one of the `solved`
-    temperatures, and along the temperature by profiles at the least load that presses a ball.
+    By formula, moved along the load by profiles at the middle one of the `solved` temperatures, of
+    which some may be `known`, and along the temperature by those at the least load that presses a
+    ball.
 
     """
     onset_rcs = profiles.settings.onset_rcs
     # Loads crowd where profiles bend; the line is that of even ones, every other is enough.
     even = first_loads(profiles.screw, replace(profiles.settings, idle_halvings=0))
     fitted = LoadPieces(even.shared, even.alone[::2] if len(even.alone) > 2 else even.alone)
+    lacking = [load for load in fitted.magnitudes.tolist() if load not in known]
+    known = {**known, **profiles.solve(lacking, middle(solved))}
     at_load = smooth_shifts(
         pieces,
         fitted,

@@ -59,6 +59,8 @@ def refine_nodes(
     where it fails: there is no node but at those given.
 
     """
+    if len(first) >= most:
+        return np.asarray(first)
     known = solve(np.asarray(first))
     nodes = sorted(known)
     pending = list(zip(nodes, nodes[1:]))

@@ -2,10 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """The domain of a contact that states none."""
 
+from hypothesis import given
+from hypothesis import strategies as st
 import numpy as np
 import pytest
 from surrogate.ehl import Condition, Settings, solve_contact, Status
 from surrogate.ehl.case import make_case
+from surrogate.ehl.domain import nodes_at_multiples
 
 SLOW = Condition(load=27.6, entrainment_speed=0.01)
 
@@ -65,3 +68,39 @@ def test_summits_behind_the_contact_are_solved(nominal):
     cut = Settings(nx=129, ny=65, domain=(-1.4, 1.6, 1.3))
     lost = solve_contact(*nominal, dry, settings=cut, roughness=summit)
     assert lost.status is Status.DOMAIN_TOO_SMALL
+
+
+@given(
+    st.floats(1e-6, 2e-5), st.floats(1e-5, 1e-3), st.floats(1.05, 30.0), st.sampled_from([65, 129])
+)
+def test_nodes_are_at_multiples(spacing, semi_axis, wide, ny):
+    """Whole distances over a power of sqrt(2), at least the nodes asked for, few on wide ones."""
+    side = wide * semi_axis
+    nodes, found = nodes_at_multiples(Settings(ny=ny, spacing=spacing), side, semi_axis)
+    distance = 2 * found / (nodes - 1)
+    assert nodes % 2 == 1
+    assert nodes >= ny
+    assert side * (1 - 1e-12) <= found < side + distance * (1 + 1e-12)
+    steps = 2 * np.log2(distance / spacing)
+    assert steps == pytest.approx(round(steps), abs=1e-6)
+    assert nodes <= max(3 + 3.2 * semi_axis / spacing, 3 + np.sqrt(2) * ny)
+    if wide <= 1.6 and 2 * side / spacing >= ny - 1:
+        assert round(steps) == 0
+
+
+def test_a_summit_beside_the_middle_is_met_at_one_place_by_all_loads(nominal):
+    """Nodes across lie at the same places, and so high is the highest of a ridge between two."""
+
+    def ridge(x, y):
+        return 1e-7 * np.cos(2 * np.pi * y / 2e-5) + 0 * x
+
+    settings = Settings(nx=33, ny=65, spacing=4e-6)
+    heights = []
+    for load in (30.0, 31.0, 40.0):
+        case = make_case(*nominal, Condition(load=load, entrainment_speed=0.01), settings, ridge)
+        grid = case.grid(case.settings.nx, case.settings.ny, symmetric=False)
+        y = grid.y * case.semi_axis_x
+        assert y / 4e-6 == pytest.approx(np.round(y / 4e-6), abs=1e-9)
+        assert y[-1] >= 1.05 * case.semi_axis_y
+        heights.append(case.rough_heights(grid)[:, np.abs(y) < 0.9e-4] * case.height_unit)
+    assert all(one == pytest.approx(heights[0]) for one in heights)

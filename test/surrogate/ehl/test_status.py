@@ -70,6 +70,8 @@ def test_impossible_oils_are_refused(nominal, change):
         {'wedge_order': 3},
         {'wedge_fading': 0.0},
         {'summit_reach': math.nan},
+        {'spacing': 0.0},
+        {'spacing': 4e-6, 'domain': (-2.0, 1.5, 2.0)},
     ],
 )
 def test_impossible_settings_are_refused(change):

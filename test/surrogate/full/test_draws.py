@@ -106,9 +106,9 @@ def test_where_no_weights_are_found_the_error_says_so():
 
 
 def test_draws_of_the_verge_gain_weight_without_a_step():
-    """Twice as many from 15/16 of the idle load to it; there alone the second half weighs."""
+    """Twice as many from 7/8 of the idle load to it; there alone the second half weighs."""
     draws = Draws(5, idle=IDLE, powers=POWERS, mean=24.0)
-    loads = np.array([0.0, 937.5, 937.6, 950.0, -968.8, 999.0, 1000.0, 4000.0])
+    loads = np.array([0.0, 875.0, 875.1, 900.0, -937.6, 999.0, 1000.0, 4000.0])
     assert [draws.at(load) for load in loads] == [5, 5, 10, 10, 10, 10, 5, 5]
     weights = draws.weights(np.ones((len(loads), 10)), loads)
     late = weights[:, 5:].sum(axis=-1)

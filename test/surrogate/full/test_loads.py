@@ -92,7 +92,19 @@ def test_loads_crowd_where_profiles_change(screw, settings):
 
     first = first_loads(screw, settings)
     pieces = refine_loads(first, solve, error_target(screw, settings), 16)
-    assert len(pieces.shared) == 16 - len(first.alone)
+    assert len(pieces.shared) == 16 - 16 // 3
     assert len(pieces.alone) == len(first.alone)
     added = np.setdiff1d(pieces.shared, first.shared)
     assert (np.abs(added - 2000) < 700).all()
+
+
+def test_without_room_nothing_is_solved(screw, settings):
+    """The first loads are all that the defaults allow."""
+
+    def solve(loads):
+        raise AssertionError(f'{loads} N were solved')
+
+    first = first_loads(screw, settings)
+    assert len(first.magnitudes) == settings.load_nodes
+    found = refine_loads(first, solve, error_target(screw, settings), settings.load_nodes)
+    assert found.magnitudes.tolist() == first.magnitudes.tolist()
