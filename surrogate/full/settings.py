@@ -36,10 +36,10 @@ class FullSettings(SurfaceSettings):
     """
 
     speed_nodes: int = 16
-    load_nodes: int = 12
+    load_nodes: int = 13
     load_cells: int = 4
     idle_halvings: int = 3
-    unloaded_cells: int = 3
+    unloaded_cells: int = 4
     temperature_nodes: int = 7
     draws: int = 16
     shared_draws: int = 2

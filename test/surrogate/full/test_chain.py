@@ -20,6 +20,8 @@ from surrogate.tiers import screw_and_oil
 
 SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
 WARM = 313.15
+LOOSE = 6e-4
+"""What 0.3 % of the flux changes the torque by at most [-]; docs/surface.md."""
 
 
 def tight(draw):
@@ -35,17 +37,17 @@ def test_sheets_survive_json():
 
 
 def test_a_chain_is_the_points_it_says():
-    """Both senses at two speeds, of one draw; the same numbers as single solves from cold."""
+    """Both senses at two speeds, of one draw: a solve from cold, then one from its neighbour."""
     speeds = [60.0, 30.0]
     chain = solve_chain(chain_inputs(SCREW, OIL, 500.0, WARM, 1, speeds))
     assert json.loads(json.dumps(chain)) == chain
     for sense, sign in (('opposing', 1), ('assisting', -1)):
-        for record, speed in zip(chain[sense], speeds, strict=True):
+        for record, speed, left in zip(chain[sense], speeds, (1e-9, LOOSE), strict=True):
             point = OperatingPoint(speed=speed, load=sign * 500.0, temperature=WARM)
             settings = full_chain.chain_settings(1, GRID_WAVELENGTH)
             found = solve_screw(SCREW, OIL, point, settings=settings)
             assert record['converged']
-            assert record['friction_torque'] == pytest.approx(found.friction_torque, rel=1e-4)
+            assert record['friction_torque'] == pytest.approx(found.friction_torque, rel=left)
             assert record['film_ratio'] == pytest.approx(found.film_ratio, rel=1e-4)
     assert chain['opposing'][0]['friction_torque'] != chain['assisting'][0]['friction_torque']
 
