@@ -20,7 +20,6 @@ RIGID = 1.5
 FINEST, MOST_LINES, PLACES = 0.05, 60, 129
 """Least distance of lines on which summits are sought, over a semi-axis; most lines, places on one
 [-]."""
-
 WIDE = 1.6
 """Side of a domain over the semi-axis from which on its nodes may lie further apart [-]."""
 
