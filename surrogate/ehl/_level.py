@@ -15,14 +15,23 @@ from numba import njit
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.ehl._bands import bands_across, factor_bands, mark_thick_film, solve_bands
-from surrogate.ehl._line import line_factors, mirror, solve_film_lines, solve_lines
+from surrogate.ehl._line import (
+    film_factors,
+    line_factors,
+    lines_of_a_kind,
+    mirror,
+    solve_film_lines,
+    solve_lines,
+)
 from surrogate.ehl._transfer import prolong, restrict
 from surrogate.ehl.half_space import deform, HalfSpace
 
 Array = NDArray[np.floating]
 Mask = NDArray[np.bool_]
-LINE_STEPS = 3
-"""Line-Jacobi steps of the preconditioner."""
+LINE_STEPS = 4
+"""Times that every other line is solved in one application of the preconditioner."""
+FILM_STEPS = 3
+"""Line-Jacobi steps for the film pressure on contact nodes."""
 FEW_IN_CONTACT = 0.1
 """Share of nodes in contact up to which bands of thick film help; with more they do harm [-]."""
 
@@ -46,6 +55,7 @@ class Workspace(NamedTuple):
     thick_rows: Array
     thick_lower: Array
     thick_values: Array
+    halves: Array
     scratch: Array
     total: Array
     film: Array
@@ -88,17 +98,18 @@ def make_workspace(nx: int, ny: int, krylov: int, flexible: bool, dtype: type) -
     def planes(count: int) -> Array:
         return np.zeros((count, nx, ny), dtype)
 
-    longest, across = 2 * nx * ny + 1, bands_across(ny)
+    longest, across, half = 2 * nx * ny + 1, bands_across(ny), lines_of_a_kind(ny)
     return Workspace(
         by_pressure=planes(6),
         by_gap=planes(6),
-        bands=planes(5),
-        sides=planes(6),
-        film_bands=planes(3),
+        bands=np.zeros((2, 5, nx, half), dtype),
+        sides=np.zeros((2, 6, nx, half), dtype),
+        film_bands=planes(5),
         thick=planes(1)[0],
         thick_rows=np.zeros((nx * across, 2 * across + 1), dtype),
         thick_lower=np.zeros((nx * across, across), dtype),
         thick_values=np.zeros((nx + 1) * across, dtype),
+        halves=np.zeros((6, nx, half), dtype),
         scratch=planes(3),
         total=planes(1)[0],
         film=planes(1)[0],
@@ -208,7 +219,7 @@ def _solve_total(level: Level, rhs: Array, total: Array) -> None:
         rows, lower = work.thick_rows, work.thick_lower
         solve_bands(rows, lower, work.thick, rhs, work.thick_values, total)
     symmetric = level.space.symmetric
-    solve_lines(work.bands, work.sides, rhs, LINE_STEPS, started, symmetric, work.scratch, total)
+    solve_lines(work.bands, work.sides, rhs, LINE_STEPS, started, symmetric, work.halves, total)
 
 
 @njit(cache=True, error_model='numpy')
@@ -223,13 +234,12 @@ def _apply_contact_lines(level: Level, x: Array, out: Array) -> None:
         flat[nodes[k]] = x[size + k]
     _solve_total(level, mixed, total)
     solve_film_lines(
-        work.by_pressure,
         work.film_bands,
         level.contact,
         level.box,
         rhs,
         total,
-        LINE_STEPS,
+        FILM_STEPS,
         symmetric,
         work.scratch,
         film,
@@ -284,8 +294,9 @@ def factor(level: Level) -> None:
         level.inverse,
         work.bands,
         work.sides,
-        work.film_bands,
     )
+    if count > 0:
+        film_factors(work.by_pressure, level.contact, work.film_bands)
     _factor_thick_film(level)
     raised = np.zeros(size + count + 1, work.border.dtype)
     column = raised[:size].reshape(nx, ny)

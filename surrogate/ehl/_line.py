@@ -1,12 +1,13 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Line preconditioner: all lines along x at once, the inner loops run across them; compiled.
+Line preconditioner: every other line along x at once, the inner loops run across them; compiled.
 
 The elastic influence is replaced by its fitted 3x3 near kernel, so that a line is a matrix with
-bands -3 to +1; neighbouring lines are coupled by Jacobi steps. Contact rows hold the near kernel
-itself. The unknown is the total pressure; on contact nodes the film pressure follows from a second
-line system.
+bands -3 to +1, coupled to its two neighbours: all even lines are solved with the odd ones held,
+and the other way round (zebra). Lines of either kind are neighbours in memory: line j is number
+j // 2 of kind j % 2. Contact rows hold the near kernel itself. The unknown is the total pressure;
+on contact nodes the film pressure follows from a second line system.
 
 """
 
@@ -18,6 +19,11 @@ Array = NDArray[np.floating]
 Mask = NDArray[np.bool_]
 
 
+def lines_of_a_kind(ny: int) -> int:
+    """Return how many of `ny` lines are even, and at least as many as are odd."""
+    return (ny + 1) // 2
+
+
 @njit(cache=True, error_model='numpy')
 def line_factors(
     by_pressure: Array,
@@ -27,68 +33,71 @@ def line_factors(
     inverse: np.floating,
     bands: Array,
     sides: Array,
-    film_bands: Array,
 ) -> None:
     """
-    Factor all lines; everything is in Hertz units [-].
+    Factor all lines, by kind; everything is in Hertz units [-].
 
-    Total pressure: planes l3, l2, l1, 1/d, u1 in `bands`; coupling to both neighbours at -3, -2,
-    -1, +1 in `sides` 0 to 3 and at 0 to the south and north in 4 and 5. Film pressure on contact
-    nodes: planes l1, 1/d, u1 in `film_bands`. Contact rows are multiplied by `inverse`.
+    Planes l3, l2, l1, 1/d, u1 of a kind in `bands`; coupling to the sum of both neighbours at -3,
+    -2, -1, +1 and 0 in `sides` 0 to 4, that to the south alone at 0 in 5. Contact rows are
+    multiplied by `inverse`.
 
     """
     nx, ny = contact.shape
-    k0, k1, m0, m1 = near[0], near[1], near[2], near[3]
-    one = near.dtype.type(1)
-    zero = near.dtype.type(0)
     for i in range(1, nx - 1):
-        last = i == nx - 2
         for j in range(1, ny - 1):
-            if contact[i, j]:
-                c3, c2, c1, c0, cp = zero, zero, k1 * inverse, k0 * inverse, k1 * inverse
-                sides[0, i, j], sides[1, i, j] = zero, zero
-                sides[2, i, j], sides[3, i, j] = m1 * inverse, m1 * inverse
-                sides[4, i, j], sides[5, i, j] = m0 * inverse, m0 * inverse
-            else:
-                h0, h1, h5 = by_gap[0, i, j], by_gap[1, i, j], by_gap[5, i, j]
-                c3 = h5 * k1
-                c2 = h5 * k0 + h1 * k1 + by_pressure[5, i, j]
-                c1 = h5 * k1 + h1 * k0 + h0 * k1 + by_pressure[1, i, j]
-                c0 = h1 * k1 + h0 * k0 + by_pressure[0, i, j]
-                cp = h0 * k1 + by_pressure[2, i, j]
-                sides[0, i, j] = h5 * m1
-                sides[1, i, j] = h5 * m0 + h1 * m1
-                sides[2, i, j] = h5 * m1 + h1 * m0 + h0 * m1
-                sides[3, i, j] = h0 * m1
-                middle = h1 * m1 + h0 * m0
-                sides[4, i, j] = middle + by_pressure[3, i, j]
-                sides[5, i, j] = middle + by_pressure[4, i, j]
-            l3 = l2 = l1 = zero
+            kind, q = j % 2, j // 2
+            row = _line_row(by_pressure, by_gap, contact, near, inverse, i, j, sides[kind])
+            c3, c2, c1, c0, cp = row
+            done = bands[kind]
+            l3 = l2 = l1 = near.dtype.type(0)
             if i > 3:
-                l3 = c3 * bands[3, i - 3, j]
-                c2 -= l3 * bands[4, i - 3, j]
+                l3 = c3 * done[3, i - 3, q]
+                c2 -= l3 * done[4, i - 3, q]
             if i > 2:
-                l2 = c2 * bands[3, i - 2, j]
-                c1 -= l2 * bands[4, i - 2, j]
+                l2 = c2 * done[3, i - 2, q]
+                c1 -= l2 * done[4, i - 2, q]
             if i > 1:
-                l1 = c1 * bands[3, i - 1, j]
-                c0 -= l1 * bands[4, i - 1, j]
-            bands[0, i, j], bands[1, i, j], bands[2, i, j] = l3, l2, l1
-            bands[3, i, j] = one / c0
-            bands[4, i, j] = zero if last else cp
-            d1 = d0 = zero
-            if contact[i, j]:
-                d1, d0 = by_pressure[1, i, j], by_pressure[0, i, j]
-                film_bands[2, i, j] = by_pressure[2, i, j]
-            else:
-                d0 = one
-                film_bands[2, i, j] = zero
-            l1 = zero
-            if i > 1:
-                l1 = d1 * film_bands[1, i - 1, j]
-                d0 -= l1 * film_bands[2, i - 1, j]
-            film_bands[0, i, j] = l1
-            film_bands[1, i, j] = one / d0
+                l1 = c1 * done[3, i - 1, q]
+                c0 -= l1 * done[4, i - 1, q]
+            done[0, i, q], done[1, i, q], done[2, i, q] = l3, l2, l1
+            done[3, i, q] = near.dtype.type(1) / c0
+            done[4, i, q] = near.dtype.type(0) if i == nx - 2 else cp
+
+
+@njit(cache=True, error_model='numpy')
+def _line_row(
+    by_pressure: Array,
+    by_gap: Array,
+    contact: Mask,
+    near: Array,
+    inverse: np.floating,
+    i: int,
+    j: int,
+    sides: Array,
+) -> tuple[np.floating, np.floating, np.floating, np.floating, np.floating]:
+    """Return the row of a node at -3 to +1 in its line [-] and set its `sides`."""
+    k0, k1, m0, m1 = near[0], near[1], near[2], near[3]
+    zero, q = near.dtype.type(0), j // 2
+    if contact[i, j]:
+        sides[0, i, q] = sides[1, i, q] = sides[5, i, q] = zero
+        sides[2, i, q] = sides[3, i, q] = m1 * inverse
+        sides[4, i, q] = m0 * inverse
+        return zero, zero, k1 * inverse, k0 * inverse, k1 * inverse
+    h0, h1, h5 = by_gap[0, i, j], by_gap[1, i, j], by_gap[5, i, j]
+    north = by_pressure[4, i, j]
+    sides[0, i, q] = h5 * m1
+    sides[1, i, q] = h5 * m0 + h1 * m1
+    sides[2, i, q] = h5 * m1 + h1 * m0 + h0 * m1
+    sides[3, i, q] = h0 * m1
+    sides[4, i, q] = h1 * m1 + h0 * m0 + north
+    sides[5, i, q] = by_pressure[3, i, j] - north
+    return (
+        h5 * k1,
+        h5 * k0 + h1 * k1 + by_pressure[5, i, j],
+        h5 * k1 + h1 * k0 + h0 * k1 + by_pressure[1, i, j],
+        h1 * k1 + h0 * k0 + by_pressure[0, i, j],
+        h0 * k1 + by_pressure[2, i, j],
+    )
 
 
 @njit(cache=True, error_model='numpy')
@@ -109,56 +118,149 @@ def solve_lines(
     work: Array,
     value: Array,
 ) -> None:
-    """Apply `steps` line-Jacobi steps to the total pressure, from `value` if started or zero."""
-    nx, ny = rhs.shape
-    pair = work[1]
-    work = work[0]
+    """
+    Solve the odd lines, the even ones and so on, `steps` times, for the total pressure [-].
+
+    From `value` if started or else zero; `work` is six planes of a kind that once were zero.
+
+    """
+    known, found = work[:2], work[2:4]
+    part(rhs, known)
+    if started:
+        part(value, found)
+    else:
+        found[:] = 0
     for step in range(steps):
-        if step > 0 or started:
-            for i in range(1, nx - 1):
-                for j in range(1, ny - 1):
-                    pair[i, j] = value[i, j - 1] + value[i, j + 1]
-        for i in range(1, nx - 1):
-            for j in range(1, ny - 1):
-                work[i, j] = rhs[i, j]
-            if step > 0 or started:
-                for j in range(1, ny - 1):
-                    work[i, j] -= (
-                        sides[4, i, j] * value[i, j - 1]
-                        + sides[5, i, j] * value[i, j + 1]
-                        + sides[3, i, j] * pair[i + 1, j]
-                        + sides[2, i, j] * pair[i - 1, j]
-                    )
-                if i > 2:
-                    for j in range(1, ny - 1):
-                        work[i, j] -= (
-                            sides[1, i, j] * pair[i - 2, j] + sides[0, i, j] * pair[i - 3, j]
-                        )
-            if i > 3:
-                for j in range(1, ny - 1):
-                    work[i, j] -= (
-                        bands[2, i, j] * work[i - 1, j]
-                        + bands[1, i, j] * work[i - 2, j]
-                        + bands[0, i, j] * work[i - 3, j]
-                    )
-            elif i == 3:
-                for j in range(1, ny - 1):
-                    work[i, j] -= bands[2, i, j] * work[i - 1, j] + bands[1, i, j] * work[i - 2, j]
-            elif i == 2:
-                for j in range(1, ny - 1):
-                    work[i, j] -= bands[2, i, j] * work[i - 1, j]
-        value[nx - 1] = 0
-        for i in range(nx - 2, 0, -1):
-            for j in range(1, ny - 1):
-                value[i, j] = (work[i, j] - bands[4, i, j] * value[i + 1, j]) * bands[3, i, j]
-        if symmetric:
-            mirror(value)
+        kind = 1 - step % 2
+        count = (rhs.shape[1] - kind) // 2
+        coupled = started or step > 0
+        if coupled:
+            _gather(found[1 - kind], kind, count, work[4], work[5])
+        _solve_kind(
+            bands[kind], sides[kind], known[kind], count, coupled, work[4], work[5], found[kind]
+        )
+        if symmetric and kind == 0:
+            for i in range(rhs.shape[0]):
+                found[0, i, 0] = found[0, i, 1]
+    join(found, value)
+
+
+@njit(cache=True, error_model='numpy')
+def part(values: Array, kinds: Array) -> None:
+    """Part the lines [nx, ny] into even and odd ones [2, nx, lines]."""
+    nx, ny = values.shape
+    even, odd = kinds[0], kinds[1]
+    for i in range(nx):
+        for q in range(ny // 2):
+            even[i, q] = values[i, 2 * q]
+            odd[i, q] = values[i, 2 * q + 1]
+        if ny % 2 == 1:
+            even[i, ny // 2] = values[i, ny - 1]
+
+
+@njit(cache=True, error_model='numpy')
+def join(kinds: Array, values: Array) -> None:
+    """Undo `part`."""
+    nx, ny = values.shape
+    even, odd = kinds[0], kinds[1]
+    for i in range(nx):
+        for q in range(ny // 2):
+            values[i, 2 * q] = even[i, q]
+            values[i, 2 * q + 1] = odd[i, q]
+        if ny % 2 == 1:
+            values[i, ny - 1] = even[i, ny // 2]
+
+
+@njit(cache=True, error_model='numpy')
+def _gather(other: Array, kind: int, count: int, south: Array, pair: Array) -> None:
+    """Set the south neighbour and the sum of both of the lines of a kind; none of the first."""
+    for i in range(1, other.shape[0] - 1):
+        if kind == 1:
+            for q in range(count):
+                south[i, q] = other[i, q]
+                pair[i, q] = other[i, q] + other[i, q + 1]
+        else:
+            south[i, 0] = pair[i, 0] = 0
+            for q in range(1, count):
+                south[i, q] = other[i, q - 1]
+                pair[i, q] = other[i, q - 1] + other[i, q]
+
+
+@njit(cache=True, error_model='numpy')
+def _solve_kind(
+    bands: Array,
+    sides: Array,
+    known: Array,
+    count: int,
+    coupled: bool,
+    south: Array,
+    pair: Array,
+    value: Array,
+) -> None:
+    """Solve the first `count` lines of a kind; the border line has a zero inverse pivot."""
+    nx = known.shape[0]
+    rest = value  # forward substitution and answer may share their place
+    for i in range(1, nx - 1):
+        for q in range(count):
+            rest[i, q] = known[i, q]
+        if coupled:
+            for q in range(count):
+                rest[i, q] -= (
+                    sides[5, i, q] * south[i, q]
+                    + sides[4, i, q] * pair[i, q]
+                    + sides[3, i, q] * pair[i + 1, q]
+                    + sides[2, i, q] * pair[i - 1, q]
+                )
+            if i > 2:
+                for q in range(count):
+                    rest[i, q] -= sides[1, i, q] * pair[i - 2, q] + sides[0, i, q] * pair[i - 3, q]
+        if i > 3:
+            for q in range(count):
+                rest[i, q] -= (
+                    bands[2, i, q] * rest[i - 1, q]
+                    + bands[1, i, q] * rest[i - 2, q]
+                    + bands[0, i, q] * rest[i - 3, q]
+                )
+        elif i == 3:
+            for q in range(count):
+                rest[i, q] -= bands[2, i, q] * rest[i - 1, q] + bands[1, i, q] * rest[i - 2, q]
+        elif i == 2:
+            for q in range(count):
+                rest[i, q] -= bands[2, i, q] * rest[i - 1, q]
+    value[nx - 1] = 0
+    for i in range(nx - 2, 0, -1):
+        for q in range(count):
+            value[i, q] = (rest[i, q] - bands[4, i, q] * value[i + 1, q]) * bands[3, i, q]
+
+
+@njit(cache=True, error_model='numpy')
+def film_factors(by_pressure: Array, contact: Mask, film: Array) -> None:
+    """
+    Factor the lines of the film pressure on contact nodes, in Hertz units [-].
+
+    Planes l1, 1/d, u1 of the lines, coupling to the south and the north; elsewhere the row is 1.
+
+    """
+    nx, ny = contact.shape
+    one, zero = film.dtype.type(1), film.dtype.type(0)
+    for i in range(1, nx - 1):
+        for j in range(1, ny - 1):
+            touches = contact[i, j]
+            d1 = by_pressure[1, i, j] if touches else zero
+            d0 = by_pressure[0, i, j] if touches else one
+            film[2, i, j] = by_pressure[2, i, j] if touches else zero
+            film[3, i, j] = by_pressure[3, i, j] if touches else zero
+            film[4, i, j] = by_pressure[4, i, j] if touches else zero
+            if i > 1:
+                d1 *= film[1, i - 1, j]
+                d0 -= d1 * film[2, i - 1, j]
+            film[0, i, j] = d1
+            film[1, i, j] = one / d0
 
 
 @njit(cache=True, error_model='numpy')
 def solve_film_lines(
-    by_pressure: Array,
-    film_bands: Array,
+    film: Array,
     contact: Mask,
     box: tuple[int, int, int, int],
     rhs: Array,
@@ -172,26 +274,22 @@ def solve_film_lines(
     nx, ny = rhs.shape
     first, end, left, right = box
     zero = rhs.dtype.type(0)
-    work = work[0]
+    known, work = work[0], work[1]
     for i in range(nx):
         for j in range(ny):
             value[i, j] = zero if contact[i, j] else total[i, j]
+            known[i, j] = rhs[i, j] if contact[i, j] else total[i, j]
     for _ in range(steps):
         for i in range(first, end):
             for j in range(left, right):
-                free = (
-                    rhs[i, j]
-                    - by_pressure[3, i, j] * value[i, j - 1]
-                    - by_pressure[4, i, j] * value[i, j + 1]
+                work[i, j] = (
+                    known[i, j] - film[3, i, j] * value[i, j - 1] - film[4, i, j] * value[i, j + 1]
                 )
-                work[i, j] = free if contact[i, j] else total[i, j]
             if i > first:
                 for j in range(left, right):
-                    work[i, j] -= film_bands[0, i, j] * work[i - 1, j]
+                    work[i, j] -= film[0, i, j] * work[i - 1, j]
         for i in range(end - 1, first - 1, -1):
             for j in range(left, right):
-                value[i, j] = (work[i, j] - film_bands[2, i, j] * value[i + 1, j]) * film_bands[
-                    1, i, j
-                ]
+                value[i, j] = (work[i, j] - film[2, i, j] * value[i + 1, j]) * film[1, i, j]
         if symmetric:
             mirror(value)

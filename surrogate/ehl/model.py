@@ -87,16 +87,17 @@ class Settings:
     axes of the Hertz ellipse (-4.5, 1.5, 3 means x from -4.5 a to 1.5 a, |y| < 3 b), None for the
     production rule; `open_inlet` continues the pressure beyond the inlet as the rigid isoviscous
     solution does (None: on the production domain only); film floor [m]; relative tolerances of
-    flux, load and contact gap; cap of Newton iterations of one solve [-] and of the whole call
-    [s]; `error_estimate` also solves the half grid; `refine` solves a smooth contact that touches
-    on grids up to four times as fine (the result then has more nodes than asked for); order of the
-    upstream wedge, 1 or 2 (None: 2, but 1 where all of a smooth contact touches); logarithm of the
-    viscosity at which a limited wedge fades to order 1 [-], docs/contact_solver.md; how far
-    outside the Hertz zone summits are sought that need room on the production domain, over the
-    semi-axes; `spacing` puts nodes across the track of that domain at multiples of it [m], at the
-    same places of a rough surface whatever the load, or of it times a power of sqrt(2): down to
-    `ny` nodes, up where the domain is much wider than the contact; distance of the inlet meniscus
-    from the centre [m], for the rolling tail.
+    flux, load and contact gap; what a linear solve of a rough contact leaves of its residual [-];
+    cap of Newton iterations of one solve [-] and of the whole call [s]; `error_estimate` also
+    solves the half grid; `refine` solves a smooth contact that touches on grids up to four times
+    as fine (the result then has more nodes than asked for); order of the upstream wedge, 1 or 2
+    (None: 2, but 1 where all of a smooth contact touches); logarithm of the viscosity at which a
+    limited wedge fades to order 1 [-], docs/contact_solver.md; how far outside the Hertz zone
+    summits are sought that need room on the production domain, over the semi-axes; `spacing` puts
+    nodes across the track of that domain at multiples of it [m], at the same places of a rough
+    surface whatever the load, or of it times a power of sqrt(2): down to `ny` nodes, up where the
+    domain is much wider than the contact; distance of the inlet meniscus from the centre [m], for
+    the rolling tail.
 
     """
 
@@ -108,6 +109,7 @@ class Settings:
     flux_tolerance: float = 1e-4
     load_tolerance: float = 1e-6
     gap_tolerance: float = 1e-4
+    krylov_tolerance: float = 0.01
     newton_limit: int = 40
     time_cap: float = 60.0
     error_estimate: bool = True
@@ -131,6 +133,7 @@ class Settings:
         _require('film_floor', self.film_floor, 'm', 1e-12, 1e-6)
         for name in ('flux_tolerance', 'load_tolerance', 'gap_tolerance'):
             _require(name, getattr(self, name), '-', 1e-12, 0.1)
+        _require('krylov_tolerance', self.krylov_tolerance, '-', 1e-6, 0.5)
         _require('newton_limit', self.newton_limit, '-', 1, 1000)
         _require('time_cap', self.time_cap, 's', 1e-3, 1e6)
         _require('wedge_fading', self.wedge_fading, '-', 0.1, 100)

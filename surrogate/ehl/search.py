@@ -56,7 +56,7 @@ class Search:
             flux=settings.flux_tolerance if final else max(1e-2, settings.flux_tolerance),
             load=settings.load_tolerance,
             gap=settings.gap_tolerance,
-            krylov=0.01 if rough or stiff else 0.05,
+            krylov=settings.krylov_tolerance if rough else 0.01 if stiff else 0.05,
             newton=settings.newton_limit,
             step=steps[0],
             viscous=steps[1],

@@ -21,11 +21,13 @@ from surrogate.screw import rebalance_screw, ScrewSolution, solve_screw
 from surrogate.screw_contacts import GRID_WAVELENGTH, ScrewSettings
 from surrogate.tiers import screw_and_oil
 
-WORK = 'full tier 7'
+WORK = 'full tier 8'
 """Solver and version of what a chain returns; part of the key under which it is kept."""
 FLUX_TOLERANCE = 3e-3
 """Rest of the flux of a rough contact per line over that of the film, weighted as there [-];
 docs/contact_solver.md."""
+KRYLOV_TOLERANCE = 0.1
+"""What a linear solve of a rough contact leaves of its residual [-]; docs/contact_solver.md."""
 SENSES = {'opposing': 1.0, 'assisting': -1.0}
 
 
@@ -89,6 +91,7 @@ def chain_settings(draw: int | None, grid_wavelength: float | None) -> ScrewSett
         wedge_fading=4.0,
         summit_reach=6.0,
         flux_tolerance=FLUX_TOLERANCE,
+        krylov_tolerance=KRYLOV_TOLERANCE,
         error_estimate=False,
     )
     return ScrewSettings(

@@ -5,7 +5,7 @@
 import numpy as np
 import pytest
 from surrogate.ehl._bands import BAND, bands_across, factor_bands, mark_thick_film, solve_bands
-from surrogate.ehl._line import solve_lines
+from surrogate.ehl._line import line_factors, lines_of_a_kind, solve_lines
 
 NX = 12
 
@@ -105,17 +105,15 @@ def test_lines_from_bands_leave_less_of_a_slow_wave():
     planes = np.zeros((6, nx, ny), np.float32)
     planes[1:3], planes[3:5] = -1, -0.3
     planes[0] = 2.6
-    lines, sides = np.zeros((5, nx, ny), np.float32), np.zeros((6, nx, ny), np.float32)
-    sides[4], sides[5] = planes[3], planes[4]
-    for i in range(1, nx - 1):
-        before = 1 / lines[3, i - 1] if i > 1 else None
-        lines[2, i] = planes[1, i] / before if i > 1 else 0
-        lines[3, i] = 1 / (planes[0, i] - (lines[2, i] * planes[2, i] if i > 1 else 0))
-        lines[4, i] = planes[2, i] if i < nx - 2 else 0
+    half, near = lines_of_a_kind(ny), np.zeros(4, np.float32)
+    lines = np.zeros((2, 5, nx, half), np.float32)
+    sides = np.zeros((2, 6, nx, half), np.float32)
+    touches, none = np.zeros((nx, ny), bool), np.zeros_like(planes)
+    line_factors(planes, none, touches, near, np.float32(1), lines, sides)
     x, y = np.arange(nx)[:, None] / (nx - 1), np.arange(ny)[None, :] / (ny - 1)
     wave = (np.sin(np.pi * x) * np.sin(np.pi * y)).astype(np.float32)
     wave[[0, -1]] = wave[:, [0, -1]] = 0
-    rhs, work = apply(planes, wave), np.zeros((3, nx, ny), np.float32)
+    rhs, work = apply(planes, wave), np.zeros((6, nx, half), np.float32)
     rest = {}
     for started in (False, True):
         found = np.zeros_like(wave)
@@ -126,7 +124,7 @@ def test_lines_from_bands_leave_less_of_a_slow_wave():
             thick, values = inner((nx, ny)), np.zeros((nx + 1) * count, np.float32)
             factor_bands(planes, thick, rows, lower)
             solve_bands(rows, lower, thick, rhs, values, found)
-        solve_lines(lines, sides, rhs, 3, started, False, work, found)
+        solve_lines(lines, sides, rhs, 4, started, False, work, found)
         rest[started] = np.abs(found - wave).max()
     assert rest[False] > 0.8
     assert rest[True] < 0.3 * rest[False]

@@ -1,10 +1,19 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Lines of film pressure on contact nodes: their equations, and the box that they keep to."""
+"""Lines of total pressure, kind by kind, and of film pressure on contact nodes, in their box."""
 
 import numpy as np
 import pytest
-from surrogate.ehl._line import line_factors, solve_film_lines
+from scipy.signal import convolve2d
+from surrogate.ehl._line import (
+    film_factors,
+    join,
+    line_factors,
+    lines_of_a_kind,
+    part,
+    solve_film_lines,
+    solve_lines,
+)
 from surrogate.ehl.linear import contact_box
 
 SHAPE = (11, 14)
@@ -27,15 +36,43 @@ def marked(*nodes):
     return mask
 
 
+NEAR = np.array([1.0, 0.2, 0.1, 0.05])
+
+
 def solve(planes, contact, rhs, total, steps, box):
     """Return the film pressure after some line steps."""
-    bands, sides = np.zeros((5, *SHAPE)), np.zeros((6, *SHAPE))
-    film_bands, work = np.zeros((3, *SHAPE)), np.full((3, *SHAPE), np.nan)
-    near = np.array([1.0, 0.2, 0.1, 0.05])
-    line_factors(planes, planes, contact, near, np.float64(1.0), bands, sides, film_bands)
-    found = np.zeros(SHAPE)
-    solve_film_lines(planes, film_bands, contact, box, rhs, total, steps, False, work, found)
+    film, work, found = np.zeros((5, *SHAPE)), np.full((2, *SHAPE), np.nan), np.zeros(SHAPE)
+    film_factors(planes, contact, film)
+    solve_film_lines(film, contact, box, rhs, total, steps, False, work, found)
     return found
+
+
+def solved_lines(planes, contact, rhs, steps, start=None, symmetric=False):
+    """Return the total pressure after some steps, with gap planes a tenth of the pressure's."""
+    nx, ny = rhs.shape
+    half = lines_of_a_kind(ny)
+    bands, sides = np.zeros((2, 5, nx, half)), np.zeros((2, 6, nx, half))
+    line_factors(planes, 0.1 * planes, contact, NEAR, np.float64(1.0), bands, sides)
+    found, work = np.zeros((nx, ny)) if start is None else start.copy(), np.zeros((6, nx, half))
+    solve_lines(bands, sides, rhs, steps, start is not None, symmetric, work, found)
+    return found
+
+
+def rows(planes, contact, pressure):
+    """Return what the rows say of a pressure: near kernel in a line and beside it [-]."""
+    (nx, ny), (k0, k1, m0, m1) = pressure.shape, NEAR
+    wide = np.pad(pressure, 3)
+    lift = convolve2d(wide, [[m1, k1, m1], [m0, k0, m0], [m1, k1, m1]], mode='same')
+
+    def seen(field, along, across=0):
+        return field[3 + along : 3 + along + nx, 3 + across : 3 + across + ny]
+
+    free = 0.1 * (
+        planes[0] * lift[3:-3, 3:-3] + planes[1] * seen(lift, -1) + planes[5] * seen(lift, -2)
+    )
+    for plane, place in zip(planes, [(0, 0), (-1, 0), (1, 0), (0, -1), (0, 1), (-2, 0)]):
+        free += plane * seen(wide, *place)
+    return np.where(contact, lift[3:-3, 3:-3], free)
 
 
 CONTACTS = {
@@ -43,6 +80,64 @@ CONTACTS = {
     'at all borders': marked((1, 1), (1, 12), (9, 1), (9, 12), (5, 5)),
     'one': marked((3, 12)),
 }
+
+
+def inner(field):
+    """Return a field without its border."""
+    return field[1:-1, 1:-1]
+
+
+@pytest.mark.parametrize('contact', CONTACTS.values(), ids=CONTACTS)
+@pytest.mark.parametrize('across', [SHAPE[1], SHAPE[1] - 1], ids=('even', 'odd'))
+def test_many_steps_solve_the_rows_of_all_lines(planes, contact, across):
+    """From zero as from anywhere, for an even and an odd number of lines."""
+    contact, planes = contact[:, :across], planes[..., :across]
+    rhs, start = np.random.default_rng(8).normal(size=(2, SHAPE[0], across))
+    start[[0, -1]] = start[:, [0, -1]] = 0
+    for begin in (None, start):
+        found = solved_lines(planes, contact, rhs, 80, begin)
+        assert inner(rows(planes, contact, found)) == pytest.approx(inner(rhs), abs=1e-9)
+        assert not found[[0, -1]].any()
+        assert not found[:, [0, -1]].any()
+
+
+def test_a_step_solves_every_other_line(planes):
+    """Odd lines first, with nothing on the even ones; these next, with the odd ones held."""
+    contact, rhs = CONTACTS['inside'], np.random.default_rng(9).normal(size=SHAPE)
+    once, twice = (solved_lines(planes, contact, rhs, steps) for steps in (1, 2))
+    assert not once[:, ::2].any()
+    assert rows(planes, contact, once)[1:-1, 1:-1:2] == pytest.approx(rhs[1:-1, 1:-1:2], abs=1e-12)
+    np.testing.assert_array_equal(twice[:, 1::2], once[:, 1::2])
+    assert rows(planes, contact, twice)[1:-1, 2:-1:2] == pytest.approx(
+        rhs[1:-1, 2:-1:2], abs=1e-12
+    )
+
+
+def test_half_of_a_symmetric_field_is_solved_as_the_whole(planes):
+    """Column 1 is the axis, column 0 the mirror image of column 2."""
+    contact, rhs = CONTACTS['inside'], np.random.default_rng(10).normal(size=SHAPE)
+    planes[3, :, 1], planes[4, :, 1] = planes[4, :, 1], planes[4, :, 1]
+
+    def whole(field):
+        return np.concatenate([field[..., :1:-1], field[..., 1:]], axis=-1)
+
+    both = whole(planes)
+    both[[3, 4], :, : SHAPE[1] - 2] = both[[4, 3], :, : SHAPE[1] - 2]
+    found = solved_lines(planes, contact, rhs, 80, symmetric=True)
+    wanted = solved_lines(both, whole(contact), whole(rhs), 80)
+    assert found[:, 1:] == pytest.approx(wanted[:, SHAPE[1] - 2 :], abs=1e-9)
+    np.testing.assert_array_equal(found[:, 0], found[:, 2])
+
+
+@pytest.mark.parametrize('across', [7, 8])
+def test_kinds_join_to_what_was_parted(across):
+    """Bit for bit."""
+    field, again = np.random.default_rng(11).normal(size=(5, across)), np.zeros((5, across))
+    kinds = np.zeros((2, 5, lines_of_a_kind(across)))
+    part(field, kinds)
+    join(kinds, again)
+    np.testing.assert_array_equal(again, field)
+    np.testing.assert_array_equal(kinds[1, :, : across // 2], field[:, 1::2])
 
 
 @pytest.mark.parametrize('contact', CONTACTS.values(), ids=CONTACTS)
