@@ -32,7 +32,8 @@ class Variation:
     """
     One setting of the study.
 
-    Load [N], floor [nm], wavelength [um], grid, logarithm of viscosity over which the wedge fades,
+    Load [N], floor [nm], wavelength [um], grid, nodes per shortest wave that stay where they are,
+    None for nodes that move with the contact, logarithm of viscosity over which the wedge fades,
     patch, window [-], draws.
 
     """
@@ -43,6 +44,7 @@ class Variation:
     shortest_um: float = 16.0
     nx: int = 129
     ny: int = 257
+    per_wave: float | None = None
     fading: float = 2.5
     patch: str = 'rescaled'
     window: float = 1.0
@@ -55,6 +57,7 @@ class Variation:
 BASE = Variation(name='base')
 # Finer grids are dearer: fewer draws, and speeds about the onset only.
 FINE = replace(BASE, draws=4, fastest=0.032, slowest=0.0049)
+SURFACE = replace(BASE, name='surface grid', nx=97, ny=129, per_wave=5.0, fading=4.0)
 STUDY = (
     replace(BASE, fastest=2.0),
     replace(BASE, name='floor 1 nm', floor_nm=1.0),
@@ -69,9 +72,9 @@ STUDY = (
     replace(BASE, name='window x 2', window=2.0, draws=8, slowest=0.0049),
     replace(FINE, name='load 400 N', load=400.0, ny=513),
     replace(FINE, name='grid 257 x 513', nx=257, ny=513, draws=2),
-    replace(BASE, name='surface grid', nx=97, ny=215, fading=4.0),
-    replace(BASE, name='the same, wedge as base', nx=97, ny=215),
-    replace(FINE, name='100 N, surface grid', load=100.0, nx=97, ny=331, fading=4.0, draws=16),
+    SURFACE,
+    replace(SURFACE, name='the same, wedge as base', fading=BASE.fading),
+    replace(SURFACE, name='100 N, surface grid', load=100.0, fastest=0.032, slowest=0.0049),
 )
 
 
@@ -112,6 +115,7 @@ def chain(variation: Variation, draw: int, done: set[tuple[str, int, float]]):
     settings = Settings(
         nx=variation.nx,
         ny=variation.ny,
+        spacing=variation.per_wave and surface.shortest_wavelength / variation.per_wave,
         film_floor=variation.floor_nm * 1e-9,
         wedge_fading=variation.fading,
         error_estimate=False,
