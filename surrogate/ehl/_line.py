@@ -197,15 +197,19 @@ def _solve_kind(
     pair: Array,
     value: Array,
 ) -> None:
-    """Solve the first `count` lines of a kind; the border line has a zero inverse pivot."""
+    """
+    Solve the first `count` lines of a kind, forwards and backwards in `value`.
+
+    A line on the border has an inverse pivot of zero, and stays zero.
+
+    """
     nx = known.shape[0]
-    rest = value  # forward substitution and answer may share their place
     for i in range(1, nx - 1):
         for q in range(count):
-            rest[i, q] = known[i, q]
+            value[i, q] = known[i, q]
         if coupled:
             for q in range(count):
-                rest[i, q] -= (
+                value[i, q] -= (
                     sides[5, i, q] * south[i, q]
                     + sides[4, i, q] * pair[i, q]
                     + sides[3, i, q] * pair[i + 1, q]
@@ -213,24 +217,26 @@ def _solve_kind(
                 )
             if i > 2:
                 for q in range(count):
-                    rest[i, q] -= sides[1, i, q] * pair[i - 2, q] + sides[0, i, q] * pair[i - 3, q]
+                    value[i, q] -= (
+                        sides[1, i, q] * pair[i - 2, q] + sides[0, i, q] * pair[i - 3, q]
+                    )
         if i > 3:
             for q in range(count):
-                rest[i, q] -= (
-                    bands[2, i, q] * rest[i - 1, q]
-                    + bands[1, i, q] * rest[i - 2, q]
-                    + bands[0, i, q] * rest[i - 3, q]
+                value[i, q] -= (
+                    bands[2, i, q] * value[i - 1, q]
+                    + bands[1, i, q] * value[i - 2, q]
+                    + bands[0, i, q] * value[i - 3, q]
                 )
         elif i == 3:
             for q in range(count):
-                rest[i, q] -= bands[2, i, q] * rest[i - 1, q] + bands[1, i, q] * rest[i - 2, q]
+                value[i, q] -= bands[2, i, q] * value[i - 1, q] + bands[1, i, q] * value[i - 2, q]
         elif i == 2:
             for q in range(count):
-                rest[i, q] -= bands[2, i, q] * rest[i - 1, q]
+                value[i, q] -= bands[2, i, q] * value[i - 1, q]
     value[nx - 1] = 0
     for i in range(nx - 2, 0, -1):
         for q in range(count):
-            value[i, q] = (rest[i, q] - bands[4, i, q] * value[i + 1, q]) * bands[3, i, q]
+            value[i, q] = (value[i, q] - bands[4, i, q] * value[i + 1, q]) * bands[3, i, q]
 
 
 @njit(cache=True, error_model='numpy')
