@@ -3,9 +3,11 @@
 """
 What weighting the draws by the factor of their patch gains.
 
-Run `python bench/draw_factors.py [--draws 64] [--out DIR]`: solves draws of the nominal screw at
+Run `python bench/draw_factors.py [--draws 128] [--out DIR]`: solves draws of the nominal screw at
 preload and 40 degC at four speeds, prints the mean RCS of the first sixteen, plain and weighted,
-with their standard errors, and that of all, and draws RCS over the factor. Takes minutes.
+with their standard errors, and that of all; then, over all groups of sixteen, how far the means of
+a group are from that of all and what their standard errors say. Draws RCS over the factor. Takes
+minutes.
 
 """
 
@@ -41,6 +43,30 @@ def summary(rcs: np.ndarray, draws: Draws) -> tuple[float, float]:
     return float(weighted_mean(known, weights)), float(draws.standard_error(known, weights))
 
 
+def group_errors(rcs: np.ndarray, every: Draws, kind: str) -> tuple[float, float]:
+    """
+    Return how far means of groups of draws are from that of all, and what they state [-].
+
+    Root mean squares; a group is part of all, which brings it nearer to their mean.
+
+    """
+    starts = range(0, every.count - FEW + 1, FEW)
+    whole, _ = summary(rcs, every)
+    told = [summary(rcs[start : start + FEW], group(every, start, kind)) for start in starts]
+    means, errors = np.array(told).T
+    nearer = math.sqrt(1 - FEW / every.count)
+    return float(np.sqrt(np.mean((means - whole) ** 2))) / nearer, float(
+        np.sqrt(np.mean(errors**2))
+    )
+
+
+def group(every: Draws, start: int, kind: str) -> Draws:
+    """Return sixteen of all draws, weighted or plain."""
+    if kind == 'plain':
+        return Draws(FEW)
+    return Draws(FEW, 0.0, every.powers[start : start + FEW], every.mean)
+
+
 def draw_figure(rcs: np.ndarray, factors: np.ndarray, path: Path) -> None:
     """Draw RCS of every draw over the factor of its patch."""
     import matplotlib
@@ -73,7 +99,7 @@ def draw_figure(rcs: np.ndarray, factors: np.ndarray, path: Path) -> None:
 def main() -> None:
     """Solve, print and draw."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument('--draws', type=int, default=64)
+    parser.add_argument('--draws', type=int, default=128)
     parser.add_argument('--workers', type=int, default=2)
     parser.add_argument('--out', type=Path, default=Path('docs'))
     args = parser.parse_args()
@@ -93,6 +119,12 @@ def main() -> None:
         told = (summary(column, draws) for draws in cases)
         texts = (f'{mean:.4f} +- {error:.4f}' for mean, error in told)
         print(f'{rpm:7g}  {alike:11.2f}  {"  ".join(texts)}', flush=True)
+    if args.draws > FEW:
+        print(f'rev/min  off the mean of all, and stated: groups of {FEW}, plain, weighted')
+        for rpm, column in zip(RPM, rcs.T, strict=True):
+            told = (group_errors(column, every, kind) for kind in ('plain', 'weighted'))
+            texts = (f'{off:.4f}, {error:.4f}' for off, error in told)
+            print(f'{rpm:7g}  {"    ".join(texts)}', flush=True)
     draw_figure(rcs, powers ** (1 / POWER), args.out / 'draw_factors.png')
 
 
