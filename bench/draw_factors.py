@@ -52,7 +52,8 @@ def group_errors(rcs: np.ndarray, every: Draws, kind: str) -> tuple[float, float
     """
     starts = range(0, every.count - FEW + 1, FEW)
     whole, _ = summary(rcs, every)
-    told = [summary(rcs[start : start + FEW], group(every, start, kind)) for start in starts]
+    groups = np.split(np.resize(rcs, FEW * len(starts)), len(starts))
+    told = [summary(one, group(every, start, kind)) for start, one in zip(starts, groups)]
     means, errors = np.array(told).T
     nearer = math.sqrt(1 - FEW / every.count)
     return float(np.sqrt(np.mean((means - whole) ** 2))) / nearer, float(
@@ -64,7 +65,8 @@ def group(every: Draws, start: int, kind: str) -> Draws:
     """Return sixteen of all draws, weighted or plain."""
     if kind == 'plain':
         return Draws(FEW)
-    return Draws(FEW, 0.0, every.powers[start : start + FEW], every.mean)
+    own = slice(start, start + FEW)
+    return Draws(FEW, 0.0, every.powers[own], every.mean)
 
 
 def draw_figure(rcs: np.ndarray, factors: np.ndarray, path: Path) -> None:
