@@ -26,8 +26,6 @@ WORK = 'full tier 8'
 FLUX_TOLERANCE = 3e-3
 """Rest of the flux of a rough contact per line over that of the film, weighted as there [-];
 docs/contact_solver.md."""
-KRYLOV_TOLERANCE = 0.1
-"""What a linear solve of a rough contact leaves of its residual [-]; docs/contact_solver.md."""
 SENSES = {'opposing': 1.0, 'assisting': -1.0}
 
 
@@ -91,7 +89,6 @@ def chain_settings(draw: int | None, grid_wavelength: float | None) -> ScrewSett
         wedge_fading=4.0,
         summit_reach=6.0,
         flux_tolerance=FLUX_TOLERANCE,
-        krylov_tolerance=KRYLOV_TOLERANCE,
         error_estimate=False,
     )
     return ScrewSettings(
