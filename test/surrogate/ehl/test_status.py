@@ -69,6 +69,8 @@ def test_impossible_oils_are_refused(nominal, change):
         {'time_cap': -1.0},
         {'wedge_order': 3},
         {'wedge_fading': 0.0},
+        {'krylov_tolerance': 0.0},
+        {'krylov_tolerance': 0.6},
         {'summit_reach': math.nan},
         {'spacing': 0.0},
         {'spacing': 4e-6, 'domain': (-2.0, 1.5, 2.0)},
