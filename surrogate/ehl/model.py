@@ -87,17 +87,17 @@ class Settings:
     axes of the Hertz ellipse (-4.5, 1.5, 3 means x from -4.5 a to 1.5 a, |y| < 3 b), None for the
     production rule; `open_inlet` continues the pressure beyond the inlet as the rigid isoviscous
     solution does (None: on the production domain only); film floor [m]; relative tolerances of
-    flux, load and contact gap; what a linear solve of a rough contact leaves of its residual [-];
-    cap of Newton iterations of one solve [-] and of the whole call [s]; `error_estimate` also
-    solves the half grid; `refine` solves a smooth contact that touches on grids up to four times
-    as fine (the result then has more nodes than asked for); order of the upstream wedge, 1 or 2
-    (None: 2, but 1 where all of a smooth contact touches); logarithm of the viscosity at which a
-    limited wedge fades to order 1 [-], docs/contact_solver.md; how far outside the Hertz zone
-    summits are sought that need room on the production domain, over the semi-axes; `spacing` puts
-    nodes across the track of that domain at multiples of it [m], at the same places of a rough
-    surface whatever the load, or of it times a power of sqrt(2): down to `ny` nodes, up where the
-    domain is much wider than the contact; distance of the inlet meniscus from the centre [m], for
-    the rolling tail.
+    flux, load and contact gap; what a linear solve of a rough contact leaves of its residual [-],
+    at most 0.01 where Newton stalls; cap of Newton iterations of one solve [-] and of the whole
+    call [s]; `error_estimate` also solves the half grid; `refine` solves a smooth contact that
+    touches on grids up to four times as fine (the result then has more nodes than asked for);
+    order of the upstream wedge, 1 or 2 (None: 2, but 1 where all of a smooth contact touches);
+    logarithm of the viscosity at which a limited wedge fades to order 1 [-],
+    docs/contact_solver.md; how far outside the Hertz zone summits are sought that need room on the
+    production domain, over the semi-axes; `spacing` puts nodes across the track of that domain at
+    multiples of it [m], at the same places of a rough surface whatever the load, or of it times a
+    power of sqrt(2): down to `ny` nodes, up where the domain is much wider than the contact;
+    distance of the inlet meniscus from the centre [m], for the rolling tail.
 
     """
 

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Semismooth Newton on one grid: film, cavitated and contact nodes in one system."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 import math
 import time
 
@@ -14,6 +14,8 @@ from surrogate.ehl.system import Array, evaluate, Evaluation, Mask, Problem
 
 HOPELESS = 5
 """Linear solves cut at their limit after which an iteration is given up [-]."""
+FALLING = 0.5
+"""Flux error over that of the step before from which on Newton counts as stalled [-]."""
 OVERSHOOT = 2.0
 """Largest fall of the film pressure over that which is exact for exponential viscosity [-]."""
 
@@ -25,6 +27,7 @@ class Limits:
 
     A step may change the pressure of a film node by `step` and the logarithm of the viscosity at
     the Hertz pressure by `viscous`, and may raise the film pressure of a contact node by `rise`.
+    Linear solves leave `krylov` of their residual, after a stalled step `stalled` if that is less.
 
     """
 
@@ -32,6 +35,7 @@ class Limits:
     load: float = 1e-6
     gap: float = 1e-4
     krylov: float = 0.02
+    stalled: float = math.inf
     newton: int = 40
     step: float = 0.5
     viscous: float = 6.0
@@ -58,7 +62,7 @@ class Outcome:
 
 def solve_grid(grid: Grid, problem: Problem, start: State, limits: Limits) -> Outcome:
     """Iterate from `start` until all three errors are small, or say what is left."""
-    state, krylov, count, hopeless = start, 0, 0, 0
+    state, krylov, count, hopeless, last = start, 0, 0, 0, math.inf
     while True:
         now = evaluate(grid, problem, state)
         converged = _is_converged(now, problem, limits)
@@ -66,7 +70,8 @@ def solve_grid(grid: Grid, problem: Problem, start: State, limits: Limits) -> Ou
         finite = math.isfinite(now.flux_error) and math.isfinite(now.load_rest)
         if converged or late or not finite or count >= limits.newton or hopeless >= HOPELESS:
             break
-        state, used = _step(grid, problem, state, now, limits)
+        state, used = _step(grid, problem, state, now, _tightened(limits, now.flux_error, last))
+        last = now.flux_error
         krylov += used
         count += 1
         hopeless += used == KRYLOV_LIMIT
@@ -91,6 +96,13 @@ def _is_converged(now: Evaluation, problem: Problem, limits: Limits) -> bool:
         and now.gap_error < limits.gap
         and abs(now.load_rest) < limits.load * problem.load
     )
+
+
+def _tightened(limits: Limits, flux: float, last: float) -> Limits:
+    """Return limits of the next step; loose linear solves alone lose thick films of cold oil."""
+    if flux < FALLING * last:
+        return limits
+    return replace(limits, krylov=min(limits.krylov, limits.stalled))
 
 
 def _step(

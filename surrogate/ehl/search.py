@@ -34,6 +34,8 @@ SAME_SPEED = 1.0
 docs/contact_solver.md."""
 WARM_NEWTON = 25
 """Most Newton iterations of one step from a neighbouring solution [-]."""
+STALLED = 0.01
+"""What linear solves of rough contacts leave of their residual at most where Newton stalls [-]."""
 PARTING = 1.5
 """Smooth film over the roughness rms at which a rough path starts [-]."""
 
@@ -57,6 +59,7 @@ class Search:
             load=settings.load_tolerance,
             gap=settings.gap_tolerance,
             krylov=settings.krylov_tolerance if rough else 0.01 if stiff else 0.05,
+            stalled=STALLED if rough else math.inf,
             newton=settings.newton_limit,
             step=steps[0],
             viscous=steps[1],

@@ -21,7 +21,7 @@ from surrogate.screw import rebalance_screw, ScrewSolution, solve_screw
 from surrogate.screw_contacts import GRID_WAVELENGTH, ScrewSettings
 from surrogate.tiers import screw_and_oil
 
-WORK = 'full tier 8'
+WORK = 'full tier 9'
 """Solver and version of what a chain returns; part of the key under which it is kept."""
 FLUX_TOLERANCE = 3e-3
 """Rest of the flux of a rough contact per line over that of the film, weighted as there [-];
@@ -75,7 +75,7 @@ def solve_chain(inputs: Mapping[str, Any]) -> dict[str, Any]:
 
 def chain_settings(draw: int | None, grid_wavelength: float | None) -> ScrewSettings:
     """
-    Return how chains are solved: as a point is, but for grid and tolerance of rough contacts.
+    Return how chains are solved: as a point is, but for grid and tolerances of rough contacts.
 
     A quarter fewer nodes along, a sixth fewer across, for light contacts half as many, and a
     limited wedge that fades later: as near to the finest grid at 27.6 N and as the grid of a point
@@ -89,6 +89,7 @@ def chain_settings(draw: int | None, grid_wavelength: float | None) -> ScrewSett
         wedge_fading=4.0,
         summit_reach=6.0,
         flux_tolerance=FLUX_TOLERANCE,
+        krylov_tolerance=0.1,
         error_estimate=False,
     )
     return ScrewSettings(

@@ -3,10 +3,11 @@
 """When an iteration is over, and how far one step may go."""
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
-from surrogate.ehl import Condition, Settings
+from surrogate.ehl import Condition, newton, Settings
 from surrogate.ehl.case import make_case
 from surrogate.ehl.newton import limit_on_contact, OVERSHOOT
 from surrogate.ehl.system import evaluate
@@ -34,6 +35,26 @@ def test_asperity_pressure_on_a_free_node_is_an_error_of_the_gap(at_hertz, sign)
     now = evaluate(grid, problem, replace(state, asperity_pressure=asperity))
     assert not now.contact.any()
     assert now.gap_error == pytest.approx(1e-3)
+
+
+def test_linear_solves_are_tight_where_newton_stalls(at_hertz, monkeypatch):
+    """Loose at first and after each step that halved the flux error; both happen from Hertz."""
+    seen, solve = [], newton.solve_linear
+
+    def watch(grid, problem, state, now, tolerance):
+        seen.append((now.flux_error, tolerance))
+        return solve(grid, problem, state, now, tolerance)
+
+    monkeypatch.setattr(newton, 'solve_linear', watch)
+    limits = newton.Limits(krylov=0.3, stalled=0.02)
+    assert newton.solve_grid(*at_hertz, limits).converged
+    flux, tolerance = zip(*seen, strict=True)
+    falls = [True, *(after < 0.5 * before for before, after in pairwise(flux))]
+    assert {*falls} == {True, False}
+    assert [*tolerance] == [0.3 if fell else 0.02 for fell in falls]
+    seen.clear()
+    newton.solve_grid(*at_hertz, replace(limits, stalled=1.0))
+    assert {tight for _, tight in seen} == {0.3}
 
 
 def limited(at_hertz, change):

@@ -25,9 +25,10 @@ LOOSE = 6e-4
 
 
 def tight(draw):
-    """Return how chains are solved, with the flux tolerance of a point."""
+    """Return how chains are solved, with the tolerances of a point."""
     settings = full_chain.chain_settings(draw, GRID_WAVELENGTH)
-    return replace(settings, rough=replace(settings.rough, flux_tolerance=1e-4))
+    rough = replace(settings.rough, flux_tolerance=1e-4, krylov_tolerance=0.01)
+    return replace(settings, rough=rough)
 
 
 def test_sheets_survive_json():
@@ -108,6 +109,15 @@ def test_a_contact_that_fails_costs_the_others_nothing(monkeypatch):
     for sense in ('opposing', 'assisting'):
         assert [record['converged'] for record in chain[sense]] == [False, True]
         assert Status.DOMAIN_TOO_SMALL.value in chain[sense][0]['status']
+
+
+@pytest.mark.parametrize('speed', [200.0, 100.0])
+def test_thick_films_of_cold_oil_are_found(speed):
+    """Where linear solves to a tenth alone lead nowhere."""
+    chain = solve_chain(chain_inputs(SCREW, OIL, 3057.0, 283.15, 0, [speed]))
+    for sense in ('opposing', 'assisting'):
+        assert chain[sense][0]['converged']
+        assert chain[sense][0]['rcs'] == 0.0
 
 
 def test_the_looser_flux_of_chains_leaves_contact_alone():
