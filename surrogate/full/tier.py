@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The full tier as a tier of surfaces: build with workers and a store, and solve a point again."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
+import math
 from pathlib import Path
 import platform
 import sys
@@ -15,10 +16,11 @@ import numpy as np
 import scipy
 from surrogate.full.build import build_full
 from surrogate.full.chain import chain_inputs, solve_chain, WORK
+from surrogate.full.columns import covering
 from surrogate.full.draws import Draws, mean_of_draws
 from surrogate.full.run import ChainRun
 from surrogate.full.settings import FullSettings
-from surrogate.parameters import Lubricant, Screw
+from surrogate.parameters import Lubricant, Screw, ZERO_CELSIUS
 from surrogate.screw_contacts import GRID_WAVELENGTH
 from surrogate.surface import FIELDS
 from surrogate.surface_file import SurfaceData
@@ -33,7 +35,7 @@ def build_full_surface(
     """
     Build a surface on workers; results are kept beside `out`, an interrupted build goes on.
 
-    Says on stderr what was reached where the accuracy asked for was not.
+    Says on stderr where the accuracy asked for was not reached and nodes have no number.
 
     Raises InputError for ranges that make no sense, SurfaceError for a store that cannot be used.
 
@@ -42,17 +44,38 @@ def build_full_surface(
     with TaskStore(out, WORK) as store:
         run = ChainRun(pool=pool, store=store)
         data = build_full(screw, lubricant, settings, run)
+    for sentence in shortfalls(data, settings):
+        print(sentence, file=sys.stderr)
+    return replace(data, provenance=_provenance(run, time.perf_counter() - began))
+
+
+def shortfalls(data: SurfaceData, settings: FullSettings) -> Iterator[str]:
+    """Yield a sentence on accuracy that was not reached and one on nodes that are missing."""
     reached = data.header['reached']
     if reached is None:
-        print('accuracy is not known: no held-out point was solved', file=sys.stderr)
+        yield 'accuracy is not known: no held-out point was solved'
     elif reached > 1:
-        print(
+        yield (
             f'accuracy is {settings.accuracy:g}, reached is '
             f'{reached * settings.accuracy:.2g} with {settings.speed_nodes} speed and '
-            f'{settings.load_nodes} load nodes at most; the file says where',
-            file=sys.stderr,
+            f'{settings.load_nodes} load nodes at most; the file says where'
         )
-    return replace(data, provenance=_provenance(run, time.perf_counter() - began))
+    yield from _missing(data, settings.speed_range)
+
+
+def _missing(data: SurfaceData, speed_range: tuple[float, float]) -> Iterator[str]:
+    """Yield a sentence if lookups read nodes that have no number."""
+    needed = covering(data.speed_coordinate, data.log_onset, speed_range, (3, 3))
+    place = np.nonzero(data.mask & needed)
+    if place[0].size:
+        speed = np.exp(data.speed_coordinate[place[0]] + data.log_onset[place[1:]])
+        rpm, load = speed * 30 / math.pi, data.load[place[1]]
+        heat = data.temperature[place[2]] - ZERO_CELSIUS
+        yield (
+            f'{rpm.size} of {needed.sum()} nodes are missing, too few of their draws were solved: '
+            f'{rpm.min():.3g} to {rpm.max():.3g} rev/min, {load.min():g} to {load.max():g} N, '
+            f'{heat.min():.3g} to {heat.max():.3g} degC; lookups beside them are NaN'
+        )
 
 
 def solve_full(

@@ -4,6 +4,8 @@
 
 from dataclasses import replace
 from functools import partial
+import math
+import re
 
 import numpy as np
 import pytest
@@ -14,7 +16,7 @@ from surrogate.full.run import ChainRun
 from surrogate.full.settings import default_full_settings, FullSettings
 from surrogate.parameters import InputError
 from surrogate.screw_contacts import GRID_WAVELENGTH
-from surrogate.surface import FIELDS
+from surrogate.surface import FIELDS, Surface
 from surrogate.surface_check import check_surface
 from surrogate.tasks.store import TaskStore
 
@@ -120,6 +122,29 @@ def test_failed_chains_are_named_and_counted(
     assert data.provenance['failed_chains'] > 10
     assert not data.mask.all()
     assert 'draw 1: no luck' in capsys.readouterr().err
+
+
+def test_missing_nodes_are_told_with_their_place(
+    screw, oil, tmp_path, monkeypatch, stand_in, capsys, here
+):
+    """Fast points of cold oil fail: one sentence, and lookups there are NaN; none without."""
+
+    def failing(inputs):
+        found = stand_in.solve(inputs)
+        for speed, *records in zip(inputs['speeds'], *found.values(), strict=True):
+            for record in records:
+                record['converged'] &= speed < 20 or inputs['temperature'] > 304
+        return found
+
+    build(screw, oil, tmp_path / 'a.npz', here())
+    assert 'missing' not in capsys.readouterr().err
+    monkeypatch.setattr(full_tier, 'ChainRun', partial(ChainRun, task=failing))
+    data = build(screw, oil, tmp_path / 'b.npz', here())
+    told = re.search(r'(\d+) of \d+ nodes are missing.*', capsys.readouterr().err)
+    assert 0 < int(told[1]) <= data.mask.sum()
+    assert '-1000 to 1000 N, 30 to 30 degC; lookups beside them are NaN' in told[0]
+    assert math.isnan(Surface(data).lookup(55.0, 300.0, 304.0).rcs)
+    assert not math.isnan(Surface(data).lookup(2.0, 300.0, 304.0).rcs)
 
 
 def test_defaults_cover_what_the_closed_form_covers(screw):
