@@ -129,6 +129,7 @@ def main() -> None:
     parser.add_argument('file', nargs='?', default='full')
     parser.add_argument('--out', type=Path, default=Path('docs'))
     args = parser.parse_args()
+    args.out.mkdir(parents=True, exist_ok=True)
     data = read(find_surface(args.file))
     whole, rows = Surface(data), []
     print(f'all: {solved_points(data)} points')
