@@ -100,7 +100,7 @@ setup(
     entry_points={
         'console_scripts': [
             'ballscrew = ballscrew_monitor.cli:main',
-            'ballscrew_monitor = ballscrew_monitor.node:main',
+            'ballscrew_monitor = ballscrew_monitor.node.node:main',
         ]
     },
 )

@@ -21,7 +21,7 @@ import struct
 import sys
 import tempfile
 
-from ballscrew_monitor.bag_writer import BagWriter, Offer, Topic
+from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
 import numpy as np
 from numpy.typing import NDArray
 

@@ -14,7 +14,7 @@ from pathlib import Path
 import sys
 from typing import Any
 
-from ballscrew_monitor import errors
+from ballscrew_monitor.core import errors
 from surrogate.cli import add_commands
 from surrogate.parameters import InputError
 from surrogate.surface import SurfaceError
@@ -135,7 +135,7 @@ def _add_play(parser: argparse.ArgumentParser) -> None:
 
 
 def _run(args: argparse.Namespace) -> int:
-    from ballscrew_monitor.run import plan, run
+    from ballscrew_monitor.cycle.run import plan, run
 
     # The log files of ROS belong to this run, not to the home directory.
     os.environ.setdefault('ROS_LOG_DIR', str(args.out.resolve() / 'ros_log'))
@@ -143,10 +143,10 @@ def _run(args: argparse.Namespace) -> int:
 
 
 def _replay(args: argparse.Namespace) -> int:
-    from ballscrew_monitor import parameters
-    from ballscrew_monitor.bag import Bag
-    from ballscrew_monitor.replay import replay
-    from ballscrew_monitor.summary import Summarizer
+    from ballscrew_monitor.node import parameters
+    from ballscrew_monitor.recordings.bag import Bag
+    from ballscrew_monitor.recordings.replay import replay
+    from ballscrew_monitor.recordings.summary import Summarizer
 
     values = parameters.read_file(args.params)
     summarizers = {axis: Summarizer() for axis in values['axes']}
@@ -186,9 +186,9 @@ def _print_summary(axis: str, result: Any) -> None:
 
 def _read_bag(args: argparse.Namespace, lead: float) -> tuple[dict[str, Any], tuple[str, ...]]:
     """Return torque over speed out of a bag, for `identify`; the lead of the screw [m]."""
-    from ballscrew_monitor import no_load_bag
-    from ballscrew_monitor.bag import Bag
-    from ballscrew_monitor.inputs import Source
+    from ballscrew_monitor.core.inputs import Source
+    from ballscrew_monitor.recordings import no_load as no_load_bag
+    from ballscrew_monitor.recordings.bag import Bag
 
     for name in ('speed_topic', 'speed_field', 'torque_field'):
         if getattr(args, name) is None:
@@ -210,7 +210,7 @@ def _read_bag(args: argparse.Namespace, lead: float) -> tuple[dict[str, Any], tu
 
 
 def _play(args: argparse.Namespace) -> int:
-    from ballscrew_monitor.playback import playback
+    from ballscrew_monitor.recordings.playback import playback
 
     return playback(args.bag, rate=args.rate, patience=args.wait)
 

@@ -17,9 +17,9 @@ import time
 import numpy as np
 from scipy import fft
 from surrogate.ehl import Condition, ContactLubricant, Settings, solve_contact
-from surrogate.ehl._fft import good_length
 from surrogate.ehl.half_space import deform, make_half_space
-from surrogate.geometry import Contact
+from surrogate.ehl.kernels.fft import good_length
+from surrogate.formulas.geometry import Contact
 
 NOMINAL = Contact(radius_x=2.589e-3, radius_y=77.39e-3, reduced_modulus=226.4e9)
 OIL = ContactLubricant(viscosity=0.06, pressure_viscosity=2.0e-8)

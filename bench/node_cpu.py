@@ -14,9 +14,9 @@ import subprocess
 import sys
 import time
 
-from ballscrew_monitor.conversions import SECOND
-from ballscrew_monitor.domain import free_domain
-from ballscrew_monitor.node_process import child_environment, ros_environment
+from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.cycle.domain import free_domain
+from ballscrew_monitor.cycle.node_process import child_environment, ros_environment
 from ballscrew_msgs.msg import BallScrewState
 from geometry_msgs.msg import WrenchStamped
 import rclpy

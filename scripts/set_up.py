@@ -33,7 +33,11 @@ PACKAGE = 'ballscrew_monitor'
 BAG = TREE / 'bags' / 'nominal_cycle'
 BAG_GENERATOR = TREE / 'bags' / 'nominal_cycle.py'
 # Other modules that decide what the bag looks like.
-BAG_SOURCES = ('bags/*.py', f'{PACKAGE}/bag_writer.py', f'{PACKAGE}/message_definitions.py')
+BAG_SOURCES = (
+    'bags/*.py',
+    f'{PACKAGE}/recordings/bag_writer.py',
+    f'{PACKAGE}/recordings/message_definitions.py',
+)
 # An installer must neither ask nor follow a user's own idea of where packages go.
 PIP = (PYTHON, '-m', 'pip', '--disable-pip-version-check', '--no-input')
 # Bytecode is made when a module is first imported: most of what is installed never is.

@@ -4,11 +4,11 @@
 
 from typing import Any
 
-from surrogate.contact_command import add_contact_command
-from surrogate.figures_command import add_figures_command
-from surrogate.identify_command import add_identify_command, BagReader
-from surrogate.point_command import add_point_command
-from surrogate.surface_command import add_surface_command
+from surrogate.commands.contact import add_contact_command
+from surrogate.commands.figures import add_figures_command
+from surrogate.commands.identify import add_identify_command, BagReader
+from surrogate.commands.point import add_point_command
+from surrogate.commands.surface import add_surface_command
 
 
 def add_commands(subparsers: Any, read_bag: BagReader | None = None) -> None:

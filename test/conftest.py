@@ -45,7 +45,7 @@ def nominal_bag(nominal_cycle, tmp_path_factory):
 @pytest.fixture(scope='session')
 def short_bag(nominal_bag, tmp_path_factory):
     """Return the directory of 3 s of it: creeping with its warning, and a standstill."""
-    from ballscrew_monitor.bag import Bag
+    from ballscrew_monitor.recordings.bag import Bag
 
     directory = tmp_path_factory.mktemp('bags') / 'short'
     cut(Bag(nominal_bag), directory, 32.995, 36.0)
@@ -54,7 +54,7 @@ def short_bag(nominal_bag, tmp_path_factory):
 
 def cut(bag, directory, begin, end, *, topics=None):
     """Write the messages of `bag` from `begin` to `end` [s] to a bag of their own."""
-    from ballscrew_monitor.bag_writer import BagWriter, Offer, Topic
+    from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
 
     low, high = (bag.start_time + round(at * 1e9) for at in (begin, end))
     with BagWriter(directory, directory.name) as writer:

@@ -15,7 +15,17 @@ from packaging.utils import canonicalize_name
 import pytest
 
 TREE = Path(__file__).resolve().parent.parent
-FOLDERS = ('ballscrew_monitor', 'bags', 'bench', 'docs', 'launch', 'scripts', 'surrogate', 'test')
+FOLDERS = (
+    'ballscrew_monitor',
+    'bags',
+    'bench',
+    'docs',
+    'launch',
+    'scripts',
+    'studies',
+    'surrogate',
+    'test',
+)
 SOURCES = sorted(path for name in FOLDERS for path in (TREE / name).rglob('*.py'))
 PACKAGES = [
     path

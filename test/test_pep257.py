@@ -8,7 +8,17 @@ from ament_pep257.main import main
 import pytest
 
 TREE = Path(__file__).resolve().parent.parent
-FOLDERS = ('ballscrew_monitor', 'bags', 'bench', 'docs', 'launch', 'scripts', 'surrogate', 'test')
+FOLDERS = (
+    'ballscrew_monitor',
+    'bags',
+    'bench',
+    'docs',
+    'launch',
+    'scripts',
+    'studies',
+    'surrogate',
+    'test',
+)
 
 
 @pytest.mark.linter

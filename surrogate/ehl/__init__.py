@@ -9,9 +9,9 @@ to its domain, search finds the way to it, solver judges it, result returns to S
 
 """
 
-from surrogate.ehl.model import Condition, ContactLubricant, ContactSolution, Settings, Status
-from surrogate.ehl.result import punctured_nodes
+from surrogate.ehl.interface import Condition, ContactLubricant, ContactSolution, Settings, Status
 from surrogate.ehl.solver import solve_contact
+from surrogate.ehl.to_si import punctured_nodes
 
 __all__ = [
     'Condition',

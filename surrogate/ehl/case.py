@@ -10,15 +10,15 @@ from numpy.typing import NDArray
 from surrogate.ehl.domain import nodes_at_multiples, production_domain
 from surrogate.ehl.grid import Grid, make_grid, State
 from surrogate.ehl.half_space import deform
-from surrogate.ehl.model import Condition, ContactLubricant, Roughness, Settings
+from surrogate.ehl.interface import Condition, ContactLubricant, Roughness, Settings
 from surrogate.ehl.system import Problem
-from surrogate.film_formulas import (
+from surrogate.formulas.film import (
     central_film_hamrock_dowson_1977,
     central_film_nijenbanning_1994,
     groups,
 )
-from surrogate.geometry import Contact, hertz
-from surrogate.lubricant import ROELANDS_OFFSET, ROELANDS_PRESSURE
+from surrogate.formulas.geometry import Contact, hertz
+from surrogate.formulas.lubricant import ROELANDS_OFFSET, ROELANDS_PRESSURE
 from surrogate.parameters import InputError
 
 Array = NDArray[np.float64]

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 if TYPE_CHECKING:
     from surrogate.ehl.case import Case
-    from surrogate.ehl.model import Settings
+    from surrogate.ehl.interface import Settings
 
 Array = NDArray[np.float64]
 RIGID = 1.5

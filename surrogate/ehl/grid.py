@@ -15,8 +15,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import map_coordinates
-from surrogate.ehl._level import make_workspace, Workspace
 from surrogate.ehl.half_space import HalfSpace, make_half_space
+from surrogate.ehl.kernels.level import make_workspace, Workspace
 
 Array = NDArray[np.float64]
 KRYLOV_TYPE = np.float32

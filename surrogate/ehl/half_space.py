@@ -17,7 +17,7 @@ from typing import NamedTuple
 from numba import njit
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
-from surrogate.ehl._fft import Fft, fft_forward, fft_inverse, good_length, make_fft
+from surrogate.ehl.kernels.fft import Fft, fft_forward, fft_inverse, good_length, make_fft
 
 Array = NDArray[np.floating]
 MOST_LANES = 128

@@ -5,10 +5,10 @@
 from dataclasses import replace
 
 import numpy as np
-from surrogate.ehl._krylov import solve_newton_step
-from surrogate.ehl._level import Level
-from surrogate.ehl._transfer import inject
 from surrogate.ehl.grid import Grid, KRYLOV_LIMIT, KRYLOV_TYPE, LEVELS, State
+from surrogate.ehl.kernels.krylov import solve_newton_step
+from surrogate.ehl.kernels.level import Level
+from surrogate.ehl.kernels.transfer import inject
 from surrogate.ehl.system import Array, Evaluation, film_rows, Mask, Problem
 
 

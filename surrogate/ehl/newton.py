@@ -7,8 +7,8 @@ import math
 import time
 
 import numpy as np
-from surrogate.ehl._reynolds import fluid_at, ROELANDS_PRESSURE
 from surrogate.ehl.grid import Grid, KRYLOV_LIMIT, State
+from surrogate.ehl.kernels.reynolds import fluid_at, ROELANDS_PRESSURE
 from surrogate.ehl.linear import solve_linear
 from surrogate.ehl.system import Array, evaluate, Evaluation, Mask, Problem
 

@@ -17,10 +17,10 @@ import math
 import numpy as np
 from surrogate.ehl.case import Array, Case, COARSEST, STIFF
 from surrogate.ehl.grid import Grid, State, transfer
-from surrogate.ehl.model import ContactSolution
+from surrogate.ehl.interface import ContactSolution
 from surrogate.ehl.newton import Limits, Outcome, solve_grid
-from surrogate.ehl.result import film_and_share, Half, state_from_solution
 from surrogate.ehl.system import Problem
+from surrogate.ehl.to_si import film_and_share, Half, state_from_solution
 
 Found = tuple[Grid, Outcome]
 FINEST_CUT = 1 / 64

@@ -10,7 +10,7 @@ import time
 import numpy as np
 from surrogate.ehl.case import Case, make_case, UNRESOLVED
 from surrogate.ehl.grid import Grid, transfer
-from surrogate.ehl.model import (
+from surrogate.ehl.interface import (
     check_contact,
     Condition,
     ContactLubricant,
@@ -21,9 +21,9 @@ from surrogate.ehl.model import (
     Status,
 )
 from surrogate.ehl.newton import Outcome
-from surrogate.ehl.result import film_and_share, make_solution
 from surrogate.ehl.search import Found, Search
-from surrogate.geometry import Contact
+from surrogate.ehl.to_si import film_and_share, make_solution
+from surrogate.formulas.geometry import Contact
 
 PRODUCTION = Settings()
 REFINEMENTS = 2

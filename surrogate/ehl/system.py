@@ -13,9 +13,14 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.ehl._reynolds import contact_set, film_properties, free_boundary_rows, reynolds_rows
 from surrogate.ehl.grid import Grid, State
 from surrogate.ehl.half_space import deform
+from surrogate.ehl.kernels.reynolds import (
+    contact_set,
+    film_properties,
+    free_boundary_rows,
+    reynolds_rows,
+)
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]

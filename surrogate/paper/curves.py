@@ -8,13 +8,13 @@ import math
 from typing import Any, Literal
 
 import numpy as np
-from surrogate.geometry import helix_angle
-from surrogate.load_sharing import nut_forces
+from surrogate.formulas.geometry import helix_angle
+from surrogate.formulas.load_sharing import nut_forces
+from surrogate.formulas.torque import efficiency, torque_constant_friction
 from surrogate.paper.cases import OURS, SMOOTH
 from surrogate.paper.rows import Array, Row
 from surrogate.parameters import Screw
-from surrogate.point import CONSTANT_FRICTION
-from surrogate.torque import efficiency, torque_constant_friction
+from surrogate.screw.formula_record import CONSTANT_FRICTION
 
 Axis = Literal['rpm', 'load']
 NO_CONTACT = 1e-6

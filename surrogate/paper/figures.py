@@ -15,7 +15,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 import numpy as np
-from surrogate.kinematics import entrainment_speed_paper
+from surrogate.formulas.kinematics import entrainment_speed_paper
 from surrogate.paper.curves import Curve
 from surrogate.paper.rows import Array
 from surrogate.parameters import load_screw

@@ -27,7 +27,7 @@ from surrogate.paper.figures import (
 )
 from surrogate.paper.mark import counted, REPORTED_FILM
 from surrogate.paper.rows import Array, ContactFields, Row
-from surrogate.roughness import FractalSurface
+from surrogate.raceway.fractal import FractalSurface
 
 Drawn = tuple[Row, ContactFields]
 VIEW = 1.3

@@ -33,8 +33,8 @@ from surrogate.paper.figures_screw import figure_stribeck, figure_torque, Measur
 from surrogate.paper.solve import SHORTEST_ON_GRID
 from surrogate.paper.study import SCREW, Study
 from surrogate.parameters import load_screw
-from surrogate.screw_contacts import raceway_patch
-from surrogate.subgrid import without_short_waves
+from surrogate.raceway.short_waves import without_short_waves
+from surrogate.screw.contacts import raceway_patch
 
 SHOWN_LOADS = tuple(LOADS[i] for i in (0, 2, 4, 5))
 """Axial loads whose profiles are drawn [N]."""

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
+from surrogate.formulas.torque import efficiency
 from surrogate.paper.cases import (
     EFFICIENCY_LOAD,
     LOADS,
@@ -36,7 +37,6 @@ from surrogate.paper.mark import (
 )
 from surrogate.paper.rows import Row
 from surrogate.parameters import Screw
-from surrogate.torque import efficiency
 
 SCREW: dict[str, Any] = {'kind': 'screw', 'load': PRELOAD}
 FALLS_RISES, ETA_RISES = 'trend: falls, then rises', 'trend: rises with speed'

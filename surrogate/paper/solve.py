@@ -14,21 +14,21 @@ import time
 from typing import Any
 
 import numpy as np
-from surrogate import closed_form
-from surrogate.ball_motion import slip_floor
-from surrogate.contact_friction import contact_friction, ContactFriction
 from surrogate.ehl import Condition, ContactLubricant, ContactSolution, Settings, solve_contact
-from surrogate.geometry import hertz, screw_contact
-from surrogate.kinematics import entrainment_speed_paper
-from surrogate.load_sharing import normal_force, nut_forces
-from surrogate.nut import contact_slip, ScrewContact
+from surrogate.ehl.friction import contact_friction, ContactFriction
+from surrogate.formulas import closed_form
+from surrogate.formulas.geometry import hertz, screw_contact
+from surrogate.formulas.kinematics import entrainment_speed_paper
+from surrogate.formulas.load_sharing import normal_force, nut_forces
 from surrogate.paper.cases import CASES, SMOOTH, Task
 from surrogate.paper.rows import Array, ContactFields, Row
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
-from surrogate.roughness import FractalSurface
-from surrogate.screw import ScrewSolution, solve_screw
-from surrogate.screw_contacts import ACROSS, MOST_NODES, raceway_patch, ScrewSettings
-from surrogate.subgrid import subgrid_floor, without_short_waves
+from surrogate.raceway.fractal import FractalSurface
+from surrogate.raceway.short_waves import subgrid_floor, without_short_waves
+from surrogate.screw.ball_motion import slip_floor
+from surrogate.screw.contacts import ACROSS, MOST_NODES, raceway_patch, ScrewSettings
+from surrogate.screw.nut import contact_slip, ScrewContact
+from surrogate.screw.solve import ScrewSolution, solve_screw
 
 NX, NY, NODES_PER_WAVE = 129, 257, 6.0
 """Nodes of a rough contact along and least across the track, and per wave on the grid [-]."""

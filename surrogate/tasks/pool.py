@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import queue
 from typing import Any, Protocol, Self
 
-from surrogate.surface_file import SurfaceError
+from surrogate.surface.file import SurfaceError
 from surrogate.tasks.store import task_key, TaskStore
 from surrogate.tasks.worker import describe_failure, Task
 

@@ -20,7 +20,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
-from surrogate.surface_file import SurfaceError
+from surrogate.surface.file import SurfaceError
 
 FORMAT = 'ballscrew_task_store'
 FORMAT_VERSION = 1

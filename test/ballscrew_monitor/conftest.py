@@ -14,14 +14,14 @@ import time
 import types
 import warnings
 
-from ballscrew_monitor.conversions import direction_of, SECOND
-from ballscrew_monitor.domain import free_domain
-from ballscrew_monitor.estimate import Point, PointSource, Validity
-from ballscrew_monitor.inputs import Source
-from ballscrew_monitor.judgement import Limits
-from ballscrew_monitor.monitor import Monitor
-from ballscrew_monitor.node_process import child_environment
-from ballscrew_monitor.state import Settings
+from ballscrew_monitor.core.conversions import direction_of, SECOND
+from ballscrew_monitor.core.estimate import Point, PointSource, Validity
+from ballscrew_monitor.core.inputs import Source
+from ballscrew_monitor.core.judgement import Limits
+from ballscrew_monitor.core.monitor import Monitor
+from ballscrew_monitor.core.state import Settings
+from ballscrew_monitor.cycle.domain import free_domain
+from ballscrew_monitor.cycle.node_process import child_environment
 from ballscrew_msgs.msg import BallScrewState
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import WrenchStamped

@@ -8,8 +8,8 @@ import subprocess
 import sys
 
 from ballscrew_monitor import cli
-from ballscrew_monitor.errors import InputError
-from ballscrew_monitor.node_process import child_environment
+from ballscrew_monitor.core.errors import InputError
+from ballscrew_monitor.cycle.node_process import child_environment
 import pytest
 from surrogate.parameters import InputError as SheetError
 from surrogate.surface import SurfaceError

@@ -11,12 +11,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-from surrogate import closed_form
-from surrogate.build import build_closed_form, default_settings
-from surrogate.full.chain import SENSES
+from surrogate.builder.closed_form import build_closed_form, default_settings
+from surrogate.builder.full.chain import SENSES
+from surrogate.builder.tiers import screw_and_oil
+from surrogate.formulas import closed_form
 from surrogate.parameters import load_lubricant, load_screw, Lubricant, Screw
-from surrogate.surface_file import SurfaceData
-from surrogate.tiers import screw_and_oil
+from surrogate.surface.file import SurfaceData
 
 REFERENCE = Path(__file__).parents[1] / 'reference'
 

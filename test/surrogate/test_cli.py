@@ -131,7 +131,7 @@ def test_full_tier_is_solved_and_a_failure_is_an_exit_code(capsys, monkeypatch):
     assert found['rcs'] == 0.0
     assert found['efficiency'] == pytest.approx(0.934, abs=5e-3)
     failed = found | {'converged': False}
-    monkeypatch.setattr('surrogate.screw_record.solution_record', lambda *inputs: failed)
+    monkeypatch.setattr('surrogate.screw.full_record.solution_record', lambda *inputs: failed)
     assert run(*words) == 1
 
 

@@ -10,7 +10,7 @@ import re
 from hypothesis import given
 from hypothesis import strategies as st
 import pytest
-from surrogate.lubricant import lubricant_state
+from surrogate.formulas.lubricant import lubricant_state
 from surrogate.parameters import (
     DATA,
     InputError,

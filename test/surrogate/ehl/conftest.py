@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from surrogate.ehl import Condition, ContactLubricant
-from surrogate.geometry import Contact
+from surrogate.formulas.geometry import Contact
 
 REFERENCE = Path(__file__).parents[2] / 'reference'
 

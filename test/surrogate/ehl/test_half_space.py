@@ -4,9 +4,9 @@
 
 import numpy as np
 import pytest
-from surrogate.ehl._fft import fft_forward, fft_inverse, good_length, make_fft
 from surrogate.ehl.half_space import deform, influence_love_1929, make_half_space
-from surrogate.geometry import Contact, hertz
+from surrogate.ehl.kernels.fft import fft_forward, fft_inverse, good_length, make_fft
+from surrogate.formulas.geometry import Contact, hertz
 
 
 def plain_deformation(pressure, dx, dy):

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from surrogate.ehl import Condition, Settings, solve_contact
-from surrogate.geometry import Contact, hertz
+from surrogate.formulas.geometry import Contact, hertz
 
 
 @pytest.fixture(scope='module')

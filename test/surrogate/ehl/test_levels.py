@@ -5,10 +5,10 @@
 import numpy as np
 import pytest
 from surrogate.ehl import Condition, Settings, solve_contact
-from surrogate.ehl._krylov import solve_newton_step
-from surrogate.ehl._transfer import inject, prolong, restrict
 from surrogate.ehl.case import make_case
 from surrogate.ehl.grid import KRYLOV_LIMIT, LEVELS, make_grid
+from surrogate.ehl.kernels.krylov import solve_newton_step
+from surrogate.ehl.kernels.transfer import inject, prolong, restrict
 from surrogate.ehl.linear import jacobian_levels
 from surrogate.ehl.system import evaluate
 

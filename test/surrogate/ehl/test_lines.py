@@ -5,7 +5,7 @@
 import numpy as np
 import pytest
 from scipy.signal import convolve2d
-from surrogate.ehl._line import (
+from surrogate.ehl.kernels.line import (
     film_factors,
     join,
     line_factors,

@@ -5,7 +5,7 @@
 import numpy as np
 import pytest
 from surrogate.ehl import Condition, ContactLubricant, Settings, solve_contact
-from surrogate.geometry import Contact
+from surrogate.formulas.geometry import Contact
 
 
 def test_circular_table(reference_rows, moes_case):

@@ -6,7 +6,7 @@ from pathlib import Path
 import re
 
 import pytest
-from surrogate.figures_command import DRAWS
+from surrogate.commands.figures import DRAWS
 from surrogate.paper.cases import NEEDS, Task, tasks
 from surrogate.paper.mark import Mark, table
 from surrogate.paper.marks import marks

@@ -15,7 +15,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 import numpy as np
 import pytest
-from surrogate.surface_file import SurfaceError
+from surrogate.surface.file import SurfaceError
 from surrogate.tasks.store import clear, plain_result, store_path, task_key, TaskStore
 
 WORK = 'test 1'

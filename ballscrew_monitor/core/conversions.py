@@ -1,0 +1,172 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Units and frames: the only module that knows a unit outside the SI or a sign convention.
+
+Three frames meet here. The *input* is what a topic carries, in its unit. The *machine* frame is
+positive along the axis: screw speed [rad/s] and motor torque [N m] are positive when they move the
+nut in the positive direction, axial load [N] is the force on the nut. The *surface* frame knows
+only the amount of the speed, and a load that is positive when it opposes the motion.
+
+"""
+
+import dataclasses
+import enum
+import math
+
+from ballscrew_monitor.core.errors import InputError
+
+TURN = 2.0 * math.pi
+ZERO_CELSIUS = 273.15  # [K]
+SECOND = 1_000_000_000  # [ns]
+
+RPM = 60.0 / TURN  # [rev/min] per [rad/s]
+ROTARY_SPEED_UNITS = {'rad/s': 1.0, 'rev/min': TURN / 60.0}  # [rad/s]
+LINEAR_SPEED_UNITS = {
+    'm/s': 1.0,
+    'mm/s': 1e-3,
+    'mm/min': 1e-3 / 60.0,
+    'm/min': 1.0 / 60.0,
+}  # [m/s]
+LOAD_UNITS = {'N': 1.0, 'kN': 1e3}  # [N]
+TEMPERATURE_UNITS = {'degC': ZERO_CELSIUS, 'K': 0.0}  # zero of the unit [K]
+TORQUE_UNITS = {'N m': 1.0}  # [N m]
+HANDS = {'right': 1.0, 'left': -1.0}
+
+
+class Direction(enum.IntEnum):
+    """Direction of motion along the axis; the numbers of OperatingPoint.DIRECTION_."""
+
+    UNKNOWN = 0
+    POSITIVE = 1
+    NEGATIVE = 2
+
+
+class Nut(enum.IntEnum):
+    """A nut in the machine frame; the numbers of PointResult.NUT_."""
+
+    UNKNOWN = 0
+    POSITIVE = 1
+    NEGATIVE = 2
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Scaling:
+    """Straight line from the number in a message to the machine frame in SI units."""
+
+    factor: float
+    shift: float
+
+    def __call__(self, value: float) -> float:
+        """Return the SI value of `value`."""
+        return value * self.factor + self.shift
+
+
+def speed_scaling(
+    unit: str, *, scale: float, offset: float, lead: float, handedness: str
+) -> Scaling:
+    """
+    Return the line from a speed in `unit` to the screw speed [rad/s], machine frame.
+
+    A rotary unit describes the screw: positive rotation moves the nut of a right-hand thread in
+    the positive direction and that of a left-hand thread in the negative one. A linear unit
+    describes the nut, so that handedness has no say; it is divided by lead / (2 pi), lead [m].
+
+    """
+    if unit in ROTARY_SPEED_UNITS:
+        factor = ROTARY_SPEED_UNITS[unit] * _known('handedness', handedness, HANDS)
+    else:
+        allowed = ROTARY_SPEED_UNITS | LINEAR_SPEED_UNITS
+        factor = _known('speed unit', unit, allowed) * TURN / lead
+    return Scaling(factor=scale * factor, shift=offset * factor)
+
+
+def load_scaling(unit: str, *, scale: float, offset: float) -> Scaling:
+    """Return the line from a force in `unit` to the axial load [N] on the nut, machine frame."""
+    factor = _known('load unit', unit, LOAD_UNITS)
+    return Scaling(factor=scale * factor, shift=offset * factor)
+
+
+def temperature_scaling(unit: str, *, scale: float, offset: float) -> Scaling:
+    """Return the line from a temperature in `unit` to [K]."""
+    zero = _known('temperature unit', unit, TEMPERATURE_UNITS)
+    return Scaling(factor=scale, shift=offset + zero)
+
+
+def torque_scaling(unit: str, *, scale: float, offset: float, handedness: str) -> Scaling:
+    """
+    Return the line from a torque on the screw in `unit` to [N m], machine frame.
+
+    The torque is positive along positive rotation of the screw, hence handedness as for speed.
+
+    """
+    hand = _known('handedness', handedness, HANDS)
+    factor = _known('torque unit', unit, TORQUE_UNITS) * hand
+    return Scaling(factor=scale * factor, shift=offset * factor)
+
+
+def _known(what: str, key: str, table: dict[str, float]) -> float:
+    if key not in table:
+        raise InputError(f'{what} {key!r} is unknown, allowed are {", ".join(table)}')
+    return table[key]
+
+
+def celsius(temperature: float) -> float:
+    """Return a temperature [K] in [degC]."""
+    return temperature - ZERO_CELSIUS
+
+
+def kelvin(temperature: float) -> float:
+    """Return a temperature [degC] in [K]."""
+    return temperature + ZERO_CELSIUS
+
+
+def nanoseconds(seconds: float) -> int:
+    """Return a time [s] as a whole number of [ns]."""
+    return round(seconds * SECOND)
+
+
+def seconds(nanoseconds: int) -> float:
+    """Return a time [ns] in [s]."""
+    return nanoseconds / SECOND
+
+
+def direction_of(speed: float) -> Direction:
+    """Return the direction of a screw speed [rad/s], machine frame; UNKNOWN for zero and NaN."""
+    if speed > 0.0:
+        return Direction.POSITIVE
+    return Direction.NEGATIVE if speed < 0.0 else Direction.UNKNOWN
+
+
+def opposing_load(axial_load: float, direction: Direction) -> float:
+    """Return the load [N] that opposes a motion, of an axial load [N] in the machine frame."""
+    # Subtracted from zero: a zero load must not become -0.0.
+    return 0.0 - axial_load if direction is Direction.POSITIVE else axial_load
+
+
+def axial_load(opposing: float, direction: Direction) -> float:
+    """Return the axial load [N], machine frame, of a load [N] that opposes a motion."""
+    return opposing_load(opposing, direction)  # its own inverse
+
+
+def signed_speed(amount: float, direction: Direction) -> float:
+    """Return the screw speed [rad/s], machine frame, of an amount [rad/s] and a direction."""
+    return 0.0 - amount if direction is Direction.NEGATIVE else amount
+
+
+def machine_torque(driving_torque: float, direction: Direction) -> float:
+    """Return a torque along the motion [N m] in the machine frame [N m]."""
+    return signed_speed(driving_torque, direction)
+
+
+def machine_nut(nut: int, axial_load: float) -> Nut:
+    """
+    Return which nut the surface's nut 1 or 2 is, under an axial load [N] in the machine frame.
+
+    Nut 1 of the surface is the one that the load presses, whichever way the screw turns: under a
+    positive axial load that is the positive nut. Without a load neither nut is worse.
+
+    """
+    if nut not in (1, 2) or not abs(axial_load) > 0.0:
+        return Nut.UNKNOWN
+    return Nut.POSITIVE if (nut == 1) is (axial_load > 0.0) else Nut.NEGATIVE

@@ -1,0 +1,210 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""From an operating point and a surface to what the model says of it; no state, no clock."""
+
+from __future__ import annotations
+
+import dataclasses
+import enum
+import math
+from typing import TYPE_CHECKING
+
+from ballscrew_monitor.core.conversions import (
+    celsius,
+    Direction,
+    machine_nut,
+    machine_torque,
+    Nut,
+    opposing_load,
+)
+
+if TYPE_CHECKING:
+    from surrogate.surface import Surface, SurfacePoint
+
+NAN = math.nan
+DOMINANT_RCS = 0.5  # [-] from here on asperities carry the larger part of the load
+
+
+class PointSource(enum.IntEnum):
+    """Where a number of an operating point comes from; OperatingPoint.SOURCE_."""
+
+    UNKNOWN = 0
+    MEASURED = 1
+    DEFAULT = 2
+    HELD = 3
+
+
+class Validity(enum.IntEnum):
+    """Whether an instant could be judged; PointResult.VALIDITY_, up to 6 those of a surface."""
+
+    UNKNOWN = 0
+    VALID = 1
+    SPEED_BELOW_RANGE = 2
+    SPEED_ABOVE_RANGE = 3
+    LOAD_OUT_OF_RANGE = 4
+    TEMPERATURE_OUT_OF_RANGE = 5
+    MASKED = 6
+    NO_INPUT = 7
+    NO_SURFACE = 8  # reserved by the message; without a surface the node is not active
+
+
+class Regime(enum.IntEnum):
+    """Lubrication regime by the film ratio; PointResult.REGIME_."""
+
+    UNKNOWN = 0
+    BOUNDARY = 1
+    MIXED = 2
+    HYDRODYNAMIC = 3
+
+
+class ContactState(enum.IntEnum):
+    """Asperity contact by RCS; PointResult.CONTACT_."""
+
+    UNKNOWN = 0
+    NONE = 1
+    PARTIAL = 2
+    DOMINANT = 3
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Point:
+    """
+    Where the screw is operated, in the machine frame.
+
+    speed [rad/s], axial_load [N], temperature [K], motor_torque [N m]; NaN is unknown.
+
+    """
+
+    speed: float
+    axial_load: float
+    temperature: float
+    motor_torque: float = NAN
+    speed_source: PointSource = PointSource.UNKNOWN
+    axial_load_source: PointSource = PointSource.UNKNOWN
+    temperature_source: PointSource = PointSource.UNKNOWN
+    motor_torque_source: PointSource = PointSource.UNKNOWN
+    direction: Direction = Direction.UNKNOWN
+    direction_held: bool = False
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Estimate:
+    """
+    What the model says of a point.
+
+    `numbers` are those of the surface and None unless validity is VALID, when rcs [-] and
+    efficiency [-] repeat the two that are judged. `machine_torque` [N m] is the driving torque in
+    the machine frame. `reason` is a sentence that is empty for VALID.
+
+    """
+
+    validity: Validity
+    reason: str = ''
+    numbers: SurfacePoint | None = None
+    rcs: float = NAN
+    efficiency: float = NAN
+    machine_torque: float = NAN
+    worst_nut: Nut = Nut.UNKNOWN
+    regime: Regime = Regime.UNKNOWN
+    contact_state: ContactState = ContactState.UNKNOWN
+
+
+def regime_of(film_ratio: float) -> Regime:
+    """Return the regime of a film ratio [-]: below 1, from 1 to below 3, from 3; NaN unknown."""
+    if math.isnan(film_ratio):
+        return Regime.UNKNOWN
+    if film_ratio < 1.0:
+        return Regime.BOUNDARY
+    return Regime.MIXED if film_ratio < 3.0 else Regime.HYDRODYNAMIC
+
+
+def contact_state_of(rcs: float, *, limit: float) -> ContactState:
+    """
+    Return the contact state of an RCS [-] under an RCS limit [-]; NaN is unknown.
+
+    NONE below the limit, PARTIAL from there to below 0.5, DOMINANT from 0.5; with a limit above
+    0.5 the limit decides.
+
+    """
+    if math.isnan(rcs):
+        return ContactState.UNKNOWN
+    if rcs < limit:
+        return ContactState.NONE
+    return ContactState.PARTIAL if rcs < DOMINANT_RCS else ContactState.DOMINANT
+
+
+def estimate(point: Point, surface: Surface, *, rcs_limit: float) -> Estimate:
+    """Return what `surface` says of `point`; `rcs_limit` [-] names the contact state."""
+    if not _complete(point):
+        return Estimate(validity=Validity.NO_INPUT, reason=_missing(point))
+    if point.direction is Direction.UNKNOWN:
+        return Estimate(
+            validity=Validity.UNKNOWN,
+            reason='the direction of motion is unknown, the screw has not moved yet',
+        )
+    load = opposing_load(point.axial_load, point.direction)
+    numbers = surface.lookup(abs(point.speed), load, point.temperature)
+    validity = Validity(int(numbers.validity))
+    if validity is not Validity.VALID:
+        return Estimate(validity=validity, reason=_outside(validity, point, load, surface))
+    return Estimate(
+        validity=Validity.VALID,
+        numbers=numbers,
+        rcs=numbers.rcs,
+        efficiency=numbers.efficiency,
+        machine_torque=machine_torque(numbers.driving_torque, point.direction),
+        worst_nut=machine_nut(numbers.worst_nut, point.axial_load),
+        regime=regime_of(numbers.film_ratio),
+        contact_state=contact_state_of(numbers.rcs, limit=rcs_limit),
+    )
+
+
+def _inputs(point: Point) -> tuple[tuple[str, float, PointSource], ...]:
+    return (
+        ('speed', point.speed, point.speed_source),
+        ('load', point.axial_load, point.axial_load_source),
+        ('temperature', point.temperature, point.temperature_source),
+    )
+
+
+def _complete(point: Point) -> bool:
+    """Tell whether every number is there and none is only held; a held one is never judged."""
+    held = PointSource.HELD
+    return (
+        math.isfinite(point.speed + point.axial_load + point.temperature)
+        and point.speed_source is not held
+        and point.axial_load_source is not held
+        and point.temperature_source is not held
+    )
+
+
+def _missing(point: Point) -> str:
+    lost = [
+        name
+        for name, value, source in _inputs(point)
+        if not math.isfinite(value) or source is PointSource.HELD
+    ]
+    if not lost:  # finite numbers with an infinite sum
+        return 'an input is beyond any range'
+    return f'no valid sample of {" and ".join(lost)}'
+
+
+def _outside(validity: Validity, point: Point, load: float, surface: Surface) -> str:
+    """Return why a lookup gave nothing, as a sentence."""
+    slowest, fastest = surface.speed_range
+    if validity is Validity.SPEED_BELOW_RANGE:
+        return f'speed {abs(point.speed):.4g} rad/s is below the surface, from {slowest:.4g} rad/s'
+    if validity is Validity.SPEED_ABOVE_RANGE:
+        return f'speed {abs(point.speed):.4g} rad/s is above the surface, to {fastest:.4g} rad/s'
+    if validity is Validity.LOAD_OUT_OF_RANGE:
+        low, high = surface.load_range
+        return f'opposing load {load:.4g} N is outside the surface, {low:.4g} to {high:.4g} N'
+    if validity is Validity.TEMPERATURE_OUT_OF_RANGE:
+        low, high = (celsius(limit) for limit in surface.temperature_range)
+        return (
+            f'oil temperature {celsius(point.temperature):.4g} degC is outside the surface, '
+            f'{low:.4g} to {high:.4g} degC'
+        )
+    if validity is Validity.MASKED:
+        return 'the model did not converge near this point'
+    return 'the surface gives no reason'

@@ -1,0 +1,128 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Any numeric field of any message, by name.
+
+A field path names attributes, with an index for an array: `data`, `wrench.force.x`, `position[0]`,
+or the name of a joint, `velocity[x_axis]`, looked up in the `name` field beside the array. A path
+is checked against the message type when it is compiled.
+
+"""
+
+from collections.abc import Callable
+import importlib
+import math
+import re
+from typing import Any
+
+from ballscrew_monitor.core.errors import InputError
+
+_SEGMENT = re.compile(r'([A-Za-z]\w*)(?:\[([^\[\]]+)\])?')
+_DOT = re.compile(r'\.(?![^\[\]]*\])')  # one between brackets belongs to the name of a joint
+_ARRAY = re.compile(r'(?:sequence<(?P<sequence>.+?)(?:, \d+)?>|(?P<array>.+)\[\d+\])')
+_NUMBERS = frozenset(
+    ['float', 'double', 'octet']
+    + [f'{sign}int{bits}' for sign in ('', 'u') for bits in (8, 16, 32, 64)]
+)
+
+Step = Callable[[Any], Any]
+
+
+def message_class(type_name: str) -> Any:
+    """Return the class of a message type such as `sensor_msgs/msg/JointState`."""
+    parts = type_name.split('/')
+    if len(parts) != 3 or parts[1] != 'msg' or not all(parts):
+        raise InputError(f'message type {type_name!r} is not of the form package/msg/Name')
+    try:
+        return getattr(importlib.import_module(f'{parts[0]}.msg'), parts[2])
+    except (ImportError, AttributeError):
+        raise InputError(f'message type {type_name!r} is not installed') from None
+
+
+def compile_field(path: str, message_type: Any) -> Callable[[Any], float | None]:
+    """
+    Return the function that reads the field `path` of a message of class `message_type`.
+
+    It returns None when the message does not hold the named joint, and NaN when the array is too
+    short. Raises InputError when the path does not lead to a number.
+
+    """
+    steps: list[Step] = []
+    kind = message_type
+    for segment in _DOT.split(path):
+        if isinstance(kind, str):
+            raise InputError(f'field {path!r}: {segment!r} is asked of a {kind}')
+        new_steps, kind = _compile_segment(path, segment, kind)
+        steps += new_steps
+    if not isinstance(kind, str) or kind not in _NUMBERS:
+        raise InputError(f'field {path!r} of {_name(message_type)} is {_name(kind)}, not a number')
+    return _chain([*steps, _item(0)] if kind == 'octet' else steps)  # that is bytes in Python
+
+
+def _compile_segment(path: str, segment: str, kind: Any) -> tuple[list[Step], Any]:
+    match = _SEGMENT.fullmatch(segment)
+    if match is None:
+        raise InputError(f'field {path!r}: {segment!r} is not a name or name[index]')
+    name, key = match.groups()
+    fields = kind.get_fields_and_field_types()
+    if name not in fields:
+        raise InputError(
+            f'field {path!r}: {_name(kind)} has no field {name!r}, it has {", ".join(fields)}'
+        )
+    array = _ARRAY.fullmatch(fields[name])
+    if key is None:
+        return [_attribute(name)], _resolve(fields[name])
+    if array is None:
+        raise InputError(f'field {path!r}: {name!r} of {_name(kind)} is {fields[name]}, no array')
+    element = _resolve(array['sequence'] or array['array'])
+    if key.isdecimal():
+        return [_attribute(name), _item(int(key))], element
+    if fields.get('name') != 'sequence<string>':
+        raise InputError(f'field {path!r}: {_name(kind)} has no list of names to find {key!r} in')
+    return [_named_item(name, key)], element
+
+
+def _resolve(field_type: str) -> Any:
+    """Return the class of a nested message; any other type as its text."""
+    package, slash, name = field_type.partition('/')
+    if not slash or _ARRAY.fullmatch(field_type):
+        return field_type
+    return message_class(f'{package}/msg/{name}')
+
+
+def _name(kind: Any) -> str:
+    return kind if isinstance(kind, str) else kind.__name__
+
+
+def _attribute(name: str) -> Step:
+    return lambda message: getattr(message, name)
+
+
+def _item(index: int) -> Step:
+    return lambda array: array[index]
+
+
+def _named_item(name: str, key: str) -> Step:
+    def step(message: Any) -> Any:
+        try:
+            index = message.name.index(key)
+        except ValueError:
+            return None
+        return getattr(message, name)[index]
+
+    return step
+
+
+def _chain(steps: list[Step]) -> Callable[[Any], float | None]:
+    def read(message: Any) -> float | None:
+        value = message
+        try:
+            for step in steps:
+                value = step(value)
+                if value is None:
+                    return None
+        except IndexError:
+            return math.nan
+        return float(value)
+
+    return read

@@ -1,0 +1,299 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+The only state of the online half: one axis, from an ordered list of events to its states.
+
+Events are samples, refusals and ticks. A speed sample is judged when it arrives, with the last
+sample of every other input: no delay is added. Ticks lie on a fixed grid of stamps and give a
+state only while the speed is missing or stale. There is no clock in here, so the same list of
+events gives the same list of states, bit for bit.
+
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from typing import TYPE_CHECKING
+
+from ballscrew_monitor.core.advice import advise
+from ballscrew_monitor.core.conversions import Direction, direction_of, SECOND
+from ballscrew_monitor.core.estimate import Estimate, estimate, Point, PointSource
+from ballscrew_monitor.core.inputs import InputState, Refusal, Sample, Source, Tracker, Why
+from ballscrew_monitor.core.judgement import Hold, hold, is_judged, judge, Level, Verdict, Zone
+from ballscrew_monitor.core.state import Event, Settings, State
+from ballscrew_monitor.core.tally import Account, moment, Window
+
+if TYPE_CHECKING:
+    from surrogate.surface import Surface
+
+NAN = math.nan
+SHOWN = (Source.SPEED, Source.LOAD, Source.TEMPERATURE, Source.TORQUE)  # in a state
+BACKWARD_JUMP = SECOND  # [ns] a longer step back of one input is a clock that was set back
+
+
+class Monitor:
+    """Judges one axis; feed it events in order."""
+
+    def __init__(self, surface: Surface, settings: Settings) -> None:
+        """Begin with nothing received and the level UNKNOWN."""
+        self.settings = settings
+        self.use_surface(surface)
+        self.event = Event()
+        self._judged = 0
+        self._hold = Hold()
+        self._pending: Event | None = None  # an event that is not raised yet
+        self._direction = Direction.UNKNOWN
+        self._last_tick = 0
+        self._last_published: int | None = None
+        self._window = Window()
+        self._account = Account()
+        self._inputs = {
+            source: Tracker(
+                source,
+                configured=source in settings.timeouts,
+                timeout=settings.timeouts.get(source, 0),
+            )
+            for source in SHOWN
+        }
+
+    @property
+    def level(self) -> Level:
+        """Return the held level."""
+        return self._hold.level
+
+    def update(self, event: Sample | Refusal) -> State | None:
+        """Take one sample or refusal; return the state when one is due."""
+        tracker = self._inputs[event.source]
+        if isinstance(event, Refusal):
+            if event.why is Why.OTHER_JOINTS:
+                tracker.drop()
+            else:
+                tracker.refuse()
+            return None
+        if not math.isfinite(event.value):
+            tracker.refuse()
+            return None
+        if tracker.last is not None and event.stamp < tracker.last.stamp:
+            if tracker.last.stamp - event.stamp <= BACKWARD_JUMP:
+                tracker.drop()  # out of order
+                return None
+            if event.source is Source.SPEED:
+                self._jump_back(event.stamp)
+            tracker.forget()
+        tracker.accept(event)
+        return self._judge_speed(event.stamp) if event.source is Source.SPEED else None
+
+    def tick(self, now: int) -> State | None:
+        """Return a state at the grid stamp `now` [ns] if the speed is missing or stale."""
+        tracker = self._inputs[Source.SPEED]
+        # Both the clock and the speed: stamps may run ahead of the clock, as far as is allowed.
+        if self._last_tick - now > BACKWARD_JUMP and tracker.is_ahead(now + BACKWARD_JUMP):
+            self._jump_back(now)
+        self._last_tick = now
+        self._forget_the_future(now)
+        if tracker.last is not None and now - tracker.last.stamp <= tracker.timeout:
+            return None
+        point = self._point(now)
+        result = self._estimate(point)
+        return self._advance(now, point, result, judge(point, result, self.settings.limits))
+
+    def use_surface(self, surface: Surface) -> None:
+        """Judge with `surface` from now on."""
+        self.surface = surface
+        self._surface_id = surface.sha256[:16]
+
+    def acknowledge(self, now: int) -> Event | None:
+        """
+        Set the level back to UNKNOWN at `now` [ns]; return the event that this ends, if any.
+
+        What is still outside is raised again as a new event.
+
+        """
+        self._hold = Hold(since=now)
+        self._pending = None
+        if not self.event.active:
+            return None
+        self.event = dataclasses.replace(self.event, active=False, stamp=now)
+        return self.event
+
+    def reset_totals(self) -> None:
+        """Set the totals to zero."""
+        self._account.reset()
+
+    def _judge_speed(self, stamp: int) -> State | None:
+        point = self._point(stamp)
+        result = self._estimate(point)
+        verdict = judge(point, result, self.settings.limits)
+        self._judged += is_judged(verdict)
+        self._account.add(moment(stamp, point, result, verdict), max_gap=self._max_gap)
+        self._window.add(point, result, verdict)
+        return self._advance(stamp, point, result, verdict)
+
+    @property
+    def _max_gap(self) -> int:
+        return self._inputs[Source.SPEED].timeout
+
+    def _estimate(self, point: Point) -> Estimate:
+        return estimate(point, self.surface, rcs_limit=self.settings.limits.rcs)
+
+    def _point(self, stamp: int) -> Point:
+        speed, speed_source = self._value(Source.SPEED, stamp)
+        load, load_source = self._value(Source.LOAD, stamp)
+        temperature, temperature_source = self._value(Source.TEMPERATURE, stamp)
+        if temperature_source is PointSource.DEFAULT:
+            temperature = self.settings.default_temperature
+        torque, torque_source = self._value(Source.TORQUE, stamp)
+        moving = abs(speed) >= self.settings.limits.standstill_speed
+        if moving and speed_source is PointSource.MEASURED:
+            self._direction = direction_of(speed)
+        return Point(
+            speed=speed,
+            axial_load=load,
+            temperature=temperature,
+            motor_torque=torque,
+            speed_source=speed_source,
+            axial_load_source=load_source,
+            temperature_source=temperature_source,
+            motor_torque_source=torque_source,
+            direction=self._direction,
+            direction_held=not moving and self._direction is not Direction.UNKNOWN,
+        )
+
+    def _value(self, source: Source, stamp: int) -> tuple[float, PointSource]:
+        """Return the last value and its standing; one that was followed by a bad one is held."""
+        tracker = self._inputs[source]
+        if not tracker.configured:
+            default = PointSource.DEFAULT if source is Source.TEMPERATURE else PointSource.UNKNOWN
+            return NAN, default
+        if tracker.last is None:
+            return NAN, PointSource.UNKNOWN
+        good = tracker.state(stamp) is InputState.OK
+        return tracker.last.value, PointSource.MEASURED if good else PointSource.HELD
+
+    def _advance(
+        self, stamp: int, point: Point, result: Estimate, verdict: Verdict
+    ) -> State | None:
+        """Hold the level, follow the event, and return the state when it is due."""
+        before = self._hold
+        gaps = {'max_gap': self._max_gap, 'period': self._inputs[Source.SPEED].slow_period}
+        self._hold = hold(before, verdict, stamp, self.settings.limits, **gaps)
+        self._follow(stamp, result, verdict)
+        edge = self._edge(before.level, stamp, point)
+        if not self._due(stamp) and edge is None and self._hold.level is before.level:
+            return None
+        self._last_published = stamp
+        return self._state(stamp, point, result, verdict, edge)
+
+    def _follow(self, stamp: int, result: Estimate, verdict: Verdict) -> None:
+        """Keep the worst value of the event that is active, or of the one that may follow."""
+        if verdict.zone is Zone.OPTIMAL and self._hold.level is not Level.WARN:
+            self._pending = None
+        if verdict.zone is not Zone.OUTSIDE:
+            return
+        if self.event.active:
+            self.event = self.event.worsened(result)
+            return
+        run = self._hold.raising
+        if self._pending is None or (run is not None and run.start == stamp):
+            self._pending = Event(
+                start=stamp, cause=verdict.findings[0], worst_value=verdict.findings[0].value
+            )
+        self._pending = self._pending.worsened(result)
+
+    def _edge(self, before: Level, stamp: int, point: Point) -> Event | None:
+        """Return the event that the change of the level begins or ends, if any."""
+        level = self._hold.level
+        if level is Level.WARN and before is not Level.WARN and self._pending is not None:
+            advice = advise(point, self.surface, self.settings.limits)
+            cause = dataclasses.replace(
+                self._pending.cause,
+                target_speed=advice.target_speed,
+                target_load=advice.target_load,
+            )
+            self.event = dataclasses.replace(
+                self._pending,
+                number=self.event.number + 1,
+                active=True,
+                stamp=stamp,
+                cause=cause,
+                advice=advice,
+            )
+            self._pending = None
+            return self.event
+        if level is not Level.WARN and self.event.active:
+            self.event = dataclasses.replace(self.event, active=False, stamp=stamp)
+            return self.event
+        return None
+
+    def _due(self, stamp: int) -> bool:
+        """Tell whether `stamp` is the first one in its period."""
+        period = self.settings.publish_period
+        if period == 0 or self._last_published is None:
+            return True
+        return stamp // period != self._last_published // period
+
+    def _state(
+        self, stamp: int, point: Point, result: Estimate, verdict: Verdict, edge: Event | None
+    ) -> State:
+        torque = point.motor_torque
+        if point.motor_torque_source is not PointSource.MEASURED:
+            torque = NAN
+        return State(
+            axis=self.settings.axis,
+            stamp=stamp,
+            point=point,
+            estimate=result,
+            verdict=verdict,
+            level=self._hold.level,
+            level_since=self._hold.since,
+            event_id=self.event.number,
+            event=edge,
+            limits=self.settings.limits,
+            window=self._window.take(),
+            inputs=tuple(tracker.health(stamp) for tracker in self._inputs.values()),
+            totals=self._account.totals(),
+            judged=self._judged,
+            measured_torque=torque,
+            torque_residual=torque - result.machine_torque,
+            surface_id=self._surface_id,
+        )
+
+    def _forget_the_future(self, now: int) -> None:
+        """
+        Forget samples that lie further ahead of `now` [ns] than is allowed.
+
+        They were taken while the clock stood at zero, and would not go stale for as long.
+
+        """
+        settings = self.settings
+        limit = now + settings.tick_period + settings.max_future + BACKWARD_JUMP
+        for tracker in self._inputs.values():
+            if now and tracker.is_ahead(limit):
+                if tracker.source is Source.SPEED:
+                    self._jump_back(now)
+                tracker.forget()
+
+    def _jump_back(self, stamp: int) -> None:
+        """
+        Begin a new time line at `stamp` [ns], which is that of a speed sample or of a tick.
+
+        Samples in its future are forgotten and the filters start anew; level, event and totals
+        stand, with their times moved so that they have lasted as long as before.
+
+        """
+        speed = self._inputs[Source.SPEED].last
+        if speed is not None:
+            self._move_times(stamp - speed.stamp)
+        self._account.forget()
+        self._pending = None
+        self._last_published = None
+        self._direction = Direction.UNKNOWN
+        for tracker in self._inputs.values():
+            if tracker.is_ahead(stamp + BACKWARD_JUMP):
+                tracker.forget()
+
+    def _move_times(self, shift: int) -> None:
+        self._hold = Hold(level=self._hold.level, since=max(0, self._hold.since + shift))
+        if self.event.active:
+            self.event = dataclasses.replace(self.event, start=max(0, self.event.start + shift))

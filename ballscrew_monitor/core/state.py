@@ -1,0 +1,86 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What a monitor is told and what it says: settings, events and states."""
+
+from collections.abc import Mapping
+import dataclasses
+import math
+
+from ballscrew_monitor.core.advice import Advice
+from ballscrew_monitor.core.estimate import Estimate, Point
+from ballscrew_monitor.core.inputs import Health, Source
+from ballscrew_monitor.core.judgement import Code, Finding, Level, Limits, Severity, Verdict
+from ballscrew_monitor.core.tally import Totals, WindowStatistics
+
+NAN = math.nan
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Settings:
+    """
+    What a monitor is told.
+
+    `timeouts` [ns] of the configured inputs only: an input without one has no topic.
+    `default_temperature` [K] is used without a temperature topic, `publish_period` [ns] thins out
+    the states, 0 keeps all; a stamp may be `max_future` [ns] ahead of the clock, and that is less
+    than `tick_period` [ns] ahead of the tick.
+
+    """
+
+    axis: str
+    limits: Limits
+    timeouts: Mapping[Source, int]
+    default_temperature: float
+    publish_period: int = 0
+    max_future: int = 0
+    tick_period: int = 0
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Event:
+    """One stay outside the optimal zone; stamps [ns], event 0 is none yet."""
+
+    number: int = 0
+    active: bool = False
+    stamp: int = 0
+    start: int = 0
+    worst_value: float = NAN
+    cause: Finding = Finding(code=Code.UNKNOWN, severity=Severity.UNKNOWN)
+    advice: Advice = Advice()
+
+    def worsened(self, estimate: Estimate) -> 'Event':
+        """Return the event with its worst value after one more sample outside."""
+        if self.cause.code is Code.RCS_HIGH:
+            worst = max(self.worst_value, estimate.rcs)
+        else:
+            worst = min(self.worst_value, estimate.efficiency)
+        return self if worst == self.worst_value else dataclasses.replace(self, worst_value=worst)
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class State:
+    """
+    Judgement of one axis at one instant.
+
+    `event` is that which began or ended at this state, else None; `event_id` is that of the
+    active event or of the last one. Torques [N m] in the machine frame.
+
+    """
+
+    axis: str
+    stamp: int
+    point: Point
+    estimate: Estimate
+    verdict: Verdict
+    level: Level
+    level_since: int
+    event_id: int
+    event: Event | None
+    limits: Limits
+    window: WindowStatistics
+    inputs: tuple[Health, ...]
+    totals: Totals
+    judged: int
+    measured_torque: float
+    torque_residual: float
+    surface_id: str

@@ -1,0 +1,188 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Sums over time: statistics of the current window, and totals since the start."""
+
+import dataclasses
+import math
+
+from ballscrew_monitor.core.conversions import seconds, TURN
+from ballscrew_monitor.core.estimate import Estimate, Point, Regime
+from ballscrew_monitor.core.judgement import Gate, Verdict, Zone
+
+NAN = math.nan
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Extremes:
+    """Smallest, mean and largest value, NaN when there was none."""
+
+    low: float = NAN
+    mean: float = NAN
+    high: float = NAN
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class WindowStatistics:
+    """Extremes since the last publication: [rad/s], [N], [-], [-], [-]."""
+
+    count: int
+    speed: Extremes
+    axial_load: Extremes
+    efficiency: Extremes
+    rcs: Extremes
+    film_ratio: Extremes
+
+
+class _Column:
+    """Running extremes and sum of one quantity."""
+
+    __slots__ = ('count', 'low', 'high', 'total')
+
+    def __init__(self) -> None:
+        self.count = 0
+        self.low = math.inf
+        self.high = -math.inf
+        self.total = 0.0
+
+    def add(self, value: float) -> None:
+        self.count += 1
+        self.total += value
+        if value < self.low:
+            self.low = value
+        if value > self.high:
+            self.high = value
+
+    def extremes(self) -> Extremes:
+        if not self.count:
+            return Extremes()
+        return Extremes(low=self.low, mean=self.total / self.count, high=self.high)
+
+
+class Window:
+    """
+    Statistics of the samples that were judged, until they are taken.
+
+    Efficiency has values only from the samples whose efficiency was judged.
+
+    """
+
+    def __init__(self) -> None:
+        """Begin empty."""
+        self._clear()
+
+    def _clear(self) -> None:
+        self._speed, self._load = _Column(), _Column()
+        self._efficiency, self._rcs, self._film_ratio = _Column(), _Column(), _Column()
+
+    def add(self, point: Point, estimate: Estimate, verdict: Verdict) -> None:
+        """Add one sample, if it was judged."""
+        if verdict.zone is Zone.UNKNOWN or estimate.numbers is None:
+            return
+        self._speed.add(point.speed)
+        self._load.add(point.axial_load)
+        self._rcs.add(estimate.rcs)
+        self._film_ratio.add(estimate.numbers.film_ratio)
+        if Gate.LIGHT_LOAD not in verdict.gates:
+            self._efficiency.add(estimate.efficiency)
+
+    def take(self) -> WindowStatistics:
+        """Return the statistics and begin anew."""
+        taken = WindowStatistics(
+            count=self._speed.count,
+            speed=self._speed.extremes(),
+            axial_load=self._load.extremes(),
+            efficiency=self._efficiency.extremes(),
+            rcs=self._rcs.extremes(),
+            film_ratio=self._film_ratio.extremes(),
+        )
+        if taken.count:
+            self._clear()
+        return taken
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Totals:
+    """Sums since the start; times [ns] so that they add up exactly, energy_lost [J]."""
+
+    running_time: int = 0
+    unjudged_time: int = 0
+    boundary_time: int = 0
+    mixed_time: int = 0
+    hydrodynamic_time: int = 0
+    optimal_time: int = 0
+    outside_time: int = 0
+    revolutions: float = 0.0
+    energy_lost: float = 0.0
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Moment:
+    """What the totals need to know of one sample."""
+
+    stamp: int
+    speed: float  # amount [rad/s], 0 at standstill
+    power_lost: float  # [W]
+    regime: Regime
+    zone: Zone
+
+
+def moment(stamp: int, point: Point, estimate: Estimate, verdict: Verdict) -> Moment:
+    """Return what the totals need to know of the sample at `stamp` [ns]."""
+    speed = 0.0 if Gate.STANDSTILL in verdict.gates else abs(point.speed)
+    power = 0.0 if estimate.numbers is None else estimate.numbers.friction_torque * speed
+    return Moment(
+        stamp=stamp,
+        speed=speed,
+        power_lost=power if math.isfinite(power) else 0.0,
+        regime=estimate.regime,
+        zone=verdict.zone,
+    )
+
+
+class Account:
+    """Totals; each sample is taken to last until the next one."""
+
+    def __init__(self) -> None:
+        """Begin at zero."""
+        self.reset()
+        self._last: Moment | None = None
+
+    def reset(self) -> None:
+        """Set every sum to zero."""
+        self._running = self._unjudged = 0
+        self._in_regime = dict.fromkeys(Regime, 0)
+        self._in_zone = dict.fromkeys(Zone, 0)
+        self._angle = self._energy = 0.0
+
+    def forget(self) -> None:
+        """Forget the last sample, so that nothing is added up to the next one."""
+        self._last = None
+
+    def add(self, now: Moment, *, max_gap: int) -> None:
+        """Add the time since the last sample, unless that is longer than `max_gap` [ns]."""
+        last, self._last = self._last, now
+        if last is None or last.speed == 0.0 or not 0 < now.stamp - last.stamp <= max_gap:
+            return
+        span = now.stamp - last.stamp
+        self._running += span
+        self._angle += last.speed * seconds(span)
+        self._energy += last.power_lost * seconds(span)
+        if last.zone is Zone.UNKNOWN:
+            self._unjudged += span
+            return
+        self._in_regime[last.regime] += span
+        self._in_zone[last.zone] += span
+
+    def totals(self) -> Totals:
+        """Return the sums."""
+        return Totals(
+            running_time=self._running,
+            unjudged_time=self._unjudged,
+            boundary_time=self._in_regime[Regime.BOUNDARY],
+            mixed_time=self._in_regime[Regime.MIXED],
+            hydrodynamic_time=self._in_regime[Regime.HYDRODYNAMIC],
+            optimal_time=self._in_zone[Zone.OPTIMAL],
+            outside_time=self._in_zone[Zone.OUTSIDE],
+            revolutions=self._angle / TURN,
+            energy_lost=self._energy,
+        )

@@ -1,0 +1,260 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+The operating map under a cycle: what the surface says of speed and opposing load.
+
+It holds at one oil temperature, the mean of the run in motion; the border RCS = limit is drawn for
+the coldest and the warmest oil too, because it moves with the oil. Speeds are logarithmic and
+begin where judging does: contact sets in at a hundredth of the highest speed.
+
+"""
+
+from collections.abc import Sequence
+import dataclasses
+import math
+from typing import Any
+
+from ballscrew_monitor.core.conversions import kelvin, RPM
+from ballscrew_monitor.cycle.state_trace import Limits, Trace
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+import numpy as np
+from numpy.typing import NDArray
+from surrogate.surface import Surface, Validity
+
+Array = NDArray[np.float64]
+
+# Okabe and Ito: distinct for the colour-blind and in grey.
+GREEN, ORANGE, BLUE, PURPLE, GREY = '#009e73', '#d55e00', '#0072b2', '#7b3294', '#7f7f7f'
+OPTIMAL_FILL = '#dff2ea'
+EFFICIENCIES = (0.3, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.97)
+SPEEDS, LOADS = 120, 181  # points of the grid
+TICKS = [first * 10.0**power for power in range(-2, 6) for first in (1, 2, 5)]  # [rev/min]
+TOP, BELOW_TOP = 0.975, 0.925  # heights of the labels, as parts of the map
+BOX = {'boxstyle': 'round,pad=0.15', 'facecolor': 'white', 'edgecolor': 'none', 'alpha': 0.85}
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Field:
+    """Surface on a grid: speed [rev/min] and opposing load [N]; NaN where it says nothing."""
+
+    speed: Array
+    load: Array
+    efficiency: Array
+    rcs: Array
+    film_ratio: Array
+
+
+def sample(surface: Surface, trace: Trace, temperature: float) -> Field:
+    """Return the surface at `temperature` [degC] on a grid around the run."""
+    low, high = _load_span(surface, trace)
+    speed = np.geomspace(*_speed_span(surface, trace), SPEEDS)
+    load = np.linspace(low, high, LOADS)
+    points = [
+        [surface.lookup(w, f, kelvin(temperature)) for w in speed.tolist()] for f in load.tolist()
+    ]
+    columns = {
+        name: np.array(
+            [
+                [
+                    getattr(point, name) if point.validity is Validity.VALID else math.nan
+                    for point in row
+                ]
+                for row in points
+            ]
+        )
+        for name in ('efficiency', 'rcs', 'film_ratio')
+    }
+    return Field(speed=speed * RPM, load=load, **columns)
+
+
+def draw_map(axes: Axes, trace: Trace, surface: Surface) -> tuple[float, bool]:
+    """Draw the map; return its temperature [degC] and whether there are borders at others."""
+    moving = np.abs(trace.speed) >= trace.limits.standstill
+    oil = trace.temperature[moving & np.isfinite(trace.temperature)]
+    # Without any motion the datasheet's temperature is as good as another.
+    spread = oil if oil.size else np.array([surface.reference_temperature - kelvin(0.0)])
+    mean = round(float(spread.mean()))
+    field = sample(surface, trace, mean)
+    _draw_zone(axes, field, trace.limits)
+    _draw_lines(axes, field, trace.limits, mean)
+    others = [
+        float(degrees) for degrees in (spread.min(), spread.max()) if abs(degrees - mean) > 2
+    ]
+    for degrees in others:
+        _draw_border(axes, sample(surface, trace, degrees), trace.limits, degrees)
+    _label(axes, field)
+    return mean, bool(others)
+
+
+def _speed_span(surface: Surface, trace: Trace) -> tuple[float, float]:
+    """Return the speeds that are judged [rad/s], or all of the surface where none is."""
+    slowest, fastest = surface.speed_range
+    judged = max(slowest, trace.limits.standstill)
+    return (judged if judged < fastest else slowest), fastest
+
+
+def _load_span(surface: Surface, trace: Trace) -> tuple[float, float]:
+    moving = np.abs(trace.speed) >= trace.limits.standstill
+    loads = trace.opposing_load[moving & np.isfinite(trace.opposing_load)]
+    reach = 1.5 * trace.limits.light_load
+    low = min(float(loads.min()), -reach) if loads.size else -reach
+    high = max(float(loads.max()), reach) if loads.size else reach
+    margin = 0.06 * (high - low)
+    return max(low - margin, surface.load_range[0]), min(high + margin, surface.load_range[1])
+
+
+def _draw_zone(axes: Axes, field: Field, limits: Limits) -> None:
+    """Fill the optimal zone; under a light load only RCS counts."""
+    light = np.abs(field.load)[:, None] < limits.light_load
+    optimal = (field.rcs < limits.rcs) & (light | (field.efficiency >= limits.efficiency))
+    axes.contourf(
+        field.speed,
+        field.load,
+        optimal.astype(float),
+        levels=[0.5, 1.5],
+        colors=[OPTIMAL_FILL],
+        zorder=0,
+    )
+    axes.axhspan(
+        -limits.light_load,
+        limits.light_load,
+        facecolor='none',
+        edgecolor='#b5b5b5',
+        hatch='..',
+        linewidth=0.0,
+        zorder=1,
+    )
+
+
+def _draw_lines(axes: Axes, field: Field, limits: Limits, degrees: float) -> None:
+    shown = np.where(
+        np.abs(field.load)[:, None] < 0.2 * limits.light_load, math.nan, field.efficiency
+    )
+    lines = axes.contour(
+        field.speed,
+        field.load,
+        shown,
+        levels=EFFICIENCIES,
+        colors=BLUE,
+        linewidths=0.6,
+        alpha=0.75,
+        zorder=2,
+    )
+    axes.clabel(lines, fmt=lambda value: f'{100 * value:.0f} %', fontsize=7)
+    axes.contour(
+        field.speed,
+        field.load,
+        shown,
+        levels=[limits.efficiency],
+        colors=BLUE,
+        linewidths=2.2,
+        zorder=3,
+    )
+    border = axes.contour(
+        field.speed,
+        field.load,
+        field.rcs,
+        levels=[limits.rcs],
+        colors=PURPLE,
+        linewidths=2.2,
+        zorder=3,
+    )
+    _name_line(axes, field, border.allsegs[0], f'{degrees:.0f} °C', PURPLE, BELOW_TOP)
+    ratios = axes.contour(
+        field.speed,
+        field.load,
+        field.film_ratio,
+        levels=[1.0, 3.0],
+        colors='#404040',
+        linewidths=0.9,
+        linestyles='dotted',
+        zorder=2,
+    )
+    for level, paths in zip((1.0, 3.0), ratios.allsegs, strict=True):
+        _name_line(axes, field, paths, f'Λ = {level:.0f}', '#404040', TOP)
+
+
+def _draw_border(axes: Axes, field: Field, limits: Limits, degrees: float) -> None:
+    lines = axes.contour(
+        field.speed,
+        field.load,
+        field.rcs,
+        levels=[limits.rcs],
+        colors=PURPLE,
+        linewidths=1.2,
+        linestyles='dashed',
+        zorder=3,
+    )
+    _name_line(axes, field, lines.allsegs[0], f'{degrees:.0f} °C', PURPLE, BELOW_TOP)
+
+
+def _name_line(
+    axes: Axes, field: Field, paths: Sequence[Array], text: str, colour: str, height: float
+) -> None:
+    """Write on a line where it comes nearest to a `height` [-] of the map."""
+    points = [path for path in paths if len(path)]
+    if points:
+        line = np.concatenate(points)
+        level = field.load[0] + height * (field.load[-1] - field.load[0])
+        x, y = line[np.argmin(np.abs(line[:, 1] - level))].tolist()
+        axes.text(
+            x, y, text, fontsize=8, color=colour, ha='center', va='center', bbox=BOX, zorder=6
+        )
+
+
+def _label(axes: Axes, field: Field) -> None:
+    low, high = float(field.speed[0]), float(field.speed[-1])
+    axes.set_xscale('log')
+    ticks = [tick for tick in TICKS if low <= tick <= high]
+    axes.set_xticks(ticks, [f'{tick:g}' for tick in ticks])
+    axes.minorticks_off()
+    axes.set_xlim(low, high)
+    axes.set_ylim(field.load[0], field.load[-1])
+    axes.axhline(0.0, color='black', linewidth=0.6, zorder=2)
+    axes.set_xlabel(
+        'screw speed, either direction [rev/min]; each point was judged at its own oil temperature'
+    )
+    axes.set_ylabel('axial load [N]\nassists the motion  |  opposes the motion')
+
+
+def legend_entries(limits: Limits, mean: float, *, others: bool) -> list[Any]:
+    """Return what the lines of the map mean."""
+    entries: list[Any] = [
+        Patch(facecolor=OPTIMAL_FILL, edgecolor='none', label=f'optimal zone at {mean:.0f} °C'),
+        Patch(
+            facecolor='none',
+            edgecolor='#b5b5b5',
+            hatch='....',
+            linewidth=0.0,
+            label='light load: efficiency not judged',
+        ),
+        Line2D([], [], color=PURPLE, linewidth=2.2, label=f'RCS = {limits.rcs:g}'),
+        Line2D(
+            [], [], color=BLUE, linewidth=2.2, label=f'efficiency = {100 * limits.efficiency:g} %'
+        ),
+    ]
+    if others:
+        entries.insert(
+            3,
+            Line2D(
+                [],
+                [],
+                color=PURPLE,
+                linewidth=1.2,
+                linestyle='dashed',
+                label='the same, coldest and warmest oil',
+            ),
+        )
+    entries.append(
+        Line2D(
+            [],
+            [],
+            color='#404040',
+            linewidth=0.9,
+            linestyle='dotted',
+            label='film ratio Λ = 1 and 3',
+        )
+    )
+    return entries

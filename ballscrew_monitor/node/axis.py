@@ -1,0 +1,172 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""From parameter values to one ready axis: its surface, its inputs and its monitor."""
+
+from collections.abc import Callable, Iterable, Mapping
+import dataclasses
+from typing import Any
+
+from ballscrew_monitor.core.conversions import (
+    kelvin,
+    load_scaling,
+    nanoseconds,
+    Scaling,
+    speed_scaling,
+    temperature_scaling,
+    torque_scaling,
+)
+from ballscrew_monitor.core.errors import InputError
+from ballscrew_monitor.core.inputs import Input, make_input, Source
+from ballscrew_monitor.core.judgement import Limits
+from ballscrew_monitor.core.monitor import Monitor
+from ballscrew_monitor.core.state import Settings
+from surrogate.surface import find_surface, Surface, SurfaceError
+
+OPTIONAL = (Source.TEMPERATURE, Source.TORQUE)
+
+
+@dataclasses.dataclass(kw_only=True, slots=True)
+class Axis:
+    """One axis at work."""
+
+    name: str
+    surface: Surface
+    inputs: tuple[Input, ...]
+    monitor: Monitor
+
+    @property
+    def max_future(self) -> int:
+        """Return how far a stamp may be ahead of the clock [ns]."""
+        return self.monitor.settings.max_future
+
+    def adapt(self, values: Mapping[str, Any]) -> None:
+        """Take over the parameters that may change at any time."""
+        self.monitor.settings = settings_of(self.name, values, self.surface.preload)
+
+    def use_surface(self, surface: Surface, values: Mapping[str, Any]) -> None:
+        """Judge with another surface from now on."""
+        self.surface = surface
+        self.monitor.use_surface(surface)
+        self.adapt(values)
+
+
+def build_axis(name: str, values: Mapping[str, Any]) -> Axis:
+    """Return the axis `name` made of parameter `values` by full name; raises InputError."""
+    surface = load_surface(name, values)
+    return Axis(
+        name=name,
+        surface=surface,
+        inputs=_inputs_of(name, values, surface.lead),
+        monitor=Monitor(surface, settings_of(name, values, surface.preload)),
+    )
+
+
+def check_topics(axes: Iterable[Axis], resolve: Callable[[str], str]) -> None:
+    """Raise InputError for a name that `resolve` refuses, and for a topic of two types."""
+    types: dict[str, str] = {}
+    for axis in axes:
+        for source in axis.inputs:
+            try:
+                topic = resolve(source.topic)
+            except RuntimeError:
+                raise InputError(
+                    f'parameter {axis.name}.{source.source.name.lower()}.topic '
+                    f'is {source.topic!r}, no topic name'
+                ) from None
+            if types.setdefault(topic, source.type_name) != source.type_name:
+                raise InputError(
+                    f'topic {topic} is configured as {types[topic]} and as {source.type_name}'
+                )
+
+
+def load_surface(name: str, values: Mapping[str, Any]) -> Surface:
+    """Return the verified surface of the axis `name`; raises InputError with the reason."""
+    screw, oil = values[f'{name}.screw'], values[f'{name}.oil']
+    try:
+        path = find_surface(values[f'{name}.surface'], screw, oil)
+        return Surface.load(path, screw=screw, oil=oil)
+    except SurfaceError as error:
+        raise InputError(f'axis {name}: {error}') from None
+
+
+def reload_surface(axis: Axis, values: Mapping[str, Any]) -> Surface:
+    """Return the surface of `axis` as its file is now; raises InputError if it does not fit."""
+    surface = load_surface(axis.name, values)
+    if surface.lead != axis.surface.lead:  # the speeds are scaled with it
+        raise InputError(
+            f'axis {axis.name}: the new surface is of a lead of {surface.lead:g} m, '
+            f'the old one of {axis.surface.lead:g} m'
+        )
+    return surface
+
+
+def settings_of(name: str, values: Mapping[str, Any], preload: float) -> Settings:
+    """Return what the monitor is told; `preload` [N] is what the light load is a part of."""
+    return Settings(
+        axis=name,
+        limits=_limits_of(name, values, preload),
+        timeouts={
+            source: nanoseconds(values[f'{name}.{source.name.lower()}.timeout'])
+            for source in Source
+            if _is_configured(name, values, source)
+        },
+        default_temperature=kelvin(values[f'{name}.temperature.default']),
+        publish_period=nanoseconds(values[f'{name}.publish_period']),
+        max_future=nanoseconds(values[f'{name}.max_future']),
+        tick_period=nanoseconds(values['tick_period']),
+    )
+
+
+def _limits_of(name: str, values: Mapping[str, Any], preload: float) -> Limits:
+    prefix = f'{name}.limits.'
+    return Limits(
+        rcs=values[prefix + 'rcs'],
+        efficiency=values[prefix + 'efficiency'],
+        light_load=values[prefix + 'light_load_fraction'] * preload,
+        standstill_speed=values[prefix + 'standstill_speed'],
+        raise_delay=nanoseconds(values[prefix + 'raise_delay']),
+        clear_delay=nanoseconds(values[prefix + 'clear_delay']),
+        hysteresis=values[prefix + 'hysteresis'],
+    )
+
+
+def _is_configured(name: str, values: Mapping[str, Any], source: Source) -> bool:
+    return source not in OPTIONAL or bool(values[f'{name}.{source.name.lower()}.topic'])
+
+
+def _inputs_of(name: str, values: Mapping[str, Any], lead: float) -> tuple[Input, ...]:
+    """Return the inputs in the order in which equal stamps are taken."""
+    return tuple(
+        _input_of(name, values, source, lead)
+        for source in Source
+        if _is_configured(name, values, source)
+    )
+
+
+def _input_of(name: str, values: Mapping[str, Any], source: Source, lead: float) -> Input:
+    prefix = f'{name}.{source.name.lower()}'
+    if not values[f'{prefix}.topic']:
+        raise InputError(f'parameter {prefix}.topic is empty, it must name a topic')
+    try:
+        return make_input(
+            source,
+            topic=values[f'{prefix}.topic'],
+            type_name=values[f'{prefix}.type'],
+            field=values[f'{prefix}.field'],
+            scaling=_scaling_of(name, values, source, lead),
+        )
+    except InputError as error:
+        raise InputError(f'parameters {prefix}: {error}') from None
+
+
+def _scaling_of(name: str, values: Mapping[str, Any], source: Source, lead: float) -> Scaling:
+    prefix = f'{name}.{source.name.lower()}'
+    unit, hand = values[f'{prefix}.unit'], values[f'{name}.handedness']
+    scale, offset = values[f'{prefix}.scale'], values[f'{prefix}.offset']
+    if source is Source.SPEED:
+        return speed_scaling(unit, scale=scale, offset=offset, lead=lead, handedness=hand)
+    if source is Source.LOAD:
+        return load_scaling(unit, scale=scale, offset=offset)
+    if source is Source.TEMPERATURE:
+        return temperature_scaling(unit, scale=scale, offset=offset)
+    return torque_scaling(unit, scale=scale, offset=offset, handedness=hand)

@@ -1,0 +1,211 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+From states to diagnostic_msgs: three statuses for each axis.
+
+A status begins as an ERROR that says that nothing was set, and every case that is not known to be
+good stays above OK. Messages hold no numbers, so that a new message is a change worth publishing;
+numbers are values, with the unit in brackets.
+
+"""
+
+from collections.abc import Mapping
+import math
+
+from ballscrew_monitor.core.conversions import celsius, seconds
+from ballscrew_monitor.core.estimate import Validity
+from ballscrew_monitor.core.inputs import Health, InputState, Source
+from ballscrew_monitor.core.judgement import Code, Gate, Level
+from ballscrew_monitor.core.state import Event, State
+from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
+from surrogate.surface import Surface
+
+OK, WARN = DiagnosticStatus.OK, DiagnosticStatus.WARN
+ERROR, STALE = DiagnosticStatus.ERROR, DiagnosticStatus.STALE
+NOT_SET = 'no message was set'
+NOTHING_YET = 'nothing has been judged yet'
+CLOCK_STANDS = 'the clock stands still, nothing is seen to go stale'
+INACTIVE = 'the node is inactive, nothing is judged'
+PARTS = ('Lubrication', 'Inputs', 'Surface')
+Summary = tuple[bytes, str]  # level and message of a status
+
+_NOT_JUDGED = {
+    Validity.UNKNOWN: 'not judged: the screw has not moved yet',
+    Validity.SPEED_BELOW_RANGE: 'not judged: speed below the surface',
+    Validity.SPEED_ABOVE_RANGE: 'not judged: speed above the surface',
+    Validity.LOAD_OUT_OF_RANGE: 'not judged: load outside the surface',
+    Validity.TEMPERATURE_OUT_OF_RANGE: 'not judged: temperature outside the surface',
+    Validity.MASKED: 'not judged: the model did not converge here',
+    Validity.NO_INPUT: 'not judged: an input is missing',
+    Validity.NO_SURFACE: 'not judged: no surface',
+}
+_OF_STANDSTILL = (Validity.UNKNOWN, Validity.SPEED_BELOW_RANGE)  # nothing wrong with these there
+_CAUSES = {
+    Code.RCS_HIGH: 'asperities carry too much',
+    Code.EFFICIENCY_LOW: 'too much power is lost',
+}
+_INPUT_WORDS = {
+    InputState.STALE: 'is stale',
+    InputState.MISSING: 'was never received',
+    InputState.BAD: 'is not usable',
+    InputState.UNKNOWN: 'is unknown',
+}
+
+
+def blank(node: str, axis: str) -> list[DiagnosticStatus]:
+    """Return the statuses of an axis of which nothing is known."""
+    return [
+        DiagnosticStatus(name=f'{node}: {axis}: {part}', level=ERROR, message=NOT_SET)
+        for part in PARTS
+    ]
+
+
+def failed(node: str, axis: str, reason: str) -> list[DiagnosticStatus]:
+    """Return the statuses of an axis that cannot work for `reason`."""
+    return [
+        DiagnosticStatus(name=f'{node}: {axis}: {part}', level=ERROR, message=reason)
+        for part in PARTS
+    ]
+
+
+def statuses(
+    node: str,
+    axis: str,
+    state: State | None,
+    event: Event,
+    surface: Surface,
+    *,
+    publishers: Mapping[Source, int] | None,
+    clock_stands: bool = False,
+) -> list[DiagnosticStatus]:
+    """
+    Return the three statuses of a configured axis, `state` its last one if there is one.
+
+    `publishers` says how many publishers each input is matched with; None: the node is inactive.
+    While the clock stands no state tells that an input is dead, so nothing but a warning is held.
+
+    """
+    made = blank(node, axis)
+    for status in made:
+        status.hardware_id = surface.screw_name
+    made[2].level, made[2].message = OK, f'{surface.tier} surface loaded'
+    made[2].values = _values(_surface_values(surface))
+    made[1].values = _values(
+        [
+            (f'{source.name.capitalize()} publishers [-]', count)
+            for source, count in (publishers or {}).items()
+        ]
+    )
+    if state is None or publishers is None:
+        for status in made[:2]:
+            status.level = STALE
+            status.message = INACTIVE if publishers is None else NOTHING_YET
+        return made
+    for status, (level, message) in zip(made, summaries(state, event)):
+        status.level, status.message = level, message
+    if clock_stands:
+        for status in made[1:2] if state.level is Level.WARN else made[:2]:
+            status.level, status.message = STALE, CLOCK_STANDS
+    made[0].values = _values(_lubrication_values(state))
+    made[1].values = [*made[1].values, *_values(_input_values(state.inputs))]
+    return made
+
+
+def summaries(state: State, event: Event) -> tuple[Summary, Summary]:
+    """Return level and message of Lubrication and Inputs; only a change of them is news."""
+    return _lubrication(state, event), _inputs(state.inputs)
+
+
+def _lubrication(state: State, event: Event) -> Summary:
+    if state.level is Level.WARN:
+        cause = _CAUSES.get(event.cause.code, 'cause unknown')
+        return WARN, f'outside the optimal zone: {cause}'
+    validity = state.estimate.validity
+    if validity is Validity.NO_INPUT:
+        return STALE, _NOT_JUDGED[validity]
+    still = Gate.STANDSTILL in state.verdict.gates
+    if validity is not Validity.VALID and not (still and validity in _OF_STANDSTILL):
+        return WARN, _NOT_JUDGED[validity]
+    if state.level is Level.OK:
+        return OK, 'standstill' if still else 'optimal'
+    return WARN, f'{"standstill, " if still else ""}not judged for long enough yet'
+
+
+def _inputs(inputs: tuple[Health, ...]) -> Summary:
+    faults = [
+        f'{health.source.name.lower()} {_INPUT_WORDS[health.state]}'
+        for health in inputs
+        if health.state in _INPUT_WORDS
+    ]
+    if faults:
+        return STALE, ', '.join(faults)
+    slow = [health.source.name.lower() for health in inputs if health.slow]
+    if slow:
+        return WARN, f'{" and ".join(slow)} slower than the timeout'
+    return OK, 'all inputs arrive'
+
+
+def _lubrication_values(state: State) -> list[tuple[str, object]]:
+    point, result, totals = state.point, state.estimate, state.totals
+    film_ratio = math.nan if result.numbers is None else result.numbers.film_ratio
+    return [
+        ('Level', state.level.name),
+        ('Zone', state.verdict.zone.name),
+        ('Validity', result.validity.name),
+        ('Reason', result.reason),
+        ('Regime', result.regime.name),
+        ('Contact', result.contact_state.name),
+        ('Event', state.event_id),
+        ('Speed [rad/s]', point.speed),
+        ('Axial load [N]', point.axial_load),
+        ('Oil temperature [degC]', celsius(point.temperature)),
+        ('Efficiency [-]', result.efficiency),
+        ('Efficiency limit [-]', state.limits.efficiency),
+        ('RCS [-]', result.rcs),
+        ('RCS limit [-]', state.limits.rcs),
+        ('Film ratio [-]', film_ratio),
+        ('Judged [-]', state.judged),
+        ('Running time [s]', seconds(totals.running_time)),
+        ('Time outside [s]', seconds(totals.outside_time)),
+        ('Energy lost [J]', totals.energy_lost),
+    ]
+
+
+def _input_values(inputs: tuple[Health, ...]) -> list[tuple[str, object]]:
+    values: list[tuple[str, object]] = []
+    for health in inputs:
+        name = health.source.name.capitalize()
+        values += [
+            (f'{name} state', health.state.name),
+            (f'{name} age [s]', health.age),
+            (f'{name} rate [Hz]', health.rate),
+            (f'{name} received [-]', health.received),
+            (f'{name} dropped [-]', health.dropped),
+            (f'{name} stamps', health.stamp_source.name),
+        ]
+    return values
+
+
+def _surface_values(surface: Surface) -> list[tuple[str, object]]:
+    ranges = (
+        ('Speed', 'rad/s', surface.speed_range),
+        ('Opposing load', 'N', surface.load_range),
+        ('Oil temperature', 'degC', tuple(celsius(limit) for limit in surface.temperature_range)),
+    )
+    return [
+        ('Screw', surface.screw_name),
+        ('Oil', surface.oil_name),
+        ('Tier', surface.tier),
+        ('SHA-256', surface.sha256),
+    ] + [
+        (f'{name} {end} [{unit}]', value)
+        for name, unit, pair in ranges
+        for end, value in zip(('min', 'max'), pair)
+    ]
+
+
+def _values(pairs: list[tuple[str, object]]) -> list[KeyValue]:
+    return [
+        KeyValue(key=key, value=f'{value:.6g}' if isinstance(value, float) else str(value))
+        for key, value in pairs
+    ]

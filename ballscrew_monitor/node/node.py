@@ -1,0 +1,324 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The lifecycle node: declare, subscribe, call the monitor, publish. It decides nothing itself."""
+
+from collections.abc import Callable
+import functools
+import signal
+import sys
+import traceback
+from typing import Any
+
+from ballscrew_monitor.core.conversions import nanoseconds
+from ballscrew_monitor.core.errors import InputError
+from ballscrew_monitor.core.inputs import Input
+from ballscrew_monitor.core.pulse import Pulse
+from ballscrew_monitor.core.state import State
+from ballscrew_monitor.node import diagnostics, parameters
+from ballscrew_monitor.node.axis import build_axis, check_topics, reload_surface
+from ballscrew_monitor.node.parameter_store import ParameterStore
+from ballscrew_monitor.node.station import STATE_QOS, Station
+from ballscrew_msgs.srv import EvaluateOperatingPoint
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+import rclpy
+from rclpy.clock import Clock, ClockType
+from rclpy.exceptions import ParameterException
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
+from rclpy.qos import QoSDurabilityPolicy, QoSHistoryPolicy, QoSProfile, QoSReliabilityPolicy
+from rclpy.signals import SignalHandlerOptions
+from std_srvs.srv import Trigger
+
+SUCCESS, FAILURE = TransitionCallbackReturn.SUCCESS, TransitionCallbackReturn.FAILURE
+INPUT_QOS = QoSProfile(
+    history=QoSHistoryPolicy.KEEP_LAST,
+    depth=200,
+    reliability=QoSReliabilityPolicy.BEST_EFFORT,
+    durability=QoSDurabilityPolicy.VOLATILE,
+)
+NEWS_INTERVAL = nanoseconds(0.1)  # [ns] shortest time between two diagnostics sent for a change
+POLL = 0.2  # [s] longest wait before a signal is noticed
+
+
+def _reported(transition: Callable[..., Any]) -> Callable[..., Any]:
+    """Log an exception in a transition; rclpy swallows it and goes to error processing."""
+
+    @functools.wraps(transition)
+    def report(self: LifecycleNode, state: LifecycleState) -> Any:
+        try:
+            return transition(self, state)
+        except Exception:
+            self.get_logger().error(traceback.format_exc())
+            raise
+
+    return report
+
+
+class BallscrewMonitor(LifecycleNode):
+    """Lifecycle node that judges the lubrication and efficiency of one or more axes."""
+
+    def __init__(self, **kwargs: Any) -> None:
+        """Declare everything; raises InputError for a bad parameter."""
+        super().__init__(parameters.NODE_NAME, **kwargs)
+        self._stations: dict[str, Station] = {}
+        self._active = False
+        self._finalized = False
+        self._reason = 'not configured'
+        self._inputs: list[Any] = []
+        self._tick_timer: Any = None
+        self._steady = Clock(clock_type=ClockType.STEADY_TIME)
+        self._news_time = 0
+        self._store = ParameterStore(self, self._on_parameters)
+        self._values = self._store.values
+        self._pulse = Pulse(nanoseconds(self._values['tick_period']))
+        self._diagnostics = self.create_publisher(DiagnosticArray, '/diagnostics', STATE_QOS)
+        # On the steady clock: it speaks while a simulated one stands.
+        self.create_timer(
+            self._values['diagnostics_period'], self._publish_diagnostics, clock=self._steady
+        )
+        self.create_service(EvaluateOperatingPoint, '~/evaluate', self._on_evaluate)
+        self.create_service(Trigger, '~/reload_surface', self._on_reload)
+        self.create_service(Trigger, '~/reset_totals', self._on_reset)
+        self.create_service(Trigger, '~/acknowledge', self._on_acknowledge)
+
+    def start(self) -> None:
+        """Configure and activate, if the node is to do so itself."""
+        if self._values['autostart'] and self.trigger_configure() == SUCCESS:
+            self.trigger_activate()
+
+    def finish(self) -> None:
+        """Go to the final lifecycle state, if the node is not there yet."""
+        if not self._finalized:
+            self.trigger_shutdown()
+
+    def _on_parameters(self, groups: set[str]) -> None:
+        for name in groups & self._stations.keys():
+            self._stations[name].axis.adapt(self._values)
+            self._stations[name].publish_info()
+
+    @_reported
+    def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Load the surfaces, compile the inputs; on failure stay unconfigured, with a reason."""
+        try:
+            axes = [build_axis(name, self._values) for name in self._values['axes']]
+            check_topics(axes, self.resolve_topic_name)
+        except InputError as error:
+            self._reason = f'not configured: {error}'
+            self.get_logger().error(self._reason)
+            self._publish_diagnostics()
+            return FAILURE
+        self._stations = {axis.name: Station(self, axis) for axis in axes}
+        self._store.locked = True
+        self._publish_diagnostics()
+        return super().on_configure(state)
+
+    @_reported
+    def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Subscribe and begin to judge."""
+        result = super().on_activate(state)
+        self._active = True
+        for station in self._stations.values():
+            station.publish_info()
+            station.publish_event()
+        self._subscribe()
+        self._tick_timer = self.create_timer(
+            self._values['tick_period'], self._on_tick, clock=self._tick_clock()
+        )
+        self._publish_diagnostics()
+        return result
+
+    def _tick_clock(self) -> Clock:
+        """
+        Return what the ticks are timed by: simulated time at its own rate, or the steady clock.
+
+        A timer on the system clock stops when that is set back, for as long as it was set back.
+
+        """
+        return self.get_clock() if self.get_parameter('use_sim_time').value else self._steady
+
+    def _subscribe(self) -> None:
+        """Subscribe once to each topic, however many inputs read it."""
+        readers: dict[str, list[tuple[Station, Input]]] = {}
+        for station in self._stations.values():
+            for source in station.axis.inputs:
+                readers.setdefault(self.resolve_topic_name(source.topic), []).append(
+                    (station, source)
+                )
+        for topic, those in readers.items():
+            subscription = self.create_subscription(
+                those[0][1].message_type,
+                topic,
+                functools.partial(self._on_message, those),
+                INPUT_QOS,
+            )
+            self._inputs.append(subscription)
+            for station, source in those:
+                station.subscriptions[source.source] = subscription
+
+    @_reported
+    def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Stop to judge; levels, events and totals stand."""
+        self._stop()
+        result = super().on_deactivate(state)
+        self._publish_diagnostics()
+        return result
+
+    @_reported
+    def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Forget the axes."""
+        self._clear('not configured')
+        return SUCCESS
+
+    @_reported
+    def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Stop and forget the axes."""
+        self._finalized = True
+        self._clear('shut down')
+        return SUCCESS
+
+    def on_error(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Fall back to unconfigured after an exception in a transition."""
+        self._clear('not configured: a transition failed unexpectedly')
+        return SUCCESS
+
+    def _stop(self) -> None:
+        self._active = False
+        for subscription in self._inputs:
+            self.destroy_subscription(subscription)
+        self._inputs = []
+        for station in self._stations.values():
+            station.subscriptions = {}
+        if self._tick_timer is not None:
+            self.destroy_timer(self._tick_timer)
+            self._tick_timer = None
+
+    def _clear(self, reason: str) -> None:
+        self._stop()
+        for station in self._stations.values():
+            station.close()
+        self._stations = {}
+        self._store.locked = False
+        self._reason = reason
+        self._publish_diagnostics()
+
+    def _on_message(self, readers: list[tuple[Station, Input]], message: Any) -> None:
+        self._pulse.take_input()
+        now = self.get_clock().now().nanoseconds
+        for station, source in readers:
+            axis = station.axis
+            event = source.read(message, now=now, max_future=axis.max_future)
+            self._publish(station, axis.monitor.update(event))
+
+    def _on_tick(self) -> None:
+        """Tick on the grid of stamps, when that is due."""
+        now = self.get_clock().now().nanoseconds
+        grid = self._pulse.tick(now, self._steady.now().nanoseconds)
+        if grid is None:
+            return
+        for station in self._stations.values():
+            self._publish(station, station.axis.monitor.tick(grid))
+
+    def _publish(self, station: Station, state: State | None) -> None:
+        """Publish a state, and diagnostics for what it changes, though these not in a flood."""
+        if state is None:
+            return
+        station.publish_state(state)
+        if not station.has_news():
+            return
+        now = self._steady.now().nanoseconds
+        if now - self._news_time >= NEWS_INTERVAL:  # else the next state or the timer sends it
+            self._news_time = now
+            station.say_news()
+            self._publish_diagnostics()
+
+    def _publish_diagnostics(self) -> None:
+        now = self.get_clock().now()
+        stood = self._pulse.stood(now.nanoseconds, self._steady.now().nanoseconds)
+        message = DiagnosticArray(status=self._statuses(stood))
+        message.header.stamp = now.to_msg()
+        self._diagnostics.publish(message)
+
+    def _statuses(self, stood: int) -> list[DiagnosticStatus]:
+        made = []
+        for name in self._values['axes']:
+            if name in self._stations:
+                made += self._stations[name].statuses(active=self._active, stood=stood)
+            else:
+                made += diagnostics.failed(self.get_name(), name, self._reason)
+        return made
+
+    def _on_evaluate(self, request: Any, response: Any) -> Any:
+        """Answer what the surface says of the points; nothing is judged meanwhile."""
+        begin = self._steady.now().nanoseconds
+        station = self._stations.get(request.axis)
+        if station is None:
+            known = ', '.join(self._stations) or 'none, the node is not configured'
+            response.message = f'axis {request.axis!r} is unknown, known are: {known}'
+        else:
+            station.evaluate(request.points, response)
+        self._pulse.be_busy(begin, self._steady.now().nanoseconds)
+        return response
+
+    def _on_reload(self, request: Any, response: Any) -> Any:
+        """Swap every surface for the file as it is now, if all of them verify."""
+        begin = self._steady.now().nanoseconds
+        try:
+            surfaces = {
+                name: reload_surface(station.axis, self._values)
+                for name, station in self._stations.items()
+            }
+        except InputError as error:
+            response.message = f'kept the old surface: {error}'
+            self.get_logger().error(response.message)
+            return response
+        for name, station in self._stations.items():
+            station.use_surface(surfaces[name], self._values)
+        self._pulse.be_busy(begin, self._steady.now().nanoseconds)
+        return self._answer(response, 'reloaded the surface')
+
+    def _on_reset(self, request: Any, response: Any) -> Any:
+        """Set the totals of every axis to zero."""
+        for station in self._stations.values():
+            station.axis.monitor.reset_totals()
+        return self._answer(response, 'set the totals to zero')
+
+    def _on_acknowledge(self, request: Any, response: Any) -> Any:
+        """Set the level of every axis back to UNKNOWN and end its event."""
+        now = self.get_clock().now().nanoseconds
+        for station in self._stations.values():
+            if station.axis.monitor.acknowledge(now) is not None:
+                station.publish_event()
+        return self._answer(response, 'acknowledged')
+
+    def _answer(self, response: Any, what: str) -> Any:
+        response.success = bool(self._stations)
+        names = ', '.join(self._stations)
+        response.message = f'{what} of {names}' if names else 'the node is not configured'
+        return response
+
+
+def main(args: list[str] | None = None) -> int:
+    """Run the node until SIGINT or SIGTERM; return 0, or 2 after bad input."""
+    stop: list[int] = []
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda received, frame: stop.append(received))
+    try:
+        # The handlers of rclpy tear the context down while the executor still waits on it.
+        rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
+        node = BallscrewMonitor()
+    except (InputError, ParameterException, RuntimeError) as error:
+        print(f'{parameters.NODE_NAME}: {" ".join(str(error).split())}', file=sys.stderr)
+        rclpy.try_shutdown()
+        return 2
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    node.start()
+    while not stop:
+        executor.spin_once(timeout_sec=POLL)
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, signal.SIG_IGN)
+    node.finish()
+    executor.shutdown()
+    node.destroy_node()
+    rclpy.shutdown()
+    return 0

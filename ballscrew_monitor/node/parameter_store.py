@@ -1,0 +1,79 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The parameters of a running node: declared from the table, checked, and taken over."""
+
+from collections.abc import Callable
+from typing import Any
+
+from ballscrew_monitor.core.errors import InputError
+from ballscrew_monitor.node import parameters
+from ballscrew_monitor.node.parameter_table import Change, NODE_ROWS, Row
+from rcl_interfaces.msg import SetParametersResult
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+
+
+class ParameterStore:
+    """
+    The values of all parameters as plain Python, by full name.
+
+    While `locked`, only what may change at any time does; `on_change` is called with the first
+    parts of the names that have changed.
+
+    """
+
+    def __init__(self, node: Node, on_change: Callable[[set[str]], None]) -> None:
+        """Declare every parameter on `node`; raises InputError for a bad one."""
+        self.locked = False
+        self.values: dict[str, Any] = {}
+        self._on_change = on_change
+        # Private to rclpy; without it rclpy refuses bad values itself, in its own words.
+        given = getattr(node, '_parameter_overrides', {})
+        self._given = {name: _plain(parameter.value) for name, parameter in given.items()}
+        self._declare(node, {row.name: row for row in NODE_ROWS})
+        self._rows = parameters.table(self.values['axes'])
+        self._declare(node, self._rows)
+        for name in self._given:  # a slip of the pen must not pass for the default
+            if name not in self._rows and not parameters.is_of_ros(name):
+                raise InputError(f'parameter {name} is unknown')
+        node.add_on_set_parameters_callback(self._check)
+        node.add_post_set_parameters_callback(self._take)
+
+    def _declare(self, node: Node, rows: dict[str, Row]) -> None:
+        for name, row in rows.items():
+            if name in self.values:
+                continue
+            if name in self._given:
+                row.check(name, self._given[name])
+            default = parameters.default_of(name, row)
+            declared = node.declare_parameter(name, default, row.descriptor())
+            self.values[name] = _plain(declared.value)
+
+    def _check(self, changed: list[Parameter]) -> SetParametersResult:
+        try:
+            for parameter in changed:
+                self._check_one(parameter)
+        except InputError as error:
+            return SetParametersResult(successful=False, reason=str(error))
+        return SetParametersResult(successful=True)
+
+    def _check_one(self, parameter: Parameter) -> None:
+        row = self._rows.get(parameter.name)
+        if row is None:
+            return
+        row.check(parameter.name, _plain(parameter.value))
+        if row.change is Change.UNCONFIGURED and self.locked:
+            raise InputError(
+                f'parameter {parameter.name} changes only while the node is unconfigured, '
+                'clean it up first'
+            )
+
+    def _take(self, changed: list[Parameter]) -> None:
+        known = [parameter for parameter in changed if parameter.name in self._rows]
+        self.values |= {parameter.name: _plain(parameter.value) for parameter in known}
+        self._on_change({parameter.name.partition('.')[0] for parameter in known})
+
+
+def _plain(value: Any) -> Any:
+    """Return a parameter value as plain Python: rclpy hands out some lists as other sequences."""
+    return value if value is None or isinstance(value, (bool, str, float, int)) else list(value)

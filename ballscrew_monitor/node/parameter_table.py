@@ -1,0 +1,318 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Every parameter of the node, declared once: its default, what is allowed, and a sentence."""
+
+from collections.abc import Mapping
+import dataclasses
+import enum
+import math
+from typing import Any
+
+from ballscrew_monitor.core.conversions import (
+    HANDS,
+    LINEAR_SPEED_UNITS,
+    LOAD_UNITS,
+    ROTARY_SPEED_UNITS,
+    TEMPERATURE_UNITS,
+    TORQUE_UNITS,
+)
+from ballscrew_monitor.core.errors import InputError
+from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
+
+Value = str | float | bool | list[str]
+_TYPE_NAMES = {
+    bool: 'true or false',
+    float: 'a number with a decimal point',
+    str: 'a text',
+    list: 'a list of texts',
+}
+
+
+class Change(enum.Enum):
+    """When a parameter may change."""
+
+    LIVE = 'any time'
+    UNCONFIGURED = 'while unconfigured'
+    NEVER = 'at start only'
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Row:
+    """One parameter: numbers lie from `low` to `high`, texts are one of `choices` if there are."""
+
+    name: str
+    default: Value
+    text: str
+    unit: str = ''
+    low: float = -math.inf
+    high: float = math.inf
+    choices: tuple[str, ...] = ()
+    nonzero: bool = False
+    change: Change = Change.UNCONFIGURED
+
+    @property
+    def allowed(self) -> str:
+        """Return what is allowed, in words; empty if anything of the type is."""
+        if self.choices:
+            return 'one of ' + ', '.join(self.choices)
+        if not isinstance(self.default, float):
+            return ''
+        return f'{self.low:g} to {self.high:g}' + (', not 0' if self.nonzero else '')
+
+    def check(self, name: str, value: Any) -> None:
+        """Raise InputError unless `value` is allowed for the parameter `name`."""
+        if type(value) is not type(self.default) or (
+            isinstance(value, list) and not all(isinstance(text, str) for text in value)
+        ):
+            raise InputError(
+                f'parameter {name} is {value!r}, it must be {_TYPE_NAMES[type(self.default)]}'
+            )
+        good = not self.choices or value in self.choices
+        if isinstance(value, float):
+            good = self.low <= value <= self.high and not (self.nonzero and value == 0.0)
+        if not good:
+            unit = f' {self.unit}' if self.unit else ''
+            raise InputError(
+                f'parameter {name} is {value!r}{unit}, allowed is {self.allowed}{unit}'
+            )
+
+    def descriptor(self) -> ParameterDescriptor:
+        """Return the descriptor that ROS tools show and that rclpy enforces."""
+        made = ParameterDescriptor(
+            description=f'{self.text} [{self.unit}]' if self.unit else self.text,
+            read_only=self.change is Change.NEVER,
+        )
+        if isinstance(self.default, float):
+            made.floating_point_range = [
+                FloatingPointRange(from_value=self.low, to_value=self.high)
+            ]
+        changes = f'changes {self.change.value}' if self.change is not Change.NEVER else ''
+        made.additional_constraints = '; '.join(filter(None, (self.allowed, changes)))
+        return made
+
+
+NODE_ROWS = (
+    Row(
+        name='axes',
+        default=['x'],
+        change=Change.NEVER,
+        text='Names of the axes, lower case; each has parameters and topics under its name.',
+    ),
+    Row(
+        name='autostart',
+        default=True,
+        change=Change.NEVER,
+        text='Configure and activate at start; false under a lifecycle manager.',
+    ),
+    Row(
+        name='tick_period',
+        default=0.1,
+        unit='s',
+        low=0.01,
+        high=10.0,
+        change=Change.NEVER,
+        text='Grid of stamps on which a state is published while the speed is missing.',
+    ),
+    Row(
+        name='diagnostics_period',
+        default=1.0,
+        unit='s',
+        low=0.1,
+        high=60.0,
+        change=Change.NEVER,
+        text='Period of /diagnostics; a change is published at once.',
+    ),
+)
+
+
+def _input_rows(
+    name: str,
+    *,
+    topic: str,
+    type_name: str,
+    field: str,
+    units: Mapping[str, float],
+    timeout: float,
+    what: str,
+) -> tuple[Row, ...]:
+    return (
+        Row(name=f'{name}.topic', default=topic, text=f'Topic of the {what}.'),
+        Row(name=f'{name}.type', default=type_name, text='Its message type.'),
+        Row(
+            name=f'{name}.field',
+            default=field,
+            text='Field to read, such as wrench.force.x, position[0] or velocity[joint_name].',
+        ),
+        Row(
+            name=f'{name}.unit',
+            default=next(iter(units)),
+            choices=tuple(units),
+            text='Unit of the field after scale and offset.',
+        ),
+        Row(
+            name=f'{name}.scale',
+            default=1.0,
+            low=-1e12,
+            high=1e12,
+            nonzero=True,
+            text='Factor on the field.',
+        ),
+        Row(
+            name=f'{name}.offset',
+            default=0.0,
+            low=-1e12,
+            high=1e12,
+            text='Added after the factor, in the unit above.',
+        ),
+        Row(
+            name=f'{name}.timeout',
+            default=timeout,
+            unit='s',
+            low=1e-3,
+            high=3600.0,
+            text='Age from which a sample is stale and no longer judged.',
+        ),
+    )
+
+
+AXIS_ROWS = (
+    Row(name='screw', default='nominal', text='Name of the screw that the surface is for.'),
+    Row(name='oil', default='iso_vg_68', text='Name of the oil that the surface is for.'),
+    Row(
+        name='surface',
+        default='',
+        text='Path of the surface file, or a tier of those shipped; empty: full, if shipped.',
+    ),
+    Row(
+        name='handedness',
+        default='right',
+        choices=tuple(HANDS),
+        text='Hand of the thread; counts for speeds in rotary units and for the torque.',
+    ),
+    *_input_rows(
+        'speed',
+        topic='joint_states',
+        type_name='sensor_msgs/msg/JointState',
+        field='velocity[{axis}_axis]',
+        units=ROTARY_SPEED_UNITS | LINEAR_SPEED_UNITS,
+        timeout=0.5,
+        what='speed: of the screw in a rotary unit, of the nut in a linear',
+    ),
+    *_input_rows(
+        'load',
+        topic='axial_load',
+        type_name='geometry_msgs/msg/WrenchStamped',
+        field='wrench.force.x',
+        units=LOAD_UNITS,
+        timeout=0.5,
+        what='axial force on the nut, positive along the axis',
+    ),
+    *_input_rows(
+        'temperature',
+        topic='',
+        type_name='sensor_msgs/msg/Temperature',
+        field='temperature',
+        units=TEMPERATURE_UNITS,
+        timeout=30.0,
+        what='oil temperature; empty: the default below',
+    ),
+    Row(
+        name='temperature.default',
+        default=40.0,
+        unit='degC',
+        low=-50.0,
+        high=200.0,
+        change=Change.LIVE,
+        text='Oil temperature while no topic is configured.',
+    ),
+    *_input_rows(
+        'torque',
+        topic='',
+        type_name='std_msgs/msg/Float64',
+        field='data',
+        units=TORQUE_UNITS,
+        timeout=0.5,
+        what='motor torque at the screw, only compared with the model; empty: none',
+    ),
+    Row(
+        name='limits.rcs',
+        default=0.01,
+        unit='-',
+        low=1e-6,
+        high=0.999,
+        change=Change.LIVE,
+        text='RCS from which a point is outside the optimal zone.',
+    ),
+    Row(
+        name='limits.efficiency',
+        default=0.85,
+        unit='-',
+        low=0.01,
+        high=0.999,
+        change=Change.LIVE,
+        text='Efficiency below which a point is outside the optimal zone.',
+    ),
+    Row(
+        name='limits.light_load_fraction',
+        default=0.25,
+        unit='-',
+        low=0.0,
+        high=4.0,
+        change=Change.LIVE,
+        text='Part of the preload below which efficiency is not judged.',
+    ),
+    Row(
+        name='limits.standstill_speed',
+        default=0.5,
+        unit='rad/s',
+        low=1e-3,
+        high=100.0,
+        change=Change.LIVE,
+        text='Screw speed below which nothing is judged.',
+    ),
+    Row(
+        name='limits.raise_delay',
+        default=0.5,
+        unit='s',
+        low=0.0,
+        high=3600.0,
+        change=Change.LIVE,
+        text='Time outside the zone after which the warning is raised.',
+    ),
+    Row(
+        name='limits.clear_delay',
+        default=1.0,
+        unit='s',
+        low=0.0,
+        high=3600.0,
+        change=Change.LIVE,
+        text='Time inside the zone after which the warning is cleared.',
+    ),
+    Row(
+        name='limits.hysteresis',
+        default=0.1,
+        unit='-',
+        low=0.0,
+        high=0.9,
+        change=Change.LIVE,
+        text='Part by which RCS and loss must be below their limits to clear the warning.',
+    ),
+    Row(
+        name='max_future',
+        default=0.1,
+        unit='s',
+        low=0.0,
+        high=3600.0,
+        change=Change.LIVE,
+        text='A stamp further ahead of the clock is refused.',
+    ),
+    Row(
+        name='publish_period',
+        default=0.0,
+        unit='s',
+        low=0.0,
+        high=3600.0,
+        change=Change.LIVE,
+        text='Period of the state topic; 0: a state for every judged speed sample.',
+    ),
+)

@@ -1,0 +1,180 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+What is made from the table of parameters: checks, files, and the table for the documentation.
+
+The rows of `AXIS_ROWS` hold for every axis, under its name; `{axis}` in a default is that name.
+
+"""
+
+from collections.abc import Mapping
+import pathlib
+import re
+from typing import Any
+
+from ballscrew_monitor.core.errors import InputError
+from ballscrew_monitor.node.parameter_table import AXIS_ROWS, NODE_ROWS, Row
+
+NODE_NAME = 'ballscrew_monitor'
+# Parameters, or first parts of their names, that any node may be given; they are not of the table.
+ROS_NAMES = frozenset({'qos_overrides', 'start_type_description_service', 'use_sim_time'})
+_AXIS_NAME = re.compile(r'[a-z][a-z0-9_]*')
+
+
+def check_axes(axes: list[str]) -> None:
+    """Raise InputError unless `axes` are usable and distinct names."""
+    if not axes:
+        raise InputError("parameter axes is empty, it must name at least one axis, such as ['x']")
+    for axis in axes:
+        if not _AXIS_NAME.fullmatch(axis):
+            raise InputError(
+                f'parameter axes holds {axis!r}, a name must be lower case letters, '
+                'digits and underscores, beginning with a letter'
+            )
+    if len(set(axes)) != len(axes):
+        raise InputError(f'parameter axes names an axis twice: {", ".join(axes)}')
+
+
+def table(axes: list[str]) -> dict[str, Row]:
+    """Return the row of every parameter of a node with `axes`, by full name, in order."""
+    check_axes(axes)
+    rows = {row.name: row for row in NODE_ROWS}
+    for axis in axes:
+        for row in AXIS_ROWS:
+            rows[f'{axis}.{row.name}'] = row
+    return rows
+
+
+def default_of(name: str, row: Row) -> Any:
+    """Return the default of the parameter `name`."""
+    if isinstance(row.default, str):
+        return row.default.replace('{axis}', name.partition('.')[0])
+    return row.default
+
+
+def defaults(axes: list[str]) -> dict[str, Any]:
+    """Return every parameter of a node with `axes` and its default."""
+    return {name: default_of(name, row) for name, row in table(axes).items()} | {'axes': axes}
+
+
+def is_of_ros(name: str) -> bool:
+    """Tell whether a parameter is one of any ROS node, and not of this one."""
+    return name.partition('.')[0] in ROS_NAMES
+
+
+def check(rows: Mapping[str, Row], values: Mapping[str, Any]) -> None:
+    """Raise InputError for the first parameter that is unknown or has a bad value."""
+    for name, value in values.items():
+        if name not in rows:
+            raise InputError(f'parameter {name} is unknown')
+        rows[name].check(name, value)
+
+
+def read_file(path: str | pathlib.Path, node: str = NODE_NAME) -> dict[str, Any]:
+    """
+    Return every parameter of a node started with the ROS parameter file at `path`.
+
+    The node is in the root namespace. Raises InputError when the file cannot be read or holds a
+    parameter that is unknown or bad.
+
+    """
+    try:
+        given = _given(_sections(path), node)
+        axes = given.get('axes', NODE_ROWS[0].default)
+        NODE_ROWS[0].check('axes', axes)
+        check(table(axes), given)
+    except InputError as error:
+        raise InputError(f'{path}: {error}') from None
+    return defaults(axes) | given
+
+
+def _given(sections: Mapping[str, Any], node: str) -> dict[str, Any]:
+    given: dict[str, Any] = {}
+    for key, section in sections.items():
+        if key.lstrip('/') in ('**', node, f'**/{node}'):
+            values = section.get('ros__parameters')
+            if not isinstance(values, dict):
+                raise InputError(
+                    f'{key} holds no parameters, they must stand below ros__parameters'
+                )
+            given |= _flatten(values)
+    return {name: value for name, value in given.items() if not is_of_ros(name)}
+
+
+def _sections(path: str | pathlib.Path) -> dict[str, Any]:
+    import yaml  # the node itself is handed its parameters by ROS
+
+    try:
+        sections = yaml.safe_load(pathlib.Path(path).read_text())
+    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
+        reason = ' '.join(str(error).split())
+        raise InputError(f'the parameter file cannot be read: {reason}') from None
+    if not isinstance(sections, dict) or not all(
+        isinstance(key, str) and isinstance(section, dict) for key, section in sections.items()
+    ):
+        raise InputError('no ROS parameter file, it must be node names with ros__parameters below')
+    return sections
+
+
+def _flatten(section: Mapping[str, Any], prefix: str = '') -> dict[str, Any]:
+    flat: dict[str, Any] = {}
+    for key, value in section.items():
+        if isinstance(value, dict):
+            flat |= _flatten(value, f'{prefix}{key}.')
+        else:
+            flat[f'{prefix}{key}'] = value
+    return flat
+
+
+def example_yaml() -> str:
+    """Return the example parameter file: every parameter of one axis, with its comment."""
+    lines = [
+        '# Every parameter of ballscrew_monitor with its default, made from the table in',
+        '# ballscrew_monitor/node/parameters.py. Numbers need a decimal point.',
+        f'/**/{NODE_NAME}:',
+        '  ros__parameters:',
+    ]
+    for row in NODE_ROWS:
+        lines += _example_lines(row, row.name, row.name, 4)
+    lines += ['    # Axis x; each axis of `axes` has such a group.', '    x:']
+    group = ''
+    for row in AXIS_ROWS:
+        head, _, leaf = row.name.rpartition('.')
+        if head != group and head:
+            lines.append(f'      {head}:')
+        group = head
+        lines += _example_lines(row, f'x.{row.name}', leaf, 8 if head else 6)
+    return '\n'.join(lines) + '\n'
+
+
+def _example_lines(row: Row, name: str, leaf: str, indent: int) -> list[str]:
+    space = ' ' * indent
+    facts = [row.text.rstrip('.') + '.']
+    if row.unit:
+        facts.append(f'[{row.unit}]')
+    if row.allowed:
+        facts.append(f'Allowed: {row.allowed}.')
+    facts.append(f'Changes {row.change.value}.')
+    return [f'{space}# {" ".join(facts)}', f'{space}{leaf}: {_yaml(default_of(name, row))}']
+
+
+def _yaml(value: Any) -> str:
+    if isinstance(value, bool):
+        return 'true' if value else 'false'
+    return repr(value)
+
+
+def markdown_table() -> str:
+    """Return the table of all parameters for the README."""
+    lines = [
+        '| parameter | default | allowed | unit | changes | meaning |',
+        '|---|---|---|---|---|---|',
+    ]
+    for prefix, rows in (('', NODE_ROWS), ('<axis>.', AXIS_ROWS)):
+        for row in rows:
+            default = str(row.default).replace('{axis}', '<axis>')
+            lines.append(
+                f'| `{prefix}{row.name}` | `{default}` | {row.allowed} | {row.unit} '
+                f'| {row.change.value} | {row.text} |'
+            )
+    return '\n'.join(lines) + '\n'

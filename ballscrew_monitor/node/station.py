@@ -1,0 +1,149 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What the node keeps of one axis: the axis, its publishers, and what it last said."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from ballscrew_monitor.core.estimate import estimate
+from ballscrew_monitor.core.inputs import Source
+from ballscrew_monitor.core.judgement import Level
+from ballscrew_monitor.core.state import State
+from ballscrew_monitor.node import diagnostics
+from ballscrew_monitor.node.axis import Axis
+from ballscrew_monitor.node.messages import (
+    fill_result,
+    out_of_zone_message,
+    read_point,
+    StateWriter,
+    surface_info_message,
+    TIERS,
+)
+from ballscrew_msgs.msg import BallScrewState, OperatingPoint, OutOfZone, PointResult, SurfaceInfo
+from ballscrew_msgs.srv import EvaluateOperatingPoint
+from diagnostic_msgs.msg import DiagnosticStatus
+from rclpy.lifecycle import LifecycleNode
+from rclpy.qos import QoSDurabilityPolicy, QoSProfile, QoSReliabilityPolicy
+from surrogate.surface import Surface
+
+STATE_QOS = QoSProfile(depth=10, reliability=QoSReliabilityPolicy.RELIABLE)
+LATCHED_QOS = QoSProfile(
+    depth=1,
+    reliability=QoSReliabilityPolicy.RELIABLE,
+    durability=QoSDurabilityPolicy.TRANSIENT_LOCAL,
+)
+
+
+class Station:
+    """One axis and what the node needs to speak for it."""
+
+    def __init__(self, node: LifecycleNode, axis: Axis) -> None:
+        """Make the publishers, which stay silent until the node is active."""
+        self.axis = axis
+        self.subscriptions: dict[Source, Any] = {}
+        self._node = node
+        self._writer = StateWriter(axis.name, TIERS[axis.surface.tier])
+        self._last: State | None = None
+        self._said: tuple[diagnostics.Summary, ...] = ()
+        make = node.create_lifecycle_publisher
+        self._state = make(BallScrewState, f'~/{axis.name}/state', STATE_QOS)
+        self._event = make(OutOfZone, f'~/{axis.name}/out_of_zone', LATCHED_QOS)
+        self._info = make(SurfaceInfo, f'~/{axis.name}/surface_info', LATCHED_QOS)
+
+    def close(self) -> None:
+        """Destroy the publishers."""
+        for publisher in (self._state, self._event, self._info):
+            self._node.destroy_lifecycle_publisher(publisher)
+
+    def publish_state(self, state: State) -> None:
+        """Publish a state, and the event that it begins or ends."""
+        self._last = state
+        self._state.publish(self._writer.write(state))
+        if state.event is not None:
+            self.publish_event()
+            self._log_event()
+
+    def publish_event(self) -> None:
+        """Publish the event that is active, or the last one."""
+        self._event.publish(out_of_zone_message(self.axis.name, self.axis.monitor.event))
+
+    def publish_info(self) -> None:
+        """Publish what the surface and the limits are."""
+        settings = self.axis.monitor.settings
+        message = surface_info_message(
+            self.axis.name,
+            self.axis.surface,
+            settings.limits,
+            stamp=self._node.get_clock().now().nanoseconds,
+            default_temperature=settings.default_temperature,
+        )
+        self._info.publish(message)
+
+    def use_surface(self, surface: Surface, values: dict[str, Any]) -> None:
+        """Judge with another surface from now on, and say so."""
+        self.axis.use_surface(surface, values)
+        self._writer.tier = TIERS[surface.tier]
+        self.publish_info()
+
+    def evaluate(self, points: Sequence[OperatingPoint], response: Any) -> None:
+        """Fill the response with what the surface says of the points, if they are not too many."""
+        most = EvaluateOperatingPoint.Request.MAX_POINTS
+        if len(points) > most:
+            response.message = f'{len(points)} points are too many, allowed are {most}'
+            return
+        response.success = True
+        response.results = [self._evaluate(point) for point in points]
+
+    def _evaluate(self, point: OperatingPoint) -> PointResult:
+        settings, result = self.axis.monitor.settings, PointResult()
+        asked = read_point(point, default_temperature=settings.default_temperature)
+        answer = estimate(asked, self.axis.surface, rcs_limit=settings.limits.rcs)
+        fill_result(result, answer, TIERS[self.axis.surface.tier])
+        return result
+
+    def has_news(self) -> bool:
+        """Tell whether the diagnostics of the last state differ from what was said."""
+        return self._last is not None and self._summaries(self._last) != self._said
+
+    def say_news(self) -> None:
+        """Take the last state for said, and log a change of the inputs."""
+        if self._last is None:
+            return
+        before, self._said = self._said, self._summaries(self._last)
+        level, text = self._said[1]
+        if before and before[1] == self._said[1]:
+            return
+        # Two calls: rclpy ties one severity to one place in the code.
+        if level == diagnostics.OK:
+            self._node.get_logger().info(f'axis {self.axis.name}: {text}')
+        else:
+            self._node.get_logger().warning(f'axis {self.axis.name}: {text}')
+
+    def statuses(self, *, active: bool, stood: int) -> list[DiagnosticStatus]:
+        """Return the diagnostics of the axis after the clock has stood for `stood` [ns]."""
+        matched = {
+            source: subscription.get_publisher_count()
+            for source, subscription in self.subscriptions.items()
+        }
+        return diagnostics.statuses(
+            self._node.get_name(),
+            self.axis.name,
+            self._last,
+            self.axis.monitor.event,
+            self.axis.surface,
+            publishers=matched if active else None,
+            clock_stands=stood > self.axis.monitor.settings.timeouts[Source.SPEED],
+        )
+
+    def _summaries(self, state: State) -> tuple[diagnostics.Summary, ...]:
+        return diagnostics.summaries(state, self.axis.monitor.event)
+
+    def _log_event(self) -> None:
+        event, name = self.axis.monitor.event, self.axis.name
+        if event.active:
+            advice = f'; {event.advice.text}' if event.advice.text else ''
+            self._node.get_logger().warning(
+                f'axis {name}: event {event.number}: {event.cause.text}{advice}'
+            )
+        elif self.axis.monitor.level is Level.OK:
+            self._node.get_logger().info(f'axis {name}: event {event.number} is over')

@@ -1,0 +1,190 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Writes a bag that rosbag2 accepts: one MCAP file and the `metadata.yaml` beside it.
+
+The file grows as `<name>.mcap.active`, in small chunks that are flushed, so that a crash costs
+little; it gets its name, and the metadata, when it is closed. Serialised messages go in as they
+are.
+
+"""
+
+from collections import Counter
+import dataclasses
+import enum
+import os
+from pathlib import Path
+from typing import Any, BinaryIO
+
+from ballscrew_monitor.core.errors import InputError
+from ballscrew_monitor.recordings.message_definitions import message_definition, type_hash
+from mcap.writer import CompressionType, Writer
+import yaml
+
+ACTIVE = '.active'
+CHUNK_SIZE = 64 * 1024  # [bytes]
+METADATA_VERSION = 9
+FOREVER = {'sec': 9223372036, 'nsec': 854775807}
+
+
+class Offer(enum.Enum):
+    """Quality of service that the publisher of a topic offered."""
+
+    SENSOR = ('best_effort', 'volatile', 10)
+    RELIABLE = ('reliable', 'volatile', 10)
+    LATCHED = ('reliable', 'transient_local', 1)
+
+    @property
+    def profile(self) -> dict[str, Any]:
+        """Return the profile in the words of rosbag2, metadata version 9."""
+        reliability, durability, depth = self.value
+        return {
+            'history': 'keep_last',
+            'depth': depth,
+            'reliability': reliability,
+            'durability': durability,
+            'deadline': dict(FOREVER),
+            'lifespan': dict(FOREVER),
+            'liveliness': 'automatic',
+            'liveliness_lease_duration': dict(FOREVER),
+            'avoid_ros_namespace_conventions': False,
+        }
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Topic:
+    """One recorded topic."""
+
+    name: str
+    type_name: str
+    offer: Offer
+
+
+class BagWriter:
+    """One growing bag; use it as a context manager or call `close`."""
+
+    def __init__(self, directory: Path, name: str, *, compress: bool = True) -> None:
+        """Begin `directory/name.mcap.active`; raises InputError when that is impossible."""
+        self.path = directory / f'{name}.mcap'
+        self._topics: dict[str, Topic] = {}
+        self._channels: dict[str, int] = {}
+        self._counts: Counter[str] = Counter()
+        self._first = self._last = 0
+        self._chunk = 0
+        self._file = self._open(directory)
+        self._writer = Writer(
+            self._file,
+            chunk_size=CHUNK_SIZE,
+            compression=CompressionType.ZSTD if compress else CompressionType.NONE,
+        )
+        self._writer.start(profile='ros2', library='ballscrew_monitor')
+
+    def __enter__(self) -> 'BagWriter':
+        """Return the writer itself."""
+        return self
+
+    def __exit__(self, *unused: object) -> None:
+        """Close the bag; what was written before an error is kept."""
+        self.close()
+
+    def add_topic(self, topic: Topic) -> None:
+        """Announce a topic; raises InputError when its type is not installed."""
+        schema = self._writer.register_schema(
+            name=topic.type_name,
+            encoding='ros2msg',
+            data=message_definition(topic.type_name).encode(),
+        )
+        profiles = yaml.safe_dump([topic.offer.profile], sort_keys=False)
+        self._channels[topic.name] = self._writer.register_channel(
+            topic=topic.name,
+            message_encoding='cdr',
+            schema_id=schema,
+            metadata={
+                'offered_qos_profiles': profiles,
+                'topic_type_hash': type_hash(topic.type_name),
+            },
+        )
+        self._topics[topic.name] = topic
+
+    def write(self, topic: str, data: bytes, *, log_time: int, publish_time: int) -> None:
+        """Append a serialised message of an announced topic; times [ns]."""
+        self._writer.add_message(
+            self._channels[topic],
+            log_time=log_time,
+            data=data,
+            publish_time=publish_time,
+            sequence=self._counts[topic],
+        )
+        if not self._counts:
+            self._first = self._last = log_time
+        self._first, self._last = min(self._first, log_time), max(self._last, log_time)
+        self._counts[topic] += 1
+        self._chunk += len(data)
+        if self._chunk >= CHUNK_SIZE:
+            self._file.flush()
+            self._chunk = 0
+
+    def count(self, topic: str) -> int:
+        """Return the number of messages written of `topic`."""
+        return self._counts[topic]
+
+    @property
+    def total(self) -> int:
+        """Return the number of messages written."""
+        return sum(self._counts.values())
+
+    def close(self) -> None:
+        """Finish the file, give it its name, write the metadata; a second call does nothing."""
+        if self._file.closed:
+            return
+        self._writer.finish()
+        self._file.close()
+        os.replace(f'{self.path}{ACTIVE}', self.path)
+        text = yaml.safe_dump({'rosbag2_bagfile_information': self._metadata()}, sort_keys=False)
+        partial = self.path.with_name('metadata.yaml.partial')
+        partial.write_text(text)
+        os.replace(partial, self.path.with_name('metadata.yaml'))
+
+    def _open(self, directory: Path) -> BinaryIO:
+        try:
+            directory.mkdir(parents=True, exist_ok=True)
+            # A bag is one MCAP: an older one of this name must not stay beside its successor.
+            for stale in (self.path, directory / 'metadata.yaml'):
+                stale.unlink(missing_ok=True)
+            return open(f'{self.path}{ACTIVE}', 'wb')
+        except OSError as error:
+            raise InputError(
+                f'output directory {directory} cannot be written: {error.strerror}'
+            ) from None
+
+    def _metadata(self) -> dict[str, Any]:
+        span = {
+            'duration': {'nanoseconds': self._last - self._first},
+            'starting_time': {'nanoseconds_since_epoch': self._first},
+        }
+        topics = [
+            {
+                'topic_metadata': {
+                    'name': topic.name,
+                    'type': topic.type_name,
+                    'serialization_format': 'cdr',
+                    'offered_qos_profiles': [topic.offer.profile],
+                    'type_description_hash': type_hash(topic.type_name),
+                },
+                'message_count': self._counts[topic.name],
+            }
+            for topic in self._topics.values()
+        ]
+        return {
+            'version': METADATA_VERSION,
+            'storage_identifier': 'mcap',
+            **span,
+            'message_count': self.total,
+            'topics_with_message_count': topics,
+            'compression_format': '',
+            'compression_mode': '',
+            'relative_file_paths': [self.path.name],
+            'files': [{'path': self.path.name, **span, 'message_count': self.total}],
+            'custom_data': None,
+            'ros_distro': 'jazzy',
+        }

@@ -1,0 +1,239 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Torque over speed out of a bag: steady stretches, binned by speed.
+
+The recording is cut into windows. A window is steady when the speed keeps its sign and drifts
+little, and when the window before it was steady at the same speed, so that the torque has settled.
+Steady windows of like speed make a point: their mean, and its standard error from the scatter of
+window means, because samples within a window share the ripple of one revolution.
+
+"""
+
+from collections.abc import Iterator, Mapping
+import dataclasses
+import itertools
+import math
+
+from ballscrew_monitor.core.conversions import (
+    Scaling,
+    seconds,
+    speed_scaling,
+    temperature_scaling,
+    torque_scaling,
+)
+from ballscrew_monitor.core.errors import InputError
+from ballscrew_monitor.core.inputs import Input, make_input, Sample, Source
+from ballscrew_monitor.recordings.bag import Bag
+from ballscrew_monitor.recordings.replay import absolute
+import numpy as np
+from numpy.typing import NDArray
+from rclpy.serialization import deserialize_message
+
+Array = NDArray[np.float64]
+
+WINDOW = 0.5  # [s]
+FEWEST_SAMPLES = 5  # of speed and of torque in a window
+STEADY = 0.01  # largest drift within a window and step to the next, over the speed
+SLOWEST = 0.1  # least speed of a steady window [rad/s]
+BIN = 0.05  # width of a bin over its least speed
+FEWEST_WINDOWS = 3  # in a bin
+NO_FUTURE_LIMIT = 1 << 62  # [ns]: in a recording a stamp may differ from the log time
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Channel:
+    """A number in a bag: topic, path of the field, line from it to SI units."""
+
+    topic: str
+    field: str
+    scaling: Scaling
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Window:
+    """Means of a steady window: speed [rad/s], torque [N m], temperature [K] or NaN."""
+
+    speed: float
+    torque: float
+    temperature: float
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Series:
+    """Samples by time [s]."""
+
+    time: Array
+    value: Array
+
+    def between(self, begin: float, end: float) -> 'Series':
+        """Return the samples from `begin` up to `end` [s]."""
+        first, last = np.searchsorted(self.time, [begin, end])
+        return Series(time=self.time[first:last], value=self.value[first:last])
+
+
+def speed_channel(topic: str, field: str, unit: str, lead: float) -> Channel:
+    """Return the speed in `unit`; a linear one is turned by the lead [m]."""
+    scaling = speed_scaling(unit, scale=1.0, offset=0.0, lead=lead, handedness='right')
+    return Channel(topic=absolute(topic), field=field, scaling=scaling)
+
+
+def torque_channel(topic: str, field: str, scale: float) -> Channel:
+    """Return the torque, `scale` times the field [N m]."""
+    scaling = torque_scaling('N m', scale=scale, offset=0.0, handedness='right')
+    return Channel(topic=absolute(topic), field=field, scaling=scaling)
+
+
+def temperature_channel(topic: str, field: str) -> Channel:
+    """Return the temperature in [degC] as [K]."""
+    scaling = temperature_scaling('degC', scale=1.0, offset=0.0)
+    return Channel(topic=absolute(topic), field=field, scaling=scaling)
+
+
+def read_no_load(
+    bag: Bag, channels: Mapping[Source, Channel]
+) -> tuple[dict[str, Array], tuple[str, ...]]:
+    """
+    Return speed, torque and its standard error of every bin, in SI units, and what was left out.
+
+    The columns are those of a run: speed [rad/s], torque and torque_std [N m], temperature [K]
+    when it is recorded. Raises InputError for a bag without what is asked for or without a bin.
+
+    """
+    series, refused = _read(bag, channels)
+    windows = list(_windows(series))
+    steady = list(_steady(windows))
+    bins = [group for group in _bins(steady) if len(group) >= FEWEST_WINDOWS]
+    if not bins:
+        raise InputError(
+            f'bag {bag.path}: {len(steady)} of {len(windows)} windows of {WINDOW:g} s are steady, '
+            f'allowed is {FEWEST_WINDOWS} or more at one speed (drift up to {100 * STEADY:g} %)'
+        )
+    used = sum(len(group) for group in bins)
+    notes = [
+        f'{used} of {len(windows)} windows of {WINDOW:g} s are steady within {100 * STEADY:g} % '
+        f'and make {len(bins)} points'
+    ]
+    if refused:
+        notes.append(f'{refused} messages held no finite number')
+    return _columns(bins), tuple(notes)
+
+
+def _read(bag: Bag, channels: Mapping[Source, Channel]) -> tuple[dict[Source, Series], int]:
+    """Return the samples of every source in the order of their stamps, and how many were bad."""
+    inputs = {source: _input(bag, source, channel) for source, channel in channels.items()}
+    bag.require({one.topic: one.type_name for one in inputs.values()})
+    samples: dict[Source, list[tuple[int, float]]] = {source: [] for source in inputs}
+    refused = 0
+    for message in bag.messages({one.topic for one in inputs.values()}):
+        readers = [one for one in inputs.values() if one.topic == message.topic]
+        decoded = deserialize_message(message.data, readers[0].message_type)
+        for one in readers:
+            read = one.read(decoded, now=message.log_time, max_future=NO_FUTURE_LIMIT)
+            if isinstance(read, Sample):
+                samples[one.source].append((read.stamp - bag.start_time, read.value))
+            else:
+                refused += one.read_field(decoded) is not None
+    for source, found in samples.items():
+        if not found:
+            raise InputError(
+                f'bag {bag.path}: no message of {inputs[source].topic} holds '
+                f'{channels[source].field}, at least one must'
+            )
+    return {source: _series(found) for source, found in samples.items()}, refused
+
+
+def _input(bag: Bag, source: Source, channel: Channel) -> Input:
+    if channel.topic not in bag.topics:
+        raise InputError(
+            f'bag {bag.path}: topic {channel.topic} is missing, the bag holds '
+            f'{", ".join(sorted(bag.topics))}'
+        )
+    return make_input(
+        source,
+        topic=channel.topic,
+        type_name=bag.topics[channel.topic].type_name,
+        field=channel.field,
+        scaling=channel.scaling,
+    )
+
+
+def _series(samples: list[tuple[int, float]]) -> Series:
+    ordered = sorted(samples)
+    return Series(
+        time=np.array([seconds(stamp) for stamp, _ in ordered]),
+        value=np.array([value for _, value in ordered]),
+    )
+
+
+def _windows(series: Mapping[Source, Series]) -> Iterator[Window | None]:
+    """Yield the windows of the recording in turn, None for one that is not steady in itself."""
+    speed, torque = series[Source.SPEED], series[Source.TORQUE]
+    begin = max(speed.time[0], torque.time[0])
+    number = int((min(speed.time[-1], torque.time[-1]) - begin) / WINDOW)
+    for place in range(number):
+        span = (begin + place * WINDOW, begin + (place + 1) * WINDOW)
+        turned, pulled = speed.between(*span), torque.between(*span)
+        if min(len(turned.time), len(pulled.time)) < FEWEST_SAMPLES or not _keeps(turned):
+            yield None
+            continue
+        yield Window(
+            speed=float(turned.value.mean()),
+            torque=float(pulled.value.mean()),
+            temperature=_held(series.get(Source.TEMPERATURE), span[1]),
+        )
+
+
+def _keeps(turned: Series) -> bool:
+    """Tell whether the speed keeps its sign and does not drift."""
+    mean = float(turned.value.mean())
+    time = turned.time - turned.time.mean()
+    drift = float(time @ turned.value) / float(time @ time) * WINDOW
+    signs = np.sign(turned.value)
+    return bool(
+        abs(mean) >= SLOWEST and (signs == signs[0]).all() and abs(drift) <= STEADY * abs(mean)
+    )
+
+
+def _held(series: Series | None, time: float) -> float:
+    """Return the last value before a time [s], the first where there is none yet."""
+    if series is None:
+        return math.nan
+    return float(series.value[max(0, int(np.searchsorted(series.time, time)) - 1)])
+
+
+def _steady(windows: list[Window | None]) -> Iterator[Window]:
+    """Yield the windows that follow one of the same speed."""
+    for before, window in itertools.pairwise(windows):
+        if before and window and abs(window.speed / before.speed - 1) <= STEADY:
+            yield window
+
+
+def _bins(windows: list[Window]) -> Iterator[list[Window]]:
+    """Yield groups of windows of one direction whose speeds differ by less than the width."""
+    group: list[Window] = []
+    for window in sorted(windows, key=lambda one: (one.speed < 0, abs(one.speed))):
+        if group and not 0 < window.speed / group[0].speed <= 1 + BIN:
+            yield group
+            group = []
+        group.append(window)
+    if group:
+        yield group
+
+
+def _columns(bins: list[list[Window]]) -> dict[str, Array]:
+    """Return the means of the bins; their standard errors share one scatter of windows."""
+    count = np.array([len(group) for group in bins])
+    squares = sum(float(np.var([one.torque for one in group])) * len(group) for group in bins)
+    scatter = math.sqrt(squares / float((count - 1).sum()))
+
+    def mean(name: str) -> Array:
+        return np.array([np.mean([getattr(one, name) for one in group]) for group in bins])
+
+    columns = {'speed': mean('speed'), 'torque': mean('torque')}
+    if scatter > 0:
+        columns['torque_std'] = scatter / np.sqrt(count)
+    temperature = mean('temperature')
+    if np.isfinite(temperature).all():
+        columns['temperature'] = temperature
+    return columns

@@ -1,0 +1,80 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Records topics over DDS to a bag: serialised messages as they arrive.
+
+The log time is that of a clock which is handed in, the one of the player: so the inputs and what
+the monitor made of them lie on one time line, however fast it is played.
+
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+import functools
+from typing import Any
+
+from ballscrew_monitor.core.inputs import message_class
+from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
+from rclpy.node import Node
+from rclpy.qos import QoSDurabilityPolicy, QoSHistoryPolicy, QoSProfile, QoSReliabilityPolicy
+
+DEPTH = 2000  # messages that may wait for the recorder
+
+
+def _qos(offer: Offer) -> QoSProfile:
+    """Return the subscription that gets all that is offered."""
+    reliability, durability, _ = offer.value
+    return QoSProfile(
+        history=QoSHistoryPolicy.KEEP_LAST,
+        depth=DEPTH,
+        reliability=getattr(QoSReliabilityPolicy, reliability.upper()),
+        durability=getattr(QoSDurabilityPolicy, durability.upper()),
+    )
+
+
+class Recorder:
+    """Subscribes on a node, which somebody else spins, and writes what arrives."""
+
+    def __init__(
+        self,
+        node: Node,
+        writer: BagWriter,
+        topics: Sequence[Topic],
+        clock: Callable[[], int],
+        listeners: Mapping[str, Callable[[bytes], None]] | None = None,
+    ) -> None:
+        """
+        Subscribe to `topics`.
+
+        `clock` tells the log time [ns]; the listener of a topic gets each message of it after it
+        has been written.
+
+        """
+        self._node, self._writer, self._clock = node, writer, clock
+        listeners = listeners or {}
+        self._subscriptions = [
+            self._subscribe(topic, listeners.get(topic.name)) for topic in topics
+        ]
+
+    def close(self) -> None:
+        """Stop to record; the bag is left to its owner."""
+        for subscription in self._subscriptions:
+            self._node.destroy_subscription(subscription)
+        self._subscriptions = []
+
+    def _subscribe(self, topic: Topic, listener: Callable[[bytes], None] | None) -> Any:
+        self._writer.add_topic(topic)
+        return self._node.create_subscription(
+            message_class(topic.type_name),
+            topic.name,
+            functools.partial(self._on_message, topic.name, listener),
+            _qos(topic.offer),
+            raw=True,
+        )
+
+    def _on_message(
+        self, topic: str, listener: Callable[[bytes], None] | None, data: bytes
+    ) -> None:
+        now = self._clock()
+        self._writer.write(topic, data, log_time=now, publish_time=now)
+        if listener is not None:
+            listener(data)

@@ -1,0 +1,164 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Replays a bag through the same pure pipeline as the node, without DDS, faster than real time.
+
+Samples are taken in the order of their stamps, equal stamps in the fixed order of the sources.
+Log times stand for the clock of the node: ticks fall on the same grid of it as online, whatever
+the stamps say, and are taken after the samples of equal stamp.
+
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+import heapq
+import itertools
+from typing import Any, NamedTuple
+
+from ballscrew_monitor.core.conversions import nanoseconds
+from ballscrew_monitor.core.errors import InputError
+from ballscrew_monitor.core.inputs import Input, Refusal, Sample, Source
+from ballscrew_monitor.core.monitor import State
+from ballscrew_monitor.node.axis import Axis, build_axis
+from ballscrew_monitor.node.messages import out_of_zone_message, StateWriter, TIERS
+from ballscrew_monitor.recordings.bag import Bag, Message
+from ballscrew_msgs.msg import BallScrewState, OutOfZone
+from rclpy.serialization import deserialize_message
+
+REORDER = nanoseconds(1.0)  # [ns] log time over which samples are put into the order of stamps
+LONGEST_HOLE = nanoseconds(60.0)  # [ns] between two messages that is filled with ticks
+AFTER_SAMPLES = max(Source) + 1  # place of a tick among the sources
+
+
+class Judged(NamedTuple):
+    """A state and, if an event began or ended with it, that event; the state is reused."""
+
+    state: BallScrewState
+    event: OutOfZone | None
+
+
+def input_topics(values: Mapping[str, Any]) -> dict[str, str]:
+    """Return topic and type of every input configured in the parameters `values`."""
+    found = {}
+    for axis in values['axes']:
+        for name in ('speed', 'load', 'temperature', 'torque'):
+            topic = values[f'{axis}.{name}.topic']
+            if topic:
+                found[absolute(topic)] = values[f'{axis}.{name}.type']
+    return found
+
+
+def speed_messages(bag: Bag, axes: Sequence[Axis]) -> dict[str, int]:
+    """
+    Return for each axis how many messages of `bag` speak of its speed.
+
+    Reads and so verifies the whole bag; raises InputError when it is damaged, or when it says
+    nothing of an axis.
+
+    """
+    speed = {axis.name: axis.inputs[-1] for axis in axes}
+    counts = dict.fromkeys(speed, 0)
+    for message in bag.messages():
+        for name, source in speed.items():
+            if message.topic == absolute(source.topic):
+                value = source.read_field(_decode(message, source.message_type))
+                counts[name] += value is not None
+    for name, count in counts.items():
+        if not count:
+            raise InputError(
+                f'bag {bag.path}: no message of {absolute(speed[name].topic)} holds '
+                f'the speed of axis {name}, at least one must'
+            )
+    return counts
+
+
+def absolute(topic: str) -> str:
+    """Return the full name of a topic that a node in the root namespace names."""
+    return topic if topic.startswith('/') else f'/{topic}'
+
+
+def replay(bag: Bag, values: Mapping[str, Any]) -> Iterator[Judged]:
+    """
+    Yield every state that the node would publish for `bag` with the parameters `values`.
+
+    Raises InputError for bad parameters and for a bag without the topics that they name.
+
+    """
+    bag.require(input_topics(values))
+    axes = [build_axis(name, values) for name in values['axes']]
+    return itertools.chain.from_iterable(_run(bag, axes, nanoseconds(values['tick_period'])))
+
+
+class _Entry(NamedTuple):
+    """A sample, refusal or tick (None) and its place in the order; `number` settles the rest."""
+
+    stamp: int
+    source: int
+    number: int
+    log_time: int
+    axis: int
+    event: Sample | Refusal | None
+
+
+def _run(bag: Bag, axes: list[Axis], period: int) -> Iterator[list[Judged]]:
+    writers = [StateWriter(axis.name, TIERS[axis.surface.tier]) for axis in axes]
+    for entry in _ordered(_with_ticks(_read(bag, axes), period)):
+        if entry.event is None:
+            for axis, writer in zip(axes, writers, strict=True):
+                yield _judged(writer, axis.name, axis.monitor.tick(entry.stamp))
+        else:
+            axis = axes[entry.axis]
+            yield _judged(writers[entry.axis], axis.name, axis.monitor.update(entry.event))
+
+
+def _judged(writer: StateWriter, axis: str, state: State | None) -> list[Judged]:
+    if state is None:
+        return []
+    event = None if state.event is None else out_of_zone_message(axis, state.event)
+    return [Judged(state=writer.write(state), event=event)]
+
+
+def _read(bag: Bag, axes: list[Axis]) -> Iterator[_Entry]:
+    readers: dict[str, list[tuple[int, Axis, Input]]] = {}
+    for number, axis in enumerate(axes):
+        for source in axis.inputs:
+            readers.setdefault(absolute(source.topic), []).append((number, axis, source))
+    numbers = itertools.count()
+    for message in bag.messages(readers):
+        decoded = _decode(message, readers[message.topic][0][2].message_type)
+        for number, axis, source in readers[message.topic]:
+            event = source.read(decoded, now=message.log_time, max_future=axis.max_future)
+            stamp = event.stamp if isinstance(event, Sample) else message.log_time
+            yield _Entry(stamp, event.source, next(numbers), message.log_time, number, event)
+
+
+def _with_ticks(entries: Iterator[_Entry], period: int) -> Iterator[_Entry]:
+    """
+    Put a tick at every multiple of `period` [ns] of log time between the entries.
+
+    After the longest hole no further tick says anything new, so that one wrong log time does not
+    make them endless.
+
+    """
+    grid = None
+    for entry in entries:
+        now = entry.log_time
+        if grid is not None:
+            for tick in range(grid, min(now, grid + LONGEST_HOLE), period):
+                yield _Entry(tick, AFTER_SAMPLES, 0, tick, 0, None)
+        grid = max(grid or 0, -(-now // period) * period)
+        yield entry
+
+
+def _decode(message: Message, message_type: Any) -> Any:
+    return deserialize_message(message.data, message_type)
+
+
+def _ordered(entries: Iterator[_Entry]) -> Iterator[_Entry]:
+    """Yield the entries by stamp, as far as they are out of order by less than `REORDER`."""
+    waiting: list[_Entry] = []
+    for entry in entries:
+        heapq.heappush(waiting, entry)
+        while entry.log_time - waiting[0].log_time > REORDER:
+            yield heapq.heappop(waiting)
+    while waiting:
+        yield heapq.heappop(waiting)

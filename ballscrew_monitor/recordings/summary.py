@@ -1,0 +1,190 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What came out of a run or a replay: totals, events, and the words for them."""
+
+import dataclasses
+import math
+from typing import Any
+
+from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_msgs.msg import BallScrewState, Finding, OutOfZone
+
+RELATIONS = {
+    Finding.CODE_RCS_HIGH: ('RCS', '>='),
+    Finding.CODE_EFFICIENCY_LOW: ('efficiency', '<'),
+}
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class EventRecord:
+    """One stay outside the optimal zone; start [ns], duration [s], worst value and limit [-]."""
+
+    event_id: int
+    start: int
+    duration: float
+    active: bool
+    quantity: str
+    relation: str
+    worst_value: float
+    limit: float
+    advice: str
+
+    @property
+    def end(self) -> int:
+        """Return when it ended, or how far it is known [ns]."""
+        return self.start + round(self.duration * SECOND)
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Summary:
+    """
+    Totals of one axis.
+
+    Stamps of the first and last state [ns]; number of states and of judged speed samples [-];
+    times [s]; energy [J]; events in order.
+
+    """
+
+    axis: str
+    first: int
+    last: int
+    states: int
+    judged: int
+    running_time: float
+    unjudged_time: float
+    boundary_time: float
+    mixed_time: float
+    hydrodynamic_time: float
+    optimal_time: float
+    outside_time: float
+    revolutions: float
+    energy_lost: float
+    events: tuple[EventRecord, ...]
+
+    def to_json(self) -> dict[str, Any]:
+        """Return plain data for JSON; NaN is null, times of events are relative [s]."""
+        record = {
+            _with_unit(field.name): _plain(getattr(self, field.name))
+            for field in dataclasses.fields(self)
+            if field.name != 'events'
+        }
+        record['events'] = [self._event_json(event) for event in self.events]
+        return record
+
+    def _event_json(self, event: EventRecord) -> dict[str, Any]:
+        return {
+            'event_id': event.event_id,
+            'start_s': self.since_first(event.start),
+            'duration_s': event.duration,
+            'active': event.active,
+            'cause': f'{event.quantity} {event.relation} limit',
+            'worst_value': _plain(event.worst_value),
+            'limit': _plain(event.limit),
+            'advice': event.advice,
+        }
+
+    def since_first(self, stamp: int) -> float:
+        """Return a stamp [ns] as time since the first state [s]."""
+        return (stamp - self.first) / SECOND
+
+    def lines(self) -> list[str]:
+        """Return the summary in words."""
+        span = self.since_first(self.last)
+        return [
+            f'in motion   {self.running_time:.1f} s of {span:.1f} s, '
+            f'{self.revolutions:.0f} revolutions, {self.energy_lost:.0f} J lost to friction',
+            'regime      ' + self._shares('boundary', 'mixed', 'hydrodynamic'),
+            'zone        ' + self._shares('optimal', 'outside', 'unjudged'),
+            f'events      {len(self.events) or "none"}',
+            *(self._event_line(event) for event in self.events),
+        ]
+
+    def _shares(self, *names: str) -> str:
+        parts = []
+        for name in names:
+            time = getattr(self, f'{name}_time')
+            share = 100.0 * time / self.running_time if self.running_time else 0.0
+            parts.append(f'{name} {time:.1f} s ({share:.0f} %)')
+        return ', '.join(parts)
+
+    def _event_line(self, event: EventRecord) -> str:
+        end = 'still on' if event.active else f'{self.since_first(event.end):5.1f} s'
+        advice = f'; {event.advice}' if event.advice else ''
+        return (
+            f'  {event.event_id:2d}  {self.since_first(event.start):5.1f} s to {end}  '
+            f'{event.quantity} {event.relation} {event.limit:g}, '
+            f'worst {event.worst_value:.3g}{advice}'
+        )
+
+
+class Summarizer:
+    """Collects the states and events of one axis."""
+
+    def __init__(self) -> None:
+        """Begin with nothing."""
+        self._last: BallScrewState | None = None
+        self._first_stamp = 0
+        self._states = 0
+        self._events: dict[int, EventRecord] = {}
+
+    def add_state(self, state: BallScrewState) -> None:
+        """Take a state; the last one holds the totals."""
+        if not self._states:
+            self._first_stamp = stamp_of(state)
+        self._states += 1
+        self._last = state
+
+    def add_event(self, message: OutOfZone) -> None:
+        """Take the start or the end of an event."""
+        if message.event_id:
+            self._events[message.event_id] = _event_record(message)
+
+    def result(self) -> Summary | None:
+        """Return the summary, None without a state."""
+        if self._last is None:
+            return None
+        totals = self._last.totals
+        names = [
+            field.name for field in dataclasses.fields(Summary) if hasattr(totals, field.name)
+        ]
+        return Summary(
+            axis=self._last.axis,
+            first=self._first_stamp,
+            last=stamp_of(self._last),
+            states=self._states,
+            judged=self._last.judged,
+            events=tuple(self._events[key] for key in sorted(self._events)),
+            **{name: getattr(totals, name) for name in names},
+        )
+
+
+def stamp_of(message: Any) -> int:
+    """Return the stamp of a message with a header [ns]."""
+    return int(message.header.stamp.sec) * SECOND + int(message.header.stamp.nanosec)
+
+
+def _event_record(message: OutOfZone) -> EventRecord:
+    quantity, relation = RELATIONS.get(message.cause.code, ('other', 'beyond'))
+    return EventRecord(
+        event_id=message.event_id,
+        start=message.start.sec * SECOND + message.start.nanosec,
+        duration=message.duration,
+        active=message.active,
+        quantity=quantity,
+        relation=relation,
+        worst_value=message.worst_value,
+        limit=message.cause.limit,
+        advice=message.advice,
+    )
+
+
+def _with_unit(name: str) -> str:
+    if name in ('first', 'last'):
+        return f'{name}_stamp_ns'
+    return (
+        f'{name}_s' if name.endswith('_time') else {'energy_lost': 'energy_lost_J'}.get(name, name)
+    )
+
+
+def _plain(value: Any) -> Any:
+    return None if isinstance(value, float) and not math.isfinite(value) else value

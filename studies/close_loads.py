@@ -1,0 +1,106 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Scatter of RCS between neighbouring loads, with nodes across the track that move and that stay.
+
+Run `python studies/close_loads.py [--workers N] [--out DIR]`: solves draws of the nominal screw at
+40 degC and one speed near the onset, at loads one per cent apart, on the grid of surfaces with its
+nodes at the same places of the raceway, on the same with nodes that move with the contact, and on
+that of points. Prints and draws RCS, and how far a draw lies from a straight line over the load.
+Takes minutes.
+
+"""
+
+import argparse
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import replace
+import math
+import multiprocessing
+from pathlib import Path
+import sys
+
+import numpy as np
+from surrogate.builder.full.chain import chain_settings
+from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
+from surrogate.screw.contacts import GRID_WAVELENGTH, ScrewSettings
+from surrogate.screw.solve import solve_screw
+
+DRAWS = (3, 7, 11, 14)
+SPEED = 23.0
+"""Speed near the onset [rev/min]."""
+LOADS = 1380.0 * 1.01 ** np.arange(-6, 7)
+"""Opposing loads [N]."""
+
+
+def grids(draw: int) -> dict[str, ScrewSettings]:
+    """Return what is compared, by name."""
+    stay = chain_settings(draw, GRID_WAVELENGTH)
+    return {
+        'surface, nodes stay': stay,
+        'surface, nodes move': replace(stay, same_places=False),
+        'point, nodes move': ScrewSettings(draw=draw),
+    }
+
+
+def rcs_of(case: tuple[str, int]) -> list[float]:
+    """Return RCS [-] of a grid and draw at all loads, NaN where it does not converge."""
+    screw, oil = load_screw('nominal'), load_lubricant('iso_vg_68')
+    settings = grids(case[1])[case[0]]
+    points = [
+        OperatingPoint(
+            speed=SPEED * math.pi / 30, load=float(load), temperature=oil.reference_temperature
+        )
+        for load in LOADS
+    ]
+    return [solve_screw(screw, oil, point, settings=settings).rcs for point in points]
+
+
+def scatter(rcs: np.ndarray) -> float:
+    """Return the root mean square distance of the draws [draw, load] from straight lines [-]."""
+    step = LOADS - LOADS.mean()
+    lines = [np.polyval(np.polyfit(step, one, 1), step) for one in rcs]
+    return float(np.sqrt(np.mean((rcs - lines) ** 2)))
+
+
+def draw_figure(found: dict[str, np.ndarray], path: Path) -> None:
+    """Draw RCS over the load, a panel per grid."""
+    import matplotlib
+
+    matplotlib.use('Agg')
+    from matplotlib import pyplot
+
+    figure, panels = pyplot.subplots(
+        1, len(found), figsize=(9, 3.2), sharey=True, layout='constrained'
+    )
+    for axes, (name, rcs) in zip(panels, found.items(), strict=True):
+        for draw, one, style in zip(DRAWS, rcs, ('o-', 's--', '^-.', 'd:'), strict=True):
+            axes.plot(LOADS, one, style, ms=3, lw=1, label=f'draw {draw}')
+        axes.axhline(0.01, color='0.4', ls='--', lw=0.8)
+        axes.set(xlabel='opposing load [N]', title=f'{name}\nscatter {scatter(rcs):.4f}')
+        axes.title.set_fontsize(9)
+        axes.grid(alpha=0.3)
+    panels[0].set_ylabel('RCS [-], dashed: limit of the zone')
+    panels[-1].legend(fontsize=8, loc='upper right')
+    figure.savefig(path, dpi=110)
+
+
+def main() -> None:
+    """Solve, print and draw."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument('--workers', type=int, default=2)
+    parser.add_argument('--out', type=Path, default=Path('docs'))
+    args = parser.parse_args()
+    cases = [(name, draw) for name in grids(0) for draw in DRAWS]
+    with ProcessPoolExecutor(
+        args.workers, mp_context=multiprocessing.get_context('spawn')
+    ) as pool:
+        rows = np.array(list(pool.map(rcs_of, cases)))
+    found = dict(zip(grids(0), rows.reshape(-1, len(DRAWS), len(LOADS)), strict=True))
+    print('grid                   mean RCS  scatter')
+    for name, rcs in found.items():
+        print(f'{name:21}  {rcs.mean():8.4f}  {scatter(rcs):7.4f}')
+    draw_figure(found, args.out / 'close_loads.png')
+
+
+if __name__ == '__main__':
+    sys.exit(main())

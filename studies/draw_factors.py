@@ -1,0 +1,134 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+What weighting the draws by the factor of their patch gains.
+
+Run `python studies/draw_factors.py [--draws 128] [--out DIR]`: solves draws of the nominal screw
+at preload and 40 degC at four speeds, prints the mean RCS of the first sixteen, plain and
+weighted, with their standard errors, and that of all; then, over all groups of sixteen, how far
+the means of a group are from that of all and what their standard errors say. Draws RCS over the
+factor. Takes minutes.
+
+"""
+
+import argparse
+from concurrent.futures import ProcessPoolExecutor
+import math
+import multiprocessing
+from pathlib import Path
+import sys
+
+import numpy as np
+from surrogate.builder.full.chain import chain_inputs, solve_chain
+from surrogate.builder.full.draws import Draws, draws_of, POWER, weighted_mean
+from surrogate.parameters import load_lubricant, load_screw
+
+FEW = 16
+RPM = (24.0, 17.0, 11.0, 7.0)
+"""Speeds from the end of contact down [rev/min]."""
+
+
+def rcs_of(draw: int) -> list[float]:
+    """Return RCS of a draw at all speeds [-], NaN where it does not converge."""
+    screw, oil = load_screw('nominal'), load_lubricant('iso_vg_68')
+    speeds = [rpm * math.pi / 30 for rpm in RPM]
+    chain = solve_chain(chain_inputs(screw, oil, 0.0, oil.reference_temperature, draw, speeds))
+    return [row['rcs'] if row['converged'] else math.nan for row in chain['opposing']]
+
+
+def summary(rcs: np.ndarray, draws: Draws) -> tuple[float, float]:
+    """Return the mean over the first draws and its standard error [-]."""
+    known = rcs[: draws.count]
+    weights = draws.weights(known, 0.0)
+    return float(weighted_mean(known, weights)), float(draws.standard_error(known, weights))
+
+
+def group_errors(rcs: np.ndarray, every: Draws, kind: str) -> tuple[float, float]:
+    """
+    Return how far means of groups of draws are from that of all, and what they state [-].
+
+    Root mean squares; a group is part of all, which brings it nearer to their mean.
+
+    """
+    starts = range(0, every.count - FEW + 1, FEW)
+    whole, _ = summary(rcs, every)
+    groups = np.split(np.resize(rcs, FEW * len(starts)), len(starts))
+    told = [summary(one, group(every, start, kind)) for start, one in zip(starts, groups)]
+    means, errors = np.array(told).T
+    nearer = math.sqrt(1 - FEW / every.count)
+    return float(np.sqrt(np.mean((means - whole) ** 2))) / nearer, float(
+        np.sqrt(np.mean(errors**2))
+    )
+
+
+def group(every: Draws, start: int, kind: str) -> Draws:
+    """Return sixteen of all draws, weighted or plain."""
+    if kind == 'plain':
+        return Draws(FEW)
+    own = slice(start, start + FEW)
+    return Draws(FEW, 0.0, every.powers[own], every.mean)
+
+
+def draw_figure(rcs: np.ndarray, factors: np.ndarray, path: Path) -> None:
+    """Draw RCS of every draw over the factor of its patch."""
+    import matplotlib
+
+    matplotlib.use('Agg')
+    from matplotlib import pyplot
+
+    figure, axes = pyplot.subplots(figsize=(7, 4.5), layout='constrained')
+    for rpm, column, colour in zip(RPM, rcs.T, ('C0', 'C1', 'C2', 'C3'), strict=True):
+        axes.semilogy(factors[:FEW], column[:FEW], 'o', c=colour, ms=5, label=f'{rpm:g} rev/min')
+        axes.semilogy(factors[FEW:], column[FEW:], 'o', c=colour, ms=3, mfc='none', alpha=0.6)
+    axes.axhline(0.01, color='0.4', ls='--', label='limit of the optimal zone')
+    marks = (
+        (factors[:FEW].mean(), ':', f'mean of draws 0 to {FEW - 1}'),
+        (factors.mean(), '-', f'mean of {len(factors)} draws'),
+    )
+    for place, style, label in marks:
+        axes.axvline(place, color='0.6', ls=style, label=label)
+    axes.set(
+        xlabel='factor by which the patch of a draw is rescaled [-]',
+        ylabel='RCS [-]',
+        title='Nominal screw at preload, 40 degC: draws 0 to 15 full, others hollow',
+        ylim=(1e-5, 1.0),
+    )
+    axes.grid(alpha=0.3, which='both')
+    axes.legend(fontsize=8, loc='lower right')
+    figure.savefig(path, dpi=110)
+
+
+def main() -> None:
+    """Solve, print and draw."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument('--draws', type=int, default=128)
+    parser.add_argument('--workers', type=int, default=2)
+    parser.add_argument('--out', type=Path, default=Path('docs'))
+    args = parser.parse_args()
+    if args.draws < FEW:
+        parser.error(f'--draws is {args.draws}, allowed is {FEW} or more')
+    screw = load_screw('nominal')
+    spawn = multiprocessing.get_context('spawn')
+    with ProcessPoolExecutor(args.workers, mp_context=spawn) as pool:
+        rcs = np.array(list(pool.map(rcs_of, range(args.draws))))
+    few, every = draws_of(screw, FEW), draws_of(screw, args.draws)
+    powers = np.array(every.powers[: args.draws])
+    print('rev/min  correlation  plain 16         weighted 16      plain all        weighted all')
+    for rpm, column in zip(RPM, rcs.T, strict=True):
+        known = np.isfinite(column)
+        alike = float(np.corrcoef(powers[known], column[known])[0, 1])
+        cases = (Draws(FEW), few, Draws(args.draws), every)
+        told = (summary(column, draws) for draws in cases)
+        texts = (f'{mean:.4f} +- {error:.4f}' for mean, error in told)
+        print(f'{rpm:7g}  {alike:11.2f}  {"  ".join(texts)}', flush=True)
+    if args.draws > FEW:
+        print(f'rev/min  off the mean of all, and stated: groups of {FEW}, plain, weighted')
+        for rpm, column in zip(RPM, rcs.T, strict=True):
+            told = (group_errors(column, every, kind) for kind in ('plain', 'weighted'))
+            texts = (f'{off:.4f}, {error:.4f}' for off, error in told)
+            print(f'{rpm:7g}  {"    ".join(texts)}', flush=True)
+    draw_figure(rcs, powers ** (1 / POWER), args.out / 'draw_factors.png')
+
+
+if __name__ == '__main__':
+    sys.exit(main())

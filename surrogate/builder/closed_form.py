@@ -1,0 +1,286 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Build a surface: choose the nodes, solve them, and measure the interpolation error in every cell.
+
+The error of a cell is the difference between the lookup and a solve at the cell's centre, a point
+that is no node.
+
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass, replace
+import math
+import platform
+import time
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+import scipy
+from surrogate.builder.tiers import Progress, screw_and_oil
+from surrogate.formulas import closed_form
+from surrogate.formulas.film import film_ratio_at_share_aihara_1987
+from surrogate.formulas.load_sharing import UNLOADING_RATIO
+from surrogate.parameters import InputError, Lubricant, Screw, ZERO_CELSIUS
+from surrogate.surface import FIELDS, Surface
+from surrogate.surface.file import FORMAT, FORMAT_VERSION, SurfaceData
+
+Array = NDArray[np.float64]
+
+FILM_SPEED_EXPONENT = 0.67
+"""Exponent of speed in the central film of Hamrock and Dowson [-]."""
+SLOWEST_SPEED = 0.05
+"""Default lower end of the speed range [rad/s], well below any standstill gate."""
+LOADS_IN_PRELOADS = 4.0
+LOADS_IN_RATINGS = 0.1
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class SurfaceSettings:
+    """
+    Ranges and nodes of a surface.
+
+    Speeds [rad/s] and loads [N] and temperatures [K] as (low, high), covered everywhere. Numbers
+    of nodes: along speed, along load per side below and above unloading, along temperature.
+    `onset_rcs` [-] is the RCS whose speed is the origin of the speed coordinate.
+
+    """
+
+    speed_range: tuple[float, float]
+    load_range: tuple[float, float]
+    temperature_range: tuple[float, float]
+    speed_nodes: int = 40
+    load_cells: int = 10
+    unloaded_cells: int = 3
+    temperature_nodes: int = 9
+    onset_rcs: float = 0.01
+
+
+def default_settings(screw: Screw) -> SurfaceSettings:
+    """Return 0.05 rad/s to the screw's speed limit, four preloads either way, 10 to 80 degC."""
+    reach = LOADS_IN_PRELOADS * screw.preload or LOADS_IN_RATINGS * screw.static_rating
+    return SurfaceSettings(
+        speed_range=(SLOWEST_SPEED, screw.speed_limit / (2 * screw.pitch_radius)),
+        load_range=(-reach, reach),
+        temperature_range=(10 + ZERO_CELSIUS, 80 + ZERO_CELSIUS),
+    )
+
+
+def build_closed_form(
+    screw: Screw,
+    lubricant: Lubricant,
+    settings: SurfaceSettings,
+    *,
+    progress: Progress = lambda done, total: None,
+) -> SurfaceData:
+    """
+    Build the surface of the closed-form tier; `progress(done, total)` counts solved slices.
+
+    Raises InputError for a range that is reversed, empty or leaves the oil's datasheet.
+
+    """
+    check_ranges(settings, lubricant)
+    started = time.perf_counter()
+    load, breaks = load_nodes(screw, settings)
+    temperature = temperature_nodes(screw, lubricant, settings)
+    log_onset = np.log(
+        onset_speed(screw, lubricant, load[:, None], temperature, settings.onset_rcs)
+    )
+    s = speed_coordinates(settings, log_onset)
+    total = 2 * len(temperature) - 1
+    nodes = _solve(
+        screw, lubricant, s, load, temperature, log_onset, lambda done: progress(done, total)
+    )
+    data = SurfaceData(
+        header=surface_header(screw, lubricant, settings, breaks, closed_form.TIER),
+        speed_coordinate=s,
+        load=load,
+        temperature=temperature,
+        log_onset=log_onset,
+        fields={name: nodes[name] for name in FIELDS},
+        errors=_unmeasured((s, load, temperature)),
+        worst_contact=nodes['worst_contact'].astype(np.uint8),
+        mask=~np.all([np.isfinite(nodes[name]) for name in FIELDS], axis=0),
+    )
+    errors = measure_errors(
+        screw, lubricant, data, lambda done: progress(len(temperature) + done, total)
+    )
+    return replace(data, errors=errors, provenance=_provenance(time.perf_counter() - started))
+
+
+def solve_closed_form(
+    header: Mapping[str, Any], speed: float, load: float, temperature: float
+) -> dict[str, float]:
+    """Solve a point [rad/s, N, K] as the closed-form surface of this header was solved."""
+    screw, lubricant = screw_and_oil(header['inputs'])
+    result = closed_form.solve(screw, lubricant, speed, load, temperature)
+    return {name: float(getattr(result, name)) for name in FIELDS}
+
+
+def load_nodes(screw: Screw, settings: SurfaceSettings) -> tuple[Array, list[float]]:
+    """
+    Return load nodes [N] and, among them, the break nodes: zero and the unloading load.
+
+    Nodes crowd towards the unloading load, where what the relieved nut carries runs out as a
+    power.
+
+    """
+    low, high = settings.load_range
+    unloading = UNLOADING_RATIO * screw.preload
+    steps = np.linspace(0.0, 1.0, settings.load_cells + 1)
+    if unloading > 0:
+        inner = unloading * (1 - (1 - steps) ** 3)
+        reach = max(abs(low), abs(high))
+        outer = np.linspace(unloading, max(reach, unloading), settings.unloaded_cells + 1)[1:]
+        side = np.concatenate([inner, outer])
+    else:
+        side = max(abs(low), abs(high)) * steps
+    nodes = np.unique(np.concatenate([-side, side, [low, high]]))
+    nodes = nodes[(nodes >= low) & (nodes <= high)]
+    breaks = [load for load in (-unloading, 0.0, unloading) if load in nodes]
+    return nodes, sorted(set(breaks))
+
+
+def temperature_nodes(screw: Screw, lubricant: Lubricant, settings: SurfaceSettings) -> Array:
+    """Return temperatures [K] between which the onset speed grows by equal factors."""
+    fine = np.linspace(*settings.temperature_range, 400)
+    loaded = np.asarray(screw.preload or 0.01 * screw.static_rating)
+    log_onset = np.log(onset_speed(screw, lubricant, loaded, fine, settings.onset_rcs))
+    even = np.linspace(log_onset[0], log_onset[-1], settings.temperature_nodes)
+    nodes = np.interp(even, log_onset, fine)
+    nodes[[0, -1]] = settings.temperature_range
+    return nodes
+
+
+def onset_speed(
+    screw: Screw, lubricant: Lubricant, load: Array, temperature: Array, rcs: float
+) -> Array:
+    """Return the speed [rad/s] at which the worst contact reaches `rcs`; arguments broadcast."""
+    target = film_ratio_at_share_aihara_1987(rcs)
+    return speed_at_film_ratio(screw, lubricant, load, temperature, target)
+
+
+def speed_at_film_ratio(
+    screw: Screw, lubricant: Lubricant, load: Array, temperature: Array, target: float
+) -> Array:
+    """Return the speed [rad/s] of a film ratio [-] by formula; arguments broadcast."""
+    load, temperature = np.broadcast_arrays(load, temperature)
+    ratio = closed_form.solve(screw, lubricant, 1.0, load, temperature).film_ratio
+    speed = (target / ratio) ** (1 / FILM_SPEED_EXPONENT)
+    # Without any load there is no contact and no onset; the node itself is masked.
+    return np.asarray(np.where(np.isfinite(speed), speed, np.nanmedian(speed)))
+
+
+def speed_coordinates(settings: SurfaceSettings, log_onset: Array) -> Array:
+    """Return nodes of s that cover the speed range everywhere and crowd the onset at s = 0."""
+    low, high = settings.speed_range
+    ends = np.arcsinh([math.log(low) - log_onset.max(), math.log(high) - log_onset.min()])
+    return np.sinh(np.linspace(ends[0], ends[1], settings.speed_nodes))
+
+
+def measure_errors(
+    screw: Screw, lubricant: Lubricant, data: SurfaceData, step: Callable[[int], None]
+) -> dict[str, Array]:
+    """
+    Return, per field and cell, |lookup - solve| at the centre of the cell.
+
+    NaN where the cell is masked or its centre lies outside the speed range.
+
+    """
+    surface = Surface(data)
+    s, load, temperature = (
+        0.5 * (axis[1:] + axis[:-1])
+        for axis in (data.speed_coordinate, data.load, data.temperature)
+    )
+    log_onset = np.log(
+        [[surface.onset_speed(force, heat) for heat in temperature] for force in load]
+    )
+    solved = _solve(screw, lubricant, s, load, temperature, log_onset, step)
+    points = [
+        surface.lookup(math.exp(s[i] + log_onset[j, k]), float(load[j]), float(temperature[k]))
+        for i, j, k in np.ndindex(len(s), len(load), len(temperature))
+    ]
+    return {
+        name: np.abs(
+            np.reshape([getattr(point, name) for point in points], solved[name].shape)
+            - solved[name]
+        )
+        for name in FIELDS
+    }
+
+
+def _solve(
+    screw: Screw,
+    lubricant: Lubricant,
+    s: Array,
+    load: Array,
+    temperature: Array,
+    log_onset: Array,
+    step: Callable[[int], None],
+) -> dict[str, Array]:
+    """Solve a grid slice by slice of temperature, which bounds the memory."""
+    slices: dict[str, list[Array]] = {name: [] for name in (*FIELDS, 'worst_contact')}
+    for k, heat in enumerate(temperature):
+        speed = np.exp(s[:, None] + log_onset[None, :, k])
+        result = closed_form.solve(screw, lubricant, speed, load, heat)
+        for name, values in slices.items():
+            values.append(getattr(result, name))
+        step(k + 1)
+    return {name: np.stack(values, axis=-1) for name, values in slices.items()}
+
+
+def _unmeasured(axes: tuple[Array, ...]) -> dict[str, Array]:
+    return {name: np.full([len(axis) - 1 for axis in axes], np.nan) for name in FIELDS}
+
+
+def check_ranges(settings: SurfaceSettings, lubricant: Lubricant) -> None:
+    """Raise InputError for a range that is reversed, empty or leaves the oil's datasheet."""
+    for name, unit, (low, high) in (
+        ('speed range', 'rad/s', settings.speed_range),
+        ('load range', 'N', settings.load_range),
+        ('temperature range', 'K', settings.temperature_range),
+    ):
+        if not (math.isfinite(low) and math.isfinite(high) and low < high):
+            raise InputError(
+                f'{name} is {low:g} to {high:g} {unit}, allowed is a low end below a high end'
+            )
+    if settings.speed_range[0] <= 0:
+        raise InputError(
+            f'speed range begins at {settings.speed_range[0]:g} rad/s, allowed is above 0'
+        )
+    low, high = settings.temperature_range
+    if low < lubricant.minimum_temperature or high > lubricant.maximum_temperature:
+        raise InputError(
+            f'temperature range is {low - ZERO_CELSIUS:g} to {high - ZERO_CELSIUS:g} degC, '
+            f'oil {lubricant.name} allows {lubricant.minimum_temperature - ZERO_CELSIUS:g} to '
+            f'{lubricant.maximum_temperature - ZERO_CELSIUS:g} degC'
+        )
+
+
+def surface_header(
+    screw: Screw, lubricant: Lubricant, settings: SurfaceSettings, breaks: list[float], tier: str
+) -> dict[str, Any]:
+    """Return the hashed part of the header, in plain JSON types."""
+    return {
+        'format': FORMAT,
+        'format_version': FORMAT_VERSION,
+        'tier': tier,
+        'inputs': {'screw': asdict(screw), 'lubricant': asdict(lubricant)},
+        'settings': {
+            name: list(value) if isinstance(value, tuple) else value
+            for name, value in asdict(settings).items()
+        },
+        'load_breaks': breaks,
+    }
+
+
+def _provenance(seconds: float) -> Mapping[str, Any]:
+    return {
+        'built': time.strftime('%Y-%m-%dT%H:%M:%SZ', time.gmtime()),
+        'build_seconds': round(seconds, 3),
+        'machine': platform.machine(),
+        'python': platform.python_version(),
+        'numpy': np.__version__,
+        'scipy': scipy.__version__,
+    }

@@ -1,0 +1,203 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Error of a full-tier surface, measured at points that are no nodes, with the same draws."""
+
+from bisect import bisect_right
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+from surrogate.builder.full.columns import Columns, NEAR_ONSET
+from surrogate.builder.full.draws import mean_of_draws
+from surrogate.builder.full.idle import idle_load
+from surrogate.builder.full.settings import error_target, FullSettings, Run
+from surrogate.builder.full.speed_nodes import Sample, Target
+from surrogate.parameters import Screw
+from surrogate.surface import FIELDS, Surface, Validity
+from surrogate.surface.file import SurfaceData
+
+Array = NDArray[np.float64]
+Ends = tuple[float, float]
+Point = tuple[float, float, float]
+"""Speed [rad/s], load [N], temperature [K]."""
+
+NEAR_IDLE = 0.8
+"""Part of the idle load from which on the relieved nut is near unloading [-]."""
+SPEEDS = (NEAR_ONSET, (NEAR_ONSET[1], math.inf), (-math.inf, NEAR_ONSET[0]))
+"""Ends of the speed coordinates within which errors are alike [-]."""
+TRIES = 20
+"""Loads and temperatures that are tried for a point of a stratum."""
+
+
+@dataclass(frozen=True, slots=True)
+class HeldOut:
+    """
+    A solved point: where, its cell, what the lookup and what the mean of the draws says.
+
+    `miss` is the larger error of efficiency and RCS over the allowed one [-].
+
+    """
+
+    point: Point
+    speed_coordinate: float
+    cell: tuple[int, int, int]
+    found: dict[str, float]
+    mean: dict[str, float]
+    miss: float
+
+
+def solve_held_out(
+    data: SurfaceData, points: Sequence[Point], columns: Columns, settings: FullSettings, run: Run
+) -> list[HeldOut]:
+    """
+    Solve `points` that are no nodes with the draws of a surface, and compare it with them.
+
+    Leaves out those at which fewer than half of the draws are solved, or the surface is masked.
+
+    """
+    draws = columns.ensemble
+    chains = {
+        f'{place} {draw}': columns.chain(abs(load), heat, draw, np.array([speed]))
+        for place, (speed, load, heat) in enumerate(points)
+        for draw in range(draws.at(load))
+    }
+    results = run('held-out points', chains)
+    surface, target = Surface(data), error_target(columns.screw, settings)
+    compared = []
+    for place, point in enumerate(points):
+        sense = 'opposing' if point[1] >= 0 else 'assisting'
+        solved = [results.get(f'{place} {draw}') for draw in range(draws.at(point[1]))]
+        records = [chain and chain[sense][0] for chain in solved]
+        mean = mean_of_draws(records, FIELDS, draws, point[1])
+        found = surface.lookup(*point)
+        if mean and found.validity is Validity.VALID:
+            here = {name: float(getattr(found, name)) for name in FIELDS}
+            s = math.log(point[0] / surface.onset_speed(*point[1:]))
+            cell = _cell(data, (s, *point[1:]))
+            miss = judged(target, point[1], columns.screw.lead).worst(*map(_sample, (here, mean)))
+            compared.append(HeldOut(point, s, cell, here, mean, miss))
+    return compared
+
+
+def judged(target: Target, load: float, lead: float) -> Target:
+    """Return the target at a load [N]: its efficiency is that load's, unless it is small."""
+    return replace(target, ideal_torque=max(target.ideal_torque, abs(load) * lead / (2 * math.pi)))
+
+
+def _sample(fields: Mapping[str, float]) -> Sample:
+    return Sample(fields['friction_torque'], fields['rcs'])
+
+
+def cell_errors(
+    data: SurfaceData,
+    solved: Sequence[HeldOut],
+    screw: Screw,
+    settings: FullSettings,
+    before: Sequence[HeldOut] = (),
+) -> dict[str, Array]:
+    """
+    Return the errors per field and cell: |lookup - solve|.
+
+    A cell without a point of its own has the largest of its stratum, also of the points `before`
+    nodes were added where they lie: those say what to expect elsewhere. NaN where none was.
+
+    """
+    bands = load_bands(screw, settings)
+    return {name: _errors(name, data, solved, [*solved, *before], bands) for name in FIELDS}
+
+
+def load_bands(screw: Screw, settings: FullSettings) -> list[Ends]:
+    """
+    Return the ends of |load| [N] within which errors are alike, as far as the range has them.
+
+    Both nuts loaded, the relieved one near unloading, and idle.
+
+    """
+    low, high = settings.load_range
+    least = 0.0 if low <= 0 <= high else min(abs(low), abs(high))
+    most, idle = max(abs(low), abs(high)), idle_load(screw)
+    marks = [least, *(mark for mark in (NEAR_IDLE * idle, idle) if least < mark < most), most]
+    return list(zip(marks, marks[1:]))
+
+
+def held_out_points(surface: Surface, screw: Screw, settings: FullSettings) -> list[Point]:
+    """Return points of the range, from all strata in turn; fewer where a stratum is empty."""
+    drawn = np.random.default_rng(settings.seed)
+    strata = [(speeds, loads) for speeds in SPEEDS for loads in load_bands(screw, settings)]
+    points = (
+        _point(surface, drawn, *strata[place % len(strata)], settings)
+        for place in range(settings.held_out)
+    )
+    return [point for point in points if point is not None]
+
+
+def _point(
+    surface: Surface, drawn: np.random.Generator, speeds: Ends, loads: Ends, settings: FullSettings
+) -> Point | None:
+    """Return a point of a stratum; cold or hot oil may have none, then another is tried."""
+    for _ in range(TRIES):
+        load = _signed(drawn, loads, settings.load_range)
+        heat = float(drawn.uniform(*settings.temperature_range))
+        onset = math.log(surface.onset_speed(load, heat))
+        low, high = (math.log(speed) - onset for speed in settings.speed_range)
+        low, high = max(low, speeds[0]), min(high, speeds[1])
+        if low < high:
+            return math.exp(float(drawn.uniform(low, high)) + onset), load, heat
+    return None
+
+
+def _signed(drawn: np.random.Generator, band: Ends, load_range: Ends) -> float:
+    """Return a load [N] of either sign within a band of |load| and the range."""
+    pieces = [
+        (max(low, load_range[0]), min(high, load_range[1]))
+        for low, high in (band, (-band[1], -band[0]))
+    ]
+    inside = [piece for piece in pieces if piece[0] < piece[1]]
+    return float(drawn.uniform(*inside[int(drawn.integers(len(inside)))]))
+
+
+def _cell(data: SurfaceData, place: Sequence[float]) -> tuple[int, int, int]:
+    axes = (data.speed_coordinate, data.load, data.temperature)
+    i, j, k = (
+        bisect_right(axis.tolist(), value, 1, len(axis) - 1) - 1
+        for axis, value in zip(axes, place)
+    )
+    return i, j, k
+
+
+def _errors(
+    name: str,
+    data: SurfaceData,
+    solved: Sequence[HeldOut],
+    judging: Sequence[HeldOut],
+    bands: Sequence[Ends],
+) -> Array:
+    """Return the errors of a field per cell, with unmeasured cells filled from their stratum."""
+    axes = (data.speed_coordinate, data.load, data.temperature)
+    error = np.full([len(axis) - 1 for axis in axes], np.nan)
+    for one in solved:
+        error[one.cell] = np.fmax(error[one.cell], _wrong(one, name))
+    s, load, _ = (0.5 * (axis[1:] + axis[:-1]) for axis in axes)
+    filled = error.copy()
+    for speeds in SPEEDS:
+        for loads in bands:
+            part = np.ix_(_within(s, speeds), _within(np.abs(load), loads))
+            alike = [
+                _wrong(one, name)
+                for one in judging
+                if _within(np.array(one.speed_coordinate), speeds)
+                and _within(np.array(abs(one.point[1])), loads)
+            ]
+            if alike:
+                filled[part] = np.where(np.isfinite(error[part]), error[part], max(alike))
+    return filled
+
+
+def _wrong(one: HeldOut, name: str) -> float:
+    return abs(one.found[name] - one.mean[name])
+
+
+def _within(places: Array, ends: Ends) -> NDArray[np.bool_]:
+    return np.asarray((places >= ends[0]) & (places < ends[1]))

@@ -1,0 +1,56 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The subcommand `contact`: solve one contact from a case file."""
+
+import argparse
+import json
+import logging
+from pathlib import Path
+import sys
+from typing import Any
+
+from surrogate.parameters import InputError
+
+
+def add_contact_command(subparsers: Any) -> None:
+    """Add `contact`; its handler imports the solver, so that other commands start fast."""
+    parser = subparsers.add_parser('contact', help='solve one contact from a case file')
+    parser.add_argument('case', metavar='CASE', help='case file (YAML) or shipped case')
+    parser.add_argument('--json', action='store_true', help='print JSON in SI units')
+    parser.add_argument('--plot', type=Path, metavar='DIR', help='directory for pictures (PNG)')
+    parser.set_defaults(handler=_contact)
+
+
+def _contact(args: argparse.Namespace) -> int:
+    """Solve a case; exit code 1 when the solution is not converged."""
+    from surrogate.contact.case import load_case
+    from surrogate.contact.record import contact_page, contact_record
+    from surrogate.contact.solve import solve_case
+    from surrogate.plain_json import to_json
+
+    # What was done to a surface belongs to the result, so it is said whatever the output.
+    logging.basicConfig(level=logging.INFO, format='ballscrew: %(message)s')
+    case = load_case(args.case)
+    solution, surface = solve_case(case)
+    record = contact_record(case, solution)
+    if args.json:
+        print(json.dumps(to_json(record), indent=2, allow_nan=False))
+    else:
+        print(contact_page(record, case, solution, surface))
+    if args.plot:
+        _plot(args.plot, solution, surface)
+    return 0 if solution.converged else 1
+
+
+def _plot(folder: Path, solution: Any, surface: Any) -> None:
+    """Draw the pictures of a contact; only this needs matplotlib."""
+    try:
+        from surrogate.contact.figures import draw_contact
+    except ImportError:
+        raise InputError('--plot needs matplotlib: install the extra `plot`') from None
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for path in draw_contact(folder, solution, surface):
+            print(path, file=sys.stderr)
+    except OSError as error:
+        raise InputError(f'--plot: {folder} cannot be written, {error.strerror}') from None

@@ -1,0 +1,240 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The subcommand `identify`: parasitic torque from torque measured without load."""
+
+import argparse
+from collections.abc import Callable
+import json
+import math
+from pathlib import Path
+import sys
+from typing import Any
+
+from surrogate.commands.point import add_inputs
+from surrogate.parameters import (
+    InputError,
+    load_lubricant,
+    load_screw,
+    Lubricant,
+    Screw,
+    ZERO_CELSIUS,
+)
+from surrogate.progress import Progress
+
+FITTED = {'viscosity': 'viscosity_factor', 'asperity_friction': 'asperity_friction'}
+"""What `--fit` takes, and the parameter that it means."""
+COLUMN_OPTIONS = ('speed_column', 'torque_column')
+BAG_OPTIONS = (
+    'speed_topic',
+    'speed_field',
+    'speed_unit',
+    'torque_topic',
+    'torque_field',
+    'torque_scale',
+    'temperature_topic',
+    'temperature_field',
+)
+
+BagReader = Callable[[argparse.Namespace, float], tuple[dict[str, Any], tuple[str, ...]]]
+"""Return columns in SI units and notes, for the arguments and the lead [m]."""
+
+
+def add_identify_command(subparsers: Any, read_bag: BagReader | None = None) -> None:
+    """Add `identify`; `read_bag` is what reads a bag, which this half cannot."""
+    parser = subparsers.add_parser(
+        'identify', help='find the parasitic torque from torque measured without load'
+    )
+    parser.add_argument('data', type=Path, metavar='DATA', help='CSV, or bag directory or MCAP')
+    add_inputs(parser)
+    parser.add_argument(
+        '--temperature-degC',
+        type=float,
+        metavar='T',
+        dest='temperature',
+        help='oil temperature [degC] where the data do not say, default that of the datasheet',
+    )
+    parser.add_argument(
+        '--fit',
+        action='append',
+        choices=tuple(FITTED),
+        default=[],
+        help='identify this, too; may be repeated',
+    )
+    parser.add_argument(
+        '--tier',
+        choices=('closed_form', 'full'),
+        default='closed_form',
+        help='model of the contacts, that of whoever uses the result (default %(default)s)',
+    )
+    parser.add_argument(
+        '--loss',
+        choices=('linear', 'soft_l1'),
+        default='linear',
+        help='least squares, or less weight for points far off (default %(default)s)',
+    )
+    parser.add_argument('--out', type=Path, metavar='FILE', help='datasheet to write (YAML)')
+    parser.add_argument('--plot', type=Path, metavar='DIR', help='directory for the picture')
+    parser.add_argument('--json', action='store_true', help='print JSON in SI units')
+    _add_columns(parser.add_argument_group('CSV'))
+    _add_topics(parser.add_argument_group('bag'))
+    parser.set_defaults(handler=_identify, read_bag=read_bag)
+
+
+def _add_columns(group: Any) -> None:
+    for name, usual in (('speed', 'speed_rpm'), ('torque', 'torque_Nm')):
+        group.add_argument(
+            f'--{name}-column',
+            metavar='NAME',
+            help=f'column with its unit at the end, in place of {usual}',
+        )
+
+
+def _add_topics(group: Any) -> None:
+    group.add_argument('--speed-topic', metavar='TOPIC')
+    group.add_argument('--speed-field', metavar='PATH', help='such as velocity[x_axis]')
+    group.add_argument(
+        '--speed-unit', metavar='UNIT', help='rad/s (default), rev/min, m/s, mm/s, mm/min, m/min'
+    )
+    group.add_argument('--torque-topic', metavar='TOPIC', help='default the topic of the speed')
+    group.add_argument('--torque-field', metavar='PATH', help='such as effort[x_axis]')
+    group.add_argument(
+        '--torque-scale', type=float, metavar='K', help='torque on the screw [N m] over the field'
+    )
+    group.add_argument('--temperature-topic', metavar='TOPIC')
+    group.add_argument('--temperature-field', metavar='PATH', help='in degC, default temperature')
+
+
+def _identify(args: argparse.Namespace) -> int:
+    """Identify, write and draw; exit code 1 when the fit did not converge."""
+    from surrogate.identify.fit import identify
+    from surrogate.identify.record import identification_record, page
+    from surrogate.plain_json import to_json
+
+    _check(args)
+    screw, lubricant = load_screw(args.screw), load_lubricant(args.oil)
+    run = _run(args, screw, lubricant)
+    fitted = tuple(FITTED[name] for name in dict.fromkeys(args.fit))
+    contacts = _contacts(args.tier, screw, lubricant, run, fitted)
+    found = identify(screw, run, contacts, fitted, loss=args.loss)
+    record = identification_record(screw, run, contacts, found)
+    print(json.dumps(to_json(record), indent=2, allow_nan=False) if args.json else page(record))
+    if args.out and found.converged:
+        _write(args.out, screw, lubricant, run, contacts, found)
+    if args.plot:
+        _plot(args.plot, run, found, f'{screw.name}, {lubricant.name}, tier {contacts.tier}')
+    return 0 if found.converged else 1
+
+
+def _check(args: argparse.Namespace) -> None:
+    """Raise InputError for a temperature that no oil has, and for an output that is an input."""
+    kelvin = ZERO_CELSIUS if args.temperature is None else args.temperature + ZERO_CELSIUS
+    if not 0 < kelvin < math.inf:
+        raise InputError(
+            f'--temperature-degC is {args.temperature:g} degC, allowed is a number above absolute '
+            'zero'
+        )
+    if args.out is None:
+        return
+    for written in (args.out, _oil_sheet(args.out)):
+        for name in ('screw', 'oil'):
+            if written.resolve() == Path(getattr(args, name)).resolve():
+                raise InputError(
+                    f'--out: {written} is the datasheet given as --{name}, allowed is another file'
+                )
+
+
+def _oil_sheet(out: Path) -> Path:
+    """Return where an identified oil is written."""
+    return out.with_name(f'{out.stem}_oil{out.suffix}')
+
+
+def _run(args: argparse.Namespace, screw: Screw, lubricant: Lubricant) -> Any:
+    """Read the data, whatever they are."""
+    from surrogate.identify.data import no_load_run, read_drag_csv
+
+    bag = args.data.is_dir() or args.data.suffix == '.mcap'
+    _refuse(args, COLUMN_OPTIONS if bag else BAG_OPTIONS, 'bag' if bag else 'CSV')
+    if not bag:
+        columns, notes = (
+            read_drag_csv(
+                args.data, speed_column=args.speed_column, torque_column=args.torque_column
+            ),
+            (),
+        )
+    elif args.read_bag is None:
+        raise InputError(f'{args.data}: is a bag, which only the command ballscrew reads')
+    else:
+        columns, notes = args.read_bag(args, screw.lead)
+    if args.temperature is not None and 'temperature' in columns:
+        raise InputError(
+            f'--temperature-degC is {args.temperature:g} degC, and {args.data} holds the '
+            'temperature too: allowed is one of both'
+        )
+    kelvin = (
+        lubricant.reference_temperature
+        if args.temperature is None
+        else args.temperature + ZERO_CELSIUS
+    )
+    return no_load_run(columns, source=args.data.name, temperature=kelvin, notes=notes)
+
+
+def _refuse(args: argparse.Namespace, names: tuple[str, ...], kind: str) -> None:
+    given = [name for name in names if getattr(args, name) is not None]
+    if given:
+        raise InputError(
+            f'--{given[0].replace("_", "-")} has no meaning here: {args.data} is a {kind}'
+        )
+
+
+def _contacts(
+    tier: str, screw: Screw, lubricant: Lubricant, run: Any, fitted: tuple[str, ...]
+) -> Any:
+    """Return the contacts of the run; only the full tier loads the solver."""
+    if tier == 'full':
+        from surrogate.identify.table import solved_model
+
+        return solved_model(screw, lubricant, run, fitted, progress=_bar())
+    from surrogate.identify.model import closed_form_model
+
+    return closed_form_model(screw, lubricant, run)
+
+
+def _bar() -> Callable[[int, int], None]:
+    """Return what shows that some of all speeds are solved."""
+    bars: list[Progress] = []
+
+    def show(done: int, total: int) -> None:
+        if not bars:
+            bars.append(Progress(total, 'speeds solved'))
+        elif done:
+            bars[0].step()
+
+    return show
+
+
+def _write(
+    out: Path, screw: Screw, lubricant: Lubricant, run: Any, contacts: Any, found: Any
+) -> None:
+    """Write the screw, and beside it the oil where its viscosity was identified."""
+    from surrogate.datasheet_writer import write_sheet
+    from surrogate.identify.record import identified_oil, identified_screw
+
+    write_sheet(out, identified_screw(screw, run, contacts, found))
+    print(out, file=sys.stderr)
+    if 'viscosity_factor' in [one.name for one in found.estimates]:
+        oil = _oil_sheet(out)
+        write_sheet(oil, identified_oil(lubricant, run, contacts, found))
+        print(oil, file=sys.stderr)
+
+
+def _plot(folder: Path, run: Any, found: Any, title: str) -> None:
+    """Draw the picture; only this needs matplotlib."""
+    try:
+        from surrogate.identify.figures import draw_identification
+    except ImportError:
+        raise InputError('--plot needs matplotlib: install the extra `plot`') from None
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        print(draw_identification(folder, run, found, title), file=sys.stderr)
+    except OSError as error:
+        raise InputError(f'--plot: {folder} cannot be written, {error.strerror}') from None

@@ -1,0 +1,160 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The subcommand `point`: solve the screw at one operating point."""
+
+import argparse
+import json
+import math
+from pathlib import Path
+import sys
+import time
+from typing import Any
+
+from surrogate.parameters import (
+    InputError,
+    load_lubricant,
+    load_screw,
+    Lubricant,
+    OperatingPoint,
+    Screw,
+    ZERO_CELSIUS,
+)
+
+FULL_ONLY = ('draws', 'inlet_heating', 'plot')
+"""Options of the full tier alone."""
+
+
+def add_point_command(subparsers: Any) -> None:
+    """Add `point`; its handler imports the model that is asked for."""
+    parser = subparsers.add_parser('point', help='solve one operating point')
+    add_inputs(parser)
+    add_operating_point(parser, required=True)
+    parser.add_argument(
+        '--tier',
+        choices=('closed_form', 'full'),
+        default='closed_form',
+        help='model: published formulas, or four solved contacts and balanced balls (seconds)',
+    )
+    parser.add_argument(
+        '--draws',
+        type=int,
+        metavar='K',
+        help='full tier: mean and spread over K draws of the roughness (default one draw)',
+    )
+    parser.add_argument(
+        '--inlet-heating', action='store_true', help='full tier: films thinned by inlet shear'
+    )
+    parser.add_argument('--json', action='store_true', help='print JSON in SI units')
+    parser.add_argument(
+        '--plot', type=Path, metavar='DIR', help='full tier: directory for a picture (PNG)'
+    )
+    parser.set_defaults(handler=_point)
+
+
+def add_inputs(parser: argparse.ArgumentParser) -> None:
+    """Add the datasheets of screw and oil."""
+    parser.add_argument(
+        '--screw', default='nominal', metavar='NAME|FILE', help='screw datasheet (default nominal)'
+    )
+    parser.add_argument(
+        '--oil', default='iso_vg_68', metavar='NAME|FILE', help='oil datasheet (default iso_vg_68)'
+    )
+
+
+def add_operating_point(parser: argparse.ArgumentParser, *, required: bool) -> None:
+    """Add speed, load and temperature, the first two `required` or not."""
+    parser.add_argument(
+        '--speed-rpm',
+        type=float,
+        required=required,
+        metavar='N',
+        help='screw speed [rev/min], the sign is the direction of motion',
+    )
+    parser.add_argument(
+        '--load-N',
+        type=float,
+        required=required,
+        metavar='F',
+        dest='load',
+        help='axial load [N]; it opposes the motion when it has the sign of the speed',
+    )
+    parser.add_argument(
+        '--temperature-degC',
+        type=float,
+        metavar='T',
+        dest='temperature',
+        help='oil temperature [degC], default that of the oil datasheet',
+    )
+
+
+def _point(args: argparse.Namespace) -> int:
+    """Solve a point; exit code 1 when it is not converged."""
+    from surrogate.plain_json import to_json
+    from surrogate.screw.formula_record import closed_form_record, page
+
+    _check(args)
+    screw, lubricant = load_screw(args.screw), load_lubricant(args.oil)
+    kelvin = (
+        lubricant.reference_temperature
+        if args.temperature is None
+        else args.temperature + ZERO_CELSIUS
+    )
+    point = OperatingPoint(speed=args.speed_rpm * math.pi / 30, load=args.load, temperature=kelvin)
+    if args.plot:
+        _prepare(args.plot)
+    solution = None
+    if args.tier == 'full':
+        solution, record = _full(args, screw, lubricant, point)
+    else:
+        record = closed_form_record(screw, lubricant, point)
+    print(json.dumps(to_json(record), indent=2, allow_nan=False) if args.json else page(record))
+    if args.plot:
+        _plot(args.plot, screw, solution, record)
+    return 0 if record.get('converged', True) else 1
+
+
+def _check(args: argparse.Namespace) -> None:
+    for name in FULL_ONLY:
+        given = getattr(args, name)
+        if given is not None and given is not False and args.tier != 'full':
+            raise InputError(f'--{name.replace("_", "-")} needs --tier full')
+
+
+def _full(
+    args: argparse.Namespace, screw: Screw, lubricant: Lubricant, point: OperatingPoint
+) -> tuple[Any, dict[str, Any]]:
+    """Return a point of the full tier and its record; only this loads the contact solver."""
+    from surrogate.screw.contacts import ScrewSettings
+    from surrogate.screw.ensemble import solve_ensemble
+    from surrogate.screw.full_record import ensemble_record, solution_record
+    from surrogate.screw.solve import solve_screw
+
+    started, settings = time.perf_counter(), ScrewSettings(inlet_heating=args.inlet_heating)
+    if args.draws is None:
+        first = solve_screw(screw, lubricant, point, settings=settings)
+        record = solution_record(screw, lubricant, point, first, settings)
+    else:
+        ensemble = solve_ensemble(screw, lubricant, point, args.draws, settings=settings)
+        first = ensemble.solutions[0]
+        record = ensemble_record(screw, lubricant, point, ensemble, settings)
+    return first, record | {'wall_s': time.perf_counter() - started}
+
+
+def _prepare(folder: Path) -> None:
+    """Make the directory of the picture before the long work."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f'--plot: {folder} cannot be made, {error.strerror}') from None
+
+
+def _plot(folder: Path, screw: Screw, solution: Any, record: dict[str, Any]) -> None:
+    """Draw the contacts of a point; only this needs matplotlib."""
+    try:
+        from surrogate.screw.figures import draw_point
+    except ImportError:
+        raise InputError('--plot needs matplotlib: install the extra `plot`') from None
+    try:
+        print(draw_point(folder, screw, solution, record), file=sys.stderr)
+    except OSError as error:
+        raise InputError(f'--plot: {folder} cannot be written, {error.strerror}') from None

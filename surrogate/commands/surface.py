@@ -1,0 +1,175 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The subcommand `surface`: build, clean, describe; what inspects a file is in its own module."""
+
+import argparse
+from collections.abc import Iterator
+from contextlib import contextmanager
+import json
+import math
+from pathlib import Path
+import sys
+from typing import Any
+
+from surrogate.builder.tiers import build_surface, default_settings, find_tier, TIERS
+from surrogate.commands.point import add_inputs
+from surrogate.commands.surface_inspect import add_inspect_commands
+from surrogate.commands.sweep import add_sweep_command, add_workers
+from surrogate.parameters import InputError, load_lubricant, load_screw, ZERO_CELSIUS
+from surrogate.plain_json import to_json
+from surrogate.surface import find_surface
+from surrogate.surface.file import read, write
+
+FULL_ONLY = {
+    'accuracy': ('accuracy', 1),
+    'draws': ('draws', 1),
+    'wavelength_um': ('grid_wavelength', 1e-6),
+}
+"""Options of the full tier alone: the setting each is for, and its unit in SI."""
+
+
+def add_surface_command(subparsers: Any) -> None:
+    """Add `surface` with all that it does; each sets `handler`, which takes the arguments."""
+    surface = subparsers.add_parser(
+        'surface', help='build, sweep, describe or check surface files'
+    )
+    actions = surface.add_subparsers(
+        required=True, metavar='build|sweep|clean|info|check|query|plot|diff|export'
+    )
+    _add_build(actions.add_parser('build', help='build a surface file'))
+    add_sweep_command(actions)
+    _add_clean(actions.add_parser('clean', help='remove kept results of an unfinished build'))
+    _add_info(actions.add_parser('info', help='describe a surface file'))
+    add_inspect_commands(actions)
+
+
+def _add_build(parser: argparse.ArgumentParser) -> None:
+    add_inputs(parser)
+    parser.add_argument('--tier', choices=tuple(TIERS), default='closed_form')
+    for name, unit in (('speed', 'rpm'), ('load', 'N'), ('temperature', 'degC')):
+        parser.add_argument(
+            f'--{name}-range',
+            type=float,
+            nargs=2,
+            metavar=('LOW', 'HIGH'),
+            help=f'{name} range [{unit}]',
+        )
+    parser.add_argument(
+        '--accuracy',
+        type=float,
+        metavar='A',
+        help='full tier: errors aimed at, over 0.003 in efficiency and RCS (default 1)',
+    )
+    parser.add_argument(
+        '--draws',
+        type=int,
+        metavar='K',
+        help='full tier: draws of the roughness that are averaged (default 16)',
+    )
+    parser.add_argument(
+        '--wavelength-um',
+        type=float,
+        metavar='L',
+        help='full tier: shortest wave of the roughness that is solved [um]; shorter ones '
+        'raise the film floor (default 16)',
+    )
+    parser.add_argument('--out', type=Path, help='file to write (default SCREW_OIL.npz)')
+    add_workers(parser)
+    parser.set_defaults(handler=_build)
+
+
+def _add_clean(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument('out', type=Path, metavar='OUT', help='surface that was being built')
+    parser.set_defaults(handler=_clean)
+
+
+def _add_info(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        'file', nargs='?', type=Path, help='a path, or a tier of those shipped (default full)'
+    )
+    parser.add_argument('--json', action='store_true', help='print JSON in SI units')
+    parser.set_defaults(handler=_info)
+
+
+def _build(args: argparse.Namespace) -> int:
+    screw, lubricant = load_screw(args.screw), load_lubricant(args.oil)
+    ranges: dict[str, Any] = {}
+    if args.speed_range:
+        low, high = _range('--speed-range', 'rpm', args.speed_range, lowest=0.0)
+        ranges['speed_range'] = (low * math.pi / 30, high * math.pi / 30)
+    if args.load_range:
+        ranges['load_range'] = _range('--load-range', 'N', args.load_range)
+    if args.temperature_range:
+        low, high = _range('--temperature-range', 'degC', args.temperature_range)
+        ranges['temperature_range'] = (low + ZERO_CELSIUS, high + ZERO_CELSIUS)
+    for name, (setting, unit) in FULL_ONLY.items():
+        if getattr(args, name) is not None:
+            if args.tier != 'full':
+                raise InputError(f'--{name.replace("_", "-")} needs --tier full')
+            ranges[setting] = getattr(args, name) * unit
+    out = args.out or Path(f'{screw.name}_{lubricant.name}.npz')
+    settings = default_settings(args.tier, screw, ranges)
+    with _workers(args) as pool:
+        data = build_surface(
+            args.tier, screw, lubricant, settings, progress=_show_progress, pool=pool, out=out
+        )
+    write(out, data)
+    print(f'{out}: {data.mask.size} nodes, sha256 {data.sha256}')
+    return 0
+
+
+@contextmanager
+def _workers(args: argparse.Namespace) -> Iterator[Any]:
+    """Give workers to a builder that spreads its solves, and none to any other."""
+    if not find_tier(args.tier).spreads:
+        if args.workers is not None or args.dask is not None:
+            raise InputError(f'--workers and --dask have no meaning for tier {args.tier}')
+        yield None
+        return
+    from surrogate.tasks.workers import open_pool
+
+    with open_pool(args.workers, args.dask) as pool:
+        yield pool
+
+
+def _range(
+    name: str, unit: str, ends: list[float], lowest: float = -math.inf
+) -> tuple[float, float]:
+    """Return a checked range in the unit in which it was typed."""
+    low, high = ends
+    if not (math.isfinite(low) and math.isfinite(high) and lowest < low < high):
+        above = f'above {lowest:g}, ' if math.isfinite(lowest) else ''
+        raise InputError(
+            f'{name} is {low:g} to {high:g} {unit}, allowed is {above}the low end first'
+        )
+    return low, high
+
+
+def _show_progress(done: int, total: int) -> None:
+    if sys.stderr.isatty():
+        bar = '#' * (40 * done // total)
+        print(
+            f'\r[{bar:40}] {done}/{total} slices',
+            end='\n' if done == total else '',
+            file=sys.stderr,
+            flush=True,
+        )
+
+
+def _clean(args: argparse.Namespace) -> int:
+    from surrogate.tasks.store import clear, store_path
+
+    removed = clear(args.out)
+    print(f'{store_path(args.out)}: {"removed" if removed else "nothing to remove"}')
+    return 0
+
+
+def _info(args: argparse.Namespace) -> int:
+    from surrogate.surface_tools.describe import info_page, info_record
+
+    path = find_surface(args.file)
+    record = info_record(path, read(path))
+    print(
+        json.dumps(to_json(record), indent=2, allow_nan=False) if args.json else info_page(record)
+    )
+    return 0

@@ -1,0 +1,284 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Pictures of a solved contact: curves along the track, maps, spatial views, rough surface."""
+
+from collections.abc import Callable, Iterator
+import os
+from pathlib import Path
+from typing import Any
+
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.collections import QuadMesh
+from matplotlib.colors import ListedColormap
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+import numpy as np
+from numpy.typing import NDArray
+from surrogate.ehl import ContactSolution
+from surrogate.raceway.fractal import Surface
+
+Array = NDArray[np.float64]
+
+DPI = 150  # [1/inch]
+BLUE, VERMILION, GREY = '#0072b2', '#d55e00', '#6f6f6f'
+"""Colours that colour-blind readers and a black and white print keep apart."""
+MAP = 'cividis'
+FILM_SPAN = 1.8
+"""Top of the film scale over the 90th percentile of the film in the Hertz ellipse [-]."""
+INLET = 3.0
+"""Most of the inlet that curves show, over the semi-axis [-]."""
+VIEW = 1.35
+"""Half width of maps and spatial views over the semi-axes, where the domain reaches so far [-]."""
+SPATIAL_NODES = 150
+"""Most lines of a spatial view per side [-]."""
+MICRO, NANO, GIGA = 1e6, 1e9, 1e-9
+
+
+def draw_contact(
+    folder: Path, solution: ContactSolution, surface: Surface | None = None
+) -> Iterator[Path]:
+    """Write the pictures of a solution to `folder` as PNG and yield their paths."""
+    pictures: dict[str, Callable[[], Figure]] = {
+        'contact_profiles.png': lambda: figure_profiles(solution),
+        'contact_maps.png': lambda: figure_maps(solution),
+        'contact_3d.png': lambda: figure_spatial(solution),
+    }
+    if surface is not None:
+        pictures['contact_roughness.png'] = lambda: figure_roughness(solution, surface)
+    for name, draw in pictures.items():
+        partial = folder / f'{name}.partial'
+        draw().savefig(partial, format='png')
+        os.replace(partial, folder / name)
+        yield folder / name
+
+
+def _figure(width: float, height: float, solution: ContactSolution) -> Figure:
+    figure = Figure(figsize=(width, height), dpi=DPI, layout='constrained')
+    FigureCanvasAgg(figure)
+    condition, lubricant = solution.condition, solution.lubricant
+    figure.suptitle(
+        f'{condition.load:g} N, {condition.entrainment_speed:g} m/s, '
+        f'{lubricant.viscosity:g} Pa s; central film {NANO * solution.central_film:.3g} nm, '
+        f'RCS {100 * solution.rcs:.2g} %'
+        + ('' if solution.converged else f'\nNOT CONVERGED: {solution.status.value}'),
+        fontsize=10,
+        color='black' if solution.converged else VERMILION,
+    )
+    return figure
+
+
+def figure_profiles(solution: ContactSolution) -> Figure:
+    """
+    Return pressure (film, asperities, total, Hertz) and film along x.
+
+    On the centre line and, where asperities carry, on the line that carries most of their load.
+
+    """
+    columns = _lines(solution)
+    figure = _figure(2.0 + 4.5 * len(columns), 6.5, solution)
+    panels = figure.subplots(2, len(columns), sharex=True, sharey='row', squeeze=False)
+    for (upper, lower), column in zip(panels.T, columns, strict=True):
+        _draw_pressure(upper, solution, column)
+        _draw_film(lower, solution, column)
+        _mark_semi_axes(upper, solution)
+        lower.set_xlabel('x along the track [µm], the oil enters at the left')
+    left = max(solution.x[0], -INLET * solution.semi_axis_x)
+    panels[0, 0].set(
+        ylabel='pressure [GPa]', ylim=(0, None), xlim=(MICRO * left, MICRO * solution.x[-1])
+    )
+    panels[1, 0].set(ylabel='film [nm]', ylim=(0, _film_top(solution)))
+    panels[0, 0].legend(frameon=False, fontsize=8, loc='upper left')
+    panels[0, -1].legend(frameon=False, fontsize=8, loc='upper left')
+    panels[1, 0].legend(frameon=False, fontsize=8, loc='center left')
+    panels[1, -1].legend(frameon=False, fontsize=8, loc='center left')
+    return figure
+
+
+def _lines(solution: ContactSolution) -> list[int]:
+    middle = int(np.argmin(np.abs(solution.y)))
+    carried = solution.asperity_pressure.sum(axis=0)
+    most = int(np.argmax(carried))
+    return [middle] if most == middle or carried[most] == 0 else [middle, most]
+
+
+def _draw_pressure(axes: Axes, solution: ContactSolution, column: int) -> None:
+    x, y = MICRO * solution.x, float(solution.y[column])
+    asperity = GIGA * solution.asperity_pressure[:, column]
+    axes.plot(x, GIGA * solution.film_pressure[:, column], color=BLUE, lw=1.4, label='film')
+    if asperity.any():
+        axes.fill_between(x, asperity, color=VERMILION, alpha=0.35, linewidth=0)
+        axes.plot(x, asperity, color=VERMILION, linewidth=1.2, label='asperities')
+        total = GIGA * solution.pressure[:, column]
+        axes.plot(x, total, color='black', linewidth=0.9, linestyle=':', label='total')
+    hertz = GIGA * _hertz(solution, y)
+    axes.plot(x, hertz, color=GREY, linestyle='--', linewidth=1.0, label='Hertz, dry and smooth')
+    axes.set_title(f'y = {MICRO * y:.0f} µm', fontsize=9)
+    _soft_grid(axes)
+
+
+def _draw_film(axes: Axes, solution: ContactSolution, column: int) -> None:
+    x, film = MICRO * solution.x, NANO * solution.film[:, column]
+    lowest, floor = NANO * solution.film.min(axis=1), NANO * solution.settings.film_floor
+    axes.plot(x, film, color=BLUE, linewidth=1.4, label='film on this line')
+    axes.plot(x, lowest, color=GREY, linewidth=0.8, label='least film over y')
+    axes.axhline(floor, color=VERMILION, linestyle='--', linewidth=0.9, label='film floor')
+    touching = solution.contact_mask[:, column]
+    if touching.any():
+        mark: dict[str, Any] = {
+            'linestyle': 'none',
+            'marker': 'v',
+            'markersize': 4,
+            'color': VERMILION,
+        }
+        axes.plot(x[touching], film[touching], label='asperity contact', **mark)
+    _soft_grid(axes)
+
+
+def _soft_grid(axes: Axes) -> None:
+    axes.grid(visible=True, color='#e6e6e6', linewidth=0.6)
+    axes.set_axisbelow(True)
+
+
+def _mark_semi_axes(axes: Axes, solution: ContactSolution) -> None:
+    a = MICRO * solution.semi_axis_x
+    there_and_back = (lambda x: np.divide(x, a), lambda s: np.multiply(s, a))
+    second = axes.secondary_xaxis('top', functions=there_and_back)
+    second.set_xlabel('x over the Hertz semi-axis [-]', fontsize=8)
+    second.tick_params(labelsize=8)
+
+
+def figure_maps(solution: ContactSolution) -> Figure:
+    """Return maps of total pressure and film with the Hertz ellipse and the touching nodes."""
+    figure = _figure(8.0, 6.0, solution)
+    left, right = figure.subplots(1, 2, sharey=True)
+    rows, columns = _view(solution)
+    pressure = GIGA * solution.pressure[rows, columns]
+    film = NANO * solution.film[rows, columns]
+    mesh = _mesh(left, solution, pressure, vmin=0)
+    figure.colorbar(mesh, ax=left, location='bottom', label='total pressure [GPa]')
+    least = 0.8 * film.min() if solution.minimum_film > 2 * solution.settings.film_floor else 0.0
+    mesh = _mesh(right, solution, film, vmin=least, vmax=_film_top(solution))
+    figure.colorbar(mesh, ax=right, location='bottom', label='film [nm]', extend='max')
+    if _mark_contact(right, solution):
+        figure.legend(
+            handles=[_swatch(VERMILION, 'asperity contact')],
+            loc='outside lower right',
+            frameon=False,
+            fontsize=8,
+        )
+    _finish_map(left, solution, 'Pressure')
+    _finish_map(right, solution, 'Film')
+    return figure
+
+
+def figure_spatial(solution: ContactSolution) -> Figure:
+    """Return spatial views of total pressure and film."""
+    figure = _figure(11.0, 5.4, solution)
+    top = _film_top(solution)
+    film = np.minimum(NANO * solution.film, top)
+    _draw_spatial(figure, 1, solution, GIGA * solution.pressure, 'pressure [GPa]', 28)
+    _draw_spatial(figure, 2, solution, film, f'film [nm], cut off at {top:.0f}', 48)
+    return figure
+
+
+def _draw_spatial(
+    figure: Figure, place: int, solution: ContactSolution, field: Array, label: str, tilt: float
+) -> None:
+    axes: Any = figure.add_subplot(1, 2, place, projection='3d')
+    rows, columns = _view(solution)
+    x, y = np.meshgrid(MICRO * solution.x[rows], MICRO * solution.y[columns], indexing='ij')
+    lines = {'rcount': SPATIAL_NODES, 'ccount': SPATIAL_NODES, 'linewidth': 0.1}
+    axes.plot_surface(
+        x, y, field[rows, columns], cmap=MAP, edgecolor='#00000030', antialiased=True, **lines
+    )
+    axes.set(xlabel='x [µm]', ylabel='y [µm]')
+    axes.set_zlabel(label)
+    axes.set_zlim(0, None)
+    axes.set_box_aspect((1.0, 1.5, 0.9), zoom=1.0)
+    axes.view_init(elev=tilt, azim=-130)
+
+
+def figure_roughness(solution: ContactSolution, surface: Surface) -> Figure:
+    """Return the rough surface and how film and asperities share the pressure."""
+    figure = _figure(11.0, 6.0, solution)
+    first, second, third = figure.subplots(1, 3, sharey=True)
+    rows, columns = _view(solution)
+    heights = MICRO * surface.heights(solution.x[rows], solution.y[columns])
+    most = float(np.abs(heights).max())
+    mesh = _mesh(first, solution, heights, cmap='PuOr_r', vmin=-most, vmax=most)
+    figure.colorbar(mesh, ax=first, location='bottom', label='height out of the raceway [µm]')
+    top = GIGA * float(solution.film_pressure[rows, columns].max())
+    mesh = _mesh(second, solution, GIGA * solution.film_pressure[rows, columns], vmin=0, vmax=top)
+    figure.colorbar(mesh, ax=second, location='bottom', label='film pressure [GPa]')
+    mesh = _mesh(
+        third, solution, GIGA * solution.asperity_pressure[rows, columns], cmap='inferno_r', vmin=0
+    )
+    figure.colorbar(mesh, ax=third, location='bottom', label='asperity pressure [GPa]')
+    _finish_map(first, solution, f'Surface, {surface.patch}, heights times {surface.scale:.3g}')
+    _finish_map(second, solution, 'Carried by the film')
+    _finish_map(third, solution, f'Carried by asperities: {100 * solution.asperity_share:.2g} %')
+    return figure
+
+
+def _hertz(solution: ContactSolution, y: float) -> Array:
+    """Return Hertz's pressure [Pa] along x at `y` [m]."""
+    inside = 1 - (solution.x / solution.semi_axis_x) ** 2 - (y / solution.semi_axis_y) ** 2
+    return solution.hertz_pressure * np.sqrt(np.maximum(inside, 0.0))
+
+
+def _film_top(solution: ContactSolution) -> float:
+    """Return the top of the film scale [nm]: what happens inside the Hertz ellipse fills it."""
+    inside = (solution.x[:, None] / solution.semi_axis_x) ** 2 + (
+        solution.y[None, :] / solution.semi_axis_y
+    ) ** 2 < 1
+    film = float(np.percentile(solution.film[inside], 90))
+    return FILM_SPAN * NANO * max(film, solution.settings.film_floor)
+
+
+def _view(solution: ContactSolution) -> tuple[slice, slice]:
+    """Return the rows and columns that maps show."""
+    return (
+        _within(solution.x, VIEW * solution.semi_axis_x),
+        _within(solution.y, VIEW * solution.semi_axis_y),
+    )
+
+
+def _within(axis: Array, limit: float) -> slice:
+    found = np.flatnonzero(np.abs(axis) <= limit)
+    return slice(int(found[0]), int(found[-1]) + 1)
+
+
+def _mesh(axes: Axes, solution: ContactSolution, field: Array, **options: Any) -> QuadMesh:
+    rows, columns = _view(solution)
+    return axes.pcolormesh(
+        MICRO * solution.x[rows],
+        MICRO * solution.y[columns],
+        field.T,
+        **{'cmap': MAP, 'shading': 'nearest', 'rasterized': True, **options},
+    )
+
+
+def _mark_contact(axes: Axes, solution: ContactSolution) -> bool:
+    """Colour the nodes where asperities carry; tell whether there are any."""
+    rows, columns = _view(solution)
+    mask = solution.contact_mask[rows, columns]
+    if mask.any():
+        _mesh(axes, solution, np.where(mask, 1.0, np.nan), cmap=ListedColormap([VERMILION]))
+    return bool(mask.any())
+
+
+def _swatch(colour: str, label: str) -> Line2D:
+    return Line2D([], [], linestyle='none', marker='s', color=colour, label=label)
+
+
+def _finish_map(axes: Axes, solution: ContactSolution, title: str) -> None:
+    turn = np.linspace(0, 2 * np.pi, 181)
+    x = MICRO * solution.semi_axis_x * np.cos(turn)
+    y = MICRO * solution.semi_axis_y * np.sin(turn)
+    axes.plot(x, y, color='white', linewidth=1.6)
+    axes.plot(x, y, color='black', linewidth=0.8, linestyle='--')
+    axes.set_title(title, fontsize=9)
+    axes.set_xlabel('x along the track [µm]')
+    if axes.get_subplotspec().colspan.start == 0:  # type: ignore[union-attr]
+        axes.set_ylabel('y across the track [µm]')

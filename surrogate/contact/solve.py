@@ -1,0 +1,177 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+From a contact case to its solution: the rough surface, the grid, the solve.
+
+The surface never follows the grid; a grid that the case does not state follows the surface, or the
+estimated error of a smooth film.
+
+"""
+
+from dataclasses import replace
+from functools import cache
+import logging
+import math
+
+from surrogate.contact.case import CaseRoughness, CONSTANTS, ContactCase
+from surrogate.ehl import Condition, ContactLubricant, ContactSolution, Settings, solve_contact
+from surrogate.ehl.case import make_case
+from surrogate.formulas.geometry import Contact, ellipticity, hertz
+from surrogate.parameters import load_screw
+from surrogate.raceway.fractal import (
+    fractal_surface,
+    FractalSurface,
+    shifted,
+    Surface,
+    take_patch,
+    Window,
+)
+from surrogate.raceway.import_file import read_surface
+from surrogate.raceway.measured import MeasuredSurface
+from surrogate.raceway.short_waves import subgrid_floor, without_short_waves
+
+SLENDER, WIDE_NY = 2.5, 257
+"""Nodes across a contact with an axis ratio below that [-]: its least film lies at its sides."""
+FILM_ERROR, FINE_NX = 0.005, 513
+"""Estimated error of the film above which a smooth case is refined, and nodes along x then [-]."""
+NODES_PER_WAVE = 6
+"""Nodes per shortest wavelength of a rough grid that the case does not state [-]."""
+ROUGH_NX, LARGEST_DEFAULT_GRID = 129, 513
+"""Fewest nodes along x, and most along a side, of such a grid [-]."""
+LOG = logging.getLogger(__name__)
+
+
+def solve_case(case: ContactCase) -> tuple[ContactSolution, Surface | None]:
+    """
+    Solve a case; return the solution and the rough surface on the grid, None if smooth.
+
+    Waves shorter than the case wants on its grid raise the film floor of the solution instead.
+
+    A smooth case without a stated grid is solved again on a finer one when its estimated error is
+    larger than `FILM_ERROR`. Raises InputError for inputs that no contact has; anything else is a
+    status of the solution.
+
+    """
+    surface = case_surface(case)
+    _compile_kernels()
+    surface, raised = _on_grid(case, surface)
+    settings = case_settings(replace(case, film_floor=case.film_floor + raised), surface)
+    solution = _solve(case, surface, settings)
+    if surface is None and case.grid is None and solution.film_error > FILM_ERROR:
+        fine = replace(settings, nx=FINE_NX, ny=2 * settings.ny - 1)
+        finer = _solve(case, surface, fine)
+        if finer.converged:
+            counts = ('newton_iterations', 'krylov_iterations', 'wall_time')
+            both = {name: getattr(solution, name) + getattr(finer, name) for name in counts}
+            return replace(finer, **both), None
+    return solution, surface
+
+
+def _on_grid(case: ContactCase, surface: Surface | None) -> tuple[Surface | None, float]:
+    """Return the surface less the waves that do not go on the grid, and their floor [m]."""
+    shortest = case.roughness.grid_wavelength if case.roughness else None
+    if shortest is None or not isinstance(surface, FractalSurface):
+        return surface, 0.0
+    raised = subgrid_floor(surface, shortest)
+    LOG.info('waves below %.3g um raise the film floor by %.3g nm', 1e6 * shortest, 1e9 * raised)
+    return without_short_waves(surface, shortest), raised
+
+
+@cache
+def _compile_kernels() -> None:
+    """Solve a tiny contact, so that compiling at first use counts against no time cap."""
+    solve_contact(
+        Contact(radius_x=0.01, radius_y=0.01, reduced_modulus=2e11),
+        ContactLubricant(viscosity=0.04, pressure_viscosity=2e-8),
+        Condition(load=1.0, entrainment_speed=1.0),
+        settings=Settings(nx=17, ny=17, domain=(-2.0, 1.5, 1.5), time_cap=1e6),
+    )
+
+
+def _solve(case: ContactCase, surface: Surface | None, settings: Settings) -> ContactSolution:
+    return solve_contact(
+        case.contact,
+        case.lubricant,
+        case.condition,
+        roughness=surface.heights if surface else None,
+        settings=settings,
+    )
+
+
+def case_surface(case: ContactCase) -> Surface | None:
+    """Return the rough surface of a case as a patch, None when it is smooth."""
+    rough = case.roughness
+    if rough is None or (rough.file is None and not rough.rms):
+        return None
+    ellipse = hertz(case.contact, case.load)
+    window = Window(
+        length_x=rough.window_x or 2 * float(ellipse.semi_axis_x),
+        length_y=rough.window_y or 2 * float(ellipse.semi_axis_y),
+    )
+    if rough.file is None:
+        return take_patch(_generated(rough), rough.patch or 'rescaled', window, rough.rms or 0.0)
+    kind = rough.patch or ('rescaled' if rough.rms else 'cut')
+    return take_patch(_measured(rough, rough.file), kind, window, rough.rms or 0.0)
+
+
+def _generated(rough: CaseRoughness) -> FractalSurface:
+    stated = {name: getattr(rough, name) for name in CONSTANTS if getattr(rough, name) is not None}
+    constants = replace(load_screw('nominal').roughness, **stated)
+    draw = fractal_surface(constants, rough.seed or 0, lay=rough.lay or 'isotropic')
+    return shifted(draw, rough.position_x or 0.0, rough.position_y or 0.0)
+
+
+def _measured(rough: CaseRoughness, file: str) -> MeasuredSurface:
+    return read_surface(file, shortest_wavelength=rough.shortest_wavelength, outside=rough.outside)
+
+
+def case_settings(case: ContactCase, surface: Surface | None) -> Settings:
+    """
+    Return how to solve a case.
+
+    On a stated domain the rolling force is that of the domain, without the tail to the meniscus.
+
+    """
+    settings = Settings(film_floor=case.film_floor)
+    if case.domain is not None:
+        domain = (case.domain.inlet, case.domain.outlet, case.domain.side)
+        settings = replace(settings, domain=domain, meniscus_length=0.0)
+    if case.grid is not None:
+        settings = replace(settings, nx=case.grid.nx, ny=case.grid.ny)
+    elif surface is not None:
+        settings = _rough_grid(case, settings, surface.shortest_wavelength)
+    elif ellipticity(case.contact) < SLENDER:
+        settings = replace(settings, ny=WIDE_NY)
+    if surface is not None:
+        _check_resolution(case, settings, surface.shortest_wavelength)
+    return settings
+
+
+def _sides(case: ContactCase, settings: Settings) -> tuple[float, float]:
+    """Return the sides of the domain [m]."""
+    scaled = make_case(case.contact, case.lubricant, case.condition, settings, None)
+    inlet, outlet, side = scaled.domain
+    return (outlet - inlet) * scaled.semi_axis_x, 2 * side * scaled.semi_axis_x
+
+
+def _rough_grid(case: ContactCase, settings: Settings, wave: float) -> Settings:
+    """Return settings with the grid that the shortest wavelength [m] asks for, within bounds."""
+    along, across = (
+        min(2 * math.ceil(NODES_PER_WAVE * side / wave / 2) + 1, LARGEST_DEFAULT_GRID)
+        for side in _sides(case, settings)
+    )
+    return replace(settings, nx=max(along, ROUGH_NX), ny=max(across, settings.ny))
+
+
+def _check_resolution(case: ContactCase, settings: Settings, wave: float) -> None:
+    """Warn when the grid sees less than two nodes of the shortest wavelength [m]."""
+    for name, side in zip('xy', _sides(case, settings), strict=True):
+        distance = side / (getattr(settings, f'n{name}') - 1)
+        if distance > 0.5 * wave:
+            LOG.warning(
+                'the nodes are %.3g um apart along %s, the shortest wavelength is %.3g um: '
+                'asperity contact is not resolved',
+                1e6 * distance,
+                name,
+                1e6 * wave,
+            )

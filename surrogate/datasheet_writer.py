@@ -1,0 +1,52 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Datasheets written back to YAML: the keys, units and blocks from which they are read."""
+
+from collections.abc import Sequence
+from dataclasses import fields
+from pathlib import Path
+import textwrap
+from typing import Any
+
+from surrogate.datasheet import InputError
+from surrogate.files import replace_file
+from surrogate.parameters import Lubricant, Screw
+import yaml
+
+DIGITS = 12
+"""Digits of a number on file: the rounding of a change of unit is none of them."""
+WIDTH = 99
+
+
+def write_sheet(path: str | Path, sheet: Screw | Lubricant, comments: Sequence[str] = ()) -> None:
+    """
+    Write a datasheet whole or not at all, under lines of comment.
+
+    Reading it gives `sheet` to twelve digits. Raises InputError when it cannot be written.
+
+    """
+    path = Path(path)
+    head = [line for text in comments for line in textwrap.wrap(text, WIDTH - 2)]
+    body = yaml.safe_dump(_on_file(sheet), sort_keys=False, allow_unicode=True, width=WIDTH)
+    text = ''.join(f'# {line}\n' for line in head) + body
+    try:
+        replace_file(path, text.encode())
+    except OSError as error:
+        raise InputError(f'{path}: the datasheet cannot be written, {error.strerror}') from None
+
+
+def _on_file(sheet: Any) -> dict[str, Any]:
+    """Return the keys on file with their values in the units on file."""
+    content = {}
+    for spec in fields(sheet):
+        value, rules = getattr(sheet, spec.name), spec.metadata
+        if value is None:
+            continue  # absent on file
+        unit = rules.get('unit')
+        key = f'{spec.name}_{unit}' if unit else spec.name
+        if 'block' in rules:
+            value = _on_file(value)
+        elif 'factor' in rules and not rules.get('whole'):
+            value = float(f'{value / rules["factor"] - rules["shift"]:.{DIGITS}g}')
+        content[key] = value
+    return content

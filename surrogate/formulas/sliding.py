@@ -1,0 +1,113 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Sliding friction over a Hertzian ellipse with one film thickness, by slip power.
+
+The film part shears by Eyring's law under the local pressure, the asperity part by a boundary
+coefficient; both oppose the local slip. The power over the ellipse gives the torque, its mean the
+coefficient.
+
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from surrogate.formulas.geometry import Hertz, Side
+from surrogate.formulas.kinematics import slip_arm
+from surrogate.formulas.lubricant import (
+    LubricantState,
+    shear_stress_eyring_1936,
+    viscosity_roelands_1966,
+)
+from surrogate.parameters import Screw
+
+Array = NDArray[np.float64]
+
+RADIAL_NODES, ANGULAR_NODES = 12, 24
+"""Quadrature of the ellipse: torque within 3e-4 of a grid four times finer each way."""
+
+
+HYSTERESIS = 3 / 32
+"""Work of Hertz's pressure on the front half of the ellipse, as a force over Q b / Rx [-]."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Sliding:
+    """
+    Sliding friction of one contact at many points.
+
+    Power per screw speed (a torque) [N m] and slip-opposed mean traction over normal force [-].
+
+    """
+
+    torque: Array
+    friction_coefficient: Array
+
+
+def ellipse_nodes(
+    radial: int = RADIAL_NODES, angular: int = ANGULAR_NODES
+) -> tuple[Array, Array, Array]:
+    """Return nodes x, y on the unit disk [-] and weights that sum to pi [-], all flat."""
+    points, weights = np.polynomial.legendre.leggauss(radial)
+    radius = 0.5 * (points + 1)
+    angle = (np.arange(angular) + 0.5) * 2 * np.pi / angular
+    x, y = np.outer(radius, np.cos(angle)), np.outer(radius, np.sin(angle))
+    area = np.outer(0.5 * weights * radius, np.full(angular, 2 * np.pi / angular))
+    return x.ravel(), y.ravel(), area.ravel()
+
+
+def sliding_friction(
+    screw: Screw,
+    side: Side,
+    ellipse: Hertz,
+    film: Array,
+    share: Array,
+    oil: LubricantState,
+    speed: Array,
+) -> Sliding:
+    """
+    Integrate the traction of one contact; all arrays share one shape.
+
+    `ellipse` under the normal force, `film` [m], asperity `share` [-], screw `speed` [rad/s], at
+    least 0. At speed zero the film carries no traction and the limit of slow motion remains.
+
+    """
+    x, y, weight = ellipse_nodes()
+    pressure = ellipse.max_pressure[..., None] * np.sqrt(1 - x * x - y * y)
+    arm = slip_arm(
+        screw,
+        side,
+        ellipse.semi_axis_x[..., None] * x,
+        ellipse.semi_axis_y[..., None] * y,
+        ellipse.semi_axis_y[..., None],
+    )
+    viscosity = viscosity_roelands_1966(
+        pressure, oil.viscosity[..., None], oil.pressure_viscosity[..., None]
+    )
+    slip = arm * speed[..., None]
+    thickness = np.broadcast_to(film[..., None], slip.shape)
+    rate = np.divide(slip, thickness, out=np.zeros_like(slip), where=thickness > 0)
+    sheared = shear_stress_eyring_1936(viscosity, rate, oil.eyring_stress)
+    traction = (1 - share[..., None]) * sheared + share[
+        ..., None
+    ] * screw.roughness.asperity_friction * pressure
+    area = weight * (ellipse.semi_axis_x * ellipse.semi_axis_y)[..., None]
+    force = np.sum(traction * area, axis=-1)
+    normal = np.sum(pressure * area, axis=-1)
+    return Sliding(
+        torque=np.sum(traction * arm * area, axis=-1),
+        friction_coefficient=np.divide(force, normal, out=np.zeros_like(force), where=normal > 0),
+    )
+
+
+def hysteresis_force(loss: float, load: float, semi_axis_x: float, radius_x: float) -> float:
+    """
+    Return the rolling force on each surface by elastic hysteresis [N].
+
+    Moment 3/16 alpha Q b of a contact, b along the rolling: Johnson, Contact Mechanics (1985),
+    section 9.2, for any ellipse; it is 2 Rx times this force. `loss` is his alpha [-], normal
+    `load` [N], `semi_axis_x` b and `radius_x` Rx [m].
+
+    """
+    return HYSTERESIS * loss * load * semi_axis_x / radius_x

@@ -1,0 +1,122 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Picture of an identification: measured and modelled torque over speed, and the residual."""
+
+import math
+import os
+from pathlib import Path
+
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, NullFormatter
+import numpy as np
+from surrogate.identify.data import Array, NoLoadRun
+from surrogate.identify.fit import Identification
+
+DPI = 110  # [1/inch]
+BLUE, VERMILION, GREY = '#0072b2', '#d55e00', '#6f6f6f'
+"""Colours that colour-blind readers and a black and white print keep apart."""
+DIRECTIONS = ((1.0, 'o', 'positive'), (-1.0, 's', 'negative'))
+LOG_SPAN = 20.0
+"""Largest speed over smallest from which on the speed axis is logarithmic [-]."""
+HEADROOM = 1.35
+"""Top of the residual axis over what the points need [-]: the legend lies above them."""
+MILLI, RPM = 1e3, 30 / math.pi
+
+
+def draw_identification(folder: Path, run: NoLoadRun, found: Identification, title: str) -> Path:
+    """Write `identify.png` to a folder and return its path."""
+    figure = Figure(figsize=(7.0, 6.2), dpi=DPI, layout='constrained')
+    FigureCanvasAgg(figure)
+    upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=[1.6, 1.0])
+    _draw_torque(upper, run, found)
+    _draw_residual(lower, run, found)
+    upper.set_title(title, fontsize=10)
+    speed = np.abs(run.speed)
+    if speed.max() > LOG_SPAN * speed.min():
+        lower.set_xscale('log')
+        lower.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        lower.xaxis.set_major_formatter('{x:g}')
+        lower.xaxis.set_minor_formatter(NullFormatter())
+    for axes in (upper, lower):
+        axes.grid(visible=True, color='#e6e6e6', linewidth=0.6)
+        axes.set_axisbelow(True)
+    path = folder / 'identify.png'
+    partial = folder / 'identify.png.partial'
+    figure.savefig(partial, format='png')
+    os.replace(partial, path)
+    return path
+
+
+def _draw_torque(axes: Axes, run: NoLoadRun, found: Identification) -> None:
+    """Draw torques in the direction of the motion, so that both directions share an axis."""
+    order = np.argsort(np.abs(run.speed))
+    rpm = RPM * np.abs(run.speed)[order]
+    axes.fill_between(
+        rpm, MILLI * found.contacts[order], color=VERMILION, alpha=0.2, lw=0, label='contacts'
+    )
+    for sign, _, name in _directions(run):
+        chosen = order[run.direction[order] == sign]
+        axes.plot(
+            RPM * np.abs(run.speed[chosen]),
+            MILLI * sign * found.before[chosen],
+            color=GREY,
+            linewidth=1.2,
+            linestyle='-.' if sign > 0 else ':',
+            label=f'model, datasheet{name}',
+        )
+        axes.plot(
+            RPM * np.abs(run.speed[chosen]),
+            MILLI * sign * found.after[chosen],
+            color=BLUE,
+            linewidth=1.3,
+            linestyle='-' if sign > 0 else (0, (5, 1.5)),
+            label=f'model, identified{name}',
+        )
+    _draw_points(axes, run, run.torque, 'measured')
+    axes.set_ylim(0 if (run.direction * run.torque > 0).all() else None)
+    axes.set_ylabel('torque along the motion [mN m]')
+    axes.legend(frameon=False, fontsize=8)
+
+
+def _draw_residual(axes: Axes, run: NoLoadRun, found: Identification) -> None:
+    order = np.argsort(np.abs(run.speed))
+    rpm, band = RPM * np.abs(run.speed)[order], MILLI * found.band[order]
+    axes.fill_between(
+        rpm, -band, band, color=BLUE, alpha=0.15, linewidth=0, label='95 % of the points'
+    )
+    axes.axhline(0, color=BLUE, linewidth=1.0)
+    _draw_points(axes, run, run.torque - found.after, '')
+    axes.set_ylim(top=HEADROOM * axes.get_ylim()[1])
+    axes.set_ylabel('measured - model [mN m]')
+    axes.set_xlabel('screw speed [rev/min]')
+    axes.legend(frameon=False, fontsize=8, loc='upper right')
+
+
+def _draw_points(axes: Axes, run: NoLoadRun, torque: Array, label: str) -> None:
+    """Draw points in the direction of the motion, one standard deviation up and down."""
+    for sign, marker, name in _directions(run):
+        chosen = run.direction == sign
+        axes.errorbar(
+            RPM * np.abs(run.speed[chosen]),
+            MILLI * sign * torque[chosen],
+            yerr=None if run.torque_std is None else MILLI * run.torque_std[chosen],
+            fmt=marker,
+            markersize=4,
+            color='black',
+            markerfacecolor='white' if sign < 0 else 'black',
+            elinewidth=0.8,
+            capsize=2,
+            label=f'{label}{name}' if label else '',
+        )
+
+
+def _directions(run: NoLoadRun) -> list[tuple[float, str, str]]:
+    """Return sign, marker and label of the directions that were measured."""
+    both = run.both_directions
+    return [
+        (sign, marker, f', {name} direction' if both else '')
+        for sign, marker, name in DIRECTIONS
+        if (run.direction == sign).any()
+    ]

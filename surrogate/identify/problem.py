@@ -1,0 +1,184 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+What is fitted to a run: torque on the screw by its parameters, with their ranges and scales.
+
+The parasitic parts and the offset are linear with exact derivatives; viscosity and asperity
+friction act through the contacts.
+
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+import math
+
+import numpy as np
+from surrogate.identify.data import Array, NoLoadRun
+from surrogate.identify.model import ContactModel, FRICTION_BOUNDS, VISCOSITY_BOUNDS
+from surrogate.parameters import InputError, Screw
+
+SPARE_POINTS, SPEED_SPAN = 2, 2.0
+"""Points beyond the number of parameters, largest speed over smallest [-]: the least accepted."""
+LARGEST_TORQUE = 1e3
+"""Upper bound of both parasitic parts, that of the datasheet [N m], [N m s/rad]."""
+STEP = 1e-3
+"""Step of the differences over a parameter's range [-]."""
+NO_EFFECT = 1e-6
+"""Change of the torque over a parameter's range that counts as none, relative [-]."""
+AT_BOUND = 1e-9
+"""Distance from a bound that counts as none, over the scale of the parameter [-]."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Problem:
+    """
+    A run, its contacts, and the parameters in SI units.
+
+    Names, size by which each is scaled, bounds, value in the datasheet; torque of the load at
+    every point [N m].
+
+    """
+
+    run: NoLoadRun
+    contacts: ContactModel
+    names: tuple[str, ...]
+    scale: Array
+    low: Array
+    high: Array
+    start: Array
+    load_torque: Array
+
+    def torque(self, values: Array) -> Array:
+        """Return the torque on the screw [N m]."""
+        run, given = self.run, dict(zip(self.names, values, strict=True))
+        return (
+            run.direction * (self.contact_torque(values) + given['parasitic_torque'])
+            + given['parasitic_torque_rate'] * run.speed
+            + given.get('torque_offset', 0.0)
+            + self.load_torque
+        )
+
+    def contact_torque(self, values: Array) -> Array:
+        """Return the friction torque of the contacts [N m]."""
+        given = dict(zip(self.names, values, strict=True))
+        friction = self.contacts.screw.roughness.asperity_friction
+        return self.contacts.torque(
+            float(given.get('viscosity_factor', 1.0)),
+            float(given.get('asperity_friction', friction)),
+        )
+
+    def residual(self, values: Array) -> Array:
+        """Return measured minus modelled torque [N m]."""
+        return self.run.torque - self.torque(values)
+
+    def jacobian(self, values: Array) -> Array:
+        """Return the derivative of the torque by each parameter, one column each."""
+        run = self.run
+        exact = {
+            'parasitic_torque': run.direction,
+            'parasitic_torque_rate': run.speed,
+            'torque_offset': np.ones_like(run.speed),
+        }
+        columns = [
+            exact[name] if name in exact else run.direction * self._slope(values, place)
+            for place, name in enumerate(self.names)
+        ]
+        return np.stack(columns, axis=1)
+
+    def _slope(self, values: Array, place: int) -> Array:
+        step = STEP * (self.high[place] - self.low[place])
+        up, down = values.copy(), values.copy()
+        up[place] = min(values[place] + step, self.high[place])
+        down[place] = max(values[place] - step, self.low[place])
+        rise = self.contact_torque(up) - self.contact_torque(down)
+        return np.asarray(rise / (up[place] - down[place]))
+
+    def without_effect(self) -> dict[str, str]:
+        """Return the parameters on which no point depends, with the reason."""
+        change = np.abs(self.jacobian(self.start)).max(axis=0) * (self.high - self.low)
+        none = change < NO_EFFECT * np.abs(self.run.torque).max()
+        return {
+            name: 'no point depends on it: kept as in the datasheet'
+            for name, nothing in zip(self.names, none, strict=True)
+            if nothing
+        }
+
+    def at_bounds(self, values: Array) -> dict[str, str]:
+        """Return the parameters at an end of their range, with the reason."""
+        found = {}
+        for place, name in enumerate(self.names):
+            near = AT_BOUND * self.scale[place]
+            if values[place] <= self.low[place] + near:
+                found[name] = f'at its lower bound {self.low[place]:g}, the data ask for less'
+            elif values[place] >= self.high[place] - near:
+                found[name] = f'at its upper bound {self.high[place]:g}, the data ask for more'
+        return found
+
+
+def drag_problem(
+    screw: Screw, run: NoLoadRun, contacts: ContactModel, fitted: Sequence[str]
+) -> Problem:
+    """
+    Return what is fitted: both parasitic parts, the offset if it shows, and those `fitted`.
+
+    Raises InputError for a run from which they cannot follow.
+
+    """
+    if not len(run.speed):
+        raise InputError(f'{run.source}: holds no point in motion')
+    rows = _rows(screw, run, fitted)
+    names, scale, low, high, start = zip(*rows)
+    problem = Problem(
+        run=run,
+        contacts=contacts,
+        names=names,
+        scale=np.array(scale),
+        low=np.array(low),
+        high=np.array(high),
+        start=np.clip(start, low, high),
+        load_torque=run.load * screw.lead / (2 * math.pi),
+    )
+    _check(problem)
+    return problem
+
+
+def _rows(
+    screw: Screw, run: NoLoadRun, fitted: Sequence[str]
+) -> list[tuple[str, float, float, float, float]]:
+    """Return name, scale, bounds and value in the datasheet of each parameter."""
+    size = float(np.abs(run.torque).mean()) or 1.0
+    rate = size / float(np.abs(run.speed).max())
+    rough = screw.roughness.asperity_friction
+    rows = [
+        ('parasitic_torque', size, 0.0, LARGEST_TORQUE, screw.parasitic_torque),
+        ('parasitic_torque_rate', rate, 0.0, LARGEST_TORQUE, screw.parasitic_torque_rate),
+    ]
+    if run.both_directions:
+        rows.append(('torque_offset', size, -math.inf, math.inf, 0.0))
+    if 'viscosity_factor' in fitted:
+        rows.append(('viscosity_factor', 0.1, *VISCOSITY_BOUNDS, 1.0))
+    if 'asperity_friction' in fitted:
+        rows.append(('asperity_friction', 0.01, *FRICTION_BOUNDS, rough))
+    return rows
+
+
+def _check(problem: Problem) -> None:
+    """Refuse a run from which the parameters cannot follow."""
+    run, wanted = problem.run, len(problem.names) + SPARE_POINTS
+    speed = np.abs(run.speed) * 30 / math.pi
+    if len(speed) < wanted:
+        raise InputError(
+            f'{run.source}: has {len(speed)} points in motion, allowed is {wanted} or more for '
+            f'{len(problem.names)} parameters ({", ".join(problem.names)})'
+        )
+    if speed.max() < SPEED_SPAN * speed.min():
+        raise InputError(
+            f'{run.source}: the speeds reach from {speed.min():.4g} to {speed.max():.4g} rev/min, '
+            f'allowed is a span of {SPEED_SPAN:g} to 1 or more'
+        )
+    drag = float((run.direction * (run.torque - problem.load_torque)).mean())
+    if not run.both_directions and drag <= 0:
+        raise InputError(
+            f'{run.source}: the mean friction torque is {drag:.3g} N m, allowed is more than 0: '
+            'friction has the sign of the motion, so torque and speed must agree in sign'
+        )

@@ -1,0 +1,225 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""An identification as a record, a page and the datasheets that hold what was found."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+import math
+from typing import Any
+
+import numpy as np
+from surrogate.formulas import closed_form
+from surrogate.formulas.geometry import helix_angle
+from surrogate.formulas.torque import drag_torque_catalogue
+from surrogate.identify.data import NoLoadRun
+from surrogate.identify.fit import Estimate, Identification
+from surrogate.identify.model import ContactModel, thickened
+from surrogate.parameters import Lubricant, Screw, ZERO_CELSIUS
+
+UNITS = {
+    'parasitic_torque': 'N m',
+    'parasitic_torque_rate': 'N m s/rad',
+    'torque_offset': 'N m',
+    'viscosity_factor': '-',
+    'asperity_friction': '-',
+}
+"""Unit of each parameter."""
+CLOSED_FORM_SHARE = 0.1
+"""Asperity share from which on the closed-form tier is warned about [-]."""
+EXPECTED_SCATTER = (0.5, 2.0)
+"""Residual over the standard deviation given, root mean square, that is not warned about [-]."""
+STRONG = 0.95
+"""Correlation from which on two parameters are warned about [-]."""
+LIGHT_LOAD = 0.25
+"""Axial load over the preload up to which a run counts as without load [-]."""
+PROVENANCE = 'Parasitic torque identified from'
+SUFFIX = '_identified'
+
+
+def identification_record(
+    screw: Screw, run: NoLoadRun, contacts: ContactModel, found: Identification
+) -> dict[str, Any]:
+    """Return an identification as plain numbers, SI units, NaN with a reason where unknown."""
+    speed, share = np.abs(run.speed), _contact_share(run, found)
+    return {
+        'tier': contacts.tier,
+        'status': 'fitted' if found.converged else 'the fit ended before it converged',
+        'converged': found.converged,
+        'warnings': _warnings(screw, run, contacts, found),
+        'screw': screw.name,
+        'oil': contacts.lubricant.name,
+        'data': run.source,
+        'notes': list(run.notes),
+        'points': len(run.speed),
+        'speed_range_rad_s': [float(speed.min()), float(speed.max())],
+        'temperature_K': run.mean_temperature,
+        'parameters': [_estimate_record(one) for one in found.estimates],
+        'correlation': {'of': list(found.correlated), 'matrix': found.correlation.tolist()},
+        'offset_force_N': found.value('torque_offset') * 2 * math.pi / screw.lead,
+        'residual_rms_Nm': found.rms,
+        'residual_rms_before_Nm': found.rms_before,
+        'degrees_of_freedom': found.degrees_of_freedom,
+        'reduced_chi_square': found.reduced_chi_square,
+        'contact_share_range': list(share),
+        'catalogue_drag_torque_Nm': drag_torque_catalogue(
+            screw.preload, screw.lead, helix_angle(screw)
+        ),
+    }
+
+
+def _estimate_record(one: Estimate) -> dict[str, Any]:
+    return {
+        'name': one.name,
+        'unit': UNITS[one.name],
+        'value': one.value,
+        'low': one.low,
+        'high': one.high,
+        'standard_error': one.standard_error,
+        'reason': one.reason,
+    }
+
+
+def _contact_share(run: NoLoadRun, found: Identification) -> tuple[float, float]:
+    """Return the least and largest share of the contacts in the friction torque modelled [-]."""
+    parasitic = found.value('parasitic_torque') + found.value('parasitic_torque_rate') * np.abs(
+        run.speed
+    )
+    total = found.contacts + parasitic
+    share = np.divide(found.contacts, total, out=np.ones_like(total), where=total > 0)
+    return float(share.min()), float(share.max())
+
+
+def _warnings(
+    screw: Screw, run: NoLoadRun, contacts: ContactModel, found: Identification
+) -> list[str]:
+    """Return a sentence for each thing that makes the numbers say less than they seem to."""
+    warnings = [f'{one.name}: {one.reason}' for one in found.estimates if one.reason]
+    if not run.both_directions:
+        warnings.append(
+            'one direction only: a weight on the axis or a wrong zero of the torque counts as '
+            'parasitic torque'
+        )
+    warnings += _at_zero(contacts, found)
+    touching = int((contacts.asperity_share > CLOSED_FORM_SHARE).sum())
+    if touching and contacts.tier == closed_form.TIER:
+        warnings.append(
+            f'{touching} of {len(run.speed)} points have an asperity share above '
+            f'{CLOSED_FORM_SHARE:g}, which the closed-form tier overstates'
+        )
+    scatter = math.sqrt(found.reduced_chi_square) if found.reduced_chi_square >= 0 else 1.0
+    if not EXPECTED_SCATTER[0] <= scatter <= EXPECTED_SCATTER[1]:
+        warnings.append(
+            f'the residual is {scatter:.2g} times the standard deviation given'
+            + (', the model misses something' if scatter > 1 else '')
+        )
+    load = float(np.abs(run.load).max())
+    if load > LIGHT_LOAD * screw.preload:
+        warnings.append(
+            f'the load is up to {load:.4g} N, above {LIGHT_LOAD:g} of the preload: what the '
+            'model misses under load counts as parasitic'
+        )
+    return warnings + _entangled(found)
+
+
+def _at_zero(contacts: ContactModel, found: Identification) -> list[str]:
+    """Return what it means that a parasitic part met its bound."""
+    hint = f'check oil, temperature, preload and the sign of the torque, tier {contacts.tier}'
+    if found.value('parasitic_torque') == 0:
+        return [f'the contacts of the model take more torque than was measured: {hint}']
+    if found.value('parasitic_torque_rate') == 0:
+        return [f'the torque measured rises less with speed than that of the contacts: {hint}']
+    return []
+
+
+def _entangled(found: Identification) -> list[str]:
+    """Return a sentence for each pair of parameters that the data hardly tell apart."""
+    return [
+        f'{first} and {second} are correlated by {found.correlation[row, column]:.3f}: the data '
+        'tell a mixture of them better than either'
+        for row, first in enumerate(found.correlated)
+        for column, second in enumerate(found.correlated)
+        if row < column and abs(found.correlation[row, column]) > STRONG
+    ]
+
+
+def identified_screw(
+    screw: Screw, run: NoLoadRun, contacts: ContactModel, found: Identification
+) -> Screw:
+    """Return the datasheet with what was found, and in its source from where."""
+    friction = found.value('asperity_friction')
+    rough = screw.roughness
+    if not math.isnan(friction):
+        rough = replace(rough, asperity_friction=friction)
+    return replace(
+        screw,
+        name=screw.name.removesuffix(SUFFIX) + SUFFIX,
+        source=f'{screw.source.split(PROVENANCE)[0].rstrip()} {_provenance(run, contacts, found)}',
+        parasitic_torque=found.value('parasitic_torque'),
+        parasitic_torque_rate=found.value('parasitic_torque_rate'),
+        roughness=rough,
+    )
+
+
+def identified_oil(
+    lubricant: Lubricant, run: NoLoadRun, contacts: ContactModel, found: Identification
+) -> Lubricant:
+    """Return the oil as it was in the run, anchored at its temperature."""
+    return replace(
+        thickened(contacts.lubricant, found.value('viscosity_factor')),
+        name=lubricant.name.removesuffix(SUFFIX) + SUFFIX,
+        source=f'{lubricant.source.split(PROVENANCE)[0].rstrip()} '
+        f'{_provenance(run, contacts, found)}',
+    )
+
+
+def _provenance(run: NoLoadRun, contacts: ContactModel, found: Identification) -> str:
+    speed = np.abs(run.speed) * 30 / math.pi
+    return (
+        f'{PROVENANCE} {run.source}: {len(speed)} points from {speed.min():.4g} to '
+        f'{speed.max():.4g} rev/min, tier {contacts.tier}, oil {contacts.lubricant.name} at '
+        f'{run.mean_temperature - ZERO_CELSIUS:.4g} degC, residual {found.rms:.3g} N m rms. '
+        + '; '.join(_sentence(one) for one in found.estimates)
+        + '.'
+    )
+
+
+def _sentence(one: Estimate) -> str:
+    unit = f' {UNITS[one.name]}' if UNITS[one.name] != '-' else ''
+    if one.reason:
+        return f'{one.name} {one.value:.5g}{unit} ({one.reason})'
+    return f'{one.name} {one.value:.5g}{unit} (95 % {one.low:.5g} to {one.high:.5g})'
+
+
+def page(record: Mapping[str, Any]) -> str:
+    """Return a record as a page of text in workshop units."""
+    low, high = (end * 30 / math.pi for end in record['speed_range_rad_s'])
+    least, most = (100 * share for share in record['contact_share_range'])
+    return '\n'.join(
+        [
+            f'{record["screw"]}, {record["oil"]}, tier {record["tier"]}: '
+            f'{record["points"]} points of {record["data"]}, {low:.4g} to {high:.4g} rev/min, '
+            f'{record["temperature_K"] - ZERO_CELSIUS:.4g} degC',
+            *(f'  {_row(one)}' for one in record['parameters']),
+            *_offset_row(record),
+            f'  {"residual, rms":22} {record["residual_rms_Nm"]:.4g} N m, '
+            f'{record["residual_rms_before_Nm"]:.4g} N m with the datasheet',
+            f'  {"contacts":22} {least:.0f} to {most:.0f} % of the friction torque; catalogue '
+            f'drag {record["catalogue_drag_torque_Nm"]:.3f} N m',
+            *(f'  note: {text}' for text in record['notes']),
+            f'  status: {record["status"]}',
+            *(f'  warning: {text}' for text in record['warnings']),
+        ]
+    )
+
+
+def _offset_row(record: Mapping[str, Any]) -> list[str]:
+    force = record['offset_force_N']
+    if math.isnan(force):
+        return []
+    return [f'  {"offset as a load":22} {force:.3g} N, a weight on the axis for instance']
+
+
+def _row(one: Mapping[str, Any]) -> str:
+    unit = '' if one['unit'] == '-' else f' {one["unit"]}'
+    interval = f'95 %: {one["low"]:.4g} to {one["high"]:.4g}'
+    return f'{one["name"]:22} {one["value"]:.4g}{unit:10} {one["reason"] or interval}'

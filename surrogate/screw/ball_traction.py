@@ -1,0 +1,293 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Traction on a ball at one contact: forces, moments and lost power for a given relative motion.
+
+A traction is a set of places with a friction force each, which opposes the slip there. The sums
+over the places and their exact derivatives are what the balance of the ball needs.
+
+"""
+
+from dataclasses import dataclass, replace
+import math
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+from surrogate.ehl import ContactSolution, punctured_nodes
+from surrogate.ehl.friction import viscosity_of
+from surrogate.formulas.geometry import hertz, screw_contact, Side
+from surrogate.parameters import InputError, Screw
+from surrogate.screw.ball_motion import Array, heathcote_radius
+from surrogate.screw.ball_sums import sum_friction
+
+RADIAL_NODES, ANGULAR_NODES = 20, 60
+"""Quadrature of the ellipse: lost power within 1e-4 of a rule twice as fine each way."""
+SAMPLE = 7
+"""Nodes of a solved contact for one of its sample [-]."""
+LARGEST_SLIP = 0.1
+"""Slip over the entrainment speed that no rolling ball comes near [-]."""
+FEW = 2000
+"""Nodes that are not worth a sample [-]."""
+
+
+class Traction(Protocol):
+    """
+    Friction law on the places of one contact.
+
+    The friction force of a place at a given slip is proportional to the normal force of the
+    contact. `growth` is the exponent of the size of the patch in the normal force [-],
+    `slip_floor` [m/s] enters as sqrt(slip^2 + floor^2).
+
+    """
+
+    @property
+    def growth(self) -> float:
+        """Exponent of the size of the patch in the normal force [-]."""
+
+    @property
+    def slip_floor(self) -> float:
+        """Floor of the slip speed [m/s]."""
+
+    def places(self, load: float) -> tuple[Array, Array]:
+        """Return x along the entrainment and y across it [m] under a `load` [N]."""
+
+    def strengths(self, load: float) -> tuple[Array, Array, Array]:
+        """
+        Return what makes the friction force of each place, boundary + eyring asinh(rate slip).
+
+        Boundary and Eyring force [N], rate [s/m].
+
+        """
+
+    def sample(self) -> 'Traction':
+        """Return about the same friction on fewer places, for the way to a solution."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Wrench:
+    """
+    What a contact does to the ball by friction.
+
+    `values`: forces along t and along e_p [N], moments about t, e and e_p through the ball centre
+    [N m]. `by_motion` (5, 5) and `by_load` (5) are their derivatives by the relative motion
+    [m/s, rad/s] and the normal force [N]. Lost power [W], integrated from the slip.
+
+    """
+
+    values: Array
+    by_motion: Array
+    by_load: Array
+    power: float
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class CoulombTraction:
+    """
+    Constant friction coefficient [-] on the Hertz pressure of a growing ellipse.
+
+    Places `x` along and `y` across the track under 1 N [m N^(-1/3)], `share` of the normal force
+    at each [-]; slip floor [m/s].
+
+    """
+
+    coefficient: float
+    x: Array
+    y: Array
+    share: Array
+    slip_floor: float = 1e-4
+
+    @property
+    def growth(self) -> float:
+        """Exponent of the size of the ellipse in the normal force [-]: Hertz, 1/3."""
+        return 1 / 3
+
+    def places(self, load: float) -> tuple[Array, Array]:
+        """Return the quadrature points x, y [m] of the ellipse under `load` [N]."""
+        size = math.cbrt(load)
+        return size * self.x, size * self.y
+
+    def strengths(self, load: float) -> tuple[Array, Array, Array]:
+        """Return mu N [N] of each place under `load` [N], and no oil."""
+        none = np.zeros_like(self.share)
+        return self.coefficient * load * self.share, none, none
+
+    def sample(self) -> 'CoulombTraction':
+        """Return itself: a quadrature has no place too many."""
+        return self
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class SolvedTraction:
+    """
+    Friction over the pressurised nodes of a solved contact, from any of its arrays.
+
+    Places `x` along the entrainment, `y` across [m]; `load` [N] of the solution, to which another
+    normal force is scaled; `boundary` [N], the friction force of punctured nodes, which slip does
+    not change; `eyring` [N], Eyring stress times area of the nodes that shear, and `eyring_rate`
+    [s/m], eta(p)/(tau0 h) there; slip floor [m/s].
+
+    """
+
+    x: Array
+    y: Array
+    load: float
+    boundary: Array
+    eyring: Array
+    eyring_rate: Array
+    slip_floor: float = 1e-4
+
+    @property
+    def growth(self) -> float:
+        """Exponent of the size of the patch in the normal force [-]: the nodes stay, 0."""
+        return 0.0
+
+    def places(self, load: float) -> tuple[Array, Array]:
+        """Return the nodes x, y [m], the same under any `load` [N]."""
+        return self.x, self.y
+
+    def strengths(self, load: float) -> tuple[Array, Array, Array]:
+        """Return mu_a p and tau0 times the area of each node, scaled to `load` [N], the rate."""
+        scale = load / self.load
+        return scale * self.boundary, scale * self.eyring, self.eyring_rate
+
+    def sample(self) -> 'SolvedTraction':
+        """Return every `SAMPLE`-th node, each for as many; itself where nodes are few."""
+        if self.x.size < FEW:
+            return self
+        return replace(
+            self,
+            x=self.x[::SAMPLE],
+            y=self.y[::SAMPLE],
+            boundary=SAMPLE * self.boundary[::SAMPLE],
+            eyring=SAMPLE * self.eyring[::SAMPLE],
+            eyring_rate=self.eyring_rate[::SAMPLE],
+        )
+
+
+def hertz_nodes(
+    radial: int = RADIAL_NODES, angular: int = ANGULAR_NODES
+) -> tuple[Array, Array, Array]:
+    """
+    Return x, y on the unit disk [-] and the share of a Hertz load at each place [-].
+
+    Gauss-Legendre in u = sqrt(1 - r^2), which is the pressure: the weight is 3 u^2 du.
+
+    """
+    points, weights = np.polynomial.legendre.leggauss(radial)
+    u = 0.5 * (points + 1)
+    angle = (np.arange(angular) + 0.5) * 2 * np.pi / angular
+    radius = np.sqrt(1 - u * u)
+    x, y = np.outer(radius, np.cos(angle)), np.outer(radius, np.sin(angle))
+    share = np.outer(1.5 * weights * u * u, np.full(angular, 1 / angular))
+    return x.ravel(), y.ravel(), share.ravel()
+
+
+def coulomb_traction(
+    screw: Screw, side: Side, coefficient: float, *, slip_floor: float = 1e-4
+) -> CoulombTraction:
+    """
+    Return sliding with a constant friction coefficient [-] over the Hertz ellipse of one side.
+
+    Slip floor [m/s]. Raises InputError for numbers that make no sense.
+
+    """
+    if not (math.isfinite(coefficient) and coefficient >= 0):
+        raise InputError(f'coefficient is {coefficient!r}, allowed is 0 or more')
+    _check_floor(slip_floor)
+    ellipse = hertz(screw_contact(screw, side), 1.0)
+    x, y, share = hertz_nodes()
+    return CoulombTraction(
+        coefficient=coefficient,
+        x=float(ellipse.semi_axis_x) * x,
+        y=float(ellipse.semi_axis_y) * y,
+        share=share,
+        slip_floor=slip_floor,
+    )
+
+
+def solved_traction(
+    solution: ContactSolution,
+    *,
+    asperity_friction: float = 0.1,
+    slip_floor: float = 1e-4,
+    neglected: float = 0.0,
+) -> SolvedTraction:
+    """
+    Return the friction over a solved contact, as `contact_friction` integrates it.
+
+    Boundary coefficient [-] on punctured nodes, slip floor [m/s]; `neglected`, largest share of
+    the friction [-] of the weak nodes that are left out. Raises InputError for a solution that did
+    not converge.
+
+    """
+    if not solution.converged:
+        raise InputError(f'no traction without a solved contact: {solution.status.value}')
+    _check_floor(slip_floor)
+    x, y = np.meshgrid(solution.x, solution.y, indexing='ij')
+    area = (solution.x[1] - solution.x[0]) * (solution.y[1] - solution.y[0])
+    dry = punctured_nodes(solution)
+    wet = ~dry & (solution.film_pressure > 0)
+    boundary = np.where(dry, asperity_friction * solution.pressure, 0.0) * area
+    stress = solution.lubricant.eyring_stress
+    viscosity = viscosity_of(solution.lubricant, solution.film_pressure)
+    rate = np.divide(viscosity, stress * solution.film, out=np.zeros_like(x), where=wet)
+    eyring = np.where(wet, stress * area, 0.0)
+    # The weaker a node, the later it saturates: its share is largest at a slip above any.
+    slip = LARGEST_SLIP * solution.condition.entrainment_speed
+    friction = boundary + eyring * np.arcsinh(rate * slip)
+    used = _strongest(friction, neglected)
+    return SolvedTraction(
+        x=x[used],
+        y=y[used],
+        load=solution.condition.load,
+        boundary=boundary[used],
+        eyring=eyring[used],
+        eyring_rate=rate[used],
+        slip_floor=slip_floor,
+    )
+
+
+def _strongest(friction: Array, neglected: float) -> NDArray[np.bool_]:
+    """Return the places that bear all but a share [-] of the friction."""
+    rising = np.sort(friction, axis=None)
+    weak = int(np.searchsorted(np.cumsum(rising), neglected * rising.sum()))
+    return np.asarray((friction > 0) & (friction >= rising[weak]))
+
+
+def integrate_traction(
+    screw: Screw,
+    side: Side,
+    traction: Traction,
+    load: float,
+    motion: Array,
+    *,
+    direction: float = 1.0,
+    slip_floor: float = 0.0,
+) -> Wrench:
+    """
+    Integrate the friction of one contact with normal force `load` [N].
+
+    Slip as in `slip_maps`; `motion` against the raceway [m/s, rad/s] as `relative_motion` gives
+    it; `direction` of the entrainment along t, 1 or -1; a slip floor [m/s] above that of the law.
+    The traction of a place is -f(|V|) V/|V|; power is lost as the sum of f V^2/|V|, apart from the
+    forces.
+
+    """
+    x, y = (direction * place for place in traction.places(load))
+    values, by_motion, by_size, power = sum_friction(
+        x,
+        y,
+        *traction.strengths(load),
+        np.asarray(motion, dtype=np.float64),
+        0.5 * screw.ball_diameter,
+        heathcote_radius(screw, side),
+        max(slip_floor, traction.slip_floor),
+    )
+    by_load = (values + traction.growth * by_size) / load
+    return Wrench(values=values, by_motion=by_motion, by_load=by_load, power=power)
+
+
+def _check_floor(floor: float) -> None:
+    if not (math.isfinite(floor) and floor > 0):
+        raise InputError(f'slip_floor is {floor!r} m/s, allowed is more than 0')

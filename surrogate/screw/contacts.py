@@ -1,0 +1,206 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Contacts of the screw in the full tier, each solved twice: smooth for the film ratio, and rough.
+
+The rough raceway is one draw of its surface, rescaled over a window that no load moves; waves that
+the grid is too coarse for raise the film floor.
+
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
+import math
+
+from surrogate.ehl import Condition, ContactLubricant, ContactSolution, Settings, solve_contact
+from surrogate.formulas.geometry import Contact, hertz, screw_contact, Side, SIDES
+from surrogate.formulas.inlet_heating import heated_speed
+from surrogate.formulas.kinematics import no_slip_rates
+from surrogate.formulas.load_sharing import normal_force, UNLOADING_RATIO
+from surrogate.formulas.lubricant import lubricant_state
+from surrogate.parameters import InputError, Lubricant, OperatingPoint, Screw, ZERO_CELSIUS
+from surrogate.raceway.fractal import fractal_surface, FractalSurface, take_patch, Window
+from surrogate.raceway.short_waves import subgrid_floor, without_short_waves
+
+Pair = tuple[ContactSolution, ContactSolution]
+"""The same contact smooth and rough."""
+Start = tuple[ContactSolution | None, ContactSolution | None]
+ACROSS, MOST_NODES = 2.42, 513
+"""About the width of a rough domain over the semi-axis across (2.4 to 3.1); most nodes there by
+the wavelength [-]."""
+GRID_WAVELENGTH = 16e-6
+"""Shortest wavelength on the grid [m]; docs/onset.md."""
+WINDOW_SHARE = 0.05
+"""Least axial load whose Hertz rectangle is the window of the patch, over the rating [-]."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ScrewSettings:
+    """
+    How to solve a screw.
+
+    Settings of the smooth and of the rough contacts, but for the film floor, which is that of the
+    datasheet; draw of the roughness, None for smooth raceways; shortest wavelength on the grid
+    [m], shorter ones raise the floor, None to solve them all; nodes per such wave across the
+    track, up to `MOST_NODES`, if that is more than the rough settings have [-]; `same_places`
+    puts them at the same places of the raceway whatever the load; `inlet_heating` thins films by
+    shear heating of the inlet; contacts are solved again where friction changes their normal force
+    by more than `coupling_tolerance` [-].
+
+    """
+
+    smooth: Settings = field(default_factory=Settings)
+    rough: Settings = field(default_factory=lambda: Settings(nx=129, ny=257, error_estimate=False))
+    draw: int | None = 0
+    grid_wavelength: float | None = GRID_WAVELENGTH
+    nodes_per_wave: float = 6.0
+    same_places: bool = False
+    inlet_heating: bool = False
+    coupling_tolerance: float = 0.01
+
+
+def solve_sides(
+    screw: Screw,
+    lubricant: Lubricant,
+    point: OperatingPoint,
+    settings: ScrewSettings,
+    loads: tuple[float, float],
+    start: Sequence[Start] = (),
+) -> tuple[Pair, ...]:
+    """
+    Solve the contacts of a nut under their normal forces [N], with the screw and with the nut.
+
+    `start` holds both pairs of a neighbouring point; a smooth contact of this very point is taken
+    as it is. No pairs for a nut without load.
+
+    """
+    if not any(loads):
+        return ()
+    known = start or [(None, None)] * len(SIDES)
+    return tuple(
+        _solve_side(screw, lubricant, point, settings, side, load, near)
+        for side, load, near in zip(SIDES, loads, known, strict=True)
+    )
+
+
+def smooth_film(smooth: ContactSolution) -> float:
+    """Return the central film [m], extrapolated where the half grid was solved; 0 at rest."""
+    if not smooth.condition.entrainment_speed:
+        return 0.0
+    extrapolated = smooth.extrapolated_film
+    return smooth.central_film if math.isnan(extrapolated) else extrapolated
+
+
+def _solve_side(
+    screw: Screw,
+    lubricant: Lubricant,
+    point: OperatingPoint,
+    settings: ScrewSettings,
+    side: Side,
+    load: float,
+    start: tuple[ContactSolution | None, ContactSolution | None],
+) -> Pair:
+    """Return the smooth and the rough contact under a normal force [N], from a near pair."""
+    contact = screw_contact(screw, side)
+    speed = no_slip_rates(screw).entrainment * abs(point.speed)
+    if settings.inlet_heating:
+        speed = heated_speed(screw, lubricant, side, load, speed, point.temperature)
+    condition = Condition(load=load, entrainment_speed=speed)
+    fluid = fluid_at(lubricant, point.temperature)
+    even = replace(settings.smooth, film_floor=screw.roughness.film_floor)
+    known = start[0]
+    if known is not None and _is_of(known, (contact, fluid, condition, even)):
+        smooth = known
+    else:
+        smooth = solve_contact(contact, fluid, condition, settings=even, start=known)
+    if settings.draw is None or not smooth.converged:
+        return smooth, smooth
+    surface, raised = _on_grid(screw, side, settings.draw, settings.grid_wavelength)
+    rough = solve_contact(
+        contact,
+        fluid,
+        condition,
+        roughness=surface.heights,
+        settings=replace(
+            _across(settings, smooth.semi_axis_y, surface.shortest_wavelength),
+            film_floor=screw.roughness.film_floor + raised,
+        ),
+        start=start[1],
+    )
+    return smooth, rough
+
+
+@lru_cache(maxsize=8)
+def _on_grid(
+    screw: Screw, side: Side, draw: int, cut: float | None
+) -> tuple[FractalSurface, float]:
+    """Return the raceway with waves down to `cut` [m] and what others lift the floor by [m]."""
+    surface = raceway_patch(screw, side, draw)
+    if cut is None or cut >= screw.roughness.sample_length:
+        return surface, 0.0
+    return without_short_waves(surface, cut), subgrid_floor(surface, cut)
+
+
+def _is_of(
+    known: ContactSolution, case: tuple[Contact, ContactLubricant, Condition, Settings]
+) -> bool:
+    """Tell whether a smooth solution converged and is that of a case."""
+    return known.converged and case == (
+        known.contact,
+        known.lubricant,
+        known.condition,
+        known.settings,
+    )
+
+
+def fluid_at(lubricant: Lubricant, temperature: float) -> ContactLubricant:
+    """Return the oil at a temperature [K]; InputError where it is no liquid any more."""
+    oil = lubricant_state(lubricant, temperature)
+    try:
+        return ContactLubricant(
+            viscosity=float(oil.viscosity),
+            pressure_viscosity=float(oil.pressure_viscosity),
+            eyring_stress=oil.eyring_stress,
+        )
+    except InputError as error:
+        raise InputError(
+            f'temperature is {temperature - ZERO_CELSIUS:g} degC: {lubricant.name}: {error}'
+        ) from None
+
+
+def shortest_on_grid(screw: Screw, settings: ScrewSettings) -> float:
+    """Return the shortest wavelength that rough contacts solve [m], infinite when smooth."""
+    if settings.draw is None:
+        return math.inf
+    surface, cut = fractal_surface(screw.roughness, settings.draw), settings.grid_wavelength
+    if cut is not None and cut < screw.roughness.sample_length:
+        surface = without_short_waves(surface, cut)
+    return surface.shortest_wavelength
+
+
+def _across(settings: ScrewSettings, semi_axis: float, wave: float) -> Settings:
+    """Return the rough settings with the nodes across that a semi-axis and a wave [m] ask for."""
+    rough, width = settings.rough, ACROSS * semi_axis
+    spacing = max(wave / settings.nodes_per_wave, width / MOST_NODES)
+    if settings.same_places:
+        return replace(rough, spacing=spacing)
+    wanted = 2 * math.ceil(width / spacing / 2) + 1
+    return replace(rough, ny=max(rough.ny, min(wanted, MOST_NODES)))
+
+
+def raceway_patch(screw: Screw, side: Side, draw: int) -> FractalSurface:
+    """
+    Return one draw of the raceway, rescaled once over a window that no load moves.
+
+    The window is the Hertz rectangle under the load that relieves the other nut, or under
+    `WINDOW_SHARE` of the static rating where that is larger.
+
+    """
+    force = max(UNLOADING_RATIO * screw.preload, WINDOW_SHARE * screw.static_rating)
+    ellipse = hertz(screw_contact(screw, side), float(normal_force(screw, force)))
+    window = Window(
+        length_x=2 * float(ellipse.semi_axis_x), length_y=2 * float(ellipse.semi_axis_y)
+    )
+    surface = fractal_surface(screw.roughness, draw)
+    return take_patch(surface, 'rescaled', window, screw.roughness.rms)

@@ -1,0 +1,245 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""One operating point as a record: plain numbers for JSON, and a page for a person."""
+
+from collections.abc import Mapping
+import math
+import time
+from typing import Any
+
+import numpy as np
+from surrogate.formulas import closed_form, torque
+from surrogate.formulas.film import (
+    central_film_nijenbanning_1994,
+    Groups,
+    outside_range,
+    rolling_force_biboulet_houpert_2010,
+)
+from surrogate.formulas.geometry import helix_angle, screw_contact
+from surrogate.formulas.load_sharing import nut_forces, UNLOADING_RATIO
+from surrogate.parameters import Lubricant, OperatingPoint, Screw, ZERO_CELSIUS
+
+CONSTANT_FRICTION = 0.005
+"""Effective friction coefficient of the constant-friction comparator [-]."""
+FORMULAS = ('central_film_hamrock_dowson_1977', rolling_force_biboulet_houpert_2010.__name__)
+SPREAD_ROWS = (
+    ('efficiency', 'efficiency', 1.0, ''),
+    ('friction torque', 'friction_torque_Nm', 1.0, 'N m'),
+    ('RCS', 'rcs', 100.0, '%'),
+    ('friction coefficient', 'friction_coefficient', 1.0, ''),
+)
+"""Label, key, factor and unit of what a page says about the spread over draws."""
+STATUS = 'closed form: published formulas, an estimate that overstates asperity contact'
+
+
+def regime(film_ratio: float) -> str:
+    """Return the regime of a film ratio [-]: boundary < 1 <= mixed < 3 <= hydrodynamic."""
+    if math.isnan(film_ratio):
+        return 'unknown'
+    return 'boundary' if film_ratio < 1 else 'mixed' if film_ratio < 3 else 'hydrodynamic'
+
+
+def closed_form_record(
+    screw: Screw, lubricant: Lubricant, point: OperatingPoint
+) -> dict[str, Any]:
+    """
+    Solve one point in the closed-form tier and return it as plain numbers.
+
+    SI units, NaN where unknown. Four quadrants: the speed's sign is the direction of motion, the
+    load opposes the motion when both have one sign.
+
+    """
+    started = time.perf_counter()
+    load = point.opposing_load
+    result = closed_form.solve(screw, lubricant, abs(point.speed), load, point.temperature)
+    friction_torque, film_ratio = float(result.friction_torque), float(result.film_ratio)
+    contacts = [_contact_record(contact) for contact in result.contacts]
+    worst = contacts[int(result.worst_contact)]
+    return {
+        'tier': closed_form.TIER,
+        'status': STATUS,
+        'warnings': _warnings(screw, lubricant, point, result),
+        'screw': screw.name,
+        'oil': lubricant.name,
+        'speed_rad_s': point.speed,
+        'load_N': point.load,
+        'opposing_load_N': load,
+        'temperature_K': point.temperature,
+        'efficiency': torque.efficiency(friction_torque, load, screw.lead),
+        'friction_torque_Nm': friction_torque,
+        'driving_torque_Nm': float(torque.driving_torque(friction_torque, load, screw.lead)),
+        'back_driving': torque.is_back_driving(friction_torque, load, screw.lead),
+        'rcs': float(result.rcs),
+        'asperity_share': float(result.asperity_share),
+        'film_ratio': film_ratio,
+        'regime': regime(film_ratio),
+        'central_film_m': float(result.central_film),
+        'minimum_film_m': float(result.minimum_film),
+        'friction_coefficient': float(result.friction_coefficient),
+        'max_pressure_Pa': float(result.max_pressure),
+        'worst_contact': {key: worst[key] for key in ('nut', 'side')},
+        'normal_force_loaded_N': float(result.contacts[0].normal_force),
+        'normal_force_relieved_N': float(result.contacts[2].normal_force),
+        'entrainment_speed_m_s': float(result.entrainment_speed),
+        'contact_angle_A_rad': screw.contact_angle,
+        'contact_angle_B_rad': screw.contact_angle,
+        'contacts': contacts,
+        'comparators': _comparators(screw, point, result.contacts[0]),
+        'wall_s': time.perf_counter() - started,
+    }
+
+
+def _contact_record(contact: closed_form.ContactResult) -> dict[str, Any]:
+    return {
+        'nut': contact.nut,
+        'side': contact.side,
+        'reason': '' if contact.normal_force > 0 else 'no load on this nut, so no film',
+        'normal_force_N': float(contact.normal_force),
+        'semi_axis_x_m': float(contact.ellipse.semi_axis_x),
+        'semi_axis_y_m': float(contact.ellipse.semi_axis_y),
+        'hertz_pressure_Pa': float(contact.ellipse.max_pressure),
+        'central_film_m': float(contact.central_film),
+        'minimum_film_m': float(contact.minimum_film),
+        'film_ratio': float(contact.film_ratio),
+        'rcs': float(contact.asperity_share),
+        'asperity_share': float(contact.asperity_share),
+        'friction_coefficient': float(contact.friction_coefficient),
+        'rolling_force_N': float(contact.rolling_force),
+        'sliding_torque_Nm': float(contact.sliding_torque),
+        'rolling_torque_Nm': float(contact.rolling_torque),
+    }
+
+
+def _comparators(
+    screw: Screw, point: OperatingPoint, loaded_screw: closed_form.ContactResult
+) -> dict[str, Any]:
+    """Return what the classical formulas say of the same point."""
+    angle, load = helix_angle(screw), point.opposing_load
+    forces = [float(force) for force in nut_forces(load, screw.preload)]
+    opposing, assisting = forces if load >= 0 else forces[::-1]
+    film = math.nan
+    if point.speed:
+        film = float(
+            central_film_nijenbanning_1994(
+                screw_contact(screw, loaded_screw.side), loaded_screw.film_groups
+            )
+        )
+    driving = torque.torque_constant_friction(
+        opposing, assisting, screw.pitch_radius, angle, CONSTANT_FRICTION
+    )
+    friction = driving - torque.driving_torque(0.0, load, screw.lead)
+    return {
+        'constant_friction_coefficient': CONSTANT_FRICTION,
+        'constant_friction_torque_Nm': driving,
+        'constant_friction_efficiency': torque.efficiency(friction, load, screw.lead),
+        'catalogue_drag_torque_Nm': torque.drag_torque_catalogue(screw.preload, screw.lead, angle),
+        'central_film_nijenbanning_m': film,
+        'reason': '' if film > 0 else 'no film at rest or without load',
+    }
+
+
+def _warnings(
+    screw: Screw, lubricant: Lubricant, point: OperatingPoint, result: closed_form.ScrewResult
+) -> list[str]:
+    """Return a sentence for each rating or fitted range that the point leaves."""
+    warnings = []
+    product = abs(point.speed) * 2 * screw.pitch_radius
+    if product > screw.speed_limit:
+        warnings.append(
+            f'speed: D n is {product * 30 / math.pi:.3g} m rev/min, the screw allows '
+            f'{screw.speed_limit * 30 / math.pi:.3g}'
+        )
+    if abs(point.load) > screw.static_rating:
+        warnings.append(
+            f'load: {abs(point.load):.4g} N, the static rating is {screw.static_rating:.4g} N'
+        )
+    if screw.preload and abs(point.load) >= UNLOADING_RATIO * screw.preload:
+        warnings.append(
+            'load: the relieved nut carries nothing, unloading begins at '
+            f'{UNLOADING_RATIO * screw.preload:.4g} N'
+        )
+    low, high = lubricant.minimum_temperature, lubricant.maximum_temperature
+    if not low <= point.temperature <= high:
+        warnings.append(
+            f'temperature: {point.temperature - ZERO_CELSIUS:.4g} degC, the oil sheet '
+            f'covers {low - ZERO_CELSIUS:g} to {high - ZERO_CELSIUS:g} degC'
+        )
+    g = _all_groups(result.contacts)
+    for formula in FORMULAS if point.speed else ():
+        phrases = outside_range(formula, g)
+        if phrases:
+            warnings.append(f'{formula} outside its range: {", ".join(phrases)}')
+    return warnings
+
+
+def _all_groups(contacts: tuple[closed_form.ContactResult, ...]) -> Groups:
+    """Return the film groups of all contacts as one, so that a range is left only once."""
+    every = [contact.film_groups for contact in contacts]
+    return Groups(
+        speed=np.stack([g.speed for g in every]),
+        load=np.stack([g.load for g in every]),
+        material=np.stack([g.material for g in every]),
+        radius_ratio=max(g.radius_ratio for g in every),
+    )
+
+
+def _spread_lines(ensemble: Mapping[str, Any] | None) -> list[str]:
+    """Return what draws of the roughness leave uncertain, as lines of a page."""
+    if ensemble is None:
+        return []
+    rows = [
+        f'  {label:20} {factor * part["mean"]:9.4g} +- {factor * part["error"]:.2g} {unit}'
+        f', one draw {factor * part["deviation"]:.2g}'
+        for label, key, factor, unit in SPREAD_ROWS
+        for part in [ensemble[key]]
+    ]
+    count = ensemble['draws'] - ensemble['failed']
+    return [f'  mean of {count} draws of the roughness with its standard error:', *rows, '']
+
+
+def page(record: Mapping[str, Any]) -> str:
+    """Return a record as a page of text in workshop units."""
+    rows = [
+        (
+            'efficiency',
+            f'{record["efficiency"]:.3f}'
+            + (', load drives the screw' if record['back_driving'] else ''),
+        ),
+        ('friction torque', f'{record["friction_torque_Nm"]:.4f} N m'),
+        ('driving torque', f'{record["driving_torque_Nm"]:.4f} N m'),
+        ('regime', f'{record["regime"]}, Lambda {record["film_ratio"]:.2f}'),
+        (
+            'RCS',
+            f'{100 * record["rcs"]:.2f} %'
+            + (' (estimate)' if record['tier'] == closed_form.TIER else ''),
+        ),
+        ('central film', f'{1e9 * record["central_film_m"]:.1f} nm'),
+        ('friction coefficient', f'{record["friction_coefficient"]:.4f}'),
+        ('entrainment speed', f'{1e3 * record["entrainment_speed_m_s"]:.1f} mm/s'),
+    ]
+    contacts = [
+        f'  {contact["nut"] + " nut, " + contact["side"]:20} {contact["normal_force_N"]:9.2f} N '
+        f'{1e-9 * contact["hertz_pressure_Pa"]:8.3f} GPa '
+        f'{1e9 * contact["central_film_m"]:8.1f} nm {contact["film_ratio"]:8.2f}'
+        f' {100 * contact["rcs"]:8.2f} %'
+        for contact in record['contacts']
+    ]
+    compared = record['comparators']
+    return '\n'.join(
+        [
+            f'{record["screw"]}, {record["oil"]}, tier {record["tier"]}: '
+            f'{record["speed_rad_s"] * 30 / math.pi:g} rev/min, {record["load_N"]:g} N, '
+            f'{record["temperature_K"] - ZERO_CELSIUS:g} degC',
+            *(f'  {name:20} {text}' for name, text in rows),
+            '',
+            '  contact              per ball     pressure     film      Lambda      RCS',
+            *contacts,
+            '',
+            f'  compare: constant friction {compared["constant_friction_efficiency"]:.3f}, '
+            f'catalogue drag {compared["catalogue_drag_torque_Nm"]:.3f} N m, Nijenbanning film '
+            f'{1e9 * compared["central_film_nijenbanning_m"]:.1f} nm',
+            *_spread_lines(record.get('ensemble')),
+            f'  status: {record["status"]}',
+            *(f'  warning: {text}' for text in record['warnings']),
+        ]
+    )

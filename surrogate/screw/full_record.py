@@ -1,0 +1,261 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""A point of the full tier as a record: plain numbers for JSON, beside the classical formulas."""
+
+from dataclasses import asdict
+import math
+import time
+from typing import Any
+
+from surrogate.formulas.geometry import opposite_flank_approach, SIDES
+from surrogate.formulas.inlet_heating import heating_factor
+from surrogate.parameters import Lubricant, OperatingPoint, Screw
+from surrogate.screw.contacts import ScrewSettings, shortest_on_grid
+from surrogate.screw.ensemble import EnsembleSolution
+from surrogate.screw.formula_record import closed_form_record, regime
+from surrogate.screw.nut import rolling_force, ScrewContact
+from surrogate.screw.solve import ScrewSolution, solve_screw, TIER
+
+KEYS = {'friction_torque': 'friction_torque_Nm', 'driving_torque': 'driving_torque_Nm'}
+"""Keys of the record where they differ from the field."""
+LOAD_CHANGE = 0.01
+"""Change of a normal force by friction and inertia that is warned about [-]."""
+FILM_ERROR = 0.1
+"""Estimated error of a central film that is warned about [-]."""
+FEWEST_NODES = 4.0
+"""Nodes per shortest wave below which a rough contact is warned about [-]."""
+
+
+def full_record(
+    screw: Screw,
+    lubricant: Lubricant,
+    point: OperatingPoint,
+    settings: ScrewSettings | None = None,
+) -> dict[str, Any]:
+    """
+    Solve one point in the full tier and return it as plain numbers, SI units, NaN where unknown.
+
+    The keys are those of the closed-form record, with its warnings about ratings and its
+    comparators.
+
+    """
+    started, settings = time.perf_counter(), settings or ScrewSettings()
+    found = solve_screw(screw, lubricant, point, settings=settings)
+    record = solution_record(screw, lubricant, point, found, settings)
+    return record | {'wall_s': time.perf_counter() - started}
+
+
+def ensemble_record(
+    screw: Screw,
+    lubricant: Lubricant,
+    point: OperatingPoint,
+    ensemble: EnsembleSolution,
+    settings: ScrewSettings,
+) -> dict[str, Any]:
+    """
+    Return a point over draws of the roughness as plain numbers.
+
+    Means over the draws that converged in place of the numbers of one draw, their spreads under
+    `ensemble`; contacts are those of the first draw that converged, energy error and load change
+    the largest.
+
+    """
+    solved = [found for found in ensemble.solutions if found.converged]
+    failures = [found.status for found in ensemble.solutions if not found.converged]
+    shown = (solved or ensemble.solutions)[0]
+    record = solution_record(screw, lubricant, point, shown, settings)
+    worst = {
+        name: max((getattr(found, name) for found in solved), default=math.nan)
+        for name in ('energy_error', 'load_change')
+    }
+    means = {KEYS.get(name, name): spread.mean for name, spread in ensemble.spreads.items()}
+    return (
+        record
+        | means
+        | worst
+        | {
+            'status': failures[0] if failures else record['status'],
+            'converged': not failures,
+            'ensemble': {
+                'draws': len(ensemble.solutions),
+                'failed': ensemble.failed,
+                **{KEYS.get(name, name): asdict(part) for name, part in ensemble.spreads.items()},
+            },
+        }
+    )
+
+
+def solution_record(
+    screw: Screw,
+    lubricant: Lubricant,
+    point: OperatingPoint,
+    found: ScrewSolution,
+    settings: ScrewSettings,
+) -> dict[str, Any]:
+    """Return a solved point as plain numbers, SI units, NaN where unknown."""
+    formulas = closed_form_record(screw, lubricant, point)
+    contacts = [_contact_record(screw, found, contact) for contact in found.contacts]
+    worst = min(contacts, key=_mildness)
+    return formulas | {
+        'tier': TIER,
+        'status': found.status,
+        'converged': found.converged,
+        'warnings': [
+            *_warnings(formulas['warnings'], found, shortest_on_grid(screw, settings)),
+            *_third_contacts(screw, contacts),
+            *_uncertain_films(contacts),
+        ],
+        'efficiency': found.efficiency,
+        'friction_torque_Nm': found.friction_torque,
+        'driving_torque_Nm': found.driving_torque,
+        'energy_error': found.energy_error,
+        'load_change': found.load_change,
+        'back_driving': found.back_driving,
+        'normal_force_loaded_N': found.normal_forces[0],
+        'normal_force_relieved_N': found.normal_forces[1],
+        'rcs': found.rcs,
+        'asperity_share': found.asperity_share,
+        'film_ratio': found.film_ratio,
+        'regime': regime(found.film_ratio),
+        'central_film_m': found.central_film,
+        'inlet_heating': settings.inlet_heating,
+        'inlet_heating_factor': _heating_factor(screw, lubricant, point, found),
+        'minimum_film_m': _least(found, contacts, 'minimum_film_m'),
+        'friction_coefficient': found.friction_coefficient,
+        'max_pressure_Pa': -_least(found, contacts, 'max_pressure_Pa', -1.0),
+        'worst_contact': {key: worst[key] for key in ('nut', 'side')},
+        'contact_angle_A_rad': contacts[0]['contact_angle_rad'],
+        'contact_angle_B_rad': contacts[1]['contact_angle_rad'],
+        'contacts': contacts,
+    }
+
+
+def _contact_record(screw: Screw, found: ScrewSolution, contact: ScrewContact) -> dict[str, Any]:
+    """Return one contact; NaN with a reason where it carries no load or was not solved."""
+    rough, ball = contact.rough, contact.ball
+    head = {'nut': contact.nut, 'side': contact.side}
+    if rough is None:
+        return head | _unknown('no load on this nut, so no contact') | {'normal_force_N': 0.0}
+    return head | {
+        'reason': '' if found.converged else found.status,
+        'normal_force_N': ball.normal_force,
+        'contact_angle_rad': ball.angle,
+        'semi_axis_x_m': rough.semi_axis_x,
+        'semi_axis_y_m': rough.semi_axis_y,
+        'hertz_pressure_Pa': rough.hertz_pressure,
+        'max_pressure_Pa': rough.max_pressure,
+        'central_film_m': contact.film_ratio * screw.roughness.rms,
+        'film_error': contact.smooth.film_error if contact.smooth else math.nan,
+        'minimum_film_m': rough.minimum_film,
+        'film_ratio': contact.film_ratio,
+        'rcs': rough.rcs,
+        'asperity_share': rough.asperity_share,
+        'friction_coefficient': contact.friction_coefficient,
+        'rolling_force_N': rolling_force(screw, rough),
+        'opposite_flank_approach_m': opposite_flank_approach(
+            screw, contact.side, ball.angle, rough.approach
+        ),
+        'sliding_torque_Nm': screw.loaded_balls_per_nut * ball.slip_power / _speed(contact),
+        'rolling_torque_Nm': screw.loaded_balls_per_nut * ball.rolling_power / _speed(contact),
+    }
+
+
+def _unknown(reason: str) -> dict[str, Any]:
+    names = (
+        'contact_angle_rad',
+        'semi_axis_x_m',
+        'semi_axis_y_m',
+        'hertz_pressure_Pa',
+        'max_pressure_Pa',
+        'central_film_m',
+        'film_error',
+        'minimum_film_m',
+        'film_ratio',
+        'rcs',
+        'asperity_share',
+        'friction_coefficient',
+        'rolling_force_N',
+        'opposite_flank_approach_m',
+        'sliding_torque_Nm',
+        'rolling_torque_Nm',
+    )
+    return {'reason': reason} | dict.fromkeys(names, math.nan)
+
+
+def _speed(contact: ScrewContact) -> float:
+    """Return the screw speed of the balance [rad/s]."""
+    return contact.motion.screw_speed if contact.motion else math.nan
+
+
+def _mildness(contact: dict[str, Any]) -> tuple[float, float]:
+    """Order contacts: the largest RCS first, then the smallest film ratio, unknown ones last."""
+    rcs, ratio = contact['rcs'], contact['film_ratio']
+    return (math.inf, math.inf) if math.isnan(rcs) else (-rcs, ratio)
+
+
+def _warnings(rated: list[str], found: ScrewSolution, wave: float) -> list[str]:
+    """Return the warnings about ratings, and those of the full model."""
+    warnings = [text for text in rated if 'outside its range' not in text]
+    if found.load_change > LOAD_CHANGE:
+        warnings.append(
+            f'balls: friction and inertia change a normal force by {100 * found.load_change:.2g} '
+            '%, the contacts were solved before that'
+        )
+    nodes = [_nodes_per_wave(contact, wave) for contact in found.contacts]
+    coarse = [node for node in nodes if node < FEWEST_NODES]
+    if coarse:
+        warnings.append(
+            f'roughness: {min(coarse):.2g} nodes per shortest wave across the track, asperity '
+            f'contact is resolved from {FEWEST_NODES:g}'
+        )
+    return warnings
+
+
+def _uncertain_films(contacts: list[dict[str, Any]]) -> list[str]:
+    """Return a warning for each contact whose film is known badly: hardly pressed, thick film."""
+    return [
+        f'{contact["nut"]} nut, {contact["side"]}: the film is known to '
+        f'{100 * contact["film_error"]:.0f} % only, the contact is hardly pressed'
+        for contact in contacts
+        if contact['film_error'] > FILM_ERROR
+    ]
+
+
+def _third_contacts(screw: Screw, contacts: list[dict[str, Any]]) -> list[str]:
+    """Return a warning for each contact whose ball would reach the other flank of its groove."""
+    if screw.flank_clearance is None:
+        return []
+    return [
+        f'{contact["nut"]} nut, {contact["side"]}: the ball comes '
+        f'{1e6 * contact["opposite_flank_approach_m"]:.2g} um towards the other flank, its '
+        f'clearance is {1e6 * screw.flank_clearance:g} um: a third contact, which is not solved'
+        for contact in contacts
+        if contact['opposite_flank_approach_m'] > screw.flank_clearance
+    ]
+
+
+def _heating_factor(
+    screw: Screw, lubricant: Lubricant, point: OperatingPoint, found: ScrewSolution
+) -> float:
+    """Return the least film factor of the inlet heating of both nuts [-], applied or not."""
+    speed = found.entrainment_speed
+    loads = [load for load in found.normal_forces if load > 0]
+    factors = [
+        heating_factor(screw, lubricant, side, load, speed, point.temperature)
+        for load in loads
+        for side in SIDES
+    ]
+    return min(factors, default=math.nan)
+
+
+def _nodes_per_wave(contact: ScrewContact, wave: float) -> float:
+    rough = contact.rough
+    return wave / float(rough.y[1] - rough.y[0]) if rough is not None else math.inf
+
+
+def _least(
+    found: ScrewSolution, contacts: list[dict[str, Any]], key: str, sign: float = 1.0
+) -> float:
+    """Return the least of `sign` times a number of the contacts, NaN unless solved."""
+    known = [sign * contact[key] for contact in contacts if not math.isnan(contact[key])]
+    return min(known) if known and found.converged else math.nan

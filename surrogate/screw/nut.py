@@ -1,0 +1,217 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+One nut of the screw in the full tier: its two contacts, solved, and the balance of its balls.
+
+A ball has a contact with the screw and one with the nut. Their tractions and rolling couples
+balance the ball.
+
+"""
+
+from dataclasses import dataclass
+import math
+from typing import Literal
+
+import numpy as np
+from surrogate.ehl import ContactSolution
+from surrogate.ehl.friction import contact_friction
+from surrogate.formulas.geometry import Side, SIDES
+from surrogate.formulas.sliding import hysteresis_force
+from surrogate.parameters import Lubricant, OperatingPoint, Screw
+from surrogate.screw.ball_balance import balance_ball
+from surrogate.screw.ball_motion import Array, BallMotion, Flank, slip_field, slip_floor
+from surrogate.screw.ball_result import BallBalance, BallContact
+from surrogate.screw.ball_traction import solved_traction
+from surrogate.screw.contacts import Pair, ScrewSettings, smooth_film, solve_sides
+
+NutName = Literal['loaded', 'relieved']
+CREEP = 1e-3
+"""Screw speed of the limit of slow motion [rad/s]."""
+COUPLING_ROUNDS = 4
+"""Most times that contacts are solved again under the forces of the balance [-]."""
+NEGLECTED_FRICTION = 3e-4
+"""Share of the friction of a contact on nodes that the balance leaves out [-]."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ScrewContact:
+    """
+    One contact of one nut; solutions are None where it carries no load.
+
+    Smooth and rough solution, the part of the ball balance at this contact, the motion of the
+    ball, film ratio [-], mean traction against the slip over the normal force [-].
+
+    """
+
+    nut: NutName
+    side: Side
+    smooth: ContactSolution | None
+    rough: ContactSolution | None
+    ball: BallContact
+    motion: BallMotion | None
+    film_ratio: float
+    friction_coefficient: float = math.nan
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Nut:
+    """One nut: its axial force [N], contacts, ball (None without load or solved contacts)."""
+
+    name: NutName
+    force: float
+    contacts: tuple[ScrewContact, ...]
+    ball: BallBalance | None
+    failure: str = ''
+
+
+def solve_nut(
+    screw: Screw,
+    lubricant: Lubricant,
+    point: OperatingPoint,
+    settings: ScrewSettings,
+    name: NutName,
+    force: float,
+    flank: Flank,
+    pairs: tuple[Pair, ...],
+) -> Nut:
+    """
+    Balance the ball of a nut with an axial force [N] between contacts solved without friction.
+
+    Friction and inertia move the normal forces; where by more than the tolerance of the settings,
+    contacts are solved again under the forces found, until they agree or `COUPLING_ROUNDS`.
+
+    """
+    nut = make_nut(screw, point, name, force, flank, pairs)
+    for _ in range(COUPLING_ROUNDS):
+        if not load_change(nut) > settings.coupling_tolerance:
+            break
+        first, second = (contact.ball.normal_force for contact in nut.contacts)
+        pairs = solve_sides(screw, lubricant, point, settings, (first, second))
+        nut = make_nut(screw, point, name, force, flank, pairs)
+    return nut
+
+
+def load_change(nut: Nut) -> float:
+    """Return the largest change of a normal force by friction over that solved [-], or NaN."""
+    changes = [
+        abs(contact.ball.normal_force / contact.rough.condition.load - 1)
+        for contact in nut.contacts
+        if contact.rough is not None
+    ]
+    return max(changes, default=0.0)
+
+
+def make_nut(
+    screw: Screw,
+    point: OperatingPoint,
+    name: NutName,
+    force: float,
+    flank: Flank,
+    pairs: tuple[Pair, ...],
+) -> Nut:
+    """Balance the ball of a nut with an axial force [N] between its solved contacts."""
+    if force == 0:
+        idle = tuple(_contact(screw, name, side, None, None, None) for side in SIDES)
+        return Nut(name=name, force=force, contacts=idle, ball=None)
+    failure, ball = _failure(name, pairs), None
+    if not failure:
+        ball = balance_nut(screw, point, force, flank, [rough for _, rough in pairs])
+        failure = '' if ball.converged else f'{name} nut, ball: {ball.status.value}'
+    contacts = tuple(
+        _contact(screw, name, side, *pair, ball) for side, pair in zip(SIDES, pairs, strict=True)
+    )
+    return Nut(name=name, force=force, contacts=contacts, ball=ball, failure=failure)
+
+
+def _failure(name: NutName, pairs: tuple[Pair, ...]) -> str:
+    """Return the sentence of the first contact that did not converge, or nothing."""
+    for side, pair in zip(SIDES, pairs, strict=True):
+        for kind, found in zip(('smooth', 'rough'), pair, strict=True):
+            if not found.converged:
+                return f'{name} nut, {side}, {kind} contact: {found.status.value}'
+    return ''
+
+
+def _contact(
+    screw: Screw,
+    nut: NutName,
+    side: Side,
+    smooth: ContactSolution | None,
+    rough: ContactSolution | None,
+    ball: BallBalance | None,
+) -> ScrewContact:
+    """Return one contact with its part of the balance."""
+    part = BallContact() if ball is None else ball.screw if side == 'screw' else ball.nut
+    film = math.nan if smooth is None else smooth_film(smooth)
+    motion = ball.motion if ball else None
+    return ScrewContact(
+        nut=nut,
+        side=side,
+        smooth=smooth,
+        rough=rough,
+        ball=part,
+        motion=motion,
+        film_ratio=film / screw.roughness.rms,
+        friction_coefficient=(
+            friction_coefficient(screw, rough, side, motion)
+            if rough is not None and motion is not None
+            else math.nan
+        ),
+    )
+
+
+def balance_nut(
+    screw: Screw, point: OperatingPoint, force: float, flank: Flank, rough: list[ContactSolution]
+) -> BallBalance:
+    """Balance one ball of a nut that carries an axial `force` [N] between two solved contacts."""
+    speed = abs(point.speed) or CREEP
+    floor = slip_floor(screw, speed)
+    friction = screw.roughness.asperity_friction
+    tractions = [
+        solved_traction(
+            found, asperity_friction=friction, slip_floor=floor, neglected=NEGLECTED_FRICTION
+        )
+        for found in rough
+    ]
+    rolling = [rolling_force(screw, found) for found in rough]
+    return balance_ball(
+        screw,
+        speed,
+        screw_traction=tractions[0],
+        nut_traction=tractions[1],
+        axial_force=force / screw.loaded_balls_per_nut,
+        flank=flank,
+        screw_rolling_force=rolling[0],
+        nut_rolling_force=rolling[1],
+    )
+
+
+def rolling_force(screw: Screw, found: ContactSolution) -> float:
+    """Return the force that resists rolling on each surface [N]: oil, inlet tail, hysteresis."""
+    elastic = hysteresis_force(
+        screw.hysteresis_loss, found.condition.load, found.semi_axis_x, found.contact.radius_x
+    )
+    return found.rolling_force + found.rolling_tail + elastic
+
+
+def friction_coefficient(
+    screw: Screw, found: ContactSolution, side: Side, motion: BallMotion
+) -> float:
+    """Return the mean traction against the slip over the load [-] at the motion of the ball."""
+    slip_x, slip_y = contact_slip(screw, found, side, motion)
+    return contact_friction(
+        found,
+        slip_x=slip_x,
+        slip_y=slip_y,
+        asperity_friction=screw.roughness.asperity_friction,
+        slip_floor=slip_floor(screw, motion.screw_speed),
+    ).coefficient
+
+
+def contact_slip(
+    screw: Screw, found: ContactSolution, side: Side, motion: BallMotion
+) -> tuple[Array, Array]:
+    """Return the slip along and across the track [m/s] on the nodes of a contact."""
+    x, y = np.meshgrid(found.x, found.y, indexing='ij')
+    turn = 1 if side == 'screw' else -1  # the nut's entrainment runs against t
+    return slip_field(screw, side, motion, turn * x, turn * y)

@@ -1,0 +1,219 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Full tier: the screw at one operating point from its four solved contacts and balanced balls.
+
+Each nut carries its share of the load on equal balls. A balanced ball yields its torque on the
+screw and, apart from it, the power that it loses.
+
+"""
+
+from dataclasses import dataclass, replace
+import math
+
+from surrogate.ehl import ContactSolution
+from surrogate.formulas.geometry import SIDES
+from surrogate.formulas.kinematics import no_slip_rates
+from surrogate.formulas.load_sharing import normal_force, nut_forces
+from surrogate.formulas.torque import driving_torque, efficiency, is_back_driving
+from surrogate.parameters import InputError, Lubricant, OperatingPoint, Screw
+from surrogate.screw.ball_motion import Flank
+from surrogate.screw.contacts import fluid_at, ScrewSettings, smooth_film, solve_sides
+from surrogate.screw.nut import load_change, make_nut, Nut, ScrewContact, solve_nut
+
+TIER = 'full'
+SOLVED = (
+    'No load on either nut: nothing to solve.',
+    'Solved: two contacts and the balls of the loaded nut, the relieved one is idle.',
+    'Solved: four contacts and the balls of both nuts.',
+)
+"""Status by the number of nuts that carry load."""
+SAME_FORCE = 1e-3
+"""Normal forces that differ by less, over the larger, count as the same [-]."""
+IDLE_SHARE = 1e-3
+"""Force of the relieved nut over that of the loaded one below which it counts as idle [-]."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ScrewSolution:
+    """
+    The screw at one point; numbers are NaN unless `converged`, and `status` says why.
+
+    Friction torque [N m] with the parasitic part, from lost power; driving torque [N m] from the
+    loads on the screw; `energy_error`, what both miss of the energy balance, over the friction
+    torque [-]; efficiency [-], whether the load drives the screw; RCS and asperity share of the
+    worst contact [-], film ratio [-] and central film [m] of the thinnest; friction coefficient
+    over all normal forces [-]; entrainment speed
+    [m/s], normal forces of a ball of the loaded and the relieved nut before friction [N];
+    `load_change`, largest difference between a normal force in balance and that under which its
+    contact was solved [-].
+
+    """
+
+    status: str
+    converged: bool
+    contacts: tuple[ScrewContact, ...]
+    entrainment_speed: float
+    normal_forces: tuple[float, float]
+    friction_torque: float = math.nan
+    driving_torque: float = math.nan
+    energy_error: float = math.nan
+    efficiency: float = math.nan
+    back_driving: bool = False
+    rcs: float = math.nan
+    asperity_share: float = math.nan
+    film_ratio: float = math.nan
+    central_film: float = math.nan
+    friction_coefficient: float = math.nan
+    load_change: float = math.nan
+
+
+def solve_screw(
+    screw: Screw,
+    lubricant: Lubricant,
+    point: OperatingPoint,
+    *,
+    settings: ScrewSettings | None = None,
+    start: ScrewSolution | None = None,
+) -> ScrewSolution:
+    """
+    Solve the full model at one operating point.
+
+    A `start` from a neighbouring point of the same screw saves time and changes nothing beyond the
+    tolerances of the contacts; rough ones of another load start from cold all the same. Speed zero
+    is the limit of slow motion in the positive direction: all load on asperities. A contact or a
+    ball that did not converge leaves its sentence in the status and NaN elsewhere.
+
+    """
+    settings = settings or ScrewSettings()
+    forces = _forces(screw, point)
+    near = [(found.smooth, found.rough) for found in start.contacts] if start else []
+    given = (screw, lubricant, point, settings)
+    loads = [float(normal_force(screw, force)) for force in forces]
+    loaded = solve_sides(*given, (loads[0], loads[0]), near[:2])
+    relieved = loaded
+    if forces[0] != forces[1]:
+        relieved = solve_sides(*given, (loads[1], loads[1]), near[2:])
+    ahead, behind = _flanks(point)
+    nuts = (
+        solve_nut(*given, 'loaded', forces[0], ahead, loaded),
+        solve_nut(*given, 'relieved', forces[1], behind, relieved),
+    )
+    return _combine(screw, point, nuts)
+
+
+def rebalance_screw(
+    screw: Screw, lubricant: Lubricant, point: OperatingPoint, found: ScrewSolution
+) -> ScrewSolution:
+    """
+    Balance the balls anew on the contacts of `found`: faster than a solve by far.
+
+    For another asperity friction or parasitic torque, which no contact knows of, this is what a
+    solve gives. Another oil or speed must keep the product of viscosity and speed, which pressure
+    and film follow, nearly. Raises InputError for another load than that solved.
+
+    """
+    _check_same_load(screw, point, found)
+    fluid = fluid_at(lubricant, point.temperature)
+    loaded, relieved = (
+        tuple(
+            (contact.smooth, replace(contact.rough, lubricant=fluid))
+            for contact in contacts
+            if contact.smooth is not None and contact.rough is not None
+        )
+        for contacts in (found.contacts[:2], found.contacts[2:])
+    )
+    forces, (ahead, behind) = _forces(screw, point), _flanks(point)
+    nuts = (
+        make_nut(screw, point, 'loaded', forces[0], ahead, loaded),
+        make_nut(screw, point, 'relieved', forces[1], behind, relieved),
+    )
+    return _combine(screw, point, nuts)
+
+
+def _check_same_load(screw: Screw, point: OperatingPoint, found: ScrewSolution) -> None:
+    """Raise InputError when the contacts of a solution belong to other normal forces."""
+    wanted = [float(normal_force(screw, force)) for force in _forces(screw, point)]
+    unsolved = any(
+        force > 0 and contact.rough is None
+        for place, contact in enumerate(found.contacts)
+        for force in [wanted[place // len(SIDES)]]
+    )
+    apart = max(abs(new - old) for new, old in zip(wanted, found.normal_forces, strict=True))
+    if unsolved or apart > SAME_FORCE * max(wanted):
+        raise InputError(
+            f'load is {point.load:g} N, with {wanted[0]:.4g} and {wanted[1]:.4g} N a ball, '
+            f'allowed is that solved, with {found.normal_forces[0]:.4g} and '
+            f'{found.normal_forces[1]:.4g} N'
+        )
+
+
+def _flanks(point: OperatingPoint) -> tuple[Flank, Flank]:
+    """Return the flanks of the loaded and of the relieved nut that carry."""
+    return (1, -1) if point.opposing_load >= 0 else (-1, 1)
+
+
+def _forces(screw: Screw, point: OperatingPoint) -> tuple[float, float]:
+    """Return the axial forces of both nuts [N]; a share too small to hold its balls is none."""
+    loaded, relieved = (float(force) for force in nut_forces(point.opposing_load, screw.preload))
+    if relieved < IDLE_SHARE * loaded:
+        return abs(point.opposing_load), 0.0
+    return loaded, relieved
+
+
+def _combine(screw: Screw, point: OperatingPoint, nuts: tuple[Nut, Nut]) -> ScrewSolution:
+    """Add up both nuts."""
+    speed, load = abs(point.speed), point.opposing_load
+    found = ScrewSolution(
+        status=next(
+            (nut.failure for nut in nuts if nut.failure),
+            SOLVED[sum(nut.force > 0 for nut in nuts)],
+        ),
+        converged=not any(nut.failure for nut in nuts),
+        contacts=nuts[0].contacts + nuts[1].contacts,
+        entrainment_speed=no_slip_rates(screw).entrainment * speed,
+        normal_forces=(
+            float(normal_force(screw, nuts[0].force)),
+            float(normal_force(screw, nuts[1].force)),
+        ),
+    )
+    if not found.converged:
+        return found
+    films = _films(found)
+    parasitic = screw.parasitic_torque + screw.parasitic_torque_rate * speed
+    balls = [nut.ball for nut in nuts if nut.ball is not None]
+    friction = screw.loaded_balls_per_nut * sum(ball.loss_torque for ball in balls) + parasitic
+    driving = screw.loaded_balls_per_nut * sum(ball.torque for ball in balls) + parasitic
+    missed = driving - driving_torque(friction, load, screw.lead)
+    return replace(
+        found,
+        friction_torque=friction,
+        driving_torque=driving,
+        energy_error=abs(missed) / friction if friction else 0.0,
+        efficiency=efficiency(friction, load, screw.lead),
+        back_driving=is_back_driving(friction, load, screw.lead),
+        load_change=max(load_change(nut) for nut in nuts),
+        friction_coefficient=_mean_friction(found),
+        rcs=max((rough.rcs for rough in _rough(found)), default=0.0),
+        asperity_share=max((rough.asperity_share for rough in _rough(found)), default=0.0),
+        film_ratio=min(films) / screw.roughness.rms if films else math.nan,
+        central_film=min(films) if films else math.nan,
+    )
+
+
+def _rough(found: ScrewSolution) -> list[ContactSolution]:
+    return [contact.rough for contact in found.contacts if contact.rough is not None]
+
+
+def _films(found: ScrewSolution) -> list[float]:
+    """Return the smooth films [m] of the contacts that carry; 0 at rest."""
+    pressed = [contact.smooth for contact in found.contacts if contact.smooth is not None]
+    return [smooth_film(smooth) for smooth in pressed]
+
+
+def _mean_friction(found: ScrewSolution) -> float:
+    """Return the friction coefficient over all normal forces [-], NaN without any."""
+    pressed = [contact for contact in found.contacts if contact.rough is not None]
+    total = sum(contact.ball.normal_force for contact in pressed)
+    friction = sum(contact.ball.normal_force * contact.friction_coefficient for contact in pressed)
+    return friction / total if total else math.nan

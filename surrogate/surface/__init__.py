@@ -1,0 +1,28 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Lookup of the screw over speed, opposing load and temperature; all that the node loads.
+
+Needs numpy alone.
+
+"""
+
+from surrogate.surface.lookup import (
+    FIELDS,
+    find_surface,
+    shipped_surface,
+    Surface,
+    SurfaceError,
+    SurfacePoint,
+    Validity,
+)
+
+__all__ = [
+    'FIELDS',
+    'find_surface',
+    'shipped_surface',
+    'Surface',
+    'SurfaceError',
+    'SurfacePoint',
+    'Validity',
+]

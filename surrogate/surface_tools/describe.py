@@ -1,0 +1,156 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""A surface file described: a record, and a page for a person."""
+
+from collections.abc import Iterator, Mapping
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from surrogate.parameters import ZERO_CELSIUS
+from surrogate.surface import Surface
+from surrogate.surface.file import SurfaceData
+from surrogate.surface_tools.fields import FIELD_TEXTS
+
+
+def info_record(path: Path, data: SurfaceData) -> dict[str, Any]:
+    """Return what a surface file is and states, as plain numbers in SI, NaN where unknown."""
+    surface = Surface(data)
+    return {
+        'file': str(path),
+        'bytes': path.stat().st_size,
+        'format_version': data.header['format_version'],
+        'sha256': surface.sha256,
+        'tier': surface.tier,
+        'screw': surface.screw_name,
+        'oil': surface.oil_name,
+        'preload_N': surface.preload,
+        'lead_m': surface.lead,
+        'roughness_rms_m': data.header['inputs']['screw']
+        .get('roughness', {})
+        .get('rms', math.nan),
+        'speed_range_rad_s': list(surface.speed_range),
+        'load_range_N': list(surface.load_range),
+        'temperature_range_K': list(surface.temperature_range),
+        'nodes': list(data.mask.shape),
+        'cells': list(surface.cells),
+        'masked_nodes': int(data.mask.sum()),
+        'masked_cells': surface.masked_cells,
+        'load_breaks_N': list(data.header['load_breaks']),
+        'temperature_nodes_K': data.temperature.tolist(),
+        'errors': {
+            name: {'max': worst, 'p95': usual}
+            for name, (worst, usual) in sorted(surface.errors.items())
+        },
+        'draws': {
+            name: {
+                'std': _summary(data, 'deviations', name),
+                'stderr': _summary(data, 'standard_errors', name),
+            }
+            for name in FIELD_TEXTS
+            if name in data.deviations or name in data.standard_errors
+        },
+        'weighted_draws': data.header.get('weighted_draws'),
+        'certified_s': data.header.get('certified_s'),
+        'accuracy_reached': data.header.get('reached'),
+        'settings': dict(data.header['settings']),
+        'provenance': dict(data.provenance),
+    }
+
+
+def _summary(data: SurfaceData, group: str, name: str) -> dict[str, float]:
+    """Return the median and the largest of a spread over the nodes."""
+    values = getattr(data, group).get(name, np.empty(0))
+    known = values[np.isfinite(values)]
+    if not known.size:
+        return {'median': math.nan, 'max': math.nan}
+    return {'median': float(np.median(known)), 'max': float(known.max())}
+
+
+def info_page(record: Mapping[str, Any]) -> str:
+    """Return the record as a page."""
+    return '\n'.join(
+        [
+            f'{record["file"]}',
+            *_head(record),
+            *_full_tier(record),
+            '  measured interpolation error                    max         p95',
+            *(
+                f'    {_label(name):44} {error["max"]:<10.3g}  {error["p95"]:.3g}'
+                for name, error in record['errors'].items()
+            ),
+            *_draws(record['draws']),
+            '  provenance (not hashed)',
+            *(f'    {name:12} {value}' for name, value in record['provenance'].items()),
+        ]
+    )
+
+
+def _label(name: str) -> str:
+    unit = FIELD_TEXTS[name].unit if name in FIELD_TEXTS else ''
+    return f'{name} [{unit or "-"}]'
+
+
+def _head(record: Mapping[str, Any]) -> Iterator[str]:
+    low, high = record['speed_range_rad_s']
+    cold, warm = record['temperature_range_K']
+    yield f'  tier         {record["tier"]}, format version {record["format_version"]}'
+    yield (
+        f'  screw, oil   {record["screw"]}, {record["oil"]}; lead {1e3 * record["lead_m"]:g} mm, '
+        f'preload {record["preload_N"]:g} N, Rq {1e6 * record["roughness_rms_m"]:g} um'
+    )
+    yield f'  sha256       {record["sha256"]}'
+    yield f'  size         {record["bytes"]} bytes'
+    yield f'  speed        {low * 30 / math.pi:.3g} to {high * 30 / math.pi:.4g} rev/min'
+    yield '  load         {:g} to {:g} N, positive opposes the motion'.format(
+        *record['load_range_N']
+    )
+    yield '  kinks at     {} N'.format(
+        ', '.join(f'{load:.4g}' for load in record['load_breaks_N']) or 'no load,'
+    )
+    yield f'  temperature  {cold - ZERO_CELSIUS:g} to {warm - ZERO_CELSIUS:g} degC, nodes at ' + (
+        ', '.join(f'{kelvin - ZERO_CELSIUS:.3g}' for kelvin in record['temperature_nodes_K'])
+    )
+    yield '  nodes        {} x {} x {}'.format(*record['nodes']) + (
+        f', {record["masked_nodes"]} without a number: unsolved, or beyond the speed range'
+    )
+    yield '  cells        {} x {} x {}'.format(*record['cells']) + (
+        f', {record["masked_cells"]} masked'
+    )
+
+
+def _full_tier(record: Mapping[str, Any]) -> Iterator[str]:
+    """Yield what a full-tier builder says of its result."""
+    weighted = record['weighted_draws']
+    if weighted is not None:
+        yield (
+            f'  draws        {weighted["count"]}, {len(weighted["powers"])} near the idle load, '
+            'weighted so that their patches are scaled as those of many'
+        )
+    if record['certified_s'] is not None:
+        times = math.exp(record['certified_s'])
+        yield f'  certified    no draw is near contact from {times:.3g} times the onset speed on'
+    if record['accuracy_reached'] is not None:
+        asked = record['settings']['accuracy']
+        yield (
+            f'  accuracy     {asked:g} was aimed at, the worst held-out point reaches '
+            f'{record["accuracy_reached"] * asked:.2g}'
+        )
+
+
+def _draws(draws: Mapping[str, Any]) -> Iterator[str]:
+    """Yield the table of what roughness draws leave uncertain, if there were any."""
+    if not draws:
+        yield '  roughness draws: none'
+        return
+    yield '  over roughness draws                     deviation: median, max    of the mean'
+    for name, spread in draws.items():
+        yield (
+            f'    {_label(name):36} '
+            + '  '.join(
+                f'{spread[kind][part]:<10.3g}'
+                for kind in ('std', 'stderr')
+                for part in ('median', 'max')
+            ).rstrip()
+        )

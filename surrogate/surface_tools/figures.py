@@ -1,0 +1,244 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Pictures of a surface over speed and load: what it says, how sure it is, and the zone."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+import io
+import math
+from pathlib import Path
+from typing import Any
+
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.colors import BoundaryNorm, ListedColormap, LogNorm
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+import numpy as np
+from numpy.typing import NDArray
+from surrogate.files import replace_file
+from surrogate.parameters import ZERO_CELSIUS
+from surrogate.surface import Surface, Validity
+from surrogate.surface_tools.diff import EFFICIENCY_LIMIT, LIGHT_LOAD, RCS_LIMIT
+
+Array = NDArray[np.float64]
+
+DPI = 110  # [1/inch]
+GRID = (181, 141)
+"""Points along speed and load [-]."""
+MAP = 'cividis'
+EFFICIENCY_SHOWN = 0.6
+"""Lower end of the efficiency scale [-]: what lies below is as dark as this."""
+LIMIT: dict[str, Any] = {'colors': '#d55e00', 'linewidths': 1.6}
+BOUNDARY, MIXED, FULL = '#d55e00', '#f0e442', '#56b4e9'
+OPTIMAL, RUBBING, LOSSY, BOTH, LIGHT = '#009e73', '#e69f00', '#0072b2', '#a8433a', '#d9d9d9'
+"""Colours that colour-blind readers and a black and white print keep apart."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Slice:
+    """The surface at one temperature: speed [rev/min], load [N], fields [load, speed]."""
+
+    speed: Array
+    load: Array
+    fields: dict[str, Array]
+    light: float
+
+
+def cut(surface: Surface, temperature: float) -> Slice:
+    """Return the surface at a temperature [K]; NaN where it has no answer."""
+    slow, fast = surface.speed_range
+    speed = np.clip(np.geomspace(slow, fast, GRID[0]), slow, fast)
+    load = np.linspace(*surface.load_range, GRID[1])
+    points = [surface.lookup(w, f, temperature) for f in load.tolist() for w in speed.tolist()]
+    names = (
+        'efficiency',
+        'rcs',
+        'film_ratio',
+        'efficiency_error',
+        'rcs_error',
+        'efficiency_std',
+        'rcs_std',
+    )
+    shape = (len(load), len(speed))
+    valid = np.reshape([found.validity is Validity.VALID for found in points], shape)
+    fields = {
+        name: np.where(valid, np.reshape([getattr(one, name) for one in points], shape), np.nan)
+        for name in names
+    }
+    light = LIGHT_LOAD * surface.preload
+    return Slice(speed=speed * 30 / math.pi, load=load, fields=fields, light=light)
+
+
+def draw_surface(folder: Path, surface: Surface, temperatures: Sequence[float]) -> Iterator[Path]:
+    """Write a picture per temperature [K] to `folder` as PNG and yield the paths."""
+    for kelvin in temperatures:
+        path = folder / f'surface_{kelvin - ZERO_CELSIUS:g}degC.png'
+        out = io.BytesIO()
+        figure_surface(surface, kelvin).savefig(out, format='png')
+        replace_file(path, out.getvalue())
+        yield path
+
+
+def figure_surface(surface: Surface, temperature: float) -> Figure:
+    """Return what the surface says at a temperature [K]; with draws, also how far they scatter."""
+    part = cut(surface, temperature)
+    panels: list[Callable[[Figure, Axes, Slice], None]] = [
+        _draw_efficiency,
+        _draw_rcs,
+        _draw_film_ratio,
+        _draw_regime,
+        _draw_zone,
+        _draw_error,
+    ]
+    if np.isfinite(part.fields['rcs_std']).any():
+        panels += [_draw_efficiency_spread, _draw_rcs_spread]
+    rows = len(panels) // 2
+    figure = Figure(figsize=(7.2, 0.7 + 2.9 * rows), dpi=DPI, layout='constrained')
+    FigureCanvasAgg(figure)
+    figure.suptitle(
+        f'{surface.screw_name}, {surface.oil_name}, {temperature - ZERO_CELSIUS:g} degC, '
+        f'tier {surface.tier}, surface {surface.sha256[:8]}; grey: not known',
+        fontsize=10,
+    )
+    grid = figure.subplots(rows, 2, sharex=True, sharey=True)
+    for draw, axes in zip(panels, grid.flat):
+        draw(figure, axes, part)
+    for axes in grid[-1]:
+        axes.set_xlabel('speed [rev/min]')
+    for axes in grid[:, 0]:
+        axes.set_ylabel('load against motion [N]')
+    grid[0, 0].set(xscale='log', xlim=(part.speed[0], part.speed[-1]))
+    return figure
+
+
+def _map(
+    figure: Figure, axes: Axes, part: Slice, values: Array, title: str, label: str, **options: Any
+) -> None:
+    axes.set_title(title, fontsize=9)
+    axes.set_facecolor('#bdbdbd')
+    if not np.isfinite(values).any():
+        axes.text(0.5, 0.5, 'not known', transform=axes.transAxes, ha='center')
+        return
+    mesh = axes.pcolormesh(
+        part.speed, part.load, values, **{'cmap': MAP, 'rasterized': True, **options}
+    )
+    bar = figure.colorbar(mesh, ax=axes, label=label)
+    bar.ax.tick_params(labelsize=8)
+
+
+def _limit(axes: Axes, part: Slice, values: Array, levels: list[float]) -> None:
+    """Draw the lines of some limits, where the values reach them; several are labelled."""
+    known = values[np.isfinite(values)]
+    if known.size and any(known.min() < level < known.max() for level in levels):
+        lines = axes.contour(part.speed, part.load, values, levels=levels, **LIMIT)
+        if len(levels) > 1:
+            axes.clabel(lines, fmt='%g', fontsize=7)
+
+
+def _draw_efficiency(figure: Figure, axes: Axes, part: Slice) -> None:
+    values, title = part.fields['efficiency'], f'Efficiency, line: {EFFICIENCY_LIMIT}'
+    _map(figure, axes, part, values, title, '[-]', vmin=EFFICIENCY_SHOWN, vmax=1.0)
+    _limit(axes, part, values, [EFFICIENCY_LIMIT])
+
+
+def _draw_rcs(figure: Figure, axes: Axes, part: Slice) -> None:
+    values = part.fields['rcs']
+    norm = LogNorm(1e-4, 1.0)
+    _map(figure, axes, part, np.maximum(values, 1e-4), f'RCS, line: {RCS_LIMIT}', '[-]', norm=norm)
+    _limit(axes, part, values, [RCS_LIMIT])
+
+
+def _draw_film_ratio(figure: Figure, axes: Axes, part: Slice) -> None:
+    values = part.fields['film_ratio']
+    known = values[np.isfinite(values) & (values > 0)]
+    norm = LogNorm(known.min(), known.max()) if known.size else None
+    _map(figure, axes, part, values, 'Film ratio Lambda, lines: 1 and 3', '[-]', norm=norm)
+    _limit(axes, part, values, [1.0, 3.0])
+
+
+def _classes(
+    axes: Axes, part: Slice, values: Array, title: str, names: Sequence[tuple[str, str]]
+) -> None:
+    """Draw numbered classes with a legend of those that occur."""
+    colours = [colour for _, colour in names]
+    axes.pcolormesh(
+        part.speed,
+        part.load,
+        values,
+        cmap=ListedColormap(colours),
+        norm=BoundaryNorm(np.arange(len(colours) + 1) - 0.5, len(colours)),
+        rasterized=True,
+    )
+    axes.set_facecolor('#bdbdbd')
+    axes.set_title(title, fontsize=9)
+    found = {int(value) for value in values[np.isfinite(values)]}
+    patches = [
+        Patch(color=colour, label=name)
+        for number, (name, colour) in enumerate(names)
+        if number in found
+    ]
+    axes.legend(handles=patches, fontsize=7, loc='upper left', framealpha=0.9)
+
+
+def _draw_regime(figure: Figure, axes: Axes, part: Slice) -> None:
+    ratio = part.fields['film_ratio']
+    bands = np.where(np.isfinite(ratio), np.digitize(ratio, [1.0, 3.0]), np.nan)
+    names = [('boundary, < 1', BOUNDARY), ('mixed, 1 to 3', MIXED), ('hydrodynamic, >= 3', FULL)]
+    _classes(axes, part, bands, 'Regime by Lambda', names)
+
+
+def _draw_zone(figure: Figure, axes: Axes, part: Slice) -> None:
+    title = f'Zone: RCS < {RCS_LIMIT}, efficiency >= {EFFICIENCY_LIMIT}'
+    names = [
+        ('optimal', OPTIMAL),
+        ('too much contact', RUBBING),
+        ('too much loss', LOSSY),
+        ('both', BOTH),
+        ('light load, no efficiency', LIGHT),
+    ]
+    _classes(axes, part, zone_classes(part), title, names)
+
+
+def zone_classes(part: Slice) -> Array:
+    """Return 0 optimal, 1 too much contact, 2 too much loss, 3 both, 4 light load, NaN unknown."""
+    rcs, efficiency = part.fields['rcs'], part.fields['efficiency']
+    classes = (rcs >= RCS_LIMIT) + 2.0 * (efficiency < EFFICIENCY_LIMIT)
+    light = np.abs(part.load)[:, None] < part.light
+    classes = np.where(light & (rcs < RCS_LIMIT), 4.0, np.where(light, 1.0, classes))
+    return np.where(np.isfinite(rcs), classes, np.nan)
+
+
+def _draw_error(figure: Figure, axes: Axes, part: Slice) -> None:
+    # Beside zero load no efficiency is judged, and its error has no meaning.
+    light = np.abs(part.load)[:, None] < part.light
+    efficiency = np.where(light, np.nan, part.fields['efficiency_error'])
+    _log_map(
+        figure,
+        axes,
+        part,
+        np.fmax(efficiency, part.fields['rcs_error']),
+        'Interpolation error, larger of both',
+        'of efficiency and RCS [-]',
+    )
+
+
+def _log_map(
+    figure: Figure, axes: Axes, part: Slice, values: Array, title: str, label: str
+) -> None:
+    """Draw three decades below the largest value."""
+    known = values[np.isfinite(values)]
+    top = float(known.max()) if known.size and known.max() > 0 else 1.0
+    norm = LogNorm(1e-3 * top, top)
+    _map(figure, axes, part, np.maximum(values, 1e-3 * top), title, label, norm=norm)
+
+
+def _draw_efficiency_spread(figure: Figure, axes: Axes, part: Slice) -> None:
+    light = np.abs(part.load)[:, None] < part.light
+    values = np.where(light, np.nan, part.fields['efficiency_std'])
+    _log_map(figure, axes, part, values, 'Efficiency over draws', 'standard deviation [-]')
+
+
+def _draw_rcs_spread(figure: Figure, axes: Axes, part: Slice) -> None:
+    values = part.fields['rcs_std']
+    _log_map(figure, axes, part, values, 'RCS over draws', 'standard deviation [-]')

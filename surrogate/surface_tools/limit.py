@@ -1,0 +1,106 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+How far off in speed a surface has the limit of RCS of the optimal zone.
+
+Measured at random points that lie on the limit by the lookup: what the solver of its tier finds
+there instead, over the slope of RCS, is a change of the logarithm of the speed.
+
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+import math
+import random
+
+from scipy.optimize import brentq
+from surrogate.builder.tiers import solve_point
+from surrogate.surface import Surface
+from surrogate.surface.file import SurfaceData
+from surrogate.surface_tools.diff import RCS_LIMIT
+
+STEP = 0.01
+"""Change of the logarithm of the speed over which the slope of RCS is taken [-]."""
+TRIES = 20
+"""Loads and temperatures that are tried per point: not all have a limit within the speeds."""
+INSIDE = 1e-9
+"""Distance from the ends of the speed range, as a logarithm [-]."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class LimitError:
+    """
+    A point on the limit by the lookup [rad/s, N, K], and how far off it is.
+
+    The error is the logarithm of its speed by the lookup over that by the solver [-], NaN where
+    the solver has no solution.
+
+    """
+
+    speed: float
+    load: float
+    temperature: float
+    error: float
+
+
+def limit_errors(
+    data: SurfaceData, points: int, seed: int, has_time: Callable[[], bool]
+) -> Iterator[LimitError]:
+    """Yield the errors at up to `points` random points, as long as `has_time` says so."""
+    surface, drawn = Surface(data), random.Random(seed)
+    for _ in range(points):
+        place = _random_place(surface, drawn) if has_time() else None
+        if place is None:
+            return
+        solved = solve_point(data.header, *place).get('rcs', math.nan)
+        speed, load, temperature = place
+        yield LimitError(
+            speed=speed,
+            load=load,
+            temperature=temperature,
+            error=limit_error(surface, place, solved),
+        )
+
+
+def _random_place(surface: Surface, drawn: random.Random) -> tuple[float, float, float] | None:
+    """Return a speed [rad/s], load [N], temperature [K] on the limit, None where none is found."""
+    for _ in range(TRIES):
+        load, heat = (
+            drawn.uniform(*ends) for ends in (surface.load_range, surface.temperature_range)
+        )
+        speed = limit_speed(surface, load, heat)
+        if speed is not None:
+            return speed, load, heat
+    return None
+
+
+def limit_speed(surface: Surface, load: float, temperature: float) -> float | None:
+    """
+    Return the speed [rad/s] at which RCS falls through its limit, at a load [N] and temperature.
+
+    None where it does not well inside the speeds of the surface, or an answer is missing there.
+
+    """
+
+    def above(log_speed: float) -> float:
+        return surface.lookup(math.exp(log_speed), load, temperature).rcs - RCS_LIMIT
+
+    low, high = (math.log(speed) for speed in surface.speed_range)
+    low, high = low + INSIDE, high - INSIDE
+    if not above(low) > 0 > above(high):
+        return None
+    try:
+        found = float(brentq(above, low, high))
+    except ValueError:  # a masked node on the way, whose lookup is NaN
+        return None
+    inside = low < found - STEP and found + STEP < high
+    return math.exp(found) if inside and above(found - STEP) > above(found + STEP) else None
+
+
+def limit_error(surface: Surface, place: tuple[float, float, float], rcs: float) -> float:
+    """Return the error [-] at a place on the limit where the solver finds `rcs` [-]."""
+    speed, load, temperature = place
+    slow, fast = (
+        surface.lookup(speed * math.exp(side * STEP), load, temperature).rcs for side in (-1, 1)
+    )
+    return (rcs - RCS_LIMIT) / (fast - slow) * 2 * STEP

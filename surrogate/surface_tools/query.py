@@ -1,0 +1,162 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What a surface says of operating points: a record, a page, and a table for a table."""
+
+from collections.abc import Iterable
+import csv
+import io
+import math
+from typing import Any
+
+from surrogate.parameters import InputError, OperatingPoint, ZERO_CELSIUS
+from surrogate.surface import Surface, SurfacePoint, Validity
+from surrogate.surface_tools.fields import derived_key, FIELD_TEXTS, WORST_CONTACTS
+
+COLUMNS = ('speed_rpm', 'load_N', 'temperature_degC')
+"""Columns of a table of points; the last may be missing."""
+SPREAD_OF = ('friction_torque', 'rcs')
+
+
+def query_record(surface: Surface, point: OperatingPoint) -> dict[str, Any]:
+    """Look up one point and return it as plain numbers, SI, NaN with a reason where unknown."""
+    found = surface.lookup(abs(point.speed), point.opposing_load, point.temperature)
+    return {
+        'tier': surface.tier,
+        'screw': surface.screw_name,
+        'oil': surface.oil_name,
+        'sha256': surface.sha256,
+        'speed_rad_s': point.speed,
+        'load_N': point.load,
+        'opposing_load_N': point.opposing_load,
+        'temperature_K': point.temperature,
+        **_numbers(found),
+        'reason': _reason(surface, found.validity),
+    }
+
+
+def _numbers(found: SurfacePoint) -> dict[str, Any]:
+    """Return everything that a surface says of a point."""
+    known = found.validity is Validity.VALID
+    return {
+        'validity': found.validity.name,
+        'efficiency': found.efficiency,
+        'efficiency_error': found.efficiency_error if known else math.nan,
+        'efficiency_std': found.efficiency_std if known else math.nan,
+        **{text.key: getattr(found, name) for name, text in FIELD_TEXTS.items()},
+        **{derived_key(name, 'error'): getattr(found, f'{name}_error') for name in SPREAD_OF},
+        **{derived_key(name, 'std'): found.std(name) for name in SPREAD_OF},
+        **{derived_key(name, 'stderr'): found.stderr(name) for name in SPREAD_OF},
+        'driving_torque_Nm': found.driving_torque,
+        'back_driving': found.back_driving,
+        'regime': _regime(found.film_ratio),
+        'worst_contact': WORST_CONTACTS[found.worst_contact] if known else '',
+    }
+
+
+def _regime(film_ratio: float) -> str:
+    from surrogate.screw.formula_record import regime
+
+    return regime(film_ratio)
+
+
+def _reason(surface: Surface, validity: Validity) -> str:
+    """Return why there are no numbers, with the limit that was passed; empty when there are."""
+    slow, fast = (30 / math.pi * speed for speed in surface.speed_range)
+    low, high = surface.load_range
+    cold, warm = (kelvin - ZERO_CELSIUS for kelvin in surface.temperature_range)
+    return {
+        Validity.VALID: '',
+        Validity.SPEED_BELOW_RANGE: f'the surface begins at {slow:.3g} rev/min',
+        Validity.SPEED_ABOVE_RANGE: f'the surface ends at {fast:.4g} rev/min',
+        Validity.LOAD_OUT_OF_RANGE: f'the surface covers {low:g} to {high:g} N against the motion',
+        Validity.TEMPERATURE_OUT_OF_RANGE: f'the surface covers {cold:g} to {warm:g} degC',
+        Validity.MASKED: 'a node beside this point did not converge',
+    }.get(validity, 'not known')
+
+
+def query_page(record: dict[str, Any]) -> str:
+    """Return the record of a point as a page."""
+    lines = [
+        f'tier {record["tier"]}: {record["speed_rad_s"] * 30 / math.pi:g} rev/min, '
+        f'{record["load_N"]:g} N, {record["temperature_K"] - ZERO_CELSIUS:g} degC',
+        f'  screw, oil           {record["screw"]}, {record["oil"]}',
+    ]
+    if record['reason']:
+        return '\n'.join([*lines, f'  no answer: {record["reason"]}'])
+    lines += [_line('efficiency', '-', record, 'efficiency', 'efficiency')]
+    for name, text in FIELD_TEXTS.items():
+        lines.append(_line(name.replace('_', ' '), text.unit or '-', record, text.key, name))
+    driving = ', the load drives the screw' if record['back_driving'] else ''
+    return '\n'.join(
+        [
+            *lines,
+            f'  driving torque       {record["driving_torque_Nm"]:.4g} N m{driving}',
+            f'  regime               {record["regime"]}',
+            f'  worst contact        {record["worst_contact"]}',
+        ]
+    )
+
+
+def _line(title: str, unit: str, record: dict[str, Any], key: str, name: str) -> str:
+    """Return one number with its errors, as far as they are known."""
+    texts = []
+    for kind, words in (('error', 'interpolation'), ('std', 'of one draw'), ('stderr', 'of mean')):
+        found = 'efficiency_' + kind if name == 'efficiency' else derived_key(name, kind)
+        value = record.get(found, math.nan)
+        if math.isfinite(value):
+            texts.append(f'{words} {value:.2g}')
+    errors = f'   ({", ".join(texts)})' if texts else ''
+    return f'  {title:20} {record[key]:.4g} {unit if unit != "-" else ""}'.rstrip() + errors
+
+
+def query_table(surface: Surface, lines: Iterable[str], name: str) -> tuple[str, int, int]:
+    """
+    Return a table of points with what the surface says of them, how many points, how many answers.
+
+    Raises InputError that names file, line and column of what is wrong.
+
+    """
+    reader = csv.DictReader(lines)
+    given = list(reader.fieldnames or ())
+    for column in COLUMNS[:2]:
+        if column not in given:
+            raise InputError(
+                f'{name}: column {column} is missing, a table has {", ".join(COLUMNS)}'
+            )
+    out = io.StringIO()
+    writer: csv.DictWriter[str] | None = None
+    answers = count = 0
+    for row in reader:
+        numbers = _row(surface, row, f'{name}, line {reader.line_num}')
+        if writer is None:
+            added = [key for key in numbers if key not in given]
+            writer = csv.DictWriter(out, [*given, *added], lineterminator='\n')
+            writer.writeheader()
+        writer.writerow({**numbers, **{column: row[column] for column in given}})
+        count += 1
+        answers += numbers['validity'] == Validity.VALID.name
+    if not count:
+        raise InputError(f'{name}: no points')
+    return out.getvalue(), count, answers
+
+
+def _row(surface: Surface, row: dict[str, str], where: str) -> dict[str, Any]:
+    if None in row or None in row.values():
+        raise InputError(f'{where}: not as many values as columns')
+    speed, load = (_number(row[column], column, where) for column in COLUMNS[:2])
+    kelvin = surface.reference_temperature
+    if row.get(COLUMNS[2], '') != '':
+        kelvin = _number(row[COLUMNS[2]], COLUMNS[2], where) + ZERO_CELSIUS
+    try:
+        point = OperatingPoint(speed=speed * math.pi / 30, load=load, temperature=kelvin)
+    except InputError as error:
+        raise InputError(f'{where}: {error}') from None
+    record = query_record(surface, point)
+    return {key: value for key, value in record.items() if key not in ('tier', 'screw', 'oil')}
+
+
+def _number(text: str, column: str, where: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise InputError(f'{where}: {column} is {text!r}, allowed is a number') from None

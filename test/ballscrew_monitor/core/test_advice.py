@@ -1,0 +1,111 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The nearest speed and load that clear a warning."""
+
+import dataclasses
+import math
+
+from ballscrew_monitor.core.advice import Advice, advise, optimal_load, optimal_speed
+from ballscrew_monitor.core.estimate import estimate
+from ballscrew_monitor.core.judgement import judge
+import pytest
+
+
+def faster_is_better(speed, load):
+    return 1.0 if speed < 30.0 else 0.0
+
+
+def heavier_is_better(speed, load):
+    return 0.9 if abs(load) >= 1500.0 else 0.5
+
+
+@pytest.mark.parametrize('sign', [1.0, -1.0])
+def test_the_border_is_found_from_its_optimal_side(core, sign):
+    point = core.point(speed=sign * 5.0, axial_load=-sign * 1000.0)
+    found = optimal_speed(point, core.surface(rcs=faster_is_better), core.limits())
+    assert sign * found == pytest.approx(30.0, rel=1e-5)
+    assert sign * found >= 30.0
+
+
+def test_the_nearer_of_two_borders_wins(core):
+    surface = core.surface(rcs=lambda speed, load: 0.0 if speed < 8.0 or speed > 50.0 else 1.0)
+    assert optimal_speed(core.point(speed=10.0), surface, core.limits()) == pytest.approx(8.0)
+    assert optimal_speed(core.point(speed=45.0), surface, core.limits()) == pytest.approx(50.0)
+
+
+def test_no_speed_helps(core):
+    assert math.isnan(optimal_speed(core.point(), core.surface(rcs=1.0), core.limits()))
+
+
+def test_a_speed_below_standstill_is_no_advice(core):
+    surface = core.surface(rcs=lambda speed, load: 1.0 if speed >= 0.5 else 0.0)
+    assert math.isnan(optimal_speed(core.point(), surface, core.limits()))
+
+
+@pytest.mark.parametrize('sign', [1.0, -1.0])
+def test_the_load_keeps_its_sense(core, sign):
+    point = core.point(speed=10.0, axial_load=sign * 1000.0)
+    found = optimal_load(point, core.surface(efficiency=heavier_is_better), core.limits())
+    assert sign * found == pytest.approx(1500.0, rel=1e-4)
+    assert sign * found >= 1500.0
+
+
+def test_to_leave_the_efficiency_unjudged_is_no_advice(core):
+    surface = core.surface(efficiency=0.5)
+    assert math.isnan(optimal_load(core.point(axial_load=300.0), surface, core.limits()))
+
+
+def test_a_light_load_may_become_lighter(core):
+    surface = core.surface(
+        rcs=lambda speed, load: 1.0 if abs(load) > 100.0 else 0.0, efficiency=0.5
+    )
+    found = optimal_load(core.point(axial_load=200.0), surface, core.limits())
+    assert found == pytest.approx(100.0, rel=1e-4)
+
+
+def test_advice_as_a_sentence(core):
+    assert Advice().text == ''
+    advice = advise(core.point(speed=5.0), core.surface(rcs=faster_is_better), core.limits())
+    assert advice.text == 'at this load run at 30 rad/s (286 rev/min)'
+    both = Advice(target_speed=30.0, target_load=-1500.0)
+    assert (
+        both.text
+        == 'at this load run at 30 rad/s (286 rev/min) or at this speed load with -1500 N'
+    )
+
+
+def test_an_optimal_point_is_its_own_advice(core):
+    point = core.point(speed=7.0, axial_load=-600.0)
+    assert advise(point, core.surface(), core.limits()) == Advice(
+        target_speed=7.0, target_load=-600.0
+    )
+
+
+@pytest.mark.parametrize('sign', [1.0, -1.0])
+@pytest.mark.parametrize(
+    ('name', 'sensitive'),
+    [
+        ('rcs', lambda speed, load: 2.0**-speed),
+        ('efficiency', lambda speed, load: 1.0 - 0.5**speed),
+        ('rcs', lambda speed, load: min(1.0, abs(load) / 4000.0)),
+        ('efficiency', lambda speed, load: abs(load) / 4000.0),
+    ],
+)
+def test_who_follows_the_advice_clears_the_warning(core, sign, name, sensitive):
+    surface, limits = core.surface(**{name: sensitive}), core.limits(light_load=1.0)
+    load = sign * (2000.0 if name == 'rcs' else 1000.0)
+    point = core.point(speed=sign * 1.5, axial_load=load)
+    advice = advise(point, surface, limits)
+    followed = [
+        dataclasses.replace(point, **{field: target})
+        for field, target in (('speed', advice.target_speed), ('axial_load', advice.target_load))
+        if math.isfinite(target)
+    ]
+    assert followed
+    for there in followed:
+        assert judge(there, estimate(there, surface, rcs_limit=limits.rcs), limits).clear
+
+
+def test_what_only_meets_the_limit_is_no_advice(core):
+    surface = core.surface(rcs=lambda speed, load: 1.0 if speed < 30.0 else 0.2)
+    assert math.isnan(optimal_speed(core.point(speed=5.0), surface, core.limits()))

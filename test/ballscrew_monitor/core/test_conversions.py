@@ -1,0 +1,142 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Units and frames, exactly."""
+
+import math
+
+from ballscrew_monitor.core.conversions import (
+    axial_load,
+    Direction,
+    direction_of,
+    load_scaling,
+    machine_nut,
+    machine_torque,
+    nanoseconds,
+    Nut,
+    opposing_load,
+    seconds,
+    signed_speed,
+    speed_scaling,
+    temperature_scaling,
+    torque_scaling,
+)
+from ballscrew_monitor.core.errors import InputError
+from hypothesis import given
+from hypothesis import strategies as st
+import pytest
+
+POSITIVE, NEGATIVE = Direction.POSITIVE, Direction.NEGATIVE
+PLAIN = {'scale': 1.0, 'offset': 0.0}
+finite = st.floats(allow_nan=False, allow_infinity=False)
+
+
+def speed(unit, value, *, handedness='right', lead=0.01, **changes):
+    scaling = speed_scaling(unit, lead=lead, handedness=handedness, **(PLAIN | changes))
+    return scaling(value)
+
+
+@pytest.mark.parametrize(
+    ('unit', 'value', 'expected'),
+    [
+        ('rad/s', 12.5, 12.5),
+        ('rev/min', 600.0, 20.0 * math.pi),
+        ('m/s', 0.01, 2.0 * math.pi),  # one lead in a second
+        ('mm/s', 10.0, 2.0 * math.pi),
+        ('mm/min', 600.0, 2.0 * math.pi),
+        ('m/min', 0.6, 2.0 * math.pi),
+    ],
+)
+def test_speed_units(unit, value, expected):
+    assert speed(unit, value) == pytest.approx(expected, rel=1e-15)
+    assert speed(unit, -value) == -speed(unit, value)
+
+
+def test_handedness_turns_rotary_speeds_only():
+    assert speed('rad/s', 3.0, handedness='left') == -3.0
+    assert speed('rev/min', 60.0, handedness='left') == -speed('rev/min', 60.0)
+    assert speed('mm/s', 10.0, handedness='left') == speed('mm/s', 10.0)
+
+
+def test_scale_comes_before_offset_and_both_before_the_unit():
+    assert speed('rad/s', 3.0, scale=2.0, offset=-1.0) == 5.0
+    assert load_scaling('kN', scale=2.0, offset=1.0)(3.0) == 7000.0
+    assert temperature_scaling('degC', scale=0.5, offset=10.0)(60.0) == 313.15
+
+
+def test_torque_is_along_the_screw():
+    assert torque_scaling('N m', handedness='right', **PLAIN)(2.0) == 2.0
+    assert torque_scaling('N m', handedness='left', **PLAIN)(2.0) == -2.0
+
+
+@pytest.mark.parametrize(
+    ('call', 'match'),
+    [
+        (lambda: speed('furlong/day', 1.0), "speed unit 'furlong/day' is unknown.*rad/s"),
+        (lambda: speed('rad/s', 1.0, handedness='both'), "handedness 'both' is unknown"),
+        (lambda: load_scaling('lbf', **PLAIN), "load unit 'lbf' is unknown, allowed are N, kN"),
+        (lambda: temperature_scaling('degF', **PLAIN), "temperature unit 'degF'"),
+        (lambda: torque_scaling('N', handedness='right', **PLAIN), "torque unit 'N'"),
+    ],
+)
+def test_unknown_units_are_refused(call, match):
+    with pytest.raises(InputError, match=match):
+        call()
+
+
+@pytest.mark.parametrize(
+    ('force', 'direction', 'expected'),
+    [
+        (100.0, POSITIVE, -100.0),
+        (-100.0, POSITIVE, 100.0),
+        (100.0, NEGATIVE, 100.0),
+        (-100.0, NEGATIVE, -100.0),
+    ],
+)
+def test_opposing_load_in_four_quadrants(force, direction, expected):
+    assert opposing_load(force, direction) == expected
+    assert axial_load(expected, direction) == force
+
+
+@given(force=finite, direction=st.sampled_from([POSITIVE, NEGATIVE]))
+def test_the_power_that_an_opposing_load_takes_has_the_same_sign_in_both_frames(force, direction):
+    motion = signed_speed(1.0, direction)
+    assert opposing_load(force, direction) == -motion * force
+
+
+@pytest.mark.parametrize('direction', [POSITIVE, NEGATIVE])
+def test_no_load_is_never_minus_zero(direction):
+    assert math.copysign(1.0, opposing_load(0.0, direction)) == 1.0
+
+
+def test_torque_along_the_motion_turns_with_it():
+    assert machine_torque(2.0, POSITIVE) == 2.0
+    assert machine_torque(2.0, NEGATIVE) == -2.0
+
+
+@pytest.mark.parametrize(
+    ('nut', 'force', 'expected'),
+    [
+        (1, 5.0, Nut.POSITIVE),
+        (2, 5.0, Nut.NEGATIVE),
+        (1, -5.0, Nut.NEGATIVE),
+        (2, -5.0, Nut.POSITIVE),
+        (1, 0.0, Nut.UNKNOWN),
+        (0, 5.0, Nut.UNKNOWN),
+        (1, math.nan, Nut.UNKNOWN),
+    ],
+)
+def test_nut_that_the_load_presses(nut, force, expected):
+    assert machine_nut(nut, force) is expected
+
+
+def test_direction_of():
+    assert direction_of(1e-300) is POSITIVE
+    assert direction_of(-1e-300) is NEGATIVE
+    assert direction_of(0.0) is direction_of(math.nan) is Direction.UNKNOWN
+
+
+@given(st.integers(min_value=0, max_value=2**33))
+def test_milliseconds_survive_as_seconds(milliseconds):
+    """Of 48 days, the nanosecond; beyond, a double of seconds holds it within one."""
+    off = nanoseconds(seconds(milliseconds * 1_000_000)) - milliseconds * 1_000_000
+    assert abs(off) <= (milliseconds >= 1000 * 2**22)

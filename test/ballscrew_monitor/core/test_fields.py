@@ -1,0 +1,113 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Field paths and message types by name."""
+
+import math
+
+from ballscrew_monitor.core.errors import InputError
+from ballscrew_monitor.core.fields import compile_field, message_class
+from geometry_msgs.msg import WrenchStamped
+import pytest
+from sensor_msgs.msg import Imu, JointState
+from std_msgs.msg import (
+    Byte,
+    ByteMultiArray,
+    Char,
+    Float32,
+    Float64,
+    Float64MultiArray,
+    Int32,
+    Int64,
+    UInt64,
+)
+
+
+def joints(*names, velocity=()):
+    return JointState(name=list(names), velocity=list(velocity))
+
+
+def test_paths_that_lead_to_a_number():
+    wrench = WrenchStamped()
+    wrench.wrench.force.x = 2.5
+    assert compile_field('wrench.force.x', WrenchStamped)(wrench) == 2.5
+    assert compile_field('data', Float64)(Float64(data=-1.5)) == -1.5
+    assert compile_field('data[1]', Float64MultiArray)(Float64MultiArray(data=[1.0, 2.0])) == 2.0
+    assert compile_field('layout.dim[0].size', Float64MultiArray)(Float64MultiArray()) != 0.0
+    assert compile_field('orientation_covariance[8]', Imu)(Imu()) == 0.0
+    assert compile_field('header.stamp.sec', WrenchStamped)(wrench) == 0.0
+
+
+def test_an_integer_becomes_a_float():
+    value = compile_field('data', Int32)(Int32(data=7))
+    assert (value, type(value)) == (7.0, float)
+
+
+@pytest.mark.parametrize('number', [0, 7, 53, 255])
+def test_a_byte_becomes_a_float(number):
+    byte = bytes([number])
+    assert compile_field('data', Byte)(Byte(data=byte)) == number
+    assert compile_field('data[1]', ByteMultiArray)(ByteMultiArray(data=[b'x', byte])) == number
+    assert compile_field('data', Char)(Char(data=number)) == number
+
+
+@pytest.mark.parametrize('kind', [Byte, Char, Float32, Float64, Int32, Int64, UInt64])
+def test_every_type_of_number_is_read(kind):
+    assert compile_field('data', kind)(kind()) == 0.0
+
+
+def test_a_joint_may_have_a_dot_in_its_name():
+    read = compile_field('velocity[robot.x]', JointState)
+    assert read(joints('robot', 'robot.x', velocity=[1.0, 2.0])) == 2.0
+
+
+def test_joints_are_found_by_name_wherever_they_stand():
+    read = compile_field('velocity[x_axis]', JointState)
+    assert read(joints('x_axis', 'y_axis', velocity=[1.0, 2.0])) == 1.0
+    assert read(joints('y_axis', 'x_axis', velocity=[1.0, 2.0])) == 2.0
+
+
+def test_other_joints_are_no_value_and_a_short_array_is_not_a_number():
+    read = compile_field('velocity[x_axis]', JointState)
+    assert read(joints('y_axis', velocity=[1.0])) is None
+    assert math.isnan(read(joints('x_axis')))
+    assert math.isnan(compile_field('position[3]', JointState)(joints('x_axis')))
+
+
+@pytest.mark.parametrize(
+    ('path', 'kind', 'match'),
+    [
+        (
+            'velocity[x]',
+            WrenchStamped,
+            'WrenchStamped has no field .velocity., it has header, wrench',
+        ),
+        ('wrench.force', WrenchStamped, 'is Vector3, not a number'),
+        ('wrench.force.x.y', WrenchStamped, "'y' is asked of a double"),
+        ('velocity', JointState, 'is sequence<double>, not a number'),
+        ('name[0]', JointState, 'is string, not a number'),
+        ('header.frame_id', JointState, 'is string, not a number'),
+        ('wrench..x', WrenchStamped, "'' is not a name or name.index."),
+        ('velocity[', JointState, 'is not a name or name.index.'),
+        ('', Float64, "'' is not a name"),
+        ('data[0]', Float64, "'data' of Float64 is double, no array"),
+        ('data[x]', Float64MultiArray, 'has no list of names'),
+    ],
+)
+def test_paths_that_lead_nowhere_are_refused(path, kind, match):
+    with pytest.raises(InputError, match=match):
+        compile_field(path, kind)
+
+
+@pytest.mark.parametrize(
+    ('name', 'match'),
+    [
+        ('sensor_msgs/JointState', 'is not of the form package/msg/Name'),
+        ('std_srvs/srv/Trigger', 'is not of the form'),
+        ('no_such_msgs/msg/Float64', 'is not installed'),
+        ('std_msgs/msg/NoSuch', 'is not installed'),
+        ('', 'is not of the form'),
+    ],
+)
+def test_types_that_are_no_types_are_refused(name, match):
+    with pytest.raises(InputError, match=match):
+        message_class(name)

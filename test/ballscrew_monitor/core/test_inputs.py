@@ -1,0 +1,155 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Field paths, stamps, refusals and the health of an input."""
+
+import math
+
+from ballscrew_monitor.core.conversions import Scaling, SECOND
+from ballscrew_monitor.core.inputs import (
+    InputState,
+    make_input,
+    Refusal,
+    Sample,
+    Source,
+    StampSource,
+    Tracker,
+    Why,
+)
+from ballscrew_msgs.msg import InputHealth
+import pytest
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Float64
+
+NOW = 100 * SECOND
+
+
+def joints(*names, velocity=(), stamp=0):
+    message = JointState(name=list(names), velocity=list(velocity))
+    message.header.stamp.sec, message.header.stamp.nanosec = divmod(stamp, SECOND)
+    return message
+
+
+def speed_input(**changes):
+    values = {
+        'topic': 'joint_states',
+        'type_name': 'sensor_msgs/msg/JointState',
+        'field': 'velocity[x_axis]',
+        'scaling': Scaling(factor=1.0, shift=0.0),
+    }
+    return make_input(Source.SPEED, **(values | changes))
+
+
+def test_a_header_stamp_is_the_stamp():
+    sample = speed_input().read(
+        joints('x_axis', velocity=[3.0], stamp=NOW - 5), now=NOW, max_future=0
+    )
+    assert sample == Sample(
+        source=Source.SPEED, value=3.0, stamp=NOW - 5, stamp_source=StampSource.HEADER
+    )
+
+
+def test_without_a_stamp_the_time_of_reception_counts():
+    unstamped = speed_input(type_name='std_msgs/msg/Float64', field='data')
+    for sample in (
+        speed_input().read(joints('x_axis', velocity=[3.0]), now=NOW, max_future=0),
+        unstamped.read(Float64(data=3.0), now=NOW, max_future=0),
+    ):
+        assert (sample.stamp, sample.stamp_source) == (NOW, StampSource.RECEIVE)
+
+
+def test_a_stamp_exactly_as_far_ahead_as_allowed_is_taken():
+    speed = speed_input()
+    limit = joints('x_axis', velocity=[3.0], stamp=NOW + 7)
+    beyond = joints('x_axis', velocity=[3.0], stamp=NOW + 8)
+    assert isinstance(speed.read(limit, now=NOW, max_future=7), Sample)
+    assert speed.read(beyond, now=NOW, max_future=7) == Refusal(
+        source=Source.SPEED, why=Why.FUTURE
+    )
+
+
+def test_a_clock_that_has_not_started_refuses_no_stamp():
+    assert isinstance(
+        speed_input().read(joints('x_axis', velocity=[3.0], stamp=NOW), now=0, max_future=0),
+        Sample,
+    )
+
+
+@pytest.mark.parametrize('bad', [math.nan, math.inf, -math.inf])
+def test_what_is_not_a_number_is_refused(bad):
+    assert speed_input().read(joints('x_axis', velocity=[bad]), now=NOW, max_future=0) == Refusal(
+        source=Source.SPEED, why=Why.NOT_A_NUMBER
+    )
+
+
+def test_a_message_about_other_joints_is_refused_as_such():
+    assert speed_input().read(joints('y_axis', velocity=[1.0]), now=NOW, max_future=0) == Refusal(
+        source=Source.SPEED, why=Why.OTHER_JOINTS
+    )
+
+
+def test_the_value_is_scaled():
+    speed = speed_input(scaling=Scaling(factor=2.0, shift=1.0))
+    assert speed.read(joints('x_axis', velocity=[3.0]), now=NOW, max_future=0).value == 7.0
+
+
+def tracker(**changes):
+    return Tracker(Source.LOAD, **({'configured': True, 'timeout': 10} | changes))
+
+
+def sample(stamp):
+    return Sample(source=Source.LOAD, value=1.0, stamp=stamp)
+
+
+def test_a_sample_exactly_as_old_as_the_timeout_is_good():
+    load = tracker()
+    load.accept(sample(100))
+    assert load.state(110) is InputState.OK
+    assert load.state(111) is InputState.STALE
+    assert load.health(111).age == 11e-9
+
+
+def test_a_sample_newer_than_the_judged_instant_has_no_negative_age():
+    load = tracker()
+    load.accept(sample(100))
+    assert load.health(90).age == 0.0
+
+
+def test_an_input_begins_missing_and_goes_bad_until_the_next_good_sample():
+    load = tracker()
+    assert load.state(0) is InputState.MISSING
+    assert math.isnan(load.health(0).age)
+    load.refuse()
+    assert load.state(0) is InputState.BAD
+    load.accept(sample(1))
+    assert load.state(1) is InputState.OK
+    assert (load.received, load.dropped) == (2, 1)
+
+
+def test_messages_about_other_joints_are_counted_but_do_no_harm():
+    load = tracker()
+    load.accept(sample(1))
+    load.drop()
+    assert load.state(1) is InputState.OK
+    assert (load.received, load.dropped) == (2, 1)
+
+
+def test_an_input_without_a_topic_says_so():
+    assert tracker(configured=False).state(0) is InputState.NOT_CONFIGURED
+
+
+def test_rate_is_the_mean_over_the_last_samples():
+    load = tracker()
+    assert math.isnan(load.health(0).rate)
+    for i in range(100):
+        load.accept(sample(i * SECOND // 50))
+    assert load.health(2 * SECOND).rate == 50.0
+    load.forget()
+    assert math.isnan(load.health(0).rate)
+
+
+@pytest.mark.parametrize(
+    ('enumeration', 'prefix'), [(InputState, 'STATE_'), (StampSource, 'STAMP_')]
+)
+def test_enumerations_have_the_numbers_of_the_messages(enumeration, prefix):
+    for member in enumeration:
+        assert getattr(InputHealth, f'{prefix}{member.name}') == member

@@ -1,0 +1,138 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The child process that never outlives its parent."""
+
+import os
+from pathlib import Path
+import select
+import signal
+import subprocess
+import sys
+import time
+
+from ballscrew_monitor.cycle import node_process
+from ballscrew_monitor.cycle.domain import free_domain
+from ballscrew_monitor.cycle.node_process import child_environment, NodeProcess
+from diagnostic_msgs.msg import DiagnosticArray
+import pytest
+import rclpy
+from rclpy.executors import SingleThreadedExecutor
+
+ROOT = Path(__file__).resolve().parents[3]
+PARAMS = ROOT / 'config' / 'nominal_cycle.yaml'
+DEADLINE = 30.0  # [s]
+
+
+def wait_for_a_sign(domain):
+    """Wait until the node says something; by then its signal handlers are in place."""
+    context, heard = rclpy.Context(), []
+    rclpy.init(context=context, domain_id=domain)
+    node = rclpy.create_node('listener', context=context)
+    node.create_subscription(DiagnosticArray, '/diagnostics', heard.append, 10)
+    executor = SingleThreadedExecutor(context=context)
+    executor.add_node(node)
+    deadline = time.monotonic() + DEADLINE
+    while not heard and time.monotonic() < deadline:
+        executor.spin_once(timeout_sec=0.1)
+    executor.shutdown()
+    node.destroy_node()
+    rclpy.shutdown(context=context)
+    assert heard
+
+
+def wait_for_the_end(pid):
+    """Wait until a process, which may be the child of another one, has ended."""
+    try:
+        ending = os.pidfd_open(pid)
+    except ProcessLookupError:
+        return
+    try:
+        assert select.select([ending], [], [], DEADLINE)[0]
+    finally:
+        os.close(ending)
+
+
+def is_alive(pid):
+    """Tell whether a process runs; one that nobody has reaped yet does not."""
+    try:
+        state = Path(f'/proc/{pid}/stat').read_text().rpartition(')')[2].split()[0]
+    except FileNotFoundError:
+        return False
+    return state != 'Z'
+
+
+@pytest.fixture
+def node(tmp_path, monkeypatch):
+    """Return the node as a child, with its signal handlers in place."""
+    monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
+    with free_domain() as domain:
+        process = NodeProcess(PARAMS, tmp_path / 'node.log', domain=domain)
+        try:
+            wait_for_a_sign(domain)
+            yield process
+        finally:
+            process.stop()
+
+
+def test_it_ends_when_it_is_asked(node):
+    assert node.returncode is None
+    assert node.stop() == 0
+    assert node.stop() == 0
+    assert not is_alive(node.pid)
+
+
+def test_it_is_killed_when_it_does_not_listen(node, monkeypatch):
+    patience = ((signal.SIGINT, 0.01), (signal.SIGTERM, 0.01), (signal.SIGKILL, DEADLINE))
+    monkeypatch.setattr(node_process, 'PATIENCE', patience)
+    os.kill(node.pid, signal.SIGSTOP)
+    assert node.stop() == -signal.SIGKILL
+    assert not is_alive(node.pid)
+
+
+def test_it_dies_with_its_parent(tmp_path, monkeypatch):
+    monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
+    script = (
+        'import sys, pathlib\n'
+        'from ballscrew_monitor.cycle.node_process import NodeProcess\n'
+        'node = NodeProcess(*map(pathlib.Path, sys.argv[1:3]), domain=int(sys.argv[3]))\n'
+        'print(node.pid, flush=True)\n'
+        'sys.stdin.read()\n'
+    )
+    with free_domain() as domain:
+        command = [sys.executable, '-c', script, PARAMS, tmp_path / 'node.log', str(domain)]
+        with subprocess.Popen(
+            command,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            env=child_environment(domain),
+            cwd=ROOT,
+        ) as parent:
+            pid = int(parent.stdout.readline())
+            wait_for_a_sign(domain)
+            parent.kill()
+            wait_for_the_end(pid)
+
+
+def test_its_words_are_kept(tmp_path):
+    with free_domain() as domain:
+        bad = tmp_path / 'bad.yaml'
+        bad.write_text('/**/ballscrew_monitor:\n  ros__parameters:\n    axes: 3\n')
+        with NodeProcess(bad, tmp_path / 'node.log', domain=domain) as node:
+            wait_for_the_end(node.pid)
+            assert node.returncode == 2
+            assert node.last_words().startswith('ballscrew_monitor: ')
+
+
+def test_the_environment_is_of_this_machine_and_without_borrowed_libraries(monkeypatch):
+    monkeypatch.setenv('_ROS_WHEELS_BOOTSTRAP_COMPLETE', '1')
+    monkeypatch.setenv('LD_LIBRARY_PATH', '/somewhere')
+    made = child_environment(7)
+    assert made['ROS_DOMAIN_ID'] == '7'
+    assert made['ROS_AUTOMATIC_DISCOVERY_RANGE'] == 'LOCALHOST'
+    assert not set(made) & set(node_process.WHEEL_VARIABLES)
+
+
+def test_a_stock_ros_keeps_its_library_path(monkeypatch):
+    monkeypatch.delenv('_ROS_WHEELS_BOOTSTRAP_COMPLETE', raising=False)
+    monkeypatch.setenv('LD_LIBRARY_PATH', '/opt/ros/jazzy/lib')
+    assert child_environment(7)['LD_LIBRARY_PATH'] == '/opt/ros/jazzy/lib'

@@ -1,0 +1,245 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The main job from end to end, on a short bag: the real node, the real middleware."""
+
+import dataclasses
+import os
+from pathlib import Path
+import re
+import signal
+import subprocess
+import sys
+import threading
+import types
+
+from ballscrew_monitor.core.errors import InputError
+from ballscrew_monitor.cycle import node_process
+from ballscrew_monitor.cycle.node_process import child_environment, ros_environment
+from ballscrew_monitor.cycle.run import plan, run
+from ballscrew_monitor.node.parameters import read_file
+from ballscrew_monitor.recordings.bag import Bag
+from ballscrew_monitor.recordings.replay import replay
+from ballscrew_monitor.recordings.summary import stamp_of
+from ballscrew_msgs.msg import BallScrewState
+import pytest
+from rclpy.serialization import deserialize_message
+
+ROOT = Path(__file__).resolve().parents[3]
+PARAMS = ROOT / 'config' / 'nominal_cycle.yaml'
+DEADLINE = 90.0  # [s]
+STATE = '/ballscrew_monitor/x/state'
+
+
+def start(*arguments):
+    """Start `ballscrew run` as a process."""
+    return subprocess.Popen(
+        [sys.executable, '-u', '-m', 'ballscrew_monitor.cli', 'run', *map(str, arguments)],
+        cwd=ROOT,
+        env=child_environment(0),
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+
+
+def is_alive(pid):
+    """Tell whether a process runs; one that nobody has reaped yet does not."""
+    try:
+        state = Path(f'/proc/{pid}/stat').read_text().rpartition(')')[2].split()[0]
+    except FileNotFoundError:
+        return False
+    return state != 'Z'
+
+
+def children(pid):
+    """Return the children of a process."""
+    return [int(found) for found in Path(f'/proc/{pid}/task/{pid}/children').read_text().split()]
+
+
+@pytest.fixture(scope='module')
+def finished(short_bag, tmp_path_factory):
+    """Return the directory, the output and the exit code of a run."""
+    out = tmp_path_factory.mktemp('run') / 'out'
+    with start('--bag', short_bag, '--params', PARAMS, '--out', out) as process:
+        text, errors = process.communicate(timeout=DEADLINE)
+    return out, text, errors, process.returncode
+
+
+def test_it_succeeds_and_leaves_its_products(finished):
+    out, text, errors, code = finished
+    assert (code, errors) == (0, '')
+    assert {path.name for path in out.iterdir() if not path.name.startswith('.')} == {
+        'cycle.mcap',
+        'cycle.png',
+        'metadata.yaml',
+        'node.log',
+        'ros_log',
+    }
+    assert '300 sent, 300 judged' in text
+    assert re.search(r'^\[#+\.*\] 0:\d\d left .* rev/min .* RCS ', text, flags=re.MULTILINE)
+    assert 'zone        optimal' in text
+
+
+def test_no_process_is_left(finished):
+    pid = int(re.search(r'process (\d+)', finished[1]).group(1))
+    assert not is_alive(pid)
+
+
+def test_the_recording_holds_inputs_and_outputs(finished, short_bag):
+    recorded, played = Bag(finished[0]), Bag(short_bag)
+    for topic, info in played.topics.items():
+        assert recorded.topics[topic].count == info.count
+    assert recorded.topics[STATE].count >= played.topics['/joint_states'].count
+    for name in ('x/out_of_zone', 'x/surface_info'):
+        assert recorded.topics[f'/ballscrew_monitor/{name}'].count >= 1
+    assert recorded.topics['/diagnostics'].count >= 1
+
+
+def test_the_node_says_what_the_replay_says(finished, short_bag):
+    online = [
+        deserialize_message(message.data, BallScrewState)
+        for message in Bag(finished[0]).messages([STATE])
+    ]
+    online = [what_was_judged(state) for state in online if state.judged]
+    offline = [what_was_judged(state) for state, _ in replay(Bag(short_bag), read_file(PARAMS))]
+    assert [sample for sample, _, _ in online] == [sample for sample, _, _ in offline]
+    # Between topics the order of arrival is not promised: a speed may meet the next load.
+    paired = [
+        (here, there)
+        for (_, point, here), (_, other, there) in zip(online, offline, strict=True)
+        if point == other
+    ]
+    assert len(paired) > 0.3 * len(offline)
+    assert all(here == there for here, there in paired)
+
+
+def what_was_judged(state):
+    """Return the sample, its operating point and what came out, comparable in spite of NaN."""
+    return (stamp_of(state), state.judged), str(state.point), str((state.zone, state.result))
+
+
+def test_an_interrupt_ends_everything_in_order(nominal_bag, tmp_path):
+    with start('--bag', nominal_bag, '--params', PARAMS, '--out', tmp_path / 'out') as process:
+        for line in process.stdout:
+            if line.startswith('['):
+                break
+        [node] = children(process.pid)
+        process.send_signal(signal.SIGINT)
+        _, errors = process.communicate(timeout=DEADLINE)
+    assert process.returncode == 130
+    assert errors.startswith('ballscrew: interrupted')
+    assert not is_alive(node)
+    recorded = Bag(tmp_path / 'out')
+    recorded.verify()
+    assert recorded.topics[STATE].count >= 1
+
+
+def test_a_reader_that_goes_away_ends_it(nominal_bag, tmp_path):
+    with start('--bag', nominal_bag, '--params', PARAMS, '--out', tmp_path / 'out') as process:
+        for line in process.stdout:
+            if line.startswith('['):
+                break
+        [node] = children(process.pid)
+        process.stdout.close()
+        errors = process.stderr.read()
+        process.wait(DEADLINE)
+    assert (process.returncode, errors) == (1, '')
+    assert not is_alive(node)
+    Bag(tmp_path / 'out').verify()
+
+
+def test_a_node_that_dies_is_a_failure(nominal_bag, tmp_path):
+    with start('--bag', nominal_bag, '--params', PARAMS, '--out', tmp_path / 'out') as process:
+        for line in process.stdout:
+            if line.startswith('['):
+                break
+        [node] = children(process.pid)
+        os.kill(node, signal.SIGKILL)
+        _, errors = process.communicate(timeout=DEADLINE)
+    assert process.returncode == 1
+    assert 'the node ended with exit code -9' in errors
+    Bag(tmp_path / 'out').verify()
+
+
+def keep_environment(monkeypatch):
+    """Have the variables that a run sets put back."""
+    for name, value in ros_environment(0).items():
+        monkeypatch.setenv(name, value)
+
+
+def test_a_node_that_dies_at_its_start_is_a_failure(short_bag, tmp_path, monkeypatch, capsys):
+    keep_environment(monkeypatch)
+    (tmp_path / 'cycle.png').write_bytes(b'of an earlier run')
+    made = plan(short_bag, PARAMS, tmp_path, 1.0)
+    monkeypatch.setattr(node_process, 'sys', types.SimpleNamespace(executable='false'))
+    assert run(made) == 1
+    out, err = capsys.readouterr()
+    assert err.startswith('ballscrew: the node ended with exit code 1')
+    assert out.endswith('node.log; nothing was recorded\n')
+    assert not (tmp_path / 'cycle.png').exists()
+
+
+def test_samples_without_a_verdict_are_a_failure(short_bag, tmp_path, monkeypatch, capsys):
+    keep_environment(monkeypatch)
+    params = tmp_path / 'params.yaml'
+    params.write_text(
+        '/**/ballscrew_monitor:\n  ros__parameters:\n    x:\n'
+        '      load: {offset: 9.0e+5}\n      temperature: {topic: oil_temperature}\n'
+    )
+    assert run(plan(short_bag, params, tmp_path / 'out', 1.0)) == 1
+    err = capsys.readouterr().err
+    assert re.search(r'had no verdict \(load outside the surface\)$', err, flags=re.MULTILINE)
+
+
+def test_what_is_not_judged_is_a_failure(short_bag, tmp_path, monkeypatch, capsys):
+    keep_environment(monkeypatch)
+    made = plan(short_bag, PARAMS, tmp_path, 1.0)
+    assert run(dataclasses.replace(made, expected={'x': made.expected['x'] + 1})) == 1
+    assert capsys.readouterr().err == (
+        'ballscrew: axis x: 300 of 301 speed messages were judged; '
+        'the recording does not say why\n'
+    )
+    assert [thread.name for thread in threading.enumerate() if thread.name == 'player'] == []
+
+
+@pytest.mark.parametrize(
+    ('change', 'expected'),
+    [
+        ({'bag': Path('/nowhere')}, 'bag /nowhere does not exist'),
+        ({'params': Path('/nowhere.yaml')}, 'parameter file cannot be read'),
+        ({'rate': 0.0}, 'rate is 0, allowed is above 0 to 1000'),
+        ({'rate': float('nan')}, 'rate is nan'),
+        ({'out': Path('/proc/nowhere')}, 'output directory /proc/nowhere cannot be written'),
+    ],
+)
+def test_bad_input_is_one_sentence_before_anything_starts(short_bag, tmp_path, change, expected):
+    given = {'bag': short_bag, 'params': PARAMS, 'out': tmp_path / 'out', 'rate': 1.0} | change
+    with pytest.raises(InputError, match=expected):
+        run(plan(given['bag'], given['params'], given['out'], given['rate']))
+    assert not (tmp_path / 'out').exists()
+
+
+def test_the_bag_is_not_overwritten_by_its_recording(finished):
+    with pytest.raises(InputError, match='would be overwritten'):
+        plan(finished[0], PARAMS, finished[0], 1.0)
+
+
+def test_two_runs_do_not_share_a_directory(short_bag, nominal_bag, tmp_path):
+    out = tmp_path / 'out'
+    with start('--bag', nominal_bag, '--params', PARAMS, '--out', out) as process:
+        for line in process.stdout:
+            if line.startswith('node'):
+                break
+        with pytest.raises(InputError, match='in use by another run'):
+            run(plan(short_bag, PARAMS, out, 1.0))
+        process.send_signal(signal.SIGTERM)
+        process.communicate(timeout=DEADLINE)
+    assert process.returncode == 128 + signal.SIGTERM
+
+
+def test_parameters_that_the_node_would_refuse_are_refused_first(short_bag, tmp_path):
+    params = tmp_path / 'params.yaml'
+    params.write_text("/**/ballscrew_monitor:\n  ros__parameters:\n    x:\n      oil: 'olive'\n")
+    with pytest.raises(InputError, match='olive'):
+        plan(short_bag, params, tmp_path / 'out', 1.0)
+    assert [path.name for path in tmp_path.iterdir()] == ['params.yaml']

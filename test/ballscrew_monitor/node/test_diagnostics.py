@@ -1,0 +1,157 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What the diagnostics say, case by case."""
+
+from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.core.inputs import Refusal, Sample, Source, Why
+from ballscrew_monitor.core.state import Event
+from ballscrew_monitor.node import diagnostics
+from ballscrew_monitor.node.diagnostics import ERROR, OK, STALE, WARN
+import pytest
+
+START = 1000 * SECOND
+
+
+def sample(source, value, stamp=START):
+    return Sample(source=source, value=value, stamp=stamp)
+
+
+def after(core, *events, surface=None, clock_stands=False, **limits):
+    """Return the statuses after some events, by their part, and the monitor."""
+    delays = {'raise_delay': 0, 'clear_delay': 0}
+    monitor, state = core.monitor(surface, core.limits(**(delays | limits))), None
+    for event in events:
+        state = monitor.update(event) or state
+    made = diagnostics.statuses(
+        'node',
+        'x',
+        state,
+        monitor.event,
+        monitor.surface,
+        publishers={Source.SPEED: 1, Source.LOAD: 0},
+        clock_stands=clock_stands,
+    )
+    return {status.name.rpartition(' ')[2]: status for status in made}
+
+
+LOAD, SPEED = sample(Source.LOAD, -1000.0), sample(Source.SPEED, 10.0)
+HEAVY, STILL = sample(Source.LOAD, 1e5), sample(Source.SPEED, 0.1)
+
+
+def test_a_status_begins_as_an_error():
+    for status in diagnostics.blank('node', 'x'):
+        assert (status.level, status.message) == (ERROR, 'no message was set')
+
+
+def test_names():
+    assert [status.name for status in diagnostics.blank('ballscrew_monitor', 'x')] == [
+        'ballscrew_monitor: x: Lubrication',
+        'ballscrew_monitor: x: Inputs',
+        'ballscrew_monitor: x: Surface',
+    ]
+
+
+def test_a_failure_is_an_error_everywhere():
+    assert {(status.level, status.message) for status in diagnostics.failed('n', 'x', 'why')} == {
+        (ERROR, 'why')
+    }
+
+
+def test_all_is_well(core):
+    made = after(core, LOAD, SPEED)
+    assert [status.level for status in made.values()] == [OK, OK, OK]
+    assert made['Lubrication'].message == 'optimal'
+    assert {status.hardware_id for status in made.values()} == {'constant'}
+
+
+@pytest.mark.parametrize(
+    ('events', 'level', 'message'),
+    [
+        ([SPEED], STALE, 'not judged: an input is missing'),
+        ([LOAD, STILL], WARN, 'standstill, not judged for long enough yet'),
+        ([LOAD, SPEED, STILL], OK, 'standstill'),
+        ([LOAD, SPEED, HEAVY, STILL], WARN, 'not judged: load outside the surface'),
+        ([LOAD, sample(Source.SPEED, 1e3)], WARN, 'not judged: speed above the surface'),
+        ([sample(Source.LOAD, 1e5), SPEED], WARN, 'not judged: load outside the surface'),
+    ],
+)
+def test_lubrication_that_is_not_judged(core, events, level, message):
+    status = after(core, *events)['Lubrication']
+    assert (status.level, status.message) == (level, message)
+
+
+def test_before_the_delay_is_over_nothing_is_ok(core):
+    status = after(core, LOAD, SPEED, clear_delay=SECOND)['Lubrication']
+    assert (status.level, status.message) == (WARN, 'not judged for long enough yet')
+
+
+def test_a_warning_names_its_cause_and_stands_while_inputs_are_lost(core):
+    surface = core.surface(rcs=0.5)
+    late = sample(Source.SPEED, 10.0, START + 10 * SECOND)
+    for events in ([LOAD, SPEED], [LOAD, SPEED, late]):
+        status = after(core, *events, surface=surface)['Lubrication']
+        assert (status.level, status.message) == (
+            WARN,
+            'outside the optimal zone: asperities carry too much',
+        )
+
+
+def test_inputs_name_what_is_wrong(core):
+    assert after(core, SPEED)['Inputs'].message == 'load was never received'
+    bad = after(core, LOAD, Refusal(source=Source.LOAD, why=Why.FUTURE), SPEED)['Inputs']
+    assert (bad.level, bad.message) == (STALE, 'load is not usable')
+    late = sample(Source.SPEED, 10.0, START + 10 * SECOND)
+    assert after(core, LOAD, late)['Inputs'].message == 'load is stale'
+
+
+def test_while_the_clock_stands_nothing_is_well_and_a_warning_stays(core):
+    made = after(core, LOAD, SPEED, clock_stands=True)
+    stands = (STALE, 'the clock stands still, nothing is seen to go stale')
+    for part in ('Lubrication', 'Inputs'):
+        assert (made[part].level, made[part].message) == stands
+    assert made['Surface'].level == OK
+    made = after(core, LOAD, SPEED, surface=core.surface(rcs=0.5), clock_stands=True)
+    assert made['Lubrication'].level == WARN
+    assert (made['Inputs'].level, made['Inputs'].message) == stands
+
+
+def test_an_input_slower_than_its_timeout_is_told(core):
+    speeds = [sample(Source.SPEED, 10.0, START + i * SECOND) for i in range(3)]
+    loads = [sample(Source.LOAD, -1000.0, speed.stamp) for speed in speeds]
+    pairs = [event for pair in zip(loads, speeds, strict=True) for event in pair]
+    status = after(core, *pairs[:4])['Inputs']
+    assert (status.level, status.message) == (OK, 'all inputs arrive')
+    status = after(core, *pairs)['Inputs']
+    assert (status.level, status.message) == (WARN, 'speed and load slower than the timeout')
+
+
+@pytest.mark.parametrize(
+    ('publishers', 'message'),
+    [
+        ({Source.SPEED: 1}, 'nothing has been judged yet'),
+        (None, 'the node is inactive, nothing is judged'),
+    ],
+)
+def test_without_a_state_there_is_no_news(core, publishers, message):
+    made = diagnostics.statuses('n', 'x', None, Event(), core.surface(), publishers=publishers)
+    assert [(status.level, status.message) for status in made[:2]] == [(STALE, message)] * 2
+    assert made[2].level == OK
+
+
+def test_values_carry_their_unit(core):
+    made = after(core, LOAD, SPEED)
+    values = {pair.key: pair.value for pair in made['Lubrication'].values}
+    assert values['Speed [rad/s]'] == '10'
+    assert values['Oil temperature [degC]'] == '40'
+    assert values['Efficiency [-]'] == '0.9'
+    values = {pair.key: pair.value for pair in made['Inputs'].values}
+    assert (values['Speed state'], values['Torque state']) == ('OK', 'NOT_CONFIGURED')
+    assert (values['Speed publishers [-]'], values['Load publishers [-]']) == ('1', '0')
+    values = {pair.key: pair.value for pair in made['Surface'].values}
+    assert values['Opposing load max [N]'] == '4000'
+
+
+def test_messages_hold_no_numbers(core):
+    for events in ([LOAD, SPEED], [SPEED], [LOAD, sample(Source.SPEED, 1e3)]):
+        for status in after(core, *events).values():
+            assert not any(character.isdigit() for character in status.message)

@@ -1,0 +1,433 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The node in its own process, over the real middleware."""
+
+import itertools
+import math
+import signal
+
+from ballscrew_monitor.cycle.domain import free_domain
+from ballscrew_monitor.node.node import BallscrewMonitor
+from ballscrew_msgs.msg import BallScrewState, OperatingPoint, OutOfZone, PointResult, SurfaceInfo
+from ballscrew_msgs.srv import EvaluateOperatingPoint
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+import pytest
+from rcl_interfaces.srv import DescribeParameters, ListParameters
+import rclpy
+from rclpy.clock import ClockType
+from rclpy.parameter import Parameter
+from rclpy.qos import QoSDurabilityPolicy, QoSProfile
+from rosgraph_msgs.msg import Clock
+from std_srvs.srv import Trigger
+from surrogate.surface import shipped_surface, Surface
+
+LATCHED = QoSProfile(depth=1, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL)
+FAST, SLOW = 100.0, 0.8  # [rad/s] optimal and outside at 1 kN and 40 degC
+# The stamps of a test run ahead of the clock.
+AHEAD = {'x__max_future': 3600.0}
+
+
+def levels(heard, part='Inputs'):
+    """Return the levels and messages that a diagnostic status went through."""
+    found = [
+        (status.level, status.message)
+        for message in heard
+        for status in message.status
+        if status.name == f'ballscrew_monitor: x: {part}'
+    ]
+    return [now for now, before in zip(found, [None, *found], strict=False) if now != before]
+
+
+def feed(node, publish, states, speed, count, **changes):
+    """Publish samples and wait until each of them was judged."""
+    done = states[-1].judged if states else 0
+    for _ in range(count):
+        publish(speed, **changes)
+    node.until(lambda: states and states[-1].judged == done + count, 'the last state')
+
+
+def test_each_sample_becomes_a_state_of_its_own_stamp(node):
+    node.start(**AHEAD)
+    states = node.states()
+    publish = node.machine()
+    node.until(lambda: node.node.count_publishers(f'{node.name}/x/state'))
+    first = node.stamp
+    feed(node, publish, states, FAST, 20)
+    judged = [state for state in states if state.judged]
+    assert [state.judged for state in judged] == list(range(1, 21))
+    assert [state.header.stamp.sec * 10**9 + state.header.stamp.nanosec for state in judged] == [
+        first + (i + 1) * 10_000_000 for i in range(20)
+    ]
+    expected = Surface.load(shipped_surface()).lookup(FAST, 1000.0, 313.15)
+    last = judged[-1]
+    assert last.result.validity == PointResult.VALIDITY_VALID
+    assert last.result.efficiency == expected.efficiency
+    assert last.result.rcs == expected.rcs
+    assert last.point.axial_load == -1000.0
+    assert last.zone == BallScrewState.ZONE_OPTIMAL
+    assert last.inputs[0].received == 20
+
+
+def test_a_stay_outside_is_warned_of_and_latched_for_late_joiners(node):
+    node.start(**AHEAD)
+    states = node.states()
+    publish = node.machine()
+    early = node.listen(OutOfZone, f'{node.name}/x/out_of_zone', LATCHED)
+    none_yet = node.until(lambda: early and early[0], 'the first event message')
+    assert (none_yet.event_id, none_yet.active, none_yet.axis) == (0, False, 'x')
+    feed(node, publish, states, SLOW, 51)
+    assert states[-1].level == BallScrewState.LEVEL_WARN
+    late = node.listen(OutOfZone, f'{node.name}/x/out_of_zone', LATCHED)
+    begun = node.until(lambda: late and late[0], 'the latched event')
+    assert (begun.event_id, begun.active, begun.duration) == (1, True, 0.5)
+    assert begun.cause.target_speed > SLOW
+    assert begun.advice.startswith('at this load run at')
+    feed(node, publish, states, FAST, 101)
+    over = node.until(lambda: late[1:], 'the end of the event')[0]
+    assert (over.event_id, over.active) == (1, False)
+    assert over.worst_value == begun.worst_value
+    assert states[-1].level == BallScrewState.LEVEL_OK
+    assert node.stop() == 0
+    assert 'event 1: ' in node.output.read_text()
+
+
+def test_silence_is_told_on_the_tick_and_clears_nothing(node):
+    node.start(x__speed__timeout=0.2, x__limits__raise_delay=0.0)
+    states, told = node.states(), node.listen(DiagnosticArray, '/diagnostics')
+    publish = node.machine()
+    node.stamp = node.now() - 10_000_000
+    feed(node, publish, states, SLOW, 1)
+    assert states[-1].level == BallScrewState.LEVEL_WARN
+    silent = node.until(
+        lambda: states[-1].point.speed_source == OperatingPoint.SOURCE_HELD and states[-1],
+        'a state on the tick',
+    )
+    assert silent.result.validity == PointResult.VALIDITY_NO_INPUT
+    assert silent.level == BallScrewState.LEVEL_WARN
+    assert silent.header.stamp.nanosec % 100_000_000 == 0
+    node.until(lambda: any(message.startswith('speed is stale') for _, message in levels(told)))
+    assert levels(told, 'Lubrication')[-1][0] == DiagnosticStatus.WARN
+
+
+def test_surface_info_is_latched_and_follows_the_limits(node):
+    node.start()
+    heard = node.listen(SurfaceInfo, f'{node.name}/x/surface_info', LATCHED)
+    info = node.until(lambda: heard and heard[-1], 'the surface info')
+    surface = Surface.load(shipped_surface())
+    assert (info.sha256, info.screw, info.oil) == (surface.sha256, 'nominal', 'iso_vg_68')
+    assert (info.speed_min, info.speed_max) == surface.speed_range
+    assert 'rcs' in info.error_field
+    assert node.set_parameters(x__limits__rcs=0.5).successful
+    node.until(lambda: heard[-1].rcs_limit == 0.5, 'the new limit')
+
+
+def test_limits_change_live_and_bad_ones_are_refused(node):
+    node.start(**AHEAD)
+    states = node.states()
+    publish = node.machine()
+    feed(node, publish, states, FAST, 1)
+    assert node.set_parameters(x__limits__efficiency=0.99, x__limits__rcs=0.02).successful
+    feed(node, publish, states, FAST, 1)
+    assert (states[-1].efficiency_limit, states[-1].rcs_limit) == (0.99, 0.02)
+    assert states[-1].zone == BallScrewState.ZONE_OUTSIDE
+    for values, reason in (
+        ({'x__limits__rcs': 0.03, 'x__limits__efficiency': 2.0}, 'out of range'),
+        ({'x__limits__rcs': 1}, 'Wrong parameter type'),
+        ({'axes': ['y']}, 'read-only'),
+        ({'x__handedness': 'left'}, 'changes only while the node is unconfigured'),
+    ):
+        result = node.set_parameters(**values)
+        assert not result.successful
+        assert reason in result.reason
+    feed(node, publish, states, FAST, 1)
+    assert states[-1].rcs_limit == 0.02
+
+
+def test_parameters_are_described(node):
+    arguments = ('-p', 'start_type_description_service:=false')  # of any node, and no slip
+    node.start(*arguments, autostart='false')
+    names = node.call(ListParameters, 'list_parameters').result.names
+    assert {'axes', 'x.limits.rcs', 'x.speed.topic'} <= set(names)
+    (found,) = node.call(
+        DescribeParameters, 'describe_parameters', names=['x.limits.standstill_speed']
+    ).descriptors
+    assert found.description.endswith('[rad/s]')
+    assert found.floating_point_range[0].from_value == 1e-3
+
+
+def test_the_lifecycle_from_outside(node):
+    node.start(autostart='false', **AHEAD)
+    told = node.listen(DiagnosticArray, '/diagnostics')
+    assert node.lifecycle() == 'unconfigured'
+    assert not node.call(EvaluateOperatingPoint, 'evaluate', axis='x').success
+    node.until(lambda: levels(told)[-1:] == [(DiagnosticStatus.ERROR, 'not configured')])
+    assert node.set_parameters(x__handedness='left').successful
+    assert node.transition('configure')
+    node.until(
+        lambda: (
+            levels(told)[-1] == (DiagnosticStatus.STALE, 'the node is inactive, nothing is judged')
+        )
+    )
+    assert node.node.count_subscribers('joint_states') == 0
+    assert node.transition('activate')
+    states = node.states()
+    publish = node.machine()
+    feed(node, publish, states, FAST, 2)
+    assert states[-1].point.speed == -FAST
+    assert node.transition('deactivate')
+    node.until(lambda: node.node.count_subscribers('joint_states') == 0)
+    assert node.transition('activate')
+    node.until(lambda: node.node.count_subscribers('joint_states'))
+    feed(node, publish, states, FAST, 1)
+    assert states[-1].judged == 3
+    assert node.transition('deactivate')
+    assert node.transition('cleanup')
+    assert node.set_parameters(x__handedness='right').successful
+    assert node.transition('configure')
+    assert node.transition('shutdown')
+    assert node.lifecycle() == 'finalized'
+    assert node.stop() == 0
+
+
+@pytest.mark.parametrize(
+    ('name', 'value', 'reason'),
+    [
+        ('x__surface', '/no/such/file.npz', '/no/such/file.npz'),
+        ('x__oil', 'olive', "'olive'"),
+        ('x__speed__field', 'velocity', 'not a number'),
+        ('x__load__topic', '"no topic"', 'no topic name'),
+        ('x__load__topic', 'joint_states', 'is configured as'),
+    ],
+)
+def test_a_failed_configure_leaves_the_node_alive_with_the_reason(node, name, value, reason):
+    arguments = ('-p', f'{name.replace("__", ".")}:={value}')
+    node.start(*arguments)
+    told = node.listen(DiagnosticArray, '/diagnostics')
+    level, message = node.until(lambda: levels(told, 'Surface'), 'diagnostics')[-1]
+    assert level == DiagnosticStatus.ERROR
+    assert message.startswith('not configured: ')
+    assert reason in message
+    assert node.lifecycle() == 'unconfigured'
+    assert reason in node.output.read_text()
+    assert node.stop(signal.SIGTERM) == 0
+
+
+@pytest.mark.parametrize(
+    ('argument', 'sentence'),
+    [
+        ('x.limits.rcs:=7.0', 'parameter x.limits.rcs is 7.0 -, allowed is 1e-06 to 0.999 -'),
+        (
+            'x.limits.rcs:=1',
+            'parameter x.limits.rcs is 1, it must be a number with a decimal point',
+        ),
+        ('x.limits.rsc:=0.1', 'parameter x.limits.rsc is unknown'),
+        ('diagnostic_period:=2.0', 'parameter diagnostic_period is unknown'),
+        ("axis:=['y']", 'parameter axis is unknown'),
+        ('y.screw:=nominal', 'parameter y.screw is unknown'),
+        ('x.speed.unit:=rpm', "parameter x.speed.unit is 'rpm', allowed is one of"),
+        ("axes:=['X']", "parameter axes holds 'X'"),
+    ],
+)
+def test_a_bad_parameter_at_start_is_one_sentence_and_exit_code_2(node, argument, sentence):
+    node.start('-p', argument)
+    assert node.process.wait(30.0) == 2
+    said = node.output.read_text().splitlines()
+    assert len(said) == 1
+    assert said[0].startswith(f'ballscrew_monitor: {sentence}')
+
+
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize('times', [1, 2])
+def test_signals_end_the_node_cleanly(node, number, times):
+    node.start(**AHEAD)
+    publish = node.machine()
+    for _ in range(20):
+        publish(FAST)
+    for _ in range(times - 1):
+        node.process.send_signal(number)
+    assert node.stop(number) == 0
+    assert 'Traceback' not in node.output.read_text()
+
+
+def test_evaluate_answers_for_many_points_at_once(node):
+    node.start()
+    node.until(lambda: node.node.count_publishers(f'{node.name}/x/state'))
+    node.until(lambda: node.lifecycle() == 'active')
+    points = [
+        OperatingPoint(speed=speed, axial_load=-1000.0, temperature=temperature)
+        for speed in (FAST, -FAST, 1e4)
+        for temperature in (math.nan, 60.0)
+    ]
+    answer = node.call(EvaluateOperatingPoint, 'evaluate', axis='x', points=points)
+    assert (answer.success, answer.message) == (True, '')
+    surface = Surface.load(shipped_surface())
+    expected = [
+        surface.lookup(FAST, load, temperature).efficiency
+        for load in (1000.0, -1000.0)
+        for temperature in (313.15, 333.15)
+    ]
+    assert [result.efficiency for result in answer.results[:4]] == expected
+    assert answer.results[4].validity == PointResult.VALIDITY_SPEED_ABOVE_RANGE
+    full = [OperatingPoint(speed=FAST, temperature=40.0)] * 10_000
+    assert (
+        len(node.call(EvaluateOperatingPoint, 'evaluate', axis='x', points=full).results) == 10_000
+    )
+    for axis, asked, message in (
+        ('x', [*full, full[0]], '10001 points are too many'),
+        ('q', [], "axis 'q' is unknown, known are: x"),
+    ):
+        answer = node.call(EvaluateOperatingPoint, 'evaluate', axis=axis, points=asked)
+        assert not answer.success
+        assert message in answer.message
+        assert answer.results == []
+
+
+def test_several_axes_share_one_topic(node):
+    node.start(axes="['x','y']", y__max_future=3600.0, **AHEAD)
+    x, y = node.states('x'), node.states('y')
+    publish = node.machine()
+    node.until(lambda: node.node.count_publishers(f'{node.name}/y/state'))
+    feed(node, publish, x, FAST, 3)
+    feed(node, publish, y, SLOW, 2, joint='y_axis')
+    assert (x[-1].axis, y[-1].axis) == ('x', 'y')
+    # Each saw the messages about the other one, and took no harm.
+    assert y[-1].inputs[0].received == 5
+    assert y[-1].inputs[0].dropped == 3
+    # A tick between two samples has a state of its own, without a speed.
+    assert FAST in [state.point.speed for state in x]
+    assert y[-1].point.speed == SLOW
+
+
+def test_the_small_services(node, tmp_path):
+    surface = tmp_path / 'surface.npz'
+    surface.write_bytes(shipped_surface().read_bytes())
+    node.start(x__surface=surface, x__limits__raise_delay=0.0, **AHEAD)
+    states = node.states()
+    publish = node.machine()
+    feed(node, publish, states, SLOW, 3)
+    assert states[-1].level == BallScrewState.LEVEL_WARN
+    assert states[-1].totals.running_time == pytest.approx(0.02)
+    assert node.call(Trigger, 'reset_totals').success
+    assert node.call(Trigger, 'acknowledge').success
+    feed(node, publish, states, FAST, 1)
+    assert states[-1].level == BallScrewState.LEVEL_UNKNOWN
+    assert states[-1].totals.running_time == pytest.approx(0.01)
+    assert node.call(Trigger, 'reload_surface').success
+    surface.write_bytes(b'no surface')
+    kept = node.call(Trigger, 'reload_surface')
+    assert not kept.success
+    assert kept.message.startswith('kept the old surface: axis x: ')
+    feed(node, publish, states, FAST, 1)
+    assert states[-1].result.validity == PointResult.VALIDITY_VALID
+
+
+def test_a_stamp_from_the_future_is_refused_and_counted(node):
+    node.start()
+    states = node.states()
+    publish = node.machine()
+    publish(FAST, step=3600 * 10**9)
+    refused = node.until(
+        lambda: states and states[-1].inputs[0].dropped and states[-1], 'the refusal'
+    )
+    assert (refused.judged, refused.inputs[0].received) == (0, 1)
+
+
+@pytest.mark.parametrize(
+    ('sim_time', 'kind'), [(False, ClockType.STEADY_TIME), (True, ClockType.ROS_TIME)]
+)
+def test_ticks_do_not_depend_on_the_system_clock(sim_time, kind):
+    """A timer on that stands still when it is set back, and nothing would go stale."""
+    with free_domain() as domain:
+        context = rclpy.Context()
+        rclpy.init(context=context, domain_id=domain)
+        overrides = [Parameter('use_sim_time', value=sim_time)]
+        node = BallscrewMonitor(context=context, parameter_overrides=overrides)
+        node.start()
+        assert node._tick_timer.clock.clock_type is kind
+        node.finish()
+        node.destroy_node()
+        rclpy.shutdown(context=context)
+
+
+def test_a_clock_that_stops_is_told(node):
+    node.start(use_sim_time='true', x__limits__clear_delay=0.0)
+    states, told = node.states(), node.listen(DiagnosticArray, '/diagnostics')
+    clocks = node.node.create_publisher(Clock, '/clock', 10)
+    publish = node.machine()
+    node.until(clocks.get_subscription_count)
+    node.stamp = 50 * 10**9
+    ticks = itertools.count()
+
+    def run():
+        message = Clock()
+        message.clock.sec, message.clock.nanosec = 50, next(ticks) % 5 * 10_000_000 + 60_000_000
+        clocks.publish(message)
+        publish(FAST, step=0)
+        return levels(told)[-1:] == [(DiagnosticStatus.OK, 'all inputs arrive')]
+
+    node.until(run, 'all inputs')
+    stands = (DiagnosticStatus.STALE, 'the clock stands still, nothing is seen to go stale')
+    node.until(lambda: levels(told)[-1] == stands, 'the end of the clock')
+    assert levels(told, 'Lubrication')[-1] == stands
+    node.until(run, 'all inputs again')
+    assert states[-1].zone == BallScrewState.ZONE_OPTIMAL
+
+
+def test_a_long_answer_makes_no_input_missing(node):
+    """What has come in meanwhile is taken before anything is called stale."""
+    node.start(x__speed__timeout=0.05, x__load__timeout=3600.0, tick_period=0.01)
+    states = node.states()
+    publish = node.machine()
+    node.stamp = node.now()
+
+    def judged():
+        """Publish until a sample is judged: one alone is stale where this process waits."""
+        publish(FAST, step=node.now() - node.stamp)
+        return states and states[-1].judged
+
+    node.until(judged, 'a first judged state')
+    states.clear()  # what was called stale before it was judged
+    points = [OperatingPoint(speed=FAST, temperature=40.0)] * 10_000
+    client = node.node.create_client(EvaluateOperatingPoint, f'{node.name}/evaluate')
+    node.until(client.service_is_ready)
+    future = client.call_async(EvaluateOperatingPoint.Request(axis='x', points=points))
+
+    def answered():
+        publish(FAST, step=node.now() - node.stamp)
+        return future.done()
+
+    node.until(lambda: answered() and states, 'the answer')
+    end = states[-1].judged + 20
+    node.until(lambda: answered() and states[-1].judged >= end)
+    stamps = [state.header.stamp.sec * 10**9 + state.header.stamp.nanosec for state in states]
+    assert stamps == sorted(stamps)
+
+
+def test_sim_time_is_the_clock_of_everything(node):
+    node.start(use_sim_time='true')
+    states = node.states()
+    clocks = node.node.create_publisher(Clock, '/clock', 10)
+    publish = node.machine()
+    node.until(clocks.get_subscription_count)
+    node.stamp = 50 * 10**9
+    feed(node, publish, states, FAST, 1)  # before the clock starts
+    assert states[-1].header.stamp.sec == 50
+
+    ticks = itertools.count()
+
+    def clock(seconds):
+        """Let the clock run on from `seconds`; tell whether a state has such a stamp."""
+        message = Clock()
+        message.clock.sec, message.clock.nanosec = seconds, next(ticks) % 100 * 10_000_000
+        clocks.publish(message)
+        return states[-1].header.stamp.sec == seconds
+
+    node.until(lambda: clock(60), 'a tick on simulated time')
+    assert states[-1].result.validity == PointResult.VALIDITY_NO_INPUT
+    publish(FAST, step=20 * 10**9)  # at 70 s
+    node.until(lambda: clock(61) and states[-1].inputs[0].dropped == 1, 'the refusal')
+    node.stamp = 10 * 10**9  # the recording begins anew
+    node.until(lambda: clock(10), 'a tick after the jump')
+    feed(node, publish, states, FAST, 1)
+    assert states[-1].header.stamp.sec == 10
+    assert states[-1].result.validity == PointResult.VALIDITY_VALID

@@ -1,0 +1,133 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Reading bags, above all those that are not as they should be."""
+
+import shutil
+
+from ballscrew_monitor.core.errors import InputError
+from ballscrew_monitor.recordings.bag import Bag
+from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
+import pytest
+import yaml
+
+TYPES = {
+    '/joint_states': 'sensor_msgs/msg/JointState',
+    '/axial_load': 'geometry_msgs/msg/WrenchStamped',
+}
+
+
+@pytest.fixture
+def copy(short_bag, tmp_path):
+    """Return a copy of the short bag that may be damaged."""
+    return shutil.copytree(short_bag, tmp_path / 'copy')
+
+
+def sentence(action):
+    """Return the one sentence in which `action` fails."""
+    with pytest.raises(InputError) as caught:
+        action()
+    text = str(caught.value)
+    assert '\n' not in text
+    assert text
+    return text
+
+
+def test_messages_come_by_log_time(short_bag):
+    bag = Bag(short_bag)
+    messages = list(bag.messages())
+    times = [message.log_time for message in messages]
+    assert times == sorted(times)
+    assert (times[0], times[-1]) == (bag.start_time, bag.end_time)
+    assert len(messages) == sum(info.count for info in bag.topics.values())
+    assert bag.duration == pytest.approx(3.0, abs=0.02)
+
+
+def test_topics_can_be_chosen_and_a_file_is_a_bag_too(short_bag):
+    bag = Bag(short_bag / 'short.mcap')
+    assert {message.topic for message in bag.messages(['/axial_load'])} == {'/axial_load'}
+    bag.require(TYPES)
+    bag.verify()
+
+
+def test_two_files_are_one_bag(short_bag, tmp_path):
+    for name in ('one.mcap', 'two.mcap'):
+        shutil.copy(short_bag / 'short.mcap', tmp_path / name)
+    bag = Bag(tmp_path)
+    assert bag.topics['/joint_states'].count == 2 * Bag(short_bag).topics['/joint_states'].count
+    times = [message.log_time for message in bag.messages()]
+    assert times == sorted(times)
+
+
+def test_topics_that_are_missing_or_of_another_type_are_named(short_bag):
+    bag = Bag(short_bag)
+    text = sentence(lambda: bag.require({'/load': 'std_msgs/msg/Float64'}))
+    assert text.endswith(
+        'topic /load (std_msgs/msg/Float64) is missing, the bag holds /axial_load, '
+        '/joint_states, /oil_temperature'
+    )
+    text = sentence(lambda: bag.require({'/axial_load': 'std_msgs/msg/Float64'}))
+    assert 'geometry_msgs/msg/WrenchStamped, it must be std_msgs/msg/Float64' in text
+
+
+def test_a_topic_without_messages_is_named(tmp_path):
+    with BagWriter(tmp_path, 'bag') as writer:
+        for name in ('/a', '/b'):
+            writer.add_topic(Topic(name=name, type_name='std_msgs/msg/Header', offer=Offer.SENSOR))
+        writer.write('/a', bytes(20), log_time=1, publish_time=1)
+    text = sentence(lambda: Bag(tmp_path).require({'/b': 'std_msgs/msg/Header'}))
+    assert 'topic /b holds no message' in text
+
+
+def test_a_bag_without_any_message_is_refused(tmp_path):
+    BagWriter(tmp_path, 'bag').close()
+    assert 'holds no message' in sentence(lambda: Bag(tmp_path))
+
+
+def test_no_bag_at_all(tmp_path):
+    assert 'does not exist' in sentence(lambda: Bag(tmp_path / 'nothing'))
+    assert 'holds no MCAP file' in sentence(lambda: Bag(tmp_path))
+    (tmp_path / 'run.mcap.active').touch()
+    assert 'only the unfinished run.mcap.active' in sentence(lambda: Bag(tmp_path))
+
+
+@pytest.mark.parametrize('part', [0.0, 1e-4, 0.01, 0.3, 0.9, 0.9999])
+def test_a_truncated_file_is_refused_when_it_is_opened(copy, part):
+    path = copy / 'short.mcap'
+    data = path.read_bytes()
+    path.write_bytes(data[: int(part * len(data))])
+    assert 'is truncated or damaged' in sentence(lambda: Bag(copy))
+
+
+def test_something_else_is_refused(tmp_path):
+    (tmp_path / 'text.mcap').write_text('speed, load\n1, 2\n' * 100)
+    assert 'is truncated or damaged' in sentence(lambda: Bag(tmp_path / 'text.mcap'))
+
+
+@pytest.mark.parametrize('part', [0.05, 0.2, 0.4])
+def test_damage_inside_is_found_when_it_is_read(copy, part):
+    path = copy / 'short.mcap'
+    data = bytearray(path.read_bytes())
+    data[int(part * len(data))] ^= 0x55
+    path.write_bytes(data)
+
+    def read():
+        Bag(copy).verify()
+
+    assert 'is truncated or damaged' in sentence(read)
+
+
+@pytest.mark.parametrize(
+    ('content', 'expected'),
+    [
+        ('][', 'is not a rosbag2 metadata file'),
+        ('a: 1', 'is not a rosbag2 metadata file'),
+        ({'storage_identifier': 'sqlite3', 'relative_file_paths': []}, 'must be mcap'),
+        ({'storage_identifier': 'mcap', 'relative_file_paths': ['x.mcap']}, 'x.mcap, which is'),
+        ({'storage_identifier': 'mcap', 'relative_file_paths': []}, 'holds no MCAP file'),
+    ],
+)
+def test_bad_metadata_is_one_sentence(copy, content, expected):
+    if isinstance(content, dict):
+        content = yaml.safe_dump({'rosbag2_bagfile_information': content})
+    (copy / 'metadata.yaml').write_text(content)
+    assert expected in sentence(lambda: Bag(copy))

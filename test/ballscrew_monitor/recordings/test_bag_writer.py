@@ -1,0 +1,116 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The bag that is written: layout of rosbag2, growth, and what a crash leaves."""
+
+import contextlib
+import shutil
+import struct
+
+from ballscrew_monitor.core.errors import InputError
+from ballscrew_monitor.recordings.bag import Bag
+from ballscrew_monitor.recordings.bag_writer import BagWriter, CHUNK_SIZE, Offer, Topic
+from mcap.exceptions import EndOfFile
+from mcap.reader import make_reader
+from mcap.records import Message
+from mcap.stream_reader import StreamReader
+import pytest
+import yaml
+
+HEADERS = Topic(name='/a', type_name='std_msgs/msg/Header', offer=Offer.SENSOR)
+LATCHED = Topic(name='/b', type_name='std_msgs/msg/Header', offer=Offer.LATCHED)
+DATA = bytes(100)
+
+
+def write(writer, count, *, topic='/a', begin=1000):
+    for number in range(count):
+        writer.write(topic, DATA, log_time=begin + number, publish_time=begin + number - 1)
+
+
+def test_it_has_the_layout_of_rosbag2(tmp_path):
+    with BagWriter(tmp_path, 'bag') as writer:
+        writer.add_topic(HEADERS)
+        write(writer, 3)
+    with (tmp_path / 'bag.mcap').open('rb') as stream:
+        reader = make_reader(stream, validate_crcs=True)
+        assert reader.get_header().profile == 'ros2'
+        [(schema, channel, message), *_] = reader.iter_messages()
+    assert (schema.name, schema.encoding) == ('std_msgs/msg/Header', 'ros2msg')
+    assert b'MSG: builtin_interfaces/Time' in schema.data
+    assert (channel.topic, channel.message_encoding) == ('/a', 'cdr')
+    assert channel.metadata['topic_type_hash'].startswith('RIHS01_f49f')
+    [profile] = yaml.safe_load(channel.metadata['offered_qos_profiles'])
+    assert (profile['reliability'], profile['depth']) == ('best_effort', 10)
+    assert (message.log_time, message.publish_time, message.data) == (1000, 999, DATA)
+
+
+def test_the_metadata_says_what_is_inside(tmp_path):
+    with BagWriter(tmp_path, 'bag') as writer:
+        writer.add_topic(HEADERS)
+        writer.add_topic(LATCHED)
+        write(writer, 3)
+        write(writer, 1, topic='/b', begin=500)
+    content = yaml.safe_load((tmp_path / 'metadata.yaml').read_text())
+    info = content['rosbag2_bagfile_information']
+    assert (info['version'], info['storage_identifier']) == (9, 'mcap')
+    assert info['relative_file_paths'] == ['bag.mcap']
+    assert info['message_count'] == 4
+    assert info['starting_time'] == {'nanoseconds_since_epoch': 500}
+    assert info['duration'] == {'nanoseconds': 502}
+    topics = {
+        entry['topic_metadata']['name']: (
+            entry['message_count'],
+            entry['topic_metadata']['offered_qos_profiles'][0]['durability'],
+        )
+        for entry in info['topics_with_message_count']
+    }
+    assert topics == {'/a': (3, 'volatile'), '/b': (1, 'transient_local')}
+
+
+def test_it_gets_its_name_when_it_is_closed(tmp_path):
+    writer = BagWriter(tmp_path / 'new' / 'out', 'bag')
+    folder = tmp_path / 'new' / 'out'
+    writer.add_topic(HEADERS)
+    write(writer, 1)
+    assert [path.name for path in folder.iterdir()] == ['bag.mcap.active']
+    writer.close()
+    writer.close()
+    assert sorted(path.name for path in folder.iterdir()) == ['bag.mcap', 'metadata.yaml']
+    assert Bag(folder).topics['/a'].count == 1
+
+
+def test_an_older_bag_of_the_name_is_gone_from_the_start(tmp_path):
+    BagWriter(tmp_path, 'bag').close()
+    writer = BagWriter(tmp_path, 'bag')
+    assert [path.name for path in tmp_path.iterdir()] == ['bag.mcap.active']
+    writer.close()
+
+
+def test_a_crash_costs_no_more_than_the_last_chunks(tmp_path):
+    writer = BagWriter(tmp_path, 'bag', compress=False)
+    writer.add_topic(HEADERS)
+    count = 10 * CHUNK_SIZE // len(DATA)
+    write(writer, count)
+    shutil.copy(tmp_path / 'bag.mcap.active', tmp_path / 'left.mcap')
+    writer.close()
+    with (tmp_path / 'left.mcap').open('rb') as stream:
+        kept = read_unfinished(stream)
+    assert kept >= 0.7 * count
+    with pytest.raises(InputError, match='left.mcap is truncated or damaged'):
+        Bag(tmp_path / 'left.mcap')
+
+
+def read_unfinished(stream):
+    """Return the number of messages in a file without an end."""
+    kept = 0
+    with contextlib.suppress(EndOfFile, struct.error):
+        for record in StreamReader(stream).records:
+            kept += isinstance(record, Message)
+    return kept
+
+
+def test_an_unknown_type_and_a_bad_directory_are_one_sentence(tmp_path):
+    with BagWriter(tmp_path, 'bag') as writer, pytest.raises(InputError, match='not installed'):
+        writer.add_topic(Topic(name='/c', type_name='std_msgs/msg/No', offer=Offer.SENSOR))
+    (tmp_path / 'file').write_text('')
+    with pytest.raises(InputError, match='cannot be written'):
+        BagWriter(tmp_path / 'file', 'bag')

@@ -1,0 +1,82 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The recorder, over the real middleware, beside a player in another process."""
+
+from pathlib import Path
+import subprocess
+import sys
+import time
+
+from ballscrew_monitor.cycle.domain import free_domain
+from ballscrew_monitor.cycle.node_process import child_environment, ros_environment
+from ballscrew_monitor.recordings.bag import Bag
+from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
+from ballscrew_monitor.recordings.recorder import Recorder
+import pytest
+import rclpy
+from rclpy.executors import SingleThreadedExecutor
+
+ROOT = Path(__file__).resolve().parents[3]
+DEADLINE = 60.0  # [s]
+
+
+@pytest.fixture
+def spinner(monkeypatch):
+    """Return a node in a free domain, a way to spin it, and the domain."""
+    with free_domain() as domain:
+        for name, value in ros_environment(domain).items():
+            monkeypatch.setenv(name, value)
+        context = rclpy.Context()
+        rclpy.init(context=context, domain_id=domain)
+        node = rclpy.create_node('recorder', context=context)
+        executor = SingleThreadedExecutor(context=context)
+        executor.add_node(node)
+        yield node, executor, domain
+        executor.shutdown()
+        node.destroy_node()
+        rclpy.shutdown(context=context)
+
+
+def test_what_is_played_is_recorded(spinner, short_bag, tmp_path):
+    node, executor, domain = spinner
+    bag, heard, ticks = Bag(short_bag), [], iter(range(10**9))
+    # Reliable: a best-effort reader misses what is sent before it has found the writer, and here,
+    # unlike in a run, nobody waits for that.
+    topics = [
+        Topic(name=name, type_name=info.type_name, offer=Offer.RELIABLE)
+        for name, info in bag.topics.items()
+    ]
+    total = sum(info.count for info in bag.topics.values())
+    command = [sys.executable, '-m', 'ballscrew_monitor.cli', 'play', short_bag, '--rate', '4']
+    with BagWriter(tmp_path, 'copy') as writer:
+        recorder = Recorder(
+            node, writer, topics, lambda: next(ticks), {'/axial_load': heard.append}
+        )
+        node.create_subscription(*clock())
+        with subprocess.Popen(
+            command, cwd=ROOT, env=child_environment(domain), stdout=subprocess.DEVNULL
+        ) as player:
+            deadline = time.monotonic() + DEADLINE
+            while writer.total < total:
+                assert time.monotonic() < deadline
+                executor.spin_once(timeout_sec=0.05)
+            assert player.wait(DEADLINE) == 0
+        recorder.close()
+    copy = Bag(tmp_path)
+    assert {name: info.count for name, info in copy.topics.items()} == {
+        name: info.count for name, info in bag.topics.items()
+    }
+    for topic in bag.topics:
+        assert [message.data for message in copy.messages([topic])] == [
+            message.data for message in bag.messages([topic])
+        ]
+    assert [message.log_time for message in copy.messages()] == list(range(total))
+    assert heard == [message.data for message in bag.messages(['/axial_load'])]
+
+
+def clock():
+    """Return the arguments of a subscription to the clock that ignores it."""
+    from ballscrew_monitor.recordings.player import CLOCK_QOS
+    from rosgraph_msgs.msg import Clock
+
+    return Clock, '/clock', lambda message: None, CLOCK_QOS

@@ -1,0 +1,62 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The summary of a run."""
+
+import json
+import math
+
+from ballscrew_monitor.recordings.summary import Summarizer
+from ballscrew_msgs.msg import BallScrewState, Finding, OutOfZone
+
+
+def make_summary():
+    """Return the summary of 10 s with one event that ended and one that did not."""
+    summarizer = Summarizer()
+    for second in (100, 110):
+        state = BallScrewState(axis='x', judged=1000)
+        state.header.stamp.sec = second
+        state.totals.running_time, state.totals.optimal_time = 8.0, 6.0
+        state.totals.outside_time, state.totals.mixed_time = 2.0, 8.0
+        state.totals.energy_lost = 123.4
+        summarizer.add_state(state)
+    summarizer.add_event(OutOfZone())  # event 0: none so far
+    for number, active in ((1, True), (1, False), (2, True)):
+        event = OutOfZone(event_id=number, active=active, duration=2.0, worst_value=0.25)
+        event.start.sec = 100 + 3 * number
+        event.cause = Finding(code=Finding.CODE_RCS_HIGH, limit=0.01)
+        summarizer.add_event(event)
+    return summarizer.result()
+
+
+def test_totals_are_those_of_the_last_state():
+    summary = make_summary()
+    assert (summary.states, summary.judged, summary.running_time) == (2, 1000, 8.0)
+    assert summary.lines()[:3] == [
+        'in motion   8.0 s of 10.0 s, 0 revolutions, 123 J lost to friction',
+        'regime      boundary 0.0 s (0 %), mixed 8.0 s (100 %), hydrodynamic 0.0 s (0 %)',
+        'zone        optimal 6.0 s (75 %), outside 2.0 s (25 %), unjudged 0.0 s (0 %)',
+    ]
+
+
+def test_an_event_is_listed_once_with_its_last_word():
+    events = make_summary().lines()[3:]
+    assert events == [
+        'events      2',
+        '   1    3.0 s to   5.0 s  RCS >= 0.01, worst 0.25',
+        '   2    6.0 s to still on  RCS >= 0.01, worst 0.25',
+    ]
+
+
+def test_json_has_units_and_no_nan():
+    summarizer = Summarizer()
+    state = BallScrewState(axis='x')
+    state.totals.energy_lost = math.nan
+    summarizer.add_state(state)
+    record = json.loads(json.dumps(summarizer.result().to_json(), allow_nan=False))
+    assert record['energy_lost_J'] is None
+    assert record['running_time_s'] == 0.0
+    assert record['events'] == []
+
+
+def test_without_a_state_there_is_none():
+    assert Summarizer().result() is None

@@ -1,0 +1,108 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Building a surface: ranges, nodes, measured errors, other screws."""
+
+from dataclasses import replace
+import math
+
+import numpy as np
+import pytest
+from surrogate.builder.closed_form import (
+    build_closed_form,
+    default_settings,
+    load_nodes,
+    onset_speed,
+    temperature_nodes,
+)
+from surrogate.formulas import closed_form
+from surrogate.parameters import InputError
+from surrogate.surface import FIELDS, Surface, Validity
+
+SMALL = {'speed_nodes': 16, 'load_cells': 3, 'unloaded_cells': 1, 'temperature_nodes': 3}
+
+
+def test_break_nodes_are_nodes(screw):
+    """Zero load and the unloading load, both signs, are nodes and breaks."""
+    load, breaks = load_nodes(screw, default_settings(screw))
+    assert breaks == pytest.approx([-(2**1.5) * 990, 0.0, 2**1.5 * 990])
+    assert set(breaks) <= set(load.tolist())
+    assert np.all(np.diff(load) > 0)
+
+
+def test_an_onset_is_where_rcs_is_one_percent(screw, oil):
+    """At the onset speed the worst contact has the asked RCS."""
+    load, kelvin = np.array([0.0, 1500.0, 3500.0]), 330.0
+    speed = onset_speed(screw, oil, load, np.asarray(kelvin), 0.01)
+    assert closed_form.solve(screw, oil, speed, load, kelvin).rcs == pytest.approx(0.01)
+
+
+def test_temperatures_part_the_onset_evenly(screw, oil):
+    """Between two temperature nodes the onset grows by nearly one factor."""
+    nodes = temperature_nodes(screw, oil, default_settings(screw))
+    onset = onset_speed(screw, oil, np.asarray(990.0), nodes, 0.01)
+    steps = np.diff(np.log(onset))
+    assert np.ptp(steps) < 0.02 * steps.mean()
+    assert nodes[[0, -1]].tolist() == list(default_settings(screw).temperature_range)
+
+
+def test_measured_errors_are_those_of_the_lookup(screw, oil):
+    """In a coarse map, the stated error of a cell is what a solve at its centre finds."""
+    data = build_closed_form(screw, oil, replace(default_settings(screw), **SMALL))
+    surface = Surface(data)
+    measured = np.argwhere(np.isfinite(data.errors['rcs']))
+    i, j, k = measured[len(measured) // 2]
+    s, load, kelvin = (
+        float(0.5 * (axis[n] + axis[n + 1]))
+        for axis, n in ((data.speed_coordinate, i), (data.load, j), (data.temperature, k))
+    )
+    speed = surface.onset_speed(load, kelvin) * math.exp(s)
+    solved = closed_form.solve(screw, oil, speed, load, kelvin)
+    found = surface.lookup(speed, load, kelvin)
+    for name in FIELDS:
+        error = abs(getattr(found, name) - float(getattr(solved, name)))
+        assert data.errors[name][i, j, k] == pytest.approx(error, rel=1e-6, abs=1e-12)
+    assert found.rcs_error == data.errors['rcs'][i, j, k]
+
+
+def test_more_nodes_mean_smaller_errors(screw, oil):
+    """Refining every axis shrinks the measured error of torque and film ratio."""
+    coarse, fine = (
+        Surface(build_closed_form(screw, oil, replace(default_settings(screw), **nodes))).errors
+        for nodes in (SMALL, {name: 2 * number - 1 for name, number in SMALL.items()})
+    )
+    for name in ('friction_torque', 'film_ratio', 'rcs'):
+        assert fine[name][1] < 0.5 * coarse[name][1]
+
+
+def test_same_inputs_same_hash(screw, oil):
+    """Building twice gives one surface; progress counts to its total."""
+    seen = []
+    small = replace(default_settings(screw), **SMALL)
+    one = build_closed_form(screw, oil, small, progress=lambda *at: seen.append(at))
+    assert one.sha256 == build_closed_form(screw, oil, small).sha256
+    assert seen == [(n, 5) for n in range(1, 6)]
+    assert one.provenance['build_seconds'] > 0
+
+
+def test_zero_preload_masks_zero_load_only(screw, oil):
+    """Without preload there is no contact at zero load; elsewhere the surface answers."""
+    loose = replace(screw, preload=0.0)
+    surface = Surface(build_closed_form(loose, oil, replace(default_settings(loose), **SMALL)))
+    assert surface.lookup(60.0, 0.0, 313.15).validity is Validity.MASKED
+    assert surface.lookup(60.0, 4000.0, 313.15).validity is Validity.VALID
+
+
+@pytest.mark.parametrize(
+    ('changes', 'sentence'),
+    [
+        ({'speed_range': (100.0, 10.0)}, 'speed range is 100 to 10 rad/s, allowed is a low end'),
+        ({'speed_range': (0.0, 10.0)}, 'speed range begins at 0 rad/s, allowed is above 0'),
+        ({'load_range': (5.0, 5.0)}, 'load range is 5 to 5 N'),
+        ({'temperature_range': (313.15, math.nan)}, 'temperature range is 313.15 to nan K'),
+        ({'temperature_range': (263.15, 353.15)}, 'oil iso_vg_68 allows 0 to 100 degC'),
+    ],
+)
+def test_a_wrong_range_is_one_sentence(screw, oil, changes, sentence):
+    """Reversed, empty, or beyond the oil's datasheet."""
+    with pytest.raises(InputError, match=sentence):
+        build_closed_form(screw, oil, replace(default_settings(screw), **changes))

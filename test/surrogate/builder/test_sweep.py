@@ -1,0 +1,260 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""A catalogue swept: every item reported, one failure alone, a killed worker's items elsewhere."""
+
+import argparse
+from dataclasses import replace
+import json
+import os
+from pathlib import Path
+import signal
+import sys
+import threading
+
+import pytest
+from surrogate.builder.sweep import load_catalogue
+from surrogate.builder.tiers import TIERS
+from surrogate.cli import add_commands
+from surrogate.parameters import DATA, InputError
+from surrogate.surface import Surface
+from surrogate.surface.file import read
+from surrogate.tasks.worker import worker_name
+
+DEADLINE = 60.0
+THREE = 'screws: [nominal]\noils: [iso_vg_32, iso_vg_68, iso_vg_100]\n'
+BUILDERS = """
+import os
+from dataclasses import replace
+from surrogate.builder.closed_form import build_closed_form, default_settings
+from surrogate.parameters import InputError
+
+SMALL = {'speed_nodes': 12, 'load_cells': 2, 'unloaded_cells': 1, 'temperature_nodes': 3}
+
+def small_settings(screw):
+    return replace(default_settings(screw), **SMALL)
+
+def build(screw, lubricant, settings, **options):
+    if lubricant.name == 'iso_vg_100' and 'SWEEP_HELLO' in os.environ:
+        with open(os.environ['SWEEP_HELLO'], 'w') as hello:
+            hello.write(str(os.getpid()))
+        with open(os.environ['SWEEP_GATE']) as gate:
+            gate.read()
+    return build_closed_form(screw, lubricant, settings)
+
+def build_all_but_one(screw, lubricant, settings, **options):
+    if lubricant.name == 'iso_vg_68':
+        raise InputError('iso_vg_68: not today')
+    return build_closed_form(screw, lubricant, settings)
+
+def build_here(screw, lubricant, settings, *, pool, out):
+    if lubricant.name == 'iso_vg_68':
+        raise ValueError(f'{out.name} with {type(pool).__name__}')
+    return build_closed_form(screw, lubricant, settings)
+"""
+
+
+def run(*words) -> int:
+    """Run one command line."""
+    parser = argparse.ArgumentParser()
+    add_commands(parser.add_subparsers(required=True))
+    args = parser.parse_args(['surface', 'sweep', *map(str, words)])
+    return args.handler(args)
+
+
+@pytest.fixture
+def tier(tmp_path: Path, monkeypatch):
+    """Return what makes the closed-form tier be built by another, smaller builder."""
+    (tmp_path / 'sweep_builders.py').write_text(BUILDERS)
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.delitem(sys.modules, 'sweep_builders', raising=False)
+
+    def use(name: str, **changes) -> None:
+        names = {'build': f'sweep_builders:{name}', 'settings': 'sweep_builders:small_settings'}
+        monkeypatch.setitem(
+            TIERS, 'closed_form', replace(TIERS['closed_form'], **names, **changes)
+        )
+
+    return use
+
+
+@pytest.fixture
+def catalogue(tmp_path: Path) -> Path:
+    """Return a catalogue of one screw and three oils."""
+    path = tmp_path / 'catalogue.yaml'
+    path.write_text(THREE)
+    return path
+
+
+def report(out: Path) -> dict:
+    """Return the report and see that its page is there."""
+    assert (out / 'sweep.md').read_text().startswith('# Sweep of ')
+    return json.loads((out / 'sweep.json').read_text())
+
+
+def test_every_combination_is_built(tmp_path, tier, catalogue, capsys):
+    """Screws times roughness times oils, each a file that is what the report says."""
+    tier('build')
+    catalogue.write_text(
+        THREE
+        + 'roughness: [{name: as_it_is}, {name: polished, rms_um: 0.06}]\n'
+        + 'load_range_N: [-500, 500]\ntemperature_range_degC: [20, 60]\n'
+    )
+    out = tmp_path / 'out'
+    assert run(catalogue, '--out', out, '--workers', 2) == 0
+    assert '6 surfaces built, 0 failed' in capsys.readouterr().out
+    items = report(out)['items']
+    assert [item['name'] for item in items] == [
+        f'{screw}_{oil}'
+        for screw in ('nominal', 'nominal-polished')
+        for oil in ('iso_vg_32', 'iso_vg_68', 'iso_vg_100')
+    ]
+    for item in items:
+        surface = Surface.load(out / item['file'], screw=item['screw'], oil=item['oil'])
+        assert surface.sha256 == item['sha256']
+        assert surface.load_range == (-500.0, 500.0)
+        assert surface.temperature_range == (293.15, 333.15)
+        assert surface.errors['rcs'][0] == item['errors']['rcs']['max']
+        assert item['status'] == 'built'
+        assert item['seconds'] > 0
+        rough = surface.header['inputs']['screw']['roughness']['rms']
+        assert rough == pytest.approx(0.06e-6 if item['roughness'] == 'polished' else 0.12e-6)
+    assert sorted(path.suffix for path in out.iterdir()) == ['.json', '.md', *6 * ['.npz']]
+
+
+def test_a_failed_item_never_stops_the_rest(tmp_path, tier, catalogue, capsys):
+    """Its sentence is in the report and on the page; the exit code is 1."""
+    tier('build_all_but_one')
+    out = tmp_path / 'out'
+    assert run(catalogue, '--out', out, '--workers', 1) == 1
+    assert '2 surfaces built, 1 failed' in capsys.readouterr().out
+    found = report(out)
+    assert found['counts'] == {'built': 2, 'failed': 1, 'waiting': 0}
+    failed = found['items'][1]
+    assert (failed['status'], failed['sentence']) == ('failed', 'iso_vg_68: not today')
+    assert failed['sha256'] == ''
+    assert 'failed: iso_vg_68: not today' in (out / 'sweep.md').read_text()
+    assert not (out / 'nominal_iso_vg_68.npz').exists()
+
+
+def test_a_tier_that_spreads_its_solves_is_built_here(tmp_path, tier, catalogue):
+    """Its builder gets the workers and the file; what it raises is that item's sentence."""
+    tier('build_here', spreads=True)
+    out = tmp_path / 'out'
+    assert run(catalogue, '--out', out, '--workers', 1) == 1
+    items = report(out)['items']
+    assert [item['status'] for item in items] == ['built', 'failed', 'built']
+    assert items[1]['sentence'] == 'ValueError: nominal_iso_vg_68.npz with ProcessPool'
+    assert items[0]['worker'] == worker_name()
+
+
+def killer(hello: str, gate: str, seen: list[int]) -> threading.Thread:
+    """Kill the worker that begins the item at the gate, and let the second one pass."""
+
+    def work() -> None:
+        for _ in range(2):
+            with open(hello) as pipe:
+                seen.append(int(pipe.read()))
+            if len(seen) == 1:
+                os.kill(seen[0], signal.SIGKILL)
+        open(gate, 'w').close()
+
+    thread = threading.Thread(target=work, daemon=True)
+    thread.start()
+    return thread
+
+
+def test_a_cluster_that_loses_a_worker_builds_everything(tmp_path, tier, catalogue, monkeypatch):
+    """Two Dask workers, one killed at work: the report shows who did its item, same surfaces."""
+    distributed = pytest.importorskip('distributed')
+    tier('build')
+    names = {name: str(tmp_path / name) for name in ('hello', 'gate')}
+    for name, path in names.items():
+        os.mkfifo(path)
+        monkeypatch.setenv(f'SWEEP_{name.upper()}', path)
+    seen: list[int] = []
+    thread = killer(names['hello'], names['gate'], seen)
+    with distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, dashboard_address='127.0.0.1:0', silence_logs='ERROR'
+    ) as cluster:
+        dask = cluster.scheduler_address
+        assert run(catalogue, '--out', tmp_path / 'out', '--dask', dask) == 0
+    thread.join(DEADLINE)
+    found = report(tmp_path / 'out')
+    host = worker_name().partition('/')[0]
+    killed, other = (f'{host}/{pid}' for pid in seen)
+    item = found['items'][2]
+    assert (item['name'], item['status']) == ('nominal_iso_vg_100', 'built')
+    assert (item['lost_workers'], item['worker']) == ([killed], other)
+    # What it had just done may be lost with it too: results stay where they were made.
+    assert 'nominal_iso_vg_100' in found['workers'][killed]['lost_at']
+    assert 'nominal_iso_vg_100' not in found['workers'][killed]['done']
+    assert 'nominal_iso_vg_100' in found['workers'][other]['done']
+    page = (tmp_path / 'out' / 'sweep.md').read_text()
+    assert f'* {killed} at nominal_iso_vg_100: done by {other}' in page
+    monkeypatch.delenv('SWEEP_HELLO')
+    assert run(catalogue, '--out', tmp_path / 'again', '--workers', 1) == 0
+    again = report(tmp_path / 'again')['items']
+    assert [one['sha256'] for one in again] == [one['sha256'] for one in found['items']]
+
+
+def test_sheets_beside_the_catalogue_are_found(tmp_path, catalogue):
+    """A file name is looked up beside the catalogue, whatever the working directory."""
+    sheet = (DATA / 'screws' / 'nominal.yaml').read_text()
+    (tmp_path / 'mine.yaml').write_text(sheet.replace('name: nominal', 'name: mine'))
+    catalogue.write_text('screws: [nominal, mine.yaml]\noils: [iso_vg_68]\n')
+    assert [item.name for item in load_catalogue(catalogue)] == [
+        'nominal_iso_vg_68',
+        'mine_iso_vg_68',
+    ]
+
+
+@pytest.mark.parametrize(
+    ('text', 'sentence'),
+    [
+        ('- nominal\n', 'must be a mapping of keys to values'),
+        ('screw: [nominal]\n', 'unknown key screw, allowed are tier, screws, oils'),
+        ('screws: [nominal]\n', 'oils must be a list of names or files, got None'),
+        ('screws: nominal\noils: [iso_vg_68]\n', "screws must be a list .*, got 'nominal'"),
+        ('screws: [z]\noils: [iso_vg_68]\n', "'z' is neither a file nor one of the shipped"),
+        ('screws: [nominal]\noils: [iso_vg_68, iso_vg_68]\n', 'two surfaces would be named nomin'),
+        (THREE + 'tier: guess\n', "tier is 'guess', allowed is closed_form"),
+        (THREE + 'roughness: smooth\n', 'roughness must be a list of mappings'),
+        (THREE + 'roughness: [smooth]\n', "roughness: 'smooth' must be a mapping with a name"),
+        (THREE + 'roughness: [{name: a b}]\n', 'roughness a b: name must be letters'),
+        (THREE + 'roughness: [{name: a, rq: 1.0}]\n', 'roughness a: unknown key rq, allowed are'),
+        (THREE + 'roughness: [{name: a, rms_nm: 60.0}]\n', 'rms_nm has a wrong unit, the key is'),
+        (THREE + 'roughness: [{name: a, rms_um: 99.0}]\n', 'rms_um is 99, allowed is 0.001 to 10'),
+        (THREE + 'load_range_N: [5]\n', r'load_range_N is \[5\], allowed is \[low, high\]'),
+        (THREE + 'load_range_N: [5, 1]\n', r'load_range_N is \[5, 1\], allowed is the low end'),
+        (THREE + 'oils: [iso_vg_68]\n', 'key oils stands twice'),
+    ],
+)
+def test_a_wrong_catalogue_is_one_sentence(catalogue, text, sentence):
+    """What, value, allowed; before anything is built."""
+    catalogue.write_text(text)
+    with pytest.raises(InputError, match=sentence) as caught:
+        load_catalogue(catalogue)
+    assert '\n' not in str(caught.value)
+
+
+def test_a_scheduler_that_is_not_there_leaves_a_report_of_waiting_items(
+    tmp_path, catalogue, monkeypatch
+):
+    """Soon and in one sentence."""
+    pytest.importorskip('distributed')
+    monkeypatch.setattr('surrogate.tasks.workers.PATIENCE', 0.3)
+    with pytest.raises(InputError, match='--dask: no scheduler at tcp://127.0.0.1:1'):
+        run(catalogue, '--out', tmp_path / 'out', '--dask', 'tcp://127.0.0.1:1')
+    assert report(tmp_path / 'out')['counts'] == {'built': 0, 'failed': 0, 'waiting': 3}
+
+
+def test_a_surface_that_cannot_be_written_is_that_item_alone(tmp_path, tier, catalogue):
+    """A directory stands where a file should go."""
+    tier('build')
+    out = tmp_path / 'out'
+    (out / 'nominal_iso_vg_32.npz').mkdir(parents=True)
+    assert run(catalogue, '--out', out, '--workers', 1) == 1
+    items = report(out)['items']
+    assert [item['status'] for item in items] == ['failed', 'built', 'built']
+    assert 'it is not a regular file' in items[0]['sentence']
+    assert read(out / items[2]['file']).sha256 == items[2]['sha256']

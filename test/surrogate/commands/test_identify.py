@@ -1,0 +1,171 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The identify command as a user types it."""
+
+import argparse
+import json
+import math
+import sys
+
+import numpy as np
+import pytest
+from surrogate.cli import add_commands
+from surrogate.formulas import closed_form
+from surrogate.parameters import InputError, load_lubricant, load_screw
+
+SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
+RPM = np.array([60, 100, 200, 400, 800, 1600, -60, -200, -800, -1600])
+ROWS = RPM * math.pi / 30
+TORQUE = np.sign(ROWS) * (
+    np.asarray(closed_form.solve(SCREW, OIL, np.abs(ROWS), 0.0, 313.15).friction_torque) + 0.12
+)
+TORQUE = TORQUE + 4e-4 * ROWS + 0.03
+
+
+def run(*words, read_bag=None):
+    """Run one command line and return its exit code."""
+    parser = argparse.ArgumentParser()
+    add_commands(parser.add_subparsers(required=True), read_bag)
+    args = parser.parse_args(['identify', *(str(word) for word in words)])
+    return args.handler(args)
+
+
+@pytest.fixture
+def data(tmp_path):
+    """Return the path of a clean synthetic recording."""
+    path = tmp_path / 'drag.csv'
+    rows = ''.join(f'{rpm},{torque:.12f}\n' for rpm, torque in zip(RPM, TORQUE, strict=True))
+    path.write_text('speed_rpm,torque_Nm\n' + rows, encoding='utf-8')
+    return path
+
+
+def test_json_is_strict_and_whole(capsys, data):
+    """Values, intervals and residual in SI units."""
+    assert run(data, '--json') == 0
+    record = json.loads(capsys.readouterr().out)
+    values = {one['name']: one['value'] for one in record['parameters']}
+    assert values == pytest.approx(
+        {'parasitic_torque': 0.12, 'parasitic_torque_rate': 4e-4, 'torque_offset': 0.03}, abs=1e-9
+    )
+    assert record['points'] == 10
+    assert record['temperature_K'] == pytest.approx(313.15)
+    assert record['data'] == 'drag.csv'
+
+
+def test_the_written_sheet_gives_the_measured_torque(capsys, data, tmp_path):
+    """`point` with the written sheets prints the torque along the motion without the offset."""
+    sheet = tmp_path / 'deep' / 'found.yaml'
+    assert run(data, '--out', sheet, '--fit', 'viscosity', '--temperature-degC', 35) == 0
+    assert '95 %' in capsys.readouterr().out
+    screw = load_screw(str(sheet))
+    oil = load_lubricant(str(sheet.with_name('found_oil.yaml')))
+    kelvin = oil.reference_temperature
+    assert kelvin == pytest.approx(308.15)
+    found = closed_form.solve(screw, oil, np.abs(ROWS), 0.0, kelvin).friction_torque
+    np.testing.assert_allclose(found, np.sign(ROWS) * (TORQUE - 0.03), rtol=5e-3)
+    assert 'Parasitic torque identified from drag.csv: 10 points' in screw.source
+    assert str(tmp_path) not in sheet.read_text(encoding='utf-8')
+    assert screw.name == 'nominal_identified'
+
+
+def test_only_the_screw_is_written_where_the_oil_is_not_fitted(data, tmp_path):
+    """And nothing at all without --out."""
+    assert run(data) == 0
+    assert [path.name for path in tmp_path.iterdir()] == ['drag.csv']
+    assert run(data, '--out', tmp_path / 'found.yaml') == 0
+    assert sorted(path.name for path in tmp_path.iterdir()) == ['drag.csv', 'found.yaml']
+
+
+def test_the_full_tier_is_asked_for_by_name(data, monkeypatch, capsys):
+    """It hands on what is fitted, and whom to tell."""
+    asked = []
+
+    def model(screw, lubricant, points, fitted, *, progress):
+        from surrogate.identify.model import closed_form_model
+
+        asked.append(fitted)
+        for done in range(3):
+            progress(done, 2)
+        return closed_form_model(screw, lubricant, points)
+
+    monkeypatch.setattr('surrogate.identify.table.solved_model', model)
+    words = ('--fit', 'viscosity', '--fit', 'asperity_friction', '--fit', 'viscosity')
+    assert run(data, '--tier', 'full', *words) == 0
+    assert asked == [('viscosity_factor', 'asperity_friction')]
+    assert '2/2 speeds solved' in capsys.readouterr().err
+
+
+def test_a_fit_that_did_not_converge_exits_with_1(data, monkeypatch, capsys):
+    """The record says so, too."""
+    from scipy.optimize import least_squares
+
+    monkeypatch.setattr(
+        'surrogate.identify.fit.least_squares',
+        lambda *given, **options: least_squares(*given, **options, max_nfev=1),
+    )
+    sheet = data.with_name('found.yaml')
+    assert run(data, '--fit', 'viscosity', '--json', '--out', sheet) == 1
+    assert not sheet.exists()
+    record = json.loads(capsys.readouterr().out)
+    assert record['converged'] is False
+    assert record['status'] == 'the fit ended before it converged'
+
+
+def test_datasheets_that_are_read_are_not_written_over(data, tmp_path):
+    """Neither the screw nor the oil, which takes its name from the output."""
+    mine = tmp_path / 'mine.yaml'
+    assert run(data, '--out', mine) == 0
+    before = mine.read_text(encoding='utf-8')
+    with pytest.raises(InputError, match='is the datasheet given as --screw'):
+        run(data, '--screw', mine, '--out', mine)
+    with pytest.raises(InputError, match='is the datasheet given as --oil'):
+        run(data, '--oil', tmp_path / 'other_oil.yaml', '--out', tmp_path / 'other.yaml')
+    assert mine.read_text(encoding='utf-8') == before
+
+
+@pytest.mark.parametrize('celsius', ['-300', 'nan', 'inf'])
+def test_a_temperature_that_no_oil_has_is_refused(data, celsius):
+    """The sentence names the option."""
+    with pytest.raises(InputError, match='--temperature-degC is .* allowed is a number above'):
+        run(data, f'--temperature-degC={celsius}')
+
+
+def test_options_that_mean_nothing_are_refused(data, tmp_path):
+    """Bag options for a CSV, and the other way round; a temperature that stands twice."""
+    with pytest.raises(InputError, match='--speed-topic has no meaning here: .* is a CSV'):
+        run(data, '--speed-topic', 'joint_states')
+    with pytest.raises(InputError, match='--torque-column has no meaning here: .* is a bag'):
+        run(tmp_path, '--torque-column', 'torque_Nm')
+    with pytest.raises(InputError, match='is a bag, which only the command ballscrew reads'):
+        run(tmp_path)
+    text = data.read_text(encoding='utf-8').replace('\n', ',40\n')
+    data.write_text(text.replace('torque_Nm,40', 'torque_Nm,temperature_degC'), encoding='utf-8')
+    with pytest.raises(InputError, match='holds the temperature too: allowed is one of both'):
+        run(data, '--temperature-degC', 40)
+    assert run(data) == 0
+
+
+def test_a_bag_is_read_by_who_can(tmp_path, capsys):
+    """The arguments and the lead go out, columns and notes come back."""
+    seen = []
+
+    def reader(args, lead):
+        seen.append((args.data, args.speed_topic, lead))
+        return {'speed': ROWS, 'torque': TORQUE}, ('half of it was steady',)
+
+    assert run(tmp_path, '--speed-topic', 'joint_states', read_bag=reader) == 0
+    assert seen == [(tmp_path, 'joint_states', SCREW.lead)]
+    assert 'note: half of it was steady' in capsys.readouterr().out
+
+
+def test_a_picture(data, tmp_path, monkeypatch):
+    """One file, nothing half-written; without matplotlib or a place for it one sentence."""
+    pytest.importorskip('matplotlib')
+    folder = tmp_path / 'deep' / 'plots'
+    assert run(data, '--plot', folder) == 0
+    assert [path.name for path in folder.iterdir()] == ['identify.png']
+    with pytest.raises(InputError, match='--plot: .*drag.csv cannot be written'):
+        run(data, '--plot', data)
+    monkeypatch.setitem(sys.modules, 'surrogate.identify.figures', None)
+    with pytest.raises(InputError, match='--plot needs matplotlib: install the extra `plot`'):
+        run(data, '--plot', folder)

@@ -1,0 +1,146 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Case files: units, defaults and one sentence for each mistake."""
+
+from dataclasses import fields
+from pathlib import Path
+
+import pytest
+from surrogate.contact.case import CaseDomain, CaseGrid, CaseRoughness, ContactCase, load_case
+from surrogate.parameters import DATA, InputError
+import yaml
+
+PAGE = Path(__file__).parents[3] / 'docs' / 'contact.md'
+CASES = sorted(path.stem for path in (DATA / 'cases').glob('*.yaml'))
+SMALLEST = {
+    'radius_x_mm': 2.5888,
+    'radius_y_mm': 77.389,
+    'reduced_modulus_GPa': 226.37,
+    'load_N': 27.6,
+    'entrainment_speed_m_s': 0.5,
+    'viscosity_Pa_s': 0.06,
+    'pressure_viscosity_1_GPa': 20.0,
+}
+
+
+def write(folder, **keys):
+    """Write the smallest case with `keys` changed, without those of None; return its path."""
+    content = {key: value for key, value in {**SMALLEST, **keys}.items() if value is not None}
+    path = folder / 'case.yaml'
+    path.write_text(yaml.safe_dump(content), encoding='utf-8')
+    return str(path)
+
+
+def load(folder, **keys):
+    """Return a case."""
+    return load_case(write(folder, **keys))
+
+
+def test_units_and_defaults(tmp_path):
+    """All values are SI; what is not stated is the documented default."""
+    case = load(tmp_path)
+    assert case.contact.radius_x == pytest.approx(2.5888e-3)
+    assert case.contact.reduced_modulus == pytest.approx(226.37e9)
+    assert case.lubricant.pressure_viscosity == pytest.approx(20e-9)
+    assert case.lubricant.eyring_stress == 5e6
+    assert case.lubricant.law == 'roelands_dh'
+    assert case.film_floor == 3e-9
+    assert case.slide_roll_ratio == ()
+    assert case.roughness is case.grid is case.domain is None
+
+
+def test_optional_keys(tmp_path):
+    """Each reaches the solver; grid and domain may be lists in the order of their keys."""
+    keys = {
+        'fluid': 'barus_incompressible',
+        'eyring_stress_MPa': 6,
+        'slide_roll_ratio': [0.01, 0.05],
+        'film_floor_nm': 1.0,
+        'grid': {'nx': 65, 'ny': 33},
+        'domain': {'inlet': -4.5, 'outlet': 1.5, 'side': 3},
+    }
+    case = load(tmp_path, **keys)
+    assert case == load(tmp_path, **{**keys, 'grid': [65, 33], 'domain': [-4.5, 1.5, 3.0]})
+    assert case.slide_roll_ratio == (0.01, 0.05)
+    assert case.lubricant.law == 'barus_incompressible'
+    assert (case.grid.nx, case.grid.ny) == (65, 33)
+    assert case.film_floor == pytest.approx(1e-9)
+    assert load(tmp_path, slide_roll_ratio=0.02).slide_roll_ratio == (0.02,)
+
+
+@pytest.mark.parametrize('cls', [ContactCase, CaseRoughness, CaseGrid, CaseDomain])
+def test_the_page_of_the_command_names_every_key(cls):
+    """A key that is added without a word about it fails here."""
+    page = PAGE.read_text(encoding='utf-8')
+    for spec in fields(cls):
+        unit = spec.metadata.get('unit')
+        key = f'{spec.name}_{unit}' if unit else spec.name
+        assert f'`{key}`' in page, key
+
+
+@pytest.mark.parametrize('name', CASES)
+def test_shipped_cases_load(name):
+    """Each shipped case has the nominal or a published contact."""
+    case = load_case(name)
+    assert case.load > 0
+    if name.startswith('nominal'):
+        assert case.contact.radius_x == pytest.approx(2.5888e-3, rel=1e-4)
+
+
+BAD = [
+    ({'viscosity_Pa_s': None}, 'missing key viscosity_Pa_s'),
+    ({'speed': 1.0}, 'unknown key speed, allowed are radius_x_mm'),
+    ({'load_kN': 1.0, 'load_N': None}, 'load_kN has a wrong unit, the key is load_N'),
+    ({'radius_x_mm': 0}, 'radius_x_mm is 0, allowed is 0.001 to 1e'),
+    ({'radius_y_mm': -3.0}, 'radius_y_mm is -3, allowed is'),
+    ({'load_N': 0.0}, 'load_N is 0, allowed is'),
+    ({'load_N': -27.6}, 'load_N is -27.6, allowed is'),
+    ({'load_N': float('nan')}, 'load_N is nan, allowed is'),
+    ({'load_N': '27.6'}, "load_N is '27.6', allowed is a number"),
+    ({'load_N': True}, 'load_N is True, allowed is a number'),
+    ({'entrainment_speed_m_s': -0.5}, 'entrainment_speed_m_s is -0.5, allowed is 0 to 1000'),
+    ({'pressure_viscosity_1_GPa': 2e-8}, 'pressure_viscosity_1_GPa is 2e-08, allowed is'),
+    ({'fluid': 'water'}, "fluid is 'water', allowed is roelands_dh or barus_incompressible"),
+    ({'fluid': ['water']}, r"fluid is \['water'\], allowed is"),
+    ({'slide_roll_ratio': [0.01, 'fast']}, "slide_roll_ratio is 'fast', allowed is a number"),
+    ({'slide_roll_ratio': [-0.1]}, 'slide_roll_ratio is -0.1, allowed is 0 to'),
+    ({'grid': 129}, 'grid: must be a mapping of keys to values, got int'),
+    ({'grid': {'nx': 129}}, 'grid: missing key ny'),
+    ({'grid': [129, 64]}, 'grid: ny is 64, allowed is an odd number'),
+    ({'grid': [129, 65.5]}, 'grid: ny is 65.5, allowed is a whole number from 17'),
+    ({'grid': [5, 65]}, 'grid: nx is 5, allowed is a whole number from 17'),
+    ({'domain': [-4.5, 1.5]}, 'domain: must be a mapping of keys to values, got list'),
+    ({'domain': [4.5, 1.5, 3]}, 'domain: inlet is 4.5, allowed is -50 to -1.1'),
+    ({'film_floor_nm': 0}, 'film_floor_nm is 0, allowed is'),
+    ({'roughness': {'seed': 1}}, 'roughness: missing key rms_um, or file for a measured surface'),
+    ({'roughness': {'rms_nm': 1}}, 'roughness: rms_nm has a wrong unit, the key is rms_um'),
+    ({'roughness': {'rms_um': -0.1}}, 'roughness: rms_um is -0.1, allowed is 0 to 10'),
+    ({'roughness': {'rms_um': 0.1, 'seed': 1.5}}, 'seed is 1.5, allowed is a whole number'),
+    ({'roughness': {'rms_um': 0.1, 'patch': 'whole'}}, "patch is 'whole', allowed is rescaled"),
+    ({'roughness': {'file': 'a.csv', 'seed': 1}}, 'seed belongs to a generated surface'),
+    ({'roughness': {'file': 'a.csv', 'patch': 'rescaled'}}, 'which needs rms_um above 0'),
+    ({'roughness': {'file': ''}}, "file is '', allowed is a text that is not empty"),
+]
+
+
+@pytest.mark.parametrize(('keys', 'sentence'), BAD)
+def test_bad_cases_are_one_sentence(tmp_path, keys, sentence):
+    """The sentence names the file, the key, the value and what is allowed."""
+    path = write(tmp_path, **keys)
+    with pytest.raises(InputError, match=sentence) as caught:
+        load_case(path)
+    assert str(caught.value).startswith(path)
+    assert '\n' not in str(caught.value)
+
+
+def test_files_that_are_no_cases(tmp_path):
+    """No file, no YAML, no mapping."""
+    with pytest.raises(InputError, match=r"cases: 'absent' is neither a file nor .*nominal_rough"):
+        load_case('absent')
+    path = tmp_path / 'list.yaml'
+    path.write_text('- 1\n', encoding='utf-8')
+    with pytest.raises(InputError, match='must be a mapping of keys to values, got list'):
+        load_case(str(path))
+    path.write_text('a: [1\n', encoding='utf-8')
+    with pytest.raises(InputError, match='cannot be read as YAML'):
+        load_case(str(path))

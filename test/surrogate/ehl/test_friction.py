@@ -1,0 +1,141 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Friction over solved contacts: the table, closed forms, directions, limits."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from surrogate.ehl import Condition, ContactLubricant, Settings, solve_contact
+from surrogate.ehl.friction import contact_friction, slide_roll_friction, viscosity_of
+from surrogate.formulas.geometry import Contact
+from surrogate.parameters import InputError
+
+
+@pytest.fixture(scope='module')
+def solved(nominal):
+    """Solve the nominal contact at 27.6 N and 0.5 m/s."""
+    return solve_contact(*nominal, Condition(load=27.6, entrainment_speed=0.5))
+
+
+def test_friction_table(reference_rows):
+    """Full-film coefficients at two slide-roll ratios to 3 %."""
+    for row in reference_rows('ehl_dimensional.csv'):
+        if not row['mu_1']:
+            continue
+        number = {key: float(text) for key, text in row.items() if key != 'case' and text}
+        ellipse = row['case'] == 'ball_screw_ellipse'
+        nx, ny = (513, 129) if ellipse else (257, 257)
+        found = solve_contact(
+            Contact(
+                radius_x=number['Rx_mm'] * 1e-3,
+                radius_y=number['Ry_mm'] * 1e-3,
+                reduced_modulus=number['E_reduced_GPa'] * 1e9,
+            ),
+            ContactLubricant(
+                viscosity=number['eta0_Pa_s'],
+                eyring_stress=number['tau0_MPa'] * 1e6,
+                pressure_viscosity=number['alpha_1_Pa'],
+            ),
+            Condition(load=number['load_N'], entrainment_speed=number['speed_m_s']),
+            settings=Settings(
+                nx=nx, ny=ny, domain=(-4.5, 1.5, 2.0 if ellipse else 3.0), error_estimate=False
+            ),
+        )
+        assert found.converged, found.status.value
+        for which in '12':
+            friction = slide_roll_friction(found, number[f'srr_{which}'])
+            assert friction.coefficient == pytest.approx(number[f'mu_{which}'], rel=0.03)
+            assert friction.asperity_coefficient == 0.0
+
+
+def test_uniform_slip_opposes_itself(solved):
+    """Force, coefficient and power agree; no force across; turning the slip turns the force."""
+    along = contact_friction(solved, slip_x=0.01)
+    assert along.force_x == pytest.approx(-along.coefficient * 27.6, rel=1e-12)
+    assert along.force_y == 0.0
+    assert along.power == pytest.approx(-along.force_x * 0.01, rel=1e-12)
+    across = contact_friction(solved, slip_x=0.006, slip_y=-0.008)
+    assert across.force_x == pytest.approx(0.6 * along.force_x, rel=1e-12)
+    assert across.force_y == pytest.approx(-0.8 * along.force_x, rel=1e-12)
+
+
+def test_spin_has_a_moment_and_no_force_across_the_symmetry(solved):
+    """Pure spin: the moment opposes it, the force along x cancels, power = moment times spin."""
+    spin = 20.0
+    found = contact_friction(
+        solved,
+        slip_x=-spin * solved.y[None, :] + 0 * solved.x[:, None],
+        slip_y=spin * solved.x[:, None] + 0 * solved.y[None, :],
+    )
+    assert found.spin_moment < 0
+    assert found.power == pytest.approx(-found.spin_moment * spin, rel=1e-9)
+    assert abs(found.force_x) < 1e-9 * abs(found.force_y)
+
+
+def test_small_slip_is_newtonian(solved):
+    """At vanishing slip the stress is eta slip / h and doubles with the slip."""
+    slip = 1e-12
+    found = contact_friction(solved, slip_x=slip)
+    wet = solved.film_pressure > 0
+    newton = viscosity_of(solved.lubricant, solved.film_pressure) * slip / solved.film
+    assert found.traction[wet] == pytest.approx(newton[wet], rel=1e-6)
+    assert contact_friction(solved, slip_x=0.0).coefficient == 0.0
+
+
+def test_central_film_changes_the_film_only(solved):
+    """The option shears the central film everywhere; the rim then shears less."""
+    local = slide_roll_friction(solved, 0.02)
+    central = slide_roll_friction(solved, 0.02, film='central')
+    assert central.coefficient == pytest.approx(local.coefficient, rel=0.05)
+    assert central.coefficient != local.coefficient
+
+
+def test_dry_contact_has_the_boundary_coefficient(nominal, raceway):
+    """At rest all load is on punctured nodes; a mixed contact lies between."""
+    settings = Settings(nx=65, ny=65, domain=(-2.6, 1.4, 1.4), open_inlet=True)
+    dry = solve_contact(
+        *nominal, Condition(load=27.6, entrainment_speed=0.0), roughness=raceway, settings=settings
+    )
+    found = contact_friction(dry, slip_x=0.01, asperity_friction=0.12)
+    assert found.coefficient == pytest.approx(0.12, rel=1e-4)
+    assert found.film_coefficient == 0.0
+    mixed = solve_contact(
+        *nominal,
+        Condition(load=27.6, entrainment_speed=0.004),
+        roughness=raceway,
+        settings=settings,
+    )
+    found = slide_roll_friction(mixed, 0.02)
+    assert mixed.converged
+    assert found.asperity_coefficient == pytest.approx(0.1 * mixed.rcs, rel=1e-6)
+    assert 0 < found.film_coefficient < found.coefficient < 0.12
+
+
+def test_slip_floor_regularises_the_direction(solved):
+    """Far below the floor the force is proportional to the slip."""
+    small = contact_friction(solved, slip_x=1e-6, slip_floor=1e-4)
+    double = contact_friction(solved, slip_x=2e-6, slip_floor=1e-4)
+    assert double.force_x == pytest.approx(2 * small.force_x, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    'wrong',
+    [
+        {'slip_x': np.zeros(3)},
+        {'slip_x': np.nan},
+        {'slip_x': 0.0, 'asperity_friction': -0.1},
+        {'slip_x': 0.0, 'film': 'none'},
+        {'slip_x': 0.0, 'slip_floor': -1.0},
+    ],
+)
+def test_bad_input_is_one_sentence(solved, wrong):
+    """Shape, finiteness and ranges."""
+    with pytest.raises(InputError):
+        contact_friction(solved, **wrong)
+
+
+def test_barus_viscosity(nominal):
+    """eta0 exp(alpha p)."""
+    oil = replace(nominal[1], law='barus_incompressible')
+    assert float(viscosity_of(oil, 1e9)) == pytest.approx(0.06 * np.exp(20.0))

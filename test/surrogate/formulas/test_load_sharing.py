@@ -1,0 +1,51 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Load sharing of the nuts: table, identities, limits."""
+
+import math
+
+from hypothesis import given
+from hypothesis import strategies as st
+import pytest
+from surrogate.formulas.load_sharing import normal_force, nut_forces, UNLOADING_RATIO
+
+
+def test_preload_sharing_table(table):
+    """The table is exact to the digits that it prints."""
+    for row in table('preload_sharing.csv'):
+        loaded, relieved = nut_forces(float(row['axial_load_over_preload']) * 990.0, 990.0)
+        assert loaded / 990 == pytest.approx(float(row['loaded_nut_over_preload']), abs=5.1e-5)
+        assert relieved / 990 == pytest.approx(float(row['relieved_nut_over_preload']), abs=5.1e-5)
+
+
+@given(st.floats(-UNLOADING_RATIO, UNLOADING_RATIO), st.floats(1.0, 1e5))
+def test_both_equations_hold(ratio, preload):
+    """The springs share the approach and the forces balance the load."""
+    loaded, relieved = nut_forces(ratio * preload, preload)
+    assert loaded - relieved == pytest.approx(abs(ratio) * preload, rel=1e-9, abs=1e-9 * preload)
+    assert loaded ** (2 / 3) + relieved ** (2 / 3) == pytest.approx(
+        2 * preload ** (2 / 3), rel=1e-9
+    )
+
+
+@given(st.floats(1.0, 10.0))
+def test_past_unloading_one_nut_carries_everything(factor):
+    """From 2.83 preloads on the relieved nut carries exactly nothing."""
+    load = factor * UNLOADING_RATIO * 990.0
+    loaded, relieved = nut_forces(load, 990.0)
+    assert relieved == 0.0
+    assert loaded == load
+
+
+def test_zero_preload_is_legal():
+    """Without preload one nut carries the load and the other nothing."""
+    loaded, relieved = nut_forces([0.0, 100.0], 0.0)
+    assert loaded.tolist() == [0.0, 100.0]
+    assert relieved.tolist() == [0.0, 0.0]
+
+
+def test_normal_force_at_preload_is_the_published_one(screw):
+    """990 N over 51 balls is 27.6 N per ball."""
+    assert normal_force(screw, 990.0) == pytest.approx(27.6, abs=0.05)
+    back = normal_force(screw, 990.0) * 51 * math.sin(screw.contact_angle)
+    assert back == pytest.approx(990.0, rel=0.01)

@@ -1,0 +1,26 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Sliding friction over an ellipse and elastic hysteresis, against closed forms."""
+
+import math
+
+import numpy as np
+import pytest
+from surrogate.formulas.geometry import hertz, screw_contact
+from surrogate.formulas.sliding import ellipse_nodes, hysteresis_force
+
+
+@pytest.mark.parametrize('side', ['screw', 'nut'])
+def test_hysteresis_is_the_work_on_the_front_half(screw, side):
+    """Pressure times the slope x/Rx of the front half, integrated over the ellipse of Hertz."""
+    contact = screw_contact(screw, side)
+    ellipse = hertz(contact, 27.6)
+    x, y, weight = ellipse_nodes(40, 400)
+    pressure = float(ellipse.max_pressure) * np.sqrt(1 - x * x - y * y)
+    area = weight * float(ellipse.semi_axis_x * ellipse.semi_axis_y)
+    sinking = np.maximum(x, 0) * float(ellipse.semi_axis_x) / contact.radius_x
+    # Both surfaces roll: the work of a distance is lost once, half of it on each.
+    lost = 0.01 * float((pressure * sinking * area).sum()) / 2
+    found = hysteresis_force(0.01, 27.6, float(ellipse.semi_axis_x), contact.radius_x)
+    assert found == pytest.approx(lost, rel=1e-3)
+    assert math.isclose(hysteresis_force(0.0, 27.6, 5e-5, 3e-3), 0.0)

@@ -1,0 +1,122 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The CSV of a run without load: units, columns, and one sentence for each mistake."""
+
+import math
+
+import numpy as np
+import pytest
+from surrogate.identify.data import no_load_run, read_drag_csv
+from surrogate.parameters import InputError
+
+WARM = 313.15
+
+
+@pytest.fixture
+def csv(tmp_path):
+    """Return what writes a CSV and returns its path."""
+
+    def write(text):
+        path = tmp_path / 'drag.csv'
+        path.write_text(text, encoding='utf-8')
+        return path
+
+    return write
+
+
+def test_columns_come_in_si_units_whatever_their_order(csv):
+    """Comments, blank lines, a byte order mark and other columns are left alone."""
+    columns = read_drag_csv(
+        csv(
+            '\ufeff# no load\n\n'
+            'time_s;torque_mNm;speed_rpm;temperature_degC;load_kN;torque_std_mNm\n'
+            '0; 120; 60; 40; 0.01; 3\n\n1; -110; -600; 41; -0.01; 4\n'
+        )
+    )
+    assert columns['speed'] == pytest.approx([2 * math.pi, -20 * math.pi])
+    assert columns['torque'] == pytest.approx([0.12, -0.11])
+    assert columns['torque_std'] == pytest.approx([0.003, 0.004])
+    assert columns['load'] == pytest.approx([10.0, -10.0])
+    assert columns['temperature'] == pytest.approx([313.15, 314.15])
+
+
+def test_a_column_is_named_by_hand(csv):
+    """Its unit stands at the end."""
+    path = csv('motor_speed_rad_s,speed_rpm,axis_torque_Nm\n2,1,0.5\n')
+    columns = read_drag_csv(path, speed_column='motor_speed_rad_s', torque_column='axis_torque_Nm')
+    assert columns['speed'] == [2.0]
+    assert columns['torque'] == [0.5]
+
+
+@pytest.mark.parametrize(
+    ('text', 'sentence'),
+    [
+        ('', 'is empty, a line that names the columns comes first'),
+        ('# nothing\n', 'is empty'),
+        ('speed_rpm,torque_Nm\n', 'has no numbers below line 1'),
+        ('speed_rpm,current_A\n1,2\n', 'column torque_Nm or torque_mNm is missing, the file has'),
+        ('torque_Nm\n1\n', 'column speed_rpm or speed_rad_s is missing'),
+        ('speed_Nm,torque_rpm\n1,2\n', 'column speed_Nm has a wrong unit, allowed are speed_rpm'),
+        ('speed_rpm,torque_lbfin\n1,2\n', 'column torque_lbfin has a wrong unit'),
+        ('speed,torque_Nm\n1,2\n', 'column speed has a wrong unit'),
+        ('speed_rpm,torque_Nm,torque_std\n1,2,3\n', 'column torque_std has a wrong unit'),
+        ('speed_rpm,torque_Nm,speed_rad_s\n1,2,3\n', 'speed_rpm and speed_rad_s both stand for'),
+        ('speed_rpm,torque_Nm\n1,2\n# x\n2,abc\n', "line 4 has 'abc' as torque, allowed is a fin"),
+        ('speed_rpm,torque_Nm\n1,nan\n', "line 2 has 'nan' as torque"),
+        ('speed_rpm,torque_Nm\n1,2\n1,\n', "line 3 has '' as torque"),
+        ('speed_rpm,torque_Nm\n1,2,3\n', 'line 2 has 3 cells, the header has 2'),
+        ('speed_rpm,torque_Nm,torque_std_Nm\n1,2,0\n', "line 2 has '0' as torque_std, .* above 0"),
+    ],
+)
+def test_a_mistake_is_one_sentence_with_its_line(csv, text, sentence):
+    """Never a number made of a mistake."""
+    with pytest.raises(InputError, match=sentence):
+        read_drag_csv(csv(text))
+
+
+def test_what_is_no_text_is_refused(tmp_path):
+    """Neither a missing file nor a picture is a CSV."""
+    with pytest.raises(InputError, match='cannot be read, No such file'):
+        read_drag_csv(tmp_path / 'nothing.csv')
+    (tmp_path / 'bytes.csv').write_bytes(b'\xff\xfe\x00\x80')
+    with pytest.raises(InputError, match='cannot be read as text'):
+        read_drag_csv(tmp_path / 'bytes.csv')
+
+
+@pytest.mark.parametrize(
+    ('column', 'unit'), [('rpm_speed', '_rpm, _rad_s'), ('torque_Nm', '_rpm')]
+)
+def test_a_column_named_by_hand_needs_its_unit(csv, column, unit):
+    """The quantity is said by the option, the unit by the name."""
+    path = csv('rpm_speed,torque_Nm\n1,2\n')
+    with pytest.raises(InputError, match=f'column {column} has no unit of a speed .*_rpm'):
+        read_drag_csv(path, speed_column=column)
+    with pytest.raises(InputError, match='column nope is missing, the file has rpm_speed'):
+        read_drag_csv(path, speed_column='nope')
+
+
+def test_points_at_standstill_are_left_out_and_counted():
+    """Friction has no direction there; the columns that are absent get their defaults."""
+    run = no_load_run(
+        {'speed': np.array([0.0, 1.0, -2.0]), 'torque': np.array([9.0, 1.0, -1.0])},
+        source='data',
+        temperature=WARM,
+    )
+    assert run.speed.tolist() == [1.0, -2.0]
+    assert run.torque.tolist() == [1.0, -1.0]
+    assert run.load.tolist() == [0.0, 0.0]
+    assert run.temperature.tolist() == [WARM, WARM]
+    assert run.torque_std is None
+    assert run.both_directions
+    assert run.notes == ('1 points at standstill are left out',)
+
+
+@pytest.mark.parametrize(
+    ('name', 'value'), [('torque', math.nan), ('speed', math.inf), ('torque_std', 0.0)]
+)
+def test_numbers_that_are_none_are_refused(name, value):
+    """Whoever reads the data: a run holds finite numbers only."""
+    columns = {'speed': np.ones(2), 'torque': np.ones(2), 'torque_std': np.ones(2)}
+    columns[name][1] = value
+    with pytest.raises(InputError, match=f'{name} of point 2 is .*, allowed is a finite number'):
+        no_load_run(columns, source='data', temperature=WARM)

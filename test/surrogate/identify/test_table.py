@@ -1,0 +1,140 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The table of solved contacts: its interpolation against a stand-in, its solves in the small."""
+
+from dataclasses import dataclass, replace
+import math
+
+import numpy as np
+import pytest
+from surrogate.ehl import Settings
+from surrogate.formulas import closed_form
+from surrogate.identify.data import no_load_run
+from surrogate.identify.fit import identify
+from surrogate.identify.model import closed_form_model
+from surrogate.identify.table import solved_model
+from surrogate.parameters import InputError, load_lubricant, load_screw, OperatingPoint
+from surrogate.screw.contacts import ScrewSettings
+from surrogate.screw.solve import solve_screw
+
+SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
+WARM = 313.15
+RPM = math.pi / 30
+SMOOTH = ScrewSettings(smooth=Settings(nx=65, ny=65, error_estimate=False), draw=None)
+BOTH = ('viscosity_factor', 'asperity_friction')
+
+
+def run_at(rpm, **columns):
+    """Return a run at speeds [rev/min] whose torque is still to come."""
+    speed = np.asarray(rpm) * RPM
+    return no_load_run(
+        {'speed': speed, 'torque': speed} | columns, source='synthetic', temperature=WARM
+    )
+
+
+@dataclass
+class Stub:
+    """What the table wants to know of a solution."""
+
+    friction_torque: float
+    asperity_share: float = 0.0
+    converged: bool = True
+    status: str = 'made up'
+
+
+@pytest.fixture
+def formulas(monkeypatch):
+    """Put the closed-form tier in the place of the solver; return the speeds it was asked for."""
+    solved = []
+
+    def answer(screw, oil, point, *rest, **options):
+        found = closed_form.solve(screw, oil, point.speed, point.load, point.temperature)
+        return Stub(float(found.friction_torque), float(found.asperity_share))
+
+    def solve(screw, oil, point, **options):
+        solved.append(point.speed)
+        return answer(screw, oil, point)
+
+    monkeypatch.setattr('surrogate.identify.table.solve_screw', solve)
+    monkeypatch.setattr('surrogate.identify.table.rebalance_screw', answer)
+    return solved
+
+
+def test_few_speeds_are_solved_as_they_are(formulas):
+    """One solve for both directions, exact there, and told to whoever waits."""
+    run, told = run_at([60, 200, 600, -60, -200, -600]), []
+    model = solved_model(SCREW, OIL, run, progress=lambda *done: told.append(done))
+    assert formulas == pytest.approx([60 * RPM, 200 * RPM, 600 * RPM])
+    assert told == [(0, 3), (1, 3), (2, 3), (3, 3)]
+    exact = closed_form_model(SCREW, OIL, run)
+    np.testing.assert_allclose(model.torque(1.0, 0.1), exact.torque(1.0, 0.1), rtol=1e-12)
+    np.testing.assert_allclose(model.asperity_share, exact.asperity_share, rtol=1e-12)
+    assert model.tier == 'full'
+
+
+def test_many_speeds_share_a_few_nodes(formulas):
+    """Twenty speeds over 1.6 decades take nine solves, and are met to 0.1 %."""
+    run = run_at(np.geomspace(50, 2000, 20))
+    model = solved_model(SCREW, OIL, run)
+    assert len(formulas) == 10
+    exact = closed_form_model(SCREW, OIL, run)
+    np.testing.assert_allclose(model.torque(1.0, 0.1), exact.torque(1.0, 0.1), rtol=1e-3)
+
+
+def test_viscosity_and_friction_are_met_over_their_ranges(formulas):
+    """Wherever the fit may go: 0.1 %, one solve per node."""
+    run = run_at(np.geomspace(50, 2000, 12))
+    model, exact = solved_model(SCREW, OIL, run, BOTH), closed_form_model(SCREW, OIL, run)
+    assert len(formulas) == len(set(formulas)) == 13
+    for factor, friction in ((0.5, 0.02), (1.0, 0.1), (0.8, 0.13), (2.0, 0.3), (1.5, 0.06)):
+        found, expected = (one.torque(factor, friction) for one in (model, exact))
+        np.testing.assert_allclose(found, expected, rtol=1e-3)
+
+
+def test_temperatures_of_the_points_are_met(formulas):
+    """The oil of each point, through its viscosity: 0.2 % over 8 K."""
+    run = run_at(np.geomspace(50, 2000, 12), temperature=np.linspace(WARM - 4, WARM + 4, 12))
+    model, exact = solved_model(SCREW, OIL, run), closed_form_model(SCREW, OIL, run)
+    np.testing.assert_allclose(model.torque(1.0, 0.1), exact.torque(1.0, 0.1), rtol=2e-3)
+
+
+def test_known_answers_come_out_of_the_table(formulas):
+    """The whole fit on the table, torque by the formulas themselves."""
+    run = run_at(np.concatenate([np.geomspace(50, 2000, 10), -np.geomspace(60, 1800, 9)]))
+    exact = closed_form_model(SCREW, OIL, run).torque(1.2, 0.08)
+    torque = run.direction * (exact + 0.12) + 4e-4 * run.speed + 0.03
+    run = replace(run, torque=torque)
+    found = identify(SCREW, run, solved_model(SCREW, OIL, run, BOTH), BOTH)
+    expected = (0.12, 4e-4, 0.03, 1.2, 0.08)
+    assert [one.value for one in found.estimates] == pytest.approx(expected, rel=0.02)
+
+
+def test_solved_contacts_and_a_known_answer():
+    """Four speeds on a small grid, met to the tolerance of contacts that start warm."""
+    run = run_at([100, 250, 600, 1500])
+    model = solved_model(SCREW, OIL, run, settings=SMOOTH)
+    points = [OperatingPoint(speed=speed, load=0.0, temperature=WARM) for speed in run.speed]
+    exact = [solve_screw(SCREW, OIL, one, settings=SMOOTH).friction_torque for one in points]
+    np.testing.assert_allclose(model.torque(1.0, 0.1), exact, rtol=1e-5)
+    run = replace(run, torque=np.array(exact) + 0.12 + 4e-4 * run.speed)
+    found = identify(SCREW, run, model)
+    assert [one.value for one in found.estimates] == pytest.approx((0.12, 4e-4), rel=1e-4)
+
+
+def test_a_run_that_one_table_cannot_hold_is_refused(formulas):
+    """Temperatures and loads far apart."""
+    rpm = [60.0, 200.0, 600.0]
+    warm = run_at(rpm, temperature=np.array([300.0, 310.0, 330.0]))
+    with pytest.raises(InputError, match='up to 16.7 K from its mean, allowed is 10 K'):
+        solved_model(SCREW, OIL, warm)
+    loaded = run_at(rpm, load=np.array([0.0, 0.0, 300.0]))
+    with pytest.raises(InputError, match='load_N is up to 200 N from its mean, allowed is 99 N'):
+        solved_model(SCREW, OIL, loaded)
+
+
+def test_a_speed_that_is_not_solved_is_named(formulas, monkeypatch):
+    """Nothing is fitted to a number that is none."""
+    failed = Stub(math.nan, converged=False, status='It stalled.')
+    monkeypatch.setattr('surrogate.identify.table.solve_screw', lambda *given, **options: failed)
+    with pytest.raises(InputError, match='at 60 rev/min was not solved: It stalled'):
+        solved_model(SCREW, OIL, run_at([60, 200, 600]))

@@ -1,0 +1,121 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Measured surfaces: interpolated between the points, never beyond them."""
+
+from dataclasses import replace
+
+from hypothesis import given
+from hypothesis import strategies as st
+import numpy as np
+import pytest
+from surrogate.parameters import InputError, load_screw
+from surrogate.raceway.fractal import fractal_surface, take_patch, Window
+from surrogate.raceway.measured import measured_surface
+
+NOMINAL = load_screw('nominal').roughness
+STEP = 2e-6
+X, Y = np.arange(-100, 101) * STEP, np.arange(-60, 61) * 2 * STEP
+FRACTAL = fractal_surface(replace(NOMINAL, shortest_wavelength=16e-6), 4)
+HEIGHTS = FRACTAL.heights(X, Y)
+INSIDE = st.floats(-0.2e-3, 0.2e-3)
+
+
+def test_points_are_kept_and_places_between_interpolated():
+    """At the points to rounding, between them within 2 % of the rms of the surface measured."""
+    surface = measured_surface(HEIGHTS, STEP, 2 * STEP)
+    np.testing.assert_allclose(surface.heights(X, Y), HEIGHTS, atol=1e-20)
+    between = surface.heights(X[:-1] + STEP / 2, Y[:-1] + STEP)
+    error = between - FRACTAL.heights(X[:-1] + STEP / 2, Y[:-1] + STEP)
+    assert np.std(error) < 0.02 * np.std(HEIGHTS)
+    assert surface.shortest_wavelength == 4 * STEP
+    assert (surface.length_x, surface.length_y) == pytest.approx((200 * STEP, 240 * STEP))
+
+
+@given(x=INSIDE, y=st.floats(-0.24e-3, 0.24e-3))
+def test_a_place_has_one_height_whatever_the_grid(x, y):
+    """As with fractal surfaces."""
+    surface = measured_surface(HEIGHTS, STEP, 2 * STEP)
+    alone = surface.heights([x], [y])[0, 0]
+    grid = surface.heights([0.1e-3, x, -0.1e-3], [y, 0.0])
+    assert grid.shape == (3, 2)
+    assert grid[1, 0] == pytest.approx(alone, rel=1e-9, abs=1e-18)
+
+
+def test_outside_the_map_is_refused():
+    """The sentence says how far the contact reaches and how far the map does."""
+    surface = measured_surface(HEIGHTS, STEP, 2 * STEP, source='map.csv')
+    with pytest.raises(
+        InputError,
+        match=r'map.csv: the contact needs heights to 0.3 mm from its '
+        r'centre along x, the map ends at 0.2 mm: measure a larger area',
+    ):
+        surface.heights([0.0, 0.3e-3], [0.0])
+    with pytest.raises(InputError, match='along y, the map ends at 0.24 mm'):
+        surface.heights([0.0], [-0.25e-3])
+
+
+@given(x=INSIDE)
+def test_a_mirrored_map_goes_on_without_a_jump(x):
+    """Beyond an edge it runs back; after two lengths it repeats."""
+    surface = measured_surface(HEIGHTS, STEP, 2 * STEP, outside='mirror')
+    first, turned, again = surface.heights([x, 0.4e-3 - x, x + 0.8e-3], [0.0])[:, 0]
+    assert turned == pytest.approx(first, rel=1e-6, abs=1e-14)
+    assert again == pytest.approx(first, rel=1e-6, abs=1e-14)
+
+
+def test_a_profile_goes_on_in_the_other_direction():
+    """Along x it stands for a transverse lay, along y for a longitudinal one."""
+    profile = HEIGHTS[:, :1]
+    transverse = measured_surface(profile, STEP, STEP).heights(X, [-1.0, 0.0, 5.0])
+    np.testing.assert_allclose(transverse, np.repeat(profile, 3, axis=1), atol=1e-20)
+    longitudinal = measured_surface(profile.T, STEP, STEP).heights([-1.0, 0.0, 5.0], X)
+    np.testing.assert_allclose(longitudinal, np.repeat(profile.T, 3, axis=0), atol=1e-20)
+
+
+def test_patches_work_as_on_fractal_surfaces():
+    """Levelled and scaled over the window; a window larger than the map is refused."""
+    window = Window(length_x=0.2e-3, length_y=0.4e-3)
+    surface = measured_surface(HEIGHTS + 1e-3 * X[:, None] + 1e-6, STEP, 2 * STEP)
+    patch = take_patch(surface, 'rescaled', window, NOMINAL.rms)
+    x, y = np.linspace(-0.1e-3, 0.1e-3, 301), np.linspace(-0.2e-3, 0.2e-3, 301)
+    assert np.std(patch.heights(x, y)) == pytest.approx(NOMINAL.rms, rel=0.02)
+    level = take_patch(measured_surface(HEIGHTS, STEP, 2 * STEP), 'cut', window, NOMINAL.rms)
+    assert patch.plane[1] - level.plane[1] == pytest.approx(1e-3, rel=1e-3)
+    with pytest.raises(InputError, match='the map ends at'):
+        take_patch(surface, 'cut', Window(length_x=1e-3, length_y=0.1e-3), NOMINAL.rms)
+    with pytest.raises(InputError, match='flat over the window'):
+        take_patch(
+            measured_surface(np.ones((50, 50)), STEP, STEP),
+            'cut',
+            Window(length_x=2e-5, length_y=2e-5),
+            NOMINAL.rms,
+        )
+
+
+def test_the_filter_halves_a_wave_at_its_cutoff():
+    """Gaussian filter: half at the cutoff, nearly all of a wave three times as long."""
+    x = np.arange(4000) * 0.5e-6
+    for wave, passed in ((20e-6, 0.5), (60e-6, 0.926), (8e-6, 0.013)):
+        profile = np.cos(2 * np.pi * x / wave)[:, None]
+        smooth = measured_surface(profile, 0.5e-6, 1.0, shortest_wavelength=20e-6)
+        middle = smooth.raw[1000:3000]
+        assert np.ptp(middle) / 2 == pytest.approx(passed, abs=0.005)
+        assert smooth.shortest_wavelength == 20e-6
+
+
+@pytest.mark.parametrize(
+    ('heights', 'options', 'sentence'),
+    [
+        (np.ones(50), {}, '50 points, allowed is 16 or more'),
+        (np.ones((1, 1)), {}, '1 points, allowed is 16 or more'),
+        (np.ones((50, 3)), {}, '50 x 3 points, allowed is 16 or more along a measured direction'),
+        (np.where(np.eye(50) > 0, np.nan, 1.0), {}, '50 of 2500 heights are not finite numbers'),
+        (HEIGHTS, {'shortest_wavelength': 7e-6}, r'is 7 um, allowed is two spacings .* \(8 um\)'),
+        (HEIGHTS, {'outside': 'guess'}, "outside is 'guess', allowed is refuse or mirror"),
+        (HEIGHTS, {'spacing_x': -1.0}, 'a spacing is -1 m, allowed is above 0'),
+    ],
+)
+def test_bad_maps_are_one_sentence(heights, options, sentence):
+    """Each says what is wrong and what is allowed."""
+    with pytest.raises(InputError, match=sentence):
+        measured_surface(heights, **{'spacing_x': STEP, 'spacing_y': 2 * STEP, **options})

@@ -1,0 +1,232 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""A point of the full tier as a record, and the command that prints it."""
+
+from dataclasses import replace
+import json
+import math
+from pathlib import Path
+import re
+
+import pytest
+from surrogate.ehl import Settings
+from surrogate.ehl.friction import contact_friction
+from surrogate.parameters import InputError, load_lubricant, load_screw, OperatingPoint
+from surrogate.plain_json import to_json
+from surrogate.screw import figures as figures_point
+from surrogate.screw.ball_motion import slip_floor
+from surrogate.screw.contacts import ScrewSettings
+from surrogate.screw.ensemble import solve_ensemble
+from surrogate.screw.formula_record import closed_form_record, page
+from surrogate.screw.full_record import ensemble_record, full_record, solution_record
+from surrogate.screw.nut import contact_slip
+from surrogate.screw.solve import solve_screw
+
+SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
+SMALL = Settings(nx=65, ny=65, error_estimate=False)
+SETTINGS = ScrewSettings(
+    smooth=SMALL, rough=Settings(nx=65, ny=129, error_estimate=False), nodes_per_wave=3.0
+)
+
+
+def record(rpm, load, settings=SETTINGS):
+    """Solve a point at 40 degC."""
+    point = OperatingPoint(speed=rpm * math.pi / 30, load=load, temperature=313.15)
+    return point, full_record(SCREW, OIL, point, settings)
+
+
+def test_record_has_the_keys_of_the_formulas_and_is_plain_json():
+    """One reader serves both tiers; the page prints it."""
+    point, found = record(60, 800.0)
+    formulas = closed_form_record(SCREW, OIL, point)
+    assert formulas.keys() <= found.keys()
+    assert formulas['contacts'][0].keys() <= found['contacts'][0].keys()
+    assert found['tier'] == 'full'
+    assert json.loads(json.dumps(to_json(found), allow_nan=False))
+    assert '(estimate)' not in page(found)
+
+
+def test_parts_of_the_contacts_add_up_to_the_torque():
+    """Sliding and rolling of all four contacts are the friction torque without parasitic part."""
+    _, found = record(60, 800.0)
+    parts = sum(c['sliding_torque_Nm'] + c['rolling_torque_Nm'] for c in found['contacts'])
+    assert parts == pytest.approx(found['friction_torque_Nm'], rel=1e-9)
+    assert found['energy_error'] < 1e-8
+    assert found['rcs'] == max(c['rcs'] for c in found['contacts'])
+    worst = max(found['contacts'], key=lambda c: (c['rcs'], -c['film_ratio']))
+    assert found['worst_contact'] == {'nut': worst['nut'], 'side': worst['side']}
+
+
+def test_friction_coefficient_lies_between_film_and_boundary():
+    """At rest it is the boundary coefficient, with a film well below it."""
+    _, rest = record(0, 500.0)
+    _, moving = record(600, 500.0)
+    assert rest['friction_coefficient'] == pytest.approx(
+        SCREW.roughness.asperity_friction, rel=0.02
+    )
+    assert 0 < moving['friction_coefficient'] < 0.5 * rest['friction_coefficient']
+
+
+def test_friction_is_integrated_with_the_slip_of_the_balance():
+    """On screw and nut alike, the power over the slip field is that which the ball loses."""
+    point = OperatingPoint(speed=60 * math.pi / 30, load=800.0, temperature=313.15)
+    for contact in solve_screw(SCREW, OIL, point, settings=SETTINGS).contacts:
+        slip_x, slip_y = contact_slip(SCREW, contact.rough, contact.side, contact.motion)
+        found = contact_friction(
+            contact.rough,
+            slip_x=slip_x,
+            slip_y=slip_y,
+            asperity_friction=SCREW.roughness.asperity_friction,
+            slip_floor=slip_floor(SCREW, contact.motion.screw_speed),
+        )
+        assert found.power == pytest.approx(contact.ball.slip_power, rel=2e-3)
+
+
+def test_coarse_waves_and_moved_forces_are_warned_about():
+    """A grid of three nodes per wave, and a nut near unloading at high speed."""
+    _, found = record(60, 800.0)
+    assert any('nodes per shortest wave' in text for text in found['warnings'])
+    once = ScrewSettings(smooth=SMALL, draw=None, coupling_tolerance=math.inf)
+    _, found = record(3000, 2600.0, once)
+    assert found['load_change'] > 0.02
+    assert any(text.startswith('balls: friction') for text in found['warnings'])
+    _, again = record(3000, 2600.0, replace(once, coupling_tolerance=1e-3))
+    assert again['load_change'] < 1e-3
+    assert not any(text.startswith('balls: friction') for text in again['warnings'])
+    assert again['friction_torque_Nm'] != found['friction_torque_Nm']
+
+
+def test_idle_nut_and_failure_give_a_reason():
+    """No number without a contact, and none after a solve that failed."""
+    _, idle = record(600, 3.0 * SCREW.preload)
+    assert [bool(c['reason']) for c in idle['contacts']] == [False, False, True, True]
+    assert idle['normal_force_relieved_N'] == 0.0
+    failed = ScrewSettings(smooth=Settings(newton_limit=1), draw=None)
+    _, none = record(600, 500.0, failed)
+    assert 'smooth contact' in none['status']
+    assert none['converged'] is False
+    numbers = ('efficiency', 'friction_torque_Nm', 'rcs', 'friction_coefficient')
+    for key in (*numbers, 'minimum_film_m', 'max_pressure_Pa', 'film_ratio'):
+        assert to_json(none)[key] is None
+    assert none['contacts'][0]['reason'] == none['status']
+
+
+def test_a_third_contact_is_reported_when_it_appears():
+    """Zero clearance: the side with the smaller angle reaches its other flank; 10 um: none."""
+    point = OperatingPoint(speed=2 * math.pi, load=800.0, temperature=313.15)
+    tight = full_record(replace(SCREW, flank_clearance=0.0), OIL, point, SETTINGS)
+    warned = [text for text in tight['warnings'] if 'third contact' in text]
+    reached = [c for c in tight['contacts'] if c['opposite_flank_approach_m'] > 0]
+    assert len(warned) == len(reached) == 2
+    assert all(c['contact_angle_rad'] < SCREW.contact_angle for c in reached)
+    wide = full_record(replace(SCREW, flank_clearance=1e-5), OIL, point, SETTINGS)
+    assert not any('third contact' in text for text in wide['warnings'])
+
+
+def test_hysteresis_adds_its_couple_to_the_torque():
+    """Friction torque grows by 4 F us/w per ball and nut and the record holds the force."""
+    point = OperatingPoint(speed=20 * math.pi, load=0.0, temperature=313.15)
+    smooth = ScrewSettings(smooth=SMALL, draw=None)
+    plain = full_record(SCREW, OIL, point, smooth)
+    lossy = full_record(replace(SCREW, hysteresis_loss=0.01), OIL, point, smooth)
+    added = [
+        lossy['contacts'][k]['rolling_force_N'] - plain['contacts'][k]['rolling_force_N']
+        for k in range(4)
+    ]
+    assert min(added) > 2e-4
+    power = 2 * SCREW.loaded_balls_per_nut * plain['entrainment_speed_m_s'] * sum(added)
+    rise = lossy['friction_torque_Nm'] - plain['friction_torque_Nm']
+    assert rise == pytest.approx(power / point.speed, rel=0.02)
+
+
+def test_an_ensemble_is_its_means_and_their_spread():
+    """Top numbers are means over the draws, the spread beside them; a failed draw is counted."""
+    point = OperatingPoint(speed=0.8, load=800.0, temperature=313.15)
+    ensemble = solve_ensemble(SCREW, OIL, point, 2, settings=SETTINGS)
+    found = ensemble_record(SCREW, OIL, point, ensemble, SETTINGS)
+    shares = [one.rcs for one in ensemble.solutions]
+    assert found['rcs'] == pytest.approx(sum(shares) / 2)
+    assert found['ensemble']['rcs']['deviation'] == pytest.approx(
+        abs(shares[0] - shares[1]) / math.sqrt(2)
+    )
+    assert found['ensemble']['friction_torque_Nm']['mean'] == found['friction_torque_Nm']
+    assert found['ensemble']['draws'] == 2
+    assert 'mean of 2 draws' in page(found)
+    broken = replace(ensemble.solutions[1], converged=False, status='broken')
+    partly = replace(ensemble, solutions=(ensemble.solutions[0], broken), failed=1)
+    found = ensemble_record(SCREW, OIL, point, partly, SETTINGS)
+    assert found['converged'] is False
+    assert found['status'] == 'broken'
+    assert found['ensemble']['failed'] == 1
+
+
+def test_picture_has_a_column_per_pressed_contact(tmp_path):
+    """Two columns beyond unloading; labels with units; the file appears whole."""
+    point = OperatingPoint(speed=2.0, load=3.0 * SCREW.preload, temperature=313.15)
+    found = solve_screw(SCREW, OIL, point, settings=SETTINGS)
+    record = solution_record(SCREW, OIL, point, found, SETTINGS)
+    figure = figures_point.figure_point(SCREW, found, record)
+    titles = [axes.get_title() for axes in figure.axes if 'nut' in axes.get_title()]
+    assert len(titles) == 2
+    labels = ' '.join(axes.get_ylabel() for axes in figure.axes)
+    assert 'total pressure [GPa]' in labels
+    assert 'film [nm]' in labels
+    path = figures_point.draw_point(tmp_path, SCREW, found, record)
+    assert [file.name for file in tmp_path.iterdir()] == [path.name]
+
+
+def test_a_failed_point_is_drawn_without_its_contacts(tmp_path):
+    """No column for a contact without a solution; the record is not lost."""
+    point = OperatingPoint(speed=60.0, load=500.0, temperature=313.15)
+    failed = ScrewSettings(smooth=Settings(newton_limit=1), draw=None)
+    found = solve_screw(SCREW, OIL, point, settings=failed)
+    assert not found.converged
+    record = solution_record(SCREW, OIL, point, found, failed)
+    assert figures_point.draw_point(tmp_path, SCREW, found, record).exists()
+
+
+def test_films_of_hardly_pressed_contacts_are_warned_about():
+    """Near unloading at high speed the relieved nut floats; each contact tells its error."""
+    settings = ScrewSettings(draw=None)
+    point = OperatingPoint(speed=200.0, load=2520.0, temperature=313.15)
+    found = full_record(SCREW, OIL, point, settings)
+    assert found['contacts'][0]['film_error'] < 0.01
+    assert found['contacts'][2]['film_error'] > 0.1
+    assert any('hardly pressed' in text for text in found['warnings'])
+
+
+def test_normal_forces_are_those_of_the_solve():
+    """A nut about to unload is idle in the head of the record as in its contacts."""
+    _, found = record(600, 0.9985 * 2**1.5 * SCREW.preload)
+    assert found['normal_force_relieved_N'] == 0.0
+    assert found['contacts'][2]['normal_force_N'] == 0.0
+
+
+def test_an_ensemble_shows_a_draw_that_converged():
+    """When the first draw fails, films and contacts are those of the next one."""
+    point = OperatingPoint(speed=60.0, load=800.0, temperature=313.15)
+    ensemble = solve_ensemble(SCREW, OIL, point, 2, settings=SETTINGS)
+    broken = replace(ensemble.solutions[0], converged=False, status='broken')
+    partly = replace(ensemble, solutions=(broken, ensemble.solutions[1]), failed=1)
+    found = ensemble_record(SCREW, OIL, point, partly, SETTINGS)
+    assert found['status'] == 'broken'
+    assert found['film_ratio'] == ensemble.solutions[1].film_ratio
+    with pytest.raises(InputError, match='smooth raceways have no draws'):
+        solve_ensemble(SCREW, OIL, point, 2, settings=ScrewSettings(draw=None))
+
+
+def test_the_page_lists_every_key():
+    """docs/screw.md has the keys of both tiers, with a star on those of the full one alone."""
+    page_text = (Path(__file__).parents[3] / 'docs' / 'screw.md').read_text(encoding='utf-8')
+    table = page_text.split('## Keys of `--json`')[1].split('## ')[0]
+    (own,) = (line for line in table.splitlines() if line.startswith('| `contacts`'))
+    point, found = record(60, 800.0)
+    formulas = closed_form_record(SCREW, OIL, point)
+    heads = {'draws', 'failed', 'mean', 'deviation', 'error', 'ensemble', 'reason'}
+    for lines, full, closed, others in (
+        (table.replace(own, '`contacts`'), found, formulas, heads),
+        (own, found['contacts'][0], formulas['contacts'][0], {'contacts'}),
+    ):
+        listed = {key: bool(star) for key, star in re.findall(r'`(\w+)`(\*?)', lines)}
+        wanted = {key: key not in closed for key in full}
+        assert {key: star for key, star in listed.items() if key not in others} == wanted

@@ -1,0 +1,220 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The whole screw in the full tier: energy, quadrants, limits, roughness, failures."""
+
+from dataclasses import replace
+import math
+
+import pytest
+from surrogate.ehl import Settings
+from surrogate.formulas import closed_form
+from surrogate.identify.model import thickened
+from surrogate.parameters import InputError, load_lubricant, load_screw, OperatingPoint
+from surrogate.screw.contacts import raceway_patch, ScrewSettings
+from surrogate.screw.solve import rebalance_screw, solve_screw
+
+SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
+SMALL = Settings(nx=65, ny=65, error_estimate=False)
+SMOOTH = ScrewSettings(smooth=SMALL, draw=None)
+ROUGH = ScrewSettings(
+    smooth=SMALL, rough=Settings(nx=65, ny=129, error_estimate=False), nodes_per_wave=3.0
+)
+WARM = 313.15
+
+
+def at(rpm, load, settings=SMOOTH, screw=SCREW):
+    """Solve a point at 40 degC."""
+    point = OperatingPoint(speed=rpm * math.pi / 30, load=load, temperature=WARM)
+    return solve_screw(screw, OIL, point, settings=settings)
+
+
+@pytest.mark.parametrize('rpm', [600, -600])
+@pytest.mark.parametrize('load', [800.0, -800.0])
+def test_torque_from_loads_is_that_of_the_lost_power(rpm, load):
+    """Four quadrants: both ways to the torque agree to rounding; the sign of the load decides."""
+    found = at(rpm, load)
+    assert found.converged, found.status
+    assert found.energy_error < 1e-8
+    ideal = rpm * load / abs(rpm) * SCREW.lead / (2 * math.pi)
+    assert found.driving_torque == pytest.approx(ideal + found.friction_torque, rel=1e-8)
+    assert found.back_driving == (rpm * load < 0)
+    assert 0.9 < found.efficiency < 1
+    assert found.load_change < 0.01
+
+
+def test_preload_alone_loses_power_and_has_no_efficiency():
+    """Both nuts carry the preload; nothing drives the screw."""
+    found = at(600, 0.0)
+    assert found.normal_forces[0] == pytest.approx(found.normal_forces[1])
+    assert found.efficiency == 0
+    assert not found.back_driving
+    assert found.driving_torque == pytest.approx(found.friction_torque, rel=1e-8)
+
+
+def test_nuts_with_one_load_share_their_contacts():
+    """Without axial load both nuts have the same two contacts, each with its own ball."""
+    found = at(600, 0.0)
+    first, second, third, fourth = found.contacts
+    assert first.rough is third.rough
+    assert second.rough is fourth.rough
+    assert first.ball != third.ball
+    other = at(600, 1.0)
+    assert other.contacts[0].rough is not other.contacts[2].rough
+
+
+def test_a_warm_start_saves_work_and_changes_nothing():
+    """From a point 20 % slower, rough: the same numbers, fewer Newton iterations."""
+    near = at(20, 400.0, ROUGH)
+    point = OperatingPoint(speed=24 * math.pi / 30, load=400.0, temperature=WARM)
+    warm = solve_screw(SCREW, OIL, point, settings=ROUGH, start=near)
+    cold = at(24, 400.0, ROUGH)
+    assert warm.converged, warm.status
+    assert warm.friction_torque == pytest.approx(cold.friction_torque, rel=1e-4)
+    assert warm.rcs == pytest.approx(cold.rcs, rel=1e-3)
+    steps = [
+        sum(contact.rough.newton_iterations for contact in found.contacts)
+        for found in (warm, cold)
+    ]
+    assert steps[0] < 0.6 * steps[1]
+
+
+def test_full_tier_is_near_the_formulas_at_full_film():
+    """At 600 rev/min film within 10 %, torque within 30 % of the closed-form tier."""
+    found = at(600, 500.0)
+    formula = closed_form.solve(SCREW, OIL, 600 * math.pi / 30, 500.0, WARM)
+    assert found.central_film == pytest.approx(float(formula.central_film), rel=0.1)
+    assert found.friction_torque == pytest.approx(float(formula.friction_torque), rel=0.3)
+    assert found.rcs == 0.0
+    assert found.entrainment_speed == pytest.approx(0.49657, rel=1e-4)
+
+
+def test_beyond_unloading_the_relieved_nut_is_idle():
+    """Its contacts are not solved and lose nothing; zero preload is the same at any load."""
+    found = at(600, 3.0 * SCREW.preload)
+    assert found.converged, found.status
+    assert found.normal_forces[1] == 0.0
+    assert [contact.smooth is None for contact in found.contacts] == [False, False, True, True]
+    free = at(600, 500.0, screw=replace(SCREW, preload=0.0))
+    assert free.converged, free.status
+    assert free.normal_forces[1] == 0.0
+    idle = at(600, 0.0, screw=replace(SCREW, preload=0.0))
+    assert idle.friction_torque == 0.0
+    assert idle.rcs == 0.0
+    assert math.isnan(idle.film_ratio)
+
+
+def test_a_nut_about_to_unload_is_idle_and_named():
+    """Its share cannot hold its balls; the other nut carries exactly the load."""
+    found = at(600, 0.9985 * 2**1.5 * SCREW.preload)
+    assert found.converged, found.status
+    assert 'relieved one is idle' in found.status
+    assert found.normal_forces[1] == 0.0
+    assert found.energy_error < 1e-8
+
+
+def test_patch_does_not_jump_where_the_preload_vanishes():
+    """The window never shrinks to nothing."""
+    scales = [
+        raceway_patch(replace(SCREW, preload=preload), 'screw', 0).scale for preload in (0.0, 1.0)
+    ]
+    assert scales[0] == scales[1]
+
+
+def test_rest_is_dry_and_loses_most():
+    """At speed zero all load is on asperities, and friction is above that of the film."""
+    rest, moving = at(0, 500.0, ROUGH), at(600, 500.0, ROUGH)
+    assert rest.converged, rest.status
+    assert rest.rcs == pytest.approx(1.0, abs=1e-3)
+    assert rest.film_ratio == 0.0
+    assert rest.energy_error < 1e-8
+    slow = at(5, 500.0, ROUGH)
+    assert 0 < slow.rcs < 1
+    assert moving.rcs == 0.0
+    assert slow.film_ratio < moving.film_ratio
+
+
+def test_parasitic_torque_is_added_and_never_hidden_in_friction():
+    """Constant and speed-proportional parts add to friction and driving torque."""
+    screw = replace(SCREW, parasitic_torque=0.1, parasitic_torque_rate=1e-3)
+    more, bare = at(600, 500.0, screw=screw), at(600, 500.0)
+    added = 0.1 + 1e-3 * 600 * math.pi / 30
+    assert more.friction_torque - bare.friction_torque == pytest.approx(added, rel=1e-9)
+    assert more.driving_torque - bare.driving_torque == pytest.approx(added, rel=1e-9)
+
+
+def test_a_contact_that_fails_is_named_and_leaves_no_number():
+    """The status says which; everything else is NaN."""
+    settings = ScrewSettings(smooth=Settings(newton_limit=1), draw=None)
+    found = at(600, 500.0, settings)
+    assert not found.converged
+    assert found.status.startswith('loaded nut, screw, smooth contact: ')
+    assert math.isnan(found.friction_torque)
+    assert math.isnan(found.efficiency)
+
+
+def test_the_patch_belongs_to_the_draw_not_to_the_load():
+    """One surface per draw and side, with all waves of the datasheet."""
+    first, again, other = (raceway_patch(SCREW, 'screw', draw) for draw in (3, 3, 4))
+    assert first.scale == again.scale != other.scale
+    assert first.shortest_wavelength == pytest.approx(9.13e-6, rel=1e-3)
+
+
+def test_waves_off_the_grid_raise_the_floor_of_the_datasheet():
+    """The floor on the grid is that of the screw and a share of the lost waves."""
+    found = at(60, 500.0, ROUGH)
+    floors = {contact.rough.settings.film_floor for contact in found.contacts}
+    assert all(1e-10 < floor - SCREW.roughness.film_floor < 3e-9 for floor in floors)
+    whole = at(60, 500.0, replace(ROUGH, grid_wavelength=None))
+    assert whole.contacts[0].rough.settings.film_floor == SCREW.roughness.film_floor
+
+
+def test_balls_are_balanced_anew_on_solved_contacts():
+    """The same point gives the same; another friction what a fresh solve gives."""
+    found = at(5, 500.0, ROUGH)
+    point = OperatingPoint(speed=5 * math.pi / 30, load=500.0, temperature=WARM)
+    again = rebalance_screw(SCREW, OIL, point, found)
+    assert again.friction_torque == found.friction_torque
+    assert again.rcs == found.rcs
+    rough = replace(SCREW, roughness=replace(SCREW.roughness, asperity_friction=0.15))
+    balanced = rebalance_screw(rough, OIL, point, found)
+    fresh = at(5, 500.0, ROUGH, screw=rough)
+    assert balanced.friction_torque == pytest.approx(fresh.friction_torque, rel=1e-9)
+    assert balanced.energy_error < 1e-8
+    assert balanced.friction_torque > 1.2 * found.friction_torque
+
+
+def test_another_oil_at_the_same_viscosity_times_speed_shears_on_the_same_film():
+    """Half the speed and twice the viscosity: within 1 % of contacts solved there."""
+    found = at(600, 0.0)
+    thick = thickened(OIL, 2.0)
+    point = OperatingPoint(speed=300 * math.pi / 30, load=0.0, temperature=WARM)
+    fresh = solve_screw(SCREW, thick, point, settings=SMOOTH)
+    balanced = rebalance_screw(SCREW, thick, point, found)
+    assert balanced.friction_torque == pytest.approx(fresh.friction_torque, rel=0.01)
+    assert found.friction_torque != pytest.approx(fresh.friction_torque, rel=0.01)
+
+
+def test_a_balance_needs_solved_contacts():
+    """None in a nut without load, and a sentence where a contact has failed."""
+    idle = at(600, 3.0 * SCREW.preload)
+    point = OperatingPoint(speed=600 * math.pi / 30, load=3.0 * SCREW.preload, temperature=WARM)
+    again = rebalance_screw(SCREW, OIL, point, idle)
+    assert again.friction_torque == idle.friction_torque
+    settings = ScrewSettings(smooth=Settings(newton_limit=1), draw=None)
+    failed = at(600, 3.0 * SCREW.preload, settings)
+    again = rebalance_screw(SCREW, OIL, point, failed)
+    assert not again.converged
+    assert again.status.startswith('loaded nut, screw, smooth contact: ')
+
+
+def test_contacts_of_another_load_are_not_rebalanced():
+    """Smooth contacts beyond unloading say nothing about a load below it, nor of another one."""
+    idle = at(600, 3.0 * SCREW.preload)
+    point = OperatingPoint(speed=600 * math.pi / 30, load=1000.0, temperature=WARM)
+    with pytest.raises(InputError, match='load is 1000 N, .* allowed is that solved'):
+        rebalance_screw(SCREW, OIL, point, idle)
+    with pytest.raises(InputError, match='load is 1000 N'):
+        rebalance_screw(SCREW, OIL, point, at(600, 900.0))
+    same = replace(point, load=3.0 * SCREW.preload)
+    again = rebalance_screw(SCREW, OIL, same, idle)
+    assert again.friction_torque == pytest.approx(idle.friction_torque, rel=1e-9)

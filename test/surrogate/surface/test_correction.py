@@ -1,0 +1,229 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""A corrected surface: the full solve at its point, the same surface everywhere else, smooth."""
+
+import math
+from types import SimpleNamespace
+
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+import pytest
+from surrogate.parameters import OperatingPoint
+from surrogate.surface import FIELDS, shipped_surface, Surface, SurfaceError, Validity
+from surrogate.surface.correction import NEAREST, TRUST_RADIUS
+from surrogate.surface.file import read
+
+DATA, FULL_DATA = (read(shipped_surface(tier=tier)) for tier in ('closed_form', 'full'))
+SHIPPED, FULL = Surface(DATA), Surface(FULL_DATA)
+AXES = {
+    data.header['tier']: (data.speed_coordinate, data.load, data.temperature)
+    for data in (DATA, FULL_DATA)
+}
+both = pytest.mark.parametrize('shipped', [SHIPPED, FULL], ids=['closed_form', 'full'])
+SHARES = ('rcs', 'asperity_share')
+CELLS = st.tuples(*3 * [st.integers(0, 1000)])
+"""Cells of any surface, counted round."""
+FRACTIONS = st.tuples(*3 * [st.floats(0.02, 0.98)])
+FACTORS = st.floats(0.05, 20.0)
+ONE = st.floats(0.0, 1.0)
+SOLUTIONS = st.builds(
+    lambda factors, rcs, share: (factors, {'rcs': rcs, 'asperity_share': share}),
+    st.tuples(*len(FIELDS) * [FACTORS]),
+    ONE,
+    ONE,
+)
+
+
+def turn(surface, cell) -> tuple[int, int, int]:
+    """Return a cell of the surface."""
+    return tuple(number % count for number, count in zip(cell, surface.cells))
+
+
+def place(surface, cell, fractions) -> tuple[float, float, float]:
+    """Return speed, load and temperature at fractions of a cell; passes over those outside."""
+    s, load, heat = (
+        float(axis[i] + (axis[i + 1] - axis[i]) * fraction)
+        for axis, i, fraction in zip(AXES[surface.tier], turn(surface, cell), fractions)
+    )
+    speed = surface.onset_speed(load, heat) * math.exp(s)
+    assume(surface.lookup(speed, load, heat).validity is Validity.VALID)
+    return speed, load, heat
+
+
+def at(where, speed_sign=1.0) -> SimpleNamespace:
+    """Return the point of a full solve."""
+    return SimpleNamespace(
+        speed=speed_sign * where[0], opposing_load=where[1], temperature=where[2]
+    )
+
+
+def solution(surface, where, drawn) -> SimpleNamespace:
+    """Return a solution that differs from the surface by factors, and with other shares."""
+    found, (factors, shares) = surface.lookup(*where), drawn
+    values = {name: factor * getattr(found, name) for name, factor in zip(FIELDS, factors)}
+    return SimpleNamespace(**{**values, **shares})
+
+
+@both
+@settings(max_examples=100, deadline=None)
+@given(CELLS, FRACTIONS, SOLUTIONS)
+def test_the_corrected_point_is_the_solve(shipped, cell, fractions, drawn):
+    """Every field, to rounding; what follows from the torque too; the flag tells."""
+    where = place(shipped, cell, fractions)
+    solved = solution(shipped, where, drawn)
+    found = shipped.with_correction(at(where), solved).lookup(*where)
+    assert found.corrected
+    for name in FIELDS:
+        assert getattr(found, name) == pytest.approx(getattr(solved, name), rel=1e-9, abs=1e-12)
+    assert str(found.errors) == str(shipped.lookup(*where).errors)
+
+
+@both
+@settings(max_examples=150, deadline=None)
+@given(CELLS, FRACTIONS, SOLUTIONS, CELLS, FRACTIONS)
+def test_elsewhere_nothing_changes_by_a_bit(shipped, cell, fractions, drawn, other, others):
+    """In any other cell, and in the same cell beyond the trust region, bit for bit."""
+    where, elsewhere = place(shipped, cell, fractions), place(shipped, other, others)
+    beyond = any(abs(a - b) > TRUST_RADIUS + 1e-9 for a, b in zip(fractions, others))
+    assume(turn(shipped, other) != turn(shipped, cell) or beyond)
+    corrected = shipped.with_correction(at(where), solution(shipped, where, drawn))
+    before, after = shipped.lookup(*elsewhere), corrected.lookup(*elsewhere)
+    # By their texts, which tell every bit and let NaN be equal to itself.
+    assert str(after) == str(before)
+    assert not after.corrected
+
+
+@both
+@settings(max_examples=150, deadline=None)
+@given(CELLS, FRACTIONS, SOLUTIONS, FRACTIONS)
+def test_signs_and_ranges_hold(shipped, cell, fractions, drawn, others):
+    """Anywhere in the cell: positive stays positive, shares stay shares, and no overshoot."""
+    where, near = place(shipped, cell, fractions), place(shipped, cell, others)
+    solved = solution(shipped, where, drawn)
+    corrected = shipped.with_correction(at(where), solved)
+    before, after, here = shipped.lookup(*near), corrected.lookup(*near), shipped.lookup(*where)
+    for name in FIELDS:
+        old, new = getattr(before, name), getattr(after, name)
+        if name in SHARES:
+            assert 0.0 <= new <= 1.0
+            assert abs(new - old) <= 1.0
+        else:
+            assert new > 0.0
+            factor = getattr(solved, name) / getattr(here, name)
+            assert min(1.0, factor) - 1e-9 <= new / old <= max(1.0, factor) + 1e-9
+
+
+@both
+@settings(max_examples=60, deadline=None)
+@given(CELLS, FRACTIONS, SOLUTIONS, FRACTIONS, st.integers(0, 2), st.sampled_from([0, 1]))
+def test_the_pull_and_its_slope_vanish_at_the_faces(
+    shipped, cell, fractions, drawn, others, axis, side
+):
+    """A step h from a face the torque is pulled by no more than a multiple of h squared."""
+    where = place(shipped, cell, fractions)
+    corrected = shipped.with_correction(at(where), solution(shipped, where, drawn))
+    bound = abs(corrected.corrections[0].gains[0]) + 1e-12
+    reach = min(fractions[axis], 1 - fractions[axis], TRUST_RADIUS)
+    for step in (1e-3, 1e-4, 1e-5):
+        near = list(others)
+        near[axis] = step if side == 0 else 1 - step
+        point = place(shipped, cell, near)
+        old, new = (one.lookup(*point).friction_torque for one in (shipped, corrected))
+        assert abs(new / old - 1) <= 3.01 * bound * (step / reach) ** 2 + 1e-13
+
+
+def test_a_solution_pulls_what_it_has():
+    """A field that is not there or NaN stays; the others are pulled."""
+    where = (62.8, 1000.0, 313.0)
+    solved = SimpleNamespace(rcs=0.0, friction_torque=math.nan, film_ratio=3.0)
+    before = SHIPPED.lookup(*where)
+    after = SHIPPED.with_correction(at(where), solved).lookup(*where)
+    assert (after.rcs, after.friction_torque) == (0.0, before.friction_torque)
+    assert after.film_ratio == pytest.approx(3.0)
+    assert after.minimum_film == before.minimum_film
+
+
+def test_a_solution_of_the_screw_is_taken():
+    """As the full tier gives it, at an operating point in the other direction of motion."""
+    from surrogate.screw.solve import ScrewSolution
+
+    point = OperatingPoint(speed=-62.8, load=1000.0, temperature=313.0)
+    solved = ScrewSolution(
+        status='Solved.',
+        converged=True,
+        contacts=(),
+        entrainment_speed=1.0,
+        normal_forces=(27.0, 30.0),
+        friction_torque=0.123,
+        rcs=0.0,
+        asperity_share=0.0,
+        film_ratio=2.5,
+        central_film=0.3e-6,
+    )
+    found = SHIPPED.with_correction(point, solved).lookup(62.8, -1000.0, 313.0)
+    assert found.friction_torque == pytest.approx(0.123, rel=1e-12)
+    assert found.rcs == solved.rcs
+    assert found.central_film == pytest.approx(0.3e-6, rel=1e-12)
+
+
+def test_provenance_and_hash():
+    """Each set of corrections has a hash of its own, whatever their order; the old one stays."""
+    first, second = (62.8, 1000.0, 313.0), (10.0, -500.0, 330.0)
+    solved = SimpleNamespace(rcs=0.2)
+    one = SHIPPED.with_correction(at(first), solved)
+    two = one.with_correction(at(second), solved)
+    other = SHIPPED.with_correction(at(second), solved).with_correction(at(first), solved)
+    assert len({SHIPPED.sha256, one.sha256, two.sha256}) == 3
+    assert two.sha256 == other.sha256
+    assert SHIPPED.corrections == ()
+    assert SHIPPED.sha256 == DATA.sha256
+    assert len(two.corrections) == 2
+    assert {made.solved['rcs'] for made in two.corrections} == {0.2}
+    assert (one.corrections[0].speed, one.corrections[0].opposing_load) == first[:2]
+
+
+def test_a_cell_holds_the_newest_correction():
+    """A second solve in a cell replaces the first, as if that had never been."""
+    first, second = (62.8, 1000.0, 313.0), (62.9, 1001.0, 313.01)
+    solved, newer = SimpleNamespace(rcs=0.2), SimpleNamespace(rcs=0.3)
+    both = SHIPPED.with_correction(at(first), solved).with_correction(at(second), newer)
+    alone = SHIPPED.with_correction(at(second), newer)
+    assert both.sha256 == alone.sha256
+    assert both.lookup(*first) == alone.lookup(*first)
+
+
+@pytest.mark.parametrize(
+    ('where', 'solved', 'sentence'),
+    [
+        ((62.8, 1000.0, 200.0), {'rcs': 0.1}, 'no answer: TEMPERATURE_OUT_OF_RANGE'),
+        ((math.nan, 1000.0, 313.0), {'rcs': 0.1}, 'no answer: SPEED_BELOW_RANGE'),
+        ((62.8, 0.0, 313.0), {'rcs': 0.1}, 'lies at 0 % of the width of its cell .* 1 % or more'),
+        ((62.8, 1000.0, 313.0), {}, 'not converged: it has no numbers'),
+        ((62.8, 1000.0, 313.0), {'rcs': 1.5}, 'rcs is 1.5, allowed is 0 to 1'),
+        ((62.8, 1000.0, 313.0), {'friction_torque': 0.0}, 'friction_torque is 0, allowed is fin'),
+        ((62.8, 1000.0, 313.0), {'max_pressure': math.inf}, 'max_pressure is inf, allowed is'),
+        (
+            (62.8, 1000.0, 313.0),
+            {'rcs': 0.1, 'converged': False, 'status': 'stalled.'},
+            'not converged: stalled.',
+        ),
+    ],
+)
+def test_what_cannot_correct_is_one_sentence(where, solved, sentence):
+    """Outside, at a node, not converged, impossible numbers."""
+    assert NEAREST == 0.01
+    with pytest.raises(SurfaceError, match=sentence):
+        SHIPPED.with_correction(at(where), SimpleNamespace(**solved))
+
+
+def test_masked_cells_are_not_corrected(surface_data):
+    """Where the surface has no number there is nothing to pull."""
+    from dataclasses import replace
+
+    mask = surface_data.mask.copy()
+    mask[:, :, 4] = True
+    holed = Surface(replace(surface_data, mask=mask))
+    point = (62.8, 1000.0, float(surface_data.temperature[4]) + 1.0)
+    assert holed.lookup(*point).validity is Validity.MASKED
+    with pytest.raises(SurfaceError, match='no answer: MASKED'):
+        holed.with_correction(at(point), SimpleNamespace(rcs=0.1))

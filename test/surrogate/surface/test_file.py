@@ -1,0 +1,244 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The surface file: whole or refused, with one sentence."""
+
+from dataclasses import replace
+import json
+from pathlib import Path
+
+from hypothesis import given, settings
+from hypothesis import strategies as st
+import numpy as np
+import pytest
+from surrogate.surface import shipped_surface
+from surrogate.surface.file import ENSEMBLE_VERSION, read, SurfaceData, SurfaceError, write
+
+CLOSED_FORM = shipped_surface(tier='closed_form')
+SHIPPED = CLOSED_FORM.read_bytes()
+WHOLE = read(CLOSED_FORM).sha256
+
+
+def rewrite(path: Path, **changes) -> None:
+    """Write the shipped file again with changes to its header, keeping the stated hash."""
+    with np.load(CLOSED_FORM, allow_pickle=False) as archive:
+        arrays = {name: archive[name] for name in archive.files}
+    header = json.loads(arrays['header'].tobytes())
+    header.update(changes)
+    arrays['header'] = np.frombuffer(json.dumps(header).encode(), dtype=np.uint8)
+    np.savez(path, **arrays)
+
+
+def test_what_is_written_is_read(tmp_path: Path, surface_data: SurfaceData):
+    """A round trip keeps every array, the header and the hash."""
+    path = tmp_path / 'a' / 'map.npz'
+    write(path, surface_data)
+    back = read(path)
+    assert back.sha256 == surface_data.sha256
+    assert dict(back.header) == json.loads(json.dumps(surface_data.header))
+    for name, values in surface_data.fields.items():
+        assert np.array_equal(back.fields[name], values)
+    assert [found.name for found in path.parent.iterdir()] == ['map.npz']
+
+
+def test_the_hash_covers_content_and_not_provenance(surface_data: SurfaceData):
+    """Another build time is the same surface; another number is not."""
+    later = replace(surface_data, provenance={'built': 'later'})
+    assert later.sha256 == surface_data.sha256
+    rcs = surface_data.fields['rcs'].copy()
+    rcs[3, 3, 3] = np.nextafter(rcs[3, 3, 3], 1)
+    other = replace(surface_data, fields={**surface_data.fields, 'rcs': rcs})
+    assert other.sha256 != surface_data.sha256
+    assert (
+        replace(surface_data, header={**surface_data.header, 'tier': 'full'}).sha256
+        != surface_data.sha256
+    )
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.integers(0, len(SHIPPED) - 1))
+def test_a_truncated_file_is_refused(tmp_path_factory, length):
+    """Whatever is cut off, the answer is one sentence and never a surface."""
+    path = tmp_path_factory.mktemp('cut') / 'cut.npz'
+    path.write_bytes(SHIPPED[:length])
+    with pytest.raises(SurfaceError, match=r'cut\.npz: ') as caught:
+        read(path)
+    assert '\n' not in str(caught.value)
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.integers(0, len(SHIPPED) - 1), st.integers(1, 255))
+def test_a_flipped_byte_is_refused_or_harmless(tmp_path_factory, place, change):
+    """A changed byte is found, unless it lies where the archive keeps nothing that is read."""
+    damaged = bytearray(SHIPPED)
+    damaged[place] ^= change
+    path = tmp_path_factory.mktemp('flip') / 'flip.npz'
+    path.write_bytes(damaged)
+    try:
+        digest, sentence = read(path).sha256, ''
+    except SurfaceError as error:
+        digest, sentence = WHOLE, str(error)
+    assert digest == WHOLE
+    assert '\n' not in sentence
+
+
+def test_an_unknown_version_is_told_before_anything_else(tmp_path: Path):
+    """A newer format is not called damaged."""
+    path = tmp_path / 'new.npz'
+    rewrite(path, format_version=ENSEMBLE_VERSION + 1)
+    with pytest.raises(
+        SurfaceError, match='surface format version 3, this program reads versions 1 and 2'
+    ):
+        read(path)
+
+
+@pytest.mark.parametrize(
+    ('changes', 'sentence'),
+    [
+        ({'tier': 'full'}, 'content hash .* differs'),
+        ({'sha256': '0' * 64}, 'content hash .* differs from the stated 0000000000000000'),
+        ({'format': 'map'}, 'not a surface file, its header is of another format'),
+    ],
+)
+def test_a_changed_header_is_refused(tmp_path: Path, changes, sentence):
+    """The header is part of the hash."""
+    path = tmp_path / 'changed.npz'
+    rewrite(path, **changes)
+    with pytest.raises(SurfaceError, match=sentence):
+        read(path)
+
+
+def settings_with(data: SurfaceData, **changes) -> dict:
+    """Return the change of the header that changes settings."""
+    return {'header': {**data.header, 'settings': {**data.header['settings'], **changes}}}
+
+
+def unmasked_hole(data: SurfaceData) -> dict:
+    """Return fields with a NaN that no mask tells of."""
+    rcs = data.fields['rcs'].copy()
+    rcs[3, 3, 3] = np.nan
+    return {'fields': {**data.fields, 'rcs': rcs}}
+
+
+@pytest.mark.parametrize(
+    'change',
+    [
+        lambda data: {'load': data.load[::-1].copy()},
+        lambda data: {'fields': {k: v for k, v in data.fields.items() if k != 'rcs'}},
+        lambda data: {'mask': data.mask[1:]},
+        lambda data: {'mask': data.mask.astype(np.uint8)},
+        unmasked_hole,
+        lambda data: {'header': {**data.header, 'tier': 'guess'}},
+        lambda data: {'header': {k: v for k, v in data.header.items() if k != 'settings'}},
+        lambda data: {'header': {**data.header, 'inputs': {}}},
+        lambda data: {'header': {**data.header, 'load_breaks': [1.0]}},
+        lambda data: settings_with(data, speed_range=[0.0, 100.0]),
+        lambda data: settings_with(data, speed_range=[1.0, 1e9]),
+        lambda data: settings_with(data, speed_range='all'),
+    ],
+)
+def test_a_hash_over_broken_parts_does_not_save_them(tmp_path: Path, surface_data, change):
+    """A file that verifies but whose parts do not fit is refused too."""
+    path = tmp_path / 'broken.npz'
+    write(path, replace(surface_data, **change(surface_data)))
+    with pytest.raises(SurfaceError, match='header, axes and fields do not fit together'):
+        read(path)
+
+
+@pytest.mark.parametrize('content', [b'', b'hello', b'PK\x03\x04'])
+def test_something_else_is_not_a_surface(tmp_path: Path, content):
+    """Neither an empty file nor text nor a torn archive."""
+    path = tmp_path / 'else.npz'
+    path.write_bytes(content)
+    with pytest.raises(SurfaceError, match='damaged or not a surface file|not a surface file'):
+        read(path)
+
+
+def test_other_arrays_are_not_a_surface(tmp_path: Path):
+    """A plain .npy, an .npz without a header, and a pickle are refused."""
+    plain, bare, pickled = (tmp_path / name for name in ('a.npy', 'b.npz', 'c.npz'))
+    np.save(plain, np.zeros(3))
+    np.savez(bare, a=np.zeros(3))
+    np.savez(pickled, header=np.array([{'format': 1}], dtype=object))
+    for path in (plain, bare, pickled):
+        with pytest.raises(SurfaceError, match='not a surface file'):
+            read(path)
+
+
+def test_a_missing_file_is_one_sentence(tmp_path: Path):
+    """No such file."""
+    with pytest.raises(SurfaceError, match='no such surface file'):
+        read(tmp_path / 'none.npz')
+
+
+def test_a_device_is_not_written_over(surface_data: SurfaceData):
+    """A target that is no regular file stays what it is."""
+    with pytest.raises(SurfaceError, match='it is not a regular file'):
+        write('/dev/null', surface_data)
+    assert Path('/dev/null').is_char_device()
+
+
+def test_a_failed_write_leaves_the_old_file(
+    tmp_path: Path, surface_data: SurfaceData, monkeypatch
+):
+    """A full disk does not cost the previous surface, and nothing half-written stays."""
+    path = tmp_path / 'map.npz'
+    write(path, surface_data)
+    before = path.read_bytes()
+
+    def full(*_, **__):
+        raise OSError(28, 'No space left on device')
+
+    monkeypatch.setattr(np, 'savez', full)
+    with pytest.raises(SurfaceError, match='cannot be written, No space left on device'):
+        write(path, surface_data)
+    assert path.read_bytes() == before
+    assert [found.name for found in tmp_path.iterdir()] == ['map.npz']
+
+
+def with_draws(data: SurfaceData, **changes) -> SurfaceData:
+    """Return the surface with an ensemble of draws."""
+    spread = np.full(data.mask.shape, 0.01)
+    parts = {'deviations': {'rcs': spread}, 'standard_errors': {'rcs': 0.5 * spread}}
+    header = {**data.header, 'format_version': ENSEMBLE_VERSION}
+    return replace(data, **{'header': header, **parts, **changes})
+
+
+def test_what_draws_leave_uncertain_is_written_read_and_hashed(tmp_path: Path, surface_data):
+    """A round trip keeps the arrays; each of their bits is in the hash."""
+    path = tmp_path / 'map.npz'
+    data = with_draws(surface_data)
+    data.deviations['rcs'][3, 3, 3] = np.nan
+    write(path, data)
+    back = read(path)
+    assert set(back.deviations) == set(back.standard_errors) == {'rcs'}
+    assert np.array_equal(back.deviations['rcs'], data.deviations['rcs'], equal_nan=True)
+    assert np.array_equal(back.standard_errors['rcs'], data.standard_errors['rcs'])
+    other = with_draws(surface_data)
+    other.standard_errors['rcs'][3, 3, 3] = np.nextafter(0.005, 1)
+    assert len({data.sha256, other.sha256, surface_data.sha256}) == 3
+
+
+def test_without_draws_a_file_is_as_it_was(surface_data):
+    """The hash of a version 1 file has not changed with version 2."""
+    assert surface_data.header['format_version'] == 1
+    assert read(CLOSED_FORM).deviations == {}
+
+
+@pytest.mark.parametrize(
+    'change',
+    [
+        lambda data: {'header': data.header},
+        lambda data: {'deviations': {}, 'standard_errors': {}},
+        lambda data: {'deviations': {'heat': np.zeros(data.mask.shape)}},
+        lambda data: {'deviations': {'rcs': np.zeros(3)}},
+        lambda data: {'deviations': {'rcs': np.full(data.mask.shape, -0.1)}},
+        lambda data: {'standard_errors': {'rcs': np.full(data.mask.shape, np.inf)}},
+        lambda data: {'standard_errors': {'rcs': np.zeros(data.mask.shape, dtype=np.float32)}},
+    ],
+)
+def test_impossible_spreads_are_refused(tmp_path: Path, surface_data, change):
+    """Of no field, of another shape, below zero, without the version that has them."""
+    path = tmp_path / 'broken.npz'
+    write(path, with_draws(surface_data, **change(surface_data)))
+    with pytest.raises(SurfaceError, match='header, axes and fields do not fit together'):
+        read(path)

@@ -1,0 +1,347 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The surface: exact at its nodes, honest outside, monotone, continuous, small."""
+
+from dataclasses import replace
+import math
+from pathlib import Path
+import subprocess
+import sys
+import tracemalloc
+
+from hypothesis import given, settings
+from hypothesis import strategies as st
+import numpy as np
+import pytest
+from surrogate.formulas import closed_form, torque
+from surrogate.formulas.load_sharing import UNLOADING_RATIO
+from surrogate.surface import (
+    FIELDS,
+    find_surface,
+    shipped_surface,
+    Surface,
+    SurfaceError,
+    Validity,
+)
+from surrogate.surface.file import ENSEMBLE_VERSION, SurfaceData, write
+import surrogate.surface.lookup
+
+SPEEDS = st.floats(0.06, 229.0)
+LOADS = st.floats(-3960.0, 3960.0)
+KELVINS = st.floats(283.15, 353.15)
+SHIPPED = Surface.load(shipped_surface(tier='closed_form'))
+FULL = Surface.load(shipped_surface(tier='full'))
+both = pytest.mark.parametrize('shipped', [SHIPPED, FULL], ids=['closed_form', 'full'])
+"""Properties of any surface are held against both that are shipped."""
+
+
+@pytest.fixture(scope='module')
+def surface(surface_data: SurfaceData) -> Surface:
+    """Return the nominal surface, freshly built."""
+    return Surface(surface_data)
+
+
+def node_speed(data: SurfaceData, i: int, j: int, k: int) -> float:
+    """Return the speed of a node."""
+    return math.exp(data.speed_coordinate[i] + data.log_onset[j, k])
+
+
+def test_shipped_closed_form_is_the_one_that_is_built(surface):
+    """The shipped file holds what the builder builds today."""
+    assert SHIPPED.header == surface.header
+    point = (62.8, 1000.0, 313.15)
+    assert SHIPPED.lookup(*point).values == pytest.approx(surface.lookup(*point).values, rel=1e-9)
+
+
+def test_lookup_is_exact_at_the_nodes(surface, surface_data):
+    """Every seventh node inside the speed range gives back its own numbers."""
+    data, checked = surface_data, 0
+    for i, j, k in np.ndindex(*data.mask.shape):
+        speed = node_speed(data, i, j, k)
+        if (i + j + k) % 7 or not surface.speed_range[0] < speed < surface.speed_range[1]:
+            continue
+        found = surface.lookup(speed, float(data.load[j]), float(data.temperature[k]))
+        for name in FIELDS:
+            assert getattr(found, name) == pytest.approx(
+                float(data.fields[name][i, j, k]), rel=1e-11, abs=1e-15
+            )
+        checked += 1
+    assert checked > 500
+
+
+@settings(max_examples=60, deadline=None)
+@given(SPEEDS, LOADS, KELVINS)
+def test_lookup_agrees_with_the_model(speed, load, kelvin):
+    """Anywhere: efficiency and RCS within 0.003 of a solve at the same point."""
+    from surrogate.parameters import load_lubricant, load_screw
+
+    screw, oil = load_screw('nominal'), load_lubricant('iso_vg_68')
+    solved = closed_form.solve(screw, oil, speed, load, kelvin)
+    found = SHIPPED.lookup(speed, load, kelvin)
+    if abs(load) > 0.25 * screw.preload:
+        assert found.efficiency == pytest.approx(
+            torque.efficiency(float(solved.friction_torque), load, screw.lead), abs=0.003
+        )
+    assert found.rcs == pytest.approx(float(solved.rcs), abs=0.003)
+    assert found.film_ratio == pytest.approx(float(solved.film_ratio), rel=0.01)
+
+
+@both
+@settings(max_examples=60, deadline=None)
+@given(SPEEDS, st.floats(1.001, 3.0), LOADS, KELVINS)
+def test_rcs_never_rises_with_speed(shipped, speed, factor, load, kelvin):
+    """A monotone field stays monotone between the nodes."""
+    faster = min(speed * factor, 229.0)
+    slow, fast = (shipped.lookup(w, load, kelvin) for w in (speed, faster))
+    assert fast.rcs <= slow.rcs + 1e-9
+
+
+@both
+@settings(max_examples=60, deadline=None)
+@given(SPEEDS, st.floats(1.001, 3.0), LOADS, KELVINS)
+def test_film_never_thins_with_speed(shipped, speed, factor, load, kelvin):
+    """Strictly; in the full tier where asperities carry all it is level, a few per cent."""
+    faster = min(speed * factor, 229.0)
+    slow, fast = (shipped.lookup(w, load, kelvin) for w in (speed, faster))
+    level = shipped.tier == 'full' and slow.rcs > 0.95
+    assert fast.film_ratio >= slow.film_ratio * (0.95 if level else 1 - 1e-9)
+
+
+@both
+@settings(max_examples=60, deadline=None)
+@given(SPEEDS, LOADS, KELVINS, st.sampled_from(FIELDS))
+def test_lookup_is_continuous(shipped, speed, load, kelvin, name):
+    """A step of a millionth changes nothing by more than a part in ten thousand."""
+    here = getattr(shipped.lookup(speed, load, kelvin), name)
+    for step in ((1e-6, 0, 0), (0, 1e-3, 0), (0, 0, 1e-5)):
+        beside = shipped.lookup(
+            min(speed * (1 + step[0]), 229.0),
+            min(load + step[1], 3960.0),
+            min(kelvin + step[2], 353.15),
+        )
+        assert getattr(beside, name) == pytest.approx(here, rel=1e-4, abs=1e-6)
+
+
+@both
+@pytest.mark.parametrize(
+    ('point', 'validity'),
+    [
+        ((0.0, 0.0, 313.15), Validity.SPEED_BELOW_RANGE),
+        ((0.0499, 0.0, 313.15), Validity.SPEED_BELOW_RANGE),
+        ((229.1, 0.0, 313.15), Validity.SPEED_ABOVE_RANGE),
+        ((math.inf, 0.0, 313.15), Validity.SPEED_ABOVE_RANGE),
+        ((math.nan, 0.0, 313.15), Validity.SPEED_BELOW_RANGE),
+        ((60.0, 3960.1, 313.15), Validity.LOAD_OUT_OF_RANGE),
+        ((60.0, math.nan, 313.15), Validity.LOAD_OUT_OF_RANGE),
+        ((60.0, 0.0, 283.14), Validity.TEMPERATURE_OUT_OF_RANGE),
+        ((60.0, 0.0, math.nan), Validity.TEMPERATURE_OUT_OF_RANGE),
+    ],
+)
+def test_outside_is_an_answer_and_never_a_number(shipped, point, validity):
+    """No extrapolation: NaN and the reason."""
+    found = shipped.lookup(*point)
+    assert found.validity is validity
+    for name in (*FIELDS, 'efficiency', 'driving_torque', 'rcs_error', 'efficiency_error'):
+        assert math.isnan(getattr(found, name))
+    assert found.worst_nut == found.worst_side == 0
+    assert found.back_driving is False
+
+
+@both
+def test_limits_of_the_ranges_belong_to_the_surface(shipped):
+    """Each end of each range can be looked up."""
+    for speed in shipped.speed_range:
+        for load in shipped.load_range:
+            for kelvin in shipped.temperature_range:
+                assert shipped.lookup(speed, load, kelvin).validity is Validity.VALID
+
+
+def test_kinks_are_kept(surface):
+    """At the unloading load the pressure goes on, and the slope of the torque jumps."""
+    w, kelvin, load = 60.0, 313.15, UNLOADING_RATIO * surface.preload
+    left, right = (
+        (
+            surface.lookup(w, load + side, kelvin).friction_torque
+            - surface.lookup(w, load, kelvin).friction_torque
+        )
+        / side
+        for side in (-1e-3, 1e-3)
+    )
+    assert abs(left - right) > 0.5 * abs(right)
+
+
+def test_cells_beside_an_unconverged_node_answer_masked(surface_data):
+    """One masked node masks its eight cells and no other."""
+    data = surface_data
+    i, j, k = 20, 10, 4
+    mask = data.mask.copy()
+    mask[i, j, k] = True
+    fields = {name: np.where(mask, np.nan, values) for name, values in data.fields.items()}
+    holed = Surface(replace(data, mask=mask, fields=fields))
+    assert holed.masked_cells == 8
+    load, kelvin = float(data.load[j]), float(data.temperature[k])
+    speed = node_speed(data, i, j, k)
+    assert holed.lookup(speed, load, kelvin).validity is Validity.MASKED
+    assert math.isnan(holed.lookup(speed, load, kelvin).rcs)
+    beyond = holed.lookup(node_speed(data, i + 2, j, k), load, kelvin)
+    assert beyond.validity is Validity.VALID
+    assert math.isfinite(beyond.rcs)
+
+
+@both
+def test_derived_numbers_follow_from_the_torque(shipped):
+    """Efficiency, driving torque and back-driving come from the torque, in both quadrants."""
+    for load in (1000.0, -1000.0):
+        found = shipped.lookup(62.8, load, 313.15)
+        assert found.efficiency == torque.efficiency(found.friction_torque, load, 0.01)
+        assert found.back_driving is (load < 0)
+    assert shipped.lookup(62.8, 0.0, 313.15).efficiency == 0.0
+
+
+def test_worst_contact_and_errors_are_told():
+    """The worst contact is the loaded nut's screw side; the cell's errors are its own."""
+    found = SHIPPED.lookup(62.8, 1000.0, 313.15)
+    assert (found.worst_nut, found.worst_side) == (1, 1)
+    assert 0 < found.rcs_error < 0.003
+    assert 0 < found.efficiency_error < 0.003
+    assert math.isnan(found.rcs_std)
+
+
+def test_stated_errors_meet_the_targets():
+    """The largest in the cells inside the range; of the full tier in a cell around preload."""
+    assert SHIPPED.errors['rcs'][0] < 0.003
+    assert SHIPPED.errors['friction_torque'][0] < 0.003
+    assert SHIPPED.errors['rcs'][1] <= SHIPPED.errors['rcs'][0]
+    cell = FULL.lookup(2.0, 500.0, 313.15)
+    assert 0.01 < cell.rcs < 0.05
+    assert cell.rcs_error < 0.003
+    assert cell.efficiency_error < 0.003
+
+
+@pytest.mark.parametrize('tier', ['closed_form', 'full'])
+def test_memory_is_at_most_four_times_the_file(tier):
+    """Loading keeps less than four times the size of the file."""
+    path = shipped_surface(tier=tier)
+    tracemalloc.start()
+    kept = Surface.load(path)
+    used = tracemalloc.get_traced_memory()[0]
+    tracemalloc.stop()
+    assert kept.sha256
+    assert used <= 4 * path.stat().st_size
+
+
+def test_a_surface_of_another_screw_or_oil_is_refused(tmp_path: Path, surface_data):
+    """The sentence names both."""
+    path = tmp_path / 'other.npz'
+    write(path, surface_data)
+    assert Surface.load(path, screw='nominal', oil='iso_vg_68').tier == 'closed_form'
+    with pytest.raises(SurfaceError, match="built for screw 'nominal', configured is 'z_axis'"):
+        Surface.load(path, screw='z_axis')
+    with pytest.raises(SurfaceError, match="built for lubricant 'iso_vg_68', configured is 'iso_"):
+        Surface.load(path, oil='iso_vg_32')
+
+
+def test_an_unshipped_surface_lists_the_shipped_ones():
+    """A missing map names what there is."""
+    with pytest.raises(SurfaceError, match='shipped are nominal_iso_vg_68'):
+        shipped_surface('nominal', 'iso_vg_32')
+
+
+def test_a_surface_is_found_by_path_or_tier(tmp_path: Path):
+    """The name of a tier is one that is shipped, all else a path."""
+    for tier in ('closed_form', 'full'):
+        for wanted in (tier, Path(tier)):
+            assert find_surface(wanted) == shipped_surface(tier=tier)
+        assert Surface.load(find_surface(tier)).tier == tier
+    assert find_surface(tmp_path / 'mine.npz') == tmp_path / 'mine.npz'
+    with pytest.raises(SurfaceError, match='no surface of tier full is shipped for screw'):
+        find_surface('full', 'nominal', 'iso_vg_32')
+
+
+def test_without_a_wish_solved_contacts_come_first(tmp_path: Path, monkeypatch):
+    """Nothing means the full tier where such a file is shipped, otherwise the closed form."""
+    for wanted in (None, ''):
+        assert find_surface(wanted) == shipped_surface() == shipped_surface(tier='full')
+    monkeypatch.setattr(surrogate.surface.lookup, 'SHIPPED', tmp_path)
+    for name in ('a_oil.npz', 'a_oil_full.npz', 'b_oil.npz', 'c_oil_full.npz'):
+        (tmp_path / name).touch()
+    assert find_surface('', 'a', 'oil').name == 'a_oil_full.npz'
+    assert find_surface('', 'b', 'oil').name == 'b_oil.npz'
+    assert find_surface('closed_form', 'a', 'oil').name == 'a_oil.npz'
+    sentence = "no surface is shipped for screw 'd' and oil 'oil', shipped are a_oil, a_oil_full, "
+    with pytest.raises(SurfaceError, match=sentence):
+        find_surface('', 'd', 'oil')
+    with pytest.raises(SurfaceError, match='no surface of tier closed_form is shipped'):
+        find_surface('closed_form', 'c', 'oil')
+
+
+def test_the_lookup_needs_numpy_alone():
+    """Importing the surface brings in no scipy, yaml, numba or ROS."""
+    code = (
+        'import sys; import surrogate.surface; '
+        'print([m for m in ("scipy", "yaml", "numba", "rclpy") if m in sys.modules])'
+    )
+    found = subprocess.run(
+        [sys.executable, '-c', code], capture_output=True, text=True, check=True, timeout=60
+    )
+    assert found.stdout.strip() == '[]'
+
+
+def with_draws(data: SurfaceData) -> SurfaceData:
+    """Return the surface with an ensemble: deviations that grow with speed, errors a third."""
+    deviation = np.exp(0.1 * data.speed_coordinate)[:, None, None] * np.ones_like(data.mask)
+    return replace(
+        data,
+        header={**data.header, 'format_version': ENSEMBLE_VERSION},
+        deviations={'rcs': 0.01 * deviation, 'friction_torque': 0.001 * deviation},
+        standard_errors={'rcs': 0.01 * deviation / 3},
+    )
+
+
+def test_spread_over_draws_is_looked_up(surface_data):
+    """Exact at the nodes, between its corners elsewhere, NaN for what has none."""
+    data = with_draws(surface_data)
+    surface = Surface(data)
+    i, j, k = 20, 10, 4
+    load, kelvin = float(data.load[j]), float(data.temperature[k])
+    found = surface.lookup(node_speed(data, i, j, k), load, kelvin)
+    assert found.rcs_std == pytest.approx(data.deviations['rcs'][i, j, k], rel=1e-9)
+    assert found.rcs_stderr == pytest.approx(found.rcs_std / 3)
+    assert found.friction_torque_std == pytest.approx(found.rcs_std / 10)
+    assert found.std('rcs') == found.rcs_std
+    assert found.stderr('rcs') == found.rcs_stderr
+    for name in ('friction_torque_stderr', 'efficiency_stderr'):
+        assert math.isnan(getattr(found, name))
+    assert math.isnan(found.std('central_film'))
+    step = 1e-6
+    faster = torque.efficiency(found.friction_torque + step, load, surface.lead)
+    slope = abs(faster - found.efficiency) / step
+    assert found.efficiency_std == pytest.approx(slope * found.friction_torque_std, rel=1e-4)
+    onset = surface.onset_speed(load + 10.0, kelvin + 1.0)
+    middle = float(data.speed_coordinate[[i, i + 1]].mean())
+    between = surface.lookup(onset * math.exp(middle), load + 10.0, kelvin + 1.0)
+    assert found.rcs_std < between.rcs_std < data.deviations['rcs'][i + 1, j, k]
+
+
+def test_spread_does_not_touch_the_fields(surface_data):
+    """With draws or without, the fields are the same."""
+    plain, drawn = Surface(surface_data), Surface(with_draws(surface_data))
+    point = (62.8, 1000.0, 313.15)
+    assert drawn.lookup(*point).values == plain.lookup(*point).values
+    assert math.isnan(plain.lookup(*point).friction_torque_stderr)
+
+
+def test_an_unknown_spread_is_nan_beside_its_node_only(surface_data):
+    """A node with one draw has no deviation; beyond its cells there is one."""
+    data = with_draws(surface_data)
+    i, j, k = 20, 10, 4
+    data.deviations['rcs'][i, j, k] = np.nan
+    surface = Surface(data)
+    load, kelvin = float(data.load[j]), float(data.temperature[k])
+    beside = surface.lookup(node_speed(data, i, j, k) * 1.01, load, kelvin)
+    assert math.isnan(beside.rcs_std)
+    assert math.isfinite(beside.rcs)
+    assert math.isfinite(beside.rcs_stderr)
+    assert math.isfinite(
+        surface.lookup(node_speed(data, i + 1, j, k) * 1.01, load, kelvin).rcs_std
+    )

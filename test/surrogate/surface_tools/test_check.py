@@ -1,0 +1,124 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""A check: by the solver of the file's tier, at points of its own, against what is stated."""
+
+from dataclasses import replace
+import sys
+
+import numpy as np
+import pytest
+from surrogate.builder import closed_form as build
+from surrogate.builder.tiers import TIERS
+from surrogate.surface import shipped_surface
+from surrogate.surface.file import read
+from surrogate.surface_tools.check import check_surface, EFFICIENCY_TOLERANCE, STATED_FACTOR
+
+DATA = read(shipped_surface(tier='closed_form'))
+
+
+def always() -> bool:
+    """Tell that there is time."""
+    return True
+
+
+def with_solver(monkeypatch, solve) -> list[tuple[float, float, float]]:
+    """Make the full tier solve by a function; return the points that it is asked for."""
+    asked = []
+
+    def noted(header, *point):
+        asked.append(point)
+        return solve(header, *point)
+
+    module = type(sys)('full_solver')
+    module.solve = noted
+    monkeypatch.setitem(sys.modules, 'full_solver', module)
+    tier = replace(TIERS['closed_form'], solve='full_solver:solve')
+    monkeypatch.setitem(TIERS, 'full', tier)
+    return asked
+
+
+def test_a_good_surface_passes():
+    """All of it is compared, and the errors are what a solve finds."""
+    result = check_surface(DATA, 30, 1, always)
+    assert result.passed
+    assert (result.asked, result.tried, result.silent, result.unsolved) == (30, 30, 0, 0)
+    assert 0 < result.efficiency < EFFICIENCY_TOLERANCE
+    assert all(0 < ratio < STATED_FACTOR for ratio in result.stated.values())
+    assert result.sentence().startswith('passed, hash verified, 30 of 30 points solved')
+
+
+def test_another_seed_means_other_points():
+    """The same seed the same ones."""
+    first, again, other = (check_surface(DATA, 10, seed, always) for seed in (1, 1, 2))
+    assert first == again != other
+
+
+def test_the_tier_of_the_file_chooses_the_solver(monkeypatch):
+    """A file of the full tier is held against the full solver, off nodes and centres."""
+    asked = with_solver(monkeypatch, build.solve_closed_form)
+    full = replace(DATA, header={**DATA.header, 'tier': 'full'})
+    assert check_surface(full, 12, 1, always).passed
+    assert len(asked) == 12
+    for axis, place in ((DATA.load, 1), (DATA.temperature, 2)):
+        points = np.array([point[place] for point in asked])
+        special = np.concatenate([axis, 0.5 * (axis[1:] + axis[:-1])])
+        assert np.abs(points[:, None] - special).min() > 1e-6
+
+
+def test_what_does_not_converge_is_counted_and_not_compared(monkeypatch):
+    """Half of the solves fail: the others decide; when all fail nothing was shown."""
+    calls = iter(range(100))
+    with_solver(monkeypatch, lambda *a: build.solve_closed_form(*a) if next(calls) % 2 else {})
+    full = replace(DATA, header={**DATA.header, 'tier': 'full'})
+    half = check_surface(full, 10, 1, always)
+    assert half.passed
+    assert half.unsolved == 5
+    with_solver(monkeypatch, lambda *a: {'rcs': float('nan')})
+    none = check_surface(full, 10, 1, always)
+    assert not none.passed
+    assert none.unsolved == 10
+
+
+def test_errors_that_the_file_understates_fail():
+    """A file whose stated errors are a hundredth of the true ones is not believed."""
+    lying = replace(DATA, errors={name: 0.01 * error for name, error in DATA.errors.items()})
+    result = check_surface(lying, 30, 1, always)
+    assert result.efficiency <= EFFICIENCY_TOLERANCE
+    assert not result.passed
+    assert result.stated['rcs'] > STATED_FACTOR
+
+
+def test_errors_that_the_file_does_not_state_are_said():
+    """They are not held against it."""
+    silent = {name: np.full_like(error, np.nan) for name, error in DATA.errors.items()}
+    result = check_surface(replace(DATA, errors=silent), 5, 1, always)
+    assert result.passed
+    assert 'rcs not said' in result.sentence()
+
+
+def test_what_a_cell_states_is_accepted_and_said(monkeypatch):
+    """RCS off by 0.006: missed everywhere, accepted where the file states a third of that."""
+
+    def shifted(*args):
+        solved = build.solve_closed_form(*args)
+        return solved | {'rcs': solved['rcs'] + 0.006 * (solved['rcs'] < 0.04)}
+
+    with_solver(monkeypatch, shifted)
+    for stated, passes in ((0.0021, True), (0.0015, False)):
+        errors = DATA.errors | {'rcs': np.full_like(DATA.errors['rcs'], stated)}
+        header = {**DATA.header, 'tier': 'full'}
+        result = check_surface(replace(DATA, header=header, errors=errors), 30, 1, always)
+        assert result.missed > 0
+        assert result.rcs == pytest.approx(2, abs=0.1)
+        assert (result.accepted <= 1) is passes is result.passed
+        assert f'{result.missed} points miss an aim' in result.sentence()
+
+
+@pytest.mark.parametrize('steps', [0, 3])
+def test_time_ends_the_check(steps):
+    """What was done is judged; nothing done is nothing shown."""
+    left = iter(range(steps, -1, -1))
+    counted = []
+    result = check_surface(DATA, 10, 1, lambda: next(left) > 0, lambda: counted.append(1))
+    assert result.tried == len(counted) == steps
+    assert result.passed is (steps > 0)

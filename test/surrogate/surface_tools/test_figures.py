@@ -1,0 +1,113 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Pictures of a surface: what they draw, not how they look."""
+
+import argparse
+from dataclasses import replace
+import sys
+
+import numpy as np
+import pytest
+from surrogate.cli import add_commands
+from surrogate.parameters import InputError
+from surrogate.surface import shipped_surface, Surface
+from surrogate.surface.file import read
+
+figures = pytest.importorskip('surrogate.surface_tools.figures')
+DATA = read(shipped_surface(tier='closed_form'))
+SHIPPED = Surface(DATA)
+
+
+def run(*words) -> int:
+    """Run one command line."""
+    parser = argparse.ArgumentParser()
+    add_commands(parser.add_subparsers(required=True))
+    args = parser.parse_args(['surface', 'plot', *map(str, words)])
+    return args.handler(args)
+
+
+@pytest.fixture(scope='module')
+def part():
+    """Return the surface at 40 degC."""
+    return figures.cut(SHIPPED, 313.15)
+
+
+def titles(figure) -> list[str]:
+    """Return the titles of the panels."""
+    return [axes.get_title() for axes in figure.axes if axes.get_title()]
+
+
+def test_a_slice_is_the_lookup(part):
+    """Load along the rows, speed in rev/min along the columns, both ends included."""
+    j, i = 100, 120
+    speed = part.speed[i] * np.pi / 30
+    found = SHIPPED.lookup(speed, part.load[j], 313.15)
+    assert part.fields['rcs'][j, i] == pytest.approx(found.rcs, rel=1e-9)
+    assert part.fields['efficiency'][j, i] == pytest.approx(found.efficiency, rel=1e-9)
+    assert np.isfinite(part.fields['rcs']).all()
+
+
+def test_zone_classes_are_the_limits(part):
+    """Each point is in the class that its own numbers say."""
+    classes = figures.zone_classes(part)
+    rcs, efficiency = part.fields['rcs'], part.fields['efficiency']
+    judged = np.broadcast_to(np.abs(part.load)[:, None] >= part.light, rcs.shape)
+    assert np.array_equal(classes == 0, judged & (rcs < 0.01) & (efficiency >= 0.85))
+    assert np.array_equal(np.isin(classes, (1, 3)), rcs >= 0.01)
+    assert set(np.unique(classes)) == {0, 1, 2, 3, 4}
+
+
+def test_panels_and_axes():
+    """Six panels with units; the limits are in the titles."""
+    figure = figures.figure_surface(SHIPPED, 313.15)
+    assert titles(figure) == [
+        'Efficiency, line: 0.85',
+        'RCS, line: 0.01',
+        'Film ratio Lambda, lines: 1 and 3',
+        'Regime by Lambda',
+        'Zone: RCS < 0.01, efficiency >= 0.85',
+        'Interpolation error, larger of both',
+    ]
+    assert figure.axes[4].get_xlabel() == 'speed [rev/min]'
+    assert figure.axes[0].get_ylabel() == 'load against motion [N]'
+    assert figure.axes[0].get_xscale() == 'log'
+
+
+def test_draws_add_two_panels():
+    """What the roughness draws leave uncertain is shown when it is known."""
+    header = {**DATA.header, 'format_version': 2}
+    drawn = replace(DATA, header=header, deviations={'rcs': 0.1 * DATA.fields['rcs']})
+    assert titles(figures.figure_surface(Surface(drawn), 313.15))[6:] == [
+        'Efficiency over draws',
+        'RCS over draws',
+    ]
+
+
+def test_a_surface_without_answers_is_drawn():
+    """Masked everywhere: the panels say that nothing is known."""
+    hidden = Surface(replace(DATA, mask=np.ones_like(DATA.mask)))
+    figure = figures.figure_surface(hidden, 313.15)
+    assert [text.get_text() for text in figure.axes[0].texts] == ['not known']
+
+
+def test_pictures_per_temperature(tmp_path, capsys):
+    """A PNG each, small enough for a report; nothing else in the directory."""
+    assert run('--out', tmp_path / 'a', '--temperature-degC', 30, 62.5) == 0
+    paths = sorted((tmp_path / 'a').iterdir())
+    assert [path.name for path in paths] == ['surface_30degC.png', 'surface_62.5degC.png']
+    assert all(path.stat().st_size < 300_000 for path in paths)
+    assert capsys.readouterr().out.split() == [str(path) for path in paths]
+
+
+@pytest.mark.parametrize('celsius', [9.9, 80.1])
+def test_a_temperature_that_is_not_covered(tmp_path, celsius):
+    """One sentence with the range."""
+    with pytest.raises(InputError, match='degC, the surface covers 10 to 80 degC'):
+        run('--out', tmp_path, '--temperature-degC', celsius)
+
+
+def test_without_matplotlib_the_extra_is_named(tmp_path, monkeypatch):
+    """The sentence says what to install."""
+    monkeypatch.setitem(sys.modules, 'surrogate.surface_tools.figures', None)
+    with pytest.raises(InputError, match='install the extra `plot`'):
+        run('--out', tmp_path)

@@ -1,0 +1,157 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Points looked up: the surface's own numbers, in both directions, one by one or in a table."""
+
+import argparse
+import csv
+from dataclasses import replace
+import io
+import json
+import math
+
+import numpy as np
+import pytest
+from surrogate.cli import add_commands
+from surrogate.parameters import InputError
+from surrogate.plain_json import to_json
+from surrogate.surface import shipped_surface, Surface
+from surrogate.surface.file import read, write
+from surrogate.surface_tools.fields import FIELD_TEXTS
+
+SHIPPED = Surface.load(shipped_surface())
+CLOSED_FORM = shipped_surface(tier='closed_form')
+
+
+def run(*words) -> int:
+    """Run one command line."""
+    parser = argparse.ArgumentParser()
+    add_commands(parser.add_subparsers(required=True))
+    args = parser.parse_args(['surface', 'query', *map(str, words)])
+    return args.handler(args)
+
+
+def query(capsys, *words) -> dict:
+    """Return the JSON of a point."""
+    assert run(*words, '--json') in (0, 1)
+    return json.loads(capsys.readouterr().out)
+
+
+@pytest.mark.parametrize('tier', ['full', 'closed_form'])
+@pytest.mark.parametrize(('rpm', 'load', 'opposing'), [(600, 1000, 1000), (-600, 1000, -1000)])
+def test_a_point_is_the_lookup(capsys, tier, rpm, load, opposing):
+    """Every field, its errors, and the load's sign by the direction of motion."""
+    found = query(capsys, tier, '--speed-rpm', rpm, '--load-N', load, '--temperature-degC', 50)
+    direct = Surface.load(shipped_surface(tier=tier)).lookup(600 * math.pi / 30, opposing, 323.15)
+    for name, text in FIELD_TEXTS.items():
+        assert found[text.key] == getattr(direct, name)
+    assert found['efficiency'] == direct.efficiency
+    assert found['friction_torque_error_Nm'] == direct.friction_torque_error
+    assert found['opposing_load_N'] == opposing
+    assert found['back_driving'] is (opposing < 0)
+    assert (found['validity'], found['reason']) == ('VALID', '')
+    assert (found['tier'], found['rcs_std']) == (tier, to_json(direct.rcs_std))
+
+
+def test_a_page_says_what_is_known(capsys):
+    """Default temperature is that of the oil's datasheet; errors stand beside their numbers."""
+    assert run('closed_form', '--speed-rpm', 600, '--load-N', 1000) == 0
+    text = capsys.readouterr().out
+    assert 'tier closed_form: 600 rev/min, 1000 N, 40 degC' in text
+    assert 'efficiency           0.9423   (interpolation 1.1e-05)' in text
+    assert 'regime               mixed' in text
+    assert 'worst contact        loaded nut, screw' in text
+
+
+@pytest.mark.parametrize(
+    ('words', 'reason'),
+    [
+        (('--speed-rpm', 0, '--load-N', 0), 'the surface begins at 0.477 rev/min'),
+        (('--speed-rpm', 9000, '--load-N', 0), 'the surface ends at 2188 rev/min'),
+        (('--speed-rpm', 60, '--load-N', 9000), 'the surface covers -3960 to 3960 N'),
+        (
+            ('--speed-rpm', 60, '--load-N', 0, '--temperature-degC', 90),
+            'the surface covers 10 to 80 degC',
+        ),
+    ],
+)
+def test_no_answer_has_a_reason_and_exit_code_1(capsys, words, reason):
+    """The limit that was passed is named; the numbers are null."""
+    assert run(*words) == 1
+    assert f'no answer: {reason}' in capsys.readouterr().out
+    found = query(capsys, *words)
+    assert found['efficiency'] is found['rcs'] is found['rcs_error'] is None
+    assert reason in found['reason']
+
+
+def test_draws_are_told(tmp_path, capsys):
+    """Deviation and error of the mean of RCS and torque."""
+    data = read(CLOSED_FORM)
+    spread = np.full(data.mask.shape, 0.01)
+    parts = {'deviations': {'rcs': spread}, 'standard_errors': {'rcs': 0.5 * spread}}
+    write(tmp_path / 'a.npz', replace(data, header={**data.header, 'format_version': 2}, **parts))
+    found = query(capsys, tmp_path / 'a.npz', '--speed-rpm', 600, '--load-N', 1000)
+    assert found['rcs_std'] == pytest.approx(0.01)
+    assert found['rcs_stderr'] == pytest.approx(0.005)
+    assert found['friction_torque_std_Nm'] is None
+    assert run(tmp_path / 'a.npz', '--speed-rpm', 600, '--load-N', 1000) == 0
+    assert 'of one draw 0.01, of mean 0.005)' in capsys.readouterr().out
+
+
+def test_a_table_for_a_table(tmp_path, capsys):
+    """Columns of the input stay, every point gets its numbers or its reason."""
+    table = tmp_path / 'in.csv'
+    table.write_text(
+        'speed_rpm,load_N,temperature_degC,note\n600,1000,,a\n-600,1000,50,b\n0,0,20,c\n'
+    )
+    assert run('--csv', table, '--out', tmp_path / 'out.csv') == 0
+    assert capsys.readouterr().err == '2 of 3 points lie on the surface\n'
+    rows = list(csv.DictReader((tmp_path / 'out.csv').read_text().splitlines()))
+    assert [row['note'] for row in rows] == ['a', 'b', 'c']
+    assert [row['validity'] for row in rows] == ['VALID', 'VALID', 'SPEED_BELOW_RANGE']
+    assert float(rows[0]['rcs']) == SHIPPED.lookup(600 * math.pi / 30, 1000.0, 313.15).rcs
+    assert float(rows[1]['efficiency']) == SHIPPED.lookup(20 * math.pi, -1000.0, 323.15).efficiency
+    assert math.isnan(float(rows[2]['rcs']))
+    assert run('--csv', table) == 0
+    assert capsys.readouterr().out == (tmp_path / 'out.csv').read_text()
+
+
+@pytest.mark.parametrize(
+    ('text', 'sentence'),
+    [
+        ('', r'in\.csv: column speed_rpm is missing, a table has speed_rpm, load_N, temp'),
+        ('speed_rpm,load_N\n', r'in\.csv: no points'),
+        ('speed_rpm,load_N\n1,2\n1,x\n', r"in\.csv, line 3: load_N is 'x', allowed is a number"),
+        ('speed_rpm,load_N\n1\n', r'in\.csv, line 2: not as many values as columns'),
+        ('speed_rpm,load_N\n1,nan\n', r'in\.csv, line 2: .*load_N is nan, allowed is'),
+    ],
+)
+def test_a_wrong_table_is_one_sentence(tmp_path, text, sentence):
+    """File, line, column."""
+    table = tmp_path / 'in.csv'
+    table.write_text(text)
+    with pytest.raises(InputError, match=sentence):
+        run('--csv', table)
+
+
+@pytest.mark.parametrize(
+    ('words', 'sentence'),
+    [
+        (('--speed-rpm', 1), 'a point needs --speed-rpm and --load-N'),
+        (('--speed-rpm', 1, '--load-N', 1, '--out', 'a.csv'), '--out belongs to --csv'),
+        (('--csv', 'a.csv', '--json'), '--csv takes its points from the table'),
+        (('--csv', 'none.csv'), r'none\.csv: cannot be read'),
+    ],
+)
+def test_words_that_do_not_go_together(words, sentence):
+    """What is asked for must be clear."""
+    with pytest.raises(InputError, match=sentence):
+        run(*words)
+
+
+def test_the_table_reader_takes_any_lines():
+    """Lines, not a file: the number of answers is told."""
+    from surrogate.surface_tools.query import query_table
+
+    text, points, answers = query_table(SHIPPED, io.StringIO('speed_rpm,load_N\n60,0\n'), 'x')
+    assert (points, answers) == (1, 1)
+    assert text.startswith('speed_rpm,load_N,sha256,')

@@ -1,0 +1,40 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Files that appear whole or not at all."""
+
+import os
+from pathlib import Path
+
+import pytest
+from surrogate.files import replace_file
+
+
+def test_a_file_is_made_with_its_directory_and_replaced(tmp_path: Path):
+    """Readable by all, and nothing else is left in the directory."""
+    path = tmp_path / 'a' / 'b' / 'file'
+    for content in (b'one', b'two'):
+        replace_file(path, content)
+        assert path.read_bytes() == content
+    assert path.stat().st_mode & 0o777 == 0o644
+    assert list(path.parent.iterdir()) == [path]
+
+
+def test_a_failure_leaves_what_was_there(tmp_path: Path, monkeypatch):
+    """The disk is full when the bytes are flushed."""
+    path = tmp_path / 'file'
+    replace_file(path, b'one')
+
+    def full(_):
+        raise OSError(28, 'No space left on device')
+
+    monkeypatch.setattr(os, 'fsync', full)
+    with pytest.raises(OSError, match='No space left on device'):
+        replace_file(path, b'two')
+    assert path.read_bytes() == b'one'
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_a_directory_is_not_written_over(tmp_path: Path):
+    """Only regular files are replaced."""
+    with pytest.raises(OSError, match='not a regular file'):
+        replace_file(tmp_path, b'one')
