@@ -14,9 +14,8 @@ from pathlib import Path
 import sys
 from typing import Any
 
-from ballscrew_monitor.core import errors
 from surrogate.cli import add_commands
-from surrogate.parameters import InputError
+from surrogate.files import InputError
 from surrogate.surface import SurfaceError
 
 TREE = Path(__file__).resolve().parent.parent
@@ -39,7 +38,7 @@ def main(arguments: list[str] | None = None) -> int:
     args = _parser().parse_args(arguments)
     try:
         return int(args.handler(args))
-    except (errors.InputError, InputError, SurfaceError) as error:
+    except (InputError, SurfaceError) as error:
         print(f'ballscrew: {error}', file=sys.stderr)
         return BAD_INPUT
     except ImportError as error:

@@ -14,7 +14,6 @@ Takes minutes.
 import argparse
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
-import math
 import multiprocessing
 from pathlib import Path
 import sys
@@ -24,6 +23,7 @@ from surrogate.builder.full.chain import chain_settings
 from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
 from surrogate.screw.contacts import GRID_WAVELENGTH, ScrewSettings
 from surrogate.screw.solve import solve_screw
+from surrogate.units import RPM
 
 DRAWS = (3, 7, 11, 14)
 SPEED = 23.0
@@ -47,9 +47,7 @@ def rcs_of(case: tuple[str, int]) -> list[float]:
     screw, oil = load_screw('nominal'), load_lubricant('iso_vg_68')
     settings = grids(case[1])[case[0]]
     points = [
-        OperatingPoint(
-            speed=SPEED * math.pi / 30, load=float(load), temperature=oil.reference_temperature
-        )
+        OperatingPoint(speed=SPEED * RPM, load=float(load), temperature=oil.reference_temperature)
         for load in LOADS
     ]
     return [solve_screw(screw, oil, point, settings=settings).rcs for point in points]

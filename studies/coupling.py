@@ -16,6 +16,7 @@ import time
 from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
 from surrogate.screw.contacts import ScrewSettings
 from surrogate.screw.solve import solve_screw
+from surrogate.units import RPM
 
 SPEEDS = (-12.0, -8.0, -5.0, 5.0, 6.0, 8.0, 10.0, 12.0, 100.0, 600.0, 1000.0)
 """Screw speeds [rev/min]."""
@@ -26,7 +27,7 @@ ONCE, TIGHT = math.inf, 1e-4
 
 def compare(screw, oil, rpm, load):
     """Solve a point both ways and print a row."""
-    point = OperatingPoint(speed=rpm * math.pi / 30, load=load, temperature=313.15)
+    point = OperatingPoint(speed=rpm * RPM, load=load, temperature=313.15)
     began = time.process_time()
     once, tight = (
         solve_screw(

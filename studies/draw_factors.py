@@ -22,16 +22,17 @@ import numpy as np
 from surrogate.builder.full.chain import chain_inputs, solve_chain
 from surrogate.builder.full.draws import Draws, draws_of, POWER, weighted_mean
 from surrogate.parameters import load_lubricant, load_screw
+from surrogate.units import RPM
 
 FEW = 16
-RPM = (24.0, 17.0, 11.0, 7.0)
+SPEEDS = (24.0, 17.0, 11.0, 7.0)
 """Speeds from the end of contact down [rev/min]."""
 
 
 def rcs_of(draw: int) -> list[float]:
     """Return RCS of a draw at all speeds [-], NaN where it does not converge."""
     screw, oil = load_screw('nominal'), load_lubricant('iso_vg_68')
-    speeds = [rpm * math.pi / 30 for rpm in RPM]
+    speeds = [rpm * RPM for rpm in SPEEDS]
     chain = solve_chain(chain_inputs(screw, oil, 0.0, oil.reference_temperature, draw, speeds))
     return [row['rcs'] if row['converged'] else math.nan for row in chain['opposing']]
 
@@ -77,7 +78,7 @@ def draw_figure(rcs: np.ndarray, factors: np.ndarray, path: Path) -> None:
     from matplotlib import pyplot
 
     figure, axes = pyplot.subplots(figsize=(7, 4.5), layout='constrained')
-    for rpm, column, colour in zip(RPM, rcs.T, ('C0', 'C1', 'C2', 'C3'), strict=True):
+    for rpm, column, colour in zip(SPEEDS, rcs.T, ('C0', 'C1', 'C2', 'C3'), strict=True):
         axes.semilogy(factors[:FEW], column[:FEW], 'o', c=colour, ms=5, label=f'{rpm:g} rev/min')
         axes.semilogy(factors[FEW:], column[FEW:], 'o', c=colour, ms=3, mfc='none', alpha=0.6)
     axes.axhline(0.01, color='0.4', ls='--', label='limit of the optimal zone')
@@ -114,7 +115,7 @@ def main() -> None:
     few, every = draws_of(screw, FEW), draws_of(screw, args.draws)
     powers = np.array(every.powers[: args.draws])
     print('rev/min  correlation  plain 16         weighted 16      plain all        weighted all')
-    for rpm, column in zip(RPM, rcs.T, strict=True):
+    for rpm, column in zip(SPEEDS, rcs.T, strict=True):
         known = np.isfinite(column)
         alike = float(np.corrcoef(powers[known], column[known])[0, 1])
         cases = (Draws(FEW), few, Draws(args.draws), every)
@@ -123,7 +124,7 @@ def main() -> None:
         print(f'{rpm:7g}  {alike:11.2f}  {"  ".join(texts)}', flush=True)
     if args.draws > FEW:
         print(f'rev/min  off the mean of all, and stated: groups of {FEW}, plain, weighted')
-        for rpm, column in zip(RPM, rcs.T, strict=True):
+        for rpm, column in zip(SPEEDS, rcs.T, strict=True):
             told = (group_errors(column, every, kind) for kind in ('plain', 'weighted'))
             texts = (f'{off:.4f}, {error:.4f}' for off, error in told)
             print(f'{rpm:7g}  {"    ".join(texts)}', flush=True)

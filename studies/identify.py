@@ -13,7 +13,6 @@ table of the full tier is from contacts solved at the point itself. Some minutes
 
 import argparse
 from dataclasses import replace
-import math
 from pathlib import Path
 import time
 
@@ -26,8 +25,9 @@ from surrogate.identify.model import anchored, closed_form_model, thickened
 from surrogate.identify.table import solved_model
 from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
 from surrogate.screw.solve import rebalance_screw, solve_screw
+from surrogate.units import RPM
 
-SPEEDS = np.array([10, 20, 40, 60, 100, 150, 220, 330, 500, 800, 1200, 2000]) * math.pi / 30
+SPEEDS = np.array([10, 20, 40, 60, 100, 150, 220, 330, 500, 800, 1200, 2000]) * RPM
 CONSTANT, RATE, OFFSET, NOISE = 0.12, 4e-4, 0.03, 4e-3
 WARM = 313.15
 THICK, THICK_SPEEDS = 1.6, (0, 4, 9)
@@ -67,7 +67,7 @@ def check_table(screw, oil, model, contacts):
     """Print the error of the table where its nodes are not, for two viscosities."""
     error = model.torque(1.0, screw.roughness.asperity_friction)[: len(SPEEDS)] / contacts - 1
     for speed, one in zip(SPEEDS, error, strict=True):
-        print(f'table at {speed * 30 / math.pi:5.0f} rev/min: {100 * one:6.2f} %')
+        print(f'table at {speed / RPM:5.0f} rev/min: {100 * one:6.2f} %')
     found, thick = (
         model.torque(THICK, screw.roughness.asperity_friction),
         thickened(anchored(oil, WARM), THICK),
@@ -76,7 +76,7 @@ def check_table(screw, oil, model, contacts):
         point = OperatingPoint(speed=float(SPEEDS[place]), load=0.0, temperature=WARM)
         exact = solve_screw(screw, thick, point).friction_torque
         print(
-            f'table at {SPEEDS[place] * 30 / math.pi:5.0f} rev/min, viscosity times {THICK:g}: '
+            f'table at {SPEEDS[place] / RPM:5.0f} rev/min, viscosity times {THICK:g}: '
             f'{100 * (found[place] / exact - 1):6.2f} %'
         )
 
@@ -88,7 +88,7 @@ def check_balance(screw, oil):
     cases = [(rpm, thickened(warm, 2.0), 2.0, WARM) for rpm in HALF_SPEEDS]
     cases += [(rpm, oil, float(hot.viscosity) / warm.viscosity, HOT) for rpm in HOT_SPEEDS]
     for rpm, thick, factor, kelvin in cases:
-        speed = rpm * math.pi / 30
+        speed = rpm * RPM
         point = OperatingPoint(speed=speed, load=0.0, temperature=kelvin)
         base = OperatingPoint(speed=speed * factor, load=0.0, temperature=WARM)
         solved = solve_screw(screw, warm, base)
@@ -104,7 +104,7 @@ def check_balance(screw, oil):
 
 def check_intervals(screw, oil):
     """Print how often intervals hold the truth, closed-form tier, 24 points, normal noise."""
-    speed = np.geomspace(50.0, 2000.0, 12) * math.pi / 30
+    speed = np.geomspace(50.0, 2000.0, 12) * RPM
     speed = np.concatenate([speed, -speed])
     run = no_load_run({'speed': speed, 'torque': speed}, source='synthetic', temperature=WARM)
     contacts = closed_form_model(screw, oil, run)

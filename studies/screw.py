@@ -13,7 +13,6 @@ that of the balance of one ball in it.
 
 import argparse
 from dataclasses import replace
-import math
 from pathlib import Path
 import time
 
@@ -23,6 +22,7 @@ from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
 from surrogate.screw.contacts import ScrewSettings
 from surrogate.screw.nut import balance_nut
 from surrogate.screw.solve import solve_screw
+from surrogate.units import RPM
 
 SPEEDS = (0.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 600.0, 1000.0)
 """Screw speeds [rev/min]."""
@@ -37,7 +37,7 @@ def solve_all(load):
         'cold s  warm s  balance ms'
     )
     for rpm in SPEEDS:
-        point = OperatingPoint(speed=rpm * math.pi / 30, load=load, temperature=313.15)
+        point = OperatingPoint(speed=rpm * RPM, load=load, temperature=313.15)
         smooth = solve_screw(screw, oil, point, settings=ScrewSettings(draw=None))
         cold, found = timed(lambda point=point: solve_screw(screw, oil, point))
         near = solve_screw(screw, oil, replace(point, speed=0.9 * point.speed))

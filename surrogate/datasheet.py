@@ -14,15 +14,12 @@ from pathlib import Path
 import re
 from typing import Any, TypeVar
 
+from surrogate.files import InputError
 import yaml
 
 DATA = Path(__file__).parent / 'data'
 
 Sheet = TypeVar('Sheet')
-
-
-class InputError(ValueError):
-    """One sentence about an input: what, where, value, unit, allowed."""
 
 
 def quantity(

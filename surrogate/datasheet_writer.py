@@ -8,8 +8,7 @@ from pathlib import Path
 import textwrap
 from typing import Any
 
-from surrogate.datasheet import InputError
-from surrogate.files import replace_file
+from surrogate.files import InputError, replace_file
 from surrogate.parameters import Lubricant, Screw
 import yaml
 

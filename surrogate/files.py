@@ -1,33 +1,68 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Files that appear whole or not at all."""
+"""What every folder needs of files: bad input in a sentence, whole files, strict JSON."""
 
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+import json
+import math
 import os
 from pathlib import Path
 import tempfile
+from typing import Any
 
 
-def replace_file(path: str | Path, content: bytes) -> None:
+class InputError(ValueError):
+    """One sentence about an input: what, where, value, unit, allowed."""
+
+
+@contextmanager
+def new_file(path: str | Path) -> Iterator[Path]:
     """
-    Write `content` to `path`, making its directory; what was there before is replaced at the end.
+    Yield a path to write to, which takes the place of `path` when the block ends.
 
-    Raises OSError when it cannot be written, or is something else than a regular file; then what
-    was there before is as it was and nothing half-written stays.
+    Its directory is made. Raises OSError when it cannot be written, or `path` is something else
+    than a regular file; then, and when the block raises, what was there before is as it was and
+    nothing half-written stays.
 
     """
     path = Path(path)
     if path.exists() and not path.is_file():
         raise OSError(0, 'it is not a regular file', str(path))
     path.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.NamedTemporaryFile(
-        dir=path.parent, prefix=f'.{path.name}.', delete=False
-    ) as file:
-        temporary = Path(file.name)
-        try:
-            file.write(content)
-            file.flush()
+    number, name = tempfile.mkstemp(dir=path.parent, prefix=f'.{path.stem}.', suffix=path.suffix)
+    temporary = Path(name)
+    try:
+        os.close(number)
+        yield temporary
+        with temporary.open('rb') as file:
             os.fsync(file.fileno())
-            temporary.chmod(0o644)
-            temporary.replace(path)
-        finally:
-            temporary.unlink(missing_ok=True)
+        temporary.chmod(0o644)
+        temporary.replace(path)
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def replace_file(path: str | Path, content: bytes) -> None:
+    """Write `content` to `path` as `new_file` does."""
+    with new_file(path) as temporary:
+        temporary.write_bytes(content)
+
+
+def to_json(record: Any) -> Any:
+    """Return `record` with every number that is not finite as None, which JSON calls null."""
+    if isinstance(record, Mapping):
+        return {key: to_json(value) for key, value in record.items()}
+    if isinstance(record, list):
+        return [to_json(value) for value in record]
+    return None if isinstance(record, float) and not math.isfinite(record) else record
+
+
+def json_text(record: Any) -> str:
+    """Return a record as strict JSON for people, its numbers that are not finite as null."""
+    return json.dumps(to_json(record), indent=2, allow_nan=False)
+
+
+def canonical_json(content: Any) -> bytes:
+    """Return JSON that is the same whenever the content is; raises ValueError for NaN."""
+    return json.dumps(content, sort_keys=True, separators=(',', ':'), allow_nan=False).encode()

@@ -10,17 +10,9 @@ Temperatures are kelvin inside and degC on file.
 from dataclasses import dataclass
 import math
 
-from surrogate.datasheet import (
-    block,
-    Checked,
-    count,
-    DATA,
-    find_sheet,
-    InputError,
-    quantity,
-    read_sheet,
-    text,
-)
+from surrogate.datasheet import block, Checked, count, DATA, find_sheet, quantity, read_sheet, text
+from surrogate.files import InputError
+from surrogate.units import RPM, ZERO_CELSIUS
 
 __all__ = [
     'DATA',
@@ -35,7 +27,6 @@ __all__ = [
     'ZERO_CELSIUS',
 ]
 
-ZERO_CELSIUS = 273.15
 NAME = (r'[A-Za-z0-9][A-Za-z0-9_.-]*', 'letters, digits and _ . - (it becomes a file name)')
 VISCOSITY_MISMATCH = 2.0
 """Largest factor between the dynamic viscosity and kinematic viscosity times density [-]."""
@@ -97,7 +88,7 @@ class Screw(Checked):
     loaded_balls_per_nut: int = count(1, 10000)
     preload: float = quantity('N', 1.0, 0.0, 1e6)
     static_rating: float = quantity('kN', 1e3, 0.1, 1e5)
-    speed_limit: float = quantity('m_rev_min', math.pi / 30, 1.0, 1000.0)
+    speed_limit: float = quantity('m_rev_min', RPM, 1.0, 1000.0)
     parasitic_torque: float = quantity('Nm', 1.0, 0.0, 1e3, default=0.0)
     parasitic_torque_rate: float = quantity('Nm_s', 1.0, 0.0, 1e3, default=0.0)
     hysteresis_loss: float = quantity('', 1.0, 0.0, 0.1, default=0.0)
@@ -197,7 +188,7 @@ class OperatingPoint(Checked):
 
     """
 
-    speed: float = quantity('rpm', math.pi / 30, -1e5, 1e5)
+    speed: float = quantity('rpm', RPM, -1e5, 1e5)
     load: float = quantity('N', 1.0, -1e7, 1e7)
     temperature: float = quantity('degC', 1.0, -60.0, 250.0, shift=ZERO_CELSIUS)
 

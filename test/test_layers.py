@@ -31,7 +31,7 @@ NUMERICAL = {
     'xarray',
     'yaml',
 }
-LOOKUP = {'surrogate', 'surrogate.surface'}
+LOOKUP = {'surrogate', 'surrogate.files', 'surrogate.surface', 'surrogate.units'}
 
 
 def name_of(path: Path) -> str:
@@ -98,7 +98,7 @@ def test_lookup_loads_numpy_alone() -> None:
 
 def test_node_loads_of_surrogate_what_the_lookup_needs() -> None:
     """The process that watches the machine holds nothing of the solver, plots or recordings."""
-    needed = loaded_by('import surrogate.surface')
+    needed = loaded_by('import surrogate.surface, surrogate.units')
     loaded = loaded_by('import ballscrew_monitor.node.__main__')
     assert not {name for name in loaded - needed if name.split('.')[0] == 'surrogate'}
     assert not loaded & {'matplotlib', 'mcap', 'scipy'}

@@ -18,9 +18,10 @@ import dataclasses
 import math
 from typing import TYPE_CHECKING
 
-from ballscrew_monitor.core.conversions import axial_load, opposing_load, RPM, signed_speed
+from ballscrew_monitor.core.conversions import axial_load, opposing_load, signed_speed
 from ballscrew_monitor.core.estimate import estimate, Point, Validity
 from ballscrew_monitor.core.judgement import clears, Limits
+from surrogate.units import RPM
 
 if TYPE_CHECKING:
     from surrogate.surface import Surface
@@ -42,7 +43,7 @@ class Advice:
         """Return the advice as a sentence, empty if there is none."""
         parts = []
         if math.isfinite(self.target_speed):
-            turns = self.target_speed * RPM
+            turns = self.target_speed / RPM
             parts.append(
                 f'at this load run at {self.target_speed:.4g} rad/s ({turns:.0f} rev/min)'
             )

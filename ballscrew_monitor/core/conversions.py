@@ -12,21 +12,18 @@ only the amount of the speed, and a load that is positive when it opposes the mo
 
 import dataclasses
 import enum
-import math
 
-from ballscrew_monitor.core.errors import InputError
+from surrogate.files import InputError
+from surrogate.units import MINUTE, RPM, TURN, ZERO_CELSIUS
 
-TURN = 2.0 * math.pi
-ZERO_CELSIUS = 273.15  # [K]
 SECOND = 1_000_000_000  # [ns]
 
-RPM = 60.0 / TURN  # [rev/min] per [rad/s]
-ROTARY_SPEED_UNITS = {'rad/s': 1.0, 'rev/min': TURN / 60.0}  # [rad/s]
+ROTARY_SPEED_UNITS = {'rad/s': 1.0, 'rev/min': RPM}  # [rad/s]
 LINEAR_SPEED_UNITS = {
     'm/s': 1.0,
     'mm/s': 1e-3,
-    'mm/min': 1e-3 / 60.0,
-    'm/min': 1.0 / 60.0,
+    'mm/min': 1e-3 / MINUTE,
+    'm/min': 1.0 / MINUTE,
 }  # [m/s]
 LOAD_UNITS = {'N': 1.0, 'kN': 1e3}  # [N]
 TEMPERATURE_UNITS = {'degC': ZERO_CELSIUS, 'K': 0.0}  # zero of the unit [K]

@@ -15,7 +15,7 @@ import math
 import re
 from typing import Any
 
-from ballscrew_monitor.core.errors import InputError
+from surrogate.files import InputError
 
 _SEGMENT = re.compile(r'([A-Za-z]\w*)(?:\[([^\[\]]+)\])?')
 _DOT = re.compile(r'\.(?![^\[\]]*\])')  # one between brackets belongs to the name of a joint

@@ -13,8 +13,8 @@ import dataclasses
 import enum
 import math
 
-from ballscrew_monitor.core.errors import InputError
 from ballscrew_monitor.core.estimate import Estimate, Point, PointSource, Validity
+from surrogate.files import InputError
 
 NAN = math.nan
 

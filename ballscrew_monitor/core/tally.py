@@ -5,9 +5,10 @@
 import dataclasses
 import math
 
-from ballscrew_monitor.core.conversions import seconds, TURN
+from ballscrew_monitor.core.conversions import seconds
 from ballscrew_monitor.core.estimate import Estimate, Point, Regime
 from ballscrew_monitor.core.judgement import Gate, Verdict, Zone
+from surrogate.units import TURN
 
 NAN = math.nan
 

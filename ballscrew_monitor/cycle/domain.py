@@ -15,7 +15,7 @@ import contextlib
 import random
 import socket
 
-from ballscrew_monitor.core.errors import InputError
+from surrogate.files import InputError
 
 DOMAINS = range(1, 101)  # 0 is everybody's default; above, ports may be taken by any client
 PORT_BASE, DOMAIN_GAIN, UNICAST_OFFSET, PARTICIPANT_GAIN = 7400, 250, 10, 2

@@ -14,7 +14,7 @@ import dataclasses
 import math
 from typing import Any
 
-from ballscrew_monitor.core.conversions import kelvin, RPM
+from ballscrew_monitor.core.conversions import kelvin
 from ballscrew_monitor.cycle.state_trace import Limits, Trace
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
@@ -22,6 +22,7 @@ from matplotlib.patches import Patch
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.surface import Surface, Validity
+from surrogate.units import RPM
 
 Array = NDArray[np.float64]
 
@@ -66,7 +67,7 @@ def sample(surface: Surface, trace: Trace, temperature: float) -> Field:
         )
         for name in ('efficiency', 'rcs', 'film_ratio')
     }
-    return Field(speed=speed * RPM, load=load, **columns)
+    return Field(speed=speed / RPM, load=load, **columns)
 
 
 def draw_map(axes: Axes, trace: Trace, surface: Surface) -> tuple[float, bool]:

@@ -4,10 +4,8 @@
 
 from collections.abc import Sequence
 import math
-import os
 from pathlib import Path
 
-from ballscrew_monitor.core.conversions import RPM
 from ballscrew_monitor.cycle.operating_map import (
     BLUE,
     BOX,
@@ -27,7 +25,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 import numpy as np
 from numpy.typing import NDArray
+from surrogate.files import new_file
 from surrogate.surface import Surface
+from surrogate.units import RPM
 
 Array = NDArray[np.float64]
 
@@ -67,14 +67,13 @@ def draw(trace: Trace, summary: Summary, surface: Surface, path: Path) -> None:
         fontsize=12,
     )
     _draw_strips(lower.subplots(len(STRIPS), 1, sharex=True, height_ratios=STRIPS), trace, summary)
-    partial = path.with_name(f'{path.name}.partial')
-    figure.savefig(partial, format='png')
-    os.replace(partial, path)
+    with new_file(path) as file:
+        figure.savefig(file, format='png')
 
 
 def _draw_path(axes: Axes, trace: Trace, summary: Summary) -> None:
     moving = np.abs(trace.speed) >= trace.limits.standstill
-    speed = np.where(moving, np.abs(trace.speed) * RPM, math.nan)
+    speed = np.where(moving, np.abs(trace.speed) / RPM, math.nan)
     axes.plot(speed, trace.opposing_load, color='#b0b0b0', linewidth=0.5, zorder=4)
     for zone, colour, _ in ZONES:
         chosen = moving & (trace.zone == zone)
@@ -142,7 +141,7 @@ def _finish_map(axes: Axes, trace: Trace, mean: float, *, others: bool) -> None:
 
 def _draw_strips(strips: Sequence[Axes], trace: Trace, summary: Summary) -> None:
     speed, load, oil, efficiency, ratio, rcs, level = strips
-    _line(speed, trace, trace.speed * RPM, 'speed\n[rev/min]')
+    _line(speed, trace, trace.speed / RPM, 'speed\n[rev/min]')
     _line(load, trace, trace.axial_load, 'axial load\n[N]')
     _line(oil, trace, trace.temperature, 'oil\n[°C]')
     _draw_efficiency(efficiency, trace)

@@ -21,7 +21,6 @@ import sys
 import threading
 from typing import Any
 
-from ballscrew_monitor.core.errors import InputError
 from ballscrew_monitor.cycle.domain import free_domain
 from ballscrew_monitor.cycle.node_process import NodeProcess, ros_environment
 from ballscrew_monitor.cycle.outcome import Outcome
@@ -32,6 +31,7 @@ from ballscrew_monitor.node.axis import Axis, build_axis
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter
 from ballscrew_monitor.recordings.replay import input_topics, speed_messages
+from surrogate.files import InputError
 
 RECORDING, LOCK = 'cycle', '.lock'
 DONE, FAILED, SIGNALLED = 0, 1, 128  # exit codes; a signal adds its number

@@ -7,8 +7,8 @@ import math
 import shutil
 from typing import TextIO
 
-from ballscrew_monitor.core.conversions import RPM
 from ballscrew_msgs.msg import BallScrewState, Finding, PointResult
+from surrogate.units import RPM
 
 REGIMES = {
     PointResult.REGIME_BOUNDARY: 'boundary',
@@ -37,7 +37,7 @@ def state_cells(state: BallScrewState) -> list[str]:
     light = BallScrewState.GATE_LIGHT_LOAD in state.active_gates
     efficiency = math.nan if light or standstill else 100.0 * result.efficiency
     return [
-        f'{_number(point.speed * RPM, 5, 0)} rev/min',
+        f'{_number(point.speed / RPM, 5, 0)} rev/min',
         f'{_number(point.axial_load, 5, 0)} N',
         f'{_number(point.temperature, 4, 1)} degC',
         f'eff {_number(efficiency, 4, 1)} %',

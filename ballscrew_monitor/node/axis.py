@@ -15,11 +15,11 @@ from ballscrew_monitor.core.conversions import (
     temperature_scaling,
     torque_scaling,
 )
-from ballscrew_monitor.core.errors import InputError
 from ballscrew_monitor.core.inputs import Input, make_input, Source
 from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.core.monitor import Monitor
 from ballscrew_monitor.core.state import Settings
+from surrogate.files import InputError
 from surrogate.surface import find_surface, Surface, SurfaceError
 
 OPTIONAL = (Source.TEMPERATURE, Source.TORQUE)

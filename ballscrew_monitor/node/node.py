@@ -10,7 +10,6 @@ import traceback
 from typing import Any
 
 from ballscrew_monitor.core.conversions import nanoseconds
-from ballscrew_monitor.core.errors import InputError
 from ballscrew_monitor.core.inputs import Input
 from ballscrew_monitor.core.pulse import Pulse
 from ballscrew_monitor.core.state import State
@@ -28,6 +27,7 @@ from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackRet
 from rclpy.qos import QoSDurabilityPolicy, QoSHistoryPolicy, QoSProfile, QoSReliabilityPolicy
 from rclpy.signals import SignalHandlerOptions
 from std_srvs.srv import Trigger
+from surrogate.files import InputError
 
 SUCCESS, FAILURE = TransitionCallbackReturn.SUCCESS, TransitionCallbackReturn.FAILURE
 INPUT_QOS = QoSProfile(

@@ -5,12 +5,12 @@
 from collections.abc import Callable
 from typing import Any
 
-from ballscrew_monitor.core.errors import InputError
 from ballscrew_monitor.node import parameters
 from ballscrew_monitor.node.parameter_table import Change, NODE_ROWS, Row
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.node import Node
 from rclpy.parameter import Parameter
+from surrogate.files import InputError
 
 
 class ParameterStore:

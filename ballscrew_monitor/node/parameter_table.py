@@ -16,8 +16,8 @@ from ballscrew_monitor.core.conversions import (
     TEMPERATURE_UNITS,
     TORQUE_UNITS,
 )
-from ballscrew_monitor.core.errors import InputError
 from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
+from surrogate.files import InputError
 
 Value = str | float | bool | list[str]
 _TYPE_NAMES = {

@@ -12,8 +12,8 @@ import pathlib
 import re
 from typing import Any
 
-from ballscrew_monitor.core.errors import InputError
 from ballscrew_monitor.node.parameter_table import AXIS_ROWS, NODE_ROWS, Row
+from surrogate.files import InputError
 
 NODE_NAME = 'ballscrew_monitor'
 # Parameters, or first parts of their names, that any node may be given; they are not of the table.

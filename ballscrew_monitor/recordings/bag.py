@@ -16,9 +16,9 @@ from pathlib import Path
 import struct
 from typing import Any
 
-from ballscrew_monitor.core.errors import InputError
 from mcap.exceptions import McapError
 from mcap.reader import make_reader, McapReader
+from surrogate.files import InputError
 import yaml
 from zstandard import ZstdError
 

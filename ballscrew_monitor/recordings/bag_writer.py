@@ -16,9 +16,9 @@ import os
 from pathlib import Path
 from typing import Any, BinaryIO
 
-from ballscrew_monitor.core.errors import InputError
 from ballscrew_monitor.recordings.message_definitions import message_definition, type_hash
 from mcap.writer import CompressionType, Writer
+from surrogate.files import InputError
 import yaml
 
 ACTIVE = '.active'

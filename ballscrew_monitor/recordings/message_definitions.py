@@ -14,7 +14,7 @@ import os
 from pathlib import Path
 import sys
 
-from ballscrew_monitor.core.errors import InputError
+from surrogate.files import InputError
 
 SEPARATOR = '=' * 80
 

@@ -22,13 +22,13 @@ from ballscrew_monitor.core.conversions import (
     temperature_scaling,
     torque_scaling,
 )
-from ballscrew_monitor.core.errors import InputError
 from ballscrew_monitor.core.inputs import Input, make_input, Sample, Source
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.replay import absolute
 import numpy as np
 from numpy.typing import NDArray
 from rclpy.serialization import deserialize_message
+from surrogate.files import InputError
 
 Array = NDArray[np.float64]
 

@@ -16,13 +16,13 @@ import threading
 import time
 
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.core.errors import InputError
 from ballscrew_monitor.core.inputs import message_class
 from ballscrew_monitor.recordings.bag import Bag
 from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.qos import QoSDurabilityPolicy, QoSHistoryPolicy, QoSProfile, QoSReliabilityPolicy
 from rosgraph_msgs.msg import Clock
+from surrogate.files import InputError
 
 CLOCK_PERIOD = 0.01  # [s] of wall time
 MATCH_POLL = 0.02  # [s] between two looks at who has matched

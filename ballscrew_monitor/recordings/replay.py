@@ -15,7 +15,6 @@ import itertools
 from typing import Any, NamedTuple
 
 from ballscrew_monitor.core.conversions import nanoseconds
-from ballscrew_monitor.core.errors import InputError
 from ballscrew_monitor.core.inputs import Input, Refusal, Sample, Source
 from ballscrew_monitor.core.monitor import State
 from ballscrew_monitor.node.axis import Axis, build_axis
@@ -23,6 +22,7 @@ from ballscrew_monitor.node.messages import out_of_zone_message, StateWriter, TI
 from ballscrew_monitor.recordings.bag import Bag, Message
 from ballscrew_msgs.msg import BallScrewState, OutOfZone
 from rclpy.serialization import deserialize_message
+from surrogate.files import InputError
 
 REORDER = nanoseconds(1.0)  # [ns] log time over which samples are put into the order of stamps
 LONGEST_HOLE = nanoseconds(60.0)  # [ns] between two messages that is filled with ticks

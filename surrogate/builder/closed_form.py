@@ -19,12 +19,14 @@ import numpy as np
 from numpy.typing import NDArray
 import scipy
 from surrogate.builder.tiers import Progress, screw_and_oil
+from surrogate.files import InputError
 from surrogate.formulas import closed_form
 from surrogate.formulas.film import film_ratio_at_share_aihara_1987
 from surrogate.formulas.load_sharing import UNLOADING_RATIO
-from surrogate.parameters import InputError, Lubricant, Screw, ZERO_CELSIUS
+from surrogate.parameters import Lubricant, Screw
 from surrogate.surface import FIELDS, Surface
 from surrogate.surface.file import FORMAT, FORMAT_VERSION, SurfaceData
+from surrogate.units import ZERO_CELSIUS
 
 Array = NDArray[np.float64]
 

@@ -25,21 +25,15 @@ from surrogate.builder.tiers import (
     screw_and_oil,
 )
 from surrogate.datasheet import changed_sheet, read_yaml
-from surrogate.parameters import (
-    InputError,
-    load_lubricant,
-    load_screw,
-    Lubricant,
-    NAME,
-    Screw,
-    ZERO_CELSIUS,
-)
+from surrogate.files import InputError
+from surrogate.parameters import load_lubricant, load_screw, Lubricant, NAME, Screw
 from surrogate.surface.file import from_bytes, SurfaceData, SurfaceError, to_bytes, write
 from surrogate.tasks.pool import Outcome, Pool, run_tasks
 from surrogate.tasks.worker import describe_failure, worker_name
+from surrogate.units import RPM, ZERO_CELSIUS
 
 RANGES = {
-    'speed_range_rpm': ('speed_range', math.pi / 30, 0.0),
+    'speed_range_rpm': ('speed_range', RPM, 0.0),
     'load_range_N': ('load_range', 1.0, 0.0),
     'temperature_range_degC': ('temperature_range', 1.0, ZERO_CELSIUS),
 }

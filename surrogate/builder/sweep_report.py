@@ -3,15 +3,12 @@
 """The report of a sweep: every item, for programs (JSON) and for people (a page)."""
 
 from collections.abc import Mapping
-import json
 import math
 from pathlib import Path
 from typing import Any
 
 from surrogate.builder.sweep import Built, Item
-from surrogate.files import replace_file
-from surrogate.parameters import InputError
-from surrogate.plain_json import to_json
+from surrogate.files import InputError, json_text, replace_file
 from surrogate.surface import Surface
 
 JSON_NAME, PAGE_NAME = 'sweep.json', 'sweep.md'
@@ -55,7 +52,7 @@ class SweepReport:
     def write(self) -> None:
         """Write both files, each whole or not at all; raises InputError."""
         record = self.record()
-        text = json.dumps(to_json(record), indent=2, allow_nan=False) + '\n'
+        text = json_text(record) + '\n'
         try:
             replace_file(self._out / JSON_NAME, text.encode())
             replace_file(self._out / PAGE_NAME, report_page(record).encode())

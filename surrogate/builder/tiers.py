@@ -14,7 +14,8 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from surrogate.parameters import InputError, Lubricant, Material, Roughness, Screw
+from surrogate.files import InputError
+from surrogate.parameters import Lubricant, Material, Roughness, Screw
 from surrogate.surface.file import SurfaceData
 from surrogate.tasks.pool import Pool
 

@@ -3,13 +3,12 @@
 """The subcommand `contact`: solve one contact from a case file."""
 
 import argparse
-import json
 import logging
 from pathlib import Path
 import sys
 from typing import Any
 
-from surrogate.parameters import InputError
+from surrogate.files import InputError
 
 
 def add_contact_command(subparsers: Any) -> None:
@@ -26,7 +25,7 @@ def _contact(args: argparse.Namespace) -> int:
     from surrogate.contact.case import load_case
     from surrogate.contact.record import contact_page, contact_record
     from surrogate.contact.solve import solve_case
-    from surrogate.plain_json import to_json
+    from surrogate.files import json_text
 
     # What was done to a surface belongs to the result, so it is said whatever the output.
     logging.basicConfig(level=logging.INFO, format='ballscrew: %(message)s')
@@ -34,7 +33,7 @@ def _contact(args: argparse.Namespace) -> int:
     solution, surface = solve_case(case)
     record = contact_record(case, solution)
     if args.json:
-        print(json.dumps(to_json(record), indent=2, allow_nan=False))
+        print(json_text(record))
     else:
         print(contact_page(record, case, solution, surface))
     if args.plot:

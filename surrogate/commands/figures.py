@@ -9,8 +9,8 @@ import sys
 import time
 from typing import Any
 
+from surrogate.files import InputError
 from surrogate.paper.cases import NEEDS, Task, tasks
-from surrogate.parameters import InputError
 
 DRAWS = 12
 """Draws of the contacts unless said otherwise [-]."""

@@ -4,22 +4,16 @@
 
 import argparse
 from collections.abc import Callable
-import json
 import math
 from pathlib import Path
 import sys
 from typing import Any
 
 from surrogate.commands.point import add_inputs
-from surrogate.parameters import (
-    InputError,
-    load_lubricant,
-    load_screw,
-    Lubricant,
-    Screw,
-    ZERO_CELSIUS,
-)
+from surrogate.files import InputError
+from surrogate.parameters import load_lubricant, load_screw, Lubricant, Screw
 from surrogate.progress import Progress
+from surrogate.units import ZERO_CELSIUS
 
 FITTED = {'viscosity': 'viscosity_factor', 'asperity_friction': 'asperity_friction'}
 """What `--fit` takes, and the parameter that it means."""
@@ -106,9 +100,9 @@ def _add_topics(group: Any) -> None:
 
 def _identify(args: argparse.Namespace) -> int:
     """Identify, write and draw; exit code 1 when the fit did not converge."""
+    from surrogate.files import json_text
     from surrogate.identify.fit import identify
     from surrogate.identify.record import identification_record, page
-    from surrogate.plain_json import to_json
 
     _check(args)
     screw, lubricant = load_screw(args.screw), load_lubricant(args.oil)
@@ -117,7 +111,7 @@ def _identify(args: argparse.Namespace) -> int:
     contacts = _contacts(args.tier, screw, lubricant, run, fitted)
     found = identify(screw, run, contacts, fitted, loss=args.loss)
     record = identification_record(screw, run, contacts, found)
-    print(json.dumps(to_json(record), indent=2, allow_nan=False) if args.json else page(record))
+    print(json_text(record) if args.json else page(record))
     if args.out and found.converged:
         _write(args.out, screw, lubricant, run, contacts, found)
     if args.plot:

@@ -3,22 +3,14 @@
 """The subcommand `point`: solve the screw at one operating point."""
 
 import argparse
-import json
-import math
 from pathlib import Path
 import sys
 import time
 from typing import Any
 
-from surrogate.parameters import (
-    InputError,
-    load_lubricant,
-    load_screw,
-    Lubricant,
-    OperatingPoint,
-    Screw,
-    ZERO_CELSIUS,
-)
+from surrogate.files import InputError
+from surrogate.parameters import load_lubricant, load_screw, Lubricant, OperatingPoint, Screw
+from surrogate.units import RPM, ZERO_CELSIUS
 
 FULL_ONLY = ('draws', 'inlet_heating', 'plot')
 """Options of the full tier alone."""
@@ -89,7 +81,7 @@ def add_operating_point(parser: argparse.ArgumentParser, *, required: bool) -> N
 
 def _point(args: argparse.Namespace) -> int:
     """Solve a point; exit code 1 when it is not converged."""
-    from surrogate.plain_json import to_json
+    from surrogate.files import json_text
     from surrogate.screw.formula_record import closed_form_record, page
 
     _check(args)
@@ -99,7 +91,7 @@ def _point(args: argparse.Namespace) -> int:
         if args.temperature is None
         else args.temperature + ZERO_CELSIUS
     )
-    point = OperatingPoint(speed=args.speed_rpm * math.pi / 30, load=args.load, temperature=kelvin)
+    point = OperatingPoint(speed=args.speed_rpm * RPM, load=args.load, temperature=kelvin)
     if args.plot:
         _prepare(args.plot)
     solution = None
@@ -107,7 +99,7 @@ def _point(args: argparse.Namespace) -> int:
         solution, record = _full(args, screw, lubricant, point)
     else:
         record = closed_form_record(screw, lubricant, point)
-    print(json.dumps(to_json(record), indent=2, allow_nan=False) if args.json else page(record))
+    print(json_text(record) if args.json else page(record))
     if args.plot:
         _plot(args.plot, screw, solution, record)
     return 0 if record.get('converged', True) else 1

@@ -5,7 +5,6 @@
 import argparse
 from collections.abc import Iterator
 from contextlib import contextmanager
-import json
 import math
 from pathlib import Path
 import sys
@@ -15,10 +14,11 @@ from surrogate.builder.tiers import build_surface, default_settings, find_tier, 
 from surrogate.commands.point import add_inputs
 from surrogate.commands.surface_inspect import add_inspect_commands
 from surrogate.commands.sweep import add_sweep_command, add_workers
-from surrogate.parameters import InputError, load_lubricant, load_screw, ZERO_CELSIUS
-from surrogate.plain_json import to_json
+from surrogate.files import InputError, json_text
+from surrogate.parameters import load_lubricant, load_screw
 from surrogate.surface import find_surface
 from surrogate.surface.file import read, write
+from surrogate.units import RPM, ZERO_CELSIUS
 
 FULL_ONLY = {
     'accuracy': ('accuracy', 1),
@@ -96,7 +96,7 @@ def _build(args: argparse.Namespace) -> int:
     ranges: dict[str, Any] = {}
     if args.speed_range:
         low, high = _range('--speed-range', 'rpm', args.speed_range, lowest=0.0)
-        ranges['speed_range'] = (low * math.pi / 30, high * math.pi / 30)
+        ranges['speed_range'] = (low * RPM, high * RPM)
     if args.load_range:
         ranges['load_range'] = _range('--load-range', 'N', args.load_range)
     if args.temperature_range:
@@ -169,7 +169,5 @@ def _info(args: argparse.Namespace) -> int:
 
     path = find_surface(args.file)
     record = info_record(path, read(path))
-    print(
-        json.dumps(to_json(record), indent=2, allow_nan=False) if args.json else info_page(record)
-    )
+    print(json_text(record) if args.json else info_page(record))
     return 0

@@ -3,7 +3,6 @@
 """The subcommands that look into a surface file: check, query, plot, diff, export."""
 
 import argparse
-import json
 import math
 from pathlib import Path
 import sys
@@ -12,12 +11,12 @@ from typing import Any
 
 from surrogate.builder.tiers import find_tier
 from surrogate.commands.point import add_operating_point
-from surrogate.files import replace_file
-from surrogate.parameters import InputError, OperatingPoint, ZERO_CELSIUS
-from surrogate.plain_json import to_json
+from surrogate.files import InputError, json_text, replace_file
+from surrogate.parameters import OperatingPoint
 from surrogate.progress import Progress
 from surrogate.surface import find_surface, Surface
 from surrogate.surface.file import read
+from surrogate.units import RPM, ZERO_CELSIUS
 
 
 def add_inspect_commands(actions: Any) -> None:
@@ -140,7 +139,7 @@ def _check(args: argparse.Namespace) -> int:
     ):
         off = f'is off by {100 * one.error:+.2g} % of the speed'
         print(
-            f'RCS is 0.01 at {one.speed * 30 / math.pi:.3g} rev/min, {one.load:.0f} N, '
+            f'RCS is 0.01 at {one.speed / RPM:.3g} rev/min, {one.load:.0f} N, '
             f'{one.temperature - ZERO_CELSIUS:.0f} degC; that '
             + (off if math.isfinite(one.error) else 'has no solution')
         )
@@ -162,11 +161,9 @@ def _query(args: argparse.Namespace) -> int:
         if args.temperature is None
         else args.temperature + ZERO_CELSIUS
     )
-    point = OperatingPoint(speed=args.speed_rpm * math.pi / 30, load=args.load, temperature=kelvin)
+    point = OperatingPoint(speed=args.speed_rpm * RPM, load=args.load, temperature=kelvin)
     record = query_record(surface, point)
-    print(
-        json.dumps(to_json(record), indent=2, allow_nan=False) if args.json else query_page(record)
-    )
+    print(json_text(record) if args.json else query_page(record))
     return 1 if record['reason'] else 0
 
 
@@ -229,7 +226,7 @@ def _diff(args: argparse.Namespace) -> int:
     sentences = exceeded(record, tolerances)
     if args.json:
         whole = {**record, 'tolerances': tolerances, 'exceeded': sentences}
-        print(json.dumps(to_json(whole), indent=2, allow_nan=False))
+        print(json_text(whole))
     else:
         print(diff_page(record, sentences))
     return 1 if sentences else 0

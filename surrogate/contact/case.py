@@ -16,7 +16,6 @@ from surrogate.datasheet import (
     choice,
     count,
     find_sheet,
-    InputError,
     quantities,
     quantity,
     read_sheet,
@@ -24,6 +23,7 @@ from surrogate.datasheet import (
 )
 from surrogate.ehl import Condition, ContactLubricant
 from surrogate.ehl.interface import LARGEST_GRID, Law
+from surrogate.files import InputError
 from surrogate.formulas.geometry import Contact
 from surrogate.raceway.fractal import Lay, Patch
 from surrogate.raceway.measured import Outside

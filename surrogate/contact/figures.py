@@ -3,7 +3,6 @@
 """Pictures of a solved contact: curves along the track, maps, spatial views, rough surface."""
 
 from collections.abc import Callable, Iterator
-import os
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +15,9 @@ from matplotlib.lines import Line2D
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.ehl import ContactSolution
+from surrogate.files import new_file
 from surrogate.raceway.fractal import Surface
+from surrogate.units import GIGA, MICRO, NANO
 
 Array = NDArray[np.float64]
 
@@ -32,7 +33,6 @@ VIEW = 1.35
 """Half width of maps and spatial views over the semi-axes, where the domain reaches so far [-]."""
 SPATIAL_NODES = 150
 """Most lines of a spatial view per side [-]."""
-MICRO, NANO, GIGA = 1e6, 1e9, 1e-9
 
 
 def draw_contact(
@@ -47,9 +47,8 @@ def draw_contact(
     if surface is not None:
         pictures['contact_roughness.png'] = lambda: figure_roughness(solution, surface)
     for name, draw in pictures.items():
-        partial = folder / f'{name}.partial'
-        draw().savefig(partial, format='png')
-        os.replace(partial, folder / name)
+        with new_file(folder / name) as file:
+            draw().savefig(file, format='png')
         yield folder / name
 
 

@@ -12,6 +12,7 @@ from surrogate.ehl.grid import Grid, make_grid, State
 from surrogate.ehl.half_space import deform
 from surrogate.ehl.interface import Condition, ContactLubricant, Roughness, Settings
 from surrogate.ehl.system import Problem
+from surrogate.files import InputError
 from surrogate.formulas.film import (
     central_film_hamrock_dowson_1977,
     central_film_nijenbanning_1994,
@@ -19,7 +20,6 @@ from surrogate.formulas.film import (
 )
 from surrogate.formulas.geometry import Contact, hertz
 from surrogate.formulas.lubricant import ROELANDS_OFFSET, ROELANDS_PRESSURE
-from surrogate.parameters import InputError
 
 Array = NDArray[np.float64]
 DOWSON_HIGGINSON = 0.34

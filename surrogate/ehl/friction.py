@@ -14,8 +14,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from surrogate.ehl import ContactLubricant, ContactSolution, punctured_nodes
+from surrogate.files import InputError
 from surrogate.formulas.lubricant import shear_stress_eyring_1936, viscosity_roelands_1966
-from surrogate.parameters import InputError
 
 Array = NDArray[np.float64]
 

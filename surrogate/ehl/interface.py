@@ -10,8 +10,8 @@ from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
+from surrogate.files import InputError
 from surrogate.formulas.geometry import Contact
-from surrogate.parameters import InputError
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]

@@ -10,11 +10,13 @@ entrainment that yields this film.
 
 import math
 
+from surrogate.files import InputError
 from surrogate.formulas.film import film_factor_gupta_1992, LEAST_FACTOR
 from surrogate.formulas.geometry import hertz, screw_contact, Side
 from surrogate.formulas.kinematics import no_slip_rates
 from surrogate.formulas.lubricant import lubricant_state
-from surrogate.parameters import InputError, Lubricant, Screw, ZERO_CELSIUS
+from surrogate.parameters import Lubricant, Screw
+from surrogate.units import ZERO_CELSIUS
 
 SPEED_EXPONENT = 0.67
 """Exponent of speed in the central film of Hamrock and Dowson [-]."""

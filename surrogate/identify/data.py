@@ -17,12 +17,13 @@ import re
 
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.parameters import InputError, ZERO_CELSIUS
+from surrogate.files import InputError
+from surrogate.units import RPM, ZERO_CELSIUS
 
 Array = NDArray[np.float64]
 
 UNITS: dict[str, dict[str, tuple[float, float]]] = {
-    'speed': {'rpm': (math.pi / 30, 0.0), 'rad_s': (1.0, 0.0)},
+    'speed': {'rpm': (RPM, 0.0), 'rad_s': (1.0, 0.0)},
     'torque': {'Nm': (1.0, 0.0), 'mNm': (1e-3, 0.0)},
     'torque_std': {'Nm': (1.0, 0.0), 'mNm': (1e-3, 0.0)},
     'load': {'N': (1.0, 0.0), 'kN': (1e3, 0.0)},

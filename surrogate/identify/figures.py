@@ -2,8 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Picture of an identification: measured and modelled torque over speed, and the residual."""
 
-import math
-import os
 from pathlib import Path
 
 from matplotlib.axes import Axes
@@ -11,8 +9,10 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullFormatter
 import numpy as np
+from surrogate.files import new_file
 from surrogate.identify.data import Array, NoLoadRun
 from surrogate.identify.fit import Identification
+from surrogate.units import MILLI, RPM
 
 DPI = 110  # [1/inch]
 BLUE, VERMILION, GREY = '#0072b2', '#d55e00', '#6f6f6f'
@@ -22,7 +22,6 @@ LOG_SPAN = 20.0
 """Largest speed over smallest from which on the speed axis is logarithmic [-]."""
 HEADROOM = 1.35
 """Top of the residual axis over what the points need [-]: the legend lies above them."""
-MILLI, RPM = 1e3, 30 / math.pi
 
 
 def draw_identification(folder: Path, run: NoLoadRun, found: Identification, title: str) -> Path:
@@ -43,16 +42,15 @@ def draw_identification(folder: Path, run: NoLoadRun, found: Identification, tit
         axes.grid(visible=True, color='#e6e6e6', linewidth=0.6)
         axes.set_axisbelow(True)
     path = folder / 'identify.png'
-    partial = folder / 'identify.png.partial'
-    figure.savefig(partial, format='png')
-    os.replace(partial, path)
+    with new_file(path) as file:
+        figure.savefig(file, format='png')
     return path
 
 
 def _draw_torque(axes: Axes, run: NoLoadRun, found: Identification) -> None:
     """Draw torques in the direction of the motion, so that both directions share an axis."""
     order = np.argsort(np.abs(run.speed))
-    rpm = RPM * np.abs(run.speed)[order]
+    rpm = np.abs(run.speed)[order] / RPM
     axes.fill_between(
         rpm, MILLI * found.contacts[order], color=VERMILION, alpha=0.2, lw=0, label='contacts'
     )
@@ -82,7 +80,7 @@ def _draw_torque(axes: Axes, run: NoLoadRun, found: Identification) -> None:
 
 def _draw_residual(axes: Axes, run: NoLoadRun, found: Identification) -> None:
     order = np.argsort(np.abs(run.speed))
-    rpm, band = RPM * np.abs(run.speed)[order], MILLI * found.band[order]
+    rpm, band = np.abs(run.speed)[order] / RPM, MILLI * found.band[order]
     axes.fill_between(
         rpm, -band, band, color=BLUE, alpha=0.15, linewidth=0, label='95 % of the points'
     )

@@ -13,9 +13,11 @@ from dataclasses import dataclass
 import math
 
 import numpy as np
+from surrogate.files import InputError
 from surrogate.identify.data import Array, NoLoadRun
 from surrogate.identify.model import ContactModel, FRICTION_BOUNDS, VISCOSITY_BOUNDS
-from surrogate.parameters import InputError, Screw
+from surrogate.parameters import Screw
+from surrogate.units import RPM
 
 SPARE_POINTS, SPEED_SPAN = 2, 2.0
 """Points beyond the number of parameters, largest speed over smallest [-]: the least accepted."""
@@ -165,7 +167,7 @@ def _rows(
 def _check(problem: Problem) -> None:
     """Refuse a run from which the parameters cannot follow."""
     run, wanted = problem.run, len(problem.names) + SPARE_POINTS
-    speed = np.abs(run.speed) * 30 / math.pi
+    speed = np.abs(run.speed) / RPM
     if len(speed) < wanted:
         raise InputError(
             f'{run.source}: has {len(speed)} points in motion, allowed is {wanted} or more for '

@@ -14,7 +14,8 @@ from surrogate.formulas.torque import drag_torque_catalogue
 from surrogate.identify.data import NoLoadRun
 from surrogate.identify.fit import Estimate, Identification
 from surrogate.identify.model import ContactModel, thickened
-from surrogate.parameters import Lubricant, Screw, ZERO_CELSIUS
+from surrogate.parameters import Lubricant, Screw
+from surrogate.units import RPM, ZERO_CELSIUS
 
 UNITS = {
     'parasitic_torque': 'N m',
@@ -173,7 +174,7 @@ def identified_oil(
 
 
 def _provenance(run: NoLoadRun, contacts: ContactModel, found: Identification) -> str:
-    speed = np.abs(run.speed) * 30 / math.pi
+    speed = np.abs(run.speed) / RPM
     return (
         f'{PROVENANCE} {run.source}: {len(speed)} points from {speed.min():.4g} to '
         f'{speed.max():.4g} rev/min, tier {contacts.tier}, oil {contacts.lubricant.name} at '
@@ -192,7 +193,7 @@ def _sentence(one: Estimate) -> str:
 
 def page(record: Mapping[str, Any]) -> str:
     """Return a record as a page of text in workshop units."""
-    low, high = (end * 30 / math.pi for end in record['speed_range_rad_s'])
+    low, high = (end / RPM for end in record['speed_range_rad_s'])
     least, most = (100 * share for share in record['contact_share_range'])
     return '\n'.join(
         [

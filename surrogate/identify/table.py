@@ -16,6 +16,7 @@ import math
 
 import numpy as np
 from scipy.interpolate import CubicSpline
+from surrogate.files import InputError
 from surrogate.formulas.lubricant import lubricant_state
 from surrogate.identify.data import Array, NoLoadRun
 from surrogate.identify.model import (
@@ -26,9 +27,10 @@ from surrogate.identify.model import (
     thickened,
     VISCOSITY_BOUNDS,
 )
-from surrogate.parameters import InputError, Lubricant, OperatingPoint, Screw
+from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.screw.contacts import ScrewSettings
 from surrogate.screw.solve import rebalance_screw, ScrewSolution, solve_screw, TIER
+from surrogate.units import RPM
 
 NODES_PER_DECADE, FEWEST_NODES, MOST_SPEEDS = 5, 5, 10
 """Nodes of viscosity times speed; up to so many measured speeds are solved as they are."""
@@ -218,7 +220,7 @@ def _point(oil: Lubricant, speed: float, load: float) -> OperatingPoint:
 def _converged(found: ScrewSolution, speed: float) -> ScrewSolution:
     if not found.converged:
         raise InputError(
-            f'the screw at {speed * 30 / math.pi:.4g} rev/min was not solved: {found.status} '
+            f'the screw at {speed / RPM:.4g} rev/min was not solved: {found.status} '
             'Leave such speeds out or use --tier closed_form'
         )
     return found

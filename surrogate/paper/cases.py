@@ -14,7 +14,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Literal
 
-from surrogate.parameters import InputError
+from surrogate.files import InputError
 
 Kind = Literal['contact', 'screw', 'formulas']
 SMOOTH = -1

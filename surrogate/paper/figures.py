@@ -4,8 +4,6 @@
 
 from collections.abc import Sequence
 from functools import cache
-import math
-import os
 from pathlib import Path
 import textwrap
 from typing import Any
@@ -15,17 +13,18 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 import numpy as np
+from surrogate.files import new_file
 from surrogate.formulas.kinematics import entrainment_speed_paper
 from surrogate.paper.curves import Curve
 from surrogate.paper.rows import Array
 from surrogate.parameters import load_screw
+from surrogate.units import MILLI, RPM
 
 DPI, WIDTH, CAPTION_LETTERS = 110, 7.2, 118
 """Resolution [1/inch], width [inch] and letters in a line of a caption."""
 BLUE, VERMILION, GREEN, PURPLE, GREY = '#0072b2', '#d55e00', '#009e73', '#7b2d8e', '#6f6f6f'
 """Colours that colour-blind readers keep apart; curves differ by line style, too."""
 STYLES = ('-', '--', '-.', ':', (0, (5, 1, 1, 1, 1, 1)), (0, (1, 1)))
-MICRO, NANO, GIGA, MILLI = 1e6, 1e9, 1e-9, 1e3
 
 
 def new_figure(height: float, caption: str) -> Figure:
@@ -39,9 +38,8 @@ def new_figure(height: float, caption: str) -> Figure:
 
 def save(figure: Figure, path: Path) -> Path:
     """Write a PNG by atomic rename and return its path."""
-    partial = path.with_name(f'{path.name}.partial')
-    figure.savefig(partial, format='png')
-    os.replace(partial, path)
+    with new_file(path) as file:
+        figure.savefig(file, format='png')
     return path
 
 
@@ -58,7 +56,7 @@ def entrainment(rpm: Any) -> Any:
 @cache
 def _one_rpm() -> float:
     """Return the study's entrainment speed [mm/s] of the nominal screw at 1 rev/min."""
-    return MILLI * float(entrainment_speed_paper(load_screw('nominal'), math.pi / 30))
+    return MILLI * float(entrainment_speed_paper(load_screw('nominal'), RPM))
 
 
 def speed_axis(axes: Axes, *, label: bool = True, top: bool = True) -> None:

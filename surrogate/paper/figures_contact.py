@@ -14,12 +14,9 @@ from surrogate.paper.curves import curve, pick
 from surrogate.paper.figures import (
     BLUE,
     finish,
-    GIGA,
     GREY,
     limit,
     many,
-    MICRO,
-    NANO,
     new_figure,
     shades,
     STYLES,
@@ -28,6 +25,7 @@ from surrogate.paper.figures import (
 from surrogate.paper.mark import counted, REPORTED_FILM
 from surrogate.paper.rows import Array, ContactFields, Row
 from surrogate.raceway.fractal import FractalSurface
+from surrogate.units import GIGA, MICRO, NANO
 
 Drawn = tuple[Row, ContactFields]
 VIEW = 1.3

@@ -34,7 +34,6 @@ from surrogate.paper.figures import (
     GREEN,
     GREY,
     limit,
-    NANO,
     new_figure,
     speed_axis,
     VERMILION,
@@ -43,6 +42,7 @@ from surrogate.paper.mark import EFFICIENCY_LIMIT, RCS_LIMIT, REPORTED_FILM
 from surrogate.paper.marks_contact import relieved_rows
 from surrogate.paper.rows import Row
 from surrogate.parameters import Screw
+from surrogate.units import NANO
 
 
 def figure_alternatives(screw: Screw, rows: Sequence[Row]) -> Figure:

@@ -18,8 +18,6 @@ from surrogate.paper.figures import (
     finish,
     GREEN,
     limit,
-    MILLI,
-    NANO,
     new_figure,
     PURPLE,
     speed_axis,
@@ -28,6 +26,7 @@ from surrogate.paper.figures import (
 from surrogate.paper.mark import counted, RCS_LIMIT, REPORTED_FILM
 from surrogate.paper.marks_screw import apparent_friction
 from surrogate.paper.rows import Array, Row
+from surrogate.units import MILLI, NANO
 
 SCREW: dict[str, Any] = {'kind': 'screw', 'load': PRELOAD}
 ROUGHNESS = 120.0

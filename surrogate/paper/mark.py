@@ -17,7 +17,6 @@ RCS_LIMIT, EFFICIENCY_LIMIT = 0.01, 0.85
 REPORTED_FILM = 153.0
 """Central film at 502.65 mm/s and preload only, published for the rough surface [nm]."""
 FILM_SAID = f'{REPORTED_FILM:.0f} nm, rough'
-NANO, MILLI = 1e9, 1e3
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -22,8 +22,9 @@ from surrogate.paper.cases import (
     THIN,
 )
 from surrogate.paper.curves import crossing, curve, paired_change, pick
-from surrogate.paper.mark import counted, FILM_SAID, Mark, mean_of, NANO, over_preload, RCS_LIMIT
+from surrogate.paper.mark import counted, FILM_SAID, Mark, mean_of, over_preload, RCS_LIMIT
 from surrogate.paper.rows import Row
+from surrogate.units import NANO
 
 ROUGH: dict[str, Any] = {'kind': 'contact', 'rough': True}
 FILM_RISES = 'trend: rises with load'

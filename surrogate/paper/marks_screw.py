@@ -26,17 +26,10 @@ from surrogate.paper.curves import (
     mapped,
     pick,
 )
-from surrogate.paper.mark import (
-    counted,
-    EFFICIENCY_LIMIT,
-    Mark,
-    mean_of,
-    MILLI,
-    over_preload,
-    RCS_LIMIT,
-)
+from surrogate.paper.mark import counted, EFFICIENCY_LIMIT, Mark, mean_of, over_preload, RCS_LIMIT
 from surrogate.paper.rows import Row
 from surrogate.parameters import Screw
+from surrogate.units import MILLI
 
 SCREW: dict[str, Any] = {'kind': 'screw', 'load': PRELOAD}
 FALLS_RISES, ETA_RISES = 'trend: falls, then rises', 'trend: rises with speed'

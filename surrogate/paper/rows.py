@@ -13,14 +13,14 @@ import csv
 from dataclasses import asdict, dataclass, fields
 import hashlib
 import math
-import os
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from surrogate.files import InputError, new_file
 from surrogate.paper.cases import OURS, SMOOTH, Task
-from surrogate.parameters import InputError, Lubricant, Screw
+from surrogate.parameters import Lubricant, Screw
 
 Array = NDArray[np.float64]
 TABLE, FIELDS = 'paper.csv', 'paper_fields'
@@ -133,12 +133,10 @@ def _row(record: dict[str, str]) -> Row:
 
 def write_rows(path: Path, rows: Iterable[Row]) -> None:
     """Write a table as a whole, by atomic rename."""
-    partial = path.with_suffix('.partial')
-    with partial.open('w', newline='', encoding='utf-8') as file:
+    with new_file(path) as partial, partial.open('w', newline='', encoding='utf-8') as file:
         writer = csv.DictWriter(file, [spec.name for spec in fields(Row)], lineterminator='\n')
         writer.writeheader()
         writer.writerows(_shown(row) for row in rows)
-    os.replace(partial, path)
 
 
 def _shown(row: Row) -> dict[str, Any]:
@@ -163,8 +161,5 @@ def read_fields(path: Path) -> ContactFields:
 
 def write_fields(path: Path, found: ContactFields) -> None:
     """Keep the fields of a task, by atomic rename."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    partial = path.with_suffix('.partial')
-    with partial.open('wb') as file:
+    with new_file(path) as partial, partial.open('wb') as file:
         np.savez_compressed(file, **asdict(found))
-    os.replace(partial, path)

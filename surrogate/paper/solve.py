@@ -29,6 +29,7 @@ from surrogate.screw.ball_motion import slip_floor
 from surrogate.screw.contacts import ACROSS, MOST_NODES, raceway_patch, ScrewSettings
 from surrogate.screw.nut import contact_slip, ScrewContact
 from surrogate.screw.solve import ScrewSolution, solve_screw
+from surrogate.units import RPM
 
 NX, NY, NODES_PER_WAVE = 129, 257, 6.0
 """Nodes of a rough contact along and least across the track, and per wave on the grid [-]."""
@@ -66,7 +67,7 @@ def solve_task(
 
 def rad_per_second(rpm: float) -> float:
     """Return a speed [rad/s] from [rev/min]."""
-    return rpm * math.pi / 30
+    return rpm * RPM
 
 
 def _contact(

@@ -17,7 +17,8 @@ from typing import Any, ClassVar, get_args, Literal, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from surrogate.parameters import InputError, Roughness
+from surrogate.files import InputError
+from surrogate.parameters import Roughness
 
 Array = NDArray[np.float64]
 Lay = Literal['isotropic', 'longitudinal', 'transverse']

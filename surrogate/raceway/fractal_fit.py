@@ -15,7 +15,8 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import minimize_scalar
-from surrogate.parameters import InputError, Roughness
+from surrogate.files import InputError
+from surrogate.parameters import Roughness
 from surrogate.raceway.fractal import Lay, wave_directions, wave_spectrum
 
 Array = NDArray[np.float64]

@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.parameters import InputError
+from surrogate.files import InputError
 from surrogate.raceway.measured import measured_surface, MeasuredSurface, Outside
 
 Array = NDArray[np.float64]

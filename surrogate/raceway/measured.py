@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import make_interp_spline
 from scipy.ndimage import gaussian_filter1d
-from surrogate.parameters import InputError
+from surrogate.files import InputError
 from surrogate.raceway.fractal import grid_axes, on_plane, Patch, Plane
 
 Array = NDArray[np.float64]

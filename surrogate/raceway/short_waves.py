@@ -14,7 +14,7 @@ from dataclasses import replace
 import math
 
 import numpy as np
-from surrogate.parameters import InputError
+from surrogate.files import InputError
 from surrogate.raceway.fractal import FractalSurface
 
 STANDING = 0.05

@@ -13,8 +13,9 @@ from dataclasses import dataclass, replace
 import math
 
 import numpy as np
+from surrogate.files import InputError
 from surrogate.formulas.kinematics import no_slip_rates
-from surrogate.parameters import InputError, Screw
+from surrogate.parameters import Screw
 from surrogate.screw.ball_equations import (
     BallProblem,
     linearise,

@@ -16,8 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 from surrogate.ehl import ContactSolution, punctured_nodes
 from surrogate.ehl.friction import viscosity_of
+from surrogate.files import InputError
 from surrogate.formulas.geometry import hertz, screw_contact, Side
-from surrogate.parameters import InputError, Screw
+from surrogate.parameters import Screw
 from surrogate.screw.ball_motion import Array, heathcote_radius
 from surrogate.screw.ball_sums import sum_friction
 

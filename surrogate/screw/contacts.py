@@ -14,14 +14,16 @@ from functools import lru_cache
 import math
 
 from surrogate.ehl import Condition, ContactLubricant, ContactSolution, Settings, solve_contact
+from surrogate.files import InputError
 from surrogate.formulas.geometry import Contact, hertz, screw_contact, Side, SIDES
 from surrogate.formulas.inlet_heating import heated_speed
 from surrogate.formulas.kinematics import no_slip_rates
 from surrogate.formulas.load_sharing import normal_force, UNLOADING_RATIO
 from surrogate.formulas.lubricant import lubricant_state
-from surrogate.parameters import InputError, Lubricant, OperatingPoint, Screw, ZERO_CELSIUS
+from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.raceway.fractal import fractal_surface, FractalSurface, take_patch, Window
 from surrogate.raceway.short_waves import subgrid_floor, without_short_waves
+from surrogate.units import ZERO_CELSIUS
 
 Pair = tuple[ContactSolution, ContactSolution]
 """The same contact smooth and rough."""

@@ -12,7 +12,8 @@ from dataclasses import dataclass, replace
 import math
 
 import numpy as np
-from surrogate.parameters import InputError, Lubricant, OperatingPoint, Screw
+from surrogate.files import InputError
+from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.screw.contacts import ScrewSettings
 from surrogate.screw.solve import ScrewSolution, solve_screw
 

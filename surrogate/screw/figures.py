@@ -2,8 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Picture of a solved point: pressure, film and slip of all contacts that carry load."""
 
-import math
-import os
 from pathlib import Path
 from typing import Any
 
@@ -14,15 +12,16 @@ from matplotlib.figure import Figure
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.ehl import ContactSolution, punctured_nodes
+from surrogate.files import new_file
 from surrogate.formulas.geometry import SIDES
-from surrogate.parameters import Screw, ZERO_CELSIUS
+from surrogate.parameters import Screw
 from surrogate.screw.nut import contact_slip, ScrewContact
 from surrogate.screw.solve import ScrewSolution
+from surrogate.units import GIGA, MICRO, MILLI, NANO, RPM, ZERO_CELSIUS
 
 Array = NDArray[np.float64]
 
 DPI = 120  # [1/inch]
-MICRO, NANO, GIGA, MILLI = 1e6, 1e9, 1e-9, 1e3
 VERMILION = '#d55e00'
 VIEW = 1.2
 """Half width of the maps over the semi-axes [-]."""
@@ -35,9 +34,8 @@ FILM_SPAN = 30.0
 def draw_point(folder: Path, screw: Screw, found: ScrewSolution, record: dict[str, Any]) -> Path:
     """Write the picture of a point to `folder` as PNG and return its path."""
     path = folder / 'point_contacts.png'
-    partial = folder / f'{path.name}.partial'
-    figure_point(screw, found, record).savefig(partial, format='png')
-    os.replace(partial, path)
+    with new_file(path) as file:
+        figure_point(screw, found, record).savefig(file, format='png')
     return path
 
 
@@ -58,7 +56,7 @@ def figure_point(screw: Screw, found: ScrewSolution, record: dict[str, Any]) -> 
 
 def _title(record: dict[str, Any]) -> str:
     return (
-        f'{record["screw"]}, {record["oil"]}: {record["speed_rad_s"] * 30 / math.pi:g} rev/min, '
+        f'{record["screw"]}, {record["oil"]}: {record["speed_rad_s"] / RPM:g} rev/min, '
         f'{record["load_N"]:g} N, {record["temperature_K"] - ZERO_CELSIUS:g} °C\n'
         f'friction torque {MILLI * record["friction_torque_Nm"]:.1f} mN m, '
         f'efficiency {record["efficiency"]:.3f}, $\\Lambda$ {record["film_ratio"]:.2f}, '

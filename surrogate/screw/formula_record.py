@@ -17,7 +17,8 @@ from surrogate.formulas.film import (
 )
 from surrogate.formulas.geometry import helix_angle, screw_contact
 from surrogate.formulas.load_sharing import nut_forces, UNLOADING_RATIO
-from surrogate.parameters import Lubricant, OperatingPoint, Screw, ZERO_CELSIUS
+from surrogate.parameters import Lubricant, OperatingPoint, Screw
+from surrogate.units import RPM, ZERO_CELSIUS
 
 CONSTANT_FRICTION = 0.005
 """Effective friction coefficient of the constant-friction comparator [-]."""
@@ -146,8 +147,8 @@ def _warnings(
     product = abs(point.speed) * 2 * screw.pitch_radius
     if product > screw.speed_limit:
         warnings.append(
-            f'speed: D n is {product * 30 / math.pi:.3g} m rev/min, the screw allows '
-            f'{screw.speed_limit * 30 / math.pi:.3g}'
+            f'speed: D n is {product / RPM:.3g} m rev/min, the screw allows '
+            f'{screw.speed_limit / RPM:.3g}'
         )
     if abs(point.load) > screw.static_rating:
         warnings.append(
@@ -228,7 +229,7 @@ def page(record: Mapping[str, Any]) -> str:
     return '\n'.join(
         [
             f'{record["screw"]}, {record["oil"]}, tier {record["tier"]}: '
-            f'{record["speed_rad_s"] * 30 / math.pi:g} rev/min, {record["load_N"]:g} N, '
+            f'{record["speed_rad_s"] / RPM:g} rev/min, {record["load_N"]:g} N, '
             f'{record["temperature_K"] - ZERO_CELSIUS:g} degC',
             *(f'  {name:20} {text}' for name, text in rows),
             '',

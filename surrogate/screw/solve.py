@@ -12,11 +12,12 @@ from dataclasses import dataclass, replace
 import math
 
 from surrogate.ehl import ContactSolution
+from surrogate.files import InputError
 from surrogate.formulas.geometry import SIDES
 from surrogate.formulas.kinematics import no_slip_rates
 from surrogate.formulas.load_sharing import normal_force, nut_forces
 from surrogate.formulas.torque import driving_torque, efficiency, is_back_driving
-from surrogate.parameters import InputError, Lubricant, OperatingPoint, Screw
+from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.screw.ball_motion import Flank
 from surrogate.screw.contacts import fluid_at, ScrewSettings, smooth_film, solve_sides
 from surrogate.screw.nut import load_change, make_nut, Nut, ScrewContact, solve_nut

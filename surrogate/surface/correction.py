@@ -13,10 +13,10 @@ scaled: signs and ranges hold whatever the solve says. Needs neither numpy nor a
 from collections.abc import Sequence
 from dataclasses import dataclass
 import hashlib
-import json
 import math
 from typing import Protocol
 
+from surrogate.files import canonical_json
 from surrogate.surface.file import SurfaceError
 from surrogate.surface.point import FIELDS, LOGARITHMIC
 
@@ -155,5 +155,4 @@ def corrected_hash(sha256: str, corrections: Sequence[Correction]) -> str:
         [one.speed, one.opposing_load, one.temperature, one.solved, TRUST_RADIUS]
         for one in corrections
     ]
-    text = json.dumps([sha256, content], sort_keys=True, separators=(',', ':'), allow_nan=False)
-    return hashlib.sha256(text.encode()).hexdigest()
+    return hashlib.sha256(canonical_json([sha256, content])).hexdigest()

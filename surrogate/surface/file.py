@@ -23,7 +23,7 @@ import zlib
 
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.files import replace_file
+from surrogate.files import canonical_json, replace_file
 from surrogate.surface.point import FIELDS
 
 Array = NDArray[np.float64]
@@ -85,7 +85,7 @@ class SurfaceData:
     @property
     def sha256(self) -> str:
         """Content hash, 64 hexadecimal digits."""
-        digest = hashlib.sha256(_canonical(self.header))
+        digest = hashlib.sha256(canonical_json(self.header))
         for name, array in _arrays(self):
             shape = f'{name} {array.dtype.str} {array.shape}'
             digest.update(shape.encode() + np.ascontiguousarray(array).tobytes())
@@ -109,7 +109,7 @@ def to_bytes(data: SurfaceData) -> bytes:
     """Return the content of the file."""
     head = {**data.header, 'sha256': data.sha256, 'provenance': data.provenance}
     arrays = dict(_arrays(data))
-    arrays['header'] = np.frombuffer(_canonical(head), dtype=np.uint8)
+    arrays['header'] = np.frombuffer(canonical_json(head), dtype=np.uint8)
     file = io.BytesIO()
     np.savez(file, **arrays)  # type: ignore[arg-type]
     return file.getvalue()
@@ -273,7 +273,3 @@ def _arrays(data: SurfaceData) -> Iterator[tuple[str, NDArray[Any]]]:
     for name in sorted(named):
         array = named[name]
         yield name, array.astype(array.dtype.newbyteorder('<'), copy=False)
-
-
-def _canonical(header: Mapping[str, Any]) -> bytes:
-    return json.dumps(header, sort_keys=True, separators=(',', ':'), allow_nan=False).encode()

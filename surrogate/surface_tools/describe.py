@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from surrogate.parameters import ZERO_CELSIUS
 from surrogate.surface import Surface
 from surrogate.surface.file import SurfaceData
 from surrogate.surface_tools.fields import FIELD_TEXTS
+from surrogate.units import RPM, ZERO_CELSIUS
 
 
 def info_record(path: Path, data: SurfaceData) -> dict[str, Any]:
@@ -102,7 +102,7 @@ def _head(record: Mapping[str, Any]) -> Iterator[str]:
     )
     yield f'  sha256       {record["sha256"]}'
     yield f'  size         {record["bytes"]} bytes'
-    yield f'  speed        {low * 30 / math.pi:.3g} to {high * 30 / math.pi:.4g} rev/min'
+    yield f'  speed        {low / RPM:.3g} to {high / RPM:.4g} rev/min'
     yield '  load         {:g} to {:g} N, positive opposes the motion'.format(
         *record['load_range_N']
     )

@@ -8,7 +8,7 @@ import json
 from typing import Any
 
 import numpy as np
-from surrogate.parameters import InputError
+from surrogate.files import InputError
 from surrogate.surface.file import SurfaceData
 from surrogate.surface_tools.fields import derived_key, FIELD_TEXTS, WORST_CONTACTS
 

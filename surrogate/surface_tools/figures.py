@@ -5,7 +5,6 @@
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 import io
-import math
 from pathlib import Path
 from typing import Any
 
@@ -17,9 +16,9 @@ from matplotlib.patches import Patch
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.files import replace_file
-from surrogate.parameters import ZERO_CELSIUS
 from surrogate.surface import Surface, Validity
 from surrogate.surface_tools.diff import EFFICIENCY_LIMIT, LIGHT_LOAD, RCS_LIMIT
+from surrogate.units import RPM, ZERO_CELSIUS
 
 Array = NDArray[np.float64]
 
@@ -67,7 +66,7 @@ def cut(surface: Surface, temperature: float) -> Slice:
         for name in names
     }
     light = LIGHT_LOAD * surface.preload
-    return Slice(speed=speed * 30 / math.pi, load=load, fields=fields, light=light)
+    return Slice(speed=speed / RPM, load=load, fields=fields, light=light)
 
 
 def draw_surface(folder: Path, surface: Surface, temperatures: Sequence[float]) -> Iterator[Path]:

@@ -8,9 +8,11 @@ import io
 import math
 from typing import Any
 
-from surrogate.parameters import InputError, OperatingPoint, ZERO_CELSIUS
+from surrogate.files import InputError
+from surrogate.parameters import OperatingPoint
 from surrogate.surface import Surface, SurfacePoint, Validity
 from surrogate.surface_tools.fields import derived_key, FIELD_TEXTS, WORST_CONTACTS
+from surrogate.units import RPM, ZERO_CELSIUS
 
 COLUMNS = ('speed_rpm', 'load_N', 'temperature_degC')
 """Columns of a table of points; the last may be missing."""
@@ -61,7 +63,7 @@ def _regime(film_ratio: float) -> str:
 
 def _reason(surface: Surface, validity: Validity) -> str:
     """Return why there are no numbers, with the limit that was passed; empty when there are."""
-    slow, fast = (30 / math.pi * speed for speed in surface.speed_range)
+    slow, fast = (speed / RPM for speed in surface.speed_range)
     low, high = surface.load_range
     cold, warm = (kelvin - ZERO_CELSIUS for kelvin in surface.temperature_range)
     return {
@@ -77,7 +79,7 @@ def _reason(surface: Surface, validity: Validity) -> str:
 def query_page(record: dict[str, Any]) -> str:
     """Return the record of a point as a page."""
     lines = [
-        f'tier {record["tier"]}: {record["speed_rad_s"] * 30 / math.pi:g} rev/min, '
+        f'tier {record["tier"]}: {record["speed_rad_s"] / RPM:g} rev/min, '
         f'{record["load_N"]:g} N, {record["temperature_K"] - ZERO_CELSIUS:g} degC',
         f'  screw, oil           {record["screw"]}, {record["oil"]}',
     ]
@@ -148,7 +150,7 @@ def _row(surface: Surface, row: dict[str, str], where: str) -> dict[str, Any]:
     if row.get(COLUMNS[2], '') != '':
         kelvin = _number(row[COLUMNS[2]], COLUMNS[2], where) + ZERO_CELSIUS
     try:
-        point = OperatingPoint(speed=speed * math.pi / 30, load=load, temperature=kelvin)
+        point = OperatingPoint(speed=speed * RPM, load=load, temperature=kelvin)
     except InputError as error:
         raise InputError(f'{where}: {error}') from None
     record = query_record(surface, point)

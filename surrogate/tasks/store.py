@@ -20,6 +20,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
+from surrogate.files import canonical_json
 from surrogate.surface.file import SurfaceError
 
 FORMAT = 'ballscrew_task_store'
@@ -44,7 +45,7 @@ def task_key(work: str, inputs: Mapping[str, Any]) -> str:
     inputs, plain JSON with finite numbers. 1 and 1.0 are different inputs.
 
     """
-    return hashlib.sha256(_canonical([FORMAT_VERSION, work, inputs])).hexdigest()
+    return hashlib.sha256(canonical_json([FORMAT_VERSION, work, inputs])).hexdigest()
 
 
 def clear(out: str | Path) -> bool:
@@ -206,12 +207,8 @@ class TaskStore:
         self._end += len(line)
 
 
-def _canonical(content: Any) -> bytes:
-    return json.dumps(content, sort_keys=True, separators=(',', ':'), allow_nan=False).encode()
-
-
 def _line(content: Any) -> bytes:
-    text = _canonical(content)
+    text = canonical_json(content)
     return f'{hashlib.sha256(text).hexdigest()[:CHECKSUM]} '.encode() + text + b'\n'
 
 

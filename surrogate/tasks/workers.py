@@ -10,7 +10,7 @@ import os
 from types import ModuleType
 from typing import Any, Self
 
-from surrogate.parameters import InputError
+from surrogate.files import InputError
 from surrogate.tasks.pool import Pool
 from surrogate.tasks.spawned import apart, SpawnedWorkers
 from surrogate.tasks.worker import run_task, Task, worker_name

@@ -8,10 +8,10 @@ import subprocess
 import sys
 
 from ballscrew_monitor import cli
-from ballscrew_monitor.core.errors import InputError
 from ballscrew_monitor.cycle.node_process import child_environment
 import pytest
-from surrogate.parameters import InputError as SheetError
+from surrogate.files import InputError
+from surrogate.files import InputError as SheetError
 from surrogate.surface import SurfaceError
 
 ROOT = Path(__file__).resolve().parents[2]

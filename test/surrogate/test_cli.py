@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from surrogate.cli import add_commands
-from surrogate.parameters import InputError
+from surrogate.files import InputError
 
 POINT = ['point', '--screw', 'nominal', '--oil', 'iso_vg_68', '--tier', 'closed_form']
 

@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import pytest
 from surrogate.datasheet_writer import write_sheet
-from surrogate.parameters import InputError, load_lubricant, load_screw
+from surrogate.files import InputError
+from surrogate.parameters import load_lubricant, load_screw
 
 
 def test_every_number_comes_back(tmp_path, screw, oil):

@@ -10,15 +10,10 @@ import re
 from hypothesis import given
 from hypothesis import strategies as st
 import pytest
+from surrogate.files import InputError
 from surrogate.formulas.lubricant import lubricant_state
-from surrogate.parameters import (
-    DATA,
-    InputError,
-    load_lubricant,
-    load_screw,
-    OperatingPoint,
-    ZERO_CELSIUS,
-)
+from surrogate.parameters import DATA, load_lubricant, load_screw, OperatingPoint
+from surrogate.units import ZERO_CELSIUS
 
 SCREW = (DATA / 'screws' / 'nominal.yaml').read_text(encoding='utf-8')
 OIL = (DATA / 'lubricants' / 'iso_vg_68.yaml').read_text(encoding='utf-8')

@@ -34,7 +34,8 @@ from surrogate.builder.full.settings import error_target, FullSettings, Run
 from surrogate.builder.full.speed_nodes import Sample
 from surrogate.builder.full.speeds import find_speed_nodes, speed_room
 from surrogate.builder.full.temperatures import file_temperatures, solved_temperatures
-from surrogate.parameters import InputError, Lubricant, Screw
+from surrogate.files import InputError
+from surrogate.parameters import Lubricant, Screw
 from surrogate.screw.solve import TIER
 from surrogate.surface import FIELDS, Surface
 from surrogate.surface.file import format_version, SurfaceData

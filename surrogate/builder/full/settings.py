@@ -10,7 +10,8 @@ from typing import Any
 from surrogate.builder.closed_form import default_settings, SurfaceSettings
 from surrogate.builder.full.columns import Results
 from surrogate.builder.full.speed_nodes import Target
-from surrogate.parameters import InputError, Screw
+from surrogate.files import InputError
+from surrogate.parameters import Screw
 from surrogate.screw.contacts import GRID_WAVELENGTH
 from surrogate.surface_tools.check import (
     EFFICIENCY_TOLERANCE,

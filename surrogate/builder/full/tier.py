@@ -4,7 +4,6 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
-import math
 from pathlib import Path
 import platform
 import sys
@@ -21,12 +20,13 @@ from surrogate.builder.full.draws import Draws, mean_of_draws
 from surrogate.builder.full.run import ChainRun
 from surrogate.builder.full.settings import FullSettings
 from surrogate.builder.tiers import screw_and_oil
-from surrogate.parameters import Lubricant, Screw, ZERO_CELSIUS
+from surrogate.parameters import Lubricant, Screw
 from surrogate.screw.contacts import GRID_WAVELENGTH
 from surrogate.surface import FIELDS
 from surrogate.surface.file import SurfaceData
 from surrogate.tasks.pool import Pool
 from surrogate.tasks.store import TaskStore
+from surrogate.units import RPM, ZERO_CELSIUS
 
 
 def build_full_surface(
@@ -69,7 +69,7 @@ def _missing(data: SurfaceData, speed_range: tuple[float, float]) -> Iterator[st
     place = np.nonzero(data.mask & needed)
     if place[0].size:
         speed = np.exp(data.speed_coordinate[place[0]] + data.log_onset[place[1:]])
-        rpm, load = speed * 30 / math.pi, data.load[place[1]]
+        rpm, load = speed / RPM, data.load[place[1]]
         heat = data.temperature[place[2]] - ZERO_CELSIUS
         yield (
             f'{rpm.size} of {needed.sum()} nodes are missing, too few of their draws were solved: '

@@ -20,10 +20,10 @@ from ballscrew_monitor.core.conversions import (
     temperature_scaling,
     torque_scaling,
 )
-from ballscrew_monitor.core.errors import InputError
 from hypothesis import given
 from hypothesis import strategies as st
 import pytest
+from surrogate.files import InputError
 
 POSITIVE, NEGATIVE = Direction.POSITIVE, Direction.NEGATIVE
 PLAIN = {'scale': 1.0, 'offset': 0.0}

@@ -4,7 +4,6 @@
 
 import math
 
-from ballscrew_monitor.core.errors import InputError
 from ballscrew_monitor.core.fields import compile_field, message_class
 from geometry_msgs.msg import WrenchStamped
 import pytest
@@ -20,6 +19,7 @@ from std_msgs.msg import (
     Int64,
     UInt64,
 )
+from surrogate.files import InputError
 
 
 def joints(*names, velocity=()):

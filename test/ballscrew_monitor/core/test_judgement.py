@@ -5,7 +5,6 @@
 import math
 
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.core.errors import InputError
 from ballscrew_monitor.core.estimate import estimate, PointSource
 from ballscrew_monitor.core.judgement import (
     Code,
@@ -23,6 +22,7 @@ from ballscrew_msgs.msg import BallScrewState, Finding
 from hypothesis import given
 from hypothesis import strategies as st
 import pytest
+from surrogate.files import InputError
 
 GAP = SECOND // 2
 STEP = SECOND // 100

@@ -4,13 +4,14 @@
 
 import math
 
-from ballscrew_monitor.core.conversions import SECOND, TURN
+from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.estimate import estimate
 from ballscrew_monitor.core.judgement import judge
 from ballscrew_monitor.core.tally import Account, Extremes, moment, Totals, Window
 from hypothesis import given
 from hypothesis import strategies as st
 import pytest
+from surrogate.units import TURN
 
 GAP = SECOND // 2
 

@@ -5,9 +5,9 @@
 from collections import Counter
 import socket
 
-from ballscrew_monitor.core.errors import InputError
 from ballscrew_monitor.cycle import domain
 import pytest
+from surrogate.files import InputError
 
 
 def test_ports_are_those_of_the_specification():

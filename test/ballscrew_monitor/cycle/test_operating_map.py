@@ -4,11 +4,12 @@
 
 import dataclasses
 
-from ballscrew_monitor.cycle.operating_map import RPM, sample
+from ballscrew_monitor.cycle.operating_map import sample
 from ballscrew_monitor.cycle.state_trace import Limits, Trace
 import numpy as np
 import pytest
 from surrogate.surface import shipped_surface, Surface
+from surrogate.units import RPM
 
 
 def make_trace(speed, opposing_load):
@@ -41,7 +42,7 @@ def surface():
 def test_the_map_is_the_surface(surface):
     field = sample(surface, make_trace([10.0, 50.0], [-500.0, 2000.0]), 40.0)
     assert field.efficiency.shape == (field.load.size, field.speed.size)
-    point = surface.lookup(field.speed[50] / RPM, field.load[90], 313.15)
+    point = surface.lookup(field.speed[50] * RPM, field.load[90], 313.15)
     assert field.efficiency[90, 50] == pytest.approx(point.efficiency, rel=1e-9)
     assert field.rcs[90, 50] == pytest.approx(point.rcs, rel=1e-9)
 
@@ -62,8 +63,8 @@ def test_a_temperature_outside_says_nothing(surface):
 def test_it_begins_where_speeds_are_judged(surface):
     trace = make_trace([10.0], [100.0])
     field = sample(surface, trace, 40.0)
-    assert field.speed[0] / RPM == pytest.approx(trace.limits.standstill)
-    assert field.speed[-1] / RPM == pytest.approx(surface.speed_range[1])
+    assert field.speed[0] * RPM == pytest.approx(trace.limits.standstill)
+    assert field.speed[-1] * RPM == pytest.approx(surface.speed_range[1])
     never = dataclasses.replace(trace.limits, standstill=1e4)
     field = sample(surface, dataclasses.replace(trace, limits=never), 40.0)
-    assert field.speed[0] / RPM == pytest.approx(surface.speed_range[0])
+    assert field.speed[0] * RPM == pytest.approx(surface.speed_range[0])

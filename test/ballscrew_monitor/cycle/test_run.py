@@ -12,7 +12,6 @@ import sys
 import threading
 import types
 
-from ballscrew_monitor.core.errors import InputError
 from ballscrew_monitor.cycle import node_process
 from ballscrew_monitor.cycle.node_process import child_environment, ros_environment
 from ballscrew_monitor.cycle.run import plan, run
@@ -23,6 +22,7 @@ from ballscrew_monitor.recordings.summary import stamp_of
 from ballscrew_msgs.msg import BallScrewState
 import pytest
 from rclpy.serialization import deserialize_message
+from surrogate.files import InputError
 
 ROOT = Path(__file__).resolve().parents[3]
 PARAMS = ROOT / 'config' / 'nominal_cycle.yaml'

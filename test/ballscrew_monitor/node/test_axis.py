@@ -5,12 +5,12 @@
 import math
 
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.core.errors import InputError
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.node import parameters
 from ballscrew_monitor.node.axis import build_axis, settings_of
 import pytest
 from std_msgs.msg import Float64
+from surrogate.files import InputError
 from surrogate.surface import shipped_surface
 
 

@@ -6,10 +6,10 @@ import math
 import pathlib
 import re
 
-from ballscrew_monitor.core.errors import InputError
 from ballscrew_monitor.node import parameters
 from ballscrew_monitor.node.parameter_table import AXIS_ROWS, Change
 import pytest
+from surrogate.files import InputError
 import yaml
 
 CONFIG = pathlib.Path(__file__).resolve().parents[3] / 'config'

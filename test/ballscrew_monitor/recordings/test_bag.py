@@ -4,10 +4,10 @@
 
 import shutil
 
-from ballscrew_monitor.core.errors import InputError
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
 import pytest
+from surrogate.files import InputError
 import yaml
 
 TYPES = {

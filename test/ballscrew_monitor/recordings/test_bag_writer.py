@@ -6,7 +6,6 @@ import contextlib
 import shutil
 import struct
 
-from ballscrew_monitor.core.errors import InputError
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter, CHUNK_SIZE, Offer, Topic
 from mcap.exceptions import EndOfFile
@@ -14,6 +13,7 @@ from mcap.reader import make_reader
 from mcap.records import Message
 from mcap.stream_reader import StreamReader
 import pytest
+from surrogate.files import InputError
 import yaml
 
 HEADERS = Topic(name='/a', type_name='std_msgs/msg/Header', offer=Offer.SENSOR)

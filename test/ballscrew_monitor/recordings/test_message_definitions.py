@@ -4,13 +4,13 @@
 
 import re
 
-from ballscrew_monitor.core.errors import InputError
 from ballscrew_monitor.recordings.message_definitions import (
     message_definition,
     SEPARATOR,
     type_hash,
 )
 import pytest
+from surrogate.files import InputError
 
 
 def test_dependencies_follow_the_definition_with_their_names():

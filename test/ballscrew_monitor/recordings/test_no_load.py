@@ -6,7 +6,6 @@ import json
 import math
 
 from ballscrew_monitor import cli
-from ballscrew_monitor.core.errors import InputError
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
@@ -21,6 +20,7 @@ import numpy as np
 import pytest
 from rclpy.serialization import serialize_message
 from sensor_msgs.msg import JointState, Temperature
+from surrogate.files import InputError
 from surrogate.formulas import closed_form
 from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
 

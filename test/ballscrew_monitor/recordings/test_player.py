@@ -9,7 +9,6 @@ import sys
 import threading
 import time
 
-from ballscrew_monitor.core.errors import InputError
 from ballscrew_monitor.core.inputs import message_class
 from ballscrew_monitor.cycle.domain import free_domain
 from ballscrew_monitor.cycle.node_process import child_environment, ros_environment
@@ -20,6 +19,7 @@ import rclpy
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.qos import QoSProfile, QoSReliabilityPolicy
 from rosgraph_msgs.msg import Clock
+from surrogate.files import InputError
 
 ROOT = Path(__file__).resolve().parents[3]
 DEADLINE = 60.0  # [s]

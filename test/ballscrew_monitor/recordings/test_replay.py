@@ -5,7 +5,6 @@
 import itertools
 from pathlib import Path
 
-from ballscrew_monitor.core.errors import InputError
 from ballscrew_monitor.core.inputs import InputState
 from ballscrew_monitor.node import parameters
 from ballscrew_monitor.node.axis import build_axis
@@ -17,6 +16,7 @@ from geometry_msgs.msg import WrenchStamped
 import pytest
 from rclpy.serialization import serialize_message
 from sensor_msgs.msg import JointState
+from surrogate.files import InputError
 
 CONFIG = Path(__file__).resolve().parents[3] / 'config' / 'nominal_cycle.yaml'
 SECOND = 10**9

@@ -14,8 +14,8 @@ from surrogate.builder.closed_form import (
     onset_speed,
     temperature_nodes,
 )
+from surrogate.files import InputError
 from surrogate.formulas import closed_form
-from surrogate.parameters import InputError
 from surrogate.surface import FIELDS, Surface, Validity
 
 SMALL = {'speed_nodes': 16, 'load_cells': 3, 'unloaded_cells': 1, 'temperature_nodes': 3}

@@ -15,7 +15,8 @@ import pytest
 from surrogate.builder.sweep import load_catalogue
 from surrogate.builder.tiers import TIERS
 from surrogate.cli import add_commands
-from surrogate.parameters import DATA, InputError
+from surrogate.files import InputError
+from surrogate.parameters import DATA
 from surrogate.surface import Surface
 from surrogate.surface.file import read
 from surrogate.tasks.worker import worker_name
@@ -26,7 +27,7 @@ BUILDERS = """
 import os
 from dataclasses import replace
 from surrogate.builder.closed_form import build_closed_form, default_settings
-from surrogate.parameters import InputError
+from surrogate.files import InputError
 
 SMALL = {'speed_nodes': 12, 'load_cells': 2, 'unloaded_cells': 1, 'temperature_nodes': 3}
 

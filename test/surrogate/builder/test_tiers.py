@@ -14,8 +14,8 @@ from surrogate.builder.tiers import (
     solve_point,
     TIERS,
 )
+from surrogate.files import InputError
 from surrogate.formulas import closed_form
-from surrogate.parameters import InputError
 from surrogate.surface import FIELDS
 from surrogate.surface import file as surface_file
 

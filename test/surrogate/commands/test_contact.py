@@ -10,7 +10,8 @@ import sys
 import pytest
 from surrogate.cli import add_commands
 from surrogate.ehl import solve_contact, Status
-from surrogate.parameters import DATA, InputError
+from surrogate.files import InputError
+from surrogate.parameters import DATA
 
 SMOOTH = (DATA / 'cases' / 'nominal_smooth.yaml').read_text(encoding='utf-8')
 

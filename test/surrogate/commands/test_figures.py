@@ -7,8 +7,8 @@ import argparse
 import pytest
 from surrogate.cli import add_commands
 from surrogate.commands.figures import progress_line
+from surrogate.files import InputError
 from surrogate.paper.cases import Task
-from surrogate.parameters import InputError
 
 pytest.importorskip('matplotlib')
 

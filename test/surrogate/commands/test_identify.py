@@ -10,8 +10,9 @@ import sys
 import numpy as np
 import pytest
 from surrogate.cli import add_commands
+from surrogate.files import InputError
 from surrogate.formulas import closed_form
-from surrogate.parameters import InputError, load_lubricant, load_screw
+from surrogate.parameters import load_lubricant, load_screw
 
 SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
 RPM = np.array([60, 100, 200, 400, 800, 1600, -60, -200, -800, -1600])

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from surrogate.cli import add_commands
-from surrogate.parameters import InputError
+from surrogate.files import InputError
 from surrogate.surface import shipped_surface, SurfaceError
 from surrogate.surface.file import read, write
 from surrogate.tasks.store import store_path, TaskStore

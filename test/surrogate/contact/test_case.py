@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 from surrogate.contact.case import CaseDomain, CaseGrid, CaseRoughness, ContactCase, load_case
-from surrogate.parameters import DATA, InputError
+from surrogate.files import InputError
+from surrogate.parameters import DATA
 import yaml
 
 PAGE = Path(__file__).parents[3] / 'docs' / 'contact.md'

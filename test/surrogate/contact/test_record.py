@@ -13,7 +13,7 @@ from surrogate.contact.case import CaseDomain, CaseGrid, CaseRoughness, load_cas
 from surrogate.contact.record import contact_page, contact_record, friction_coefficient
 from surrogate.contact.solve import solve_case
 from surrogate.ehl import Settings, solve_contact
-from surrogate.plain_json import to_json
+from surrogate.files import to_json
 
 TABLE = Path(__file__).parents[2] / 'reference' / 'ehl_dimensional.csv'
 ROWS = {

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from surrogate.contact.case import load_case
 from surrogate.contact.solve import case_settings, case_surface, solve_case
-from surrogate.parameters import DATA, InputError, load_screw
+from surrogate.files import InputError
+from surrogate.parameters import DATA, load_screw
 from surrogate.raceway.fractal import fractal_surface, shifted, take_patch, Window
 import yaml
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from surrogate.ehl import Condition, ContactLubricant, Settings, solve_contact
 from surrogate.ehl.friction import contact_friction, slide_roll_friction, viscosity_of
+from surrogate.files import InputError
 from surrogate.formulas.geometry import Contact
-from surrogate.parameters import InputError
 
 
 @pytest.fixture(scope='module')

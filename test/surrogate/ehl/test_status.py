@@ -8,8 +8,8 @@ import math
 import numpy as np
 import pytest
 from surrogate.ehl import Condition, ContactLubricant, Settings, solve_contact, Status
+from surrogate.files import InputError
 from surrogate.formulas.geometry import Contact
-from surrogate.parameters import InputError
 
 NOMINAL = Condition(load=27.6, entrainment_speed=0.5)
 SMALL = Settings(nx=33, ny=33)

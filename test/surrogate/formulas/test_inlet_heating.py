@@ -7,9 +7,10 @@ import math
 
 import pytest
 from surrogate.ehl import Settings
+from surrogate.files import InputError
 from surrogate.formulas.film import film_factor_gupta_1992
 from surrogate.formulas.inlet_heating import heated_speed, heating_factor, viscosity_slope
-from surrogate.parameters import InputError, load_lubricant, load_screw, OperatingPoint
+from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
 from surrogate.screw.contacts import ScrewSettings
 from surrogate.screw.solve import solve_screw
 

@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 import pytest
+from surrogate.files import InputError
 from surrogate.identify.data import no_load_run, read_drag_csv
-from surrogate.parameters import InputError
 
 WARM = 313.15
 

@@ -8,12 +8,13 @@ import math
 import numpy as np
 import pytest
 from scipy.stats import binom
+from surrogate.files import InputError
 from surrogate.formulas.lubricant import lubricant_state
 from surrogate.identify.data import no_load_run
 from surrogate.identify.fit import identify
 from surrogate.identify.model import anchored, bare, closed_form_model, ContactModel, thickened
 from surrogate.identify.record import identification_record, identified_oil, identified_screw, page
-from surrogate.parameters import InputError, load_lubricant, load_screw
+from surrogate.parameters import load_lubricant, load_screw
 
 SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
 WARM = 313.15

@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 import pytest
+from surrogate.files import InputError
 from surrogate.paper.cases import NEEDS, SHORT, SMOOTH, Task, tasks
 from surrogate.paper.curves import (
     constant_friction_efficiency,
@@ -20,7 +21,7 @@ from surrogate.paper.curves import (
 )
 from surrogate.paper.rows import inputs_hash, read_rows, Row, write_rows
 from surrogate.paper.study import run_study
-from surrogate.parameters import InputError, load_lubricant, load_screw
+from surrogate.parameters import load_lubricant, load_screw
 
 SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
 BASE = Row(inputs='a', kind='contact', rpm=5.0, load=0.0, draw=0, status='CONVERGED', rcs=0.1)

@@ -10,7 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 import numpy as np
 import pytest
-from surrogate.parameters import InputError, load_screw
+from surrogate.files import InputError
+from surrogate.parameters import load_screw
 from surrogate.raceway.fractal import (
     ensemble,
     fractal_surface,

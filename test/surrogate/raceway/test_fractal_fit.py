@@ -7,7 +7,8 @@ import math
 
 import numpy as np
 import pytest
-from surrogate.parameters import InputError, load_screw
+from surrogate.files import InputError
+from surrogate.parameters import load_screw
 from surrogate.raceway.fractal import fractal_surface, theoretical_rms
 from surrogate.raceway.fractal_fit import (
     expected_structure_function,

@@ -6,7 +6,7 @@ import sys
 
 import numpy as np
 import pytest
-from surrogate.parameters import InputError
+from surrogate.files import InputError
 from surrogate.raceway.import_file import read_surface
 
 X = np.arange(40) * 0.5

@@ -9,8 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from surrogate.ehl import Condition, ContactLubricant, Settings, solve_contact
+from surrogate.files import InputError
 from surrogate.formulas.geometry import hertz, screw_contact
-from surrogate.parameters import InputError, load_lubricant, load_screw
+from surrogate.parameters import load_lubricant, load_screw
 from surrogate.raceway.fractal import fractal_surface, take_patch, theoretical_rms, Window
 from surrogate.raceway.short_waves import STANDING, subgrid_floor, wave_rms, without_short_waves
 

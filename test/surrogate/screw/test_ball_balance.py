@@ -9,10 +9,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 import numpy as np
 import pytest
+from surrogate.files import InputError
 from surrogate.formulas.geometry import conformity, helix_angle, hertz, screw_contact, SIDES
 from surrogate.formulas.kinematics import no_slip_rates
 from surrogate.formulas.sliding import ellipse_nodes
-from surrogate.parameters import InputError, load_screw
+from surrogate.parameters import load_screw
 from surrogate.screw.ball_balance import balance_ball, BalanceSettings
 from surrogate.screw.ball_motion import axis_vector, contact_frame, slip_field, slip_floor
 from surrogate.screw.ball_result import BalanceStatus, BallContact

@@ -11,8 +11,9 @@ import numpy as np
 import pytest
 from surrogate.ehl import Condition, ContactLubricant, Settings, solve_contact, Status
 from surrogate.ehl.friction import contact_friction
+from surrogate.files import InputError
 from surrogate.formulas.geometry import hertz, screw_contact
-from surrogate.parameters import InputError, load_screw
+from surrogate.parameters import load_screw
 from surrogate.screw.ball_motion import no_slip_motion, relative_motion, slip_field, slip_maps
 from surrogate.screw.ball_traction import (
     coulomb_traction,

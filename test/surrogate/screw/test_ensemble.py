@@ -8,7 +8,8 @@ import math
 import numpy as np
 import pytest
 from surrogate.ehl import Settings
-from surrogate.parameters import InputError, load_lubricant, load_screw, OperatingPoint
+from surrogate.files import InputError
+from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
 from surrogate.screw.contacts import ScrewSettings
 from surrogate.screw.ensemble import FIELDS, solve_ensemble, spread
 from surrogate.screw.solve import solve_screw

@@ -11,8 +11,8 @@ import re
 import pytest
 from surrogate.ehl import Settings
 from surrogate.ehl.friction import contact_friction
-from surrogate.parameters import InputError, load_lubricant, load_screw, OperatingPoint
-from surrogate.plain_json import to_json
+from surrogate.files import InputError, to_json
+from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
 from surrogate.screw import figures as figures_point
 from surrogate.screw.ball_motion import slip_floor
 from surrogate.screw.contacts import ScrewSettings

@@ -7,9 +7,10 @@ import math
 
 import pytest
 from surrogate.ehl import Settings
+from surrogate.files import InputError
 from surrogate.formulas import closed_form
 from surrogate.identify.model import thickened
-from surrogate.parameters import InputError, load_lubricant, load_screw, OperatingPoint
+from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
 from surrogate.screw.contacts import raceway_patch, ScrewSettings
 from surrogate.screw.solve import rebalance_screw, solve_screw
 

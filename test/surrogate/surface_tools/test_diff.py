@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from surrogate.builder.closed_form import build_closed_form, default_settings
 from surrogate.cli import add_commands
-from surrogate.parameters import InputError
+from surrogate.files import InputError
 from surrogate.surface import shipped_surface, Surface, SurfaceError
 from surrogate.surface.file import read, SurfaceData, write
 from surrogate.surface_tools.diff import diff_record, zone_limits

@@ -12,7 +12,7 @@ import sys
 import numpy as np
 import pytest
 from surrogate.cli import add_commands
-from surrogate.parameters import InputError
+from surrogate.files import InputError
 from surrogate.surface import FIELDS, shipped_surface
 from surrogate.surface.file import read, write
 from surrogate.surface_tools.fields import FIELD_TEXTS

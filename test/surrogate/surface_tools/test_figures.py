@@ -9,7 +9,7 @@ import sys
 import numpy as np
 import pytest
 from surrogate.cli import add_commands
-from surrogate.parameters import InputError
+from surrogate.files import InputError
 from surrogate.surface import shipped_surface, Surface
 from surrogate.surface.file import read
 

@@ -12,8 +12,7 @@ import math
 import numpy as np
 import pytest
 from surrogate.cli import add_commands
-from surrogate.parameters import InputError
-from surrogate.plain_json import to_json
+from surrogate.files import InputError, to_json
 from surrogate.surface import shipped_surface, Surface
 from surrogate.surface.file import read, write
 from surrogate.surface_tools.fields import FIELD_TEXTS

@@ -11,7 +11,7 @@ import sys
 import threading
 
 import pytest
-from surrogate.parameters import InputError
+from surrogate.files import InputError
 from surrogate.tasks import workers as task_workers
 from surrogate.tasks.pool import MOST_TRIES, run_tasks
 from surrogate.tasks.store import TaskStore
@@ -22,7 +22,7 @@ DEADLINE = 60.0
 TASKS = """
 import math, os, signal, struct
 from multiprocessing.connection import Connection
-from surrogate.parameters import InputError
+from surrogate.files import InputError
 
 def root(inputs):
     return {'root': math.sqrt(inputs['x']), 'chain': [math.exp(-inputs['x']), 1]}

@@ -13,7 +13,7 @@ from surrogate.builder.full.build import build_full
 from surrogate.builder.full.chain import chain_inputs
 from surrogate.builder.full.draws import draws_of, mean_of_draws
 from surrogate.builder.full.settings import FullSettings
-from surrogate.parameters import InputError
+from surrogate.files import InputError
 from surrogate.surface import FIELDS, Surface, Validity
 from surrogate.surface import file as surface_file
 from surrogate.surface_tools.describe import info_page, info_record

@@ -14,7 +14,7 @@ from surrogate.builder.full import build as full_build
 from surrogate.builder.full import tier as full_tier
 from surrogate.builder.full.run import ChainRun
 from surrogate.builder.full.settings import default_full_settings, FullSettings
-from surrogate.parameters import InputError
+from surrogate.files import InputError
 from surrogate.screw.contacts import GRID_WAVELENGTH
 from surrogate.surface import FIELDS, Surface
 from surrogate.surface_tools.check import check_surface

@@ -1,0 +1,18 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The only factors between units: SI inside, others where numbers come in or are shown."""
+
+import math
+
+TURN = 2 * math.pi
+"""One revolution [rad]."""
+MINUTE = 60.0
+"""One minute [s]."""
+RPM = TURN / MINUTE
+"""One revolution per minute [rad/s]: `rpm * RPM` comes in, `speed / RPM` is shown."""
+ZERO_CELSIUS = 273.15
+"""Zero of the Celsius scale [K]."""
+MILLI, MICRO, NANO = 1e3, 1e6, 1e9
+"""How many of the small unit one SI unit has: a film [m] times NANO is in nm."""
+GIGA = 1e-9
+"""How many of the large unit one SI unit has: a pressure [Pa] times GIGA is in GPa."""
