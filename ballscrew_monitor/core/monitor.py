@@ -17,7 +17,7 @@ import math
 from typing import TYPE_CHECKING
 
 from ballscrew_monitor.core.advice import advise
-from ballscrew_monitor.core.conversions import Direction, direction_of, SECOND
+from ballscrew_monitor.core.conversions import Direction, direction_of, nanoseconds, SECOND
 from ballscrew_monitor.core.estimate import Estimate, estimate, Point, PointSource
 from ballscrew_monitor.core.inputs import InputState, Refusal, Sample, Source, Tracker, Why
 from ballscrew_monitor.core.judgement import Hold, hold, is_judged, judge, Level, Verdict, Zone
@@ -53,6 +53,7 @@ class Monitor:
                 source,
                 configured=source in settings.timeouts,
                 timeout=settings.timeouts.get(source, 0),
+                max_lag=settings.max_lag,
             )
             for source in SHOWN
         }
@@ -65,14 +66,15 @@ class Monitor:
     def update(self, event: Sample | Refusal) -> State | None:
         """Take one sample or refusal; return the state when one is due."""
         tracker = self._inputs[event.source]
+        tracker.lose(event.lost, event.arrival)
         if isinstance(event, Refusal):
             if event.why is Why.OTHER_JOINTS:
                 tracker.drop()
             else:
-                tracker.refuse()
+                tracker.refuse(event)
             return None
         if not math.isfinite(event.value):
-            tracker.refuse()
+            tracker.refuse(Refusal(source=event.source, why=Why.NOT_A_NUMBER))
             return None
         if tracker.last is not None and event.stamp < tracker.last.stamp:
             if tracker.last.stamp - event.stamp <= BACKWARD_JUMP:
@@ -82,7 +84,7 @@ class Monitor:
                 self._jump_back(event.stamp)
             tracker.forget()
         tracker.accept(event)
-        return self._judge_speed(event.stamp) if event.source is Source.SPEED else None
+        return self._judge_speed(event) if event.source is Source.SPEED else None
 
     def tick(self, now: int) -> State | None:
         """Return a state at the grid stamp `now` [ns] if the speed is missing or stale."""
@@ -90,13 +92,19 @@ class Monitor:
         # Both the clock and the speed: stamps may run ahead of the clock, as far as is allowed.
         if self._last_tick - now > BACKWARD_JUMP and tracker.is_ahead(now + BACKWARD_JUMP):
             self._jump_back(now)
+        if self._last_tick - now > BACKWARD_JUMP:
+            for each in self._inputs.values():
+                each.rebase(now)
         self._last_tick = now
         self._forget_the_future(now)
-        if tracker.last is not None and now - tracker.last.stamp <= tracker.timeout:
+        if tracker.last is not None and now - tracker.last.arrival <= tracker.timeout:
             return None
         point = self._point(now)
         result = self._estimate(point)
-        return self._advance(now, point, result, judge(point, result, self.settings.limits))
+        verdict = judge(point, result, self.settings.limits)
+        # On the time line of the stamps, which a tick must not leave.
+        stamp = now - nanoseconds(tracker.lag) if tracker.lagging else now
+        return self._advance(stamp, now, point, result, verdict)
 
     def use_surface(self, surface: Surface) -> None:
         """Judge with `surface` from now on."""
@@ -121,14 +129,14 @@ class Monitor:
         """Set the totals to zero."""
         self._account.reset()
 
-    def _judge_speed(self, stamp: int) -> State | None:
-        point = self._point(stamp)
+    def _judge_speed(self, sample: Sample) -> State | None:
+        stamp, point = sample.stamp, self._point(sample.arrival)
         result = self._estimate(point)
         verdict = judge(point, result, self.settings.limits)
         self._judged += is_judged(verdict)
         self._account.add(moment(stamp, point, result, verdict), max_gap=self._max_gap)
         self._window.add(point, result, verdict)
-        return self._advance(stamp, point, result, verdict)
+        return self._advance(stamp, sample.arrival, point, result, verdict)
 
     @property
     def _max_gap(self) -> int:
@@ -137,13 +145,14 @@ class Monitor:
     def _estimate(self, point: Point) -> Estimate:
         return estimate(point, self.surface, rcs_limit=self.settings.limits.rcs)
 
-    def _point(self, stamp: int) -> Point:
-        speed, speed_source = self._value(Source.SPEED, stamp)
-        load, load_source = self._value(Source.LOAD, stamp)
-        temperature, temperature_source = self._value(Source.TEMPERATURE, stamp)
+    def _point(self, now: int) -> Point:
+        """Return the operating point of what has arrived by `now` [ns]."""
+        speed, speed_source = self._value(Source.SPEED, now)
+        load, load_source = self._value(Source.LOAD, now)
+        temperature, temperature_source = self._value(Source.TEMPERATURE, now)
         if temperature_source is PointSource.DEFAULT:
             temperature = self.settings.default_temperature
-        torque, torque_source = self._value(Source.TORQUE, stamp)
+        torque, torque_source = self._value(Source.TORQUE, now)
         moving = abs(speed) >= self.settings.limits.standstill_speed
         if moving and speed_source is PointSource.MEASURED:
             self._direction = direction_of(speed)
@@ -160,7 +169,7 @@ class Monitor:
             direction_held=not moving and self._direction is not Direction.UNKNOWN,
         )
 
-    def _value(self, source: Source, stamp: int) -> tuple[float, PointSource]:
+    def _value(self, source: Source, now: int) -> tuple[float, PointSource]:
         """Return the last value and its standing; one that was followed by a bad one is held."""
         tracker = self._inputs[source]
         if not tracker.configured:
@@ -168,13 +177,18 @@ class Monitor:
             return NAN, default
         if tracker.last is None:
             return NAN, PointSource.UNKNOWN
-        good = tracker.state(stamp) is InputState.OK
+        good = tracker.state(now) is InputState.OK
         return tracker.last.value, PointSource.MEASURED if good else PointSource.HELD
 
     def _advance(
-        self, stamp: int, point: Point, result: Estimate, verdict: Verdict
+        self, stamp: int, now: int, point: Point, result: Estimate, verdict: Verdict
     ) -> State | None:
-        """Hold the level, follow the event, and return the state when it is due."""
+        """
+        Hold the level, follow the event, and return the state when it is due.
+
+        Levels and events follow the stamps [ns], the health of the inputs the clock `now` [ns].
+
+        """
         before = self._hold
         gaps = {'max_gap': self._max_gap, 'period': self._inputs[Source.SPEED].slow_period}
         self._hold = hold(before, verdict, stamp, self.settings.limits, **gaps)
@@ -183,7 +197,7 @@ class Monitor:
         if not self._due(stamp) and edge is None and self._hold.level is before.level:
             return None
         self._last_published = stamp
-        return self._state(stamp, point, result, verdict, edge)
+        return self._state(stamp, now, point, result, verdict, edge)
 
     def _follow(self, stamp: int, result: Estimate, verdict: Verdict) -> None:
         """Keep the worst value of the event that is active, or of the one that may follow."""
@@ -234,7 +248,13 @@ class Monitor:
         return stamp // period != self._last_published // period
 
     def _state(
-        self, stamp: int, point: Point, result: Estimate, verdict: Verdict, edge: Event | None
+        self,
+        stamp: int,
+        now: int,
+        point: Point,
+        result: Estimate,
+        verdict: Verdict,
+        edge: Event | None,
     ) -> State:
         torque = point.motor_torque
         if point.motor_torque_source is not PointSource.MEASURED:
@@ -251,7 +271,7 @@ class Monitor:
             event=edge,
             limits=self.settings.limits,
             window=self._window.take(),
-            inputs=tuple(tracker.health(stamp) for tracker in self._inputs.values()),
+            inputs=tuple(tracker.health(now) for tracker in self._inputs.values()),
             totals=self._account.totals(),
             judged=self._judged,
             measured_torque=torque,

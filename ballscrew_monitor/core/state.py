@@ -8,7 +8,7 @@ import math
 
 from ballscrew_monitor.core.advice import Advice
 from ballscrew_monitor.core.estimate import Estimate, Point
-from ballscrew_monitor.core.inputs import Health, Source
+from ballscrew_monitor.core.inputs import Health, Source, YEAR
 from ballscrew_monitor.core.judgement import Code, Finding, Level, Limits, Severity, Verdict
 from ballscrew_monitor.core.tally import Totals, WindowStatistics
 
@@ -23,7 +23,8 @@ class Settings:
     `timeouts` [ns] of the configured inputs only: an input without one has no topic.
     `default_temperature` [K] is used without a temperature topic, `publish_period` [ns] thins out
     the states, 0 keeps all; a stamp may be `max_future` [ns] ahead of the clock, and that is less
-    than `tick_period` [ns] ahead of the tick.
+    than `tick_period` [ns] ahead of the tick. Stamps more than `max_lag` [ns] behind their arrival
+    are warned of.
 
     """
 
@@ -33,6 +34,7 @@ class Settings:
     default_temperature: float
     publish_period: int = 0
     max_future: int = 0
+    max_lag: int = YEAR
     tick_period: int = 0
 
 

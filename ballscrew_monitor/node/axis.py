@@ -113,6 +113,7 @@ def settings_of(name: str, values: Mapping[str, Any], preload: float) -> Setting
         default_temperature=kelvin(values[f'{name}.temperature.default']),
         publish_period=nanoseconds(values[f'{name}.publish_period']),
         max_future=nanoseconds(values[f'{name}.max_future']),
+        max_lag=nanoseconds(values[f'{name}.max_lag']),
         tick_period=nanoseconds(values['tick_period']),
     )
 

@@ -9,12 +9,12 @@ numbers are values, with the unit in brackets.
 
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 import math
 
 from ballscrew_monitor.core.conversions import celsius, seconds
 from ballscrew_monitor.core.estimate import Validity
-from ballscrew_monitor.core.inputs import Health, InputState, Source
+from ballscrew_monitor.core.inputs import Health, InputState, Source, Why, YEAR
 from ballscrew_monitor.core.judgement import Code, Gate, Level
 from ballscrew_monitor.core.state import Event, State
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
@@ -24,7 +24,9 @@ OK, WARN = DiagnosticStatus.OK, DiagnosticStatus.WARN
 ERROR, STALE = DiagnosticStatus.ERROR, DiagnosticStatus.STALE
 NOT_SET = 'no message was set'
 NOTHING_YET = 'nothing has been judged yet'
-CLOCK_STANDS = 'the clock stands still, nothing is seen to go stale'
+CLOCK_STANDS = (
+    'the clock stands still, nothing is seen to go stale: play /clock, or unset use_sim_time'
+)
 INACTIVE = 'the node is inactive, nothing is judged'
 PARTS = ('Lubrication', 'Inputs', 'Surface')
 Summary = tuple[bytes, str]  # level and message of a status
@@ -50,6 +52,31 @@ _INPUT_WORDS = {
     InputState.BAD: 'is not usable',
     InputState.UNKNOWN: 'is unknown',
 }
+# Numbers are among the values: the text changes with the fault alone.
+_REFUSED = {
+    Why.NOT_A_NUMBER: 'it is not a finite number',
+    Why.FUTURE: 'its stamps lie ahead of the clock, set the clocks alike or raise max_future',
+}
+_TROUBLES: tuple[tuple[Callable[[Health], bool], str], ...] = (
+    (
+        lambda health: health.losing,
+        'messages are lost on the way: lower their rate, raise publish_period, or give the node '
+        'more of the processor',
+    ),
+    (
+        lambda health: health.lag > seconds(YEAR),
+        'stamps are of simulated time and the node runs on the wall clock: set use_sim_time',
+    ),
+    (
+        lambda health: health.lagging,
+        'stamps lag behind their arrival: set the clocks alike, or raise max_lag',
+    ),
+    (lambda health: health.slow, 'slower than the timeout'),
+    (
+        lambda health: health.lost is None,
+        'loss is unknown: let the topic have one publisher that numbers its messages',
+    ),
+)
 
 
 def blank(node: str, axis: str) -> list[DiagnosticStatus]:
@@ -132,17 +159,22 @@ def _lubrication(state: State, event: Event) -> Summary:
 
 
 def _inputs(inputs: tuple[Health, ...]) -> Summary:
-    faults = [
-        f'{health.source.name.lower()} {_INPUT_WORDS[health.state]}'
-        for health in inputs
-        if health.state in _INPUT_WORDS
-    ]
+    """Return one sentence for each fault, with what mends it; the worst kind of fault alone."""
+    faults = [_fault(health) for health in inputs if health.state in _INPUT_WORDS]
     if faults:
         return STALE, ', '.join(faults)
-    slow = [health.source.name.lower() for health in inputs if health.slow]
-    if slow:
-        return WARN, f'{" and ".join(slow)} slower than the timeout'
+    for happens, text in _TROUBLES:
+        names = [health.source.name.lower() for health in inputs if happens(health)]
+        if names:
+            return WARN, f'{" and ".join(names)} {text}'
     return OK, 'all inputs arrive'
+
+
+def _fault(health: Health) -> str:
+    words = _INPUT_WORDS[health.state]
+    if health.state is InputState.BAD and health.why in _REFUSED:
+        words += f': {_REFUSED[health.why]}'
+    return f'{health.source.name.lower()} {words}'
 
 
 def _lubrication_values(state: State) -> list[tuple[str, object]]:
@@ -181,7 +213,10 @@ def _input_values(inputs: tuple[Health, ...]) -> list[tuple[str, object]]:
             (f'{name} rate [Hz]', health.rate),
             (f'{name} received [-]', health.received),
             (f'{name} dropped [-]', health.dropped),
+            (f'{name} lost [-]', 'unknown' if health.lost is None else health.lost),
             (f'{name} stamps', health.stamp_source.name),
+            (f'{name} lag [s]', health.lag),
+            (f'{name} refused', health.refusal),
         ]
     return values
 

@@ -145,6 +145,10 @@ def fill_health(message: InputHealth, health: inputs.Health) -> None:
     message.rate = float(health.rate)
     message.received = health.received
     message.dropped = health.dropped
+    message.lost = health.lost or 0
+    message.lost_known = health.lost is not None
+    message.lag = float(health.lag)
+    message.refusal = health.refusal
 
 
 def fill_totals(message: Any, totals: tally.Totals) -> None:

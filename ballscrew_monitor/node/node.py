@@ -10,11 +10,12 @@ import traceback
 from typing import Any
 
 from ballscrew_monitor.core.conversions import nanoseconds
-from ballscrew_monitor.core.inputs import Input
+from ballscrew_monitor.core.inputs import Refusal, Sample
 from ballscrew_monitor.core.pulse import Pulse
 from ballscrew_monitor.core.state import State
 from ballscrew_monitor.node import diagnostics, parameters
-from ballscrew_monitor.node.axis import build_axis, check_topics, reload_surface
+from ballscrew_monitor.node.axis import Axis, build_axis, check_topics, reload_surface
+from ballscrew_monitor.node.intake import Intake
 from ballscrew_monitor.node.parameter_store import ParameterStore
 from ballscrew_monitor.node.station import STATE_QOS, Station
 from ballscrew_msgs.srv import EvaluateOperatingPoint
@@ -24,18 +25,11 @@ from rclpy.clock import Clock, ClockType
 from rclpy.exceptions import ParameterException
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
-from rclpy.qos import QoSDurabilityPolicy, QoSHistoryPolicy, QoSProfile, QoSReliabilityPolicy
 from rclpy.signals import SignalHandlerOptions
 from std_srvs.srv import Trigger
 from surrogate.files import InputError
 
 SUCCESS, FAILURE = TransitionCallbackReturn.SUCCESS, TransitionCallbackReturn.FAILURE
-INPUT_QOS = QoSProfile(
-    history=QoSHistoryPolicy.KEEP_LAST,
-    depth=200,
-    reliability=QoSReliabilityPolicy.BEST_EFFORT,
-    durability=QoSDurabilityPolicy.VOLATILE,
-)
 NEWS_INTERVAL = nanoseconds(0.1)  # [ns] shortest time between two diagnostics sent for a change
 POLL = 0.2  # [s] longest wait before a signal is noticed
 
@@ -64,7 +58,7 @@ class BallscrewMonitor(LifecycleNode):
         self._active = False
         self._finalized = False
         self._reason = 'not configured'
-        self._inputs: list[Any] = []
+        self._intake: Intake | None = None
         self._tick_timer: Any = None
         self._steady = Clock(clock_type=ClockType.STEADY_TIME)
         self._news_time = 0
@@ -120,7 +114,8 @@ class BallscrewMonitor(LifecycleNode):
         for station in self._stations.values():
             station.publish_info()
             station.publish_event()
-        self._subscribe()
+        axes = [station.axis for station in self._stations.values()]
+        self._intake = Intake(self, axes, self._on_event)
         self._tick_timer = self.create_timer(
             self._values['tick_period'], self._on_tick, clock=self._tick_clock()
         )
@@ -135,25 +130,6 @@ class BallscrewMonitor(LifecycleNode):
 
         """
         return self.get_clock() if self.get_parameter('use_sim_time').value else self._steady
-
-    def _subscribe(self) -> None:
-        """Subscribe once to each topic, however many inputs read it."""
-        readers: dict[str, list[tuple[Station, Input]]] = {}
-        for station in self._stations.values():
-            for source in station.axis.inputs:
-                readers.setdefault(self.resolve_topic_name(source.topic), []).append(
-                    (station, source)
-                )
-        for topic, those in readers.items():
-            subscription = self.create_subscription(
-                those[0][1].message_type,
-                topic,
-                functools.partial(self._on_message, those),
-                INPUT_QOS,
-            )
-            self._inputs.append(subscription)
-            for station, source in those:
-                station.subscriptions[source.source] = subscription
 
     @_reported
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
@@ -183,11 +159,9 @@ class BallscrewMonitor(LifecycleNode):
 
     def _stop(self) -> None:
         self._active = False
-        for subscription in self._inputs:
-            self.destroy_subscription(subscription)
-        self._inputs = []
-        for station in self._stations.values():
-            station.subscriptions = {}
+        if self._intake is not None:
+            self._intake.close()
+            self._intake = None
         if self._tick_timer is not None:
             self.destroy_timer(self._tick_timer)
             self._tick_timer = None
@@ -201,20 +175,15 @@ class BallscrewMonitor(LifecycleNode):
         self._reason = reason
         self._publish_diagnostics()
 
-    def _on_message(self, readers: list[tuple[Station, Input]], message: Any) -> None:
-        self._pulse.take_input()
-        now = self.get_clock().now().nanoseconds
-        for station, source in readers:
-            axis = station.axis
-            event = source.read(message, now=now, max_future=axis.max_future)
-            self._publish(station, axis.monitor.update(event))
+    def _on_event(self, axis: Axis, event: Sample | Refusal) -> None:
+        self._publish(self._stations[axis.name], axis.monitor.update(event))
 
     def _on_tick(self) -> None:
-        """Tick on the grid of stamps, when that is due."""
-        now = self.get_clock().now().nanoseconds
-        grid = self._pulse.tick(now, self._steady.now().nanoseconds)
-        if grid is None:
+        """Tick on the grid of stamps, when that is due; what has arrived by then comes first."""
+        grid = self._pulse.tick(self.get_clock().now().nanoseconds)
+        if grid is None or self._intake is None:
             return
+        self._intake.drain()
         for station in self._stations.values():
             self._publish(station, station.axis.monitor.tick(grid))
 
@@ -242,26 +211,24 @@ class BallscrewMonitor(LifecycleNode):
         made = []
         for name in self._values['axes']:
             if name in self._stations:
-                made += self._stations[name].statuses(active=self._active, stood=stood)
+                publishers = self._intake.publishers(name) if self._intake else None
+                made += self._stations[name].statuses(publishers=publishers, stood=stood)
             else:
                 made += diagnostics.failed(self.get_name(), name, self._reason)
         return made
 
     def _on_evaluate(self, request: Any, response: Any) -> Any:
         """Answer what the surface says of the points; nothing is judged meanwhile."""
-        begin = self._steady.now().nanoseconds
         station = self._stations.get(request.axis)
         if station is None:
             known = ', '.join(self._stations) or 'none, the node is not configured'
             response.message = f'axis {request.axis!r} is unknown, known are: {known}'
         else:
             station.evaluate(request.points, response)
-        self._pulse.be_busy(begin, self._steady.now().nanoseconds)
         return response
 
     def _on_reload(self, request: Any, response: Any) -> Any:
         """Swap every surface for the file as it is now, if all of them verify."""
-        begin = self._steady.now().nanoseconds
         try:
             surfaces = {
                 name: reload_surface(station.axis, self._values)
@@ -273,7 +240,6 @@ class BallscrewMonitor(LifecycleNode):
             return response
         for name, station in self._stations.items():
             station.use_surface(surfaces[name], self._values)
-        self._pulse.be_busy(begin, self._steady.now().nanoseconds)
         return self._answer(response, 'reloaded the surface')
 
     def _on_reset(self, request: Any, response: Any) -> Any:

@@ -307,12 +307,21 @@ AXIS_ROWS = (
         text='A stamp further ahead of the clock is refused.',
     ),
     Row(
+        name='max_lag',
+        default=0.2,
+        unit='s',
+        low=1e-3,
+        high=3600.0,
+        text='Stamps further behind their arrival are warned of; they are judged all the same.',
+    ),
+    Row(
         name='publish_period',
-        default=0.0,
+        default=0.1,
         unit='s',
         low=0.0,
         high=3600.0,
         change=Change.LIVE,
-        text='Period of the state topic; 0: a state for every judged speed sample.',
+        text='Period of the state topic, besides each change of the level; '
+        '0: a state for every judged speed sample.',
     ),
 )

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the node keeps of one axis: the axis, its publishers, and what it last said."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ballscrew_monitor.core.estimate import estimate
@@ -40,7 +40,6 @@ class Station:
     def __init__(self, node: LifecycleNode, axis: Axis) -> None:
         """Make the publishers, which stay silent until the node is active."""
         self.axis = axis
-        self.subscriptions: dict[Source, Any] = {}
         self._node = node
         self._writer = StateWriter(axis.name, TIERS[axis.surface.tier])
         self._last: State | None = None
@@ -119,19 +118,22 @@ class Station:
         else:
             self._node.get_logger().warning(f'axis {self.axis.name}: {text}')
 
-    def statuses(self, *, active: bool, stood: int) -> list[DiagnosticStatus]:
-        """Return the diagnostics of the axis after the clock has stood for `stood` [ns]."""
-        matched = {
-            source: subscription.get_publisher_count()
-            for source, subscription in self.subscriptions.items()
-        }
+    def statuses(
+        self, *, publishers: Mapping[Source, int] | None, stood: int
+    ) -> list[DiagnosticStatus]:
+        """
+        Return the diagnostics of the axis after the clock has stood for `stood` [ns].
+
+        `publishers` says how many each input is matched with; None: the node is inactive.
+
+        """
         return diagnostics.statuses(
             self._node.get_name(),
             self.axis.name,
             self._last,
             self.axis.monitor.event,
             self.axis.surface,
-            publishers=matched if active else None,
+            publishers=publishers,
             clock_stands=stood > self.axis.monitor.settings.timeouts[Source.SPEED],
         )
 

@@ -385,6 +385,82 @@ def test_a_load_of_an_earlier_time_line_leaves_the_filters_alone(core):
     assert monitor.level is Level.WARN
 
 
+def lagging(events, lag):
+    """Return samples whose stamps lie `lag` [ns] behind their arrivals, which stay."""
+    return [
+        dataclasses.replace(event, stamp=event.stamp - lag, arrival=event.stamp)
+        for event in events
+    ]
+
+
+@pytest.mark.parametrize('lag', [6 * SECOND // 10, 3 * SECOND, -SECOND // 20])
+def test_a_source_with_a_constant_offset_is_judged_like_any_other(core, lag):
+    """Whatever the stamps say, with the ticks of a node between the samples."""
+    monitor, plain = slow_is_bad(core, max_lag=SECOND // 5), slow_is_bad(core)
+    states = []
+    for i in range(300):
+        number = 40.0 if i > 120 else 10.0
+        pair = motion(number, start=START + i * STEP)
+        ticks = [(TICK, START + i * STEP)] if i and i % 10 == 0 else []
+        states += feed(monitor, [*lagging(pair, lag), *ticks])
+        feed(plain, [*pair, *ticks])
+        assert monitor.level is plain.level
+    assert [state.stamp for state in states] == [START - lag + i * STEP for i in range(300)]
+    assert {state.estimate.validity for state in states} == {Validity.VALID}
+    assert monitor.level is Level.OK
+    assert monitor.event.number == 1
+    assert states[-1].inputs[0].lag == pytest.approx(lag / SECOND)
+    assert states[-1].inputs[0].lagging is (lag > SECOND // 5)
+
+
+def test_a_warning_clears_though_the_stamps_drift(core):
+    monitor = slow_is_bad(core)
+    feed(monitor, motion(10.0, count=60))
+    for i in range(210):
+        pair = motion(40.0, start=START + SECOND + i * STEP)
+        feed(monitor, [*lagging(pair, i * STEP // 2), (TICK, START + SECOND + i * STEP)])
+    assert monitor.level is Level.OK
+
+
+def test_a_stamped_speed_goes_with_a_load_that_is_timed_by_its_arrival(core):
+    monitor = core.monitor()
+    late = SECOND
+    for i in range(20):
+        force, fast = motion(10.0, start=START + i * STEP)
+        state = feed(monitor, [force, *lagging([fast], late)])[-1]
+        assert state.verdict.zone is Zone.OPTIMAL
+
+
+def test_a_lagging_speed_that_dies_goes_stale_by_its_arrival_on_its_own_time_line(core):
+    monitor = slow_is_bad(core, max_lag=SECOND // 5)
+    lag = SECOND
+    feed(monitor, lagging(motion(10.0, count=60), lag))
+    last = START + 59 * STEP
+    assert monitor.tick(last + TIMEOUT) is None
+    state = monitor.tick(last + TIMEOUT + 1)
+    assert state.estimate.validity is Validity.NO_INPUT
+    assert state.stamp == last + TIMEOUT + 1 - lag
+    assert state.level is Level.WARN
+
+
+def test_a_clock_that_is_set_back_does_not_hide_a_dead_speed(core):
+    """The stamps come from another machine, whose clock runs on."""
+    monitor = core.monitor()
+    feed(monitor, [(TICK, START), *lagging(motion(10.0), 5 * SECOND)])
+    back = START - 4 * SECOND
+    assert monitor.tick(back) is None
+    assert monitor.tick(back + TIMEOUT + 1).estimate.validity is Validity.NO_INPUT
+
+
+def test_what_was_lost_is_told_with_the_next_state(core):
+    monitor = core.monitor()
+    force, fast = motion(10.0)
+    feed(monitor, [force])
+    state = monitor.update(dataclasses.replace(fast, lost=7))
+    assert (state.inputs[0].lost, state.inputs[0].losing) == (7, True)
+    assert (state.inputs[1].lost, state.inputs[1].losing) == (0, False)
+
+
 def test_totals_reset(core):
     monitor = core.monitor()
     assert feed(monitor, motion(10.0, count=11))[-1].totals.running_time == 10 * STEP

@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the diagnostics say, case by case."""
 
+import dataclasses
+
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.inputs import Refusal, Sample, Source, Why
 from ballscrew_monitor.core.state import Event
@@ -10,16 +12,18 @@ from ballscrew_monitor.node.diagnostics import ERROR, OK, STALE, WARN
 import pytest
 
 START = 1000 * SECOND
+WALL = 1_800_000_000 * SECOND
 
 
 def sample(source, value, stamp=START):
     return Sample(source=source, value=value, stamp=stamp)
 
 
-def after(core, *events, surface=None, clock_stands=False, **limits):
+def after(core, *events, surface=None, clock_stands=False, settings=None, **limits):
     """Return the statuses after some events, by their part, and the monitor."""
     delays = {'raise_delay': 0, 'clear_delay': 0}
-    monitor, state = core.monitor(surface, core.limits(**(delays | limits))), None
+    limits, state = core.limits(**(delays | limits)), None
+    monitor = core.monitor(surface, limits, **(settings or {}))
     for event in events:
         state = monitor.update(event) or state
     made = diagnostics.statuses(
@@ -99,14 +103,18 @@ def test_a_warning_names_its_cause_and_stands_while_inputs_are_lost(core):
 def test_inputs_name_what_is_wrong(core):
     assert after(core, SPEED)['Inputs'].message == 'load was never received'
     bad = after(core, LOAD, Refusal(source=Source.LOAD, why=Why.FUTURE), SPEED)['Inputs']
-    assert (bad.level, bad.message) == (STALE, 'load is not usable')
+    assert (bad.level, bad.message) == (
+        STALE,
+        'load is not usable: its stamps lie ahead of the clock, set the clocks alike or raise '
+        'max_future',
+    )
     late = sample(Source.SPEED, 10.0, START + 10 * SECOND)
     assert after(core, LOAD, late)['Inputs'].message == 'load is stale'
 
 
 def test_while_the_clock_stands_nothing_is_well_and_a_warning_stays(core):
     made = after(core, LOAD, SPEED, clock_stands=True)
-    stands = (STALE, 'the clock stands still, nothing is seen to go stale')
+    stands = (STALE, diagnostics.CLOCK_STANDS)
     for part in ('Lubrication', 'Inputs'):
         assert (made[part].level, made[part].message) == stands
     assert made['Surface'].level == OK
@@ -123,6 +131,37 @@ def test_an_input_slower_than_its_timeout_is_told(core):
     assert (status.level, status.message) == (OK, 'all inputs arrive')
     status = after(core, *pairs)['Inputs']
     assert (status.level, status.message) == (WARN, 'speed and load slower than the timeout')
+
+
+@pytest.mark.parametrize(
+    ('changes', 'message'),
+    [
+        (
+            {'lost': 2},
+            'speed messages are lost on the way: lower their rate, raise publish_period, or give '
+            'the node more of the processor',
+        ),
+        (
+            {'lost': None},
+            'speed loss is unknown: let the topic have one publisher that numbers its messages',
+        ),
+        (
+            {'stamp': WALL - SECOND},
+            'speed stamps lag behind their arrival: set the clocks alike, or raise max_lag',
+        ),
+        (
+            {'stamp': 5 * SECOND},
+            'speed stamps are of simulated time and the node runs on the wall clock: '
+            'set use_sim_time',
+        ),
+    ],
+)
+def test_a_trouble_of_an_input_has_one_sentence_with_its_cure(core, changes, message):
+    speed = dataclasses.replace(sample(Source.SPEED, 10.0, WALL), **changes)
+    load = sample(Source.LOAD, -1000.0, WALL)
+    arrived = dataclasses.replace(speed, arrival=WALL)
+    status = after(core, load, arrived, settings={'max_lag': SECOND // 2})
+    assert (status['Inputs'].level, status['Inputs'].message) == (WARN, message)
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,145 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Takes what the inputs have received: all that waits, whatever woke the node, by time of arrival.
+
+An executor costs more for each message than its judgement does, and hands the messages of several
+topics over in an order of its own. So the first message of a burst brings along all the others,
+and the clock is asked once for all of them.
+
+"""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+import dataclasses
+import functools
+import operator
+import time
+from typing import Any
+
+from ballscrew_monitor.core.inputs import Input, Refusal, Sample, Source
+from ballscrew_monitor.core.loss import LossCounter
+from ballscrew_monitor.node.axis import Axis
+from rclpy.event_handler import SubscriptionEventCallbacks
+from rclpy.node import Node
+from rclpy.qos import QoSDurabilityPolicy, QoSHistoryPolicy, QoSProfile, QoSReliabilityPolicy
+from rclpy.subscription import Subscription
+
+INPUT_QOS = QoSProfile(
+    history=QoSHistoryPolicy.KEEP_LAST,
+    depth=200,
+    reliability=QoSReliabilityPolicy.BEST_EFFORT,
+    durability=QoSDurabilityPolicy.VOLATILE,
+)
+MOST = 2 * INPUT_QOS.depth  # messages of one topic that are taken before anything else has a turn
+
+Reader = tuple[Axis, Input]
+Take = Callable[[Axis, Sample | Refusal], None]
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Arrival:
+    """A message, its arrival on the clock of this machine [ns], and the topic that it is of."""
+
+    received: int
+    message: Any
+    number: int
+    topic: 'Topic'
+
+
+@dataclasses.dataclass(kw_only=True, slots=True)
+class Topic:
+    """A subscription, who reads its messages, and what was lost of them."""
+
+    readers: Sequence[Reader]
+    loss: LossCounter
+    subscription: Subscription | None = None  # until it is made with a callback of this
+
+    def match(self, event: Any) -> None:
+        """Note how many publishers the topic has now."""
+        self.loss.match(event.current_count)
+
+    def arrival(self, message: Any, info: Mapping[str, Any]) -> Arrival:
+        """Return a message with what the middleware says of it."""
+        return Arrival(
+            info['received_timestamp'], message, info['publication_sequence_number'] or 0, self
+        )
+
+    def waiting(self) -> list[Arrival]:
+        """Return what waits in the queue of the subscription, which is then empty."""
+        found: list[Arrival] = []
+        subscription = self.subscription
+        if subscription is None:
+            return found
+        with subscription.handle as handle:
+            while len(found) < MOST:
+                taken = handle.take_message(subscription.msg_type, subscription.raw)
+                if taken is None:
+                    break
+                found.append(self.arrival(*taken))
+        return found
+
+
+class Intake:
+    """The subscriptions of all axes; each sample and refusal is handed to `take`."""
+
+    def __init__(self, node: Node, axes: Iterable[Axis], take: Take) -> None:
+        """Subscribe once to each topic, however many inputs read it."""
+        self._node = node
+        self._take = take
+        readers: dict[str, list[Reader]] = {}
+        for axis in axes:
+            for source in axis.inputs:
+                readers.setdefault(node.resolve_topic_name(source.topic), []).append(
+                    (axis, source)
+                )
+        self.topics = {name: self._subscribe(name, those) for name, those in readers.items()}
+
+    def _subscribe(self, name: str, readers: list[Reader]) -> Topic:
+        topic = Topic(readers=readers, loss=LossCounter())
+        topic.subscription = self._node.create_subscription(
+            readers[0][1].message_type,
+            name,
+            functools.partial(self._on_message, topic),
+            INPUT_QOS,
+            event_callbacks=SubscriptionEventCallbacks(matched=topic.match),
+        )
+        return topic
+
+    def close(self) -> None:
+        """Unsubscribe."""
+        for topic in self.topics.values():
+            if topic.subscription is not None:
+                self._node.destroy_subscription(topic.subscription)
+        self.topics = {}
+
+    def publishers(self, axis: str) -> dict[Source, int]:
+        """Return how many publishers each input of an axis is matched with."""
+        return {
+            source.source: topic.subscription.get_publisher_count()
+            for topic in self.topics.values()
+            for reader, source in topic.readers
+            if reader.name == axis and topic.subscription is not None
+        }
+
+    def drain(self) -> None:
+        """Take what waits."""
+        self._read([])
+
+    def _on_message(self, topic: Topic, message: Any, info: Mapping[str, Any]) -> None:
+        self._read([topic.arrival(message, info)])
+
+    def _read(self, first: list[Arrival]) -> None:
+        """Hand over the first arrivals and all others that wait, oldest first."""
+        arrivals = first + [one for topic in self.topics.values() for one in topic.waiting()]
+        arrivals.sort(key=operator.attrgetter('received'))
+        now, wall = self._node.get_clock().now().nanoseconds, time.time_ns()
+        for arrival in arrivals:
+            waited = max(wall - arrival.received, 0) if arrival.received else 0
+            self._hand_over(arrival, max(now - waited, 0))
+
+    def _hand_over(self, arrival: Arrival, now: int) -> None:
+        """Hand over a message that arrived at `now` [ns] of the node's clock."""
+        lost = arrival.topic.loss.take(arrival.number)
+        for axis, source in arrival.topic.readers:
+            event = source.read(arrival.message, now=now, max_future=axis.max_future, lost=lost)
+            self._take(axis, event)
