@@ -70,9 +70,9 @@ class Topic:
         subscription = self.subscription
         if subscription is None:
             return found
-        with subscription.handle as handle:
+        with subscription.handle:
             while len(found) < MOST:
-                taken = handle.take_message(subscription.msg_type, subscription.raw)
+                taken = subscription.handle.take_message(subscription.msg_type, subscription.raw)
                 if taken is None:
                     break
                 found.append(self.arrival(*taken))

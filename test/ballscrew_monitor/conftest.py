@@ -33,6 +33,7 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile, QoSReliabilityPolicy
 from sensor_msgs.msg import JointState
+import yaml
 
 with warnings.catch_warnings():
     # A parser that the wheels bring along uses a deprecated module of Python.
@@ -174,9 +175,16 @@ class NodeProcess:
         self.stamp = 0
 
     def start(self, *arguments, **parameters):
-        """Start the node; parameters of axis x are named with `__` for a dot."""
+        """
+        Start the node; parameters of axis x are named with `__` for a dot.
+
+        Each sample gives a state unless told otherwise.
+
+        """
         command = [sys.executable, '-m', 'ballscrew_monitor.node', '--ros-args', *arguments]
-        for name, value in ({'diagnostics_period': 0.1} | parameters).items():
+        axes = yaml.safe_load(parameters.get('axes', '[x]'))
+        defaults = {f'{axis}__publish_period': 0.0 for axis in axes} | {'diagnostics_period': 0.1}
+        for name, value in (defaults | parameters).items():
             command += ['-p', f'{name.replace("__", ".")}:={value}']
         paths = (str(ROOT), os.environ.get('PYTHONPATH', ''))
         environment = child_environment(self.domain)

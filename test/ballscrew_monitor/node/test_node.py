@@ -93,7 +93,7 @@ def test_a_stay_outside_is_warned_of_and_latched_for_late_joiners(node):
 
 
 def test_silence_is_told_on_the_tick_and_clears_nothing(node):
-    node.start(x__speed__timeout=0.2, x__limits__raise_delay=0.0)
+    node.start(x__speed__timeout=0.2, x__limits__raise_delay=0.0, x__max_lag=60.0)
     states, told = node.states(), node.listen(DiagnosticArray, '/diagnostics')
     publish = node.machine()
     node.stamp = node.now() - 10_000_000
