@@ -3,10 +3,11 @@
 """
 A process that solves operating points, one after another.
 
-Run `python -P -m surrogate.on_demand.worker PARENT`, the number of the process that asks. Frames are lines of JSON. In come `{"solve": REQUEST}` and `{"cancel": null}`, out go
-`{"progress": STEP}` and at last `{"solved": RESULT}`, `{"failed": SENTENCE}` or
-`{"cancelled": null}`. The process is nice to others, runs one thread, is deaf to Ctrl-C, and ends
-with its input or its parent. It knows nothing of ROS.
+Run `python -P -m surrogate.on_demand.worker PARENT`, the number of the process that asks. Frames
+are lines of JSON. In come `{"solve": REQUEST}` and `{"cancel": null}`, out go `{"progress": STEP}`
+and at last `{"solved": RESULT}`, `{"failed": SENTENCE}` or `{"cancelled": null}`. The process is
+nice to others, runs one thread, is deaf to Ctrl-C, and ends with its input or its parent. It knows
+nothing of ROS.
 
 """
 

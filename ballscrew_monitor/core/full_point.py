@@ -1,0 +1,111 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+A full solve beside what the surface says of the same point: how far apart, and what follows.
+
+A result may correct a surface only where it is known better than the surface: its own standard
+error must not exceed the error that the surface states there, interpolation and draws together.
+
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+import dataclasses
+import math
+import types
+from typing import Any, TYPE_CHECKING
+
+from ballscrew_monitor.core.conversions import opposing_load
+from ballscrew_monitor.core.estimate import Point
+
+if TYPE_CHECKING:
+    from surrogate.surface import Correction, Surface, SurfacePoint
+
+NAN = math.nan
+JUDGED = ('efficiency', 'rcs')
+"""What the zone is judged by, and so what a surface is corrected for."""
+MODEL = 'full'
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Comparison:
+    """Full solve less surface [-], NaN where either is unknown, and whether that was stated."""
+
+    efficiency: float = NAN
+    rcs: float = NAN
+    within_stated_error: bool = False
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class SolvedAt:
+    """Where a full solve was made: screw speed [rad/s], opposing load [N], temperature [K]."""
+
+    speed: float
+    opposing_load: float
+    temperature: float
+
+
+def solved_at(point: Point) -> SolvedAt:
+    """Return the place on the surface of a point in the machine frame."""
+    return SolvedAt(
+        speed=abs(point.speed),
+        opposing_load=opposing_load(point.axial_load, point.direction),
+        temperature=point.temperature,
+    )
+
+
+def compare(full: SurfacePoint, surface: SurfacePoint | None) -> Comparison:
+    """Hold a full solve against the surface; None: the surface has no answer."""
+    if surface is None:
+        return Comparison()
+    differences = {name: getattr(full, name) - getattr(surface, name) for name in JUDGED}
+    within = all(
+        abs(difference) <= stated_error(surface, name) + _known(getattr(full, f'{name}_stderr'))
+        for name, difference in differences.items()
+    )
+    return Comparison(**differences, within_stated_error=within)
+
+
+def stated_error(surface: SurfacePoint, name: str) -> float:
+    """Return the error that a surface states [-]: interpolation, and draws where there are any."""
+    error: float = getattr(surface, f'{name}_error')
+    return error + _known(getattr(surface, f'{name}_stderr'))
+
+
+def objection(full: SurfacePoint, answer: SurfacePoint | None, surface: Surface) -> str:
+    """Return why a full solve may not correct a surface with this answer; empty if it may."""
+    if surface.tier != MODEL:
+        return f'a surface of the {surface.tier.replace("_", "-")} tier is not corrected'
+    if answer is None:
+        return 'the surface has no answer at this point'
+    for name in JUDGED:
+        own, stated = getattr(full, f'{name}_stderr'), stated_error(answer, name)
+        if math.isnan(own):
+            return 'one draw of the roughness has no standard error, ask for two or more'
+        if own > stated:
+            return (
+                f'the standard error of the result ({name} {own:.2g}) is above the error that '
+                f'the surface states there ({stated:.2g}), ask for more draws'
+            )
+    return ''
+
+
+def corrected(surface: Surface, kept: Iterable[Correction]) -> tuple[Surface, int]:
+    """Return a surface with the corrections of another of the same content, and how many."""
+    count = 0
+    for one in kept:
+        surface = surface.with_correction(one, types.SimpleNamespace(**one.solved))
+        count += 1
+    return surface, count
+
+
+def request_of(surface: Surface, point: Point, draws: int) -> dict[str, Any]:
+    """Return what is asked of the solver: the inputs of the surface, the point, the draws."""
+    inputs: Mapping[str, Any] = surface.header['inputs']
+    place = dataclasses.asdict(solved_at(point))
+    return {'inputs': dict(inputs), 'point': place, 'draws': draws}
+
+
+def _known(number: float) -> float:
+    return 0.0 if math.isnan(number) else number
