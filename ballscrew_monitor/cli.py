@@ -11,9 +11,11 @@ import argparse
 import json
 import os
 from pathlib import Path
+import signal
 import sys
 from typing import Any
 
+from ballscrew_monitor.recordings.interrupts import FAILED, SIGNALLED
 from surrogate.cli import add_commands
 from surrogate.files import InputError
 from surrogate.surface import SurfaceError
@@ -22,7 +24,7 @@ TREE = Path(__file__).resolve().parent.parent
 """The repository, when the package runs from it: the defaults hold in any working directory."""
 BAG, PARAMS = TREE / 'bags' / 'nominal_cycle', TREE / 'config' / 'nominal_cycle.yaml'
 OUT = Path('out')
-FAILED, BAD_INPUT, INTERRUPTED = 1, 2, 130
+BAD_INPUT, INTERRUPTED = 2, SIGNALLED + signal.SIGINT
 # What some commands need beyond the rest, and how to get it.
 NEEDED = {
     'mcap': 'pip install mcap zstandard',
@@ -134,7 +136,8 @@ def _add_play(parser: argparse.ArgumentParser) -> None:
 
 
 def _run(args: argparse.Namespace) -> int:
-    from ballscrew_monitor.cycle.run import plan, run
+    from ballscrew_monitor.cycle.plan import plan
+    from ballscrew_monitor.cycle.run import run
 
     # The log files of ROS belong to this run, not to the home directory.
     os.environ.setdefault('ROS_LOG_DIR', str(args.out.resolve() / 'ros_log'))

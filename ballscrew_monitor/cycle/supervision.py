@@ -12,25 +12,23 @@ active, and announces its subscriptions after that.
 import sys
 import threading
 import time
-from typing import Any, TYPE_CHECKING
+from typing import Any
 
 from ballscrew_monitor.cycle.node_process import NodeProcess
 from ballscrew_monitor.cycle.outcome import Outcome, speed_health
-from ballscrew_monitor.cycle.outputs import output, recorded_topics
+from ballscrew_monitor.cycle.plan import Plan
+from ballscrew_monitor.cycle.recorded_topics import recorded_topics
 from ballscrew_monitor.cycle.status import progress_bar, state_cells, StatusLine
+from ballscrew_monitor.node.topics import absolute, input_topics, output
 from ballscrew_monitor.recordings.bag_writer import BagWriter
 from ballscrew_monitor.recordings.player import Played, Player
 from ballscrew_monitor.recordings.recorder import Recorder
-from ballscrew_monitor.recordings.replay import absolute, input_topics
 from ballscrew_msgs.msg import BallScrewState
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 import rclpy
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.serialization import deserialize_message
 from rclpy.signals import SignalHandlerOptions
-
-if TYPE_CHECKING:
-    from ballscrew_monitor.cycle.run import Plan
 
 START_PATIENCE = 30.0  # [s] until the node is active and matched
 SETTLE_PATIENCE = 2.0  # [s] for the last messages after the end of the bag
@@ -45,7 +43,7 @@ class Failure(Exception):
 class Supervision:
     """The ROS side of a run; a context manager that leaves no thread and no context behind."""
 
-    def __init__(self, plan: 'Plan', node: NodeProcess, writer: BagWriter, domain: int) -> None:
+    def __init__(self, plan: Plan, node: NodeProcess, writer: BagWriter, domain: int) -> None:
         """Join the domain and subscribe to the outputs before the node can have any."""
         self._plan, self._process, self._writer = plan, node, writer
         self._states: dict[str, bytes] = {}

@@ -23,8 +23,8 @@ from ballscrew_monitor.core.conversions import (
     torque_scaling,
 )
 from ballscrew_monitor.core.inputs import Input, make_input, Sample, Source
+from ballscrew_monitor.node.topics import absolute
 from ballscrew_monitor.recordings.bag import Bag
-from ballscrew_monitor.recordings.replay import absolute
 import numpy as np
 from numpy.typing import NDArray
 from rclpy.serialization import deserialize_message

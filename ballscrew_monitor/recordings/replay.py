@@ -16,9 +16,10 @@ from typing import Any, NamedTuple
 
 from ballscrew_monitor.core.conversions import nanoseconds
 from ballscrew_monitor.core.inputs import Input, Refusal, Sample, Source
-from ballscrew_monitor.core.monitor import State
+from ballscrew_monitor.core.state import State
 from ballscrew_monitor.node.axis import Axis, build_axis
 from ballscrew_monitor.node.messages import out_of_zone_message, StateWriter, TIERS
+from ballscrew_monitor.node.topics import absolute, input_topics
 from ballscrew_monitor.recordings.bag import Bag, Message
 from ballscrew_msgs.msg import BallScrewState, OutOfZone
 from rclpy.serialization import deserialize_message
@@ -34,17 +35,6 @@ class Judged(NamedTuple):
 
     state: BallScrewState
     event: OutOfZone | None
-
-
-def input_topics(values: Mapping[str, Any]) -> dict[str, str]:
-    """Return topic and type of every input configured in the parameters `values`."""
-    found = {}
-    for axis in values['axes']:
-        for name in ('speed', 'load', 'temperature', 'torque'):
-            topic = values[f'{axis}.{name}.topic']
-            if topic:
-                found[absolute(topic)] = values[f'{axis}.{name}.type']
-    return found
 
 
 def speed_messages(bag: Bag, axes: Sequence[Axis]) -> dict[str, int]:
@@ -69,11 +59,6 @@ def speed_messages(bag: Bag, axes: Sequence[Axis]) -> dict[str, int]:
                 f'the speed of axis {name}, at least one must'
             )
     return counts
-
-
-def absolute(topic: str) -> str:
-    """Return the full name of a topic that a node in the root namespace names."""
-    return topic if topic.startswith('/') else f'/{topic}'
 
 
 def replay(bag: Bag, values: Mapping[str, Any]) -> Iterator[Judged]:
