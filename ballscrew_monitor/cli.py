@@ -8,7 +8,6 @@ Subcommands that need ROS import it in their handlers, so that the offline ones 
 """
 
 import argparse
-import json
 import os
 from pathlib import Path
 import signal
@@ -17,7 +16,7 @@ from typing import Any
 
 from ballscrew_monitor.recordings.interrupts import FAILED, SIGNALLED
 from surrogate.cli import add_commands
-from surrogate.files import InputError
+from surrogate.files import InputError, json_text
 from surrogate.surface import SurfaceError
 
 TREE = Path(__file__).resolve().parent.parent
@@ -158,13 +157,7 @@ def _replay(args: argparse.Namespace) -> int:
             summarizers[judged.state.axis].add_event(judged.event)
     results = {axis: made.result() for axis, made in summarizers.items()}
     if args.json:
-        print(
-            json.dumps(
-                {axis: result and result.to_json() for axis, result in results.items()},
-                indent=2,
-                allow_nan=False,
-            )
-        )
+        print(json_text({axis: made and made.record() for axis, made in results.items()}))
     else:
         for axis, result in results.items():
             _print_summary(axis, result)

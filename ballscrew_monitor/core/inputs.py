@@ -3,14 +3,19 @@
 """From messages to samples in the machine frame, and the health of each input."""
 
 import collections
-from collections.abc import Callable
 import dataclasses
 import enum
 import math
 from typing import Any
 
-from ballscrew_monitor.core.conversions import Scaling, SECOND, seconds
-from ballscrew_monitor.core.fields import compile_field, message_class
+from ballscrew_monitor.core.conversions import Scaling, seconds
+from ballscrew_monitor.core.fields import (
+    compile_field,
+    FieldReader,
+    message_class,
+    MessageClass,
+    stamp_of,
+)
 
 RATE_SAMPLES = 20  # samples over which the rate is averaged
 SLOW_GAPS = 2  # gaps above the timeout in a row from which on the input is slow, not interrupted
@@ -53,7 +58,7 @@ class Why(enum.IntEnum):
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Sample:
+class InputSample:
     """A number [SI, machine frame] and its time [ns]."""
 
     source: Source
@@ -77,12 +82,12 @@ class Input:
     source: Source
     topic: str
     type_name: str
-    message_type: Any
-    read_field: Callable[[Any], float | None]
+    message_type: MessageClass
+    read_field: FieldReader
     scaling: Scaling
     stamped: bool
 
-    def read(self, message: Any, *, now: int, max_future: int) -> Sample | Refusal:
+    def read(self, message: Any, *, now: int, max_future: int) -> InputSample | Refusal:
         """
         Return the sample in `message`, received at `now` [ns].
 
@@ -93,13 +98,13 @@ class Input:
         value = self.read_field(message)
         if value is None:
             return Refusal(source=self.source, why=Why.OTHER_JOINTS)
-        stamp = _stamp(message) if self.stamped else 0
+        stamp = stamp_of(message) if self.stamped else 0
         if now and stamp - now > max_future:
             return Refusal(source=self.source, why=Why.FUTURE)
         si_value = self.scaling(value)
         if not math.isfinite(si_value):
             return Refusal(source=self.source, why=Why.NOT_A_NUMBER)
-        return Sample(
+        return InputSample(
             source=self.source,
             value=si_value,
             stamp=stamp or now,
@@ -122,11 +127,6 @@ def make_input(
         scaling=scaling,
         stamped=fields.get('header') == 'std_msgs/Header',
     )
-
-
-def _stamp(message: Any) -> int:
-    stamp = message.header.stamp
-    return stamp.sec * SECOND + stamp.nanosec
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -159,11 +159,11 @@ class Tracker:
         self.received = 0
         self.dropped = 0
         self.refused = False  # the last message was refused
-        self.last: Sample | None = None
+        self.last: InputSample | None = None
         self._stamps: collections.deque[int] = collections.deque(maxlen=RATE_SAMPLES)
         self._long_gaps = 0  # in a row
 
-    def accept(self, sample: Sample) -> None:
+    def accept(self, sample: InputSample) -> None:
         """Take a good sample."""
         self.received += 1
         self.refused = False

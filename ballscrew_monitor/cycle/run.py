@@ -22,7 +22,7 @@ from ballscrew_monitor.cycle.node_process import NodeProcess, ros_environment
 from ballscrew_monitor.cycle.outcome import Outcome
 from ballscrew_monitor.cycle.plan import Plan, RECORDING
 from ballscrew_monitor.cycle.report import LOG, losses, picture, report
-from ballscrew_monitor.cycle.supervision import Failure, Supervision
+from ballscrew_monitor.cycle.supervision import RunFailure, Supervision
 from ballscrew_monitor.recordings.bag_writer import BagWriter
 from ballscrew_monitor.recordings.interrupts import DONE, FAILED, interrupts, SIGNALLED
 from surrogate.files import InputError
@@ -70,7 +70,7 @@ def _supervise(made: Plan, stop: threading.Event) -> Outcome:
         supervision = stack.enter_context(Supervision(made, node, writer, domain))
         try:
             return supervision.carry_out(stop)
-        except Failure as failure:
+        except RunFailure as failure:
             return supervision.outcome(str(failure))
 
 

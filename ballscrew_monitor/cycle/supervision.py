@@ -36,7 +36,7 @@ RUN_ON_PATIENCE = 3.0  # [s] of /clock after that, for a node that publishes now
 POLL = 0.05  # [s] longest wait for a message
 
 
-class Failure(Exception):
+class RunFailure(Exception):
     """Why the run cannot go on, as a sentence."""
 
 
@@ -148,14 +148,14 @@ class Supervision:
             self._executor.spin_once(timeout_sec=POLL)
             self._check_node()
             if self._reason:
-                raise Failure(f'the node is {self._reason}')
+                raise RunFailure(f'the node is {self._reason}')
             # Two subscribers of each input: the node and the recorder.
             if self._active == axes and not self._player.unmatched(2):
                 if self._states.keys() == axes:
                     return
                 self._player.show_begin()
             if time.monotonic() > deadline:
-                raise Failure(
+                raise RunFailure(
                     f'the node did not become active within {START_PATIENCE:g} s'
                     + self._last_words()
                 )
@@ -208,7 +208,7 @@ class Supervision:
     def _check_node(self) -> None:
         code = self._process.returncode
         if code is not None:
-            raise Failure(f'the node ended with exit code {code}' + self._last_words())
+            raise RunFailure(f'the node ended with exit code {code}' + self._last_words())
 
     def _stop_node(self) -> None:
         """Stop the node and record what it says at last."""
@@ -220,7 +220,7 @@ class Supervision:
             if self._writer.total == before:
                 break
         if code != 0:
-            raise Failure(
+            raise RunFailure(
                 f'the node ended with exit code {code} when it was asked to stop'
                 + self._last_words()
             )

@@ -15,7 +15,7 @@ import itertools
 from typing import Any, NamedTuple
 
 from ballscrew_monitor.core.conversions import nanoseconds
-from ballscrew_monitor.core.inputs import Input, Refusal, Sample, Source
+from ballscrew_monitor.core.inputs import Input, InputSample, Refusal, Source
 from ballscrew_monitor.core.state import State
 from ballscrew_monitor.node.axis import Axis, build_axis
 from ballscrew_monitor.node.messages import out_of_zone_message, StateWriter, TIERS
@@ -81,7 +81,7 @@ class _Entry(NamedTuple):
     number: int
     log_time: int
     axis: int
-    event: Sample | Refusal | None
+    event: InputSample | Refusal | None
 
 
 def _run(bag: Bag, axes: list[Axis], period: int) -> Iterator[list[Judged]]:
@@ -112,7 +112,7 @@ def _read(bag: Bag, axes: list[Axis]) -> Iterator[_Entry]:
         decoded = _decode(message, readers[message.topic][0][2].message_type)
         for number, axis, source in readers[message.topic]:
             event = source.read(decoded, now=message.log_time, max_future=axis.max_future)
-            stamp = event.stamp if isinstance(event, Sample) else message.log_time
+            stamp = event.stamp if isinstance(event, InputSample) else message.log_time
             yield _Entry(stamp, event.source, next(numbers), message.log_time, number, event)
 
 

@@ -15,11 +15,11 @@ import types
 import warnings
 
 from ballscrew_monitor.core.conversions import direction_of, SECOND
-from ballscrew_monitor.core.estimate import Point, PointSource, Validity
+from ballscrew_monitor.core.estimate import MachinePoint, PointSource, PointValidity
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.core.monitor import Monitor
-from ballscrew_monitor.core.state import Settings
+from ballscrew_monitor.core.state import MonitorSettings
 from ballscrew_monitor.cycle.domain import free_domain
 from ballscrew_monitor.cycle.node_process import child_environment
 from ballscrew_msgs.msg import BallScrewState
@@ -49,7 +49,7 @@ DEADLINE = 30.0  # [s] for anything that another process has to do
 class Numbers:
     """What a surface says of a point."""
 
-    validity: Validity = Validity.VALID
+    validity: PointValidity = PointValidity.VALID
     rcs: float = 0.0
     efficiency: float = 0.9
     film_ratio: float = 3.0
@@ -91,13 +91,13 @@ class ConstantSurface:
     def lookup(self, speed, opposing_load, temperature):
         self.asked.append((speed, opposing_load, temperature))
         if not self.speed_range[0] <= speed:
-            return Numbers(validity=Validity.SPEED_BELOW_RANGE)
+            return Numbers(validity=PointValidity.SPEED_BELOW_RANGE)
         if not speed <= self.speed_range[1]:
-            return Numbers(validity=Validity.SPEED_ABOVE_RANGE)
+            return Numbers(validity=PointValidity.SPEED_ABOVE_RANGE)
         if not self.load_range[0] <= opposing_load <= self.load_range[1]:
-            return Numbers(validity=Validity.LOAD_OUT_OF_RANGE)
+            return Numbers(validity=PointValidity.LOAD_OUT_OF_RANGE)
         if not self.temperature_range[0] <= temperature <= self.temperature_range[1]:
-            return Numbers(validity=Validity.TEMPERATURE_OUT_OF_RANGE)
+            return Numbers(validity=PointValidity.TEMPERATURE_OUT_OF_RANGE)
         return Numbers(
             **{
                 name: value(speed, opposing_load) if callable(value) else value
@@ -128,7 +128,9 @@ def make_point(speed=10.0, axial_load=-1000.0, temperature=313.15, **changes):
         'temperature_source': PointSource.MEASURED,
         'direction': direction_of(speed),
     }
-    return Point(speed=speed, axial_load=axial_load, temperature=temperature, **(values | changes))
+    return MachinePoint(
+        speed=speed, axial_load=axial_load, temperature=temperature, **(values | changes)
+    )
 
 
 def make_monitor(surface=None, limits=None, **changes):
@@ -139,7 +141,7 @@ def make_monitor(surface=None, limits=None, **changes):
         'default_temperature': 313.15,
         'timeouts': {Source.SPEED: SECOND // 2, Source.LOAD: SECOND // 2},
     }
-    return Monitor(surface or ConstantSurface(), Settings(**(values | changes)))
+    return Monitor(surface or ConstantSurface(), MonitorSettings(**(values | changes)))
 
 
 @pytest.fixture(scope='session')

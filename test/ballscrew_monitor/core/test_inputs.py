@@ -6,10 +6,10 @@ import math
 
 from ballscrew_monitor.core.conversions import Scaling, SECOND
 from ballscrew_monitor.core.inputs import (
+    InputSample,
     InputState,
     make_input,
     Refusal,
-    Sample,
     Source,
     StampSource,
     Tracker,
@@ -43,7 +43,7 @@ def test_a_header_stamp_is_the_stamp():
     sample = speed_input().read(
         joints('x_axis', velocity=[3.0], stamp=NOW - 5), now=NOW, max_future=0
     )
-    assert sample == Sample(
+    assert sample == InputSample(
         source=Source.SPEED, value=3.0, stamp=NOW - 5, stamp_source=StampSource.HEADER
     )
 
@@ -61,7 +61,7 @@ def test_a_stamp_exactly_as_far_ahead_as_allowed_is_taken():
     speed = speed_input()
     limit = joints('x_axis', velocity=[3.0], stamp=NOW + 7)
     beyond = joints('x_axis', velocity=[3.0], stamp=NOW + 8)
-    assert isinstance(speed.read(limit, now=NOW, max_future=7), Sample)
+    assert isinstance(speed.read(limit, now=NOW, max_future=7), InputSample)
     assert speed.read(beyond, now=NOW, max_future=7) == Refusal(
         source=Source.SPEED, why=Why.FUTURE
     )
@@ -70,7 +70,7 @@ def test_a_stamp_exactly_as_far_ahead_as_allowed_is_taken():
 def test_a_clock_that_has_not_started_refuses_no_stamp():
     assert isinstance(
         speed_input().read(joints('x_axis', velocity=[3.0], stamp=NOW), now=0, max_future=0),
-        Sample,
+        InputSample,
     )
 
 
@@ -97,7 +97,7 @@ def tracker(**changes):
 
 
 def sample(stamp):
-    return Sample(source=Source.LOAD, value=1.0, stamp=stamp)
+    return InputSample(source=Source.LOAD, value=1.0, stamp=stamp)
 
 
 def test_a_sample_exactly_as_old_as_the_timeout_is_good():

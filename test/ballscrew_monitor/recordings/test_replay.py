@@ -5,13 +5,13 @@
 import itertools
 from pathlib import Path
 
+from ballscrew_monitor.core.fields import stamp_of
 from ballscrew_monitor.core.inputs import InputState
 from ballscrew_monitor.node import parameters
 from ballscrew_monitor.node.axis import build_axis
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
 from ballscrew_monitor.recordings.replay import LONGEST_HOLE, replay, speed_messages
-from ballscrew_monitor.recordings.summary import stamp_of
 from geometry_msgs.msg import WrenchStamped
 import pytest
 from rclpy.serialization import serialize_message
