@@ -2,11 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """A surface of constants for exact tests of the core, and the node in a process of its own."""
 
+import collections
 import contextlib
 import dataclasses
+import fcntl
 import math
 import os
 import pathlib
+import re
 import signal
 import subprocess
 import sys
@@ -20,7 +23,7 @@ from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.core.monitor import Monitor
 from ballscrew_monitor.core.state import MonitorSettings
-from ballscrew_monitor.cycle.domain import free_domain
+from ballscrew_monitor.cycle.domain import DOMAIN_GAIN, DOMAINS, free_domain, held, PORT_BASE
 from ballscrew_monitor.cycle.node_process import child_environment
 from ballscrew_msgs.msg import BallScrewState
 from diagnostic_msgs.msg import DiagnosticArray
@@ -42,6 +45,11 @@ with warnings.catch_warnings():
 os.environ['ROS_PYTHON_CHECK_FIELDS'] = '1'
 os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+SHARED_MEMORY = pathlib.Path('/dev/shm')
+# A segment or a port, its lock files, and the mutex of a port.
+SEGMENT = re.compile(
+    r'(?:sem\.)?(?P<name>fast(?:rtps|dds)_(?:port(?P<port>\d+)|[0-9a-f]{16}))(?:_el|_sl|_mutex)?'
+)
 DEADLINE = 30.0  # [s] for anything that another process has to do
 
 
@@ -154,6 +162,58 @@ def core():
         point=make_point,
         monitor=make_monitor,
     )
+
+
+def stale_segments(folder, free_domains):
+    """
+    Return the files of FastDDS in `folder` that nobody uses any more.
+
+    A segment of a participant has a random name and a lock file, which its process keeps locked
+    with flock(2) as long as it lives: where the lock can be had the owner is gone for good, which
+    is the rule of `fastdds shm clean` too. A port has a number that another participant of the
+    domain will want again, and not always a lock file: its domain must be one of `free_domains`
+    as well, in which nobody is and into which nobody comes meanwhile.
+
+    """
+    groups = collections.defaultdict(list)
+    for path in folder.iterdir():
+        found = SEGMENT.fullmatch(path.name)
+        if found:
+            groups[found['name'], found['port']].append(path)
+    return {
+        path
+        for (_, port), paths in groups.items()
+        for locks in [[path for path in paths if path.name.endswith(('_el', '_sl'))]]
+        if not any(map(is_locked, locks))
+        if (domain_of(int(port)) in free_domains if port else locks)
+        for path in paths
+    }
+
+
+def is_locked(path):
+    """Tell whether a process holds the lock file; one that is not ours to open counts as held."""
+    try:
+        with path.open('rb') as file:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        return True
+    return False
+
+
+def domain_of(port):
+    """Return the domain of the number of a port."""
+    return (port - PORT_BASE) // DOMAIN_GAIN
+
+
+@pytest.fixture(scope='session', autouse=True)
+def shared_memory():
+    """Remove at the end what killed nodes have left in the shared memory."""
+    yield stale_segments
+    with contextlib.ExitStack() as stack:
+        free = {domain for domain in DOMAINS if stack.enter_context(held(domain))}
+        for path in stale_segments(SHARED_MEMORY, free) if SHARED_MEMORY.is_dir() else ():
+            with contextlib.suppress(FileNotFoundError, PermissionError):
+                path.unlink()
 
 
 class NodeProcess:
