@@ -8,21 +8,22 @@ Subcommands that need ROS import it in their handlers, so that the offline ones 
 """
 
 import argparse
-import json
 import os
 from pathlib import Path
+import signal
 import sys
 from typing import Any
 
+from ballscrew_monitor.recordings.interrupts import FAILED, SIGNALLED
 from surrogate.cli import add_commands
-from surrogate.files import InputError
+from surrogate.files import InputError, json_text
 from surrogate.surface import SurfaceError
 
 TREE = Path(__file__).resolve().parent.parent
 """The repository, when the package runs from it: the defaults hold in any working directory."""
 BAG, PARAMS = TREE / 'bags' / 'nominal_cycle', TREE / 'config' / 'nominal_cycle.yaml'
 OUT = Path('out')
-FAILED, BAD_INPUT, INTERRUPTED = 1, 2, 130
+BAD_INPUT, INTERRUPTED = 2, SIGNALLED + signal.SIGINT
 # What some commands need beyond the rest, and how to get it.
 NEEDED = {
     'mcap': 'pip install mcap zstandard',
@@ -134,7 +135,8 @@ def _add_play(parser: argparse.ArgumentParser) -> None:
 
 
 def _run(args: argparse.Namespace) -> int:
-    from ballscrew_monitor.cycle.run import plan, run
+    from ballscrew_monitor.cycle.plan import plan
+    from ballscrew_monitor.cycle.run import run
 
     # The log files of ROS belong to this run, not to the home directory.
     os.environ.setdefault('ROS_LOG_DIR', str(args.out.resolve() / 'ros_log'))
@@ -155,13 +157,7 @@ def _replay(args: argparse.Namespace) -> int:
             summarizers[judged.state.axis].add_event(judged.event)
     results = {axis: made.result() for axis, made in summarizers.items()}
     if args.json:
-        print(
-            json.dumps(
-                {axis: result and result.to_json() for axis, result in results.items()},
-                indent=2,
-                allow_nan=False,
-            )
-        )
+        print(json_text({axis: made and made.record() for axis, made in results.items()}))
     else:
         for axis, result in results.items():
             _print_summary(axis, result)

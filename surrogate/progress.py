@@ -13,6 +13,12 @@ LOG_SHARE, LOG_PAUSE = 0.1, 60.0
 """A log gets a line per this share of the work [-], or after this time [s] if that is sooner."""
 
 
+def bar(share: float, width: int, *, blank: str = ' ') -> str:
+    """Return a bar of `width` characters for the `share` done [-], full only when all is."""
+    filled = '#' * int(width * min(max(share, 0.0), 1.0))
+    return f'{filled:{blank}<{width}}'
+
+
 class Progress:
     """
     Counts what is done out of a total, with the rate and the time that is left.
@@ -32,7 +38,7 @@ class Progress:
         """Begin; `clock` returns seconds, `stream` is stderr by default."""
         self._total, self._unit, self._clock = total, unit, clock
         self._stream = sys.stderr if stream is None else stream
-        self._bar = self._stream.isatty()
+        self._terminal = self._stream.isatty()
         self._begin = self._last = clock()
         self._done = self._there = self._said = 0
 
@@ -44,17 +50,17 @@ class Progress:
         """Count one as done; `there` when it was done before."""
         self._done += 1
         self._there += there
-        if self._bar:
+        if self._terminal:
             self._draw()
         elif self._is_due():
             print(self._text(), file=self._stream, flush=True)
             self._said, self._last = self._done, self._clock()
 
     def _draw(self) -> None:
-        bar = '#' * (WIDTH * self._done // max(self._total, 1))
+        drawn = bar(self._done / max(self._total, 1), WIDTH)
         end = '\n' if self._done == self._total else ''
         # The end of an older, longer line is wiped.
-        print(f'\r[{bar:{WIDTH}}] {self._text()}\x1b[K', end=end, file=self._stream, flush=True)
+        print(f'\r[{drawn}] {self._text()}\x1b[K', end=end, file=self._stream, flush=True)
 
     def _is_due(self) -> bool:
         return (

@@ -33,6 +33,9 @@ NUMERICAL = {
 }
 LOOKUP = {'surrogate', 'surrogate.files', 'surrogate.surface', 'surrogate.units'}
 
+FLOORS = ('core', 'node', 'recordings', 'cycle')
+"""Folders of the online half, the lowest first."""
+
 
 def name_of(path: Path) -> str:
     """Return the dotted name of a module."""
@@ -79,7 +82,20 @@ def test_online_half_imports_the_lookup_alone(path: Path) -> None:
     allowed = LOOKUP | (
         {'surrogate.cli', 'surrogate.parameters'} if path.name == 'cli.py' else set()
     )
+    if path.parent.name == 'cycle':
+        allowed = allowed | {'surrogate.progress'}  # the bar of both halves, text alone
     assert {name for name in imports(path) if name.split('.')[0] == 'surrogate'} <= allowed
+
+
+@pytest.mark.parametrize('path', MODULES['ballscrew_monitor'], ids=name_of)
+def test_online_half_imports_downward(path: Path) -> None:
+    """A folder imports itself and the folders below it; no folder imports the command line."""
+    own = path.parent.name
+    above = {
+        folder for folder in FLOORS if own in FLOORS and FLOORS.index(folder) > FLOORS.index(own)
+    }
+    parts = [name.split('.') for name in imports(path) if name.startswith('ballscrew_monitor.')]
+    assert not {part[1] for part in parts} & {*above, 'cli'}
 
 
 def test_surrogate_loads_no_ros() -> None:

@@ -11,20 +11,15 @@ event only.
 
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 import dataclasses
 import math
-from typing import TYPE_CHECKING
 
 from ballscrew_monitor.core.conversions import axial_load, opposing_load, signed_speed
-from ballscrew_monitor.core.estimate import estimate, Point, Validity
+from ballscrew_monitor.core.estimate import estimate, MachinePoint, PointValidity
 from ballscrew_monitor.core.judgement import clears, Limits
+from surrogate.surface import Surface
 from surrogate.units import RPM
-
-if TYPE_CHECKING:
-    from surrogate.surface import Surface
 
 SCAN_POINTS = 64
 HALVINGS = 20
@@ -52,7 +47,7 @@ class Advice:
         return ' or '.join(parts)
 
 
-def advise(point: Point, surface: Surface, limits: Limits) -> Advice:
+def advise(point: MachinePoint, surface: Surface, limits: Limits) -> Advice:
     """Return the nearest speed and load that clear at `point`, its direction kept."""
     return Advice(
         target_speed=optimal_speed(point, surface, limits),
@@ -60,7 +55,7 @@ def advise(point: Point, surface: Surface, limits: Limits) -> Advice:
     )
 
 
-def optimal_speed(point: Point, surface: Surface, limits: Limits) -> float:
+def optimal_speed(point: MachinePoint, surface: Surface, limits: Limits) -> float:
     """Return the nearest screw speed [rad/s] that clears at this load; NaN if there is none."""
     slowest, fastest = surface.speed_range
     slowest = max(slowest, limits.standstill_speed)
@@ -78,7 +73,7 @@ def optimal_speed(point: Point, surface: Surface, limits: Limits) -> float:
     )
 
 
-def optimal_load(point: Point, surface: Surface, limits: Limits) -> float:
+def optimal_load(point: MachinePoint, surface: Surface, limits: Limits) -> float:
     """
     Return the nearest axial load [N] that clears at this speed; NaN if there is none.
 
@@ -98,13 +93,13 @@ def optimal_load(point: Point, surface: Surface, limits: Limits) -> float:
     return axial_load(_nearest(here, grid, good), point.direction)
 
 
-def _light(point: Point, limits: Limits) -> bool:
+def _light(point: MachinePoint, limits: Limits) -> bool:
     return abs(point.axial_load) < limits.light_load
 
 
-def _good(point: Point, surface: Surface, limits: Limits, *, light: bool) -> bool:
+def _good(point: MachinePoint, surface: Surface, limits: Limits, *, light: bool) -> bool:
     result = estimate(point, surface, rcs_limit=limits.rcs)
-    if result.validity is not Validity.VALID or math.isnan(result.rcs + result.efficiency):
+    if result.validity is not PointValidity.VALID or math.isnan(result.rcs + result.efficiency):
         return False
     return clears(result, limits, light=light)
 

@@ -2,12 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """From an operating point and a surface to what the model says of it; no state, no clock."""
 
-from __future__ import annotations
-
 import dataclasses
 import enum
 import math
-from typing import TYPE_CHECKING
 
 from ballscrew_monitor.core.conversions import (
     celsius,
@@ -17,9 +14,7 @@ from ballscrew_monitor.core.conversions import (
     Nut,
     opposing_load,
 )
-
-if TYPE_CHECKING:
-    from surrogate.surface import Surface, SurfacePoint
+from surrogate.surface import Regime, regime_of, Surface, SurfacePoint
 
 NAN = math.nan
 DOMINANT_RCS = 0.5  # [-] from here on asperities carry the larger part of the load
@@ -34,7 +29,7 @@ class PointSource(enum.IntEnum):
     HELD = 3
 
 
-class Validity(enum.IntEnum):
+class PointValidity(enum.IntEnum):
     """Whether an instant could be judged; PointResult.VALIDITY_, up to 6 those of a surface."""
 
     UNKNOWN = 0
@@ -48,15 +43,6 @@ class Validity(enum.IntEnum):
     NO_SURFACE = 8  # reserved by the message; without a surface the node is not active
 
 
-class Regime(enum.IntEnum):
-    """Lubrication regime by the film ratio; PointResult.REGIME_."""
-
-    UNKNOWN = 0
-    BOUNDARY = 1
-    MIXED = 2
-    HYDRODYNAMIC = 3
-
-
 class ContactState(enum.IntEnum):
     """Asperity contact by RCS; PointResult.CONTACT_."""
 
@@ -67,7 +53,7 @@ class ContactState(enum.IntEnum):
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Point:
+class MachinePoint:
     """
     Where the screw is operated, in the machine frame.
 
@@ -88,7 +74,7 @@ class Point:
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Estimate:
+class PointEstimate:
     """
     What the model says of a point.
 
@@ -98,7 +84,7 @@ class Estimate:
 
     """
 
-    validity: Validity
+    validity: PointValidity
     reason: str = ''
     numbers: SurfacePoint | None = None
     rcs: float = NAN
@@ -107,15 +93,6 @@ class Estimate:
     worst_nut: Nut = Nut.UNKNOWN
     regime: Regime = Regime.UNKNOWN
     contact_state: ContactState = ContactState.UNKNOWN
-
-
-def regime_of(film_ratio: float) -> Regime:
-    """Return the regime of a film ratio [-]: below 1, from 1 to below 3, from 3; NaN unknown."""
-    if math.isnan(film_ratio):
-        return Regime.UNKNOWN
-    if film_ratio < 1.0:
-        return Regime.BOUNDARY
-    return Regime.MIXED if film_ratio < 3.0 else Regime.HYDRODYNAMIC
 
 
 def contact_state_of(rcs: float, *, limit: float) -> ContactState:
@@ -133,22 +110,22 @@ def contact_state_of(rcs: float, *, limit: float) -> ContactState:
     return ContactState.PARTIAL if rcs < DOMINANT_RCS else ContactState.DOMINANT
 
 
-def estimate(point: Point, surface: Surface, *, rcs_limit: float) -> Estimate:
+def estimate(point: MachinePoint, surface: Surface, *, rcs_limit: float) -> PointEstimate:
     """Return what `surface` says of `point`; `rcs_limit` [-] names the contact state."""
     if not _complete(point):
-        return Estimate(validity=Validity.NO_INPUT, reason=_missing(point))
+        return PointEstimate(validity=PointValidity.NO_INPUT, reason=_missing(point))
     if point.direction is Direction.UNKNOWN:
-        return Estimate(
-            validity=Validity.UNKNOWN,
+        return PointEstimate(
+            validity=PointValidity.UNKNOWN,
             reason='the direction of motion is unknown, the screw has not moved yet',
         )
     load = opposing_load(point.axial_load, point.direction)
     numbers = surface.lookup(abs(point.speed), load, point.temperature)
-    validity = Validity(int(numbers.validity))
-    if validity is not Validity.VALID:
-        return Estimate(validity=validity, reason=_outside(validity, point, load, surface))
-    return Estimate(
-        validity=Validity.VALID,
+    validity = PointValidity(int(numbers.validity))
+    if validity is not PointValidity.VALID:
+        return PointEstimate(validity=validity, reason=_outside(validity, point, load, surface))
+    return PointEstimate(
+        validity=PointValidity.VALID,
         numbers=numbers,
         rcs=numbers.rcs,
         efficiency=numbers.efficiency,
@@ -159,7 +136,7 @@ def estimate(point: Point, surface: Surface, *, rcs_limit: float) -> Estimate:
     )
 
 
-def _inputs(point: Point) -> tuple[tuple[str, float, PointSource], ...]:
+def _inputs(point: MachinePoint) -> tuple[tuple[str, float, PointSource], ...]:
     return (
         ('speed', point.speed, point.speed_source),
         ('load', point.axial_load, point.axial_load_source),
@@ -167,7 +144,7 @@ def _inputs(point: Point) -> tuple[tuple[str, float, PointSource], ...]:
     )
 
 
-def _complete(point: Point) -> bool:
+def _complete(point: MachinePoint) -> bool:
     """Tell whether every number is there and none is only held; a held one is never judged."""
     held = PointSource.HELD
     return (
@@ -178,7 +155,7 @@ def _complete(point: Point) -> bool:
     )
 
 
-def _missing(point: Point) -> str:
+def _missing(point: MachinePoint) -> str:
     lost = [
         name
         for name, value, source in _inputs(point)
@@ -189,22 +166,22 @@ def _missing(point: Point) -> str:
     return f'no valid sample of {" and ".join(lost)}'
 
 
-def _outside(validity: Validity, point: Point, load: float, surface: Surface) -> str:
+def _outside(validity: PointValidity, point: MachinePoint, load: float, surface: Surface) -> str:
     """Return why a lookup gave nothing, as a sentence."""
     slowest, fastest = surface.speed_range
-    if validity is Validity.SPEED_BELOW_RANGE:
+    if validity is PointValidity.SPEED_BELOW_RANGE:
         return f'speed {abs(point.speed):.4g} rad/s is below the surface, from {slowest:.4g} rad/s'
-    if validity is Validity.SPEED_ABOVE_RANGE:
+    if validity is PointValidity.SPEED_ABOVE_RANGE:
         return f'speed {abs(point.speed):.4g} rad/s is above the surface, to {fastest:.4g} rad/s'
-    if validity is Validity.LOAD_OUT_OF_RANGE:
+    if validity is PointValidity.LOAD_OUT_OF_RANGE:
         low, high = surface.load_range
         return f'opposing load {load:.4g} N is outside the surface, {low:.4g} to {high:.4g} N'
-    if validity is Validity.TEMPERATURE_OUT_OF_RANGE:
+    if validity is PointValidity.TEMPERATURE_OUT_OF_RANGE:
         low, high = (celsius(limit) for limit in surface.temperature_range)
         return (
             f'oil temperature {celsius(point.temperature):.4g} degC is outside the surface, '
             f'{low:.4g} to {high:.4g} degC'
         )
-    if validity is Validity.MASKED:
+    if validity is PointValidity.MASKED:
         return 'the model did not converge near this point'
     return 'the surface gives no reason'

@@ -13,8 +13,9 @@ from collections.abc import Callable
 import importlib
 import math
 import re
-from typing import Any
+from typing import Any, Protocol
 
+from ballscrew_monitor.core.conversions import SECOND
 from surrogate.files import InputError
 
 _SEGMENT = re.compile(r'([A-Za-z]\w*)(?:\[([^\[\]]+)\])?')
@@ -25,21 +26,40 @@ _NUMBERS = frozenset(
     + [f'{sign}int{bits}' for sign in ('', 'u') for bits in (8, 16, 32, 64)]
 )
 
-Step = Callable[[Any], Any]
+ReadStep = Callable[[Any], Any]
+FieldReader = Callable[[object], float | None]
 
 
-def message_class(type_name: str) -> Any:
+class RosMessage(Protocol):
+    """What every generated message class tells of itself."""
+
+    @classmethod
+    def get_fields_and_field_types(cls) -> dict[str, str]:
+        """Return the type of every field by name, as ROS writes it."""
+
+
+MessageClass = type[RosMessage]
+
+
+def message_class(type_name: str) -> MessageClass:
     """Return the class of a message type such as `sensor_msgs/msg/JointState`."""
     parts = type_name.split('/')
     if len(parts) != 3 or parts[1] != 'msg' or not all(parts):
         raise InputError(f'message type {type_name!r} is not of the form package/msg/Name')
     try:
-        return getattr(importlib.import_module(f'{parts[0]}.msg'), parts[2])
+        found: MessageClass = getattr(importlib.import_module(f'{parts[0]}.msg'), parts[2])
     except (ImportError, AttributeError):
         raise InputError(f'message type {type_name!r} is not installed') from None
+    return found
 
 
-def compile_field(path: str, message_type: Any) -> Callable[[Any], float | None]:
+def stamp_of(message: Any) -> int:
+    """Return the stamp of a message with a header [ns]."""
+    stamp = message.header.stamp
+    return int(stamp.sec) * SECOND + int(stamp.nanosec)
+
+
+def compile_field(path: str, message_type: MessageClass) -> FieldReader:
     """
     Return the function that reads the field `path` of a message of class `message_type`.
 
@@ -47,8 +67,8 @@ def compile_field(path: str, message_type: Any) -> Callable[[Any], float | None]
     short. Raises InputError when the path does not lead to a number.
 
     """
-    steps: list[Step] = []
-    kind = message_type
+    steps: list[ReadStep] = []
+    kind: MessageClass | str = message_type
     for segment in _DOT.split(path):
         if isinstance(kind, str):
             raise InputError(f'field {path!r}: {segment!r} is asked of a {kind}')
@@ -59,7 +79,9 @@ def compile_field(path: str, message_type: Any) -> Callable[[Any], float | None]
     return _chain([*steps, _item(0)] if kind == 'octet' else steps)  # that is bytes in Python
 
 
-def _compile_segment(path: str, segment: str, kind: Any) -> tuple[list[Step], Any]:
+def _compile_segment(
+    path: str, segment: str, kind: MessageClass
+) -> tuple[list[ReadStep], MessageClass | str]:
     match = _SEGMENT.fullmatch(segment)
     if match is None:
         raise InputError(f'field {path!r}: {segment!r} is not a name or name[index]')
@@ -82,7 +104,7 @@ def _compile_segment(path: str, segment: str, kind: Any) -> tuple[list[Step], An
     return [_named_item(name, key)], element
 
 
-def _resolve(field_type: str) -> Any:
+def _resolve(field_type: str) -> MessageClass | str:
     """Return the class of a nested message; any other type as its text."""
     package, slash, name = field_type.partition('/')
     if not slash or _ARRAY.fullmatch(field_type):
@@ -90,19 +112,19 @@ def _resolve(field_type: str) -> Any:
     return message_class(f'{package}/msg/{name}')
 
 
-def _name(kind: Any) -> str:
+def _name(kind: MessageClass | str) -> str:
     return kind if isinstance(kind, str) else kind.__name__
 
 
-def _attribute(name: str) -> Step:
+def _attribute(name: str) -> ReadStep:
     return lambda message: getattr(message, name)
 
 
-def _item(index: int) -> Step:
+def _item(index: int) -> ReadStep:
     return lambda array: array[index]
 
 
-def _named_item(name: str, key: str) -> Step:
+def _named_item(name: str, key: str) -> ReadStep:
     def step(message: Any) -> Any:
         try:
             index = message.name.index(key)
@@ -113,9 +135,9 @@ def _named_item(name: str, key: str) -> Step:
     return step
 
 
-def _chain(steps: list[Step]) -> Callable[[Any], float | None]:
-    def read(message: Any) -> float | None:
-        value = message
+def _chain(steps: list[ReadStep]) -> FieldReader:
+    def read(message: object) -> float | None:
+        value: Any = message
         try:
             for step in steps:
                 value = step(value)

@@ -17,7 +17,7 @@ import types
 from typing import Any, TYPE_CHECKING
 
 from ballscrew_monitor.core.conversions import opposing_load
-from ballscrew_monitor.core.estimate import Point
+from ballscrew_monitor.core.estimate import MachinePoint
 
 if TYPE_CHECKING:
     from surrogate.surface import Correction, Surface, SurfacePoint
@@ -46,7 +46,7 @@ class SolvedAt:
     temperature: float
 
 
-def solved_at(point: Point) -> SolvedAt:
+def solved_at(point: MachinePoint) -> SolvedAt:
     """Return the place on the surface of a point in the machine frame."""
     return SolvedAt(
         speed=abs(point.speed),
@@ -100,7 +100,7 @@ def corrected(surface: Surface, kept: Iterable[Correction]) -> tuple[Surface, in
     return surface, count
 
 
-def request_of(surface: Surface, point: Point, draws: int) -> dict[str, Any]:
+def request_of(surface: Surface, point: MachinePoint, draws: int) -> dict[str, Any]:
     """Return what is asked of the solver: the inputs of the surface, the point, the draws."""
     inputs: Mapping[str, Any] = surface.header['inputs']
     place = dataclasses.asdict(solved_at(point))

@@ -3,7 +3,6 @@
 """From messages to samples in the machine frame, and the health of each input."""
 
 import collections
-from collections.abc import Callable
 import dataclasses
 import enum
 import functools
@@ -11,7 +10,13 @@ import math
 from typing import Any
 
 from ballscrew_monitor.core.conversions import Scaling, SECOND, seconds
-from ballscrew_monitor.core.fields import compile_field, message_class
+from ballscrew_monitor.core.fields import (
+    compile_field,
+    FieldReader,
+    message_class,
+    MessageClass,
+    stamp_of,
+)
 
 RATE_SAMPLES = 20  # samples over which the rate is averaged
 SLOW_GAPS = 2  # gaps above the timeout in a row from which on the input is slow, not interrupted
@@ -59,7 +64,7 @@ class Why(enum.IntEnum):
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Sample:
+class InputSample:
     """
     A number [SI, machine frame], the time that it speaks of and that of its arrival [ns].
 
@@ -84,7 +89,7 @@ class Sample:
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Refusal:
-    """A message that gave no sample, and as `text` why and what mends it; see `Sample`."""
+    """A message that gave no sample, and as `text` why and what mends it; see `InputSample`."""
 
     source: Source
     why: Why
@@ -100,14 +105,14 @@ class Input:
     source: Source
     topic: str
     type_name: str
-    message_type: Any
-    read_field: Callable[[Any], float | None]
+    message_type: MessageClass
+    read_field: FieldReader
     scaling: Scaling
     stamped: bool
 
     def read(
         self, message: Any, *, now: int, max_future: int, lost: int | None = 0
-    ) -> Sample | Refusal:
+    ) -> InputSample | Refusal:
         """
         Return the sample in `message`, received at `now` [ns] after `lost` others.
 
@@ -119,14 +124,14 @@ class Input:
         refuse = functools.partial(Refusal, source=self.source, arrival=now, lost=lost)
         if value is None:
             return refuse(why=Why.OTHER_JOINTS)
-        stamp = _stamp(message) if self.stamped else 0
+        stamp = stamp_of(message) if self.stamped else 0
         if now and stamp - now > max_future:
             return refuse(why=Why.FUTURE, text=_future_text(stamp - now, max_future))
         si_value = self.scaling(value)
         if not math.isfinite(si_value):
             text = f'the field holds {value}, it must be a finite number'
             return refuse(why=Why.NOT_A_NUMBER, text=text)
-        return Sample(
+        return InputSample(
             source=self.source,
             value=si_value,
             stamp=stamp or now,
@@ -164,11 +169,6 @@ def _future_text(ahead: int, allowed: int) -> str:
         f'the stamp is {seconds(ahead):.3g} s ahead of the clock, allowed is max_future, '
         f'{seconds(allowed):.3g} s: set the clocks of both machines alike, or raise max_future'
     )
-
-
-def _stamp(message: Any) -> int:
-    stamp = message.header.stamp
-    return stamp.sec * SECOND + stamp.nanosec
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -214,12 +214,12 @@ class Tracker:
         self.dropped = 0
         self._lost, self._lost_known, self._lost_last = 0, True, -LOSS_SHOWN
         self.refusal: Refusal | None = None  # why the last message was refused, if it was
-        self.last: Sample | None = None
+        self.last: InputSample | None = None
         self._stamps: collections.deque[int] = collections.deque(maxlen=RATE_SAMPLES)
         self._lags: collections.deque[int] = collections.deque(maxlen=RATE_SAMPLES)
         self._long_gaps = 0  # in a row
 
-    def accept(self, sample: Sample) -> None:
+    def accept(self, sample: InputSample) -> None:
         """Take a good sample."""
         self.received += 1
         self.refusal = None

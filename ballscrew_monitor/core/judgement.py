@@ -13,7 +13,7 @@ import dataclasses
 import enum
 import math
 
-from ballscrew_monitor.core.estimate import Estimate, Point, PointSource, Validity
+from ballscrew_monitor.core.estimate import MachinePoint, PointEstimate, PointSource, PointValidity
 from surrogate.files import InputError
 
 NAN = math.nan
@@ -137,7 +137,7 @@ class Verdict:
     clear: bool = False
 
 
-def gates_of(point: Point, limits: Limits) -> tuple[Gate, ...]:
+def gates_of(point: MachinePoint, limits: Limits) -> tuple[Gate, ...]:
     """Return the gates that are shut at a point; numbers that are unknown or held shut none."""
     gates = []
     if abs(point.speed) < limits.standstill_speed and point.speed_source is not PointSource.HELD:
@@ -150,7 +150,7 @@ def gates_of(point: Point, limits: Limits) -> tuple[Gate, ...]:
     return tuple(gates)
 
 
-def judge(point: Point, estimate: Estimate, limits: Limits) -> Verdict:
+def judge(point: MachinePoint, estimate: PointEstimate, limits: Limits) -> Verdict:
     """
     Return the judgement of one instant.
 
@@ -159,11 +159,13 @@ def judge(point: Point, estimate: Estimate, limits: Limits) -> Verdict:
 
     """
     gates = gates_of(point, limits)
-    if estimate.validity is Validity.NO_INPUT:
+    if estimate.validity is PointValidity.NO_INPUT:
         return Verdict(zone=Zone.UNKNOWN, gates=gates, findings=(_unjudged(estimate),))
     if Gate.STANDSTILL in gates:
         return Verdict(zone=Zone.UNKNOWN, gates=gates)
-    if estimate.validity is not Validity.VALID or math.isnan(estimate.rcs + estimate.efficiency):
+    if estimate.validity is not PointValidity.VALID or math.isnan(
+        estimate.rcs + estimate.efficiency
+    ):
         return Verdict(zone=Zone.UNKNOWN, gates=gates, findings=(_unjudged(estimate),))
     light = Gate.LIGHT_LOAD in gates
     findings = violations(estimate, limits, light=light)
@@ -177,14 +179,14 @@ def is_judged(verdict: Verdict) -> bool:
     return verdict.zone is not Zone.UNKNOWN or Gate.STANDSTILL in verdict.gates
 
 
-def clears(estimate: Estimate, limits: Limits, *, light: bool) -> bool:
+def clears(estimate: PointEstimate, limits: Limits, *, light: bool) -> bool:
     """Tell whether an estimate counts towards clearing; efficiency is left out if `light`."""
     return estimate.rcs < limits.rcs_to_clear and (
         light or estimate.efficiency >= limits.efficiency_to_clear
     )
 
 
-def violations(estimate: Estimate, limits: Limits, *, light: bool) -> tuple[Finding, ...]:
+def violations(estimate: PointEstimate, limits: Limits, *, light: bool) -> tuple[Finding, ...]:
     """Return a finding for each criterion that is not met; efficiency is left out if `light`."""
     findings = []
     if estimate.rcs >= limits.rcs:
@@ -211,8 +213,8 @@ def violations(estimate: Estimate, limits: Limits, *, light: bool) -> tuple[Find
     return tuple(findings)
 
 
-def _unjudged(estimate: Estimate) -> Finding:
-    if estimate.validity is Validity.NO_INPUT:
+def _unjudged(estimate: PointEstimate) -> Finding:
+    if estimate.validity is PointValidity.NO_INPUT:
         return Finding(code=Code.INPUT_LOST, severity=Severity.ERROR, text=estimate.reason)
     return Finding(
         code=Code.OUT_OF_RANGE,
@@ -222,7 +224,7 @@ def _unjudged(estimate: Estimate) -> Finding:
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Run:
+class UnbrokenRun:
     """Stamps [ns] of the first and the last sample of an unbroken run."""
 
     start: int
@@ -235,8 +237,8 @@ class Hold:
 
     level: Level = Level.UNKNOWN
     since: int = 0
-    raising: Run | None = None
-    clearing: Run | None = None
+    raising: UnbrokenRun | None = None
+    clearing: UnbrokenRun | None = None
 
 
 def hold(
@@ -274,10 +276,10 @@ def _towards_ok(memory: Hold, verdict: Verdict, stamp: int, limits: Limits, max_
     return Hold(level=memory.level, since=memory.since, clearing=run)
 
 
-def _extend(run: Run | None, stamp: int, max_gap: int) -> Run:
+def _extend(run: UnbrokenRun | None, stamp: int, max_gap: int) -> UnbrokenRun:
     if run is None or stamp - run.last > max_gap:
-        return Run(start=stamp, last=stamp)
-    return Run(start=run.start, last=stamp)
+        return UnbrokenRun(start=stamp, last=stamp)
+    return UnbrokenRun(start=run.start, last=stamp)
 
 
 def _drop_runs(memory: Hold) -> Hold:

@@ -10,22 +10,17 @@ events gives the same list of states, bit for bit.
 
 """
 
-from __future__ import annotations
-
 import dataclasses
 import math
-from typing import TYPE_CHECKING
 
 from ballscrew_monitor.core.advice import advise
 from ballscrew_monitor.core.conversions import Direction, direction_of, nanoseconds, SECOND
-from ballscrew_monitor.core.estimate import Estimate, estimate, Point, PointSource
-from ballscrew_monitor.core.inputs import InputState, Refusal, Sample, Source, Tracker, Why
+from ballscrew_monitor.core.estimate import estimate, MachinePoint, PointEstimate, PointSource
+from ballscrew_monitor.core.inputs import InputSample, InputState, Refusal, Source, Tracker, Why
 from ballscrew_monitor.core.judgement import Hold, hold, is_judged, judge, Level, Verdict, Zone
-from ballscrew_monitor.core.state import Event, Settings, State
-from ballscrew_monitor.core.tally import Account, moment, Window
-
-if TYPE_CHECKING:
-    from surrogate.surface import Surface
+from ballscrew_monitor.core.state import Event, MonitorSettings, State
+from ballscrew_monitor.core.tally import Account, moment, WindowTally
+from surrogate.surface import Surface
 
 NAN = math.nan
 SHOWN = (Source.SPEED, Source.LOAD, Source.TEMPERATURE, Source.TORQUE)  # in a state
@@ -35,7 +30,7 @@ BACKWARD_JUMP = SECOND  # [ns] a longer step back of one input is a clock that w
 class Monitor:
     """Judges one axis; feed it events in order."""
 
-    def __init__(self, surface: Surface, settings: Settings) -> None:
+    def __init__(self, surface: Surface, settings: MonitorSettings) -> None:
         """Begin with nothing received and the level UNKNOWN."""
         self.settings = settings
         self.use_surface(surface)
@@ -46,7 +41,7 @@ class Monitor:
         self._direction = Direction.UNKNOWN
         self._last_tick = 0
         self._last_published: int | None = None
-        self._window = Window()
+        self._window = WindowTally()
         self._account = Account()
         self._inputs = {
             source: Tracker(
@@ -63,7 +58,7 @@ class Monitor:
         """Return the held level."""
         return self._hold.level
 
-    def update(self, event: Sample | Refusal) -> State | None:
+    def update(self, event: InputSample | Refusal) -> State | None:
         """Take one sample or refusal; return the state when one is due."""
         tracker = self._inputs[event.source]
         tracker.lose(event.lost, event.arrival)
@@ -129,7 +124,7 @@ class Monitor:
         """Set the totals to zero."""
         self._account.reset()
 
-    def _judge_speed(self, sample: Sample) -> State | None:
+    def _judge_speed(self, sample: InputSample) -> State | None:
         stamp, point = sample.stamp, self._point(sample.arrival)
         result = self._estimate(point)
         verdict = judge(point, result, self.settings.limits)
@@ -142,10 +137,10 @@ class Monitor:
     def _max_gap(self) -> int:
         return self._inputs[Source.SPEED].timeout
 
-    def _estimate(self, point: Point) -> Estimate:
+    def _estimate(self, point: MachinePoint) -> PointEstimate:
         return estimate(point, self.surface, rcs_limit=self.settings.limits.rcs)
 
-    def _point(self, now: int) -> Point:
+    def _point(self, now: int) -> MachinePoint:
         """Return the operating point of what has arrived by `now` [ns]."""
         speed, speed_source = self._value(Source.SPEED, now)
         load, load_source = self._value(Source.LOAD, now)
@@ -156,7 +151,7 @@ class Monitor:
         moving = abs(speed) >= self.settings.limits.standstill_speed
         if moving and speed_source is PointSource.MEASURED:
             self._direction = direction_of(speed)
-        return Point(
+        return MachinePoint(
             speed=speed,
             axial_load=load,
             temperature=temperature,
@@ -181,7 +176,7 @@ class Monitor:
         return tracker.last.value, PointSource.MEASURED if good else PointSource.HELD
 
     def _advance(
-        self, stamp: int, now: int, point: Point, result: Estimate, verdict: Verdict
+        self, stamp: int, now: int, point: MachinePoint, result: PointEstimate, verdict: Verdict
     ) -> State | None:
         """
         Hold the level, follow the event, and return the state when it is due.
@@ -199,7 +194,7 @@ class Monitor:
         self._last_published = stamp
         return self._state(stamp, now, point, result, verdict, edge)
 
-    def _follow(self, stamp: int, result: Estimate, verdict: Verdict) -> None:
+    def _follow(self, stamp: int, result: PointEstimate, verdict: Verdict) -> None:
         """Keep the worst value of the event that is active, or of the one that may follow."""
         if verdict.zone is Zone.OPTIMAL and self._hold.level is not Level.WARN:
             self._pending = None
@@ -215,7 +210,7 @@ class Monitor:
             )
         self._pending = self._pending.worsened(result)
 
-    def _edge(self, before: Level, stamp: int, point: Point) -> Event | None:
+    def _edge(self, before: Level, stamp: int, point: MachinePoint) -> Event | None:
         """Return the event that the change of the level begins or ends, if any."""
         level = self._hold.level
         if level is Level.WARN and before is not Level.WARN and self._pending is not None:
@@ -251,8 +246,8 @@ class Monitor:
         self,
         stamp: int,
         now: int,
-        point: Point,
-        result: Estimate,
+        point: MachinePoint,
+        result: PointEstimate,
         verdict: Verdict,
         edge: Event | None,
     ) -> State:

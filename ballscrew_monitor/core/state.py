@@ -7,7 +7,7 @@ import dataclasses
 import math
 
 from ballscrew_monitor.core.advice import Advice
-from ballscrew_monitor.core.estimate import Estimate, Point
+from ballscrew_monitor.core.estimate import MachinePoint, PointEstimate
 from ballscrew_monitor.core.inputs import Health, Source, YEAR
 from ballscrew_monitor.core.judgement import Code, Finding, Level, Limits, Severity, Verdict
 from ballscrew_monitor.core.tally import Totals, WindowStatistics
@@ -16,7 +16,7 @@ NAN = math.nan
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Settings:
+class MonitorSettings:
     """
     What a monitor is told.
 
@@ -50,7 +50,7 @@ class Event:
     cause: Finding = Finding(code=Code.UNKNOWN, severity=Severity.UNKNOWN)
     advice: Advice = Advice()
 
-    def worsened(self, estimate: Estimate) -> 'Event':
+    def worsened(self, estimate: PointEstimate) -> 'Event':
         """Return the event with its worst value after one more sample outside."""
         if self.cause.code is Code.RCS_HIGH:
             worst = max(self.worst_value, estimate.rcs)
@@ -71,8 +71,8 @@ class State:
 
     axis: str
     stamp: int
-    point: Point
-    estimate: Estimate
+    point: MachinePoint
+    estimate: PointEstimate
     verdict: Verdict
     level: Level
     level_since: int

@@ -6,8 +6,9 @@ import dataclasses
 import math
 
 from ballscrew_monitor.core.conversions import seconds
-from ballscrew_monitor.core.estimate import Estimate, Point, Regime
+from ballscrew_monitor.core.estimate import MachinePoint, PointEstimate
 from ballscrew_monitor.core.judgement import Gate, Verdict, Zone
+from surrogate.surface import Regime
 from surrogate.units import TURN
 
 NAN = math.nan
@@ -59,7 +60,7 @@ class _Column:
         return Extremes(low=self.low, mean=self.total / self.count, high=self.high)
 
 
-class Window:
+class WindowTally:
     """
     Statistics of the samples that were judged, until they are taken.
 
@@ -75,7 +76,7 @@ class Window:
         self._speed, self._load = _Column(), _Column()
         self._efficiency, self._rcs, self._film_ratio = _Column(), _Column(), _Column()
 
-    def add(self, point: Point, estimate: Estimate, verdict: Verdict) -> None:
+    def add(self, point: MachinePoint, estimate: PointEstimate, verdict: Verdict) -> None:
         """Add one sample, if it was judged."""
         if verdict.zone is Zone.UNKNOWN or estimate.numbers is None:
             return
@@ -127,7 +128,7 @@ class Moment:
     zone: Zone
 
 
-def moment(stamp: int, point: Point, estimate: Estimate, verdict: Verdict) -> Moment:
+def moment(stamp: int, point: MachinePoint, estimate: PointEstimate, verdict: Verdict) -> Moment:
     """Return what the totals need to know of the sample at `stamp` [ns]."""
     speed = 0.0 if Gate.STANDSTILL in verdict.gates else abs(point.speed)
     power = 0.0 if estimate.numbers is None else estimate.numbers.friction_torque * speed

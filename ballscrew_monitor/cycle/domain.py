@@ -39,14 +39,22 @@ def is_free(domain: int) -> bool:
 
 
 @contextlib.contextmanager
+def held(domain: int) -> Iterator[bool]:
+    """Hold a domain, if it is free; tell whether that is so."""
+    lock = _bind(port(domain, LOCK_PARTICIPANT))
+    if lock is None:
+        yield False
+        return
+    with lock:
+        yield is_free(domain)
+
+
+@contextlib.contextmanager
 def free_domain() -> Iterator[int]:
     """Give a free domain and hold it; raises InputError when all are taken."""
     for domain in random.sample(DOMAINS, len(DOMAINS)):
-        lock = _bind(port(domain, LOCK_PARTICIPANT))
-        if lock is None:
-            continue
-        with lock:
-            if is_free(domain):
+        with held(domain) as free:
+            if free:
                 yield domain
                 return
     raise InputError(

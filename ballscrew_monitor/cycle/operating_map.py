@@ -15,13 +15,13 @@ import math
 from typing import Any
 
 from ballscrew_monitor.core.conversions import kelvin
-from ballscrew_monitor.cycle.state_trace import Limits, Trace
+from ballscrew_monitor.cycle.state_trace import LimitsInForce, Trace
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.surface import Surface, Validity
+from surrogate.surface import FILM_RATIO_LIMITS, Surface, Validity
 from surrogate.units import RPM
 
 Array = NDArray[np.float64]
@@ -106,7 +106,7 @@ def _load_span(surface: Surface, trace: Trace) -> tuple[float, float]:
     return max(low - margin, surface.load_range[0]), min(high + margin, surface.load_range[1])
 
 
-def _draw_zone(axes: Axes, field: Field, limits: Limits) -> None:
+def _draw_zone(axes: Axes, field: Field, limits: LimitsInForce) -> None:
     """Fill the optimal zone; under a light load only RCS counts."""
     light = np.abs(field.load)[:, None] < limits.light_load
     optimal = (field.rcs < limits.rcs) & (light | (field.efficiency >= limits.efficiency))
@@ -129,7 +129,7 @@ def _draw_zone(axes: Axes, field: Field, limits: Limits) -> None:
     )
 
 
-def _draw_lines(axes: Axes, field: Field, limits: Limits, degrees: float) -> None:
+def _draw_lines(axes: Axes, field: Field, limits: LimitsInForce, degrees: float) -> None:
     shown = np.where(
         np.abs(field.load)[:, None] < 0.2 * limits.light_load, math.nan, field.efficiency
     )
@@ -167,17 +167,17 @@ def _draw_lines(axes: Axes, field: Field, limits: Limits, degrees: float) -> Non
         field.speed,
         field.load,
         field.film_ratio,
-        levels=[1.0, 3.0],
+        levels=FILM_RATIO_LIMITS,
         colors='#404040',
         linewidths=0.9,
         linestyles='dotted',
         zorder=2,
     )
-    for level, paths in zip((1.0, 3.0), ratios.allsegs, strict=True):
+    for level, paths in zip(FILM_RATIO_LIMITS, ratios.allsegs, strict=True):
         _name_line(axes, field, paths, f'Λ = {level:.0f}', '#404040', TOP)
 
 
-def _draw_border(axes: Axes, field: Field, limits: Limits, degrees: float) -> None:
+def _draw_border(axes: Axes, field: Field, limits: LimitsInForce, degrees: float) -> None:
     lines = axes.contour(
         field.speed,
         field.load,
@@ -220,7 +220,7 @@ def _label(axes: Axes, field: Field) -> None:
     axes.set_ylabel('axial load [N]\nassists the motion  |  opposes the motion')
 
 
-def legend_entries(limits: Limits, mean: float, *, others: bool) -> list[Any]:
+def legend_entries(limits: LimitsInForce, mean: float, *, others: bool) -> list[Any]:
     """Return what the lines of the map mean."""
     entries: list[Any] = [
         Patch(facecolor=OPTIMAL_FILL, edgecolor='none', label=f'optimal zone at {mean:.0f} °C'),
@@ -255,7 +255,7 @@ def legend_entries(limits: Limits, mean: float, *, others: bool) -> list[Any]:
             color='#404040',
             linewidth=0.9,
             linestyle='dotted',
-            label='film ratio Λ = 1 and 3',
+            label='film ratio Λ = ' + ' and '.join(f'{limit:g}' for limit in FILM_RATIO_LIMITS),
         )
     )
     return entries

@@ -3,6 +3,7 @@
 """The picture of a cycle: its path over the operating map, and its course in time."""
 
 from collections.abc import Sequence
+import itertools
 import math
 from pathlib import Path
 
@@ -26,7 +27,7 @@ from matplotlib.lines import Line2D
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.files import new_file
-from surrogate.surface import Surface
+from surrogate.surface import FILM_RATIO_LIMITS, REGIMES, Surface
 from surrogate.units import RPM
 
 Array = NDArray[np.float64]
@@ -42,11 +43,7 @@ LEVELS = (
     (BallScrewState.LEVEL_OK, '#8fd3bb', 'ok'),
     (BallScrewState.LEVEL_WARN, '#f0a56e', 'warning'),
 )
-REGIMES = (
-    ('boundary', 0.0, 1.0, '#fbe3d6'),
-    ('mixed', 1.0, 3.0, '#fdf6d3'),
-    ('hydrodynamic', 3.0, math.inf, '#dbeaf5'),
-)
+REGIME_COLOURS = ('#fbe3d6', '#fdf6d3', '#dbeaf5')
 SMALLEST_RCS = 1e-4  # [-] the bottom of its strip; smaller ones are drawn on it
 STRIPS = (1.25, 1.25, 0.8, 1.25, 1.35, 1.35, 0.35)
 
@@ -193,14 +190,16 @@ def _draw_ratio(axes: Axes, trace: Trace) -> None:
     _dots(axes, trace, trace.film_ratio, 'film ratio Λ\n[-]')
     axes.set_yscale('log')
     low, high = 0.02, 10.0
-    axes.set_yticks([0.1, 1.0, 3.0, 10.0], ['0.1', '1', '3', '10'])
+    ticks = [0.1, *FILM_RATIO_LIMITS, high]
+    axes.set_yticks(ticks, [f'{tick:g}' for tick in ticks])
     axes.minorticks_off()
-    for name, begin, end, colour in REGIMES:
-        axes.axhspan(max(begin, low), min(end, high), color=colour, linewidth=0.0, zorder=-1)
+    spans = itertools.pairwise((low, *FILM_RATIO_LIMITS, high))
+    for regime, (begin, end), colour in zip(REGIMES, spans, REGIME_COLOURS, strict=True):
+        axes.axhspan(begin, end, color=colour, linewidth=0.0, zorder=-1)
         axes.text(
             0.995,
-            math.sqrt(max(begin, low) * min(end, high)),
-            name,
+            math.sqrt(begin * end),
+            regime.word,
             fontsize=7,
             ha='right',
             va='center',

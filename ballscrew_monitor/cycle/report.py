@@ -2,25 +2,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """What is left of a run: the summary on the terminal and the picture, both from the recording."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from ballscrew_monitor.cycle.outcome import loss, unjudged
-from ballscrew_monitor.cycle.outputs import output
+from ballscrew_monitor.cycle.outcome import loss, Outcome, unjudged
+from ballscrew_monitor.cycle.plan import Plan
 from ballscrew_monitor.cycle.state_trace import Trace, Tracer
+from ballscrew_monitor.node.axis import Axis
+from ballscrew_monitor.node.topics import absolute, output
 from ballscrew_monitor.recordings.bag import Bag
-from ballscrew_monitor.recordings.replay import absolute
 from ballscrew_monitor.recordings.summary import Summarizer, Summary
 from ballscrew_msgs.msg import BallScrewState, OutOfZone
 from rclpy.serialization import deserialize_message
-
-if TYPE_CHECKING:
-    from ballscrew_monitor.cycle.outcome import Outcome
-    from ballscrew_monitor.cycle.run import Plan
-    from ballscrew_monitor.node.axis import Axis
 
 LOG = 'node.log'
 

@@ -9,81 +9,25 @@ was judged. All of it happens in a ROS domain of its own that is seen on this ma
 
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 import contextlib
-import dataclasses
 import fcntl
-import importlib.util
 import os
 from pathlib import Path
-import signal
 import sys
 import threading
-from typing import Any
 
 from ballscrew_monitor.cycle.domain import free_domain
 from ballscrew_monitor.cycle.node_process import NodeProcess, ros_environment
 from ballscrew_monitor.cycle.outcome import Outcome
+from ballscrew_monitor.cycle.plan import Plan, RECORDING
 from ballscrew_monitor.cycle.report import LOG, losses, picture, report
-from ballscrew_monitor.cycle.supervision import Failure, Supervision
-from ballscrew_monitor.node import parameters
-from ballscrew_monitor.node.axis import Axis, build_axis
-from ballscrew_monitor.recordings.bag import Bag
+from ballscrew_monitor.cycle.supervision import RunFailure, Supervision
 from ballscrew_monitor.recordings.bag_writer import BagWriter
-from ballscrew_monitor.recordings.replay import input_topics, speed_messages
+from ballscrew_monitor.recordings.interrupts import DONE, FAILED, interrupts, SIGNALLED
 from surrogate.files import InputError
 
-RECORDING, LOCK = 'cycle', '.lock'
-DONE, FAILED, SIGNALLED = 0, 1, 128  # exit codes; a signal adds its number
-
-
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Plan:
-    """
-    A checked run: what is played, with which parameters, and where it is written.
-
-    `expected` counts the speed messages by axis, `rate` is bag time over wall time [-].
-
-    """
-
-    bag: Bag
-    params: Path
-    values: dict[str, Any]
-    axes: Sequence[Axis]
-    expected: dict[str, int]
-    rate: float
-    out: Path
-
-
-def plan(bag: Path, params: Path, out: Path, rate: float) -> Plan:
-    """
-    Return a checked plan for bag time over wall time `rate` [-].
-
-    Raises InputError before anything is started or written.
-
-    """
-    if importlib.util.find_spec('matplotlib') is None:  # asked early, imported late: it is slow
-        raise ModuleNotFoundError('no picture without matplotlib', name='matplotlib')
-    if not 0.0 < rate <= 1000.0:
-        raise InputError(f'rate is {rate:g}, allowed is above 0 to 1000')
-    values = parameters.read_file(params)
-    axes = [build_axis(name, values) for name in values['axes']]
-    opened = Bag(bag)
-    if any(file.resolve() == (out / f'{RECORDING}.mcap').resolve() for file in opened.files):
-        raise InputError(
-            f'bag {bag} would be overwritten by the recording in {out}, '
-            'another output directory must be given'
-        )
-    opened.require(input_topics(values))
-    return Plan(
-        bag=opened,
-        params=params,
-        values=values,
-        axes=axes,
-        rate=rate,
-        out=out,
-        expected=speed_messages(opened, axes),
-    )
+LOCK = '.lock'
 
 
 def run(made: Plan) -> int:
@@ -126,28 +70,8 @@ def _supervise(made: Plan, stop: threading.Event) -> Outcome:
         supervision = stack.enter_context(Supervision(made, node, writer, domain))
         try:
             return supervision.carry_out(stop)
-        except Failure as failure:
+        except RunFailure as failure:
             return supervision.outcome(str(failure))
-
-
-@contextlib.contextmanager
-def interrupts(stop: threading.Event) -> Iterator[list[int]]:
-    """Collect SIGINT, SIGTERM and SIGHUP in a list and set `stop`, instead of dying of them."""
-    received: list[int] = []
-
-    def take(number: int, frame: Any) -> None:
-        received.append(number)
-        stop.set()
-
-    before = {
-        number: signal.signal(number, take)
-        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
-    }
-    try:
-        yield received
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
 
 
 @contextlib.contextmanager

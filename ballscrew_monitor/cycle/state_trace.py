@@ -7,7 +7,7 @@ import dataclasses
 import math
 
 from ballscrew_monitor.core.conversions import Direction, opposing_load
-from ballscrew_monitor.recordings.summary import stamp_of
+from ballscrew_monitor.core.fields import stamp_of
 from ballscrew_msgs.msg import BallScrewState, PointResult
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Limits:
+class LimitsInForce:
     """Limits in force: RCS [-], efficiency [-], light load [N], standstill [rad/s]."""
 
     rcs: float
@@ -48,7 +48,7 @@ class Trace:
     film_ratio: Array
     zone: Array
     level: Array
-    limits: Limits
+    limits: LimitsInForce
     tier: int
 
 
@@ -72,7 +72,7 @@ class Tracer:
         self._stamps = array.array('q')
         self._columns = {name: array.array('d') for name in self.COLUMNS}
         self._axis, self._tier = '', PointResult.TIER_UNKNOWN
-        self._limits: Limits | None = None
+        self._limits: LimitsInForce | None = None
 
     def add_state(self, state: BallScrewState) -> None:
         """Take a state."""
@@ -81,7 +81,7 @@ class Tracer:
             self._columns[name].append(value)
         if self._limits is None:
             self._axis, self._tier = state.axis, state.result.tier
-        self._limits = Limits(
+        self._limits = LimitsInForce(
             rcs=state.rcs_limit,
             efficiency=state.efficiency_limit,
             light_load=state.light_load_limit,

@@ -7,14 +7,12 @@ import math
 import shutil
 from typing import TextIO
 
-from ballscrew_msgs.msg import BallScrewState, Finding, PointResult
+from ballscrew_msgs.msg import BallScrewState, Finding
+from surrogate.progress import bar
+from surrogate.surface import REGIMES
 from surrogate.units import RPM
 
-REGIMES = {
-    PointResult.REGIME_BOUNDARY: 'boundary',
-    PointResult.REGIME_MIXED: 'mixed',
-    PointResult.REGIME_HYDRODYNAMIC: 'hydrodynamic',
-}
+REGIME_WORDS = {int(regime): regime.word for regime in REGIMES}
 ZONES = {BallScrewState.ZONE_OPTIMAL: 'optimal', BallScrewState.ZONE_OUTSIDE: 'outside'}
 GATES = {BallScrewState.GATE_STANDSTILL: 'standstill', BallScrewState.GATE_LIGHT_LOAD: 'light'}
 CAUSES = {
@@ -41,7 +39,7 @@ def state_cells(state: BallScrewState) -> list[str]:
         f'{_number(point.axial_load, 5, 0)} N',
         f'{_number(point.temperature, 4, 1)} degC',
         f'eff {_number(efficiency, 4, 1)} %',
-        f'{"-" if standstill else REGIMES.get(result.regime, "-"):12}',
+        f'{"-" if standstill else REGIME_WORDS.get(result.regime, "-"):12}',
         f'Lambda {_number(math.nan if standstill else result.film_ratio, 4, 2)}',
         f'RCS {_number(math.nan if standstill else result.rcs, 6, 4)}',
         f'{_zone(state):15}',
@@ -51,10 +49,8 @@ def state_cells(state: BallScrewState) -> list[str]:
 
 def progress_bar(part: float, left: float) -> str:
     """Return a bar for the `part` done [-] and the time `left` [s]."""
-    part = min(max(part, 0.0), 1.0)
-    filled = round(part * BAR_WIDTH)
     minutes, seconds = divmod(math.ceil(max(left, 0.0)), 60)
-    return f'[{"#" * filled}{"." * (BAR_WIDTH - filled)}] {minutes}:{seconds:02d} left'
+    return f'[{bar(part, BAR_WIDTH, blank=".")}] {minutes}:{seconds:02d} left'
 
 
 def fit(cells: Sequence[str], width: int) -> str:

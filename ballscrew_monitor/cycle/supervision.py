@@ -12,16 +12,17 @@ active, and announces its subscriptions after that.
 import sys
 import threading
 import time
-from typing import Any, TYPE_CHECKING
+from typing import Any
 
 from ballscrew_monitor.cycle.node_process import NodeProcess
 from ballscrew_monitor.cycle.outcome import Outcome, speed_health
-from ballscrew_monitor.cycle.outputs import output, recorded_topics
+from ballscrew_monitor.cycle.plan import Plan
+from ballscrew_monitor.cycle.recorded_topics import recorded_topics
 from ballscrew_monitor.cycle.status import progress_bar, state_cells, StatusLine
+from ballscrew_monitor.node.topics import absolute, input_topics, output
 from ballscrew_monitor.recordings.bag_writer import BagWriter
 from ballscrew_monitor.recordings.player import Played, Player
 from ballscrew_monitor.recordings.recorder import Recorder
-from ballscrew_monitor.recordings.replay import absolute, input_topics
 from ballscrew_msgs.msg import BallScrewState
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 import rclpy
@@ -29,23 +30,20 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.serialization import deserialize_message
 from rclpy.signals import SignalHandlerOptions
 
-if TYPE_CHECKING:
-    from ballscrew_monitor.cycle.run import Plan
-
 START_PATIENCE = 30.0  # [s] until the node is active and matched
 SETTLE_PATIENCE = 2.0  # [s] for the last messages after the end of the bag
 RUN_ON_PATIENCE = 3.0  # [s] of /clock after that, for a node that publishes now and then
 POLL = 0.05  # [s] longest wait for a message
 
 
-class Failure(Exception):
+class RunFailure(Exception):
     """Why the run cannot go on, as a sentence."""
 
 
 class Supervision:
     """The ROS side of a run; a context manager that leaves no thread and no context behind."""
 
-    def __init__(self, plan: 'Plan', node: NodeProcess, writer: BagWriter, domain: int) -> None:
+    def __init__(self, plan: Plan, node: NodeProcess, writer: BagWriter, domain: int) -> None:
         """Join the domain and subscribe to the outputs before the node can have any."""
         self._plan, self._process, self._writer = plan, node, writer
         self._states: dict[str, bytes] = {}
@@ -150,14 +148,14 @@ class Supervision:
             self._executor.spin_once(timeout_sec=POLL)
             self._check_node()
             if self._reason:
-                raise Failure(f'the node is {self._reason}')
+                raise RunFailure(f'the node is {self._reason}')
             # Two subscribers of each input: the node and the recorder.
             if self._active == axes and not self._player.unmatched(2):
                 if self._states.keys() == axes:
                     return
                 self._player.show_begin()
             if time.monotonic() > deadline:
-                raise Failure(
+                raise RunFailure(
                     f'the node did not become active within {START_PATIENCE:g} s'
                     + self._last_words()
                 )
@@ -210,7 +208,7 @@ class Supervision:
     def _check_node(self) -> None:
         code = self._process.returncode
         if code is not None:
-            raise Failure(f'the node ended with exit code {code}' + self._last_words())
+            raise RunFailure(f'the node ended with exit code {code}' + self._last_words())
 
     def _stop_node(self) -> None:
         """Stop the node and record what it says at last."""
@@ -222,7 +220,7 @@ class Supervision:
             if self._writer.total == before:
                 break
         if code != 0:
-            raise Failure(
+            raise RunFailure(
                 f'the node ended with exit code {code} when it was asked to stop'
                 + self._last_words()
             )

@@ -18,7 +18,7 @@ from ballscrew_monitor.core.conversions import (
 from ballscrew_monitor.core.inputs import Input, make_input, Source
 from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.core.monitor import Monitor
-from ballscrew_monitor.core.state import Settings
+from ballscrew_monitor.core.state import MonitorSettings
 from surrogate.files import InputError
 from surrogate.surface import find_surface, Surface, SurfaceError
 
@@ -100,9 +100,9 @@ def reload_surface(axis: Axis, values: Mapping[str, Any]) -> Surface:
     return surface
 
 
-def settings_of(name: str, values: Mapping[str, Any], preload: float) -> Settings:
+def settings_of(name: str, values: Mapping[str, Any], preload: float) -> MonitorSettings:
     """Return what the monitor is told; `preload` [N] is what the light load is a part of."""
-    return Settings(
+    return MonitorSettings(
         axis=name,
         limits=_limits_of(name, values, preload),
         timeouts={

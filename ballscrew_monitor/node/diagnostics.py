@@ -13,7 +13,7 @@ from collections.abc import Callable, Mapping
 import math
 
 from ballscrew_monitor.core.conversions import celsius, seconds
-from ballscrew_monitor.core.estimate import Validity
+from ballscrew_monitor.core.estimate import PointValidity
 from ballscrew_monitor.core.inputs import Health, InputState, Source, Why, YEAR
 from ballscrew_monitor.core.judgement import Code, Gate, Level
 from ballscrew_monitor.core.state import Event, State
@@ -29,19 +29,22 @@ CLOCK_STANDS = (
 )
 INACTIVE = 'the node is inactive, nothing is judged'
 PARTS = ('Lubrication', 'Inputs', 'Surface')
-Summary = tuple[bytes, str]  # level and message of a status
+StatusSummary = tuple[bytes, str]  # level and message of a status
 
 _NOT_JUDGED = {
-    Validity.UNKNOWN: 'not judged: the screw has not moved yet',
-    Validity.SPEED_BELOW_RANGE: 'not judged: speed below the surface',
-    Validity.SPEED_ABOVE_RANGE: 'not judged: speed above the surface',
-    Validity.LOAD_OUT_OF_RANGE: 'not judged: load outside the surface',
-    Validity.TEMPERATURE_OUT_OF_RANGE: 'not judged: temperature outside the surface',
-    Validity.MASKED: 'not judged: the model did not converge here',
-    Validity.NO_INPUT: 'not judged: an input is missing',
-    Validity.NO_SURFACE: 'not judged: no surface',
+    PointValidity.UNKNOWN: 'not judged: the screw has not moved yet',
+    PointValidity.SPEED_BELOW_RANGE: 'not judged: speed below the surface',
+    PointValidity.SPEED_ABOVE_RANGE: 'not judged: speed above the surface',
+    PointValidity.LOAD_OUT_OF_RANGE: 'not judged: load outside the surface',
+    PointValidity.TEMPERATURE_OUT_OF_RANGE: 'not judged: temperature outside the surface',
+    PointValidity.MASKED: 'not judged: the model did not converge here',
+    PointValidity.NO_INPUT: 'not judged: an input is missing',
+    PointValidity.NO_SURFACE: 'not judged: no surface',
 }
-_OF_STANDSTILL = (Validity.UNKNOWN, Validity.SPEED_BELOW_RANGE)  # nothing wrong with these there
+_OF_STANDSTILL = (
+    PointValidity.UNKNOWN,
+    PointValidity.SPEED_BELOW_RANGE,
+)  # nothing wrong with these there
 _CAUSES = {
     Code.RCS_HIGH: 'asperities carry too much',
     Code.EFFICIENCY_LOW: 'too much power is lost',
@@ -138,27 +141,27 @@ def statuses(
     return made
 
 
-def summaries(state: State, event: Event) -> tuple[Summary, Summary]:
+def summaries(state: State, event: Event) -> tuple[StatusSummary, StatusSummary]:
     """Return level and message of Lubrication and Inputs; only a change of them is news."""
     return _lubrication(state, event), _inputs(state.inputs)
 
 
-def _lubrication(state: State, event: Event) -> Summary:
+def _lubrication(state: State, event: Event) -> StatusSummary:
     if state.level is Level.WARN:
         cause = _CAUSES.get(event.cause.code, 'cause unknown')
         return WARN, f'outside the optimal zone: {cause}'
     validity = state.estimate.validity
-    if validity is Validity.NO_INPUT:
+    if validity is PointValidity.NO_INPUT:
         return STALE, _NOT_JUDGED[validity]
     still = Gate.STANDSTILL in state.verdict.gates
-    if validity is not Validity.VALID and not (still and validity in _OF_STANDSTILL):
+    if validity is not PointValidity.VALID and not (still and validity in _OF_STANDSTILL):
         return WARN, _NOT_JUDGED[validity]
     if state.level is Level.OK:
         return OK, 'standstill' if still else 'optimal'
     return WARN, f'{"standstill, " if still else ""}not judged for long enough yet'
 
 
-def _inputs(inputs: tuple[Health, ...]) -> Summary:
+def _inputs(inputs: tuple[Health, ...]) -> StatusSummary:
     """Return one sentence for each fault, with what mends it; the worst kind of fault alone."""
     faults = [_fault(health) for health in inputs if health.state in _INPUT_WORDS]
     if faults:

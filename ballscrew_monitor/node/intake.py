@@ -16,7 +16,7 @@ import operator
 import time
 from typing import Any
 
-from ballscrew_monitor.core.inputs import Input, Refusal, Sample, Source
+from ballscrew_monitor.core.inputs import Input, InputSample, Refusal, Source
 from ballscrew_monitor.core.loss import LossCounter
 from ballscrew_monitor.node.axis import Axis
 from rclpy.event_handler import SubscriptionEventCallbacks
@@ -33,7 +33,7 @@ INPUT_QOS = QoSProfile(
 MOST = 2 * INPUT_QOS.depth  # messages of one topic that are taken before anything else has a turn
 
 Reader = tuple[Axis, Input]
-Take = Callable[[Axis, Sample | Refusal], None]
+Take = Callable[[Axis, InputSample | Refusal], None]
 
 
 @dataclasses.dataclass(frozen=True, slots=True)

@@ -20,7 +20,7 @@ from ballscrew_monitor.core.conversions import (
     SECOND,
     seconds,
 )
-from ballscrew_monitor.core.estimate import Estimate, Point
+from ballscrew_monitor.core.estimate import MachinePoint, PointEstimate
 from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.core.monitor import SHOWN
 from ballscrew_monitor.core.state import Event, State
@@ -61,7 +61,7 @@ def fill_time(message: Time, stamp: int) -> None:
     message.sec, message.nanosec = divmod(stamp, SECOND)
 
 
-def fill_point(message: OperatingPoint, point: Point) -> None:
+def fill_point(message: OperatingPoint, point: MachinePoint) -> None:
     """Fill in an operating point."""
     message.speed = float(point.speed)
     message.axial_load = float(point.axial_load)
@@ -75,7 +75,7 @@ def fill_point(message: OperatingPoint, point: Point) -> None:
     message.direction_held = point.direction_held
 
 
-def read_point(message: OperatingPoint, *, default_temperature: float) -> Point:
+def read_point(message: OperatingPoint, *, default_temperature: float) -> MachinePoint:
     """
     Return the point of an evaluation request, its direction that of the speed.
 
@@ -86,7 +86,7 @@ def read_point(message: OperatingPoint, *, default_temperature: float) -> Point:
     if message.speed == 0.0 and message.direction in tuple(Direction):
         direction = Direction(message.direction)
     missing = math.isnan(message.temperature)
-    return Point(
+    return MachinePoint(
         speed=message.speed,
         axial_load=message.axial_load,
         direction=direction,
@@ -94,7 +94,7 @@ def read_point(message: OperatingPoint, *, default_temperature: float) -> Point:
     )
 
 
-def fill_result(message: PointResult, result: Estimate, tier: int) -> None:
+def fill_result(message: PointResult, result: PointEstimate, tier: int) -> None:
     """Fill in what the model says, `tier` a TIER_ constant."""
     numbers = result.numbers
     message.validity = int(result.validity)

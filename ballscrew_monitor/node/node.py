@@ -10,7 +10,7 @@ import traceback
 from typing import Any
 
 from ballscrew_monitor.core.conversions import nanoseconds
-from ballscrew_monitor.core.inputs import Refusal, Sample
+from ballscrew_monitor.core.inputs import InputSample, Refusal
 from ballscrew_monitor.core.pulse import Pulse
 from ballscrew_monitor.core.state import State
 from ballscrew_monitor.node import diagnostics, parameters
@@ -175,7 +175,7 @@ class BallscrewMonitor(LifecycleNode):
         self._reason = reason
         self._publish_diagnostics()
 
-    def _on_event(self, axis: Axis, event: Sample | Refusal) -> None:
+    def _on_event(self, axis: Axis, event: InputSample | Refusal) -> None:
         self._publish(self._stations[axis.name], axis.monitor.update(event))
 
     def _on_tick(self) -> None:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from ballscrew_monitor.node import parameters
-from ballscrew_monitor.node.parameter_table import Change, NODE_ROWS, Row
+from ballscrew_monitor.node.parameter_table import Change, NODE_ROWS, ParameterRow
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.node import Node
 from rclpy.parameter import Parameter
@@ -39,7 +39,7 @@ class ParameterStore:
         node.add_on_set_parameters_callback(self._check)
         node.add_post_set_parameters_callback(self._take)
 
-    def _declare(self, node: Node, rows: dict[str, Row]) -> None:
+    def _declare(self, node: Node, rows: dict[str, ParameterRow]) -> None:
         for name, row in rows.items():
             if name in self.values:
                 continue

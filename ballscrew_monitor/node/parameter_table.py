@@ -37,7 +37,7 @@ class Change(enum.Enum):
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Row:
+class ParameterRow:
     """One parameter: numbers lie from `low` to `high`, texts are one of `choices` if there are."""
 
     name: str
@@ -92,19 +92,19 @@ class Row:
 
 
 NODE_ROWS = (
-    Row(
+    ParameterRow(
         name='axes',
         default=['x'],
         change=Change.NEVER,
         text='Names of the axes, lower case; each has parameters and topics under its name.',
     ),
-    Row(
+    ParameterRow(
         name='autostart',
         default=True,
         change=Change.NEVER,
         text='Configure and activate at start; false under a lifecycle manager.',
     ),
-    Row(
+    ParameterRow(
         name='tick_period',
         default=0.1,
         unit='s',
@@ -113,7 +113,7 @@ NODE_ROWS = (
         change=Change.NEVER,
         text='Grid of stamps on which a state is published while the speed is missing.',
     ),
-    Row(
+    ParameterRow(
         name='diagnostics_period',
         default=1.0,
         unit='s',
@@ -134,22 +134,22 @@ def _input_rows(
     units: Mapping[str, float],
     timeout: float,
     what: str,
-) -> tuple[Row, ...]:
+) -> tuple[ParameterRow, ...]:
     return (
-        Row(name=f'{name}.topic', default=topic, text=f'Topic of the {what}.'),
-        Row(name=f'{name}.type', default=type_name, text='Its message type.'),
-        Row(
+        ParameterRow(name=f'{name}.topic', default=topic, text=f'Topic of the {what}.'),
+        ParameterRow(name=f'{name}.type', default=type_name, text='Its message type.'),
+        ParameterRow(
             name=f'{name}.field',
             default=field,
             text='Field to read, such as wrench.force.x, position[0] or velocity[joint_name].',
         ),
-        Row(
+        ParameterRow(
             name=f'{name}.unit',
             default=next(iter(units)),
             choices=tuple(units),
             text='Unit of the field after scale and offset.',
         ),
-        Row(
+        ParameterRow(
             name=f'{name}.scale',
             default=1.0,
             low=-1e12,
@@ -157,14 +157,14 @@ def _input_rows(
             nonzero=True,
             text='Factor on the field.',
         ),
-        Row(
+        ParameterRow(
             name=f'{name}.offset',
             default=0.0,
             low=-1e12,
             high=1e12,
             text='Added after the factor, in the unit above.',
         ),
-        Row(
+        ParameterRow(
             name=f'{name}.timeout',
             default=timeout,
             unit='s',
@@ -176,14 +176,16 @@ def _input_rows(
 
 
 AXIS_ROWS = (
-    Row(name='screw', default='nominal', text='Name of the screw that the surface is for.'),
-    Row(name='oil', default='iso_vg_68', text='Name of the oil that the surface is for.'),
-    Row(
+    ParameterRow(
+        name='screw', default='nominal', text='Name of the screw that the surface is for.'
+    ),
+    ParameterRow(name='oil', default='iso_vg_68', text='Name of the oil that the surface is for.'),
+    ParameterRow(
         name='surface',
         default='',
         text='Path of the surface file, or a tier of those shipped; empty: full, if shipped.',
     ),
-    Row(
+    ParameterRow(
         name='handedness',
         default='right',
         choices=tuple(HANDS),
@@ -216,7 +218,7 @@ AXIS_ROWS = (
         timeout=30.0,
         what='oil temperature; empty: the default below',
     ),
-    Row(
+    ParameterRow(
         name='temperature.default',
         default=40.0,
         unit='degC',
@@ -234,7 +236,7 @@ AXIS_ROWS = (
         timeout=0.5,
         what='motor torque at the screw, only compared with the model; empty: none',
     ),
-    Row(
+    ParameterRow(
         name='limits.rcs',
         default=0.01,
         unit='-',
@@ -243,7 +245,7 @@ AXIS_ROWS = (
         change=Change.LIVE,
         text='RCS from which a point is outside the optimal zone.',
     ),
-    Row(
+    ParameterRow(
         name='limits.efficiency',
         default=0.85,
         unit='-',
@@ -252,7 +254,7 @@ AXIS_ROWS = (
         change=Change.LIVE,
         text='Efficiency below which a point is outside the optimal zone.',
     ),
-    Row(
+    ParameterRow(
         name='limits.light_load_fraction',
         default=0.25,
         unit='-',
@@ -261,7 +263,7 @@ AXIS_ROWS = (
         change=Change.LIVE,
         text='Part of the preload below which efficiency is not judged.',
     ),
-    Row(
+    ParameterRow(
         name='limits.standstill_speed',
         default=0.5,
         unit='rad/s',
@@ -270,7 +272,7 @@ AXIS_ROWS = (
         change=Change.LIVE,
         text='Screw speed below which nothing is judged.',
     ),
-    Row(
+    ParameterRow(
         name='limits.raise_delay',
         default=0.5,
         unit='s',
@@ -279,7 +281,7 @@ AXIS_ROWS = (
         change=Change.LIVE,
         text='Time outside the zone after which the warning is raised.',
     ),
-    Row(
+    ParameterRow(
         name='limits.clear_delay',
         default=1.0,
         unit='s',
@@ -288,7 +290,7 @@ AXIS_ROWS = (
         change=Change.LIVE,
         text='Time inside the zone after which the warning is cleared.',
     ),
-    Row(
+    ParameterRow(
         name='limits.hysteresis',
         default=0.1,
         unit='-',
@@ -297,7 +299,7 @@ AXIS_ROWS = (
         change=Change.LIVE,
         text='Part by which RCS and loss must be below their limits to clear the warning.',
     ),
-    Row(
+    ParameterRow(
         name='max_future',
         default=0.1,
         unit='s',
@@ -306,7 +308,7 @@ AXIS_ROWS = (
         change=Change.LIVE,
         text='A stamp further ahead of the clock is refused.',
     ),
-    Row(
+    ParameterRow(
         name='max_lag',
         default=0.2,
         unit='s',
@@ -314,7 +316,7 @@ AXIS_ROWS = (
         high=3600.0,
         text='Stamps further behind their arrival are warned of; they are judged all the same.',
     ),
-    Row(
+    ParameterRow(
         name='publish_period',
         default=0.1,
         unit='s',

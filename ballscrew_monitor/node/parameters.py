@@ -12,7 +12,7 @@ import pathlib
 import re
 from typing import Any
 
-from ballscrew_monitor.node.parameter_table import AXIS_ROWS, NODE_ROWS, Row
+from ballscrew_monitor.node.parameter_table import AXIS_ROWS, NODE_ROWS, ParameterRow
 from surrogate.files import InputError
 
 NODE_NAME = 'ballscrew_monitor'
@@ -35,7 +35,7 @@ def check_axes(axes: list[str]) -> None:
         raise InputError(f'parameter axes names an axis twice: {", ".join(axes)}')
 
 
-def table(axes: list[str]) -> dict[str, Row]:
+def table(axes: list[str]) -> dict[str, ParameterRow]:
     """Return the row of every parameter of a node with `axes`, by full name, in order."""
     check_axes(axes)
     rows = {row.name: row for row in NODE_ROWS}
@@ -45,7 +45,7 @@ def table(axes: list[str]) -> dict[str, Row]:
     return rows
 
 
-def default_of(name: str, row: Row) -> Any:
+def default_of(name: str, row: ParameterRow) -> Any:
     """Return the default of the parameter `name`."""
     if isinstance(row.default, str):
         return row.default.replace('{axis}', name.partition('.')[0])
@@ -62,7 +62,7 @@ def is_of_ros(name: str) -> bool:
     return name.partition('.')[0] in ROS_NAMES
 
 
-def check(rows: Mapping[str, Row], values: Mapping[str, Any]) -> None:
+def check(rows: Mapping[str, ParameterRow], values: Mapping[str, Any]) -> None:
     """Raise InputError for the first parameter that is unknown or has a bad value."""
     for name, value in values.items():
         if name not in rows:
@@ -147,7 +147,7 @@ def example_yaml() -> str:
     return '\n'.join(lines) + '\n'
 
 
-def _example_lines(row: Row, name: str, leaf: str, indent: int) -> list[str]:
+def _example_lines(row: ParameterRow, name: str, leaf: str, indent: int) -> list[str]:
     space = ' ' * indent
     facts = [row.text.rstrip('.') + '.']
     if row.unit:

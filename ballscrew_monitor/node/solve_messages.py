@@ -6,7 +6,13 @@ import math
 from typing import Any, Protocol
 
 from ballscrew_monitor.core.conversions import machine_nut
-from ballscrew_monitor.core.estimate import Estimate, estimate, estimate_from, Point, Validity
+from ballscrew_monitor.core.estimate import (
+    estimate,
+    estimate_from,
+    MachinePoint,
+    PointEstimate,
+    PointValidity,
+)
 from ballscrew_monitor.core.full_point import compare, Comparison, solved_at
 from ballscrew_monitor.core.solver import Done, End, Step
 from ballscrew_monitor.node.messages import fill_result, read_point, TIERS
@@ -38,14 +44,14 @@ class SolvableAxis(Protocol):
     def default_temperature(self) -> float:
         """Return the oil temperature without a topic [K]."""
 
-    def current_point(self) -> Point | str:
+    def current_point(self) -> MachinePoint | str:
         """Return the operating point of now, or why there is none."""
 
-    def correct(self, point: Point, full: SurfacePoint) -> tuple[bool, str]:
+    def correct(self, point: MachinePoint, full: SurfacePoint) -> tuple[bool, str]:
         """Correct the surface by a full solve, or not; return whether, and what or why not."""
 
 
-def requested_point(request: Any, axis: SolvableAxis) -> Point | str:
+def requested_point(request: Any, axis: SolvableAxis) -> MachinePoint | str:
     """Return the point that a goal asks for, or what is wrong with the goal."""
     if request.draws > MOST_DRAWS:
         return f'draws is {request.draws}, allowed is 1 to {MOST_DRAWS}, or 0 for the default'
@@ -61,7 +67,7 @@ def requested_point(request: Any, axis: SolvableAxis) -> Point | str:
     return point
 
 
-def feedback_message(step: Step, point: Point) -> Any:
+def feedback_message(step: Step, point: MachinePoint) -> Any:
     """Return how far a solve is, its nut in the machine frame."""
     return SolveOperatingPoint.Feedback(
         stage=step.stage,
@@ -78,13 +84,13 @@ def empty_result(status: str) -> Any:
     """Return a result that knows nothing but why."""
     result = SolveOperatingPoint.Result(status=status, wall_time=NAN)
     for part in (result.full, result.surface):
-        fill_result(part, Estimate(validity=Validity.UNKNOWN, reason=status), 0)
+        fill_result(part, PointEstimate(validity=PointValidity.UNKNOWN, reason=status), 0)
     result.efficiency_stderr = result.rcs_stderr = NAN
     _fill_comparison(result, Comparison())
     return result
 
 
-def result_message(axis: SolvableAxis, point: Point, done: Done) -> Any:
+def result_message(axis: SolvableAxis, point: MachinePoint, done: Done) -> Any:
     """Return the result of a solve that has ended; one that is worth it corrects the surface."""
     result = empty_result(_status(done))
     result.wall_time = float(done.wall_time)
@@ -98,7 +104,7 @@ def result_message(axis: SolvableAxis, point: Point, done: Done) -> Any:
 
 
 def _fill_full(
-    result: Any, axis: SolvableAxis, point: Point, full: SurfacePoint, answer: Estimate
+    result: Any, axis: SolvableAxis, point: MachinePoint, full: SurfacePoint, answer: PointEstimate
 ) -> None:
     found = estimate_from(point, full, rcs_limit=axis.rcs_limit)
     fill_result(result.full, found, PointResult.TIER_FULL)

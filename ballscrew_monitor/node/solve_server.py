@@ -15,7 +15,7 @@ import math
 import time
 from typing import Any
 
-from ballscrew_monitor.core.estimate import Point
+from ballscrew_monitor.core.estimate import MachinePoint
 from ballscrew_monitor.core.full_point import request_of
 from ballscrew_monitor.core.solver import Done, End, Job, Process, Solver
 from ballscrew_monitor.node.solve_messages import (
@@ -42,7 +42,7 @@ class _Goal:
     """A goal at work; `handle` is None for a solve that the node has asked for itself."""
 
     axis: SolvableAxis
-    point: Point
+    point: MachinePoint
     job: Job
     handle: ServerGoalHandle | None = None
     told: float = -math.inf  # when feedback was last sent [s]
@@ -96,7 +96,7 @@ class SolveServer:
         """Tell whether a solve is at work or waits."""
         return self._solver.busy
 
-    def solve(self, axis: SolvableAxis, point: Point) -> None:
+    def solve(self, axis: SolvableAxis, point: MachinePoint) -> None:
         """Solve a point for the node itself; what comes of it corrects the surface or is logged."""
         self._begin(axis, point, DEFAULT_DRAWS, DEFAULT_TIMEOUT, None)
 
@@ -123,7 +123,7 @@ class SolveServer:
     def _begin(
         self,
         axis: SolvableAxis,
-        point: Point,
+        point: MachinePoint,
         draws: int,
         timeout: float,
         handle: ServerGoalHandle | None,

@@ -43,7 +43,7 @@ class Station:
         self._node = node
         self._writer = StateWriter(axis.name, TIERS[axis.surface.tier])
         self._last: State | None = None
-        self._said: tuple[diagnostics.Summary, ...] = ()
+        self._said: tuple[diagnostics.StatusSummary, ...] = ()
         make = node.create_lifecycle_publisher
         self._state = make(BallScrewState, f'~/{axis.name}/state', STATE_QOS)
         self._event = make(OutOfZone, f'~/{axis.name}/out_of_zone', LATCHED_QOS)
@@ -137,7 +137,7 @@ class Station:
             clock_stands=stood > self.axis.monitor.settings.timeouts[Source.SPEED],
         )
 
-    def _summaries(self, state: State) -> tuple[diagnostics.Summary, ...]:
+    def _summaries(self, state: State) -> tuple[diagnostics.StatusSummary, ...]:
         return diagnostics.summaries(state, self.axis.monitor.event)
 
     def _log_event(self) -> None:

@@ -12,13 +12,12 @@ are.
 from collections import Counter
 import dataclasses
 import enum
-import os
 from pathlib import Path
 from typing import Any, BinaryIO
 
 from ballscrew_monitor.recordings.message_definitions import message_definition, type_hash
 from mcap.writer import CompressionType, Writer
-from surrogate.files import InputError
+from surrogate.files import InputError, replace_file
 import yaml
 
 ACTIVE = '.active'
@@ -139,11 +138,9 @@ class BagWriter:
             return
         self._writer.finish()
         self._file.close()
-        os.replace(f'{self.path}{ACTIVE}', self.path)
+        Path(f'{self.path}{ACTIVE}').replace(self.path)
         text = yaml.safe_dump({'rosbag2_bagfile_information': self._metadata()}, sort_keys=False)
-        partial = self.path.with_name('metadata.yaml.partial')
-        partial.write_text(text)
-        os.replace(partial, self.path.with_name('metadata.yaml'))
+        replace_file(self.path.with_name('metadata.yaml'), text.encode())
 
     def _open(self, directory: Path) -> BinaryIO:
         try:

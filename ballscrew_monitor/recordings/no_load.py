@@ -22,9 +22,9 @@ from ballscrew_monitor.core.conversions import (
     temperature_scaling,
     torque_scaling,
 )
-from ballscrew_monitor.core.inputs import Input, make_input, Sample, Source
+from ballscrew_monitor.core.inputs import Input, InputSample, make_input, Source
+from ballscrew_monitor.node.topics import absolute
 from ballscrew_monitor.recordings.bag import Bag
-from ballscrew_monitor.recordings.replay import absolute
 import numpy as np
 from numpy.typing import NDArray
 from rclpy.serialization import deserialize_message
@@ -51,7 +51,7 @@ class Channel:
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Window:
+class SteadyWindow:
     """Means of a steady window: speed [rad/s], torque [N m], temperature [K] or NaN."""
 
     speed: float
@@ -130,7 +130,7 @@ def _read(bag: Bag, channels: Mapping[Source, Channel]) -> tuple[dict[Source, Se
         decoded = deserialize_message(message.data, readers[0].message_type)
         for one in readers:
             read = one.read(decoded, now=message.log_time, max_future=NO_FUTURE_LIMIT)
-            if isinstance(read, Sample):
+            if isinstance(read, InputSample):
                 samples[one.source].append((read.stamp - bag.start_time, read.value))
             else:
                 refused += one.read_field(decoded) is not None
@@ -166,7 +166,7 @@ def _series(samples: list[tuple[int, float]]) -> Series:
     )
 
 
-def _windows(series: Mapping[Source, Series]) -> Iterator[Window | None]:
+def _windows(series: Mapping[Source, Series]) -> Iterator[SteadyWindow | None]:
     """Yield the windows of the recording in turn, None for one that is not steady in itself."""
     speed, torque = series[Source.SPEED], series[Source.TORQUE]
     begin = max(speed.time[0], torque.time[0])
@@ -177,7 +177,7 @@ def _windows(series: Mapping[Source, Series]) -> Iterator[Window | None]:
         if min(len(turned.time), len(pulled.time)) < FEWEST_SAMPLES or not _keeps(turned):
             yield None
             continue
-        yield Window(
+        yield SteadyWindow(
             speed=float(turned.value.mean()),
             torque=float(pulled.value.mean()),
             temperature=_held(series.get(Source.TEMPERATURE), span[1]),
@@ -202,16 +202,16 @@ def _held(series: Series | None, time: float) -> float:
     return float(series.value[max(0, int(np.searchsorted(series.time, time)) - 1)])
 
 
-def _steady(windows: list[Window | None]) -> Iterator[Window]:
+def _steady(windows: list[SteadyWindow | None]) -> Iterator[SteadyWindow]:
     """Yield the windows that follow one of the same speed."""
     for before, window in itertools.pairwise(windows):
         if before and window and abs(window.speed / before.speed - 1) <= STEADY:
             yield window
 
 
-def _bins(windows: list[Window]) -> Iterator[list[Window]]:
+def _bins(windows: list[SteadyWindow]) -> Iterator[list[SteadyWindow]]:
     """Yield groups of windows of one direction whose speeds differ by less than the width."""
-    group: list[Window] = []
+    group: list[SteadyWindow] = []
     for window in sorted(windows, key=lambda one: (one.speed < 0, abs(one.speed))):
         if group and not 0 < window.speed / group[0].speed <= 1 + BIN:
             yield group
@@ -221,7 +221,7 @@ def _bins(windows: list[Window]) -> Iterator[list[Window]]:
         yield group
 
 
-def _columns(bins: list[list[Window]]) -> dict[str, Array]:
+def _columns(bins: list[list[SteadyWindow]]) -> dict[str, Array]:
     """Return the means of the bins; their standard errors share one scatter of windows."""
     count = np.array([len(group) for group in bins])
     squares = sum(float(np.var([one.torque for one in group])) * len(group) for group in bins)

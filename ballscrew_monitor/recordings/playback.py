@@ -6,13 +6,11 @@ from pathlib import Path
 import sys
 import threading
 
-from ballscrew_monitor.cycle.run import interrupts
 from ballscrew_monitor.recordings.bag import Bag
+from ballscrew_monitor.recordings.interrupts import DONE, FAILED, interrupts, SIGNALLED
 from ballscrew_monitor.recordings.player import Player
 import rclpy
 from rclpy.signals import SignalHandlerOptions
-
-DONE, FAILED, SIGNALLED = 0, 1, 128  # exit codes; a signal adds its number
 
 
 def playback(path: Path, *, rate: float, patience: float) -> int:

@@ -16,7 +16,7 @@ import threading
 import time
 
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.core.inputs import message_class
+from ballscrew_monitor.core.fields import message_class
 from ballscrew_monitor.recordings.bag import Bag
 from rclpy.duration import Duration
 from rclpy.node import Node

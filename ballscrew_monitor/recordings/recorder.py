@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping, Sequence
 import functools
 from typing import Any
 
-from ballscrew_monitor.core.inputs import message_class
+from ballscrew_monitor.core.fields import message_class
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
 from rclpy.node import Node
 from rclpy.qos import QoSDurabilityPolicy, QoSHistoryPolicy, QoSProfile, QoSReliabilityPolicy

@@ -15,10 +15,11 @@ import itertools
 from typing import Any, NamedTuple
 
 from ballscrew_monitor.core.conversions import nanoseconds
-from ballscrew_monitor.core.inputs import Input, Refusal, Sample, Source
-from ballscrew_monitor.core.monitor import State
+from ballscrew_monitor.core.inputs import Input, InputSample, Refusal, Source
+from ballscrew_monitor.core.state import State
 from ballscrew_monitor.node.axis import Axis, build_axis
 from ballscrew_monitor.node.messages import out_of_zone_message, StateWriter, TIERS
+from ballscrew_monitor.node.topics import absolute, input_topics
 from ballscrew_monitor.recordings.bag import Bag, Message
 from ballscrew_msgs.msg import BallScrewState, OutOfZone
 from rclpy.serialization import deserialize_message
@@ -34,17 +35,6 @@ class Judged(NamedTuple):
 
     state: BallScrewState
     event: OutOfZone | None
-
-
-def input_topics(values: Mapping[str, Any]) -> dict[str, str]:
-    """Return topic and type of every input configured in the parameters `values`."""
-    found = {}
-    for axis in values['axes']:
-        for name in ('speed', 'load', 'temperature', 'torque'):
-            topic = values[f'{axis}.{name}.topic']
-            if topic:
-                found[absolute(topic)] = values[f'{axis}.{name}.type']
-    return found
 
 
 def speed_messages(bag: Bag, axes: Sequence[Axis]) -> dict[str, int]:
@@ -71,11 +61,6 @@ def speed_messages(bag: Bag, axes: Sequence[Axis]) -> dict[str, int]:
     return counts
 
 
-def absolute(topic: str) -> str:
-    """Return the full name of a topic that a node in the root namespace names."""
-    return topic if topic.startswith('/') else f'/{topic}'
-
-
 def replay(bag: Bag, values: Mapping[str, Any]) -> Iterator[Judged]:
     """
     Yield every state that the node would publish for `bag` with the parameters `values`.
@@ -96,7 +81,7 @@ class _Entry(NamedTuple):
     number: int
     log_time: int
     axis: int
-    event: Sample | Refusal | None
+    event: InputSample | Refusal | None
 
 
 def _run(bag: Bag, axes: list[Axis], period: int) -> Iterator[list[Judged]]:
@@ -127,7 +112,7 @@ def _read(bag: Bag, axes: list[Axis]) -> Iterator[_Entry]:
         decoded = _decode(message, readers[message.topic][0][2].message_type)
         for number, axis, source in readers[message.topic]:
             event = source.read(decoded, now=message.log_time, max_future=axis.max_future)
-            stamp = event.stamp if isinstance(event, Sample) else message.log_time
+            stamp = event.stamp if isinstance(event, InputSample) else message.log_time
             yield _Entry(stamp, event.source, next(numbers), message.log_time, number, event)
 
 

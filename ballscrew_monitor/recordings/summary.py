@@ -3,11 +3,12 @@
 """What came out of a run or a replay: totals, events, and the words for them."""
 
 import dataclasses
-import math
 from typing import Any
 
 from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.core.fields import stamp_of
 from ballscrew_msgs.msg import BallScrewState, Finding, OutOfZone
+from surrogate.surface import REGIMES
 
 RELATIONS = {
     Finding.CODE_RCS_HIGH: ('RCS', '>='),
@@ -61,25 +62,25 @@ class Summary:
     energy_lost: float
     events: tuple[EventRecord, ...]
 
-    def to_json(self) -> dict[str, Any]:
-        """Return plain data for JSON; NaN is null, times of events are relative [s]."""
+    def record(self) -> dict[str, Any]:
+        """Return plain data for JSON; times of events are relative [s]."""
         record = {
-            _with_unit(field.name): _plain(getattr(self, field.name))
+            _with_unit(field.name): getattr(self, field.name)
             for field in dataclasses.fields(self)
             if field.name != 'events'
         }
-        record['events'] = [self._event_json(event) for event in self.events]
+        record['events'] = [self._event_record(event) for event in self.events]
         return record
 
-    def _event_json(self, event: EventRecord) -> dict[str, Any]:
+    def _event_record(self, event: EventRecord) -> dict[str, Any]:
         return {
             'event_id': event.event_id,
             'start_s': self.since_first(event.start),
             'duration_s': event.duration,
             'active': event.active,
             'cause': f'{event.quantity} {event.relation} limit',
-            'worst_value': _plain(event.worst_value),
-            'limit': _plain(event.limit),
+            'worst_value': event.worst_value,
+            'limit': event.limit,
             'advice': event.advice,
         }
 
@@ -93,7 +94,7 @@ class Summary:
         return [
             f'in motion   {self.running_time:.1f} s of {span:.1f} s, '
             f'{self.revolutions:.0f} revolutions, {self.energy_lost:.0f} J lost to friction',
-            'regime      ' + self._shares('boundary', 'mixed', 'hydrodynamic'),
+            'regime      ' + self._shares(*(regime.word for regime in REGIMES)),
             'zone        ' + self._shares('optimal', 'outside', 'unjudged'),
             f'events      {len(self.events) or "none"}',
             *(self._event_line(event) for event in self.events),
@@ -158,11 +159,6 @@ class Summarizer:
         )
 
 
-def stamp_of(message: Any) -> int:
-    """Return the stamp of a message with a header [ns]."""
-    return int(message.header.stamp.sec) * SECOND + int(message.header.stamp.nanosec)
-
-
 def _event_record(message: OutOfZone) -> EventRecord:
     quantity, relation = RELATIONS.get(message.cause.code, ('other', 'beyond'))
     return EventRecord(
@@ -184,7 +180,3 @@ def _with_unit(name: str) -> str:
     return (
         f'{name}_s' if name.endswith('_time') else {'energy_lost': 'energy_lost_J'}.get(name, name)
     )
-
-
-def _plain(value: Any) -> Any:
-    return None if isinstance(value, float) and not math.isfinite(value) else value

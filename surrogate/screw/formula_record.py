@@ -18,6 +18,7 @@ from surrogate.formulas.film import (
 from surrogate.formulas.geometry import helix_angle, screw_contact
 from surrogate.formulas.load_sharing import nut_forces, UNLOADING_RATIO
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
+from surrogate.surface import regime_of
 from surrogate.units import RPM, ZERO_CELSIUS
 
 CONSTANT_FRICTION = 0.005
@@ -31,13 +32,6 @@ SPREAD_ROWS = (
 )
 """Label, key, factor and unit of what a page says about the spread over draws."""
 STATUS = 'closed form: published formulas, an estimate that overstates asperity contact'
-
-
-def regime(film_ratio: float) -> str:
-    """Return the regime of a film ratio [-]: boundary < 1 <= mixed < 3 <= hydrodynamic."""
-    if math.isnan(film_ratio):
-        return 'unknown'
-    return 'boundary' if film_ratio < 1 else 'mixed' if film_ratio < 3 else 'hydrodynamic'
 
 
 def closed_form_record(
@@ -73,7 +67,7 @@ def closed_form_record(
         'rcs': float(result.rcs),
         'asperity_share': float(result.asperity_share),
         'film_ratio': film_ratio,
-        'regime': regime(film_ratio),
+        'regime': regime_of(film_ratio).word,
         'central_film_m': float(result.central_film),
         'minimum_film_m': float(result.minimum_film),
         'friction_coefficient': float(result.friction_coefficient),

@@ -12,9 +12,10 @@ from surrogate.formulas.inlet_heating import heating_factor
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.screw.contacts import ScrewSettings, shortest_on_grid
 from surrogate.screw.ensemble import EnsembleSolution
-from surrogate.screw.formula_record import closed_form_record, regime
+from surrogate.screw.formula_record import closed_form_record
 from surrogate.screw.nut import rolling_force, ScrewContact
 from surrogate.screw.solve import ScrewSolution, solve_screw, TIER
+from surrogate.surface import regime_of
 
 KEYS = {'friction_torque': 'friction_torque_Nm', 'driving_torque': 'driving_torque_Nm'}
 """Keys of the record where they differ from the field."""
@@ -116,7 +117,7 @@ def solution_record(
         'rcs': found.rcs,
         'asperity_share': found.asperity_share,
         'film_ratio': found.film_ratio,
-        'regime': regime(found.film_ratio),
+        'regime': regime_of(found.film_ratio).word,
         'central_film_m': found.central_film,
         'inlet_heating': settings.inlet_heating,
         'inlet_heating_factor': _heating_factor(screw, lubricant, point, found),

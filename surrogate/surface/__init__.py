@@ -16,10 +16,15 @@ from surrogate.surface.lookup import (
     SurfacePoint,
     Validity,
 )
+from surrogate.surface.regime import FILM_RATIO_LIMITS, Regime, regime_of, REGIMES
 
 __all__ = [
     'FIELDS',
+    'FILM_RATIO_LIMITS',
     'find_surface',
+    'Regime',
+    'regime_of',
+    'REGIMES',
     'shipped_surface',
     'Surface',
     'SurfaceError',

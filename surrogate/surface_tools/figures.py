@@ -16,7 +16,7 @@ from matplotlib.patches import Patch
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.files import replace_file
-from surrogate.surface import Surface, Validity
+from surrogate.surface import FILM_RATIO_LIMITS, REGIMES, Surface, Validity
 from surrogate.surface_tools.diff import EFFICIENCY_LIMIT, LIGHT_LOAD, RCS_LIMIT
 from surrogate.units import RPM, ZERO_CELSIUS
 
@@ -182,8 +182,13 @@ def _classes(
 
 def _draw_regime(figure: Figure, axes: Axes, part: Slice) -> None:
     ratio = part.fields['film_ratio']
-    bands = np.where(np.isfinite(ratio), np.digitize(ratio, [1.0, 3.0]), np.nan)
-    names = [('boundary, < 1', BOUNDARY), ('mixed, 1 to 3', MIXED), ('hydrodynamic, >= 3', FULL)]
+    bands = np.where(np.isfinite(ratio), np.digitize(ratio, FILM_RATIO_LIMITS), np.nan)
+    low, high = FILM_RATIO_LIMITS
+    ranges = (f'< {low:g}', f'{low:g} to {high:g}', f'>= {high:g}')
+    names = [
+        (f'{regime.word}, {span}', colour)
+        for regime, span, colour in zip(REGIMES, ranges, (BOUNDARY, MIXED, FULL))
+    ]
     _classes(axes, part, bands, 'Regime by Lambda', names)
 
 

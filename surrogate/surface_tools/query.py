@@ -10,7 +10,7 @@ from typing import Any
 
 from surrogate.files import InputError
 from surrogate.parameters import OperatingPoint
-from surrogate.surface import Surface, SurfacePoint, Validity
+from surrogate.surface import regime_of, Surface, SurfacePoint, Validity
 from surrogate.surface_tools.fields import derived_key, FIELD_TEXTS, WORST_CONTACTS
 from surrogate.units import RPM, ZERO_CELSIUS
 
@@ -50,15 +50,9 @@ def _numbers(found: SurfacePoint) -> dict[str, Any]:
         **{derived_key(name, 'stderr'): found.stderr(name) for name in SPREAD_OF},
         'driving_torque_Nm': found.driving_torque,
         'back_driving': found.back_driving,
-        'regime': _regime(found.film_ratio),
+        'regime': regime_of(found.film_ratio).word,
         'worst_contact': WORST_CONTACTS[found.worst_contact] if known else '',
     }
-
-
-def _regime(film_ratio: float) -> str:
-    from surrogate.screw.formula_record import regime
-
-    return regime(film_ratio)
 
 
 def _reason(surface: Surface, validity: Validity) -> str:

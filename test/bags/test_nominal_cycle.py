@@ -7,12 +7,13 @@ from pathlib import Path
 import subprocess
 import sys
 
+from ballscrew_monitor.core.fields import stamp_of
 from ballscrew_monitor.core.judgement import Code, Gate, Level, Zone
 from ballscrew_monitor.node.axis import load_surface
 from ballscrew_monitor.node.parameters import read_file
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.replay import replay
-from ballscrew_monitor.recordings.summary import stamp_of, Summarizer
+from ballscrew_monitor.recordings.summary import Summarizer
 from geometry_msgs.msg import WrenchStamped
 import numpy as np
 import pytest

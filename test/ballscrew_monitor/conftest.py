@@ -2,11 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """A surface of constants for exact tests of the core, and the node in a process of its own."""
 
+import collections
 import contextlib
 import dataclasses
+import fcntl
 import math
 import os
 import pathlib
+import re
 import signal
 import subprocess
 import sys
@@ -15,12 +18,12 @@ import types
 import warnings
 
 from ballscrew_monitor.core.conversions import direction_of, SECOND
-from ballscrew_monitor.core.estimate import Point, PointSource, Validity
+from ballscrew_monitor.core.estimate import MachinePoint, PointSource, PointValidity
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.core.monitor import Monitor
-from ballscrew_monitor.core.state import Settings
-from ballscrew_monitor.cycle.domain import free_domain
+from ballscrew_monitor.core.state import MonitorSettings
+from ballscrew_monitor.cycle.domain import DOMAIN_GAIN, DOMAINS, free_domain, held, PORT_BASE
 from ballscrew_monitor.cycle.node_process import child_environment
 from ballscrew_msgs.msg import BallScrewState
 from diagnostic_msgs.msg import DiagnosticArray
@@ -43,6 +46,11 @@ with warnings.catch_warnings():
 os.environ['ROS_PYTHON_CHECK_FIELDS'] = '1'
 os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+SHARED_MEMORY = pathlib.Path('/dev/shm')
+# A segment or a port, its lock files, and the mutex of a port.
+SEGMENT = re.compile(
+    r'(?:sem\.)?(?P<name>fast(?:rtps|dds)_(?:port(?P<port>\d+)|[0-9a-f]{16}))(?:_el|_sl|_mutex)?'
+)
 DEADLINE = 30.0  # [s] for anything that another process has to do
 
 
@@ -50,7 +58,7 @@ DEADLINE = 30.0  # [s] for anything that another process has to do
 class Numbers:
     """What a surface says of a point."""
 
-    validity: Validity = Validity.VALID
+    validity: PointValidity = PointValidity.VALID
     rcs: float = 0.0
     efficiency: float = 0.9
     film_ratio: float = 3.0
@@ -92,13 +100,13 @@ class ConstantSurface:
     def lookup(self, speed, opposing_load, temperature):
         self.asked.append((speed, opposing_load, temperature))
         if not self.speed_range[0] <= speed:
-            return Numbers(validity=Validity.SPEED_BELOW_RANGE)
+            return Numbers(validity=PointValidity.SPEED_BELOW_RANGE)
         if not speed <= self.speed_range[1]:
-            return Numbers(validity=Validity.SPEED_ABOVE_RANGE)
+            return Numbers(validity=PointValidity.SPEED_ABOVE_RANGE)
         if not self.load_range[0] <= opposing_load <= self.load_range[1]:
-            return Numbers(validity=Validity.LOAD_OUT_OF_RANGE)
+            return Numbers(validity=PointValidity.LOAD_OUT_OF_RANGE)
         if not self.temperature_range[0] <= temperature <= self.temperature_range[1]:
-            return Numbers(validity=Validity.TEMPERATURE_OUT_OF_RANGE)
+            return Numbers(validity=PointValidity.TEMPERATURE_OUT_OF_RANGE)
         return Numbers(
             **{
                 name: value(speed, opposing_load) if callable(value) else value
@@ -129,7 +137,9 @@ def make_point(speed=10.0, axial_load=-1000.0, temperature=313.15, **changes):
         'temperature_source': PointSource.MEASURED,
         'direction': direction_of(speed),
     }
-    return Point(speed=speed, axial_load=axial_load, temperature=temperature, **(values | changes))
+    return MachinePoint(
+        speed=speed, axial_load=axial_load, temperature=temperature, **(values | changes)
+    )
 
 
 def make_monitor(surface=None, limits=None, **changes):
@@ -140,7 +150,7 @@ def make_monitor(surface=None, limits=None, **changes):
         'default_temperature': 313.15,
         'timeouts': {Source.SPEED: SECOND // 2, Source.LOAD: SECOND // 2},
     }
-    return Monitor(surface or ConstantSurface(), Settings(**(values | changes)))
+    return Monitor(surface or ConstantSurface(), MonitorSettings(**(values | changes)))
 
 
 @pytest.fixture(scope='session')
@@ -153,6 +163,58 @@ def core():
         point=make_point,
         monitor=make_monitor,
     )
+
+
+def stale_segments(folder, free_domains):
+    """
+    Return the files of FastDDS in `folder` that nobody uses any more.
+
+    A segment of a participant has a random name and a lock file, which its process keeps locked
+    with flock(2) as long as it lives: where the lock can be had the owner is gone for good, which
+    is the rule of `fastdds shm clean` too. A port has a number that another participant of the
+    domain will want again, and not always a lock file: its domain must be one of `free_domains`
+    as well, in which nobody is and into which nobody comes meanwhile.
+
+    """
+    groups = collections.defaultdict(list)
+    for path in folder.iterdir():
+        found = SEGMENT.fullmatch(path.name)
+        if found:
+            groups[found['name'], found['port']].append(path)
+    return {
+        path
+        for (_, port), paths in groups.items()
+        for locks in [[path for path in paths if path.name.endswith(('_el', '_sl'))]]
+        if not any(map(is_locked, locks))
+        if (domain_of(int(port)) in free_domains if port else locks)
+        for path in paths
+    }
+
+
+def is_locked(path):
+    """Tell whether a process holds the lock file; one that is not ours to open counts as held."""
+    try:
+        with path.open('rb') as file:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        return True
+    return False
+
+
+def domain_of(port):
+    """Return the domain of the number of a port."""
+    return (port - PORT_BASE) // DOMAIN_GAIN
+
+
+@pytest.fixture(scope='session', autouse=True)
+def shared_memory():
+    """Remove at the end what killed nodes have left in the shared memory."""
+    yield stale_segments
+    with contextlib.ExitStack() as stack:
+        free = {domain for domain in DOMAINS if stack.enter_context(held(domain))}
+        for path in stale_segments(SHARED_MEMORY, free) if SHARED_MEMORY.is_dir() else ():
+            with contextlib.suppress(FileNotFoundError, PermissionError):
+                path.unlink()
 
 
 class NodeProcess:

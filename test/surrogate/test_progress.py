@@ -4,7 +4,7 @@
 
 import io
 
-from surrogate.progress import Progress
+from surrogate.progress import bar, Progress
 
 
 class Terminal(io.StringIO):
@@ -23,6 +23,19 @@ def run(stream, total, seconds, there=0):
         now[0] += 0.0 if number < there else seconds
         progress.step(there=number < there)
     return stream.getvalue()
+
+
+def test_a_bar_is_full_only_at_the_end():
+    """Its length never changes, whatever the share."""
+    assert [bar(share, 4, blank='.') for share in (-1.0, 0.0, 0.5, 0.99, 1.0, 2.0)] == [
+        '....',
+        '....',
+        '##..',
+        '###.',
+        '####',
+        '####',
+    ]
+    assert bar(0.25, 4) == '#   '
 
 
 def test_a_terminal_gets_a_bar_with_rate_and_time_left():

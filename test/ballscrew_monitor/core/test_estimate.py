@@ -11,34 +11,16 @@ from ballscrew_monitor.core.estimate import (
     ContactState,
     estimate,
     PointSource,
-    Regime,
-    regime_of,
-    Validity,
+    PointValidity,
 )
 from ballscrew_msgs.msg import OperatingPoint, PointResult
 from hypothesis import given
 from hypothesis import strategies as st
 import pytest
 import surrogate.surface
+from surrogate.surface import Regime
 
-BELOW_ONE, BELOW_THREE = math.nextafter(1.0, 0.0), math.nextafter(3.0, 0.0)
 finite = st.floats(allow_nan=False, allow_infinity=False)
-
-
-@pytest.mark.parametrize(
-    ('film_ratio', 'regime'),
-    [
-        (0.0, Regime.BOUNDARY),
-        (BELOW_ONE, Regime.BOUNDARY),
-        (1.0, Regime.MIXED),
-        (BELOW_THREE, Regime.MIXED),
-        (3.0, Regime.HYDRODYNAMIC),
-        (math.inf, Regime.HYDRODYNAMIC),
-        (math.nan, Regime.UNKNOWN),
-    ],
-)
-def test_regime_on_its_limits(film_ratio, regime):
-    assert regime_of(film_ratio) is regime
 
 
 @pytest.mark.parametrize(
@@ -59,14 +41,12 @@ def test_contact_state_on_its_limits(rcs, state):
 
 @given(st.floats())
 def test_bands_are_exhaustive_and_only_nan_is_unknown(value):
-    assert (regime_of(value) is Regime.UNKNOWN) == math.isnan(value)
     assert (contact_state_of(value, limit=0.25) is ContactState.UNKNOWN) == math.isnan(value)
 
 
 @given(first=st.floats(0.0, 10.0), second=st.floats(0.0, 10.0))
 def test_bands_are_in_order(first, second):
     low, high = sorted((first, second))
-    assert regime_of(low) <= regime_of(high)
     assert contact_state_of(low, limit=0.25) <= contact_state_of(high, limit=0.25)
 
 
@@ -79,7 +59,7 @@ def test_the_surface_is_asked_in_its_own_frame(core):
 
 def test_a_valid_estimate_carries_the_numbers(core):
     result = estimate(core.point(speed=-20.0), core.surface(rcs=0.25), rcs_limit=0.25)
-    assert (result.validity, result.reason) == (Validity.VALID, '')
+    assert (result.validity, result.reason) == (PointValidity.VALID, '')
     assert (result.rcs, result.efficiency) == (0.25, 0.9)
     assert result.machine_torque == -2.0
     assert result.worst_nut is Nut.NEGATIVE
@@ -91,24 +71,36 @@ def test_a_valid_estimate_carries_the_numbers(core):
     [
         (
             {'speed': 0.05},
-            Validity.SPEED_BELOW_RANGE,
+            PointValidity.SPEED_BELOW_RANGE,
             'speed 0.05 rad/s is below .* from 0.1 rad/s',
         ),
-        ({'speed': 200.0}, Validity.SPEED_ABOVE_RANGE, 'speed 200 rad/s is above .* to 100 rad/s'),
+        (
+            {'speed': 200.0},
+            PointValidity.SPEED_ABOVE_RANGE,
+            'speed 200 rad/s is above .* to 100 rad/s',
+        ),
         (
             {'axial_load': 5e3},
-            Validity.LOAD_OUT_OF_RANGE,
+            PointValidity.LOAD_OUT_OF_RANGE,
             'opposing load -5000 N .* -4000 to 4000 N',
         ),
-        ({'temperature': 373.15}, Validity.TEMPERATURE_OUT_OF_RANGE, '100 degC .* 10 to 80 degC'),
-        ({'direction': Direction.UNKNOWN}, Validity.UNKNOWN, 'has not moved yet'),
-        ({'speed': math.nan}, Validity.NO_INPUT, 'no valid sample of speed'),
+        (
+            {'temperature': 373.15},
+            PointValidity.TEMPERATURE_OUT_OF_RANGE,
+            '100 degC .* 10 to 80 degC',
+        ),
+        ({'direction': Direction.UNKNOWN}, PointValidity.UNKNOWN, 'has not moved yet'),
+        ({'speed': math.nan}, PointValidity.NO_INPUT, 'no valid sample of speed'),
         (
             {'axial_load': math.nan, 'temperature': math.inf},
-            Validity.NO_INPUT,
+            PointValidity.NO_INPUT,
             'no valid sample of load and temperature',
         ),
-        ({'axial_load_source': PointSource.HELD}, Validity.NO_INPUT, 'no valid sample of load'),
+        (
+            {'axial_load_source': PointSource.HELD},
+            PointValidity.NO_INPUT,
+            'no valid sample of load',
+        ),
     ],
 )
 def test_what_cannot_be_estimated_has_a_reason_and_no_numbers(core, changes, validity, reason):
@@ -123,8 +115,8 @@ def test_what_cannot_be_estimated_has_a_reason_and_no_numbers(core, changes, val
 
 
 def test_a_masked_cell_says_so(core):
-    result = estimate(core.point(), core.surface(validity=Validity.MASKED), rcs_limit=0.25)
-    assert (result.validity, result.numbers) == (Validity.MASKED, None)
+    result = estimate(core.point(), core.surface(validity=PointValidity.MASKED), rcs_limit=0.25)
+    assert (result.validity, result.numbers) == (PointValidity.MASKED, None)
     assert 'did not converge' in result.reason
 
 
@@ -137,8 +129,8 @@ def test_a_masked_cell_says_so(core):
 def test_whatever_the_point_is_there_is_an_answer(core, speed, load, temperature, direction):
     point = core.point(speed=speed, axial_load=load, temperature=temperature, direction=direction)
     result = estimate(point, core.surface(), rcs_limit=0.25)
-    assert (result.validity is Validity.VALID) == (result.numbers is not None)
-    assert (result.validity is Validity.VALID) == (result.reason == '')
+    assert (result.validity is PointValidity.VALID) == (result.numbers is not None)
+    assert (result.validity is PointValidity.VALID) == (result.reason == '')
 
 
 @given(speed=st.floats(0.5, 90.0), load=st.floats(-3e3, 3e3))
@@ -160,7 +152,7 @@ def test_turning_everything_round_changes_nothing_but_the_signs(core, speed, loa
 @pytest.mark.parametrize(
     ('enumeration', 'message', 'prefix'),
     [
-        (Validity, PointResult, 'VALIDITY_'),
+        (PointValidity, PointResult, 'VALIDITY_'),
         (Regime, PointResult, 'REGIME_'),
         (ContactState, PointResult, 'CONTACT_'),
         (Nut, PointResult, 'NUT_'),
@@ -175,4 +167,4 @@ def test_enumerations_have_the_numbers_of_the_messages(enumeration, message, pre
 
 def test_validity_repeats_that_of_a_surface():
     for member in surrogate.surface.Validity:
-        assert Validity[member.name] == member
+        assert PointValidity[member.name] == member

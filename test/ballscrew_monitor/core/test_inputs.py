@@ -6,11 +6,11 @@ import math
 
 from ballscrew_monitor.core.conversions import Scaling, SECOND
 from ballscrew_monitor.core.inputs import (
+    InputSample,
     InputState,
     LOSS_SHOWN,
     make_input,
     Refusal,
-    Sample,
     Source,
     StampSource,
     Tracker,
@@ -45,7 +45,7 @@ def test_a_header_stamp_is_the_stamp():
     sample = speed_input().read(
         joints('x_axis', velocity=[3.0], stamp=NOW - 5), now=NOW, max_future=0
     )
-    assert sample == Sample(
+    assert sample == InputSample(
         source=Source.SPEED, value=3.0, stamp=NOW - 5, stamp_source=StampSource.HEADER, arrival=NOW
     )
 
@@ -63,7 +63,7 @@ def test_a_stamp_exactly_as_far_ahead_as_allowed_is_taken():
     speed = speed_input()
     limit = joints('x_axis', velocity=[3.0], stamp=NOW + 7)
     beyond = joints('x_axis', velocity=[3.0], stamp=NOW + 8)
-    assert isinstance(speed.read(limit, now=NOW, max_future=7), Sample)
+    assert isinstance(speed.read(limit, now=NOW, max_future=7), InputSample)
     refusal = speed.read(beyond, now=NOW, max_future=7)
     assert (refusal.source, refusal.why, refusal.arrival) == (Source.SPEED, Why.FUTURE, NOW)
 
@@ -84,7 +84,7 @@ def test_a_refused_stamp_says_what_mends_it(ahead, words):
 def test_a_clock_that_has_not_started_refuses_no_stamp():
     assert isinstance(
         speed_input().read(joints('x_axis', velocity=[3.0], stamp=NOW), now=0, max_future=0),
-        Sample,
+        InputSample,
     )
 
 
@@ -111,7 +111,7 @@ def tracker(**changes):
 
 
 def sample(stamp, **changes):
-    return Sample(source=Source.LOAD, value=1.0, stamp=stamp, **changes)
+    return InputSample(source=Source.LOAD, value=1.0, stamp=stamp, **changes)
 
 
 def refusal(why=Why.NOT_A_NUMBER):

@@ -6,8 +6,8 @@ import dataclasses
 import math
 
 from ballscrew_monitor.core.conversions import Direction, SECOND
-from ballscrew_monitor.core.estimate import PointSource, Validity
-from ballscrew_monitor.core.inputs import InputState, Refusal, Sample, Source, Why
+from ballscrew_monitor.core.estimate import PointSource, PointValidity
+from ballscrew_monitor.core.inputs import InputSample, InputState, Refusal, Source, Why
 from ballscrew_monitor.core.judgement import Code, Gate, Level, Zone
 from ballscrew_monitor.core.monitor import BACKWARD_JUMP
 from ballscrew_monitor.core.state import Event
@@ -22,11 +22,11 @@ TICK = 'tick'
 
 
 def speed(value, stamp):
-    return Sample(source=Source.SPEED, value=value, stamp=stamp)
+    return InputSample(source=Source.SPEED, value=value, stamp=stamp)
 
 
 def load(value, stamp):
-    return Sample(source=Source.LOAD, value=value, stamp=stamp)
+    return InputSample(source=Source.LOAD, value=value, stamp=stamp)
 
 
 def feed(monitor, events):
@@ -74,7 +74,7 @@ def test_other_samples_are_kept_and_not_judged(core):
 
 def test_before_the_load_arrives_nothing_can_be_judged(core):
     state = core.monitor().update(speed(10.0, START))
-    assert state.estimate.validity is Validity.NO_INPUT
+    assert state.estimate.validity is PointValidity.NO_INPUT
     assert state.verdict.findings[0].code is Code.INPUT_LOST
     assert math.isnan(state.point.axial_load)
     assert (state.level, state.judged) == (Level.UNKNOWN, 0)
@@ -87,7 +87,7 @@ def test_a_load_exactly_as_old_as_its_timeout_is_judged(core):
     stale = monitor.update(speed(10.0, START + TIMEOUT + 1))
     assert stale.point.axial_load_source is PointSource.HELD
     assert stale.point.axial_load == -1000.0
-    assert stale.estimate.validity is Validity.NO_INPUT
+    assert stale.estimate.validity is PointValidity.NO_INPUT
 
 
 def test_the_default_temperature_is_used_without_a_topic(core):
@@ -99,8 +99,8 @@ def test_the_default_temperature_is_used_without_a_topic(core):
 def test_a_configured_temperature_is_waited_for(core):
     timeouts = dict.fromkeys((Source.SPEED, Source.LOAD, Source.TEMPERATURE), TIMEOUT)
     monitor = core.monitor(timeouts=timeouts)
-    assert feed(monitor, motion(10.0))[-1].estimate.validity is Validity.NO_INPUT
-    monitor.update(Sample(source=Source.TEMPERATURE, value=300.0, stamp=START))
+    assert feed(monitor, motion(10.0))[-1].estimate.validity is PointValidity.NO_INPUT
+    monitor.update(InputSample(source=Source.TEMPERATURE, value=300.0, stamp=START))
     assert feed(monitor, motion(10.0, start=START + STEP))[-1].point.temperature == 300.0
 
 
@@ -110,7 +110,7 @@ def test_the_measured_torque_is_compared_and_never_judged(core):
     before = feed(monitor, motion(-10.0))[-1]
     assert math.isnan(before.measured_torque)
     assert before.verdict.zone is Zone.OPTIMAL
-    monitor.update(Sample(source=Source.TORQUE, value=-2.5, stamp=START))
+    monitor.update(InputSample(source=Source.TORQUE, value=-2.5, stamp=START))
     after = feed(monitor, motion(-10.0, start=START + STEP))[-1]
     assert (after.measured_torque, after.torque_residual) == (-2.5, -0.5)
 
@@ -130,7 +130,7 @@ def test_a_bad_load_stops_the_judgement_until_the_next_good_one(core):
     feed(monitor, motion(10.0))
     monitor.update(Refusal(source=Source.LOAD, why=Why.NOT_A_NUMBER))
     state = monitor.update(speed(10.0, START + STEP))
-    assert state.estimate.validity is Validity.NO_INPUT
+    assert state.estimate.validity is PointValidity.NO_INPUT
     assert state.inputs[1].state is InputState.BAD
     assert feed(monitor, motion(10.0, start=START + 2 * STEP))[-1].verdict.zone is Zone.OPTIMAL
 
@@ -157,7 +157,7 @@ def test_the_direction_is_held_at_standstill(core):
     still = feed(monitor, motion(0.1))[-1]
     assert still.point.direction is Direction.UNKNOWN
     assert not still.point.direction_held
-    assert still.estimate.validity is Validity.UNKNOWN
+    assert still.estimate.validity is PointValidity.UNKNOWN
     moving = feed(monitor, motion(-10.0, start=START + STEP))[-1]
     assert (moving.point.direction, moving.point.direction_held) == (Direction.NEGATIVE, False)
     still = feed(monitor, motion(0.1, start=START + 2 * STEP))[-1]
@@ -179,7 +179,7 @@ def test_a_standing_warning_is_not_cleared_by_standstill_or_silence(core):
 def test_ticks_speak_only_while_the_speed_is_missing(core):
     monitor = core.monitor()
     state = monitor.tick(START)
-    assert (state.stamp, state.estimate.validity) == (START, Validity.NO_INPUT)
+    assert (state.stamp, state.estimate.validity) == (START, PointValidity.NO_INPUT)
     assert state.point.speed_source is PointSource.UNKNOWN
     feed(monitor, motion(10.0, start=START + STEP))
     assert monitor.tick(START + STEP + TIMEOUT) is None
@@ -284,7 +284,7 @@ def test_a_loop_of_the_clock_starts_the_filters_anew_and_keeps_the_level(core):
     assert [state.level for state in states] == [Level.WARN] * 100
     assert states[0].level_since == SECOND - (first.stamp - first.level_since)
     assert states[0].totals == first.totals
-    assert states[0].estimate.validity is Validity.VALID
+    assert states[0].estimate.validity is PointValidity.VALID
     assert states[-1].judged == 171
     over = feed(monitor, motion(40.0, start=2 * SECOND))[-1]
     assert over.level is Level.OK
@@ -295,7 +295,7 @@ def test_a_tick_of_an_earlier_time_forgets_the_future(core):
     monitor = core.monitor()
     feed(monitor, [(TICK, START), *motion(10.0)])
     state = monitor.tick(START - BACKWARD_JUMP - 1)
-    assert state.estimate.validity is Validity.NO_INPUT
+    assert state.estimate.validity is PointValidity.NO_INPUT
     assert state.point.speed_source is PointSource.UNKNOWN
     assert monitor.tick(START - BACKWARD_JUMP) is not None
 
@@ -314,7 +314,7 @@ def test_a_sample_taken_before_the_clock_began_goes_stale_too(core, early):
     feed(monitor, [(TICK, 0), load(-1000.0, START), speed(10.0, START)])
     here = START // 2
     state = monitor.tick(here)
-    assert state.estimate.validity is Validity.NO_INPUT
+    assert state.estimate.validity is PointValidity.NO_INPUT
     late = [event for event in motion(10.0, start=here) if event.source is not early]
     feed(monitor, [*late, (TICK, here)])
     states = feed(monitor, [speed(10.0, here + STEP)])
@@ -406,7 +406,7 @@ def test_a_source_with_a_constant_offset_is_judged_like_any_other(core, lag):
         feed(plain, [*pair, *ticks])
         assert monitor.level is plain.level
     assert [state.stamp for state in states] == [START - lag + i * STEP for i in range(300)]
-    assert {state.estimate.validity for state in states} == {Validity.VALID}
+    assert {state.estimate.validity for state in states} == {PointValidity.VALID}
     assert monitor.level is Level.OK
     assert monitor.event.number == 1
     assert states[-1].inputs[0].lag == pytest.approx(lag / SECOND)
@@ -438,7 +438,7 @@ def test_a_lagging_speed_that_dies_goes_stale_by_its_arrival_on_its_own_time_lin
     last = START + 59 * STEP
     assert monitor.tick(last + TIMEOUT) is None
     state = monitor.tick(last + TIMEOUT + 1)
-    assert state.estimate.validity is Validity.NO_INPUT
+    assert state.estimate.validity is PointValidity.NO_INPUT
     assert state.stamp == last + TIMEOUT + 1 - lag
     assert state.level is Level.WARN
 
@@ -449,7 +449,7 @@ def test_a_clock_that_is_set_back_does_not_hide_a_dead_speed(core):
     feed(monitor, [(TICK, START), *lagging(motion(10.0), 5 * SECOND)])
     back = START - 4 * SECOND
     assert monitor.tick(back) is None
-    assert monitor.tick(back + TIMEOUT + 1).estimate.validity is Validity.NO_INPUT
+    assert monitor.tick(back + TIMEOUT + 1).estimate.validity is PointValidity.NO_INPUT
 
 
 def test_what_was_lost_is_told_with_the_next_state(core):
@@ -505,13 +505,13 @@ def test_the_level_changes_on_judged_speed_samples_only(core, stream):
     for event in stream:
         before = monitor.level
         state = (feed(monitor, [event]) or [None])[0]
-        if isinstance(event, Sample) and event.source is Source.SPEED and state is not None:
+        if isinstance(event, InputSample) and event.source is Source.SPEED and state is not None:
             judged += state.verdict.zone is not Zone.UNKNOWN or state.verdict.gates[:1] == (
                 Gate.STANDSTILL,
             )
             assert state.judged == judged
         if monitor.level is not before:
-            assert state.estimate.validity is Validity.VALID
+            assert state.estimate.validity is PointValidity.VALID
             assert monitor.level is (
                 Level.WARN if state.verdict.zone is Zone.OUTSIDE else Level.OK
             )

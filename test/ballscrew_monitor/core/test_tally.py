@@ -7,7 +7,7 @@ import math
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.estimate import estimate
 from ballscrew_monitor.core.judgement import judge
-from ballscrew_monitor.core.tally import Account, Extremes, moment, Totals, Window
+from ballscrew_monitor.core.tally import Account, Extremes, moment, Totals, WindowTally
 from hypothesis import given
 from hypothesis import strategies as st
 import pytest
@@ -22,13 +22,13 @@ def seen(core, point, **numbers):
 
 
 def test_an_empty_window_has_no_numbers():
-    taken = Window().take()
+    taken = WindowTally().take()
     assert taken.count == 0
     assert math.isnan(taken.speed.low)
 
 
 def test_a_window_holds_what_was_judged_and_is_emptied_when_taken(core):
-    window = Window()
+    window = WindowTally()
     for speed in (10.0, -30.0, 20.0):
         window.add(*seen(core, core.point(speed=speed), rcs=speed**2 / 1e4))
     window.add(*seen(core, core.point(speed=0.2)))
@@ -42,7 +42,7 @@ def test_a_window_holds_what_was_judged_and_is_emptied_when_taken(core):
 
 
 def test_efficiency_counts_only_where_it_was_judged(core):
-    window = Window()
+    window = WindowTally()
     window.add(*seen(core, core.point(axial_load=10.0), efficiency=0.01))
     taken = window.take()
     assert taken.count == 1

@@ -33,6 +33,14 @@ def test_a_domain_with_a_participant_is_not_free():
         assert domain.is_free(found)
 
 
+def test_a_domain_is_held_by_one_at_a_time():
+    with domain.free_domain() as found:
+        with domain.held(found) as free:
+            assert not free
+    with domain.held(found) as free:
+        assert free
+
+
 def test_when_all_are_taken_it_says_so(monkeypatch):
     with domain.free_domain() as found:
         monkeypatch.setattr(domain, 'DOMAINS', range(found, found + 1))

@@ -5,7 +5,7 @@
 import dataclasses
 
 from ballscrew_monitor.cycle.operating_map import sample
-from ballscrew_monitor.cycle.state_trace import Limits, Trace
+from ballscrew_monitor.cycle.state_trace import LimitsInForce, Trace
 import numpy as np
 import pytest
 from surrogate.surface import shipped_surface, Surface
@@ -28,7 +28,7 @@ def make_trace(speed, opposing_load):
         film_ratio=rest,
         zone=rest,
         level=rest,
-        limits=Limits(rcs=0.01, efficiency=0.85, light_load=250.0, standstill=0.5),
+        limits=LimitsInForce(rcs=0.01, efficiency=0.85, light_load=250.0, standstill=0.5),
         tier=1,
     )
 

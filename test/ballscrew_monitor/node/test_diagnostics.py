@@ -5,7 +5,7 @@
 import dataclasses
 
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.core.inputs import Refusal, Sample, Source, Why
+from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, Why
 from ballscrew_monitor.core.state import Event
 from ballscrew_monitor.node import diagnostics
 from ballscrew_monitor.node.diagnostics import ERROR, OK, STALE, WARN
@@ -16,7 +16,7 @@ WALL = 1_800_000_000 * SECOND
 
 
 def sample(source, value, stamp=START):
-    return Sample(source=source, value=value, stamp=stamp)
+    return InputSample(source=source, value=value, stamp=stamp)
 
 
 def after(core, *events, surface=None, clock_stands=False, settings=None, **limits):

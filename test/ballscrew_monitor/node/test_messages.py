@@ -6,7 +6,7 @@ import math
 
 from ballscrew_monitor.core.conversions import Direction, SECOND
 from ballscrew_monitor.core.estimate import estimate
-from ballscrew_monitor.core.inputs import Sample, Source
+from ballscrew_monitor.core.inputs import InputSample, Source
 from ballscrew_monitor.core.state import Event
 from ballscrew_monitor.node.messages import (
     fill_result,
@@ -33,8 +33,8 @@ NAN = math.nan
 
 def one_state(core, *, speed=-20.0, surface=None, limits=None, stamp=STAMP):
     monitor = core.monitor(surface, limits)
-    monitor.update(Sample(source=Source.LOAD, value=1000.0, stamp=stamp))
-    return monitor.update(Sample(source=Source.SPEED, value=speed, stamp=stamp)), monitor
+    monitor.update(InputSample(source=Source.LOAD, value=1000.0, stamp=stamp))
+    return monitor.update(InputSample(source=Source.SPEED, value=speed, stamp=stamp)), monitor
 
 
 def over_the_wire(message):

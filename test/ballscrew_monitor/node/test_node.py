@@ -375,33 +375,52 @@ def test_a_clock_that_stops_is_told(node):
 
 
 def test_a_long_answer_makes_no_input_missing(node):
-    """What has come in meanwhile is taken before anything is called stale."""
-    node.start(x__speed__timeout=0.05, x__load__timeout=3600.0, tick_period=0.01)
+    """
+    What has come in meanwhile is taken before anything is called stale.
+
+    The clock is simulated, so nothing goes stale by waiting, whatever the machine is busy with. It
+    jumps past the timeout while the node is at one of several answers, after samples that bring
+    the speed up to the same time: only a node that leaves them waiting can call the speed stale.
+
+    """
+    node.start(use_sim_time='true', x__speed__timeout=0.05, tick_period=0.01, **AHEAD)
     states = node.states()
+    clocks = node.node.create_publisher(Clock, '/clock', 10)
     publish = node.machine()
-    node.stamp = node.now()
+    node.until(clocks.get_subscription_count)
+    node.stamp = 50 * 10**9
 
-    def judged():
-        """Publish until a sample is judged: one alone is stale where this process waits."""
-        publish(FAST, step=node.now() - node.stamp)
-        return states and states[-1].judged
+    def clock(stamp):
+        """Set the clock; tell whether the last state says that an input is missing."""
+        message = Clock()
+        message.clock.sec, message.clock.nanosec = divmod(stamp, 10**9)
+        clocks.publish(message)
+        return states and states[-1].result.validity == PointResult.VALIDITY_NO_INPUT
 
-    node.until(judged, 'a first judged state')
-    states.clear()  # what was called stale before it was judged
+    def stamps():
+        return [state.header.stamp.sec * 10**9 + state.header.stamp.nanosec for state in states]
+
+    node.until(lambda: clock(node.stamp), 'a tick on simulated time')
+    feed(node, publish, states, FAST, 1)
+    states.clear()
     points = [OperatingPoint(speed=FAST, temperature=40.0)] * 10_000
     client = node.node.create_client(EvaluateOperatingPoint, f'{node.name}/evaluate')
     node.until(client.service_is_ready)
-    future = client.call_async(EvaluateOperatingPoint.Request(axis='x', points=points))
-
-    def answered():
-        publish(FAST, step=node.now() - node.stamp)
-        return future.done()
-
-    node.until(lambda: answered() and states, 'the answer')
-    end = states[-1].judged + 20
-    node.until(lambda: answered() and states[-1].judged >= end)
-    stamps = [state.header.stamp.sec * 10**9 + state.header.stamp.nanosec for state in states]
-    assert stamps == sorted(stamps)
+    request = EvaluateOperatingPoint.Request(axis='x', points=points)
+    answers = [client.call_async(request) for _ in range(4)]
+    node.until(lambda: any(answer.done() for answer in answers), 'an answer')
+    begin = node.stamp
+    for _ in range(20):
+        publish(FAST)
+    clock(node.stamp)
+    node.until(lambda: states and states[-1].judged == 21, 'the last sample')
+    assert stamps() == [begin + (i + 1) * 10_000_000 for i in range(20)]
+    assert {state.result.validity for state in states} == {PointResult.VALIDITY_VALID}
+    node.until(answers[-1].done, 'the last answer')
+    # From here on nothing waits: what is missing is called so.
+    later = itertools.count(node.stamp + 10**9, 10_000_000)
+    node.until(lambda: clock(next(later)), 'a tick after the answers')
+    assert stamps() == sorted(stamps())
 
 
 def test_sim_time_is_the_clock_of_everything(node):

@@ -5,13 +5,13 @@
 import itertools
 from pathlib import Path
 
+from ballscrew_monitor.core.fields import stamp_of
 from ballscrew_monitor.core.inputs import InputState
 from ballscrew_monitor.node import parameters
 from ballscrew_monitor.node.axis import build_axis
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
-from ballscrew_monitor.recordings.replay import input_topics, LONGEST_HOLE, replay, speed_messages
-from ballscrew_monitor.recordings.summary import stamp_of
+from ballscrew_monitor.recordings.replay import LONGEST_HOLE, replay, speed_messages
 from geometry_msgs.msg import WrenchStamped
 import pytest
 from rclpy.serialization import serialize_message
@@ -151,14 +151,6 @@ def test_events_come_with_the_state_that_begins_or_ends_them(nominal_bag, values
     assert edges == [
         (number, active, True) for number, active in itertools.product((1, 2, 3), (True, False))
     ]
-
-
-def test_the_topics_are_those_of_the_parameters(values):
-    assert input_topics(values) == {
-        '/joint_states': 'sensor_msgs/msg/JointState',
-        '/axial_load': 'geometry_msgs/msg/WrenchStamped',
-        '/oil_temperature': 'sensor_msgs/msg/Temperature',
-    }
 
 
 def test_a_bag_without_a_needed_topic_is_refused(tmp_path, values):

@@ -7,6 +7,7 @@ import math
 
 from ballscrew_monitor.recordings.summary import Summarizer
 from ballscrew_msgs.msg import BallScrewState, Finding, OutOfZone
+from surrogate.files import json_text
 
 
 def make_summary():
@@ -52,7 +53,7 @@ def test_json_has_units_and_no_nan():
     state = BallScrewState(axis='x')
     state.totals.energy_lost = math.nan
     summarizer.add_state(state)
-    record = json.loads(json.dumps(summarizer.result().to_json(), allow_nan=False))
+    record = json.loads(json_text(summarizer.result().record()))
     assert record['energy_lost_J'] is None
     assert record['running_time_s'] == 0.0
     assert record['events'] == []

@@ -1,23 +1,17 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The topics of a run: what the node reads and what it says."""
+"""The topics that a run records: what the node reads and what it says."""
 
 from collections.abc import Mapping
 from typing import Any
 
-from ballscrew_monitor.node.parameters import NODE_NAME
+from ballscrew_monitor.node.topics import input_topics, output
 from ballscrew_monitor.recordings.bag_writer import Offer, Topic
-from ballscrew_monitor.recordings.replay import absolute, input_topics
 
 DIAGNOSTICS = Topic(
     name='/diagnostics', type_name='diagnostic_msgs/msg/DiagnosticArray', offer=Offer.RELIABLE
 )
 LATCHED = {'out_of_zone': 'OutOfZone', 'surface_info': 'SurfaceInfo'}
-
-
-def output(axis: str, name: str) -> str:
-    """Return the full name of an output of the node, such as `state`."""
-    return absolute(f'{NODE_NAME}/{axis}/{name}')
 
 
 def recorded_topics(values: Mapping[str, Any]) -> list[Topic]:

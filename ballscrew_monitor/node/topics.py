@@ -1,0 +1,29 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Full names of the topics that a node in the root namespace reads and writes."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from ballscrew_monitor.node.parameters import NODE_NAME
+
+
+def absolute(topic: str) -> str:
+    """Return the full name of a topic that a node in the root namespace names."""
+    return topic if topic.startswith('/') else f'/{topic}'
+
+
+def input_topics(values: Mapping[str, Any]) -> dict[str, str]:
+    """Return topic and type of every input configured in the parameters `values`."""
+    found = {}
+    for axis in values['axes']:
+        for name in ('speed', 'load', 'temperature', 'torque'):
+            topic = values[f'{axis}.{name}.topic']
+            if topic:
+                found[absolute(topic)] = values[f'{axis}.{name}.type']
+    return found
+
+
+def output(axis: str, name: str) -> str:
+    """Return the full name of an output of the node, such as `state`."""
+    return absolute(f'{NODE_NAME}/{axis}/{name}')

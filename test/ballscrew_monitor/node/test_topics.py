@@ -1,0 +1,23 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The names of topics."""
+
+from pathlib import Path
+
+from ballscrew_monitor.node.parameters import read_file
+from ballscrew_monitor.node.topics import absolute, input_topics, output
+
+CONFIG = Path(__file__).resolve().parents[3] / 'config' / 'nominal_cycle.yaml'
+
+
+def test_the_inputs_are_those_of_the_parameters():
+    assert input_topics(read_file(CONFIG)) == {
+        '/joint_states': 'sensor_msgs/msg/JointState',
+        '/axial_load': 'geometry_msgs/msg/WrenchStamped',
+        '/oil_temperature': 'sensor_msgs/msg/Temperature',
+    }
+
+
+def test_names_are_full():
+    assert absolute('joint_states') == absolute('/joint_states') == '/joint_states'
+    assert output('x', 'state') == '/ballscrew_monitor/x/state'
