@@ -8,6 +8,7 @@ Subcommands that need ROS import it in their handlers, so that the offline ones 
 """
 
 import argparse
+import math
 import os
 from pathlib import Path
 import signal
@@ -18,6 +19,7 @@ from ballscrew_monitor.recordings.interrupts import FAILED, SIGNALLED
 from surrogate.cli import add_commands
 from surrogate.files import InputError, json_text
 from surrogate.surface import SurfaceError
+from surrogate.units import RPM
 
 TREE = Path(__file__).resolve().parent.parent
 """The repository, when the package runs from it: the defaults hold in any working directory."""
@@ -79,6 +81,9 @@ def _parser() -> argparse.ArgumentParser:
     _add_replay(
         subparsers.add_parser('replay', help='judge a bag without DDS, faster than real time')
     )
+    _add_solve(
+        subparsers.add_parser('solve', help='ask the running node for a full solve of a point')
+    )
     _add_play(subparsers.add_parser('play', help='play a bag over DDS, with /clock'))
     add_commands(subparsers, _read_bag)
     return parser
@@ -132,6 +137,50 @@ def _add_play(parser: argparse.ArgumentParser) -> None:
         help='longest wait for a subscriber of every topic (default 10)',
     )
     parser.set_defaults(handler=_play)
+
+
+def _add_solve(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument('--axis', required=True, help='name of the axis, such as x')
+    parser.add_argument(
+        '--speed-rpm',
+        type=float,
+        metavar='N',
+        help='screw speed [rev/min]; none: the current point',
+    )
+    parser.add_argument(
+        '--load-N',
+        type=float,
+        dest='load',
+        metavar='F',
+        help='axial load [N]; it opposes the motion when it has the sign of the speed',
+    )
+    parser.add_argument(
+        '--temperature-degC',
+        type=float,
+        dest='temperature',
+        metavar='T',
+        help='oil temperature [degC] (default that of the axis)',
+    )
+    parser.add_argument(
+        '--draws', type=int, default=0, metavar='K', help="roughness draws (default the node's)"
+    )
+    parser.add_argument(
+        '--timeout',
+        type=float,
+        default=0.0,
+        metavar='SECONDS',
+        help="longest solve (default the node's)",
+    )
+    parser.add_argument('--node', default='', help='full name of the node, if there are several')
+    parser.add_argument(
+        '--wait',
+        type=float,
+        default=10.0,
+        metavar='SECONDS',
+        help='longest wait for the node (default 10)',
+    )
+    parser.add_argument('--json', action='store_true', help='print JSON')
+    parser.set_defaults(handler=_solve)
 
 
 def _run(args: argparse.Namespace) -> int:
@@ -202,6 +251,21 @@ def _read_bag(args: argparse.Namespace, lead: float) -> tuple[dict[str, Any], tu
             args.temperature_topic, args.temperature_field or 'temperature'
         )
     return no_load_bag.read_no_load(Bag(args.data), channels)
+
+
+def _solve(args: argparse.Namespace) -> int:
+    from ballscrew_monitor.clients.solve import ask, Question
+
+    question = Question(
+        axis=args.axis,
+        speed=math.nan if args.speed_rpm is None else args.speed_rpm * RPM,
+        load=math.nan if args.load is None else args.load,
+        temperature=math.nan if args.temperature is None else args.temperature,
+        draws=args.draws,
+        timeout=args.timeout,
+        node=args.node,
+    )
+    return ask(question, wait=args.wait, as_json=args.json)
 
 
 def _play(args: argparse.Namespace) -> int:

@@ -124,6 +124,13 @@ def estimate(point: MachinePoint, surface: Surface, *, rcs_limit: float) -> Poin
     validity = PointValidity(int(numbers.validity))
     if validity is not PointValidity.VALID:
         return PointEstimate(validity=validity, reason=_outside(validity, point, load, surface))
+    return estimate_from(point, numbers, rcs_limit=rcs_limit)
+
+
+def estimate_from(
+    point: MachinePoint, numbers: SurfacePoint, *, rcs_limit: float
+) -> PointEstimate:
+    """Return what valid `numbers` say of `point`, in the machine frame."""
     return PointEstimate(
         validity=PointValidity.VALID,
         numbers=numbers,

@@ -8,19 +8,15 @@ error must not exceed the error that the surface states there, interpolation and
 
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 import dataclasses
 import math
 import types
-from typing import Any, TYPE_CHECKING
+from typing import Any, Protocol
 
 from ballscrew_monitor.core.conversions import opposing_load
 from ballscrew_monitor.core.estimate import MachinePoint
-
-if TYPE_CHECKING:
-    from surrogate.surface import Correction, Surface, SurfacePoint
+from surrogate.surface import Surface, SurfacePoint
 
 NAN = math.nan
 JUDGED = ('efficiency', 'rcs')
@@ -46,6 +42,26 @@ class SolvedAt:
     temperature: float
 
 
+class Solve(Protocol):
+    """A full solve that has corrected a surface, or did so in an earlier run of the node."""
+
+    @property
+    def speed(self) -> float:
+        """Return the screw speed [rad/s]."""
+
+    @property
+    def opposing_load(self) -> float:
+        """Return the load that opposes the motion [N]."""
+
+    @property
+    def temperature(self) -> float:
+        """Return the oil temperature [K]."""
+
+    @property
+    def solved(self) -> dict[str, float]:
+        """Return the fields that were solved [SI]."""
+
+
 def solved_at(point: MachinePoint) -> SolvedAt:
     """Return the place on the surface of a point in the machine frame."""
     return SolvedAt(
@@ -61,7 +77,7 @@ def compare(full: SurfacePoint, surface: SurfacePoint | None) -> Comparison:
         return Comparison()
     differences = {name: getattr(full, name) - getattr(surface, name) for name in JUDGED}
     within = all(
-        abs(difference) <= stated_error(surface, name) + _known(getattr(full, f'{name}_stderr'))
+        abs(difference) <= stated_error(surface, name) + known(getattr(full, f'{name}_stderr'))
         for name, difference in differences.items()
     )
     return Comparison(**differences, within_stated_error=within)
@@ -70,7 +86,7 @@ def compare(full: SurfacePoint, surface: SurfacePoint | None) -> Comparison:
 def stated_error(surface: SurfacePoint, name: str) -> float:
     """Return the error that a surface states [-]: interpolation, and draws where there are any."""
     error: float = getattr(surface, f'{name}_error')
-    return error + _known(getattr(surface, f'{name}_stderr'))
+    return error + known(getattr(surface, f'{name}_stderr'))
 
 
 def objection(full: SurfacePoint, answer: SurfacePoint | None, surface: Surface) -> str:
@@ -91,13 +107,11 @@ def objection(full: SurfacePoint, answer: SurfacePoint | None, surface: Surface)
     return ''
 
 
-def corrected(surface: Surface, kept: Iterable[Correction]) -> tuple[Surface, int]:
-    """Return a surface with the corrections of another of the same content, and how many."""
-    count = 0
+def corrected(surface: Surface, kept: Iterable[Solve]) -> Surface:
+    """Return a surface with the corrections of another of the same content."""
     for one in kept:
         surface = surface.with_correction(one, types.SimpleNamespace(**one.solved))
-        count += 1
-    return surface, count
+    return surface
 
 
 def request_of(surface: Surface, point: MachinePoint, draws: int) -> dict[str, Any]:
@@ -107,5 +121,6 @@ def request_of(surface: Surface, point: MachinePoint, draws: int) -> dict[str, A
     return {'inputs': dict(inputs), 'point': place, 'draws': draws}
 
 
-def _known(number: float) -> float:
+def known(number: float) -> float:
+    """Return a number, 0 for one that is not known."""
     return 0.0 if math.isnan(number) else number

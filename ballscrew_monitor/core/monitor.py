@@ -15,7 +15,13 @@ import math
 
 from ballscrew_monitor.core.advice import advise
 from ballscrew_monitor.core.conversions import Direction, direction_of, nanoseconds, SECOND
-from ballscrew_monitor.core.estimate import estimate, MachinePoint, PointEstimate, PointSource
+from ballscrew_monitor.core.estimate import (
+    estimate,
+    MachinePoint,
+    PointEstimate,
+    PointSource,
+    PointValidity,
+)
 from ballscrew_monitor.core.inputs import InputSample, InputState, Refusal, Source, Tracker, Why
 from ballscrew_monitor.core.judgement import Hold, hold, is_judged, judge, Level, Verdict, Zone
 from ballscrew_monitor.core.state import Event, MonitorSettings, State
@@ -119,6 +125,16 @@ class Monitor:
             return None
         self.event = dataclasses.replace(self.event, active=False, stamp=now)
         return self.event
+
+    def current_point(self, now: int) -> MachinePoint | str:
+        """Return the operating point at `now` [ns], or in a sentence why it is not known."""
+        point = self._point(now)
+        result = self._estimate(point)
+        if result.validity in (PointValidity.NO_INPUT, PointValidity.UNKNOWN):
+            return result.reason
+        if abs(point.speed) < self.settings.limits.standstill_speed:
+            return 'the screw stands still'
+        return point
 
     def reset_totals(self) -> None:
         """Set the totals to zero."""

@@ -9,6 +9,7 @@ is replaced as a whole, and holds what was solved, not what became of the surfac
 """
 
 from collections.abc import Sequence
+import dataclasses
 import fcntl
 import json
 import os
@@ -38,6 +39,16 @@ def state_directory(wanted: str, node_name: str) -> Path | None:
     return Path(home, 'ballscrew_monitor', *node_name.strip('/').split('/'))
 
 
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class KeptSolve:
+    """A solve that corrects: speed [rad/s], opposing load [N], temperature [K], fields [SI]."""
+
+    speed: float
+    opposing_load: float
+    temperature: float
+    solved: dict[str, float]
+
+
 class CorrectionStore:
     """The corrections kept for the axes of one node; `reason` is why nothing is kept, if so."""
 
@@ -63,7 +74,7 @@ class CorrectionStore:
             os.close(self._lock)
         self._lock = -1
 
-    def load(self, axis: str) -> tuple[str, list[dict[str, Any]]]:
+    def load(self, axis: str) -> tuple[str, list[KeptSolve]]:
         """
         Return the hash of the surface that the kept solves of an axis belong to, and the solves.
 
@@ -112,21 +123,21 @@ class CorrectionStore:
         self.close()
 
 
-def _read(path: Path) -> tuple[str, list[dict[str, Any]]]:
+def _read(path: Path) -> tuple[str, list[KeptSolve]]:
     """Return the content of a file; raises ValueError, KeyError or TypeError when it is wrong."""
     if path.stat().st_size > LARGEST:
         raise ValueError(f'longer than {LARGEST} bytes')
     content = json.loads(path.read_text(encoding='utf-8'))
     if content['version'] != VERSION:
         raise ValueError(f'version {content["version"]}, known is {VERSION}')
-    return str(content['surface']), [
-        {
-            'speed': float(one['speed_rad_s']),
-            'opposing_load': float(one['opposing_load_N']),
-            'temperature': float(one['temperature_K']),
-            'solved': {
-                name: float(one['solved'][name]) for name in FIELDS if name in one['solved']
-            },
-        }
-        for one in content['corrections']
-    ]
+    return str(content['surface']), [_kept(one) for one in content['corrections']]
+
+
+def _kept(one: dict[str, Any]) -> KeptSolve:
+    solved = {name: float(one['solved'][name]) for name in FIELDS if name in one['solved']}
+    return KeptSolve(
+        speed=float(one['speed_rad_s']),
+        opposing_load=float(one['opposing_load_N']),
+        temperature=float(one['temperature_K']),
+        solved=solved,
+    )

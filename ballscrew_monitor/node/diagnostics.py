@@ -118,7 +118,8 @@ def statuses(
     made = blank(node, axis)
     for status in made:
         status.hardware_id = surface.screw_name
-    made[2].level, made[2].message = OK, f'{surface.tier} surface loaded'
+    changed = ' and corrected' if surface.corrections else ''
+    made[2].level, made[2].message = OK, f'{surface.tier} surface loaded{changed}'
     made[2].values = _values(_surface_values(surface))
     made[1].values = _values(
         [
@@ -235,6 +236,7 @@ def _surface_values(surface: Surface) -> list[tuple[str, object]]:
         ('Oil', surface.oil_name),
         ('Tier', surface.tier),
         ('SHA-256', surface.sha256),
+        ('Corrections [-]', len(surface.corrections)),
     ] + [
         (f'{name} {end} [{unit}]', value)
         for name, unit, pair in ranges

@@ -242,6 +242,11 @@ def surface_info_message(
         error_p95=[float(error[1]) for error in errors.values()],
         default_temperature=celsius(default_temperature),
     )
+    message.corrected_speed = [float(one.speed) for one in surface.corrections]
+    message.corrected_load = [float(one.opposing_load) for one in surface.corrections]
+    message.corrected_temperature = [
+        celsius(float(one.temperature)) for one in surface.corrections
+    ]
     message.header.frame_id = axis
     fill_time(message.header.stamp, stamp)
     for name, (low, high) in (('speed', surface.speed_range), ('axial_load', surface.load_range)):

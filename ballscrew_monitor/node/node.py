@@ -15,8 +15,11 @@ from ballscrew_monitor.core.pulse import Pulse
 from ballscrew_monitor.core.state import State
 from ballscrew_monitor.node import diagnostics, parameters
 from ballscrew_monitor.node.axis import Axis, build_axis, check_topics, reload_surface
+from ballscrew_monitor.node.correction_store import CorrectionStore, state_directory
 from ballscrew_monitor.node.intake import Intake
 from ballscrew_monitor.node.parameter_store import ParameterStore
+from ballscrew_monitor.node.solve_server import SolveServer
+from ballscrew_monitor.node.solver_process import SolverProcess
 from ballscrew_monitor.node.station import STATE_QOS, Station
 from ballscrew_msgs.srv import EvaluateOperatingPoint
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
@@ -71,6 +74,10 @@ class BallscrewMonitor(LifecycleNode):
             self._values['diagnostics_period'], self._publish_diagnostics, clock=self._steady
         )
         self.create_service(EvaluateOperatingPoint, '~/evaluate', self._on_evaluate)
+        self._corrections = CorrectionStore(
+            state_directory(self._values['state_dir'], self.get_fully_qualified_name())
+        )
+        self._solves = SolveServer(self, SolverProcess, self._find_station)
         self.create_service(Trigger, '~/reload_surface', self._on_reload)
         self.create_service(Trigger, '~/reset_totals', self._on_reset)
         self.create_service(Trigger, '~/acknowledge', self._on_acknowledge)
@@ -101,10 +108,31 @@ class BallscrewMonitor(LifecycleNode):
             self.get_logger().error(self._reason)
             self._publish_diagnostics()
             return FAILURE
-        self._stations = {axis.name: Station(self, axis) for axis in axes}
+        self._stations = {
+            axis.name: Station(self, axis, self._values, self._corrections) for axis in axes
+        }
+        self._restore()
         self._store.locked = True
         self._publish_diagnostics()
         return super().on_configure(state)
+
+    def _restore(self) -> None:
+        """Take up kept corrections, and say what came of that."""
+        if self._values['state_dir'] and self._corrections.reason:
+            self.get_logger().warning(f'no corrections are kept: {self._corrections.reason}')
+        for name, station in self._stations.items():
+            if said := station.restore():
+                self.get_logger().info(f'axis {name}: {said}')
+
+    def _find_station(self, axis: str) -> Station | str:
+        """Return what a solve of an axis needs, or why there is none."""
+        if axis not in self._stations:
+            return self._unknown(axis)
+        return self._stations[axis] if self._active else 'the node is inactive, activate it first'
+
+    def _unknown(self, axis: str) -> str:
+        known = ', '.join(self._stations) or 'none, the node is not configured'
+        return f'axis {axis!r} is unknown, known are: {known}'
 
     @_reported
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
@@ -159,6 +187,7 @@ class BallscrewMonitor(LifecycleNode):
 
     def _stop(self) -> None:
         self._active = False
+        self._solves.close('stopped, the node is no longer active')
         if self._intake is not None:
             self._intake.close()
             self._intake = None
@@ -192,6 +221,9 @@ class BallscrewMonitor(LifecycleNode):
         if state is None:
             return
         station.publish_state(state)
+        if station.is_dwelling(state) and not self._solves.busy:
+            self.get_logger().info(f'axis {station.name}: solving the point where it dwells')
+            self._solves.solve(station, state.point)
         if not station.has_news():
             return
         now = self._steady.now().nanoseconds
@@ -221,8 +253,7 @@ class BallscrewMonitor(LifecycleNode):
         """Answer what the surface says of the points; nothing is judged meanwhile."""
         station = self._stations.get(request.axis)
         if station is None:
-            known = ', '.join(self._stations) or 'none, the node is not configured'
-            response.message = f'axis {request.axis!r} is unknown, known are: {known}'
+            response.message = self._unknown(request.axis)
         else:
             station.evaluate(request.points, response)
         return response
@@ -238,9 +269,10 @@ class BallscrewMonitor(LifecycleNode):
             response.message = f'kept the old surface: {error}'
             self.get_logger().error(response.message)
             return response
-        for name, station in self._stations.items():
-            station.use_surface(surfaces[name], self._values)
-        return self._answer(response, 'reloaded the surface')
+        said = [station.reload(surfaces[name]) for name, station in self._stations.items()]
+        self._answer(response, 'reloaded the surface')
+        response.message = ', '.join(filter(None, (response.message, *said)))
+        return response
 
     def _on_reset(self, request: Any, response: Any) -> Any:
         """Set the totals of every axis to zero."""

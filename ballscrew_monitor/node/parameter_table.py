@@ -114,6 +114,13 @@ NODE_ROWS = (
         text='Grid of stamps on which a state is published while the speed is missing.',
     ),
     ParameterRow(
+        name='state_dir',
+        default='auto',
+        change=Change.NEVER,
+        text='Directory for what outlives the node, for this node alone; auto: '
+        '$XDG_STATE_HOME/ballscrew_monitor/<name of the node>; empty: nothing is kept.',
+    ),
+    ParameterRow(
         name='diagnostics_period',
         default=1.0,
         unit='s',
@@ -184,6 +191,18 @@ AXIS_ROWS = (
         name='surface',
         default='',
         text='Path of the surface file, or a tier of those shipped; empty: full, if shipped.',
+    ),
+    ParameterRow(
+        name='correct_surface',
+        default=True,
+        change=Change.LIVE,
+        text='Let a full solve correct the surface where it is known better; full tier only.',
+    ),
+    ParameterRow(
+        name='solve_on_dwell',
+        default=False,
+        change=Change.LIVE,
+        text='Solve where the axis dwells and the stated error reaches a limit of the zone.',
     ),
     ParameterRow(
         name='handedness',

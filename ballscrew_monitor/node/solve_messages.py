@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """From the goal of a full solve to a point, and from what came of it to a result."""
 
+from collections.abc import Mapping
 import math
 from typing import Any, Protocol
 
@@ -98,9 +99,19 @@ def result_message(axis: SolvableAxis, point: MachinePoint, done: Done) -> Any:
     fill_result(result.surface, answer, TIERS[axis.surface.tier])
     if done.end is End.SOLVED and done.result['converged']:
         load = solved_at(point).opposing_load
-        full = solved_point(done.result, opposing_load=load, lead=axis.surface.lead)
+        full = read_solved(done.result, opposing_load=load, lead=axis.surface.lead)
         _fill_full(result, axis, point, full, answer)
     return result
+
+
+def read_solved(frame: Mapping[str, Any], *, opposing_load: float, lead: float) -> SurfacePoint:
+    """Return the point [N, m] that a frame of the solver holds; JSON knows no NaN."""
+    groups = [
+        {name: NAN if value is None else float(value) for name, value in frame[part].items()}
+        for part in ('means', 'deviations', 'standard_errors')
+    ]
+    worst = int(frame['worst_contact'])
+    return solved_point(*groups, worst_contact=worst, opposing_load=opposing_load, lead=lead)
 
 
 def _fill_full(

@@ -3,8 +3,8 @@
 """
 The action `~/solve`: goals in, full solves by another process, results and corrections out.
 
-No goal is ever awaited on the executor, which would spin: a timer looks after the goals while there
-are any, and the answer of a goal is handed to the executor when it is ready.
+No goal is ever awaited on the executor, which would spin: a timer looks after the goals while
+there are any, and the answer of a goal is handed to the executor when it is ready.
 
 """
 
@@ -48,7 +48,7 @@ class _Goal:
     told: float = -math.inf  # when feedback was last sent [s]
 
 
-class _Server(ActionServer):  # type: ignore[misc]  # rclpy has no types here
+class _Server(ActionServer):
     """An action server whose goals are executed when their answer is there."""
 
     def notify_execute(
@@ -97,7 +97,7 @@ class SolveServer:
         return self._solver.busy
 
     def solve(self, axis: SolvableAxis, point: MachinePoint) -> None:
-        """Solve a point for the node itself; what comes of it corrects the surface or is logged."""
+        """Solve a point for the node itself, to correct the surface; what comes of it is logged."""
         self._begin(axis, point, DEFAULT_DRAWS, DEFAULT_TIMEOUT, None)
 
     def _on_goal(self, request: Any) -> GoalResponse:
@@ -174,7 +174,7 @@ class SolveServer:
             self._answer(goal.handle, result, end)
         else:
             said = result.correction if result.success else result.status
-            self._node.get_logger().info(f'axis {goal.axis.name}: solved on dwell: {said}')
+            self._node.get_logger().info(f'axis {goal.axis.name}: solved where it dwells: {said}')
 
     def _answer(self, handle: ServerGoalHandle, result: Any, end: End) -> None:
         """Hand the answer of a goal to the executor."""

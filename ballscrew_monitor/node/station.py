@@ -5,12 +5,15 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from ballscrew_monitor.core.estimate import estimate
+from ballscrew_monitor.core.dwell import Dwell
+from ballscrew_monitor.core.estimate import estimate, MachinePoint
+from ballscrew_monitor.core.full_point import corrected, objection, solved_at
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.core.judgement import Level
 from ballscrew_monitor.core.state import State
 from ballscrew_monitor.node import diagnostics
 from ballscrew_monitor.node.axis import Axis
+from ballscrew_monitor.node.correction_store import CorrectionStore
 from ballscrew_monitor.node.messages import (
     fill_result,
     out_of_zone_message,
@@ -24,7 +27,8 @@ from ballscrew_msgs.srv import EvaluateOperatingPoint
 from diagnostic_msgs.msg import DiagnosticStatus
 from rclpy.lifecycle import LifecycleNode
 from rclpy.qos import QoSDurabilityPolicy, QoSProfile, QoSReliabilityPolicy
-from surrogate.surface import Surface
+from surrogate.files import InputError
+from surrogate.surface import Surface, SurfaceError, SurfacePoint
 
 STATE_QOS = QoSProfile(depth=10, reliability=QoSReliabilityPolicy.RELIABLE)
 LATCHED_QOS = QoSProfile(
@@ -37,9 +41,19 @@ LATCHED_QOS = QoSProfile(
 class Station:
     """One axis and what the node needs to speak for it."""
 
-    def __init__(self, node: LifecycleNode, axis: Axis) -> None:
-        """Make the publishers, which stay silent until the node is active."""
+    def __init__(
+        self, node: LifecycleNode, axis: Axis, values: Mapping[str, Any], store: CorrectionStore
+    ) -> None:
+        """
+        Make the publishers, which stay silent until the node is active.
+
+        `values` are the parameters as they are at any time; corrections are kept in the `store`.
+
+        """
         self.axis = axis
+        self.dwell = Dwell()
+        self._values = values
+        self._store = store
         self._node = node
         self._writer = StateWriter(axis.name, TIERS[axis.surface.tier])
         self._last: State | None = None
@@ -78,9 +92,89 @@ class Station:
         )
         self._info.publish(message)
 
-    def use_surface(self, surface: Surface, values: dict[str, Any]) -> None:
+    @property
+    def name(self) -> str:
+        """Name of the axis."""
+        return self.axis.name
+
+    @property
+    def surface(self) -> Surface:
+        """Surface that is judged with."""
+        return self.axis.surface
+
+    @property
+    def rcs_limit(self) -> float:
+        """Limit of RCS in force [-]."""
+        return self.axis.monitor.settings.limits.rcs
+
+    @property
+    def default_temperature(self) -> float:
+        """Oil temperature without a topic [K]."""
+        return self.axis.monitor.settings.default_temperature
+
+    def current_point(self) -> MachinePoint | str:
+        """Return the operating point of now, or why there is none."""
+        return self.axis.monitor.current_point(self._node.get_clock().now().nanoseconds)
+
+    def is_dwelling(self, state: State) -> bool:
+        """Tell whether the point of a state should be solved; only where that is asked for."""
+        if not self._values[f'{self.name}.solve_on_dwell']:
+            return False
+        return self.dwell.update(
+            state.stamp, state.point, state.estimate, state.verdict, state.limits
+        )
+
+    def correct(self, point: MachinePoint, full: SurfacePoint) -> tuple[bool, str]:
+        """Correct the surface by a full solve and keep it; return whether, and what or why not."""
+        if not self._values[f'{self.name}.correct_surface']:
+            return False, f'parameter {self.name}.correct_surface is false'
+        numbers = estimate(point, self.surface, rcs_limit=self.rcs_limit).numbers
+        problem = objection(full, numbers, self.surface)
+        if problem:
+            return False, problem
+        try:
+            surface = self.surface.with_correction(solved_at(point), full)
+        except SurfaceError as error:
+            return False, str(error)
+        self.use_surface(surface)
+        problem = self._store.save(self.name, surface.base_sha256, surface.corrections)
+        kept = f'not kept: {problem}' if problem else 'kept'
+        return True, f'corrected the surface about this point, {kept}'
+
+    def restore(self) -> str:
+        """Take up the corrections that were kept; return what became of them, if there are any."""
+        try:
+            sha256, kept = self._store.load(self.name)
+        except InputError as error:
+            return str(error)
+        if not kept:
+            return ''
+        if sha256 != self.surface.base_sha256:
+            return f'{len(kept)} kept corrections are of another surface and not used'
+        self.axis.use_surface(corrected(self.surface, kept), self._values)
+        return f'{len(kept)} kept corrections are in use'
+
+    def reload(self, surface: Surface) -> str:
+        """
+        Judge with the surface of the file as it is now; return what became of the corrections.
+
+        Those of a file whose content is the same stay, others are dropped.
+
+        """
+        before = self.surface.corrections
+        same = surface.base_sha256 == self.surface.base_sha256
+        if before and same:
+            surface = corrected(surface, before)
+        self.use_surface(surface)
+        if not before:
+            return ''
+        if not same:
+            self._store.save(self.name, surface.base_sha256, ())
+        return f'{len(before)} corrections {"stay" if same else "dropped"}'
+
+    def use_surface(self, surface: Surface) -> None:
         """Judge with another surface from now on, and say so."""
-        self.axis.use_surface(surface, values)
+        self.axis.use_surface(surface, self._values)
         self._writer.tier = TIERS[surface.tier]
         self.publish_info()
 

@@ -7,6 +7,7 @@ Needs numpy alone.
 
 """
 
+from surrogate.surface.correction import Correction
 from surrogate.surface.lookup import (
     FIELDS,
     find_surface,
@@ -16,9 +17,12 @@ from surrogate.surface.lookup import (
     SurfacePoint,
     Validity,
 )
+from surrogate.surface.point import solved_point
 from surrogate.surface.regime import FILM_RATIO_LIMITS, Regime, regime_of, REGIMES
 
 __all__ = [
+    'Correction',
+    'solved_point',
     'FIELDS',
     'FILM_RATIO_LIMITS',
     'find_surface',

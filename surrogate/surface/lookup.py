@@ -103,6 +103,11 @@ class Surface:
         return cls(data)
 
     @property
+    def base_sha256(self) -> str:
+        """Content hash of the surface without its corrections."""
+        return self._uncorrected
+
+    @property
     def tier(self) -> str:
         """Model behind the numbers: `closed_form` or `full`."""
         return str(self.header['tier'])

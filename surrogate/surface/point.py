@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a surface says of one point; needs no numpy at all."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 import enum
 import math
@@ -181,6 +181,32 @@ class SurfacePoint:
 
     def _efficiency_slope(self) -> float:
         return torque.efficiency_slope(self.values[0], self.opposing_load, self.lead)
+
+
+def solved_point(
+    means: Mapping[str, float],
+    deviations: Mapping[str, float],
+    standard_errors: Mapping[str, float],
+    *,
+    worst_contact: int,
+    opposing_load: float,
+    lead: float,
+) -> SurfacePoint:
+    """
+    Return a solved point in the form of one that was looked up: no interpolation, so no error.
+
+    Means, deviations and standard errors over draws of `FIELDS` [SI], NaN where unknown; opposing
+    load [N], lead [m]; the contact by its number on file.
+
+    """
+    return SurfacePoint(
+        validity=Validity.VALID,
+        opposing_load=opposing_load,
+        lead=lead,
+        values=[math.log(means[name]) if name in LOGARITHMIC else means[name] for name in FIELDS],
+        worst_contact=worst_contact,
+        spreads=[group[name] for group in (deviations, standard_errors) for name in FIELDS],
+    )
 
 
 def _share(value: float) -> float:

@@ -1,0 +1,255 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+`ballscrew solve`: a full solve asked of the running node, with a line of progress.
+
+Speed and load are those of `ballscrew point`: a load of the sign of the speed opposes the motion.
+The node wants the machine frame, in which the force on the nut counts.
+
+"""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+import dataclasses
+import math
+import signal
+import sys
+import time
+from typing import Any
+
+from ballscrew_monitor.core.conversions import axial_load, direction_of
+from ballscrew_msgs.action import SolveOperatingPoint
+from ballscrew_msgs.msg import OperatingPoint, PointResult
+import rclpy
+from rclpy.action import ActionClient
+from rclpy.action.graph import get_action_names_and_types
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.signals import SignalHandlerOptions
+from surrogate.files import InputError, json_text
+
+ACTION_TYPE = 'ballscrew_msgs/action/SolveOperatingPoint'
+SOLVED, NOT_SOLVED, INTERRUPTED = 0, 1, 130
+POLL = 0.1  # [s]
+REJECTED = 'the node takes no more solves now, its queue is full'
+SIDES = {PointResult.SIDE_SCREW: 'screw', PointResult.SIDE_NUT: 'nut'}
+NUTS = {PointResult.NUT_POSITIVE: 'positive nut', PointResult.NUT_NEGATIVE: 'negative nut'}
+# Words, field of a PointResult, factor, unit.
+LINES = (
+    ('efficiency', 'efficiency', 1.0, ''),
+    ('RCS', 'rcs', 1.0, ''),
+    ('asperity share', 'asperity_share', 1.0, ''),
+    ('film ratio', 'film_ratio', 1.0, ''),
+    ('central film', 'central_film', 1e9, 'nm'),
+    ('friction torque', 'friction_torque', 1.0, 'N m'),
+    ('driving torque', 'driving_torque', 1.0, 'N m'),
+)
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Question:
+    """
+    What is to be solved.
+
+    Speed [rad/s] and load [N] as `ballscrew point` has them, both NaN for the current point;
+    temperature [degC], NaN for that of the axis; draws and timeout [s], 0 for the defaults; full
+    name of the node, empty for the only one there is.
+
+    """
+
+    axis: str
+    speed: float = math.nan
+    load: float = math.nan
+    temperature: float = math.nan
+    draws: int = 0
+    timeout: float = 0.0
+    node: str = ''
+
+    def __post_init__(self) -> None:
+        """Refuse half a point."""
+        if math.isnan(self.speed) is not math.isnan(self.load):
+            raise InputError(
+                'speed and load belong together: give both, or none of them for the current point'
+            )
+
+
+def goal_of(question: Question) -> Any:
+    """Return the goal in the machine frame."""
+    goal = SolveOperatingPoint.Goal(
+        axis=question.axis,
+        use_current=math.isnan(question.speed),
+        draws=question.draws,
+        timeout=float(question.timeout),
+    )
+    # The load of the command opposes the motion when it has the sign of the speed.
+    opposing = math.copysign(1.0, question.speed) * question.load
+    goal.point = OperatingPoint(
+        speed=float(question.speed),
+        axial_load=float(axial_load(opposing, direction_of(question.speed))),
+        temperature=float(question.temperature),
+    )
+    return goal
+
+
+def ask(question: Question, *, wait: float, as_json: bool) -> int:
+    """Ask the node, print what comes of it, and return the exit code."""
+    with _interrupts() as interrupted:
+        rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
+        node = rclpy.create_node('ballscrew_solve', enable_rosout=False)
+        executor = SingleThreadedExecutor()
+        executor.add_node(node)
+
+        def until(condition: Callable[[], Any], seconds: float = math.inf) -> Any:
+            """Spin until a condition gives something; None after a time or an interrupt."""
+            end = time.monotonic() + seconds
+            while time.monotonic() < end and not interrupted:
+                executor.spin_once(timeout_sec=POLL)
+                if found := condition():
+                    return found
+            return None
+
+        try:
+            code = _Conversation(node, question, until).run(wait, as_json=as_json)
+        finally:
+            executor.shutdown()
+            node.destroy_node()
+            rclpy.shutdown()
+        return INTERRUPTED if interrupted else code
+
+
+@contextmanager
+def _interrupts() -> Iterator[list[int]]:
+    """Collect SIGINT and SIGTERM instead of dying of them, so that the goal is taken back."""
+    found: list[int] = []
+    numbers = (signal.SIGINT, signal.SIGTERM)
+    before = [signal.signal(number, lambda got, frame: found.append(got)) for number in numbers]
+    try:
+        yield found
+    finally:
+        for number, handler in zip(numbers, before, strict=True):
+            signal.signal(number, handler)
+
+
+class _Conversation:
+    """One goal, from finding the node to its result."""
+
+    def __init__(self, node: Node, question: Question, until: Callable[..., Any]) -> None:
+        self._node, self._question, self._until = node, question, until
+
+    def run(self, wait: float, *, as_json: bool) -> int:
+        """Ask and print; return the exit code unless interrupted."""
+        action = self._find(wait)
+        if action is None:
+            return _complain(f'no node offers {ACTION_TYPE} within {wait:g} s: {_where()}')
+        client = ActionClient(self._node, SolveOperatingPoint, action)
+        self._until(client.server_is_ready, wait)
+        sent = client.send_goal_async(goal_of(self._question), feedback_callback=_show)
+        handle = self._until(lambda: sent.done() and sent.result(), wait)
+        if handle is None:
+            return _complain(f'{action} does not answer within {wait:g} s')
+        if not handle.accepted:
+            return _complain(REJECTED)
+        answer = handle.get_result_async()
+        result = self._until(lambda: answer.done() and answer.result())
+        _wipe()
+        if result is None:
+            self._take_back(handle)
+            return INTERRUPTED
+        return _print(self._question.axis, result.result, as_json=as_json)
+
+    def _find(self, wait: float) -> str | None:
+        """Return the name of the action; raises InputError when several nodes offer it."""
+        wanted = f'{self._question.node.rstrip("/")}/solve' if self._question.node else ''
+
+        def offered() -> list[str]:
+            names = [
+                name
+                for name, types in get_action_names_and_types(self._node)
+                if ACTION_TYPE in types
+            ]
+            return [name for name in names if not wanted or name == wanted]
+
+        found: list[str] | None = self._until(offered, wait)
+        if found and len(found) > 1:
+            nodes = ', '.join(sorted(name.rpartition('/')[0] for name in found))
+            raise InputError(f'several nodes solve, name one of them with --node: {nodes}')
+        return found[0] if found else None
+
+    def _take_back(self, handle: Any) -> None:
+        """Cancel a goal, and wait until the node knows."""
+        cancelled, end = handle.cancel_goal_async(), time.monotonic() + 1.0
+        executor = self._node.executor
+        while executor and not cancelled.done() and time.monotonic() < end:
+            executor.spin_once(timeout_sec=POLL)
+
+
+def _where() -> str:
+    return 'start one, and mind ROS_DOMAIN_ID and ROS_AUTOMATIC_DISCOVERY_RANGE'
+
+
+def _complain(sentence: str) -> int:
+    print(f'ballscrew: {sentence}', file=sys.stderr)
+    return NOT_SOLVED
+
+
+def _show(message: Any) -> None:
+    """Write how far the solve is over the last line of a terminal."""
+    step = message.feedback
+    if not sys.stderr.isatty():
+        return
+    place = ' '.join(filter(None, (NUTS.get(step.nut, ''), SIDES.get(step.side, ''))))
+    left = '' if math.isnan(step.seconds_left) else f', {step.seconds_left:.0f} s left'
+    text = f'{100 * step.fraction:3.0f} %  {step.stage} {place}, iteration {step.iteration}{left}'
+    print(f'\r{text}\x1b[K', end='', file=sys.stderr, flush=True)
+
+
+def _wipe() -> None:
+    if sys.stderr.isatty():
+        print('\r\x1b[K', end='', file=sys.stderr, flush=True)
+
+
+def _print(axis: str, result: Any, *, as_json: bool) -> int:
+    """Print a result; one that is not converged is a sentence."""
+    if not result.success:
+        return _complain(result.status)
+    print(json_text(record_of(axis, result)) if as_json else page_of(axis, result))
+    return SOLVED
+
+
+def record_of(axis: str, result: Any) -> dict[str, Any]:
+    """Return a result as plain numbers, SI units but degC, NaN where unknown."""
+    return {
+        'axis': axis,
+        'status': result.status,
+        'full': _numbers(result.full),
+        'surface': _numbers(result.surface),
+        'efficiency_difference': result.efficiency_difference,
+        'rcs_difference': result.rcs_difference,
+        'efficiency_stderr': result.efficiency_stderr,
+        'rcs_stderr': result.rcs_stderr,
+        'within_stated_error': result.within_stated_error,
+        'corrected': result.corrected,
+        'correction': result.correction,
+        'wall_s': result.wall_time,
+    }
+
+
+def _numbers(point: Any) -> dict[str, Any]:
+    return {name: getattr(point, name) for name in point.get_fields_and_field_types()}
+
+
+def page_of(axis: str, result: Any) -> str:
+    """Return a result for a person: the full solve beside the surface."""
+    head = f'axis {axis}: {result.status} ({result.wall_time:.1f} s)'
+    rows = [f'{"":18}{"full solve":>14}{"surface":>14}']
+    for words, name, factor, unit in LINES:
+        full, surface = (factor * getattr(part, name) for part in (result.full, result.surface))
+        rows.append(f'{words:18}{full:14.5g}{surface:14.5g}  {unit}'.rstrip())
+    within = 'within' if result.within_stated_error else 'beyond'
+    rows.append(
+        f'difference in efficiency {result.efficiency_difference:+.2g}, in RCS '
+        f'{result.rcs_difference:+.2g}: {within} the error that the surface states'
+    )
+    said = result.correction or 'not corrected'
+    rows.append(said if result.corrected else f'surface not corrected: {said}')
+    return '\n'.join([head, *rows])
