@@ -97,7 +97,7 @@ class SolveServer:
         return self._solver.busy
 
     def solve(self, axis: SolvableAxis, point: MachinePoint) -> None:
-        """Solve a point for the node itself, to correct the surface; what comes of it is logged."""
+        """Solve a point for the node itself, to correct the surface; the outcome is logged."""
         self._begin(axis, point, DEFAULT_DRAWS, DEFAULT_TIMEOUT, None)
 
     def _on_goal(self, request: Any) -> GoalResponse:

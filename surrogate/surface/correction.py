@@ -83,6 +83,8 @@ def _bump(fraction: float, centre: float) -> float:
     3 t^2 - 2 t^3, t being the distance from the edge of the trust region over its reach.
 
     """
+    if fraction == centre:
+        return 1.0
     reach = min(TRUST_RADIUS, centre if fraction < centre else 1.0 - centre)
     t = max(1.0 - abs(fraction - centre) / reach, 0.0)
     return t * t * (3.0 - 2.0 * t)
@@ -104,6 +106,25 @@ def solved_values(solution: object) -> dict[str, float]:
     return known
 
 
+def places_of(cell: Cell, fractions: Fractions, cells: Cell) -> list[tuple[Cell, Fractions]]:
+    """
+    Return the places of a point in the cells that it corrects, out of `cells` along each axis.
+
+    One cell as a rule. A point on a node of temperature, as the default temperature often is,
+    lies on the face of two cells, and both are pulled alike; the pull has no slope there.
+
+    """
+    *others, heat = fractions
+    if NEAREST <= heat <= 1.0 - NEAREST:
+        return [(cell, fractions)]
+    lower = cell[2] - 1 if heat < 0.5 else cell[2]
+    return [
+        ((cell[0], cell[1], k), (others[0], others[1], end))
+        for k, end in ((lower, 1.0), (lower + 1, 0.0))
+        if 0 <= k < cells[2]
+    ]
+
+
 def make_correction(
     point: Point,
     cell: Cell,
@@ -114,10 +135,10 @@ def make_correction(
     """
     Return what pulls the transformed `values` that a surface has at a point to those `solved`.
 
-    Raises SurfaceError for a point so near the face of its cell that the pull would be a step.
+    Raises SurfaceError for a point so near a face of speed or load that the pull would be a step.
 
     """
-    edge = min(min(fraction, 1.0 - fraction) for fraction in fractions)
+    edge = min(min(fraction, 1.0 - fraction) for fraction in fractions[:2])
     if edge < NEAREST:
         raise SurfaceError(
             f'no correction: the point lies at {100 * edge:.2g} % of the width of its cell from a '

@@ -23,6 +23,7 @@ from surrogate.surface.correction import (
     corrected_hash,
     Correction,
     make_correction,
+    places_of,
     Point,
     solved_values,
 )
@@ -186,7 +187,8 @@ class Surface:
     @property
     def corrections(self) -> tuple[Correction, ...]:
         """Return the full solves that have pulled this surface, in the order of their cells."""
-        return tuple(self._pulls[cell] for cell in sorted(self._pulls))
+        solves = {_solve_of(self._pulls[cell]): self._pulls[cell] for cell in sorted(self._pulls)}
+        return tuple(solves.values())
 
     def with_correction(self, point: Point, solution: object) -> 'Surface':
         """
@@ -194,9 +196,10 @@ class Surface:
 
         The point has a speed [rad/s], an opposing load [N] and a temperature [K]; of the solution
         the attributes named in `FIELDS` are taken, those it lacks or that are NaN stay. Nothing
-        changes further away than `TRUST_RADIUS`, or outside the cell of the point; a correction
-        of the same cell is replaced. Raises SurfaceError for a solution that is not converged and
-        a point that is not covered or lies at the face of a cell.
+        changes further away than `TRUST_RADIUS`, or outside the cell of the point, both cells for
+        one on a node of temperature; a correction of the same cell is replaced. Raises
+        SurfaceError for a solution that is not converged and a point that is not covered or lies
+        at a face of speed or load.
 
         """
         values = solved_values(solution)
@@ -205,9 +208,17 @@ class Surface:
         if isinstance(found, Validity) or validity is not Validity.VALID:
             raise SurfaceError(f'no correction where the surface has no answer: {validity.name}')
         cell, fractions = zip(*((place[0], place[2]) for place in found[:3]))
-        made = make_correction(point, cell, fractions, self._values(*found), values)
+        here = self._values(*found)
+        made = {
+            place: make_correction(point, place, where, here, values)
+            for place, where in places_of(cell, fractions, self.cells)
+        }
+        replaced = {_solve_of(self._pulls[place]) for place in made if place in self._pulls}
+        kept = {
+            place: pull for place, pull in self._pulls.items() if _solve_of(pull) not in replaced
+        }
         other = copy.copy(self)
-        other._pulls = {**self._pulls, cell: made}
+        other._pulls = kept | made
         other.sha256 = corrected_hash(self._uncorrected, other.corrections)
         return other
 
@@ -301,6 +312,11 @@ class Surface:
         used = weights > 0
         spread: list[float] = weights[used].dot(corners[used]).tolist()
         return spread
+
+
+def _solve_of(pull: Correction) -> tuple[float, float, float]:
+    """Return what tells one solve from another; it may have pulled two cells."""
+    return pull.speed, pull.opposing_load, pull.temperature
 
 
 def find_surface(

@@ -76,6 +76,8 @@ class Numbers:
     rcs_error: float = 1e-5
     efficiency_std: float = math.nan
     rcs_std: float = math.nan
+    efficiency_stderr: float = math.nan
+    rcs_stderr: float = math.nan
     corrected: bool = False
 
 
@@ -92,6 +94,7 @@ class ConstantSurface:
     load_range = (-4000.0, 4000.0)
     temperature_range = (283.15, 353.15)
     errors = {'rcs': (2e-3, 1e-3)}
+    corrections = ()
 
     def __init__(self, **numbers):
         self.numbers = numbers

@@ -1,0 +1,110 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""A full solve held against a surface: differences, stated errors, and who may correct whom."""
+
+import math
+import types
+
+from ballscrew_monitor.core.full_point import (
+    compare,
+    corrected,
+    objection,
+    request_of,
+    solved_at,
+    stated_error,
+)
+import pytest
+from surrogate.surface import shipped_surface, Surface
+
+SURFACE = Surface.load(shipped_surface())
+CLOSED_FORM = Surface.load(shipped_surface(tier='closed_form'))
+
+
+def answer(**changes):
+    """Return what a surface or a solve says, its numbers exact in binary."""
+    numbers = {
+        'efficiency': 0.875,
+        'rcs': 0.0,
+        'efficiency_error': 2.0**-8,
+        'rcs_error': 2.0**-9,
+        'efficiency_stderr': math.nan,
+        'rcs_stderr': math.nan,
+    }
+    return types.SimpleNamespace(**(numbers | changes))
+
+
+def full(**changes):
+    return answer(**({'efficiency_stderr': 0.0, 'rcs_stderr': 0.0} | changes))
+
+
+def test_a_point_lies_on_the_surface_by_its_amount_of_speed_and_opposing_load(core):
+    place = solved_at(core.point(speed=-10.0, axial_load=-500.0))
+    assert (place.speed, place.opposing_load, place.temperature) == (10.0, -500.0, 313.15)
+    assert solved_at(core.point(speed=10.0, axial_load=-500.0)).opposing_load == 500.0
+
+
+@pytest.mark.parametrize(
+    ('changes', 'within'),
+    [
+        ({}, True),
+        ({'efficiency': 0.875 + 2.0**-8}, True),
+        ({'efficiency': 0.875 + 2.0**-7}, False),
+        ({'efficiency': 0.875 + 2.0**-7, 'efficiency_stderr': 2.0**-8}, True),
+        ({'rcs': 2.0**-9}, True),
+        ({'rcs': 2.0**-8}, False),
+    ],
+)
+def test_a_difference_is_held_against_the_errors_of_both(changes, within):
+    found = compare(full(**changes), answer())
+    assert found.efficiency == changes.get('efficiency', 0.875) - 0.875
+    assert found.rcs == changes.get('rcs', 0.0)
+    assert found.within_stated_error is within
+
+
+def test_without_an_answer_of_the_surface_nothing_is_known():
+    found = compare(full(), None)
+    assert math.isnan(found.efficiency)
+    assert math.isnan(found.rcs)
+    assert not found.within_stated_error
+
+
+def test_the_stated_error_is_that_of_interpolation_and_of_draws():
+    assert stated_error(answer(), 'rcs') == 2.0**-9
+    assert stated_error(answer(rcs_stderr=2.0**-9), 'rcs') == 2.0**-8
+
+
+@pytest.mark.parametrize(
+    ('own', 'theirs', 'surface', 'words'),
+    [
+        (full(), answer(), SURFACE, ''),
+        (full(rcs_stderr=2.0**-9), answer(), SURFACE, ''),
+        (full(rcs_stderr=2.0**-8), answer(), SURFACE, 'rcs 0.0039) is above'),
+        (full(rcs_stderr=math.nan), answer(), SURFACE, 'one draw'),
+        (full(), None, SURFACE, 'no answer'),
+        (full(), answer(), CLOSED_FORM, 'closed-form tier is not corrected'),
+        (full(), answer(rcs_error=math.nan), SURFACE, ''),
+    ],
+)
+def test_only_what_is_known_better_corrects(own, theirs, surface, words):
+    said = objection(own, theirs, surface)
+    assert words in said
+    assert bool(words) is bool(said)
+
+
+def test_corrections_are_made_again_on_a_surface_of_the_same_content(core):
+    place = solved_at(core.point(speed=63.0, axial_load=-1234.0))
+    there = SURFACE.lookup(63.0, 1234.0, 313.15)
+    values = {'rcs': there.rcs, 'friction_torque': 1.01 * there.friction_torque}
+    once = SURFACE.with_correction(place, types.SimpleNamespace(**values))
+    again = corrected(SURFACE, once.corrections)
+    assert again.sha256 == once.sha256 != SURFACE.sha256
+    assert again.base_sha256 == SURFACE.sha256
+    here = (63.0, 1234.0, 313.15)
+    assert str(again.lookup(*here)) == str(once.lookup(*here))
+
+
+def test_a_request_holds_the_inputs_of_the_surface_and_no_names_to_look_up(core):
+    request = request_of(SURFACE, core.point(speed=-10.0, axial_load=500.0), 3)
+    assert request['inputs'] == SURFACE.header['inputs']
+    assert request['point'] == {'speed': 10.0, 'opposing_load': 500.0, 'temperature': 313.15}
+    assert request['draws'] == 3

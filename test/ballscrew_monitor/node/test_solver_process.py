@@ -1,0 +1,110 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The process of the full solves: what it holds, how it ends, and that it never outlives us."""
+
+import os
+from pathlib import Path
+import signal
+import subprocess
+import sys
+import time
+
+from ballscrew_monitor.node.solver_process import SolverProcess, worker_environment
+import pytest
+
+DEADLINE = 60.0  # [s]
+BAD_REQUEST = {'solve': {'inputs': {}, 'point': {}, 'draws': 1}}
+
+
+@pytest.fixture(name='process')
+def make_process():
+    made = SolverProcess()
+    yield made
+    made.kill()
+
+
+def until(found, what='a frame'):
+    """Ask until there is something; return it."""
+    end = time.monotonic() + DEADLINE
+    while time.monotonic() < end:
+        if result := found():
+            return result
+        os.sched_yield()
+    raise AssertionError(f'{what} did not come')
+
+
+def test_a_request_that_cannot_be_solved_is_a_sentence_and_the_process_goes_on(process):
+    for _ in range(2):
+        process.send(BAD_REQUEST)
+        (frame,) = until(process.frames)
+        assert frame == {'failed': "KeyError: 'screw'"}
+
+
+def test_it_holds_nothing_of_ros_and_runs_nicely(process):
+    process.send(BAD_REQUEST)
+    until(process.frames)
+    maps = Path(f'/proc/{process.pid}/maps').read_text()
+    assert 'numba' in maps  # the solver is loaded
+    assert 'rclpy' not in maps
+    assert 'fastrtps' not in maps
+    assert os.getpriority(os.PRIO_PROCESS, process.pid) == 10
+
+
+def test_what_the_worker_imports_is_the_offline_half_alone():
+    code = 'import surrogate.on_demand.worker, surrogate.on_demand.solve, sys; print(*sys.modules)'
+    done = subprocess.run(
+        [sys.executable, '-P', '-c', code],
+        env=worker_environment(),
+        check=True,
+        capture_output=True,
+        text=True,
+    )
+    names = {name.split('.')[0] for name in done.stdout.split()}
+    assert 'surrogate' in names
+    assert not names & {'rclpy', 'ballscrew_monitor', 'ballscrew_msgs', 'matplotlib'}
+
+
+def test_a_killed_process_says_so(process):
+    os.kill(process.pid, signal.SIGKILL)
+    (frame,) = until(process.frames)
+    assert frame == {'lost': 'the process of the solve was killed by signal 9'}
+
+
+def test_ctrl_c_is_not_for_it(process):
+    process.send(BAD_REQUEST)
+    until(process.frames)
+    os.kill(process.pid, signal.SIGINT)
+    process.send(BAD_REQUEST)
+    assert 'failed' in until(process.frames)[0]
+
+
+def test_it_ends_with_whoever_started_it():
+    """The parent is killed, and can clean up nothing."""
+    code = (
+        'from ballscrew_monitor.node.solver_process import SolverProcess\n'
+        'import sys\n'
+        'process = SolverProcess()\n'
+        'print(process.pid, flush=True)\n'
+        'sys.stdin.read()\n'
+    )
+    parent = subprocess.Popen(
+        [sys.executable, '-c', code],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        env=worker_environment(),
+        text=True,
+    )
+    worker = int(parent.stdout.readline())
+    assert Path(f'/proc/{worker}').exists()
+    parent.kill()
+    parent.wait()
+    until(lambda: not _runs(worker), 'the end of the worker')
+    parent.stdin.close()
+    parent.stdout.close()
+
+
+def _runs(pid):
+    try:
+        return Path(f'/proc/{pid}/stat').read_text().rpartition(')')[2].split()[0] != 'Z'
+    except FileNotFoundError:
+        return False
