@@ -210,7 +210,7 @@ def test_a_point_on_a_node_of_temperature_corrects_both_sides(beside):
             / FULL.lookup(62.8, 1234.0, node + sign * step).friction_torque
             for sign in (-1.0, 1.0)
         ]
-        assert pulls == pytest.approx([1.1, 1.1], abs=1e-6)
+        assert pulls == pytest.approx([1.1, 1.1], abs=1e-6 if beside == 0.0 else 5e-5)
     far = (62.8, 1234.0, node + 0.6 * width)
     assert str(made.lookup(*far)) == str(FULL.lookup(*far))
 
