@@ -53,6 +53,11 @@ def anchors(page: Path) -> set[str]:
     return {re.sub(r'[^\w\- ]', '', heading.lower()).replace(' ', '-') for heading in headings}
 
 
+def defines(file: Path, name: str) -> bool:
+    """Tell whether a module defines a function or class of that name."""
+    return bool(re.search(rf'^(?:def|class) {name}\b', file.read_text(encoding='utf-8'), re.M))
+
+
 def help_of(capsys, *words: str) -> str:
     """Return what `--help` prints for a command."""
     with pytest.raises(SystemExit):
@@ -76,6 +81,14 @@ def test_paths_named_exist(page: Path):
     """Every path into the repository that a page names is there."""
     for named in CODE_PATH.findall(page.read_text(encoding='utf-8')):
         assert (ROOT / named.rstrip('.')).exists(), named
+
+
+@pytest.mark.parametrize('page', PAGES, ids=name_of)
+def test_functions_named_exist(page: Path):
+    """Every function or class that a page names with its file is defined there."""
+    text = page.read_text(encoding='utf-8')
+    for file, name in re.findall(r'`([\w/]+/\w+\.py): (\w+)`', text):
+        assert defines(ROOT / file, name), f'{file}: {name}'
 
 
 def test_documents_named_in_code_exist():
@@ -148,4 +161,4 @@ def test_architecture_names_every_folder(folder: str):
     rows = [line for line in page.splitlines() if line.startswith(f'| `{folder}` |')]
     assert len(rows) == 1
     for module, name in re.findall(r'`(\w+\.py): (\w+)`', rows[0]):
-        assert re.search(rf'^(?:def|class) {name}\b', (ROOT / folder / module).read_text(), re.M)
+        assert defines(ROOT / folder / module, name)
