@@ -3,9 +3,10 @@
 """
 Mixed elastohydrodynamic point contact: smooth, rough and dry in one solver.
 
-half_space (deformation) and _reynolds (film) make the system of one grid, which newton iterates
-with linear (_krylov over _line and, on coarser grids, _level and _transfer). case scales a contact
-to its domain, search finds the way to it, solver judges it, result returns to SI units.
+half_space (deformation) and kernels.reynolds (film) make the system of one grid, which newton
+iterates with linear (kernels.krylov over line and, on coarser grids, level and transfer). case
+scales a contact to its domain, search finds the way to it, solver judges it, to_si returns to SI
+units.
 
 """
 

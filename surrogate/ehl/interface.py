@@ -93,11 +93,11 @@ class Settings:
     touches on grids up to four times as fine (the result then has more nodes than asked for);
     order of the upstream wedge, 1 or 2 (None: 2, but 1 where all of a smooth contact touches);
     logarithm of the viscosity at which a limited wedge fades to order 1 [-],
-    docs/contact_solver.md; how far outside the Hertz zone summits are sought that need room on the
-    production domain, over the semi-axes; `spacing` puts nodes across the track of that domain at
-    multiples of it [m], at the same places of a rough surface whatever the load, or of it times a
-    power of sqrt(2): down to `ny` nodes, up where the domain is much wider than the contact;
-    distance of the inlet meniscus from the centre [m], for the rolling tail.
+    docs/theory/contact_solver.md; how far outside the Hertz zone summits are sought that need room
+    on the production domain, over the semi-axes; `spacing` puts nodes across the track of that
+    domain at multiples of it [m], at the same places of a rough surface whatever the load, or of
+    it times a power of sqrt(2): down to `ny` nodes, up where the domain is much wider than the
+    contact; distance of the inlet meniscus from the centre [m], for the rolling tail.
 
     """
 

@@ -31,7 +31,7 @@ SAME_LOAD = 0.02
 """Largest relative difference of loads at which a rough contact starts from another [-]."""
 SAME_SPEED = 1.0
 """Largest difference of the logarithms of speeds at which a rough contact starts from another [-];
-docs/contact_solver.md."""
+docs/theory/contact_solver.md."""
 WARM_NEWTON = 25
 """Most Newton iterations of one step from a neighbouring solution [-]."""
 STALLED = 0.01

@@ -146,7 +146,7 @@ def figure_zone(screw: Screw, rows: Sequence[Row]) -> Figure:
         f'Optimal zone (shaded): RCS below {RCS_LIMIT:g} and efficiency {EFFICIENCY_LIMIT:g} or '
         f'more. Nominal screw, ISO VG 68 at 40 °C, full tier, mean of {_draws(rows)}, dots: '
         'solved points. The slow edge moves by a factor of about 1.3 with draw, grid and short '
-        'waves and by 3 to 4 with the film floor (docs/onset.md).',
+        'waves and by 3 to 4 with the film floor (docs/theory/roughness.md).',
     )
     axes = figure.subplots()
     speed, load, rcs, eta = fine_map(screw, rows)

@@ -32,7 +32,7 @@ ACROSS, MOST_NODES = 2.42, 513
 """About the width of a rough domain over the semi-axis across (2.4 to 3.1); most nodes there by
 the wavelength [-]."""
 GRID_WAVELENGTH = 16e-6
-"""Shortest wavelength on the grid [m]; docs/onset.md."""
+"""Shortest wavelength on the grid [m]; docs/theory/roughness.md."""
 WINDOW_SHARE = 0.05
 """Least axial load whose Hertz rectangle is the window of the patch, over the rating [-]."""
 

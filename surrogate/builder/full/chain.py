@@ -25,7 +25,7 @@ WORK = 'full tier 9'
 """Solver and version of what a chain returns; part of the key under which it is kept."""
 FLUX_TOLERANCE = 3e-3
 """Rest of the flux of a rough contact per line over that of the film, weighted as there [-];
-docs/contact_solver.md."""
+docs/theory/contact_solver.md."""
 SENSES = {'opposing': 1.0, 'assisting': -1.0}
 
 
@@ -79,8 +79,8 @@ def chain_settings(draw: int | None, grid_wavelength: float | None) -> ScrewSett
 
     A quarter fewer nodes along, a sixth fewer across, for light contacts half as many, and a
     limited wedge that fades later: as near to the finest grid at 27.6 N and as the grid of a point
-    at 100 N, in half the time; docs/onset.md. Balls with a thousandth of the load rest on summits
-    far beside the middle.
+    at 100 N, in half the time; docs/theory/roughness.md. Balls with a thousandth of the load rest
+    on summits far beside the middle.
 
     """
     rough = Settings(

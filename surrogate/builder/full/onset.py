@@ -28,7 +28,7 @@ from surrogate.parameters import Lubricant, Screw
 Array = NDArray[np.float64]
 
 ONSET_FILM_RATIO = 0.08
-"""Film ratio near which RCS passes 0.01 on the nominal screw [-]; docs/onset.md."""
+"""Film ratio near which RCS passes 0.01 on the nominal screw [-]; docs/theory/roughness.md."""
 ONSET_STEPS = (1.0, 0.6, 0.3, 0.0, -0.3, -0.6, -1.0)
 """Where the onset is looked for, as logarithms of speed over that of the film ratio [-]."""
 ONSET_DRAWS = 2

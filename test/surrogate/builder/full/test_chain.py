@@ -21,7 +21,7 @@ from surrogate.surface import FIELDS
 SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
 WARM = 313.15
 LOOSE = 6e-4
-"""What 0.3 % of the flux changes the torque by at most [-]; docs/surface.md."""
+"""What 0.3 % of the flux changes the torque by at most [-]; docs/notes/full_tier_surface.md."""
 
 
 def tight(draw):
