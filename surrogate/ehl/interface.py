@@ -210,6 +210,11 @@ class ContactSolution:
         """Total pressure [Pa]."""
         return self.film_pressure + self.asperity_pressure
 
+    @property
+    def node_area(self) -> float:
+        """Area that a node stands for [m2]."""
+        return float((self.x[1] - self.x[0]) * (self.y[1] - self.y[0]))
+
 
 def check_contact(contact: Contact) -> None:
     """Raise InputError for radii or modulus that no contact has."""
