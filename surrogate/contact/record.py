@@ -9,7 +9,7 @@ from typing import Any
 from surrogate.contact.case import ContactCase
 from surrogate.ehl import ContactSolution
 from surrogate.ehl.friction import slide_roll_friction
-from surrogate.raceway.fractal import Surface
+from surrogate.raceway.patch import Raceway
 
 ASPERITY_FRICTION = 0.1
 """Boundary friction coefficient of a case without roughness [-], for dry contacts."""
@@ -67,7 +67,7 @@ def contact_page(
     record: Mapping[str, Any],
     case: ContactCase,
     solution: ContactSolution,
-    surface: Surface | None,
+    surface: Raceway | None,
 ) -> str:
     """Return a record as a page of text in workshop units."""
     error, half = solution.film_error, ''
@@ -117,7 +117,7 @@ def contact_page(
     )
 
 
-def _roughness_words(surface: Surface | None) -> str:
+def _roughness_words(surface: Raceway | None) -> str:
     if surface is None:
         return 'none'
     return (

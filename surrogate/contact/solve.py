@@ -18,16 +18,10 @@ from surrogate.ehl import Condition, ContactLubricant, ContactSolution, Settings
 from surrogate.ehl.case import make_case
 from surrogate.formulas.geometry import Contact, ellipticity, hertz
 from surrogate.parameters import load_screw
-from surrogate.raceway.fractal import (
-    fractal_surface,
-    FractalSurface,
-    shifted,
-    Surface,
-    take_patch,
-    Window,
-)
+from surrogate.raceway.fractal import fractal_surface, FractalSurface, shifted
 from surrogate.raceway.import_file import read_surface
 from surrogate.raceway.measured import MeasuredSurface
+from surrogate.raceway.patch import Raceway, take_patch, Window
 from surrogate.raceway.short_waves import subgrid_floor, without_short_waves
 
 SLENDER, WIDE_NY = 2.5, 257
@@ -41,7 +35,7 @@ ROUGH_NX, LARGEST_DEFAULT_GRID = 129, 513
 LOG = logging.getLogger(__name__)
 
 
-def solve_case(case: ContactCase) -> tuple[ContactSolution, Surface | None]:
+def solve_case(case: ContactCase) -> tuple[ContactSolution, Raceway | None]:
     """
     Solve a case; return the solution and the rough surface on the grid, None if smooth.
 
@@ -67,7 +61,7 @@ def solve_case(case: ContactCase) -> tuple[ContactSolution, Surface | None]:
     return solution, surface
 
 
-def _on_grid(case: ContactCase, surface: Surface | None) -> tuple[Surface | None, float]:
+def _on_grid(case: ContactCase, surface: Raceway | None) -> tuple[Raceway | None, float]:
     """Return the surface less the waves that do not go on the grid, and their floor [m]."""
     shortest = case.roughness.grid_wavelength if case.roughness else None
     if shortest is None or not isinstance(surface, FractalSurface):
@@ -88,7 +82,7 @@ def _compile_kernels() -> None:
     )
 
 
-def _solve(case: ContactCase, surface: Surface | None, settings: Settings) -> ContactSolution:
+def _solve(case: ContactCase, surface: Raceway | None, settings: Settings) -> ContactSolution:
     return solve_contact(
         case.contact,
         case.lubricant,
@@ -98,7 +92,7 @@ def _solve(case: ContactCase, surface: Surface | None, settings: Settings) -> Co
     )
 
 
-def case_surface(case: ContactCase) -> Surface | None:
+def case_surface(case: ContactCase) -> Raceway | None:
     """Return the rough surface of a case as a patch, None when it is smooth."""
     rough = case.roughness
     if rough is None or (rough.file is None and not rough.rms):
@@ -125,7 +119,7 @@ def _measured(rough: CaseRoughness, file: str) -> MeasuredSurface:
     return read_surface(file, shortest_wavelength=rough.shortest_wavelength, outside=rough.outside)
 
 
-def case_settings(case: ContactCase, surface: Surface | None) -> Settings:
+def case_settings(case: ContactCase, surface: Raceway | None) -> Settings:
     """
     Return how to solve a case.
 

@@ -38,7 +38,7 @@ class NodeStrengths:
     eyring: Array
     rate: Array
 
-    def sheared(self, speed: ArrayLike) -> Array:
+    def sheared(self, speed: Array | float) -> Array:
         """Return the friction force of the oil [N] at each node at a slip `speed` [m/s]."""
         return np.asarray(self.eyring * np.arcsinh(self.rate * speed))
 

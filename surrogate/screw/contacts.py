@@ -21,7 +21,8 @@ from surrogate.formulas.kinematics import no_slip_rates
 from surrogate.formulas.load_sharing import normal_force, UNLOADING_RATIO
 from surrogate.formulas.lubricant import lubricant_state
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
-from surrogate.raceway.fractal import fractal_surface, FractalSurface, take_patch, Window
+from surrogate.raceway.fractal import fractal_surface, FractalSurface
+from surrogate.raceway.patch import take_patch, Window
 from surrogate.raceway.short_waves import subgrid_floor, without_short_waves
 from surrogate.units import ZERO_CELSIUS
 
