@@ -11,11 +11,11 @@ estimated error of a smooth film.
 from dataclasses import replace
 from functools import cache
 import logging
-import math
 
 from surrogate.contact.case import CaseRoughness, CONSTANTS, ContactCase
 from surrogate.ehl import Condition, ContactLubricant, ContactSolution, Settings, solve_contact
 from surrogate.ehl.case import make_case
+from surrogate.ehl.domain import nodes_on_waves
 from surrogate.formulas.geometry import Contact, ellipticity, hertz
 from surrogate.parameters import load_screw
 from surrogate.raceway.fractal import fractal_surface, FractalSurface, shifted
@@ -28,10 +28,8 @@ SLENDER, WIDE_NY = 2.5, 257
 """Nodes across a contact with an axis ratio below that [-]: its least film lies at its sides."""
 FILM_ERROR, FINE_NX = 0.005, 513
 """Estimated error of the film above which a smooth case is refined, and nodes along x then [-]."""
-NODES_PER_WAVE = 6
-"""Nodes per shortest wavelength of a rough grid that the case does not state [-]."""
-ROUGH_NX, LARGEST_DEFAULT_GRID = 129, 513
-"""Fewest nodes along x, and most along a side, of such a grid [-]."""
+ROUGH_NX = 129
+"""Fewest nodes along x of a rough grid that the case does not state [-]."""
 LOG = logging.getLogger(__name__)
 
 
@@ -150,10 +148,7 @@ def _sides(case: ContactCase, settings: Settings) -> tuple[float, float]:
 
 def _rough_grid(case: ContactCase, settings: Settings, wave: float) -> Settings:
     """Return settings with the grid that the shortest wavelength [m] asks for, within bounds."""
-    along, across = (
-        min(2 * math.ceil(NODES_PER_WAVE * side / wave / 2) + 1, LARGEST_DEFAULT_GRID)
-        for side in _sides(case, settings)
-    )
+    along, across = (nodes_on_waves(side, wave) for side in _sides(case, settings))
     return replace(settings, nx=max(along, ROUGH_NX), ny=max(across, settings.ny))
 
 

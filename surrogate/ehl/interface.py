@@ -16,7 +16,7 @@ from surrogate.formulas.geometry import Contact
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 Law = Literal['roelands_dh', 'barus_incompressible']
-Roughness = Array | Callable[[Array, Array], Array]
+RoughHeights = Array | Callable[[Array, Array], Array]
 """Heights [m], material positive: an array on the solution grid or a function of x and y [m]."""
 LARGEST_GRID = 2049
 

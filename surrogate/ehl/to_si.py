@@ -7,10 +7,10 @@ import math
 
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.ehl.case import Case
-from surrogate.ehl.grid import Grid, State, transfer
+from surrogate.ehl.case import ScaledCase
+from surrogate.ehl.grid import Grid, GridState, transfer
 from surrogate.ehl.interface import ContactSolution, Status
-from surrogate.ehl.newton import Outcome
+from surrogate.ehl.newton import NewtonResult
 
 Array = NDArray[np.float64]
 THICK, CUT_OFF = (1.0, 5.0, 40.0), (0.0, 0.15, 0.3)
@@ -43,9 +43,9 @@ def punctured_nodes(solution: ContactSolution) -> NDArray[np.bool_]:
 
 
 def make_solution(
-    case: Case,
+    case: ScaledCase,
     grid: Grid,
-    outcome: Outcome,
+    outcome: NewtonResult,
     status: Status,
     *,
     half: Half,
@@ -87,7 +87,7 @@ def make_solution(
     )
 
 
-def _numbers(case: Case, grid: Grid, outcome: Outcome, half: Half) -> dict[str, float]:
+def _numbers(case: ScaledCase, grid: Grid, outcome: NewtonResult, half: Half) -> dict[str, float]:
     """Return what is known of a converged contact only, in SI units."""
     height, pressure, state = case.height_unit, case.hertz_pressure, outcome.state
     own = film_and_share(case, grid, outcome)
@@ -109,7 +109,7 @@ def _numbers(case: Case, grid: Grid, outcome: Outcome, half: Half) -> dict[str, 
     }
 
 
-def film_and_share(case: Case, grid: Grid, outcome: Outcome) -> Half:
+def film_and_share(case: ScaledCase, grid: Grid, outcome: NewtonResult) -> Half:
     """Return the films [Hertz units] and the share of the load on punctured nodes [-]."""
     total = outcome.state.film_pressure + outcome.state.asperity_pressure
     punctured = outcome.gap <= PUNCTURED * case.floor
@@ -144,7 +144,7 @@ def _rolling(grid: Grid, gap: Array, pressure: Array, inlet: Array) -> float:
     return grid.integral(0.25 * (gap[1:] + gap[:-1]) * rise / grid.dx)
 
 
-def _rolling_tail(case: Case) -> float:
+def _rolling_tail(case: ScaledCase) -> float:
     """
     Return the rolling force [N] between the meniscus and the inlet edge of the domain.
 
@@ -166,7 +166,7 @@ def _rolling_tail(case: Case) -> float:
     return 6 * case.lubricant.viscosity * case.condition.entrainment_speed * integral
 
 
-def state_from_solution(case: Case, grid: Grid, start: ContactSolution) -> State:
+def state_from_solution(case: ScaledCase, grid: Grid, start: ContactSolution) -> GridState:
     """Return the fields of another solution on `grid`; at rest asperities carry all pressure."""
     old = Grid(
         x=start.x / start.semi_axis_x,
@@ -175,7 +175,7 @@ def state_from_solution(case: Case, grid: Grid, start: ContactSolution) -> State
         compliance=grid.compliance,
     )
     height = start.semi_axis_x**2 / start.contact.radius_x
-    state = State(
+    state = GridState(
         film_pressure=start.film_pressure / start.hertz_pressure,
         asperity_pressure=start.asperity_pressure / start.hertz_pressure,
         approach=-start.approach / height,
@@ -183,7 +183,7 @@ def state_from_solution(case: Case, grid: Grid, start: ContactSolution) -> State
     state = transfer(state, old, grid)
     if case.condition.entrainment_speed:
         return state
-    return State(
+    return GridState(
         film_pressure=np.zeros(grid.shape),
         approach=state.approach,
         asperity_pressure=state.film_pressure + state.asperity_pressure,
