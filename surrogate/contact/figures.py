@@ -228,10 +228,7 @@ def _hertz(solution: ContactSolution, y: float) -> Array:
 
 def _film_top(solution: ContactSolution) -> float:
     """Return the top of the film scale [nm]: what happens inside the Hertz ellipse fills it."""
-    inside = (solution.x[:, None] / solution.semi_axis_x) ** 2 + (
-        solution.y[None, :] / solution.semi_axis_y
-    ) ** 2 < 1
-    film = float(np.percentile(solution.film[inside], 90))
+    film = float(np.percentile(solution.film[solution.distance < 1], 90))
     return FILM_SPAN * NANO * max(film, solution.settings.film_floor)
 
 

@@ -71,7 +71,7 @@ def contact_record(case: ContactCase, solution: ContactSolution) -> ContactRecor
         'semi_axis_y_m': float(solution.semi_axis_y),
         'rcs': float(solution.rcs),
         'asperity_share': float(solution.asperity_share),
-        'rolling_force_N': float(solution.rolling_force + solution.rolling_tail),
+        'rolling_force_N': float(solution.whole_rolling_force),
         'friction_coefficient': [
             friction_coefficient(solution, ratio, friction) for ratio in case.slide_roll_ratio
         ],

@@ -215,6 +215,17 @@ class ContactSolution:
         """Area that a node stands for [m2]."""
         return float((self.x[1] - self.x[0]) * (self.y[1] - self.y[0]))
 
+    @property
+    def distance(self) -> Array:
+        """Distance of the nodes from the centre over the semi-axes [-]: 1 on the Hertz ellipse."""
+        x, y = self.x / self.semi_axis_x, self.y / self.semi_axis_y
+        return np.asarray(np.hypot(x[:, None], y[None, :]))
+
+    @property
+    def whole_rolling_force(self) -> float:
+        """Rolling force on each surface [N], with that of the tail to the meniscus."""
+        return self.rolling_force + self.rolling_tail
+
 
 def check_contact(contact: Contact) -> None:
     """Raise InputError for radii or modulus that no contact has."""

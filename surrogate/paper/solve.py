@@ -22,7 +22,7 @@ from surrogate.formulas.geometry import hertz, screw_contact
 from surrogate.formulas.kinematics import entrainment_speed_paper
 from surrogate.formulas.load_sharing import normal_force, nut_forces
 from surrogate.paper.cases import CASES, SMOOTH, Task
-from surrogate.paper.rows import Array, ContactFields, Row
+from surrogate.paper.rows import ContactFields, Row
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.raceway.fractal import FractalSurface
 from surrogate.raceway.short_waves import subgrid_floor, without_short_waves
@@ -136,13 +136,7 @@ def solve_patch(
 
 def inner_nodes(solution: ContactSolution, size: float) -> Any:
     """Return the mask of nodes inside `size` [-] times the Hertz ellipse."""
-    return _distance(solution) < size
-
-
-def _distance(solution: ContactSolution) -> Array:
-    """Return the distance of the nodes from the centre over the semi-axes [-]."""
-    x, y = solution.x / solution.semi_axis_x, solution.y / solution.semi_axis_y
-    return np.asarray(np.hypot(x[:, None], y[None, :]))
+    return solution.distance < size
 
 
 def asperity_distance(solution: ContactSolution) -> float:
@@ -155,7 +149,7 @@ def asperity_distance(solution: ContactSolution) -> float:
     carried = solution.asperity_pressure
     if not carried.any():
         return math.nan
-    return float(np.sum(carried * _distance(solution)) / np.sum(carried))
+    return float(np.sum(carried * solution.distance) / np.sum(carried))
 
 
 def _fields(solution: ContactSolution, surface: FractalSurface | None, kind: str) -> ContactFields:
