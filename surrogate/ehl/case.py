@@ -205,7 +205,7 @@ class ScaledCase(ScaledContact):
         if not self.open_inlet:
             return np.zeros(grid.y.size)
         heights = self.shape_heights(grid)
-        return grid.x[0] / grid.x[1] * (heights[1] / heights[0]) ** 2
+        return np.asarray(grid.x[0] / grid.x[1] * (heights[1] / heights[0]) ** 2)
 
     def hertz_state(self, grid: Grid, speed: float) -> GridState:
         """Return Hertz's pressure [-], spread under a thick film, at the formula's film."""

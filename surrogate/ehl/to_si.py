@@ -4,6 +4,7 @@
 
 from dataclasses import dataclass
 import math
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +14,7 @@ from surrogate.ehl.interface import ContactSolution, Status
 from surrogate.ehl.newton import NewtonResult
 
 Array = NDArray[np.float64]
+Kind = TypeVar('Kind', bound=np.generic)
 THICK, CUT_OFF = (1.0, 5.0, 40.0), (0.0, 0.15, 0.3)
 """Films over a^2/Rx, and what the domain cuts off them [-]: bodies that hardly deform."""
 PUNCTURED = 1.001
@@ -120,7 +122,7 @@ def film_and_share(case: ScaledCase, grid: Grid, outcome: NewtonResult) -> Half:
     )
 
 
-def _full(grid: Grid, field: NDArray) -> NDArray:
+def _full(grid: Grid, field: NDArray[Kind]) -> NDArray[Kind]:
     """Return a field on the full width."""
     if not grid.symmetric:
         return field.copy()
