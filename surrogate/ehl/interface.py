@@ -223,7 +223,7 @@ class ContactSolution:
 
     @property
     def whole_rolling_force(self) -> float:
-        """Rolling force on each surface [N], with that of the tail to the meniscus."""
+        """Force on each surface by rolling [N], in the domain and in the tail to the meniscus."""
         return self.rolling_force + self.rolling_tail
 
 

@@ -41,11 +41,11 @@ def test_restriction_is_the_weighted_mean_of_nine_rows():
     restrict(fine, sizes, coarser, found)
     rows, expected = fine * sizes, np.zeros((5, 6))
     rows[:, 0] = rows[:, 2]
-    weights = np.outer([0.5, 1.0, 0.5], [0.25, 0.5, 0.25])
+    beside, weights = np.arange(-1, 2), np.outer([0.5, 1.0, 0.5], [0.25, 0.5, 0.25])
     for i in range(1, 4):
         for j in range(1, 5):
             if coarser[i, j]:
-                nine = rows[2 * i - 1 : 2 * i + 2, 2 * j - 2 : 2 * j + 1]
+                nine = rows[np.ix_(2 * i + beside, 2 * j - 1 + beside)]
                 expected[i, j] = (weights * nine).sum() / coarser[i, j]
     np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-12)
 
