@@ -20,7 +20,8 @@ import numpy as np
 from surrogate.ehl import Condition, ContactLubricant, Settings, solve_contact
 from surrogate.formulas.geometry import hertz, screw_contact, SIDES
 from surrogate.parameters import load_lubricant, load_screw
-from surrogate.raceway.fractal import fractal_surface, take_patch, Window
+from surrogate.raceway.fractal import fractal_surface
+from surrogate.raceway.patch import take_patch, Window
 
 LOADS = np.geomspace(10.0, 150.0, 16)
 SPEEDS = np.geomspace(2.0, 0.002, 16)

@@ -19,7 +19,8 @@ import time
 from surrogate.ehl import Condition, ContactLubricant, ContactSolution, Settings, solve_contact
 from surrogate.formulas.geometry import hertz, screw_contact
 from surrogate.parameters import load_lubricant, load_screw
-from surrogate.raceway.fractal import fractal_surface, take_patch, Window
+from surrogate.raceway.fractal import fractal_surface
+from surrogate.raceway.patch import take_patch, Window
 
 LARGEST_LOAD = 100.0
 """Load whose Hertz rectangle is the window of a rescaled patch [N]."""

@@ -31,7 +31,8 @@ from surrogate.ehl import Condition, ContactLubricant, ContactSolution, Settings
 from surrogate.formulas.film import groups, minimum_film_hamrock_dowson_1977
 from surrogate.formulas.geometry import Contact, hertz, screw_contact
 from surrogate.parameters import load_lubricant, load_screw
-from surrogate.raceway.fractal import fractal_surface, FractalSurface, take_patch, Window
+from surrogate.raceway.fractal import fractal_surface, FractalSurface
+from surrogate.raceway.patch import take_patch, Window
 
 SEED, COUNT = 2026, 2000
 ROUGH_SHARE, RESTING_SHARE = 0.35, 1 / 16

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from surrogate.ehl import ContactSolution
 from surrogate.files import new_file
-from surrogate.raceway.fractal import Surface
+from surrogate.raceway.patch import Raceway
 from surrogate.units import GIGA, MICRO, NANO
 
 Array = NDArray[np.float64]
@@ -36,7 +36,7 @@ SPATIAL_NODES = 150
 
 
 def draw_contact(
-    folder: Path, solution: ContactSolution, surface: Surface | None = None
+    folder: Path, solution: ContactSolution, surface: Raceway | None = None
 ) -> Iterator[Path]:
     """Write the pictures of a solution to `folder` as PNG and yield their paths."""
     pictures: dict[str, Callable[[], Figure]] = {
@@ -198,7 +198,7 @@ def _draw_spatial(
     axes.view_init(elev=tilt, azim=-130)
 
 
-def figure_roughness(solution: ContactSolution, surface: Surface) -> Figure:
+def figure_roughness(solution: ContactSolution, surface: Raceway) -> Figure:
     """Return the rough surface and how film and asperities share the pressure."""
     figure = _figure(11.0, 6.0, solution)
     first, second, third = figure.subplots(1, 3, sharey=True)
@@ -214,7 +214,7 @@ def figure_roughness(solution: ContactSolution, surface: Surface) -> Figure:
         third, solution, GIGA * solution.asperity_pressure[rows, columns], cmap='inferno_r', vmin=0
     )
     figure.colorbar(mesh, ax=third, location='bottom', label='asperity pressure [GPa]')
-    _finish_map(first, solution, f'Surface, {surface.patch}, heights times {surface.scale:.3g}')
+    _finish_map(first, solution, f'Raceway, {surface.patch}, heights times {surface.scale:.3g}')
     _finish_map(second, solution, 'Carried by the film')
     _finish_map(third, solution, f'Carried by asperities: {100 * solution.asperity_share:.2g} %')
     return figure
@@ -228,10 +228,7 @@ def _hertz(solution: ContactSolution, y: float) -> Array:
 
 def _film_top(solution: ContactSolution) -> float:
     """Return the top of the film scale [nm]: what happens inside the Hertz ellipse fills it."""
-    inside = (solution.x[:, None] / solution.semi_axis_x) ** 2 + (
-        solution.y[None, :] / solution.semi_axis_y
-    ) ** 2 < 1
-    film = float(np.percentile(solution.film[inside], 90))
+    film = float(np.percentile(solution.film[solution.distance < 1], 90))
     return FILM_SPAN * NANO * max(film, solution.settings.film_floor)
 
 

@@ -8,7 +8,7 @@ import math
 import time
 
 import numpy as np
-from surrogate.ehl.case import Case, make_case, UNRESOLVED
+from surrogate.ehl.case import make_case, ScaledCase, UNRESOLVED
 from surrogate.ehl.grid import Grid, transfer
 from surrogate.ehl.interface import (
     check_contact,
@@ -16,11 +16,11 @@ from surrogate.ehl.interface import (
     ContactLubricant,
     ContactSolution,
     LARGEST_GRID,
-    Roughness,
+    RoughHeights,
     Settings,
     Status,
 )
-from surrogate.ehl.newton import Outcome
+from surrogate.ehl.newton import NewtonResult
 from surrogate.ehl.search import Found, Search
 from surrogate.ehl.to_si import film_and_share, make_solution
 from surrogate.formulas.geometry import Contact
@@ -37,7 +37,7 @@ def solve_contact(
     lubricant: ContactLubricant,
     condition: Condition,
     *,
-    roughness: Roughness | None = None,
+    roughness: RoughHeights | None = None,
     settings: Settings = PRODUCTION,
     start: ContactSolution | None = None,
 ) -> ContactSolution:
@@ -105,7 +105,7 @@ def _find(search: Search, start: ContactSolution | None) -> Found:
     return search.thin() if case.touches and speed else search.smooth(speed, final=True)
 
 
-def _status(search: Search, grid: Grid, outcome: Outcome) -> Status:
+def _status(search: Search, grid: Grid, outcome: NewtonResult) -> Status:
     """Judge an outcome."""
     case = search.case
     if outcome.out_of_time:
@@ -122,7 +122,7 @@ def _status(search: Search, grid: Grid, outcome: Outcome) -> Status:
     return Status.CONVERGED
 
 
-def _confirm(search: Search, grid: Grid, outcome: Outcome) -> tuple[Grid, Outcome, bool]:
+def _confirm(search: Search, grid: Grid, outcome: NewtonResult) -> tuple[Grid, NewtonResult, bool]:
     """
     Solve a smooth contact that touches on finer grids, until it does not or is confirmed.
 
@@ -149,7 +149,7 @@ def _confirm(search: Search, grid: Grid, outcome: Outcome) -> tuple[Grid, Outcom
     return grid, outcome, settings.refine or not outcome.contact.any()
 
 
-def _finer(search: Search, case: Case, grid: Grid, outcome: Outcome) -> Found:
+def _finer(search: Search, case: ScaledCase, grid: Grid, outcome: NewtonResult) -> Found:
     """Solve on a finer grid, from the coarser one or else from cold."""
     speed, settings = case.condition.entrainment_speed, case.settings
     finer = case.grid(settings.nx, settings.ny, symmetric=True)
@@ -171,7 +171,7 @@ def _finer(search: Search, case: Case, grid: Grid, outcome: Outcome) -> Found:
     return finer, found
 
 
-def _touches_edge(case: Case, grid: Grid, outcome: Outcome) -> bool:
+def _touches_edge(case: ScaledCase, grid: Grid, outcome: NewtonResult) -> bool:
     """Tell whether the last rows of nodes before outlet and sides carry part of the load."""
     pressure = outcome.state.film_pressure + outcome.state.asperity_pressure
     edge = np.zeros(grid.shape)

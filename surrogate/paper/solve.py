@@ -15,24 +15,25 @@ from typing import Any
 
 import numpy as np
 from surrogate.ehl import Condition, ContactLubricant, ContactSolution, Settings, solve_contact
+from surrogate.ehl.domain import nodes_on_waves
 from surrogate.ehl.friction import contact_friction, ContactFriction
 from surrogate.formulas import closed_form
 from surrogate.formulas.geometry import hertz, screw_contact
 from surrogate.formulas.kinematics import entrainment_speed_paper
 from surrogate.formulas.load_sharing import normal_force, nut_forces
 from surrogate.paper.cases import CASES, SMOOTH, Task
-from surrogate.paper.rows import Array, ContactFields, Row
+from surrogate.paper.rows import ContactFields, Row
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.raceway.fractal import FractalSurface
 from surrogate.raceway.short_waves import subgrid_floor, without_short_waves
 from surrogate.screw.ball_motion import slip_floor
-from surrogate.screw.contacts import ACROSS, MOST_NODES, raceway_patch, ScrewSettings
+from surrogate.screw.contacts import ACROSS, raceway_patch, ScrewSettings
 from surrogate.screw.nut import contact_slip, ScrewContact
 from surrogate.screw.solve import ScrewSolution, solve_screw
 from surrogate.units import RPM
 
-NX, NY, NODES_PER_WAVE = 129, 257, 6.0
-"""Nodes of a rough contact along and least across the track, and per wave on the grid [-]."""
+NX, NY = 129, 257
+"""Nodes of a rough contact along and least across the track [-]."""
 SHORTEST_ON_GRID = 16e-6
 """Waves below that raise the film floor [m]."""
 OUTLET, SIDE = 1.5, 1.5
@@ -122,11 +123,10 @@ def solve_patch(
     raised = subgrid_floor(surface, SHORTEST_ON_GRID)
     surface = without_short_waves(surface, SHORTEST_ON_GRID)
     width = ACROSS * float(hertz(contact, force).semi_axis_y)
-    across = 2 * math.ceil(NODES_PER_WAVE * width / surface.shortest_wavelength / 2) + 1
     settings = replace(
         settings,
         nx=NX,
-        ny=max(NY, min(across, MOST_NODES)),
+        ny=max(NY, nodes_on_waves(width, surface.shortest_wavelength)),
         film_floor=settings.film_floor + raised,
         error_estimate=False,
     )
@@ -136,13 +136,7 @@ def solve_patch(
 
 def inner_nodes(solution: ContactSolution, size: float) -> Any:
     """Return the mask of nodes inside `size` [-] times the Hertz ellipse."""
-    return _distance(solution) < size
-
-
-def _distance(solution: ContactSolution) -> Array:
-    """Return the distance of the nodes from the centre over the semi-axes [-]."""
-    x, y = solution.x / solution.semi_axis_x, solution.y / solution.semi_axis_y
-    return np.asarray(np.hypot(x[:, None], y[None, :]))
+    return solution.distance < size
 
 
 def asperity_distance(solution: ContactSolution) -> float:
@@ -155,7 +149,7 @@ def asperity_distance(solution: ContactSolution) -> float:
     carried = solution.asperity_pressure
     if not carried.any():
         return math.nan
-    return float(np.sum(carried * _distance(solution)) / np.sum(carried))
+    return float(np.sum(carried * solution.distance) / np.sum(carried))
 
 
 def _fields(solution: ContactSolution, surface: FractalSurface | None, kind: str) -> ContactFields:

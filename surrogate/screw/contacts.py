@@ -14,6 +14,7 @@ from functools import lru_cache
 import math
 
 from surrogate.ehl import Condition, ContactLubricant, ContactSolution, Settings, solve_contact
+from surrogate.ehl.domain import MOST_NODES, nodes_on_waves
 from surrogate.files import InputError
 from surrogate.formulas.geometry import Contact, hertz, screw_contact, Side, SIDES
 from surrogate.formulas.inlet_heating import heated_speed
@@ -21,16 +22,16 @@ from surrogate.formulas.kinematics import no_slip_rates
 from surrogate.formulas.load_sharing import normal_force, UNLOADING_RATIO
 from surrogate.formulas.lubricant import lubricant_state
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
-from surrogate.raceway.fractal import fractal_surface, FractalSurface, take_patch, Window
+from surrogate.raceway.fractal import fractal_surface, FractalSurface
+from surrogate.raceway.patch import take_patch, Window
 from surrogate.raceway.short_waves import subgrid_floor, without_short_waves
 from surrogate.units import ZERO_CELSIUS
 
 Pair = tuple[ContactSolution, ContactSolution]
 """The same contact smooth and rough."""
 Start = tuple[ContactSolution | None, ContactSolution | None]
-ACROSS, MOST_NODES = 2.42, 513
-"""About the width of a rough domain over the semi-axis across (2.4 to 3.1); most nodes there by
-the wavelength [-]."""
+ACROSS = 2.42
+"""About the width of a rough domain over the semi-axis across (2.4 to 3.1) [-]."""
 GRID_WAVELENGTH = 16e-6
 """Shortest wavelength on the grid [m]; docs/theory/roughness.md."""
 WINDOW_SHARE = 0.05
@@ -184,11 +185,10 @@ def shortest_on_grid(screw: Screw, settings: ScrewSettings) -> float:
 def _across(settings: ScrewSettings, semi_axis: float, wave: float) -> Settings:
     """Return the rough settings with the nodes across that a semi-axis and a wave [m] ask for."""
     rough, width = settings.rough, ACROSS * semi_axis
-    spacing = max(wave / settings.nodes_per_wave, width / MOST_NODES)
     if settings.same_places:
-        return replace(rough, spacing=spacing)
-    wanted = 2 * math.ceil(width / spacing / 2) + 1
-    return replace(rough, ny=max(rough.ny, min(wanted, MOST_NODES)))
+        return replace(rough, spacing=max(wave / settings.nodes_per_wave, width / MOST_NODES))
+    wanted = nodes_on_waves(width, wave, settings.nodes_per_wave)
+    return replace(rough, ny=max(rough.ny, wanted))
 
 
 def raceway_patch(screw: Screw, side: Side, draw: int) -> FractalSurface:

@@ -191,7 +191,7 @@ def rolling_force(screw: Screw, found: ContactSolution) -> float:
     elastic = hysteresis_force(
         screw.hysteresis_loss, found.condition.load, found.semi_axis_x, found.contact.radius_x
     )
-    return found.rolling_force + found.rolling_tail + elastic
+    return found.whole_rolling_force + elastic
 
 
 def friction_coefficient(
