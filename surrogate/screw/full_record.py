@@ -9,10 +9,10 @@ from typing import Any
 
 from surrogate.formulas.geometry import opposite_flank_approach, SIDES
 from surrogate.formulas.inlet_heating import heating_factor
+from surrogate.formulas.record import closed_form_record, regime
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.screw.contacts import ScrewSettings, shortest_on_grid
 from surrogate.screw.ensemble import EnsembleSolution
-from surrogate.screw.formula_record import closed_form_record, regime
 from surrogate.screw.nut import rolling_force, ScrewContact
 from surrogate.screw.solve import ScrewSolution, solve_screw, TIER
 

@@ -15,7 +15,7 @@ from surrogate.ehl import ContactSolution
 from surrogate.files import InputError
 from surrogate.formulas.geometry import SIDES
 from surrogate.formulas.kinematics import no_slip_rates
-from surrogate.formulas.load_sharing import normal_force, nut_forces
+from surrogate.formulas.load_sharing import IDLE_SHARE, normal_force, nut_forces
 from surrogate.formulas.torque import driving_torque, efficiency, is_back_driving
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.screw.ball_motion import Flank
@@ -31,8 +31,6 @@ SOLVED = (
 """Status by the number of nuts that carry load."""
 SAME_FORCE = 1e-3
 """Normal forces that differ by less, over the larger, count as the same [-]."""
-IDLE_SHARE = 1e-3
-"""Force of the relieved nut over that of the loaded one below which it counts as idle [-]."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

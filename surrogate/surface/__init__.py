@@ -7,15 +7,10 @@ Needs numpy alone.
 
 """
 
-from surrogate.surface.lookup import (
-    FIELDS,
-    find_surface,
-    shipped_surface,
-    Surface,
-    SurfaceError,
-    SurfacePoint,
-    Validity,
-)
+from surrogate.surface.file import SurfaceError
+from surrogate.surface.lookup import Surface
+from surrogate.surface.point import FIELDS, SurfacePoint, Validity
+from surrogate.surface.shipped import find_surface, shipped_surface
 
 __all__ = [
     'FIELDS',

@@ -56,7 +56,7 @@ def _numbers(found: SurfacePoint) -> dict[str, Any]:
 
 
 def _regime(film_ratio: float) -> str:
-    from surrogate.screw.formula_record import regime
+    from surrogate.formulas.record import regime
 
     return regime(film_ratio)
 

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter, minimum_filter
 from surrogate.builder.full.chain import chain_inputs
 from surrogate.builder.full.draws import Draws, draws_of
-from surrogate.builder.full.idle import BESIDE, idle_load
+from surrogate.formulas.load_sharing import idle_load
 from surrogate.parameters import Lubricant, Screw
 from surrogate.screw.contacts import GRID_WAVELENGTH
 
@@ -34,6 +34,8 @@ NEAR_ONSET = (-1.25, 0.75)
 """Speed coordinates between which contact sets in, and draws differ most [-]."""
 ROUNDING = 1e-9
 """Error of a mapped speed [-]."""
+BESIDE = 1e-4
+"""Distance of the nodes beside the idle load, over that load [-]."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq
-from surrogate.builder.full.idle import idle_load
+from surrogate.formulas.load_sharing import idle_load
 from surrogate.parameters import Screw
 from surrogate.screw.contacts import raceway_patch
 

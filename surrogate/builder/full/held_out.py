@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 from surrogate.builder.full.columns import Columns, NEAR_ONSET
 from surrogate.builder.full.draws import mean_of_draws
-from surrogate.builder.full.idle import idle_load
 from surrogate.builder.full.settings import error_target, FullSettings, Run
 from surrogate.builder.full.speed_nodes import Sample, Target
+from surrogate.formulas.load_sharing import idle_load
 from surrogate.parameters import Screw
 from surrogate.surface import FIELDS, Surface, Validity
 from surrogate.surface.file import SurfaceData

@@ -16,9 +16,10 @@ import math
 
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.builder.full.idle import BESIDE, idle_load
+from surrogate.builder.full.columns import BESIDE
 from surrogate.builder.full.settings import FullSettings
 from surrogate.builder.full.speed_nodes import refine_nodes, Sample, Target
+from surrogate.formulas.load_sharing import idle_load
 from surrogate.parameters import Screw
 
 Array = NDArray[np.float64]

@@ -24,7 +24,7 @@ from surrogate.surface import (
     Validity,
 )
 from surrogate.surface.file import ENSEMBLE_VERSION, SurfaceData, write
-import surrogate.surface.lookup
+import surrogate.surface.shipped
 
 SPEEDS = st.floats(0.06, 229.0)
 LOADS = st.floats(-3960.0, 3960.0)
@@ -262,7 +262,7 @@ def test_without_a_wish_solved_contacts_come_first(tmp_path: Path, monkeypatch):
     """Nothing means the full tier where such a file is shipped, otherwise the closed form."""
     for wanted in (None, ''):
         assert find_surface(wanted) == shipped_surface() == shipped_surface(tier='full')
-    monkeypatch.setattr(surrogate.surface.lookup, 'SHIPPED', tmp_path)
+    monkeypatch.setattr(surrogate.surface.shipped, 'SHIPPED', tmp_path)
     for name in ('a_oil.npz', 'a_oil_full.npz', 'b_oil.npz', 'c_oil_full.npz'):
         (tmp_path / name).touch()
     assert find_surface('', 'a', 'oil').name == 'a_oil_full.npz'

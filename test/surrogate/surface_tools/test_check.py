@@ -10,8 +10,9 @@ import pytest
 from surrogate.builder import closed_form as build
 from surrogate.builder.tiers import TIERS
 from surrogate.surface import shipped_surface
+from surrogate.surface.aims import EFFICIENCY_TOLERANCE
 from surrogate.surface.file import read
-from surrogate.surface_tools.check import check_surface, EFFICIENCY_TOLERANCE, STATED_FACTOR
+from surrogate.surface_tools.check import check_surface, STATED_FACTOR
 
 DATA = read(shipped_surface(tier='closed_form'))
 

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from surrogate.builder.full.columns import Columns, NEAR_ONSET
-from surrogate.builder.full.idle import BESIDE, idle_load
+from surrogate.builder.full.columns import BESIDE, Columns, NEAR_ONSET
+from surrogate.formulas.load_sharing import idle_load
 from surrogate.parameters import load_lubricant, load_screw
 
 LOADS, HEATS = np.array([-1000.0, 0.0, 1000.0]), np.array([293.15, 313.15, 333.15])

@@ -21,7 +21,7 @@ from surrogate.builder.full.draws import (
     STEEPEST,
     weighted_mean,
 )
-from surrogate.builder.full.idle import idle_load
+from surrogate.formulas.load_sharing import idle_load
 from surrogate.parameters import load_screw
 from surrogate.screw.contacts import raceway_patch
 

@@ -15,8 +15,8 @@ from surrogate.builder.full.held_out import (
     load_bands,
     solve_held_out,
 )
-from surrogate.builder.full.idle import idle_load
 from surrogate.builder.full.settings import default_full_settings
+from surrogate.formulas.load_sharing import idle_load
 from surrogate.surface import Surface
 
 POINTS = 180

@@ -8,9 +8,9 @@ import math
 import numpy as np
 import pytest
 from surrogate.builder.closed_form import speed_at_film_ratio
-from surrogate.builder.full.columns import Columns, covering
-from surrogate.builder.full.idle import BESIDE, idle_load
+from surrogate.builder.full.columns import BESIDE, Columns, covering
 from surrogate.builder.full.nodes import commonest, continued, gather_nodes
+from surrogate.formulas.load_sharing import idle_load
 from surrogate.parameters import load_lubricant, load_screw
 
 LOADS, HEATS = np.array([-1000.0, 0.0, 1000.0]), np.array([293.15, 313.15, 333.15])
