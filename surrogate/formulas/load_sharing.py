@@ -3,6 +3,7 @@
 """Load sharing of the two nuts of a preloaded pair."""
 
 import math
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -10,6 +11,8 @@ from surrogate.formulas.geometry import helix_angle
 from surrogate.parameters import Screw
 
 Array = NDArray[np.float64]
+NutName = Literal['loaded', 'relieved']
+"""Nut that a load presses, and the one that it relieves."""
 
 UNLOADING_RATIO = 2.0**1.5
 """Axial load over preload at which the relieved nut carries nothing [-]."""

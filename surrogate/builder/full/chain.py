@@ -11,7 +11,6 @@ from the one before it; the chain is a fixed unit, and its numbers do not depend
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, replace
 from functools import lru_cache
-import math
 from typing import Any
 
 from surrogate.builder.tiers import screw_and_oil
@@ -20,6 +19,7 @@ from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.screw.contacts import GRID_WAVELENGTH, ScrewSettings
 from surrogate.screw.nut import ScrewContact
 from surrogate.screw.solve import rebalance_screw, ScrewSolution, solve_screw
+from surrogate.surface import FIELDS
 
 WORK = 'full tier 9'
 """Solver and version of what a chain returns; part of the key under which it is kept."""
@@ -159,28 +159,10 @@ def _with_rough(smooth: ScrewSolution, last: ScrewSolution | None) -> ScrewSolut
 
 def point_record(found: ScrewSolution) -> dict[str, Any]:
     """Return the numbers of a solution that a surface keeps."""
-    pressed = [
-        (place, contact.rough, contact)
-        for place, contact in enumerate(found.contacts)
-        if contact.rough is not None
-    ]
-    worst = max(
-        pressed, key=lambda item: (item[1].rcs, -item[2].film_ratio), default=(0, None, None)
-    )
     return {
-        'friction_torque': found.friction_torque,
-        'rcs': found.rcs,
-        'asperity_share': found.asperity_share,
-        'film_ratio': found.film_ratio,
-        'central_film': found.central_film,
-        'minimum_film': min((rough.minimum_film for _, rough, _ in pressed), default=math.nan),
-        'friction_coefficient': found.friction_coefficient,
-        'max_pressure': max((rough.max_pressure for _, rough, _ in pressed), default=math.nan),
-        'worst_contact': worst[0],
-        'film_over_floor': min(
-            (rough.minimum_film / rough.settings.film_floor for _, rough, _ in pressed),
-            default=math.nan,
-        ),
-        'converged': found.converged and bool(pressed),
+        **{name: getattr(found, name) for name in FIELDS},
+        'worst_contact': found.worst_contact,
+        'film_over_floor': found.film_over_floor,
+        'converged': found.converged and bool(found.rough_contacts),
         'status': found.status,
     }
