@@ -11,11 +11,13 @@ from surrogate.surface.file import SurfaceError
 from surrogate.surface.lookup import Surface
 from surrogate.surface.point import FIELDS, SurfacePoint, Validity
 from surrogate.surface.shipped import find_surface, shipped_surface
+from surrogate.surface.solved import SolvedPoint
 
 __all__ = [
     'FIELDS',
     'find_surface',
     'shipped_surface',
+    'SolvedPoint',
     'Surface',
     'SurfaceError',
     'SurfacePoint',

@@ -35,7 +35,7 @@ from surrogate.surface.hermite import (
     patch_weights,
     trilinear_weights,
 )
-from surrogate.surface.point import FIELDS, NO_SPREADS, SurfacePoint, Validity
+from surrogate.surface.point import FIELDS, MEASURED, NO_SPREADS, SurfacePoint, Validity
 from surrogate.surface.tables import open_cells, spread_table, summary, transform
 
 Place = tuple[int, float, float]
@@ -68,7 +68,7 @@ class Surface:
         self._worst = data.worst_contact
         self._spreads = spread_table(data)
         self._open_cells = open_cells(data.mask)
-        self._errors = np.stack([data.errors[name] for name in ('friction_torque', 'rcs')], -1)
+        self._errors = np.stack([data.errors[name] for name in MEASURED], -1)
         self.errors = {name: summary(error) for name, error in data.errors.items()}
 
     @classmethod

@@ -141,12 +141,12 @@ def _compare(
     load = drawn.uniform(*surface.load_range)
     kelvin = drawn.uniform(*surface.temperature_range)
     solved = solve_point(header, speed, load, kelvin)
-    if not solved or not np.isfinite(solved['rcs']):
+    if not (solved.converged and math.isfinite(solved.rcs)):
         return None
-    found, rcs = surface.lookup(speed, load, kelvin), solved['rcs']
+    found, rcs = surface.lookup(speed, load, kelvin), solved.rcs
     aim = rcs_tolerance(rcs)
-    errors = {name: abs(getattr(found, name) - solved[name]) for name in STATED}
-    efficiency = torque.efficiency(solved['friction_torque'], load, surface.lead)
+    errors = {name: abs(getattr(found, name) - getattr(solved, name)) for name in STATED}
+    efficiency = torque.efficiency(solved.friction_torque, load, surface.lead)
     wrong = abs(found.efficiency - efficiency)
     return {
         'efficiency': wrong,

@@ -12,12 +12,11 @@ for more nodes, these are solved, too. What is solved, and where, is left to the
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.builder.closed_form import check_ranges, surface_header
-from surrogate.builder.full.columns import Columns, Node, Records
+from surrogate.builder.full.columns import Columns, moved_records, Records
 from surrogate.builder.full.finer import nodes_for_misses, Room
 from surrogate.builder.full.held_out import (
     cell_errors,
@@ -96,7 +95,8 @@ class Builder:
     Solves and measures a surface, with more nodes each time; no node is solved twice.
 
     `known` are the profiles by the magnitude of the load [N], `heats` the solved temperatures [K],
-    `first` the speed nodes [-] of the first time, `points` those held out then.
+    `first` the speed nodes [-] of the first time, `points` those held out then. `records` are on
+    the speeds [-] and loads [N] of `axes`.
 
     """
 
@@ -105,7 +105,8 @@ class Builder:
     heats: Array
     first: Array | None = None
     points: list[Point] | None = None
-    records: dict[Node, Any] = field(default_factory=dict)
+    records: Records = field(default_factory=dict)
+    axes: tuple[Array, Array] = (np.empty(0), np.empty(0))
 
     def plan(self, pieces: LoadPieces) -> Plan:
         """Return the columns of some loads."""
@@ -135,8 +136,10 @@ class Builder:
         """Solve what is not known of the speed nodes `s` [-] at some loads, then the points."""
         plan, settings, run = self.plan(pieces), self.profiles.settings, self.profiles.run
         columns, purpose = plan.columns, 'more nodes' if self.records else 'nodes'
-        results = run(purpose, columns.chains(s, self.records))
-        self.records |= columns.records(s, results, self.records)
+        axes = s, columns.load
+        known, self.axes = moved_records(self.records, self.axes, axes), axes
+        results = run(purpose, columns.chains(s, known))
+        self.records = known | columns.records(s, results, known)
         data = _surface(plan, s, self.records, settings)
         if self.points is None:
             self.points = held_out_points(Surface(data), columns.screw, settings)

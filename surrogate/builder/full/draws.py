@@ -12,11 +12,10 @@ Calibration by exponential weights (raking): Deville, Sarndal, J. Am. Stat. Asso
 
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 import math
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -24,6 +23,7 @@ from scipy.optimize import brentq
 from surrogate.formulas.load_sharing import idle_load
 from surrogate.parameters import Screw
 from surrogate.screw.contacts import raceway_patch
+from surrogate.surface import FIELDS, SolvedPoint
 
 Array = NDArray[np.float64]
 POPULATION = 1000
@@ -195,23 +195,21 @@ def deviation(values: Array, weights: Array) -> Array:
         return np.asarray(np.where(several, np.sqrt(square), np.nan))
 
 
-def mean_of_draws(
-    records: Sequence[Mapping[str, Any] | None], names: Sequence[str], draws: Draws, load: float
-) -> dict[str, float]:
+def mean_of_draws(points: Sequence[SolvedPoint | None], draws: Draws, load: float) -> SolvedPoint:
     """
-    Return the means of named fields over the records of the draws at a load [N], in their order.
+    Return the means of the fields over the points of the draws at a load [N], in their order.
 
-    None stands for a chain that failed. Nothing where fewer than half of the draws converged.
+    None stands for a chain that failed. Not converged where fewer than half of the draws did.
 
     """
-    good = [bool(record and record['converged']) for record in records]
+    good = [point is not None and point.converged for point in points]
     if 2 * sum(good) < len(good):
-        return {}
+        return SolvedPoint(converged=False, status='Too few draws of the roughness converged.')
     values = np.array(
         [
-            [record[name] if record and kept else np.nan for record, kept in zip(records, good)]
-            for name in names
+            [getattr(point, name) if kept else np.nan for point, kept in zip(points, good)]
+            for name in FIELDS
         ]
     )
-    means = weighted_mean(values, draws.weights(values, np.full(len(names), load)))
-    return dict(zip(names, means.tolist()))
+    means = weighted_mean(values, draws.weights(values, np.full(len(FIELDS), load)))
+    return SolvedPoint(converged=True, **dict(zip(FIELDS, means.tolist())))

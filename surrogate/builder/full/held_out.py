@@ -3,7 +3,7 @@
 """Error of a full-tier surface, measured at points that are no nodes, with the same draws."""
 
 from bisect import bisect_right
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 import math
 
@@ -15,7 +15,7 @@ from surrogate.builder.full.settings import error_target, FullSettings, Run
 from surrogate.builder.full.speed_nodes import Sample, Target
 from surrogate.formulas.load_sharing import idle_load
 from surrogate.parameters import Screw
-from surrogate.surface import FIELDS, Surface, Validity
+from surrogate.surface import FIELDS, SolvedPoint, Surface, SurfacePoint, Validity
 from surrogate.surface.file import SurfaceData
 
 Array = NDArray[np.float64]
@@ -43,8 +43,8 @@ class HeldOut:
     point: Point
     speed_coordinate: float
     cell: tuple[int, int, int]
-    found: dict[str, float]
-    mean: dict[str, float]
+    found: SurfacePoint
+    mean: SolvedPoint
     miss: float
 
 
@@ -67,17 +67,16 @@ def solve_held_out(
     surface, target = Surface(data), error_target(columns.screw, settings)
     compared = []
     for place, point in enumerate(points):
-        sense = 'opposing' if point[1] >= 0 else 'assisting'
-        solved = [results.get(f'{place} {draw}') for draw in range(draws.at(point[1]))]
-        records = [chain and chain[sense][0] for chain in solved]
-        mean = mean_of_draws(records, FIELDS, draws, point[1])
-        found = surface.lookup(*point)
-        if mean and found.validity is Validity.VALID:
-            here = {name: float(getattr(found, name)) for name in FIELDS}
+        chains_there = [results.get(f'{place} {draw}') for draw in range(draws.at(point[1]))]
+        solved = [one.under(point[1])[0] if one else None for one in chains_there]
+        mean, found = mean_of_draws(solved, draws, point[1]), surface.lookup(*point)
+        if mean.converged and found.validity is Validity.VALID:
             s = math.log(point[0] / surface.onset_speed(*point[1:]))
             cell = _cell(data, (s, *point[1:]))
-            miss = judged(target, point[1], columns.screw.lead).worst(*map(_sample, (here, mean)))
-            compared.append(HeldOut(point, s, cell, here, mean, miss))
+            miss = judged(target, point[1], columns.screw.lead).worst(
+                _sample(found), _sample(mean)
+            )
+            compared.append(HeldOut(point, s, cell, found, mean, miss))
     return compared
 
 
@@ -86,8 +85,8 @@ def judged(target: Target, load: float, lead: float) -> Target:
     return replace(target, ideal_torque=max(target.ideal_torque, abs(load) * lead / (2 * math.pi)))
 
 
-def _sample(fields: Mapping[str, float]) -> Sample:
-    return Sample(fields['friction_torque'], fields['rcs'])
+def _sample(point: SurfacePoint | SolvedPoint) -> Sample:
+    return Sample(point.friction_torque, point.rcs)
 
 
 def cell_errors(
@@ -196,7 +195,7 @@ def _errors(
 
 
 def _wrong(one: HeldOut, name: str) -> float:
-    return abs(one.found[name] - one.mean[name])
+    return abs(float(getattr(one.found, name)) - float(getattr(one.mean, name)))
 
 
 def _within(places: Array, ends: Ends) -> NDArray[np.bool_]:

@@ -17,8 +17,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.builder.closed_form import speed_at_film_ratio
-from surrogate.builder.full.chain import chain_inputs
-from surrogate.builder.full.columns import mean_over_draws, presses, records_by_speed
+from surrogate.builder.full.chain import chain_inputs, SolvedChain
+from surrogate.builder.full.columns import mean_over_draws, points_by_speed, presses
 from surrogate.builder.full.loads import first_loads, LoadPieces, refine_loads
 from surrogate.builder.full.settings import error_target, FullSettings, Run
 from surrogate.builder.full.speed_nodes import Sample
@@ -80,14 +80,11 @@ class Profiles:
         )
 
 
-def _profile(chains: Sequence[Mapping[str, Any] | None]) -> Sample:
+def _profile(chains: Sequence[SolvedChain | None]) -> Sample:
     """Return the means of chains in the order of `ONSET_STEPS`."""
-    solved = [
-        [record for record in records if record['converged']]
-        for records in records_by_speed(chains, 'opposing', len(ONSET_STEPS))
-    ][::-1]
+    solved = list(points_by_speed(chains, len(ONSET_STEPS)))[::-1]
     torque, rcs = (
-        np.array([mean_over_draws(records, name) for records in solved])
+        np.array([mean_over_draws(points, name) for points in solved])
         for name in ('friction_torque', 'rcs')
     )
     return Sample(torque, rcs)

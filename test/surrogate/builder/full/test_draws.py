@@ -24,6 +24,7 @@ from surrogate.builder.full.draws import (
 from surrogate.formulas.load_sharing import idle_load
 from surrogate.parameters import load_screw
 from surrogate.screw.contacts import raceway_patch
+from surrogate.surface import SolvedPoint
 
 POWERS = (14.0, 31.0, 23.0, 20.0, 29.0, 24.0, 26.0, 28.0, 19.0, 17.0)
 TEN = Draws(len(POWERS), powers=POWERS, mean=24.0)
@@ -137,11 +138,18 @@ def test_factors_are_those_of_the_raceway():
 
 def test_records_of_draws_have_one_mean():
     """A chain that failed or a draw that did not converge is left out, half of them at most."""
-    records = [{'converged': True, 'rcs': 0.1 * power, 'torque': 2.0 - power} for power in POWERS]
-    records[1] = None
-    records[4] = {'converged': False, 'rcs': math.nan, 'torque': math.nan}
-    found = mean_of_draws(records, ('rcs', 'torque'), TEN, 0.0)
-    assert found == pytest.approx({'rcs': 2.4, 'torque': -22.0}, rel=1e-9)
-    assert mean_of_draws([None] * 6 + records[6:], ('rcs',), TEN, 0.0) == {}
+    points = [
+        SolvedPoint(converged=True, rcs=0.1 * power, friction_torque=2.0 - power)
+        for power in POWERS
+    ]
+    points[1] = None
+    points[4] = SolvedPoint(converged=False)
+    found = mean_of_draws(points, TEN, 0.0)
+    assert found.converged
+    assert (found.rcs, found.friction_torque) == pytest.approx((2.4, -22.0), rel=1e-9)
+    assert not mean_of_draws([None] * 6 + points[6:], TEN, 0.0).converged
     more = replace(TEN, powers=(*POWERS, *POWERS))
-    assert mean_of_draws(records, ('rcs', 'torque'), more, 0.0) == pytest.approx(found, rel=1e-12)
+    again = mean_of_draws(points, more, 0.0)
+    assert (again.rcs, again.friction_torque) == pytest.approx(
+        (found.rcs, found.friction_torque), rel=1e-12
+    )
