@@ -16,11 +16,10 @@ from typing import Any
 
 from surrogate.files import InputError
 from surrogate.parameters import Lubricant, Material, Roughness, Screw
+from surrogate.progress import OnProgress
 from surrogate.surface.file import SurfaceData
 from surrogate.surface.solved import SolvedPoint
 from surrogate.tasks.pool import Pool
-
-Progress = Callable[[int, int], None]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -78,7 +77,7 @@ def build_surface(
     lubricant: Lubricant,
     settings: Any,
     *,
-    progress: Progress = lambda done, total: None,
+    progress: OnProgress = lambda done, total: None,
     pool: Pool | None = None,
     out: str | Path = '',
 ) -> SurfaceData:

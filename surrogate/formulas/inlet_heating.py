@@ -61,7 +61,8 @@ def heated_speed(
             'the fitted film factor is not known where it falls below '
             f'{LEAST_FACTOR:g}; leave --inlet-heating off'
         )
-    return speed * factor ** (1 / SPEED_EXPONENT)
+    share: float = factor ** (1 / SPEED_EXPONENT)
+    return speed * share
 
 
 def viscosity_slope(lubricant: Lubricant, temperature: float) -> float:

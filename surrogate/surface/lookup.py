@@ -22,8 +22,8 @@ from surrogate.surface import file as surface_file
 from surrogate.surface.correction import (
     corrected_hash,
     Correction,
+    HasOperatingPoint,
     make_correction,
-    Point,
     solved_values,
 )
 from surrogate.surface.file import SurfaceData, SurfaceError
@@ -170,7 +170,7 @@ class Surface:
         """Return the full solves that have pulled this surface, in the order of their cells."""
         return tuple(self._pulls[cell] for cell in sorted(self._pulls))
 
-    def with_correction(self, point: Point, solution: object) -> 'Surface':
+    def with_correction(self, point: HasOperatingPoint, solution: object) -> 'Surface':
         """
         Return a surface that agrees with a full solve at `point`, and with this one elsewhere.
 
@@ -235,7 +235,8 @@ class Surface:
     def _log_onset(self, load: Place, heat: Place, patch: list[float]) -> float:
         j, k = self._rows[1][load[0]], self._rows[2][heat[0]]
         low, high = self._onset[j], self._onset[j + 1]
-        return sum(map(mul, patch, (*low[k], *low[k + 1], *high[k], *high[k + 1])))
+        onset: float = sum(map(mul, patch, (*low[k], *low[k + 1], *high[k], *high[k + 1])))
+        return onset
 
     def _values(self, fast: Place, load: Place, heat: Place, patch: list[float]) -> list[float]:
         """Return the fields, transformed, without corrections."""

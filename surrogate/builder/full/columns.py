@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter, minimum_filter
 from surrogate.builder.full.chain import chain_inputs, SolvedChain
-from surrogate.builder.full.draws import Draws, draws_of
+from surrogate.builder.full.draws import draws_of, WeightedDraws
 from surrogate.formulas.load_sharing import idle_load
 from surrogate.parameters import Lubricant, Screw
 from surrogate.screw.contacts import GRID_WAVELENGTH
@@ -75,7 +75,7 @@ class Columns:
         return len(self.temperature) // 2
 
     @property
-    def ensemble(self) -> Draws:
+    def ensemble(self) -> WeightedDraws:
         """Return the draws, with their weights."""
         return draws_of(self.screw, self.draws)
 

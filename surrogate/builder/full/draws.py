@@ -41,7 +41,7 @@ decides."""
 
 
 @dataclass(frozen=True, slots=True)
-class Draws:
+class WeightedDraws:
     """
     How many draws there are, the load [N] from which on the relieved nut is idle, weights.
 
@@ -135,12 +135,12 @@ class Draws:
         return np.asarray(left - slope[..., None] * off), np.asarray(leverage), np.asarray(rest)
 
 
-def draws_of(screw: Screw, count: int) -> Draws:
+def draws_of(screw: Screw, count: int) -> WeightedDraws:
     """Return `count` draws of a screw, weighted if there are enough of them."""
     if count < LEAST_DRAWS:
-        return Draws(count)
+        return WeightedDraws(count)
     powers = _powers(screw, max(POPULATION, 2 * count))
-    return Draws(count, idle_load(screw), powers[: 2 * count], float(np.mean(powers)))
+    return WeightedDraws(count, idle_load(screw), powers[: 2 * count], float(np.mean(powers)))
 
 
 @lru_cache(maxsize=8)
@@ -195,7 +195,9 @@ def deviation(values: Array, weights: Array) -> Array:
         return np.asarray(np.where(several, np.sqrt(square), np.nan))
 
 
-def mean_of_draws(points: Sequence[SolvedPoint | None], draws: Draws, load: float) -> SolvedPoint:
+def mean_of_draws(
+    points: Sequence[SolvedPoint | None], draws: WeightedDraws, load: float
+) -> SolvedPoint:
     """
     Return the means of the fields over the points of the draws at a load [N], in their order.
 

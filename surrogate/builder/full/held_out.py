@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 from surrogate.builder.full.columns import Columns, NEAR_ONSET
 from surrogate.builder.full.draws import mean_of_draws
-from surrogate.builder.full.settings import error_target, FullSettings, Run
-from surrogate.builder.full.speed_nodes import Sample, Target
+from surrogate.builder.full.settings import error_target, FullSettings, SolveChains
+from surrogate.builder.full.speed_nodes import NodeSample, Target
 from surrogate.formulas.load_sharing import idle_load
 from surrogate.parameters import Screw
 from surrogate.surface import FIELDS, SolvedPoint, Surface, SurfacePoint, Validity
@@ -20,7 +20,7 @@ from surrogate.surface.file import SurfaceData
 
 Array = NDArray[np.float64]
 Ends = tuple[float, float]
-Point = tuple[float, float, float]
+HeldOutPlace = tuple[float, float, float]
 """Speed [rad/s], load [N], temperature [K]."""
 
 NEAR_IDLE = 0.8
@@ -40,7 +40,7 @@ class HeldOut:
 
     """
 
-    point: Point
+    point: HeldOutPlace
     speed_coordinate: float
     cell: tuple[int, int, int]
     found: SurfacePoint
@@ -49,7 +49,11 @@ class HeldOut:
 
 
 def solve_held_out(
-    data: SurfaceData, points: Sequence[Point], columns: Columns, settings: FullSettings, run: Run
+    data: SurfaceData,
+    points: Sequence[HeldOutPlace],
+    columns: Columns,
+    settings: FullSettings,
+    run: SolveChains,
 ) -> list[HeldOut]:
     """
     Solve `points` that are no nodes with the draws of a surface, and compare it with them.
@@ -85,8 +89,8 @@ def judged(target: Target, load: float, lead: float) -> Target:
     return replace(target, ideal_torque=max(target.ideal_torque, abs(load) * lead / (2 * math.pi)))
 
 
-def _sample(point: SurfacePoint | SolvedPoint) -> Sample:
-    return Sample(point.friction_torque, point.rcs)
+def _sample(point: SurfacePoint | SolvedPoint) -> NodeSample:
+    return NodeSample(point.friction_torque, point.rcs)
 
 
 def cell_errors(
@@ -121,7 +125,7 @@ def load_bands(screw: Screw, settings: FullSettings) -> list[Ends]:
     return list(zip(marks, marks[1:]))
 
 
-def held_out_points(surface: Surface, screw: Screw, settings: FullSettings) -> list[Point]:
+def held_out_points(surface: Surface, screw: Screw, settings: FullSettings) -> list[HeldOutPlace]:
     """Return points of the range, from all strata in turn; fewer where a stratum is empty."""
     drawn = np.random.default_rng(settings.seed)
     strata = [(speeds, loads) for speeds in SPEEDS for loads in load_bands(screw, settings)]
@@ -134,7 +138,7 @@ def held_out_points(surface: Surface, screw: Screw, settings: FullSettings) -> l
 
 def _point(
     surface: Surface, drawn: np.random.Generator, speeds: Ends, loads: Ends, settings: FullSettings
-) -> Point | None:
+) -> HeldOutPlace | None:
     """Return a point of a stratum; cold or hot oil may have none, then another is tried."""
     for _ in range(TRIES):
         load = _signed(drawn, loads, settings.load_range)

@@ -9,7 +9,7 @@ from typing import Any
 
 from surrogate.builder.full.chain import solve_chain, solved_chain, SolvedChain
 from surrogate.builder.full.columns import Results
-from surrogate.builder.full.settings import Run
+from surrogate.builder.full.settings import SolveChains
 from surrogate.progress import Progress
 from surrogate.tasks.pool import Outcome, Pool, run_tasks
 from surrogate.tasks.store import task_key, TaskStore
@@ -62,7 +62,7 @@ class ChainRun:
 class Once:
     """Asks a builder's `run` for no chain twice, by whatever name; call it as that `run`."""
 
-    run: Run
+    run: SolveChains
     known: dict[str, SolvedChain | None] = field(default_factory=dict)
 
     def __call__(self, purpose: str, chains: Mapping[str, Mapping[str, Any]]) -> Results:

@@ -13,8 +13,8 @@ from surrogate.builder.full.columns import (
     presses,
     ROUNDING,
 )
-from surrogate.builder.full.settings import error_target, FullSettings, Run
-from surrogate.builder.full.speed_nodes import refine_nodes, Sample
+from surrogate.builder.full.settings import error_target, FullSettings, SolveChains
+from surrogate.builder.full.speed_nodes import NodeSample, refine_nodes
 from surrogate.surface import SolvedPoint
 
 Array = NDArray[np.float64]
@@ -27,7 +27,7 @@ FIRST_NODES = (-1.2, -0.6, -0.2, 0.0, 0.2, 0.4, 0.8, 1.5)
 
 
 def find_speed_nodes(
-    columns: Columns, log_onset: Array, settings: FullSettings, run: Run
+    columns: Columns, log_onset: Array, settings: FullSettings, run: SolveChains
 ) -> Array:
     """
     Return nodes of the speed coordinate that cover the range wherever the onset lies.
@@ -44,7 +44,7 @@ def find_speed_nodes(
     ends = low - columns.log_onset[j, k], high - columns.log_onset[j, k]
     first = [ends[0], *(s for s in FIRST_NODES if ends[0] < s < ends[1]), ends[1]]
 
-    def solve(places: Array) -> dict[float, Sample]:
+    def solve(places: Array) -> dict[float, NodeSample]:
         speeds = columns.speeds(places, j, k)
         chains = {
             str(draw): columns.chain(pressed[0], columns.temperature[k], draw, speeds)
@@ -81,7 +81,7 @@ def _extended(inner: Array, low: float, high: float) -> Array:
     )
 
 
-def _sample(points: list[SolvedPoint]) -> Sample:
-    return Sample(
+def _sample(points: list[SolvedPoint]) -> NodeSample:
+    return NodeSample(
         torque=mean_over_draws(points, 'friction_torque'), rcs=mean_over_draws(points, 'rcs')
     )

@@ -16,7 +16,7 @@ import scipy
 from surrogate.builder.full.build import build_full
 from surrogate.builder.full.chain import chain_inputs, solve_chain, solved_chain, WORK
 from surrogate.builder.full.columns import covering
-from surrogate.builder.full.draws import Draws, mean_of_draws
+from surrogate.builder.full.draws import mean_of_draws, WeightedDraws
 from surrogate.builder.full.run import ChainRun
 from surrogate.builder.full.settings import FullSettings
 from surrogate.builder.tiers import screw_and_oil
@@ -99,12 +99,12 @@ def solve_full(
     return mean_of_draws(points, draws, load)
 
 
-def drawn(header: Mapping[str, Any]) -> Draws:
+def drawn(header: Mapping[str, Any]) -> WeightedDraws:
     """Return the draws of a surface; files of builders without weights say how many alone."""
     kept = header.get('weighted_draws')
     if kept is None:
-        return Draws(int(header['settings']['draws']))
-    return Draws(**{**kept, 'powers': tuple(kept['powers'])})
+        return WeightedDraws(int(header['settings']['draws']))
+    return WeightedDraws(**{**kept, 'powers': tuple(kept['powers'])})
 
 
 def _provenance(run: ChainRun, seconds: float) -> dict[str, Any]:

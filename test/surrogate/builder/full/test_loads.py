@@ -10,7 +10,7 @@ import pytest
 from surrogate.builder.full.columns import BESIDE
 from surrogate.builder.full.loads import first_loads, refine_loads, signed_loads
 from surrogate.builder.full.settings import default_full_settings, error_target
-from surrogate.builder.full.speed_nodes import Sample
+from surrogate.builder.full.speed_nodes import NodeSample
 from surrogate.formulas.load_sharing import idle_load
 
 
@@ -75,7 +75,7 @@ def test_loads_crowd_where_profiles_change(screw, settings):
     def solve(loads):
         steps = np.linspace(0.5, 1.0, 3)
         return {
-            float(load): Sample(0.05 + 0 * steps, steps / (1 + math.exp((load - 2000) / 60)))
+            float(load): NodeSample(0.05 + 0 * steps, steps / (1 + math.exp((load - 2000) / 60)))
             for load in loads
         }
 
