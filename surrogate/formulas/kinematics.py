@@ -85,4 +85,5 @@ def slip_arm(
     relative_rolling = rates.entrainment / screw_contact(screw, side).radius_x
     bulge = (y * y - np.asarray(semi_axis_y) ** 2 / 5) / (2 * deformed_radius)
     along, across = rates.spin * y - relative_rolling * bulge, rates.helical_slip - rates.spin * x
-    return np.asarray(np.hypot(along, across))
+    slip: Array = np.hypot(along, across)
+    return slip
