@@ -20,7 +20,7 @@ import sys
 
 import numpy as np
 from surrogate.builder.full.chain import chain_inputs, solve_chain
-from surrogate.builder.full.draws import Draws, draws_of, POWER, weighted_mean
+from surrogate.builder.full.draws import draws_of, POWER, weighted_mean, WeightedDraws
 from surrogate.parameters import load_lubricant, load_screw
 from surrogate.units import RPM
 
@@ -37,14 +37,14 @@ def rcs_of(draw: int) -> list[float]:
     return [row['rcs'] if row['converged'] else math.nan for row in chain['opposing']]
 
 
-def summary(rcs: np.ndarray, draws: Draws) -> tuple[float, float]:
+def summary(rcs: np.ndarray, draws: WeightedDraws) -> tuple[float, float]:
     """Return the mean over the first draws and its standard error [-]."""
     known = rcs[: draws.count]
     weights = draws.weights(known, 0.0)
     return float(weighted_mean(known, weights)), float(draws.standard_error(known, weights))
 
 
-def group_errors(rcs: np.ndarray, every: Draws, kind: str) -> tuple[float, float]:
+def group_errors(rcs: np.ndarray, every: WeightedDraws, kind: str) -> tuple[float, float]:
     """
     Return how far means of groups of draws are from that of all, and what they state [-].
 
@@ -62,12 +62,12 @@ def group_errors(rcs: np.ndarray, every: Draws, kind: str) -> tuple[float, float
     )
 
 
-def group(every: Draws, start: int, kind: str) -> Draws:
+def group(every: WeightedDraws, start: int, kind: str) -> WeightedDraws:
     """Return sixteen of all draws, weighted or plain."""
     if kind == 'plain':
-        return Draws(FEW)
+        return WeightedDraws(FEW)
     own = slice(start, start + FEW)
-    return Draws(FEW, 0.0, every.powers[own], every.mean)
+    return WeightedDraws(FEW, 0.0, every.powers[own], every.mean)
 
 
 def draw_figure(rcs: np.ndarray, factors: np.ndarray, path: Path) -> None:
@@ -118,7 +118,7 @@ def main() -> None:
     for rpm, column in zip(SPEEDS, rcs.T, strict=True):
         known = np.isfinite(column)
         alike = float(np.corrcoef(powers[known], column[known])[0, 1])
-        cases = (Draws(FEW), few, Draws(args.draws), every)
+        cases = (WeightedDraws(FEW), few, WeightedDraws(args.draws), every)
         told = (summary(column, draws) for draws in cases)
         texts = (f'{mean:.4f} +- {error:.4f}' for mean, error in told)
         print(f'{rpm:7g}  {alike:11.2f}  {"  ".join(texts)}', flush=True)

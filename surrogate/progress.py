@@ -11,6 +11,8 @@ WIDTH = 40
 """Length of the bar in characters."""
 LOG_SHARE, LOG_PAUSE = 0.1, 60.0
 """A log gets a line per this share of the work [-], or after this time [s] if that is sooner."""
+OnProgress = Callable[[int, int], None]
+"""What long work calls as it goes on, with how much is done and how much there is."""
 
 
 def bar(share: float, width: int, *, blank: str = ' ') -> str:

@@ -82,7 +82,7 @@ def add_operating_point(parser: argparse.ArgumentParser, *, required: bool) -> N
 def _point(args: argparse.Namespace) -> int:
     """Solve a point; exit code 1 when it is not converged."""
     from surrogate.files import json_text
-    from surrogate.screw.formula_record import closed_form_record, page
+    from surrogate.formulas.record import closed_form_record, page
 
     _check(args)
     screw, lubricant = load_screw(args.screw), load_lubricant(args.oil)

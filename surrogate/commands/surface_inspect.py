@@ -15,6 +15,7 @@ from surrogate.files import InputError, json_text, replace_file
 from surrogate.parameters import OperatingPoint
 from surrogate.progress import Progress
 from surrogate.surface import find_surface, Surface
+from surrogate.surface.aims import EFFICIENCY_TOLERANCE, RCS_TOLERANCE
 from surrogate.surface.file import read
 from surrogate.units import RPM, ZERO_CELSIUS
 
@@ -89,8 +90,8 @@ def _add_diff(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('first', type=Path, metavar='A')
     parser.add_argument('second', type=Path, metavar='B')
     for name, default, words in (
-        ('efficiency', 0.003, 'largest accepted difference of the efficiency [-]'),
-        ('rcs', 0.003, 'largest accepted difference of RCS [-]'),
+        ('efficiency', EFFICIENCY_TOLERANCE, 'largest accepted difference of the efficiency [-]'),
+        ('rcs', RCS_TOLERANCE, 'largest accepted difference of RCS [-]'),
         ('zone', 0.05, 'largest accepted shift of a limit of the zone, over its speed [-]'),
     ):
         parser.add_argument(

@@ -14,13 +14,13 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 import numpy as np
 from scipy.interpolate import PchipInterpolator
+from surrogate.formulas.record import CONSTANT_FRICTION
 from surrogate.formulas.torque import efficiency
 from surrogate.paper.curves import constant_friction_efficiency, grid, NO_CONTACT, pick
 from surrogate.paper.figures import entrainment, finish, GREY, new_figure, PURPLE, shades, STYLES
 from surrogate.paper.mark import counted, EFFICIENCY_LIMIT, RCS_LIMIT
 from surrogate.paper.rows import Array, Row
 from surrogate.parameters import Screw
-from surrogate.screw.formula_record import CONSTANT_FRICTION
 
 FINE = 161
 """Points of a map along a side [-]."""

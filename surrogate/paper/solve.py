@@ -185,7 +185,7 @@ def _screw(screw: Screw, lubricant: Lubricant, task: Task, row: Row) -> Row:
         row,
         normal_force=found.normal_forces[0],
         central_film=found.central_film,
-        minimum_film=min(one.minimum_film for one in _rough(found, '')),
+        minimum_film=found.minimum_film,
         rcs=found.rcs,
         asperity_share=found.asperity_share,
         rcs_loaded=max(one.rcs for one in _rough(found, 'loaded')),
@@ -196,11 +196,11 @@ def _screw(screw: Screw, lubricant: Lubricant, task: Task, row: Row) -> Row:
 
 
 def _rough(found: ScrewSolution, nut: str) -> list[ContactSolution]:
-    """Return the rough contacts that carry load, of one nut or of both."""
+    """Return the rough contacts of a nut that carry load."""
     return [
         contact.rough
         for contact in found.contacts
-        if contact.rough is not None and nut in ('', contact.nut)
+        if contact.rough is not None and nut == contact.nut
     ]
 
 

@@ -7,16 +7,12 @@ Needs numpy alone.
 
 """
 
-from surrogate.surface.lookup import (
-    FIELDS,
-    find_surface,
-    shipped_surface,
-    Surface,
-    SurfaceError,
-    SurfacePoint,
-    Validity,
-)
+from surrogate.surface.file import SurfaceError
+from surrogate.surface.lookup import Surface
+from surrogate.surface.point import FIELDS, SurfacePoint, Validity
 from surrogate.surface.regime import FILM_RATIO_LIMITS, Regime, regime_of, REGIMES
+from surrogate.surface.shipped import find_surface, shipped_surface
+from surrogate.surface.solved import SolvedPoint
 
 __all__ = [
     'FIELDS',
@@ -26,6 +22,7 @@ __all__ = [
     'regime_of',
     'REGIMES',
     'shipped_surface',
+    'SolvedPoint',
     'Surface',
     'SurfaceError',
     'SurfacePoint',

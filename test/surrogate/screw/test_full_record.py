@@ -12,12 +12,12 @@ import pytest
 from surrogate.ehl import Settings
 from surrogate.ehl.friction import contact_friction
 from surrogate.files import InputError, to_json
+from surrogate.formulas.record import closed_form_record, page
 from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
 from surrogate.screw import figures as figures_point
 from surrogate.screw.ball_motion import slip_floor
 from surrogate.screw.contacts import ScrewSettings
 from surrogate.screw.ensemble import solve_ensemble
-from surrogate.screw.formula_record import closed_form_record, page
 from surrogate.screw.full_record import ensemble_record, full_record, solution_record
 from surrogate.screw.nut import contact_slip
 from surrogate.screw.solve import solve_screw
