@@ -86,7 +86,7 @@ def main() -> None:
     """Solve, print and draw."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('--workers', type=int, default=2)
-    parser.add_argument('--out', type=Path, default=Path('docs'))
+    parser.add_argument('--out', type=Path, default=Path('studies/results'))
     args = parser.parse_args()
     cases = [(name, draw) for name in grids(0) for draw in DRAWS]
     with ProcessPoolExecutor(

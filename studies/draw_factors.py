@@ -104,7 +104,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('--draws', type=int, default=128)
     parser.add_argument('--workers', type=int, default=2)
-    parser.add_argument('--out', type=Path, default=Path('docs'))
+    parser.add_argument('--out', type=Path, default=Path('studies/results'))
     args = parser.parse_args()
     if args.draws < FEW:
         parser.error(f'--draws is {args.draws}, allowed is {FEW} or more')

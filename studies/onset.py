@@ -3,9 +3,9 @@
 """
 The onset study: RCS and asperity share of the nominal contact against every choice of the model.
 
-Usage: python studies/onset.py [--only NAME ...] [--out docs/onset.csv]. Each variation changes one
-thing of the base case. One chain per draw runs from the fastest speed down; finished rows are
-kept, so an interrupted study goes on where it stopped.
+Usage: python studies/onset.py [--only NAME ...] [--out studies/results/onset.csv]. Each variation
+changes one thing of the base case. One chain per draw runs from the fastest speed down; finished
+rows are kept, so an interrupted study goes on where it stopped.
 
 """
 
@@ -157,7 +157,7 @@ def main() -> None:
     """Run what is missing and append it to the table."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('--only', nargs='*', default=None, help='names of variations')
-    parser.add_argument('--out', type=Path, default=Path('docs/onset.csv'))
+    parser.add_argument('--out', type=Path, default=Path('studies/results/onset.csv'))
     parser.add_argument('--draws', type=int, nargs=2, default=(0, 64), metavar=('FIRST', 'END'))
     args = parser.parse_args()
     done: set[tuple[str, int, float]] = set()

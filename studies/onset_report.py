@@ -3,9 +3,9 @@
 """
 Figures and table of the onset study, from the rows that studies/onset.py kept.
 
-Usage: python studies/onset_report.py [docs/onset.csv] [--out docs]. The onset speed of an ensemble
-is where its mean RCS reaches 1 %; its error is the standard deviation of 400 resamples of the
-draws. The equivalent floor is that with which the base case begins at the same speed.
+Usage: python studies/onset_report.py [studies/results/onset.csv] [--out DIR]. The onset speed of
+an ensemble is where its mean RCS reaches 1 %; its error is the standard deviation of 400 resamples
+of the draws. The equivalent floor is that with which the base case begins at the same speed.
 
 """
 
@@ -273,8 +273,8 @@ def draw_onsets(found: list[tuple[str, float, float]], path: Path) -> None:
 def main() -> None:
     """Print the table and write the figures."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument('table', nargs='?', type=Path, default=Path('docs/onset.csv'))
-    parser.add_argument('--out', type=Path, default=Path('docs'))
+    parser.add_argument('table', nargs='?', type=Path, default=Path('studies/results/onset.csv'))
+    parser.add_argument('--out', type=Path, default=Path('studies/results'))
     args = parser.parse_args()
     table = read_rows(args.table)
     found = print_table(table)

@@ -3,7 +3,7 @@
 """
 Robustness of the contact solver: a fixed list of 2000 cold cases and how each of them ended.
 
-Usage: python studies/robustness.py [--out docs/robustness.csv] [--every N] [--workers N]
+Usage: python studies/robustness.py [--out FILE] [--every N] [--workers N]
 [--report]. The list comes from numpy's PCG64 with the seed 2026 and is the same everywhere: loads,
 speeds and viscosities uniform in their logarithm, one case in sixteen at rest, both contacts of
 the nominal screw. Smooth cases run with the production settings, rough ones on 65 x 129 nodes
@@ -407,7 +407,7 @@ def print_cases(title: str, rows: Iterable[Row]) -> None:
 def main() -> None:
     """Solve what is missing and print the report."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument('--out', type=Path, default=Path('docs/robustness.csv'))
+    parser.add_argument('--out', type=Path, default=Path('studies/results/robustness.csv'))
     parser.add_argument('--every', type=int, default=1, help='each N-th case only')
     parser.add_argument('--workers', type=int, default=1, help='processes')
     parser.add_argument('--report', action='store_true', help='only print')

@@ -113,7 +113,7 @@ def main():
     """Solve, print and draw."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('--load', type=float, default=0.0, help='axial load [N]')
-    parser.add_argument('--out', type=Path, default=Path('docs'))
+    parser.add_argument('--out', type=Path, default=Path('studies/results'))
     args = parser.parse_args()
     rows = solve_all(args.load)
     draw(rows, args.load, args.out / 'screw_torque.png')

@@ -132,7 +132,7 @@ def main():
     parser.add_argument('--workers', type=int, default=usable_cores())
     parser.add_argument('--draws', type=int, default=2)
     parser.add_argument('--accuracy', type=float, nargs='+', default=ACCURACIES)
-    parser.add_argument('--out', type=Path, default=Path('docs'))
+    parser.add_argument('--out', type=Path, default=Path('studies/results'))
     args = parser.parse_args()
     print(
         'accuracy  nodes  points  worker s  wall s  busy  torque error [N m]  RCS error  reached'

@@ -127,7 +127,7 @@ def main() -> None:
     """Thin, compare, print and draw."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('file', nargs='?', default='full')
-    parser.add_argument('--out', type=Path, default=Path('docs'))
+    parser.add_argument('--out', type=Path, default=Path('studies/results'))
     args = parser.parse_args()
     args.out.mkdir(parents=True, exist_ok=True)
     data = read(find_surface(args.file))

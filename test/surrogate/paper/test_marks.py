@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The page docs/paper.md: its claims against its table of rows, and the rows against the code."""
+"""The page paper.md: its claims against its table of rows, and the rows against the code."""
 
 from pathlib import Path
 import re
@@ -14,11 +14,12 @@ from surrogate.paper.rows import inputs_hash, read_rows
 from surrogate.paper.solve import solve_task
 from surrogate.parameters import load_lubricant, load_screw
 
-DOCS = Path(__file__).parents[3] / 'docs'
+TREE = Path(__file__).parents[3]
+PAGE_FILE = next((TREE / 'docs').rglob('paper.md'))
 SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
-ROWS = read_rows(DOCS / 'paper.csv')
+ROWS = read_rows(TREE / 'test' / 'data' / 'paper.csv')
 MARKS = marks(SCREW, ROWS)
-PAGE = (DOCS / 'paper.md').read_text(encoding='utf-8')
+PAGE = PAGE_FILE.read_text(encoding='utf-8')
 LOADED, RELIEVED = 'RCS, loaded nut', 'RCS, relieved nut'
 LAST = '2000 N less preload only'
 
@@ -94,9 +95,9 @@ def test_sentences_have_the_numbers_of_the_table(words):
 def test_every_picture_is_there_and_small():
     """Each picture of the page is a small PNG, and each in the folder is on the page."""
     shown = set(re.findall(r'\]\((paper_\w+\.png)\)', PAGE))
-    assert shown == {path.name for path in DOCS.glob('paper_*.png')}
+    assert shown == {path.name for path in PAGE_FILE.parent.glob('paper_*.png')}
     assert len(shown) == 11
-    assert all((DOCS / name).stat().st_size < 300_000 for name in shown)
+    assert all((PAGE_FILE.parent / name).stat().st_size < 300_000 for name in shown)
 
 
 def test_film_is_that_of_the_study():
