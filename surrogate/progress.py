@@ -35,6 +35,8 @@ class Progress:
         self._bar = self._stream.isatty()
         self._begin = self._last = clock()
         self._done = self._there = self._said = 0
+        self._share: float | None = None
+        self._note = ''
 
     def add(self, number: int) -> None:
         """Tell that the work has grown by `number`."""
@@ -42,19 +44,34 @@ class Progress:
 
     def step(self, *, there: bool = False) -> None:
         """Count one as done; `there` when it was done before."""
-        self._done += 1
         self._there += there
-        if self._bar:
+        self.show(self._done + 1, self._total)
+
+    def show(self, done: int, total: int, *, share: float | None = None, note: str = '') -> None:
+        """
+        Show how much is done out of a total; the clock begins when nothing is.
+
+        Where steps differ, `share` says how far the work is [-]; a `note` ends the line.
+
+        """
+        self._done, self._total, self._share, self._note = done, total, share, note
+        if not done:
+            self._begin = self._last = self._clock()
+        elif self._bar:
             self._draw()
         elif self._is_due():
             print(self._text(), file=self._stream, flush=True)
             self._said, self._last = self._done, self._clock()
 
     def _draw(self) -> None:
-        bar = '#' * (WIDTH * self._done // max(self._total, 1))
+        bar = '#' * int(WIDTH * self._part())
         end = '\n' if self._done == self._total else ''
         # The end of an older, longer line is wiped.
         print(f'\r[{bar:{WIDTH}}] {self._text()}\x1b[K', end=end, file=self._stream, flush=True)
+
+    def _part(self) -> float:
+        """Return how far the work is [-]."""
+        return self._done / max(self._total, 1) if self._share is None else self._share
 
     def _is_due(self) -> bool:
         return (
@@ -64,13 +81,22 @@ class Progress:
         )
 
     def _text(self) -> str:
-        text = f'{self._done}/{self._total} {self._unit}'
+        return ', '.join(filter(None, (self._count(), self._rate(), self._note)))
+
+    def _count(self) -> str:
+        return f'{self._done}/{self._total} {self._unit}'
+
+    def _rate(self) -> str:
+        """Return rate and time left, nothing as long as nothing new is done."""
         new, spent = self._done - self._there, self._clock() - self._begin
         if not new or spent <= 0:
-            return text
+            return ''
         rate = new / spent
         speed = f'{rate:.3g} per s' if rate >= 1 else f'{1 / rate:.2g} s each'
-        return f'{text}, {speed}, {_duration((self._total - self._done) / rate)} left'
+        left = (self._total - self._done) / rate
+        if self._share:
+            left = spent * (1 - self._share) / self._share
+        return f'{speed}, {_duration(left)} left'
 
 
 def _duration(seconds: float) -> str:
