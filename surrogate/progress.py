@@ -13,6 +13,10 @@ LOG_SHARE, LOG_PAUSE = 0.1, 60.0
 """A log gets a line per this share of the work [-], or after this time [s] if that is sooner."""
 
 
+Show = Callable[[int, int], None]
+"""Told how much is done, of how much: `Progress.show`, or whatever takes its place."""
+
+
 class Progress:
     """
     Counts what is done out of a total, with the rate and the time that is left.

@@ -18,12 +18,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 import scipy
-from surrogate.builder.tiers import Progress, screw_and_oil
+from surrogate.builder.tiers import screw_and_oil
 from surrogate.files import InputError
 from surrogate.formulas import closed_form
 from surrogate.formulas.film import film_ratio_at_share_aihara_1987
 from surrogate.formulas.load_sharing import UNLOADING_RATIO
 from surrogate.parameters import Lubricant, Screw
+from surrogate.progress import Show
 from surrogate.surface import FIELDS, Surface
 from surrogate.surface.file import FORMAT, FORMAT_VERSION, SurfaceData
 from surrogate.units import ZERO_CELSIUS
@@ -74,7 +75,7 @@ def build_closed_form(
     lubricant: Lubricant,
     settings: SurfaceSettings,
     *,
-    progress: Progress = lambda done, total: None,
+    progress: Show = lambda done, total: None,
 ) -> SurfaceData:
     """
     Build the surface of the closed-form tier; `progress(done, total)` counts solved slices.

@@ -16,10 +16,9 @@ from typing import Any
 
 from surrogate.files import InputError
 from surrogate.parameters import Lubricant, Material, Roughness, Screw
+from surrogate.progress import Show
 from surrogate.surface.file import SurfaceData
 from surrogate.tasks.pool import Pool
-
-Progress = Callable[[int, int], None]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -78,7 +77,7 @@ def build_surface(
     lubricant: Lubricant,
     settings: Any,
     *,
-    progress: Progress = lambda done, total: None,
+    progress: Show = lambda done, total: None,
     pool: Pool | None = None,
     out: str | Path = '',
 ) -> SurfaceData:
