@@ -7,8 +7,8 @@ One file that only grows, beside the output: a line of header, then a line per r
 its own checksum, written by one call and flushed to the disk. A directory with a file per result
 would be as safe, but a map has thousands; a line needs no rename, and a reader sees at once which
 results there are. SQLite survives a kill as well, but has no checksums: a file that is cut off or
-damaged in one byte costs it all results, or none and a wrong number. A line that was torn by a kill or a full disk fails its checksum and is dropped.
-Floats are kept in hexadecimal, bit for bit.
+damaged in one byte costs it all results, or none and a wrong number. A line that was torn by a
+kill or a full disk fails its checksum and is dropped. Floats are kept in hexadecimal, bit for bit.
 
 """
 
