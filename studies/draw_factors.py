@@ -22,6 +22,7 @@ import numpy as np
 from surrogate.builder.full.chain import chain_inputs, solve_chain
 from surrogate.builder.full.draws import draws_of, POWER, weighted_mean, WeightedDraws
 from surrogate.parameters import load_lubricant, load_screw
+from surrogate.plotting.style import new_figure, save, styled
 from surrogate.units import RPM
 
 FEW = 16
@@ -70,14 +71,11 @@ def group(every: WeightedDraws, start: int, kind: str) -> WeightedDraws:
     return WeightedDraws(FEW, 0.0, every.powers[own], every.mean)
 
 
+@styled
 def draw_figure(rcs: np.ndarray, factors: np.ndarray, path: Path) -> None:
     """Draw RCS of every draw over the factor of its patch."""
-    import matplotlib
-
-    matplotlib.use('Agg')
-    from matplotlib import pyplot
-
-    figure, axes = pyplot.subplots(figsize=(7, 4.5), layout='constrained')
+    figure = new_figure(7, 4.5)
+    axes = figure.subplots()
     for rpm, column, colour in zip(SPEEDS, rcs.T, ('C0', 'C1', 'C2', 'C3'), strict=True):
         axes.semilogy(factors[:FEW], column[:FEW], 'o', c=colour, ms=5, label=f'{rpm:g} rev/min')
         axes.semilogy(factors[FEW:], column[FEW:], 'o', c=colour, ms=3, mfc='none', alpha=0.6)
@@ -94,9 +92,9 @@ def draw_figure(rcs: np.ndarray, factors: np.ndarray, path: Path) -> None:
         title='Nominal screw at preload, 40 degC: draws 0 to 15 full, others hollow',
         ylim=(1e-5, 1.0),
     )
-    axes.grid(alpha=0.3, which='both')
-    axes.legend(fontsize=8, loc='lower right')
-    figure.savefig(path, dpi=110)
+    axes.grid(visible=True, which='both')
+    axes.legend(loc='lower right')
+    save(figure, path)
 
 
 def main() -> None:
@@ -104,7 +102,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('--draws', type=int, default=128)
     parser.add_argument('--workers', type=int, default=2)
-    parser.add_argument('--out', type=Path, default=Path('docs'))
+    parser.add_argument('--out', type=Path, default=Path('studies/results'))
     args = parser.parse_args()
     if args.draws < FEW:
         parser.error(f'--draws is {args.draws}, allowed is {FEW} or more')

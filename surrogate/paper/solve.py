@@ -21,8 +21,8 @@ from surrogate.formulas import closed_form
 from surrogate.formulas.geometry import hertz, screw_contact
 from surrogate.formulas.kinematics import entrainment_speed_paper
 from surrogate.formulas.load_sharing import normal_force, nut_forces
-from surrogate.paper.cases import CASES, SMOOTH, Task
-from surrogate.paper.rows import ContactFields, Row
+from surrogate.paper.cases import CASES, SMOOTH, StudyTask
+from surrogate.paper.rows import ContactFields, StudyRow
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.raceway.fractal import FractalSurface
 from surrogate.raceway.short_waves import subgrid_floor, without_short_waves
@@ -43,11 +43,11 @@ INNER = 0.5
 
 
 def solve_task(
-    screw: Screw, lubricant: Lubricant, task: Task, inputs: str
-) -> tuple[Row, ContactFields | None]:
+    screw: Screw, lubricant: Lubricant, task: StudyTask, inputs: str
+) -> tuple[StudyRow, ContactFields | None]:
     """Solve one task; return its row and, for a contact that keeps them, its fields."""
     began = time.process_time()
-    row = Row(
+    row = StudyRow(
         inputs=inputs,
         kind=task.kind,
         case=task.case,
@@ -72,8 +72,8 @@ def rad_per_second(rpm: float) -> float:
 
 
 def _contact(
-    screw: Screw, lubricant: Lubricant, task: Task, row: Row
-) -> tuple[Row, ContactFields | None]:
+    screw: Screw, lubricant: Lubricant, task: StudyTask, row: StudyRow
+) -> tuple[StudyRow, ContactFields | None]:
     forces = nut_forces(task.load, screw.preload)
     force = float(normal_force(screw, forces[CASES[task.case].nut == 'relieved']))
     solution, surface = solve_patch(screw, lubricant, task, force, row.entrainment_speed)
@@ -98,7 +98,7 @@ def _contact(
 
 
 def solve_patch(
-    screw: Screw, lubricant: Lubricant, task: Task, force: float, speed: float
+    screw: Screw, lubricant: Lubricant, task: StudyTask, force: float, speed: float
 ) -> tuple[ContactSolution, FractalSurface | None]:
     """
     Solve the contact of a task under a normal `force` [N] at an entrainment `speed` [m/s].
@@ -171,7 +171,7 @@ def _fields(solution: ContactSolution, surface: FractalSurface | None, kind: str
     )
 
 
-def _screw(screw: Screw, lubricant: Lubricant, task: Task, row: Row) -> Row:
+def _screw(screw: Screw, lubricant: Lubricant, task: StudyTask, row: StudyRow) -> StudyRow:
     """Solve the whole screw in the full tier."""
     point = OperatingPoint(
         speed=rad_per_second(task.rpm), load=task.load, temperature=lubricant.reference_temperature
@@ -204,7 +204,7 @@ def _rough(found: ScrewSolution, nut: str) -> list[ContactSolution]:
     ]
 
 
-def _with_friction(screw: Screw, found: ScrewSolution, row: Row) -> Row:
+def _with_friction(screw: Screw, found: ScrewSolution, row: StudyRow) -> StudyRow:
     """Add the parts of torque and friction coefficient, and both other ways to a torque."""
     pressed = [contact for contact in found.contacts if contact.motion is not None]
     local = [_friction(screw, contact, 'local') for contact in pressed]
@@ -247,7 +247,7 @@ def _friction(screw: Screw, contact: ScrewContact, film: Any) -> ContactFriction
     )
 
 
-def _formulas(screw: Screw, lubricant: Lubricant, task: Task, row: Row) -> Row:
+def _formulas(screw: Screw, lubricant: Lubricant, task: StudyTask, row: StudyRow) -> StudyRow:
     """Take the screw by published formulas, asperities by a statistical share."""
     found = closed_form.solve(
         screw, lubricant, rad_per_second(task.rpm), task.load, lubricant.reference_temperature
