@@ -19,6 +19,7 @@ screw          one point of the full tier: contacts, balance of the balls, torqu
 builder        datasheet to surface: tiers, sweeps; full: draws, nodes, errors
 surface        all that the node loads: lookup and file, numpy alone
 surface_tools  what people do with a surface file: check, query, compare, draw
+plotting       the one style of all pictures
 tasks          solves kept by content, on processes or a cluster
 identify       parasitic torque from measured torque
 paper          results beside those of the published study
