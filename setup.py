@@ -65,6 +65,7 @@ setup(
             'data/lubricants/*.yaml',
             'data/screws/*.yaml',
             'data/surfaces/*.npz',
+            'plotting/*.mplstyle',
         ],
     },
     data_files=[

@@ -21,6 +21,7 @@ import sys
 import numpy as np
 from surrogate.builder.full.chain import chain_settings
 from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
+from surrogate.plotting.style import new_figure, save, styled
 from surrogate.screw.contacts import GRID_WAVELENGTH, ScrewSettings
 from surrogate.screw.solve import solve_screw
 from surrogate.units import RPM
@@ -60,33 +61,28 @@ def scatter(rcs: np.ndarray) -> float:
     return float(np.sqrt(np.mean((rcs - lines) ** 2)))
 
 
+@styled
 def draw_figure(found: dict[str, np.ndarray], path: Path) -> None:
     """Draw RCS over the load, a panel per grid."""
-    import matplotlib
-
-    matplotlib.use('Agg')
-    from matplotlib import pyplot
-
-    figure, panels = pyplot.subplots(
-        1, len(found), figsize=(9, 3.2), sharey=True, layout='constrained'
-    )
+    figure = new_figure(9, 3.2)
+    panels = figure.subplots(1, len(found), sharey=True)
     for axes, (name, rcs) in zip(panels, found.items(), strict=True):
         for draw, one, style in zip(DRAWS, rcs, ('o-', 's--', '^-.', 'd:'), strict=True):
             axes.plot(LOADS, one, style, ms=3, lw=1, label=f'draw {draw}')
         axes.axhline(0.01, color='0.4', ls='--', lw=0.8)
         axes.set(xlabel='opposing load [N]', title=f'{name}\nscatter {scatter(rcs):.4f}')
         axes.title.set_fontsize(9)
-        axes.grid(alpha=0.3)
+        axes.grid(visible=True)
     panels[0].set_ylabel('RCS [-], dashed: limit of the zone')
-    panels[-1].legend(fontsize=8, loc='upper right')
-    figure.savefig(path, dpi=110)
+    panels[-1].legend(loc='upper right')
+    save(figure, path)
 
 
 def main() -> None:
     """Solve, print and draw."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('--workers', type=int, default=2)
-    parser.add_argument('--out', type=Path, default=Path('docs'))
+    parser.add_argument('--out', type=Path, default=Path('studies/results'))
     args = parser.parse_args()
     cases = [(name, draw) for name in grids(0) for draw in DRAWS]
     with ProcessPoolExecutor(

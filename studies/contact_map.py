@@ -13,14 +13,15 @@ fourth row.
 import argparse
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
-import sys
 import time
 
 import numpy as np
 from surrogate.ehl import Condition, ContactLubricant, Settings, solve_contact
 from surrogate.formulas.geometry import hertz, screw_contact, SIDES
 from surrogate.parameters import load_lubricant, load_screw
-from surrogate.raceway.fractal import fractal_surface, take_patch, Window
+from surrogate.progress import Progress
+from surrogate.raceway.fractal import fractal_surface
+from surrogate.raceway.patch import take_patch, Window
 
 LOADS = np.geomspace(10.0, 150.0, 16)
 SPEEDS = np.geomspace(2.0, 0.002, 16)
@@ -67,17 +68,12 @@ def main():
     args = parser.parse_args()
     tasks = [(side, float(load)) for side in SIDES for load in LOADS]
     began, used, converged = time.perf_counter(), 0.0, 0
+    progress = Progress(len(tasks), 'chains')
     with ProcessPoolExecutor(args.workers) as pool:
         for count, (side, load, rows, seconds) in enumerate(pool.map(chain, tasks), 1):
             used += seconds
             converged += sum(good for _, good in rows)
-            wall = time.perf_counter() - began
-            print(
-                f'\r{count:3d} of {len(tasks)} chains, {wall:5.0f} s, '
-                f'{wall * (len(tasks) - count) / count:5.0f} s left',
-                end='',
-                file=sys.stderr,
-            )
+            progress.step()
             if count % 4 == 1:
                 shares = ' '.join(f'{rcs:7.1e}' for rcs, _ in rows)
                 print(f'\r{side:6s} {load:6.1f} N  {shares}', flush=True)

@@ -20,8 +20,9 @@ import sys
 
 import numpy as np
 from surrogate.builder.full.chain import chain_inputs, solve_chain
-from surrogate.builder.full.draws import Draws, draws_of, POWER, weighted_mean
+from surrogate.builder.full.draws import draws_of, POWER, weighted_mean, WeightedDraws
 from surrogate.parameters import load_lubricant, load_screw
+from surrogate.plotting.style import new_figure, save, styled
 from surrogate.units import RPM
 
 FEW = 16
@@ -37,14 +38,14 @@ def rcs_of(draw: int) -> list[float]:
     return [row['rcs'] if row['converged'] else math.nan for row in chain['opposing']]
 
 
-def summary(rcs: np.ndarray, draws: Draws) -> tuple[float, float]:
+def summary(rcs: np.ndarray, draws: WeightedDraws) -> tuple[float, float]:
     """Return the mean over the first draws and its standard error [-]."""
     known = rcs[: draws.count]
     weights = draws.weights(known, 0.0)
     return float(weighted_mean(known, weights)), float(draws.standard_error(known, weights))
 
 
-def group_errors(rcs: np.ndarray, every: Draws, kind: str) -> tuple[float, float]:
+def group_errors(rcs: np.ndarray, every: WeightedDraws, kind: str) -> tuple[float, float]:
     """
     Return how far means of groups of draws are from that of all, and what they state [-].
 
@@ -62,22 +63,19 @@ def group_errors(rcs: np.ndarray, every: Draws, kind: str) -> tuple[float, float
     )
 
 
-def group(every: Draws, start: int, kind: str) -> Draws:
+def group(every: WeightedDraws, start: int, kind: str) -> WeightedDraws:
     """Return sixteen of all draws, weighted or plain."""
     if kind == 'plain':
-        return Draws(FEW)
+        return WeightedDraws(FEW)
     own = slice(start, start + FEW)
-    return Draws(FEW, 0.0, every.powers[own], every.mean)
+    return WeightedDraws(FEW, 0.0, every.powers[own], every.mean)
 
 
+@styled
 def draw_figure(rcs: np.ndarray, factors: np.ndarray, path: Path) -> None:
     """Draw RCS of every draw over the factor of its patch."""
-    import matplotlib
-
-    matplotlib.use('Agg')
-    from matplotlib import pyplot
-
-    figure, axes = pyplot.subplots(figsize=(7, 4.5), layout='constrained')
+    figure = new_figure(7, 4.5)
+    axes = figure.subplots()
     for rpm, column, colour in zip(SPEEDS, rcs.T, ('C0', 'C1', 'C2', 'C3'), strict=True):
         axes.semilogy(factors[:FEW], column[:FEW], 'o', c=colour, ms=5, label=f'{rpm:g} rev/min')
         axes.semilogy(factors[FEW:], column[FEW:], 'o', c=colour, ms=3, mfc='none', alpha=0.6)
@@ -94,9 +92,9 @@ def draw_figure(rcs: np.ndarray, factors: np.ndarray, path: Path) -> None:
         title='Nominal screw at preload, 40 degC: draws 0 to 15 full, others hollow',
         ylim=(1e-5, 1.0),
     )
-    axes.grid(alpha=0.3, which='both')
-    axes.legend(fontsize=8, loc='lower right')
-    figure.savefig(path, dpi=110)
+    axes.grid(visible=True, which='both')
+    axes.legend(loc='lower right')
+    save(figure, path)
 
 
 def main() -> None:
@@ -104,7 +102,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('--draws', type=int, default=128)
     parser.add_argument('--workers', type=int, default=2)
-    parser.add_argument('--out', type=Path, default=Path('docs'))
+    parser.add_argument('--out', type=Path, default=Path('studies/results'))
     args = parser.parse_args()
     if args.draws < FEW:
         parser.error(f'--draws is {args.draws}, allowed is {FEW} or more')
@@ -118,7 +116,7 @@ def main() -> None:
     for rpm, column in zip(SPEEDS, rcs.T, strict=True):
         known = np.isfinite(column)
         alike = float(np.corrcoef(powers[known], column[known])[0, 1])
-        cases = (Draws(FEW), few, Draws(args.draws), every)
+        cases = (WeightedDraws(FEW), few, WeightedDraws(args.draws), every)
         told = (summary(column, draws) for draws in cases)
         texts = (f'{mean:.4f} +- {error:.4f}' for mean, error in told)
         print(f'{rpm:7g}  {alike:11.2f}  {"  ".join(texts)}', flush=True)

@@ -123,7 +123,7 @@ def check_intervals(screw, oil):
 def main():
     """Identify, print and draw."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument('--out', type=Path, default=Path('docs'))
+    parser.add_argument('--out', type=Path, default=Path('studies/results'))
     args = parser.parse_args()
     screw, oil = load_screw('nominal'), load_lubricant('iso_vg_68')
     check_intervals(screw, oil)

@@ -3,24 +3,31 @@
 """
 The onset study: RCS and asperity share of the nominal contact against every choice of the model.
 
-Usage: python studies/onset.py [--only NAME ...] [--out docs/onset.csv]. Each variation changes one
-thing of the base case. One chain per draw runs from the fastest speed down; finished rows are
-kept, so an interrupted study goes on where it stopped.
+Usage: python studies/onset.py [--only NAME ...] [--out studies/results/onset.csv]. Each variation
+changes one thing of the base case. One chain per draw runs from the fastest speed down; finished
+chains are kept in onset.csv.store, so an interrupted study goes on where it stopped.
 
 """
 
 import argparse
-import csv
-from dataclasses import asdict, dataclass, fields, replace
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-import sys
-import time
+from typing import Any
 
 from surrogate.ehl import Condition, ContactLubricant, ContactSolution, Settings, solve_contact
 from surrogate.formulas.geometry import hertz, screw_contact
 from surrogate.parameters import load_lubricant, load_screw
-from surrogate.raceway.fractal import fractal_surface, take_patch, Window
+from surrogate.progress import Progress
+from surrogate.raceway.fractal import fractal_surface
+from surrogate.raceway.patch import take_patch, Window
+from surrogate.tasks.pool import run_tasks
+from surrogate.tasks.store import TaskStore
+from surrogate.tasks.table import read_table, write_table
+from surrogate.tasks.workers import open_pool
 
+WORK = 'studies/onset.py 1'
+"""Solver and version of the kept results."""
 LARGEST_LOAD = 100.0
 """Load whose Hertz rectangle is the window of a rescaled patch [N]."""
 SPEEDS = tuple(2.0 * 10 ** (-n / 5) for n in range(16))
@@ -79,7 +86,7 @@ STUDY = (
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Row:
+class OnsetRow:
     """One solve."""
 
     variation: str
@@ -96,8 +103,14 @@ class Row:
     seconds: float
 
 
-def chain(variation: Variation, draw: int, done: set[tuple[str, int, float]]):
-    """Yield the rows of one draw that are not done, from the fastest speed down."""
+def solve_chain(inputs: Mapping[str, Any]) -> dict[str, Any]:
+    """Solve one draw in plain JSON; return its rows, from the fastest speed down."""
+    variation = Variation(**inputs['variation'])
+    return {'rows': [asdict(row) for row in chain(variation, inputs['draw'])]}
+
+
+def chain(variation: Variation, draw: int) -> Iterator[OnsetRow]:
+    """Yield the rows of one draw, from the fastest speed down."""
     screw, oil = load_screw('nominal'), load_lubricant('iso_vg_68')
     contact = screw_contact(screw, variation.side)
     lubricant = ContactLubricant(
@@ -125,8 +138,6 @@ def chain(variation: Variation, draw: int, done: set[tuple[str, int, float]]):
     for speed in SPEEDS:
         if not variation.slowest * 0.999 < speed < variation.fastest * 1.001:
             continue
-        if (variation.name, draw, round(speed, 9)) in done:
-            continue
         condition = Condition(load=variation.load, entrainment_speed=speed)
         found = solve_contact(
             contact,
@@ -137,7 +148,7 @@ def chain(variation: Variation, draw: int, done: set[tuple[str, int, float]]):
             roughness=lambda x, y: surface.heights(x[:, 0], y[0]),
         )
         start = found if found.converged else None
-        yield Row(
+        yield OnsetRow(
             variation=variation.name,
             draw=draw,
             speed=speed,
@@ -153,38 +164,38 @@ def chain(variation: Variation, draw: int, done: set[tuple[str, int, float]]):
         )
 
 
+def run(tasks: Mapping[str, Mapping[str, Any]], path: Path, workers: int) -> list[OnsetRow]:
+    """Solve the chains that the store beside the table does not keep; return the rows of all."""
+    progress = Progress(len(tasks), 'chains')
+    with TaskStore(path, WORK) as store, open_pool(workers) as pool:
+        found = run_tasks(
+            pool,
+            solve_chain,
+            tasks,
+            store=store,
+            report=lambda outcome: progress.step(there=outcome.stored),
+        )
+    results = [outcome.result for outcome in found.values() if outcome.result is not None]
+    return [OnsetRow(**row) for result in results for row in result['rows']]
+
+
 def main() -> None:
-    """Run what is missing and append it to the table."""
+    """Run what is missing and write the table; rows of other variations stay in it."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('--only', nargs='*', default=None, help='names of variations')
-    parser.add_argument('--out', type=Path, default=Path('docs/onset.csv'))
+    parser.add_argument('--out', type=Path, default=Path('studies/results/onset.csv'))
     parser.add_argument('--draws', type=int, nargs=2, default=(0, 64), metavar=('FIRST', 'END'))
+    parser.add_argument('--workers', type=int, default=1, help='processes')
     args = parser.parse_args()
-    done: set[tuple[str, int, float]] = set()
-    names = [field.name for field in fields(Row)]
-    if args.out.exists():
-        with args.out.open(newline='') as file:
-            done = {
-                (row['variation'], int(row['draw']), round(float(row['speed']), 9))
-                for row in csv.DictReader(file)
-            }
-    else:
-        args.out.parent.mkdir(parents=True, exist_ok=True)
-        args.out.write_text(','.join(names) + '\n')
-    began = time.perf_counter()
-    for variation in STUDY:
-        if args.only and variation.name not in args.only:
-            continue
-        for draw in range(max(args.draws[0], 0), min(args.draws[1], variation.draws)):
-            for row in chain(variation, draw, done):
-                with args.out.open('a', newline='') as file:
-                    csv.DictWriter(file, names).writerow(asdict(row))
-                print(
-                    f'{time.perf_counter() - began:7.0f} s  {row.variation:16} draw {draw:2} '
-                    f'{row.speed:8.4f} m/s  RCS {row.rcs:.5f}  {row.seconds:6.2f} s  {row.status}',
-                    file=sys.stderr,
-                    flush=True,
-                )
+    tasks = {
+        f'{variation.name}, draw {draw}': {'variation': asdict(variation), 'draw': draw}
+        for variation in STUDY
+        if not args.only or variation.name in args.only
+        for draw in range(max(args.draws[0], 0), min(args.draws[1], variation.draws))
+    }
+    rows = read_table(args.out, OnsetRow) + run(tasks, args.out, args.workers)
+    by_place = {(row.variation, row.draw, round(row.speed, 9)): row for row in rows}
+    write_table(args.out, OnsetRow, by_place.values())
 
 
 if __name__ == '__main__':

@@ -3,9 +3,9 @@
 """
 Figures and table of the onset study, from the rows that studies/onset.py kept.
 
-Usage: python studies/onset_report.py [docs/onset.csv] [--out docs]. The onset speed of an ensemble
-is where its mean RCS reaches 1 %; its error is the standard deviation of 400 resamples of the
-draws. The equivalent floor is that with which the base case begins at the same speed.
+Usage: python studies/onset_report.py [studies/results/onset.csv] [--out DIR]. The onset speed of
+an ensemble is where its mean RCS reaches 1 %; its error is the standard deviation of 400 resamples
+of the draws. The equivalent floor is that with which the base case begins at the same speed.
 
 """
 
@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from surrogate.formulas.film import central_film_hamrock_dowson_1977, groups
 from surrogate.formulas.geometry import screw_contact
 from surrogate.parameters import load_lubricant, load_screw
+from surrogate.plotting.style import BLUE, new_figure, PURPLE, save, styled
 
 Array = NDArray[np.float64]
 LIMIT = 0.01
@@ -148,15 +149,12 @@ def paired_ratio(
     return ratio(everyone), math.exp(spread)
 
 
+@styled
 def draw_base(draws: dict[int, dict[float, float]], path: Path) -> None:
     """Draw every draw of the base case, their mean, the limit and the film ratio."""
-    import matplotlib
-
-    matplotlib.use('Agg')
-    from matplotlib import pyplot
-
     speeds, rcs = as_arrays(draws)
-    figure, axes = pyplot.subplots(figsize=(7, 4.6), layout='constrained')
+    figure = new_figure(7, 4.6)
+    axes = figure.subplots()
     for row in rcs:
         axes.plot(speeds, np.maximum(row, 1e-5), color='0.7', linewidth=0.8)
     axes.plot([], [], color='0.7', label='one draw of the roughness')
@@ -164,15 +162,15 @@ def draw_base(draws: dict[int, dict[float, float]], path: Path) -> None:
         speeds,
         np.maximum(np.nanmean(rcs, axis=0), 1e-5),
         'o-',
-        color='#0072B2',
+        color=BLUE,
         label=f'mean of {len(rcs)} draws',
     )
-    axes.axhline(LIMIT, color='#7B2D8E', linestyle='--', label='limit 0.01')
+    axes.axhline(LIMIT, color=PURPLE, linestyle='--', label='limit 0.01')
     value, error = onset_with_error(speeds, rcs)
     axes.axvspan(
         value / error,
         value * error,
-        color='#0072B2',
+        color=BLUE,
         alpha=0.15,
         label=f'onset {value:.3f} m/s, standard error {error:.2f} times',
     )
@@ -192,38 +190,35 @@ def draw_base(draws: dict[int, dict[float, float]], path: Path) -> None:
         ),
     )
     ratio.set_xlabel('film ratio Λ [-] (formula)')
-    axes.grid(alpha=0.3)
-    axes.legend(fontsize=8)
-    figure.savefig(path, dpi=110)
+    axes.grid(visible=True)
+    axes.legend()
+    save(figure, path)
 
 
+@styled
 def draw_curves(table: dict[str, dict[int, dict[float, float]]], path: Path) -> None:
     """Draw the mean RCS against speed of what changes the grid, the waves, the floor, the load."""
-    import matplotlib
-
-    matplotlib.use('Agg')
-    from matplotlib import pyplot
-
     panels = {
         'grid': ('base', 'grid 193 x 385', 'grid 257 x 513', 'surface grid'),
         'shortest wave': ('wave 31 um', 'base', 'wave 14 um', 'wave 9.1 um'),
         'film floor': tuple(FLOORS),
         'load': ('base', 'load 100 N', 'load 400 N'),
     }
-    figure, grid = pyplot.subplots(2, 2, figsize=(8, 6.4), layout='constrained', sharey=True)
+    figure = new_figure(8, 6.4)
+    grid = figure.subplots(2, 2, sharey=True)
     for axes, (title, names) in zip(grid.flat, panels.items(), strict=True):
         for name in names:
             if name in table:
                 draw_mean(axes, name, table[name])
-        axes.axhline(LIMIT, color='#7B2D8E', linestyle='--', linewidth=1)
+        axes.axhline(LIMIT, color=PURPLE, linestyle='--', linewidth=1)
         axes.set(xscale='log', yscale='log', xlim=(1.5, 150), ylim=(1e-4, 1.2), title=title)
-        axes.grid(alpha=0.3)
+        axes.grid(visible=True)
         axes.legend(fontsize=7)
     for axes in grid[1]:
         axes.set_xlabel('entrainment speed [mm/s]')
     for axes in grid[:, 0]:
         axes.set_ylabel('mean RCS [-]')
-    figure.savefig(path, dpi=110)
+    save(figure, path)
 
 
 def draw_mean(axes, name: str, draws: dict[int, dict[float, float]]) -> None:
@@ -236,15 +231,12 @@ def draw_mean(axes, name: str, draws: dict[int, dict[float, float]]) -> None:
     axes.plot(1e3 * speeds, np.maximum(mean, 1e-5), '.-', label=label, **style)
 
 
+@styled
 def draw_onsets(found: list[tuple[str, float, float]], path: Path) -> None:
     """Draw the onset of every variation over that of the base case."""
-    import matplotlib
-
-    matplotlib.use('Agg')
-    from matplotlib import pyplot
-
     known = [row for row in found if row[1] > 0]
-    figure, axes = pyplot.subplots(figsize=(7, 0.42 * len(known) + 1.4), layout='constrained')
+    figure = new_figure(7, 0.42 * len(known) + 1.4)
+    axes = figure.subplots()
     places = np.arange(len(known))[::-1]
     ratios = np.array([ratio for _, ratio, _ in known])
     errors = np.array(
@@ -253,7 +245,7 @@ def draw_onsets(found: list[tuple[str, float, float]], path: Path) -> None:
             for ratio, (_, _, error) in zip(ratios, known, strict=True)
         ]
     ).T
-    axes.errorbar(ratios, places, xerr=errors, fmt='o', color='#0072B2', capsize=3)
+    axes.errorbar(ratios, places, xerr=errors, fmt='o', color=BLUE, capsize=3)
     axes.axvspan(1 / 1.5, 1.5, color='0.9', label='factor 1.5 about the base')
     axes.axvline(1, color='0.4', linewidth=0.8)
     axes.set_yticks(places, [name for name, _, _ in known])
@@ -265,16 +257,16 @@ def draw_onsets(found: list[tuple[str, float, float]], path: Path) -> None:
     ticks = (0.2, 0.3, 0.5, 0.7, 1, 1.5, 2, 3, 5)
     axes.set_xticks(ticks, [f'{tick:g}' for tick in ticks])
     axes.minorticks_off()
-    axes.grid(alpha=0.3, axis='x')
-    axes.legend(fontsize=8)
-    figure.savefig(path, dpi=110)
+    axes.grid(visible=True, axis='x')
+    axes.legend()
+    save(figure, path)
 
 
 def main() -> None:
     """Print the table and write the figures."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument('table', nargs='?', type=Path, default=Path('docs/onset.csv'))
-    parser.add_argument('--out', type=Path, default=Path('docs'))
+    parser.add_argument('table', nargs='?', type=Path, default=Path('studies/results/onset.csv'))
+    parser.add_argument('--out', type=Path, default=Path('studies/results'))
     args = parser.parse_args()
     table = read_rows(args.table)
     found = print_table(table)

@@ -3,36 +3,41 @@
 """
 Robustness of the contact solver: a fixed list of 2000 cold cases and how each of them ended.
 
-Usage: python studies/robustness.py [--out docs/robustness.csv] [--every N] [--workers N]
+Usage: python studies/robustness.py [--out FILE] [--every N] [--workers N]
 [--report]. The list comes from numpy's PCG64 with the seed 2026 and is the same everywhere: loads,
 speeds and viscosities uniform in their logarithm, one case in sixteen at rest, both contacts of
 the nominal screw. Smooth cases run with the production settings, rough ones on 65 x 129 nodes
-within 30 s. Finished rows are kept, so an interrupted run goes on where it stopped. A row belongs
-to the solver that made it: start a new table after a change of the solver. `--every` takes each
-N-th case, `--report` prints what is there and solves nothing.
+within 30 s. Finished cases are kept in FILE.store, so an interrupted run goes on where it stopped.
+A result belongs to the solver that made it: remove the store after a change of the solver.
+`--every` takes each N-th case, `--report` prints what is there and solves nothing.
 
 """
 
 import argparse
-from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import as_completed, ProcessPoolExecutor
-import csv
-from dataclasses import asdict, dataclass, fields, replace
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import asdict, dataclass, replace
 from functools import lru_cache
 import hashlib
 import math
 from pathlib import Path
-import signal
-import sys
 import time
+from typing import Any
 
 import numpy as np
 from surrogate.ehl import Condition, ContactLubricant, ContactSolution, Settings, solve_contact
 from surrogate.formulas.film import groups, minimum_film_hamrock_dowson_1977
 from surrogate.formulas.geometry import Contact, hertz, screw_contact
 from surrogate.parameters import load_lubricant, load_screw
-from surrogate.raceway.fractal import fractal_surface, FractalSurface, take_patch, Window
+from surrogate.progress import Progress
+from surrogate.raceway.fractal import fractal_surface, FractalSurface
+from surrogate.raceway.patch import take_patch, Window
+from surrogate.tasks.pool import run_tasks
+from surrogate.tasks.store import TaskStore
+from surrogate.tasks.table import read_table, write_table
+from surrogate.tasks.workers import open_pool
 
+WORK = 'studies/robustness.py 1'
+"""Solver and version of the kept results."""
 SEED, COUNT = 2026, 2000
 ROUGH_SHARE, RESTING_SHARE = 0.35, 1 / 16
 """Shares of the cases with roughness and at speed 0 [-]."""
@@ -68,7 +73,7 @@ OVERRUN = 1.5
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Case:
+class ColdCase:
     """Number in the list, kind, contact; load [N], speed [m/s], viscosity [Pa s], rms [um]."""
 
     number: int
@@ -93,13 +98,14 @@ class Case:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Row:
+class Ending:
     """
     One finished case.
 
-    Units as in `Case`; RCS and asperity share [-], films [nm], smooth minimum film over the floor
-    [-] (solved if the case is smooth and converged, else by formula), wall time [s]. `finite`
-    tells whether all numbers and fields are; the status of a case that raised is the exception.
+    Units as in `ColdCase`; RCS and asperity share [-], films [nm], smooth minimum film over the
+    floor [-] (solved if the case is smooth and converged, else by formula), wall time [s].
+    `finite` tells whether all numbers and fields are; the status of a case that raised is the
+    exception.
 
     """
 
@@ -140,7 +146,7 @@ class Row:
         return raised or hung or (self.converged and not self.finite)
 
 
-def case_list() -> list[Case]:
+def case_list() -> list[ColdCase]:
     """Return the list, both kinds mixed so that any part of it is a fair sample."""
     drawn = np.random.default_rng(SEED).random((COUNT, 8))
     return [make_case(number, *map(float, row)) for number, row in enumerate(drawn)]
@@ -156,11 +162,11 @@ def make_case(
     viscosity: float,
     rms: float,
     draw: float,
-) -> Case:
+) -> ColdCase:
     """Return the case of eight places between 0 and 1: loads [N], speeds [m/s]."""
     rough = kind < ROUGH_SHARE
     name = 'mixed' if rough else 'smooth'
-    return Case(
+    return ColdCase(
         number=number,
         kind=name,
         side='screw' if side < 0.5 else 'nut',
@@ -177,7 +183,7 @@ def between(low: float, high: float, place: float) -> float:
     return float(f'{low * (high / low) ** place:.4g}')
 
 
-def solve(case: Case) -> Row:
+def solve(case: ColdCase) -> Ending:
     """Solve one case from cold; an exception becomes a row."""
     contact, oil = screw_contact(load_screw('nominal'), case.side), load_lubricant('iso_vg_68')
     lubricant = ContactLubricant(
@@ -201,7 +207,7 @@ def solve(case: Case) -> Row:
     return finished(case, found, over_floor)
 
 
-def heights(contact: Contact, case: Case) -> Callable[[np.ndarray, np.ndarray], np.ndarray]:
+def heights(contact: Contact, case: ColdCase) -> Callable[[np.ndarray, np.ndarray], np.ndarray]:
     """Return the roughness of a case as a function of places [m]."""
     ellipse = hertz(contact, WINDOW_LOAD)
     window = Window(
@@ -218,7 +224,7 @@ def surface_of(draw: int) -> FractalSurface:
     return fractal_surface(replace(roughness, shortest_wavelength=SHORTEST_WAVELENGTH), draw)
 
 
-def film_by_formula(case: Case, contact: Contact, lubricant: ContactLubricant) -> float:
+def film_by_formula(case: ColdCase, contact: Contact, lubricant: ContactLubricant) -> float:
     """Return the smooth minimum film [m]."""
     if not case.speed:
         return 0.0
@@ -226,9 +232,9 @@ def film_by_formula(case: Case, contact: Contact, lubricant: ContactLubricant) -
     return float(minimum_film_hamrock_dowson_1977(contact, g))
 
 
-def finished(case: Case, found: ContactSolution, over_floor: float) -> Row:
+def finished(case: ColdCase, found: ContactSolution, over_floor: float) -> Ending:
     """Return the row of a case that gave a result."""
-    return Row(
+    return Ending(
         **numbers(case),
         status=found.status.name,
         converged=found.converged,
@@ -244,10 +250,10 @@ def finished(case: Case, found: ContactSolution, over_floor: float) -> Row:
     )
 
 
-def failed(case: Case, status: str, seconds: float, over_floor: float) -> Row:
+def failed(case: ColdCase, status: str, seconds: float, over_floor: float) -> Ending:
     """Return the row of a case that raised after some time [s]."""
     names = ('rcs', 'asperity_share', 'central_film', 'minimum_film')
-    return Row(
+    return Ending(
         **numbers(case),
         **dict.fromkeys(names, math.nan),
         status=status,
@@ -260,7 +266,7 @@ def failed(case: Case, status: str, seconds: float, over_floor: float) -> Row:
     )
 
 
-def numbers(case: Case) -> dict[str, object]:
+def numbers(case: ColdCase) -> dict[str, object]:
     """Return the columns that a row takes from its case."""
     columns = asdict(case)
     del columns['number']
@@ -280,66 +286,36 @@ def is_finite(found: ContactSolution) -> bool:
     return all(bool(np.isfinite(getattr(found, name)).all()) for name in names.split())
 
 
-def read_rows(path: Path) -> dict[str, Row]:
+def read_rows(path: Path) -> dict[str, Ending]:
     """Return the finished rows of a table by their keys."""
-    if not path.exists():
-        return {}
-    with path.open(newline='') as file:
-        rows = [as_row(line) for line in csv.DictReader(file)]
-    return {row.key: row for row in rows}
+    return {row.key: row for row in read_table(path, Ending)}
 
 
-def as_row(line: dict[str, str]) -> Row:
-    """Return a row from the words of a table."""
-    make = {str: str, int: int, float: float, bool: lambda word: word == 'True'}
-    return Row(**{field.name: make[field.type](line[field.name]) for field in fields(Row)})
+def write_rows(path: Path, rows: Iterable[Ending]) -> None:
+    """Write the table as a whole."""
+    write_table(path, Ending, rows)
 
 
-def append(path: Path, row: Row) -> None:
-    """Add a row to the table, which gets its head with the first one."""
-    new = not path.exists()
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with path.open('a', newline='') as file:
-        writer = csv.DictWriter(file, [field.name for field in fields(Row)], lineterminator='\n')
-        if new:
-            writer.writeheader()
-        writer.writerow(asdict(row))
+def solve_plain(inputs: Mapping[str, Any]) -> dict[str, Any]:
+    """Solve a case in plain JSON."""
+    return asdict(solve(ColdCase(**inputs)))
 
 
-def solve_all(cases: list[Case], workers: int) -> Iterator[Row]:
-    """Yield rows as they are finished."""
-    if workers == 1:
-        yield from map(solve, cases)
-        return
-    with ProcessPoolExecutor(workers, initializer=leave_interrupts) as pool:
-        try:
-            for future in as_completed([pool.submit(solve, case) for case in cases]):
-                yield future.result()
-        finally:
-            pool.shutdown(wait=False, cancel_futures=True)
-
-
-def leave_interrupts() -> None:
-    """Leave Ctrl-C to the parent process."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-
-
-def run(cases: list[Case], path: Path, workers: int) -> None:
-    """Solve the cases into the table and say how far it is."""
-    began = time.perf_counter()
-    for count, row in enumerate(solve_all(cases, workers), 1):
-        append(path, row)
-        each = (time.perf_counter() - began) / count
-        print(
-            f'{count}/{len(cases)}  {60 / each:.1f} cases/min  '
-            f'{each * (len(cases) - count) / 60:.1f} min left  '
-            f'{row.key} {row.group}, {row.status}, {row.seconds:.2f} s',
-            file=sys.stderr,
-            flush=True,
+def run(cases: list[ColdCase], path: Path, workers: int) -> dict[str, Ending]:
+    """Solve what the store beside the table does not keep; return all rows by their keys."""
+    tasks, progress = {case.key: asdict(case) for case in cases}, Progress(len(cases), 'cases')
+    with TaskStore(path, WORK) as store, open_pool(workers) as pool:
+        found = run_tasks(
+            pool,
+            solve_plain,
+            tasks,
+            store=store,
+            report=lambda outcome: progress.step(there=outcome.stored),
         )
+    return {key: Ending(**one.result) for key, one in found.items() if one.result}
 
 
-def print_report(rows: list[Row]) -> None:
+def print_report(rows: list[Ending]) -> None:
     """Print how the cases ended, by group and by RCS, and each one that did not converge."""
     print_groups(rows)
     print_decades(rows)
@@ -348,7 +324,7 @@ def print_report(rows: list[Row]) -> None:
     print_cases('DEFECT', [row for row in rows if row.defect])
 
 
-def print_groups(rows: list[Row]) -> None:
+def print_groups(rows: list[Ending]) -> None:
     """Print the counts by group."""
     print('| group | cases | converged | flagged | share | aim | not finite | defects |')
     print('|---|---|---|---|---|---|---|---|')
@@ -363,7 +339,7 @@ def print_groups(rows: list[Row]) -> None:
         )
 
 
-def print_decades(rows: list[Row]) -> None:
+def print_decades(rows: list[Ending]) -> None:
     """Print the counts by class of RCS, which is unknown for a case that did not converge."""
     print('\n| RCS | smooth | rough |\n|---|---|---|')
     for low, high in zip((-1.0, *DECADES[:-1]), DECADES):
@@ -373,13 +349,13 @@ def print_decades(rows: list[Row]) -> None:
     print_kinds('unknown', [row for row in rows if not row.converged])
 
 
-def print_kinds(name: str, rows: list[Row]) -> None:
+def print_kinds(name: str, rows: list[Ending]) -> None:
     """Print how many rows are smooth and rough."""
     smooth = sum(row.kind == 'smooth' for row in rows)
     print(f'| {name} | {smooth} | {len(rows) - smooth} |')
 
 
-def print_times(rows: list[Row]) -> None:
+def print_times(rows: list[Ending]) -> None:
     """Print percentiles of the wall time [s] by group, and the slowest case."""
     print('\n| wall time [s] | 50 % | 90 % | 99 % | all |\n|---|---|---|---|---|')
     for name in GROUPS:
@@ -391,7 +367,7 @@ def print_times(rows: list[Row]) -> None:
         print_cases('slowest', [max(rows, key=lambda row: row.seconds)])
 
 
-def print_cases(title: str, rows: Iterable[Row]) -> None:
+def print_cases(title: str, rows: Iterable[Ending]) -> None:
     """Print cases, one a line."""
     shown = sorted(rows, key=lambda row: (row.group, row.status, row.film_over_floor))
     print(f'\n{title}: {len(shown)}')
@@ -407,15 +383,15 @@ def print_cases(title: str, rows: Iterable[Row]) -> None:
 def main() -> None:
     """Solve what is missing and print the report."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument('--out', type=Path, default=Path('docs/robustness.csv'))
+    parser.add_argument('--out', type=Path, default=Path('studies/results/robustness.csv'))
     parser.add_argument('--every', type=int, default=1, help='each N-th case only')
     parser.add_argument('--workers', type=int, default=1, help='processes')
     parser.add_argument('--report', action='store_true', help='only print')
     args = parser.parse_args()
     cases, done = case_list()[:: args.every], read_rows(args.out)
     if not args.report:
-        run([case for case in cases if case.key not in done], args.out, args.workers)
-        done = read_rows(args.out)
+        done |= run(cases, args.out, args.workers)
+        write_rows(args.out, done.values())
     print_report([done[case.key] for case in cases if case.key in done])
 
 

@@ -19,6 +19,7 @@ import time
 import numpy as np
 from surrogate.formulas.load_sharing import nut_forces
 from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
+from surrogate.plotting.style import BLUE, new_figure, PURPLE, save, styled, VERMILION
 from surrogate.screw.contacts import ScrewSettings
 from surrogate.screw.nut import balance_nut
 from surrogate.screw.solve import solve_screw
@@ -78,24 +79,19 @@ def parts(screw, found):
     )
 
 
+@styled
 def draw(rows, load, path):
     """Draw torque and its parts, and RCS with its limit, over speed."""
-    import matplotlib
-
-    matplotlib.use('Agg')
-    from matplotlib import pyplot
-
     rpm, torque, rolling, _, rcs = rows[1:].T
-    figure, (upper, lower) = pyplot.subplots(
-        2, 1, figsize=(7, 5.6), layout='constrained', sharex=True
-    )
+    figure = new_figure(7, 5.6)
+    upper, lower = figure.subplots(2, 1, sharex=True)
     upper.plot(rpm, 1e3 * torque, 'o-', color='black', label='friction torque')
-    upper.plot(rpm, 1e3 * (torque - rolling), 's--', color='#D55E00', label='sliding')
-    upper.plot(rpm, 1e3 * rolling, '^--', color='#0072B2', label='rolling')
+    upper.plot(rpm, 1e3 * (torque - rolling), 's--', color=VERMILION, label='sliding')
+    upper.plot(rpm, 1e3 * rolling, '^--', color=BLUE, label='rolling')
     upper.axhline(1e3 * rows[0, 1], color='0.5', linestyle=':', label='at rest, dry')
     upper.set(ylabel='torque [mN m]', title=f'Nominal screw, {load:g} N, ISO VG 68 at 40 °C')
     lower.plot(rpm, np.maximum(rcs, 1e-5), 'o-', color='black')
-    lower.axhline(0.01, color='#7B2D8E', linestyle='--', label='limit 0.01')
+    lower.axhline(0.01, color=PURPLE, linestyle='--', label='limit 0.01')
     lower.set(
         xscale='log',
         yscale='log',
@@ -104,16 +100,16 @@ def draw(rows, load, path):
         ylabel='RCS of the worst contact [-]',
     )
     for axes in (upper, lower):
-        axes.grid(alpha=0.3)
-        axes.legend(fontsize=8)
-    figure.savefig(path, dpi=110)
+        axes.grid(visible=True)
+        axes.legend()
+    save(figure, path)
 
 
 def main():
     """Solve, print and draw."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('--load', type=float, default=0.0, help='axial load [N]')
-    parser.add_argument('--out', type=Path, default=Path('docs'))
+    parser.add_argument('--out', type=Path, default=Path('studies/results'))
     args = parser.parse_args()
     rows = solve_all(args.load)
     draw(rows, args.load, args.out / 'screw_torque.png')

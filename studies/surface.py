@@ -13,8 +13,7 @@ of the one of the same accuracy and draws; the picture of cost against error sho
 """
 
 import argparse
-import csv
-from dataclasses import asdict, astuple, dataclass, fields, replace
+from dataclasses import astuple, dataclass, replace
 from pathlib import Path
 import time
 
@@ -23,7 +22,9 @@ from surrogate.builder.full.build import build_full
 from surrogate.builder.full.run import ChainRun
 from surrogate.builder.full.settings import default_full_settings
 from surrogate.parameters import load_lubricant, load_screw
+from surrogate.plotting.style import new_figure, save, styled
 from surrogate.surface import Surface
+from surrogate.tasks.table import read_table, write_table
 from surrogate.tasks.workers import open_pool, usable_cores
 
 ACCURACIES = (8.0, 2.0)
@@ -77,30 +78,19 @@ def keep(cost, path):
     """Write the rows of a file with `cost` in place of that of its accuracy and draws."""
     same = (cost.accuracy, cost.draws)
     costs = [one for one in kept(path) if (one.accuracy, one.draws) != same] + [cost]
-    with path.open('w', newline='') as file:
-        rows = csv.DictWriter(file, [one.name for one in fields(Cost)], lineterminator='\n')
-        rows.writeheader()
-        rows.writerows(asdict(one) for one in sorted(costs, key=astuple, reverse=True))
+    write_table(path, Cost, sorted(costs, key=astuple, reverse=True))
 
 
 def kept(path):
     """Return the rows of a file, none where there is none."""
-    if not path.exists():
-        return []
-    kinds = {one.name: one.type for one in fields(Cost)}
-    with path.open(newline='') as file:
-        rows = list(csv.DictReader(file))
-    return [Cost(**{name: kinds[name](float(row[name])) for name in kinds}) for row in rows]
+    return read_table(path, Cost)
 
 
+@styled
 def draw(costs, path):
     """Draw the error over the worker time."""
-    import matplotlib
-
-    matplotlib.use('Agg')
-    from matplotlib import pyplot
-
-    figure, axes = pyplot.subplots(figsize=(7, 3.6), layout='constrained')
+    figure = new_figure(7, 3.6)
+    axes = figure.subplots()
     minutes = np.array([cost.seconds for cost in costs]) / 60
     axes.semilogy(minutes, [cost.reached for cost in costs], 'o', label='reached')
     axes.semilogy(minutes, [cost.accuracy for cost in costs], 'k_', ms=14, label='asked for')
@@ -121,9 +111,9 @@ def draw(costs, path):
     )
     axes.margins(y=0.25)
     axes.set_xlim(0, 1.5 * minutes.max())
-    axes.grid(alpha=0.3, which='both')
-    axes.legend(fontsize=8)
-    figure.savefig(path, dpi=110)
+    axes.grid(visible=True, which='both')
+    axes.legend()
+    save(figure, path)
 
 
 def main():
@@ -132,7 +122,7 @@ def main():
     parser.add_argument('--workers', type=int, default=usable_cores())
     parser.add_argument('--draws', type=int, default=2)
     parser.add_argument('--accuracy', type=float, nargs='+', default=ACCURACIES)
-    parser.add_argument('--out', type=Path, default=Path('docs'))
+    parser.add_argument('--out', type=Path, default=Path('studies/results'))
     args = parser.parse_args()
     print(
         'accuracy  nodes  points  worker s  wall s  busy  torque error [N m]  RCS error  reached'

@@ -25,6 +25,7 @@ from surrogate.builder.full.settings import default_full_settings, error_target
 from surrogate.builder.full.speed_nodes import Sample
 from surrogate.builder.full.temperatures import solved_temperatures
 from surrogate.builder.tiers import screw_and_oil
+from surrogate.plotting.style import new_figure, save, styled
 from surrogate.surface import find_surface, Surface
 from surrogate.surface.file import read, SurfaceData
 from surrogate.surface.point import Validity
@@ -96,14 +97,11 @@ def compare(whole: Surface, data: SurfaceData) -> list[float]:
     return found
 
 
+@styled
 def draw(rows: list[Thinned], path: Path) -> None:
     """Draw the errors over the solved points."""
-    import matplotlib
-
-    matplotlib.use('Agg')
-    from matplotlib import pyplot
-
-    figure, axes = pyplot.subplots(figsize=(7, 4), layout='constrained')
+    figure = new_figure(7, 4)
+    axes = figure.subplots()
     points = [row.points for row in rows]
     axes.semilogy(points, [row.largest for row in rows], 's', label='largest of 4000 points')
     axes.semilogy(points, [row.usual for row in rows], 'o', label='95 % of 4000 points')
@@ -116,18 +114,18 @@ def draw(rows: list[Thinned], path: Path) -> None:
         ylabel='difference from all nodes, over the allowed [-]',
         title='Shipped surface with fewer nodes along speed x load (of either sign)',
     )
-    axes.grid(alpha=0.3, which='both')
+    axes.grid(visible=True, which='both')
     axes.set_ylim(0.3, None)
     axes.set_xlim(None, 1.08 * max(points))
-    axes.legend(fontsize=8, loc='lower left')
-    figure.savefig(path, dpi=110)
+    axes.legend(loc='lower left')
+    save(figure, path)
 
 
 def main() -> None:
     """Thin, compare, print and draw."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('file', nargs='?', default='full')
-    parser.add_argument('--out', type=Path, default=Path('docs'))
+    parser.add_argument('--out', type=Path, default=Path('studies/results'))
     args = parser.parse_args()
     args.out.mkdir(parents=True, exist_ok=True)
     data = read(find_surface(args.file))

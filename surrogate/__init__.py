@@ -3,7 +3,31 @@
 """
 Offline half: from datasheets to a lookup surface of ball-screw efficiency and asperity contact.
 
-The chain runs parameters -> geometry -> load_sharing -> kinematics -> film_formulas -> friction ->
-torque -> closed_form -> build -> surface. Nothing here imports ROS.
+The chain of the full tier, in the order the data flows; the closed-form tier goes from formulas to
+builder at once::
+
+    parameters -> raceway, formulas -> ehl -> screw -> builder -> surface
+
+=============  ====================================================================
+folder         what it holds
+=============  ====================================================================
+formulas       closed-form tier, a published law a function, author and year in it
+raceway        rough surfaces: fractal, measured, identified
+ehl            one contact, smooth, mixed or dry; kernels: compiled, arrays alone
+contact        a contact as a file: case, record, pictures
+screw          one point of the full tier: contacts, balance of the balls, torque
+builder        datasheet to surface: tiers, sweeps; full: draws, nodes, errors
+surface        all that the node loads: lookup and file, numpy alone
+surface_tools  what people do with a surface file: check, query, compare, draw
+plotting       the one style of all pictures
+tasks          solves kept by content, on processes or a cluster
+identify       parasitic torque from measured torque
+paper          results beside those of the published study
+commands       the offline subcommands
+data           datasheets, contact cases, shipped surfaces
+=============  ====================================================================
+
+Beside them: parameters, datasheet and datasheet_writer (checked inputs), units, files, progress,
+cli. Nothing here imports ROS.
 
 """

@@ -11,6 +11,8 @@ WIDTH = 40
 """Length of the bar in characters."""
 LOG_SHARE, LOG_PAUSE = 0.1, 60.0
 """A log gets a line per this share of the work [-], or after this time [s] if that is sooner."""
+OnProgress = Callable[[int, int], None]
+"""Told how much is done, of how much: `Progress.show`, or whatever takes its place."""
 
 
 def bar(share: float, width: int, *, blank: str = ' ') -> str:
@@ -41,6 +43,8 @@ class Progress:
         self._terminal = self._stream.isatty()
         self._begin = self._last = clock()
         self._done = self._there = self._said = 0
+        self._share: float | None = None
+        self._note = ''
 
     def add(self, number: int) -> None:
         """Tell that the work has grown by `number`."""
@@ -48,19 +52,34 @@ class Progress:
 
     def step(self, *, there: bool = False) -> None:
         """Count one as done; `there` when it was done before."""
-        self._done += 1
         self._there += there
-        if self._terminal:
+        self.show(self._done + 1, self._total)
+
+    def show(self, done: int, total: int, *, share: float | None = None, note: str = '') -> None:
+        """
+        Show how much is done out of a total; the clock begins when nothing is.
+
+        Where steps differ, `share` says how far the work is [-]; a `note` ends the line.
+
+        """
+        self._done, self._total, self._share, self._note = done, total, share, note
+        if not done:
+            self._begin = self._last = self._clock()
+        elif self._terminal:
             self._draw()
         elif self._is_due():
             print(self._text(), file=self._stream, flush=True)
             self._said, self._last = self._done, self._clock()
 
     def _draw(self) -> None:
-        drawn = bar(self._done / max(self._total, 1), WIDTH)
+        drawn = bar(self._part(), WIDTH)
         end = '\n' if self._done == self._total else ''
         # The end of an older, longer line is wiped.
         print(f'\r[{drawn}] {self._text()}\x1b[K', end=end, file=self._stream, flush=True)
+
+    def _part(self) -> float:
+        """Return how far the work is [-]."""
+        return self._done / max(self._total, 1) if self._share is None else self._share
 
     def _is_due(self) -> bool:
         return (
@@ -70,13 +89,22 @@ class Progress:
         )
 
     def _text(self) -> str:
-        text = f'{self._done}/{self._total} {self._unit}'
+        return ', '.join(filter(None, (self._count(), self._rate(), self._note)))
+
+    def _count(self) -> str:
+        return f'{self._done}/{self._total} {self._unit}'
+
+    def _rate(self) -> str:
+        """Return rate and time left, nothing as long as nothing new is done."""
         new, spent = self._done - self._there, self._clock() - self._begin
         if not new or spent <= 0:
-            return text
+            return ''
         rate = new / spent
         speed = f'{rate:.3g} per s' if rate >= 1 else f'{1 / rate:.2g} s each'
-        return f'{text}, {speed}, {_duration((self._total - self._done) / rate)} left'
+        left = (self._total - self._done) / rate
+        if self._share:
+            left = spent * (1 - self._share) / self._share
+        return f'{speed}, {_duration(left)} left'
 
 
 def _duration(seconds: float) -> str:

@@ -11,6 +11,45 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 OPTIONAL = ('mcap', 'zstandard')  # no package of a machine with ROS 2
+# Tests that solve contacts, talk over DDS, start processes, draw many pictures, repeat thousands
+# of fits or run linters over the whole tree: folders and files, and fixtures that make any test
+# such a one. All others are `fast`.
+SLOW = (
+    'bags',
+    'ballscrew_monitor/cycle/test_domain.py',
+    'ballscrew_monitor/cycle/test_node_process.py',
+    'ballscrew_monitor/cycle/test_run.py',
+    'ballscrew_monitor/node/test_node.py',
+    'ballscrew_monitor/recordings/test_player.py',
+    'ballscrew_monitor/recordings/test_recorder.py',
+    'ballscrew_monitor/test_cli.py',
+    'ballscrew_monitor/test_launch.py',
+    'scripts',
+    'studies/test_surface.py',
+    'studies/test_surface_nodes.py',
+    'surrogate/builder',
+    'surrogate/commands',
+    'surrogate/contact',
+    'surrogate/ehl',
+    'surrogate/formulas/test_inlet_heating.py',
+    'surrogate/identify/test_fit.py',
+    'surrogate/identify/test_table.py',
+    'surrogate/paper/test_figures.py',
+    'surrogate/paper/test_marks.py',
+    'surrogate/paper/test_rows.py',
+    'surrogate/raceway/test_short_waves.py',
+    'surrogate/screw',
+    'surrogate/surface_tools/test_figures.py',
+    'surrogate/tasks/test_pool.py',
+    'surrogate/tasks/test_spawned.py',
+    'surrogate/tasks/test_store.py',
+    'surrogate/test_cli.py',
+    'test_conftest.py',
+    'test_flake8.py',
+    'test_interfaces.py',
+    'test_pep257.py',
+)
+SLOW_FIXTURES = {'nominal_bag', 'short_bag'}
 
 
 class Skipper(MetaPathFinder):
@@ -22,6 +61,15 @@ class Skipper(MetaPathFinder):
 
 
 sys.meta_path.append(Skipper())
+
+
+def pytest_collection_modifyitems(items):
+    """Mark what is fast: all but what is named as slow."""
+    for item in items:
+        path = item.path.relative_to(ROOT / 'test')
+        slow = any(path.is_relative_to(name) for name in SLOW)
+        if not slow and not SLOW_FIXTURES & set(item.fixturenames):
+            item.add_marker('fast')
 
 
 @pytest.fixture(scope='session')

@@ -34,7 +34,7 @@ PACKAGES = [
 ]
 TEXTS = SOURCES + sorted(
     path
-    for pattern in ('*', '.ci/*', 'config/*', 'docs/*.md', 'msg_defs/*/*', 'scripts/*')
+    for pattern in ('*', '.ci/*', 'config/*', 'docs/**/*.md', 'msg_defs/*/*', 'scripts/*')
     for path in TREE.glob(pattern)
     if path.is_file() and path not in SOURCES
 )

@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Documentation that would rot: links, the parameter table, the commands of the README."""
+"""Documentation that would rot: links, paths, commands, the parameter table, short guides."""
 
 from pathlib import Path
 import re
@@ -10,35 +10,155 @@ from ballscrew_monitor.node.parameters import markdown_table
 import pytest
 
 ROOT = Path(__file__).parents[1]
+DOCS = ROOT / 'docs'
+GUIDE = sorted((DOCS / 'guide').glob('*.md'))
 PAGES = [
     ROOT / 'README.md',
     ROOT / 'CONTRIBUTING.md',
-    *sorted((ROOT / 'docs').glob('*.md')),
+    *sorted(DOCS.rglob('*.md')),
     ROOT / 'bags' / 'README.md',
 ]
+SOURCES = [
+    path
+    for name in ('ballscrew_monitor', 'bench', 'studies', 'surrogate', 'test')
+    for path in sorted((ROOT / name).rglob('*.py'))
+]
+FOLDERS = [
+    f'{folder.relative_to(ROOT)}/'
+    for name in ('ballscrew_monitor', 'surrogate')
+    for folder in sorted((ROOT / name).rglob('*'))
+    if folder.is_dir() and (folder / '__init__.py').exists()
+]
+CODE_PATH = re.compile(
+    r'(?<![\w/.~])((?:ballscrew_monitor|bags|bench|config|docs|launch|msg_defs|scripts|studies'
+    r'|surrogate|test)/(?:[\w.-]+/)*[\w-]*(?:\.\w+)?)'
+)
+HISTORY = re.compile(
+    r'\b(formerly|former|no longer|used to|(?:was|were) tried|left out, tried|tried and left out'
+    r'|previous(?:ly)? version|earlier version|in the past|so far|not any ?more|nowadays)\b',
+    re.IGNORECASE,
+)
+COMMAND = re.compile(r'ballscrew ((?:surface )?[a-z]+)((?: [^`\n#]*)?)')
+MOST_LINES, MOST_WORDS = 130, 1500
 
 
-@pytest.mark.parametrize('page', PAGES, ids=lambda page: page.name)
+def name_of(page: Path) -> str:
+    """Return the path of a page within the repository."""
+    return str(page.relative_to(ROOT))
+
+
+def anchors(page: Path) -> set[str]:
+    """Return the anchors that the headings of a page make."""
+    headings = re.findall(r'^#+ (.*)$', page.read_text(encoding='utf-8'), flags=re.MULTILINE)
+    return {re.sub(r'[^\w\- ]', '', heading.lower()).replace(' ', '-') for heading in headings}
+
+
+def defines(file: Path, name: str) -> bool:
+    """Tell whether a module defines a function or class of that name."""
+    return bool(re.search(rf'^(?:def|class) {name}\b', file.read_text(encoding='utf-8'), re.M))
+
+
+def help_of(capsys, *words: str) -> str:
+    """Return what `--help` prints for a command."""
+    with pytest.raises(SystemExit):
+        main([*words, '--help'])
+    return str(capsys.readouterr().out)
+
+
+@pytest.mark.parametrize('page', PAGES, ids=name_of)
 def test_links_lead_somewhere(page: Path):
-    """Every relative link of a page names a file of the repository."""
-    for target in re.findall(r'\]\(([^)#]+)\)', page.read_text(encoding='utf-8')):
+    """Every relative link of a page names a file of the repository, and a heading if any."""
+    links = re.findall(r'\]\(([^)#]*)(?:#([^)]+))?\)', page.read_text(encoding='utf-8'))
+    for target, anchor in links:
         if not target.startswith('http'):
-            assert (page.parent / target).exists(), target
+            file = page.parent / target if target else page
+            assert file.exists(), target
+            assert not anchor or anchor in anchors(file), f'{target}#{anchor}'
+
+
+@pytest.mark.parametrize('page', PAGES, ids=name_of)
+def test_paths_named_exist(page: Path):
+    """Every path into the repository that a page names is there."""
+    for named in CODE_PATH.findall(page.read_text(encoding='utf-8')):
+        assert (ROOT / named.rstrip('.')).exists(), named
+
+
+@pytest.mark.parametrize('page', PAGES, ids=name_of)
+def test_functions_named_exist(page: Path):
+    """Every function or class that a page names with its file is defined there."""
+    text = page.read_text(encoding='utf-8')
+    for file, name in re.findall(r'`([\w/]+/\w+\.py): (\w+)`', text):
+        assert defines(ROOT / file, name), f'{file}: {name}'
+
+
+def test_documents_named_in_code_exist():
+    """Every page that a docstring or comment refers to is there."""
+    for path in SOURCES:
+        for named in re.findall(r'\bdocs/[\w/]+\.md', path.read_text(encoding='utf-8')):
+            assert (ROOT / named).exists(), f'{name_of(path)}: {named}'
 
 
 def test_parameter_page_is_the_table():
     """The page holds the table as the code makes it."""
-    page = (ROOT / 'docs' / 'parameters.md').read_text(encoding='utf-8')
+    page = (DOCS / 'guide' / 'parameters.md').read_text(encoding='utf-8')
     assert markdown_table().strip() in page
 
 
 def test_commands_of_the_readme_exist(capsys):
     """Each command that the README's table shows is one that the program knows."""
     readme = (ROOT / 'README.md').read_text(encoding='utf-8')
-    with pytest.raises(SystemExit):
-        main(['--help'])
-    help_text = capsys.readouterr().out
+    help_text = help_of(capsys)
     shown = set(re.findall(r'^\| `ballscrew (\w+)', readme, flags=re.MULTILINE))
     assert shown >= {'point', 'surface', 'run'}
     for command in shown:
         assert command in help_text
+
+
+@pytest.mark.parametrize('page', [ROOT / 'README.md', *GUIDE], ids=name_of)
+def test_commands_of_the_guide_have_their_options(page: Path, capsys):
+    """Each option of a command that a page shows is one that the command knows."""
+    for command, rest in COMMAND.findall(page.read_text(encoding='utf-8')):
+        known = help_of(capsys, *command.split())
+        for option in re.findall(r'--[a-zA-Z][\w-]*', rest):
+            assert option in known, f'{command} {option}'
+
+
+@pytest.mark.parametrize('page', GUIDE, ids=name_of)
+def test_guide_is_short_and_without_history(page: Path):
+    """A page of the guide is read in one go and says what is, not what was."""
+    text = page.read_text(encoding='utf-8')
+    assert len(text.splitlines()) < MOST_LINES
+    assert len(text.split()) < MOST_WORDS
+    assert not HISTORY.findall(text.replace(markdown_table().strip(), ''))
+
+
+def test_front_page_leads_to_every_page():
+    """Each page of the guide and of the theory is linked from docs/README.md."""
+    front = (DOCS / 'README.md').read_text(encoding='utf-8')
+    for page in (*GUIDE, *sorted((DOCS / 'theory').glob('*.md'))):
+        assert f'({page.relative_to(DOCS)})' in front
+
+
+@pytest.mark.parametrize('index', ['decisions', 'notes'])
+def test_index_lists_its_pages(index: str):
+    """The first page of a folder links all others."""
+    text = (DOCS / index / 'README.md').read_text(encoding='utf-8')
+    for page in (DOCS / index).glob('*.md'):
+        assert page.name == 'README.md' or f'({page.name})' in text
+
+
+def test_every_picture_is_on_a_page():
+    """No picture is kept that no page shows."""
+    text = ''.join(page.read_text(encoding='utf-8') for page in PAGES)
+    for picture in DOCS.rglob('*.png'):
+        assert f'/{picture.name})' in text, picture.name
+
+
+@pytest.mark.parametrize('folder', FOLDERS)
+def test_architecture_names_every_folder(folder: str):
+    """Each folder of both packages has its row, and its entry is a function or class there."""
+    page = (DOCS / 'architecture.md').read_text(encoding='utf-8')
+    rows = [line for line in page.splitlines() if line.startswith(f'| `{folder}` |')]
+    assert len(rows) == 1
+    for module, name in re.findall(r'`(\w+\.py): (\w+)`', rows[0]):
+        assert defines(ROOT / folder / module, name)

@@ -31,6 +31,7 @@ NUMERICAL = {
     'xarray',
     'yaml',
 }
+PLOTTING = {'surrogate.plotting.style'}  # for the pictures of a cycle alone
 LOOKUP = {'surrogate', 'surrogate.files', 'surrogate.surface', 'surrogate.units'}
 
 FLOORS = ('core', 'node', 'recordings', 'cycle')
@@ -79,11 +80,12 @@ def test_surrogate_imports_numerical_libraries_and_itself(path: Path) -> None:
 @pytest.mark.parametrize('path', MODULES['ballscrew_monitor'], ids=name_of)
 def test_online_half_imports_the_lookup_alone(path: Path) -> None:
     """Only the command line, which is both halves, hands over to the offline one."""
-    allowed = LOOKUP | (
-        {'surrogate.cli', 'surrogate.parameters'} if path.name == 'cli.py' else set()
-    )
-    if path.parent.name == 'cycle':
-        allowed = allowed | {'surrogate.progress'}  # the bar of both halves, text alone
+    more = {
+        'cli.py': {'surrogate.cli', 'surrogate.parameters'},
+        # The bar of both halves, text alone, and the style of all pictures.
+        'cycle': PLOTTING | {'surrogate.progress'},
+    }
+    allowed = LOOKUP | more.get(path.name, set()) | more.get(path.parent.name, set())
     assert {name for name in imports(path) if name.split('.')[0] == 'surrogate'} <= allowed
 
 

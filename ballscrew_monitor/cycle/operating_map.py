@@ -21,13 +21,12 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 import numpy as np
 from numpy.typing import NDArray
+from surrogate.plotting.style import BLUE, PURPLE
 from surrogate.surface import FILM_RATIO_LIMITS, Surface, Validity
 from surrogate.units import RPM
 
 Array = NDArray[np.float64]
 
-# Okabe and Ito: distinct for the colour-blind and in grey.
-GREEN, ORANGE, BLUE, PURPLE, GREY = '#009e73', '#d55e00', '#0072b2', '#7b3294', '#7f7f7f'
 OPTIMAL_FILL = '#dff2ea'
 EFFICIENCIES = (0.3, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.97)
 SPEEDS, LOADS = 120, 181  # points of the grid

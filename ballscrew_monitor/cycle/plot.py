@@ -7,35 +7,25 @@ import itertools
 import math
 from pathlib import Path
 
-from ballscrew_monitor.cycle.operating_map import (
-    BLUE,
-    BOX,
-    draw_map,
-    GREEN,
-    GREY,
-    legend_entries,
-    ORANGE,
-    PURPLE,
-)
+from ballscrew_monitor.cycle.operating_map import BOX, draw_map, legend_entries
 from ballscrew_monitor.cycle.state_trace import Trace
 from ballscrew_monitor.recordings.summary import EventRecord, Summary
 from ballscrew_msgs.msg import BallScrewState
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.files import new_file
+from surrogate.plotting.style import BLUE, draw_picture, GREEN, GREY, new_figure, PURPLE, VERMILION
 from surrogate.surface import FILM_RATIO_LIMITS, REGIMES, Surface
 from surrogate.units import RPM
 
 Array = NDArray[np.float64]
 
-SIZE, DPI = (11.0, 14.5), 130  # [inch], [1/inch]
+SIZE = (11.0, 14.5)  # [inch]
 ZONES = (
     (BallScrewState.ZONE_UNKNOWN, GREY, 'not judged'),
-    (BallScrewState.ZONE_OUTSIDE, ORANGE, 'outside'),
+    (BallScrewState.ZONE_OUTSIDE, VERMILION, 'outside'),
     (BallScrewState.ZONE_OPTIMAL, GREEN, 'optimal'),
 )
 LEVELS = (
@@ -50,8 +40,12 @@ STRIPS = (1.25, 1.25, 0.8, 1.25, 1.35, 1.35, 0.35)
 
 def draw(trace: Trace, summary: Summary, surface: Surface, path: Path) -> None:
     """Write the picture to `path` (PNG), which appears only when it is complete."""
-    figure = Figure(figsize=SIZE, dpi=DPI, layout='constrained')
-    FigureCanvasAgg(figure)
+    draw_picture(path, lambda: figure_cycle(trace, summary, surface))
+
+
+def figure_cycle(trace: Trace, summary: Summary, surface: Surface) -> Figure:
+    """Return the operating map with the path of the cycle, and its course in time below."""
+    figure = new_figure(*SIZE)
     upper, lower = figure.subfigures(2, 1, height_ratios=(1.0, 1.15), squeeze=False)[:, 0]
     axes = upper.subplots()
     mean, others = draw_map(axes, trace, surface)
@@ -64,8 +58,7 @@ def draw(trace: Trace, summary: Summary, surface: Surface, path: Path) -> None:
         fontsize=12,
     )
     _draw_strips(lower.subplots(len(STRIPS), 1, sharex=True, height_ratios=STRIPS), trace, summary)
-    with new_file(path) as file:
-        figure.savefig(file, format='png')
+    return figure
 
 
 def _draw_path(axes: Axes, trace: Trace, summary: Summary) -> None:
@@ -105,8 +98,8 @@ def _mark_event(
         ha='center',
         va='center',
         zorder=8,
-        bbox={'boxstyle': 'circle,pad=0.25', 'facecolor': 'white', 'edgecolor': ORANGE},
-        arrowprops={'arrowstyle': '-', 'color': ORANGE},
+        bbox={'boxstyle': 'circle,pad=0.25', 'facecolor': 'white', 'edgecolor': VERMILION},
+        arrowprops={'arrowstyle': '-', 'color': VERMILION},
     )
 
 

@@ -18,13 +18,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 import scipy
-from surrogate.builder.tiers import Progress, screw_and_oil
+from surrogate.builder.tiers import screw_and_oil
 from surrogate.files import InputError
 from surrogate.formulas import closed_form
 from surrogate.formulas.film import film_ratio_at_share_aihara_1987
 from surrogate.formulas.load_sharing import UNLOADING_RATIO
 from surrogate.parameters import Lubricant, Screw
-from surrogate.surface import FIELDS, Surface
+from surrogate.progress import OnProgress
+from surrogate.surface import FIELDS, SolvedPoint, Surface
 from surrogate.surface.file import FORMAT, FORMAT_VERSION, SurfaceData
 from surrogate.units import ZERO_CELSIUS
 
@@ -74,7 +75,7 @@ def build_closed_form(
     lubricant: Lubricant,
     settings: SurfaceSettings,
     *,
-    progress: Progress = lambda done, total: None,
+    progress: OnProgress = lambda done, total: None,
 ) -> SurfaceData:
     """
     Build the surface of the closed-form tier; `progress(done, total)` counts solved slices.
@@ -113,11 +114,16 @@ def build_closed_form(
 
 def solve_closed_form(
     header: Mapping[str, Any], speed: float, load: float, temperature: float
-) -> dict[str, float]:
+) -> SolvedPoint:
     """Solve a point [rad/s, N, K] as the closed-form surface of this header was solved."""
     screw, lubricant = screw_and_oil(header['inputs'])
     result = closed_form.solve(screw, lubricant, speed, load, temperature)
-    return {name: float(getattr(result, name)) for name in FIELDS}
+    fields: dict[str, Any] = {name: float(getattr(result, name)) for name in FIELDS}
+    return SolvedPoint(
+        converged=all(map(math.isfinite, fields.values())),
+        worst_contact=int(result.worst_contact),
+        **fields,
+    )
 
 
 def load_nodes(screw: Screw, settings: SurfaceSettings) -> tuple[Array, list[float]]:

@@ -16,10 +16,10 @@ from typing import Any
 
 from surrogate.files import InputError
 from surrogate.parameters import Lubricant, Material, Roughness, Screw
+from surrogate.progress import OnProgress
 from surrogate.surface.file import SurfaceData
+from surrogate.surface.solved import SolvedPoint
 from surrogate.tasks.pool import Pool
-
-Progress = Callable[[int, int], None]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -32,8 +32,7 @@ class Tier:
     returns SurfaceData; with `spreads` the builder spreads its own solves over workers and is
     called `build(screw, lubricant, settings, pool=..., out=...)`, `out` being the file beside
     which it keeps its results. `solve(header, speed, load, temperature)` solves a point [rad/s, N,
-    K] as the surface of that header was solved, and returns the fields of `FIELDS` that it has,
-    in their units; nothing when it does not converge.
+    K] as the surface of that header was solved, and returns a `SolvedPoint`.
 
     """
 
@@ -78,7 +77,7 @@ def build_surface(
     lubricant: Lubricant,
     settings: Any,
     *,
-    progress: Progress = lambda done, total: None,
+    progress: OnProgress = lambda done, total: None,
     pool: Pool | None = None,
     out: str | Path = '',
 ) -> SurfaceData:
@@ -91,10 +90,10 @@ def build_surface(
 
 def solve_point(
     header: Mapping[str, Any], speed: float, load: float, temperature: float
-) -> Mapping[str, float]:
+) -> SolvedPoint:
     """Solve at speed [rad/s], opposing load [N], temperature [K] by the tier of a header."""
     solve = load_function(find_tier(header['tier']).solve)
-    found: Mapping[str, float] = solve(header, speed, load, temperature)
+    found: SolvedPoint = solve(header, speed, load, temperature)
     return found
 
 

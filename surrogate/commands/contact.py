@@ -8,6 +8,7 @@ from pathlib import Path
 import sys
 from typing import Any
 
+from surrogate.commands.output import add_json, show
 from surrogate.files import InputError
 
 
@@ -15,7 +16,7 @@ def add_contact_command(subparsers: Any) -> None:
     """Add `contact`; its handler imports the solver, so that other commands start fast."""
     parser = subparsers.add_parser('contact', help='solve one contact from a case file')
     parser.add_argument('case', metavar='CASE', help='case file (YAML) or shipped case')
-    parser.add_argument('--json', action='store_true', help='print JSON in SI units')
+    add_json(parser)
     parser.add_argument('--plot', type=Path, metavar='DIR', help='directory for pictures (PNG)')
     parser.set_defaults(handler=_contact)
 
@@ -25,17 +26,13 @@ def _contact(args: argparse.Namespace) -> int:
     from surrogate.contact.case import load_case
     from surrogate.contact.record import contact_page, contact_record
     from surrogate.contact.solve import solve_case
-    from surrogate.files import json_text
 
     # What was done to a surface belongs to the result, so it is said whatever the output.
     logging.basicConfig(level=logging.INFO, format='ballscrew: %(message)s')
     case = load_case(args.case)
     solution, surface = solve_case(case)
     record = contact_record(case, solution)
-    if args.json:
-        print(json_text(record))
-    else:
-        print(contact_page(record, case, solution, surface))
+    show(record, lambda one: contact_page(one, case, solution, surface), json=args.json)
     if args.plot:
         _plot(args.plot, solution, surface)
     return 0 if solution.converged else 1

@@ -6,11 +6,12 @@ import argparse
 import csv
 from pathlib import Path
 import sys
-import time
 from typing import Any
 
+from surrogate.commands.sweep import add_workers
 from surrogate.files import InputError
-from surrogate.paper.cases import NEEDS, Task, tasks
+from surrogate.paper.cases import NEEDS, StudyTask, tasks
+from surrogate.progress import Progress
 
 DRAWS = 12
 """Draws of the contacts unless said otherwise [-]."""
@@ -41,6 +42,7 @@ def add_figures_command(subparsers: Any) -> None:
         metavar='CSV',
         help='measured torque for figure 6b: speed_rev_min, torque_Nm and, if known, deviation_Nm',
     )
+    add_workers(parser)
     parser.set_defaults(handler=_figures)
 
 
@@ -56,9 +58,17 @@ def _figures(args: argparse.Namespace) -> int:
     from surrogate.paper.marks import marks
     from surrogate.paper.study import run_study
     from surrogate.parameters import load_screw
+    from surrogate.tasks.workers import open_pool
 
     measured = _measured(args.measured) if args.measured else None
-    study = run_study(args.out, wanted, Progress())
+    bar = Progress(len(wanted), 'solves')
+
+    def progress(done: int, total: int, share: float, task: StudyTask) -> None:
+        note = f'{task.kind} {task.rpm:g} rev/min {task.load:g} N'
+        bar.show(done, total, share=share, note=note)
+
+    with open_pool(args.workers, args.dask) as pool:
+        study = run_study(args.out, wanted, pool, progress)
     failed = [row for row in study.rows.values() if row.status != 'CONVERGED']
     for row in failed:
         print(f'ballscrew: {row.key} did not converge: {row.status}', file=sys.stderr)
@@ -77,30 +87,3 @@ def _measured(path: Path) -> Any:
             return read_measured(list(csv.DictReader(file)))
     except (OSError, UnicodeDecodeError, ValueError) as error:
         raise InputError(f'--measured: {path} cannot be read, {error}') from None
-
-
-class Progress:
-    """A bar with the rate and the time left on a terminal, a line per solve elsewhere."""
-
-    def __init__(self) -> None:
-        """Start the clock."""
-        self.began = time.monotonic()
-
-    def __call__(self, done: int, total: int, share: float, task: Task) -> None:
-        """Show how far the work is, by its `share` [-]."""
-        spent = time.monotonic() - self.began
-        text = progress_line(done, total, share, spent, task)
-        live = sys.stderr.isatty()
-        end = '\n' if not live or done == total else ''
-        print(('\r\033[K' if live else '') + text, end=end, file=sys.stderr, flush=True)
-
-
-def progress_line(done: int, total: int, share: float, spent: float, task: Task) -> str:
-    """Return bar, count, rate [1/min] and time left [s], from the share [-] and time spent [s]."""
-    bar = '#' * int(24 * share)
-    left = spent * (1 - share) / share if share > 0 else 0.0
-    rate = 60 * done / spent if spent > 0 else 0.0
-    return (
-        f'[{bar:24}] {done}/{total} solves, {rate:.0f} per min, {left:.0f} s left, '
-        f'{task.kind} {task.rpm:g} rev/min {task.load:g} N'
-    )

@@ -9,6 +9,7 @@ from pathlib import Path
 import sys
 from typing import Any
 
+from surrogate.commands.output import add_json, show
 from surrogate.commands.point import add_inputs
 from surrogate.files import InputError
 from surrogate.parameters import load_lubricant, load_screw, Lubricant, Screw
@@ -68,7 +69,7 @@ def add_identify_command(subparsers: Any, read_bag: BagReader | None = None) -> 
     )
     parser.add_argument('--out', type=Path, metavar='FILE', help='datasheet to write (YAML)')
     parser.add_argument('--plot', type=Path, metavar='DIR', help='directory for the picture')
-    parser.add_argument('--json', action='store_true', help='print JSON in SI units')
+    add_json(parser)
     _add_columns(parser.add_argument_group('CSV'))
     _add_topics(parser.add_argument_group('bag'))
     parser.set_defaults(handler=_identify, read_bag=read_bag)
@@ -100,7 +101,6 @@ def _add_topics(group: Any) -> None:
 
 def _identify(args: argparse.Namespace) -> int:
     """Identify, write and draw; exit code 1 when the fit did not converge."""
-    from surrogate.files import json_text
     from surrogate.identify.fit import identify
     from surrogate.identify.record import identification_record, page
 
@@ -111,7 +111,7 @@ def _identify(args: argparse.Namespace) -> int:
     contacts = _contacts(args.tier, screw, lubricant, run, fitted)
     found = identify(screw, run, contacts, fitted, loss=args.loss)
     record = identification_record(screw, run, contacts, found)
-    print(json_text(record) if args.json else page(record))
+    show(record, page, json=args.json)
     if args.out and found.converged:
         _write(args.out, screw, lubricant, run, contacts, found)
     if args.plot:
@@ -187,23 +187,12 @@ def _contacts(
     if tier == 'full':
         from surrogate.identify.table import solved_model
 
-        return solved_model(screw, lubricant, run, fitted, progress=_bar())
+        return solved_model(
+            screw, lubricant, run, fitted, progress=Progress(0, 'speeds solved').show
+        )
     from surrogate.identify.model import closed_form_model
 
     return closed_form_model(screw, lubricant, run)
-
-
-def _bar() -> Callable[[int, int], None]:
-    """Return what shows that some of all speeds are solved."""
-    bars: list[Progress] = []
-
-    def show(done: int, total: int) -> None:
-        if not bars:
-            bars.append(Progress(total, 'speeds solved'))
-        elif done:
-            bars[0].step()
-
-    return show
 
 
 def _write(

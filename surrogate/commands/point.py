@@ -8,6 +8,7 @@ import sys
 import time
 from typing import Any
 
+from surrogate.commands.output import add_json, show
 from surrogate.files import InputError
 from surrogate.parameters import load_lubricant, load_screw, Lubricant, OperatingPoint, Screw
 from surrogate.units import RPM, ZERO_CELSIUS
@@ -36,7 +37,7 @@ def add_point_command(subparsers: Any) -> None:
     parser.add_argument(
         '--inlet-heating', action='store_true', help='full tier: films thinned by inlet shear'
     )
-    parser.add_argument('--json', action='store_true', help='print JSON in SI units')
+    add_json(parser)
     parser.add_argument(
         '--plot', type=Path, metavar='DIR', help='full tier: directory for a picture (PNG)'
     )
@@ -81,8 +82,7 @@ def add_operating_point(parser: argparse.ArgumentParser, *, required: bool) -> N
 
 def _point(args: argparse.Namespace) -> int:
     """Solve a point; exit code 1 when it is not converged."""
-    from surrogate.files import json_text
-    from surrogate.screw.formula_record import closed_form_record, page
+    from surrogate.formulas.record import closed_form_record, page
 
     _check(args)
     screw, lubricant = load_screw(args.screw), load_lubricant(args.oil)
@@ -99,7 +99,7 @@ def _point(args: argparse.Namespace) -> int:
         solution, record = _full(args, screw, lubricant, point)
     else:
         record = closed_form_record(screw, lubricant, point)
-    print(json_text(record) if args.json else page(record))
+    show(record, page, json=args.json)
     if args.plot:
         _plot(args.plot, screw, solution, record)
     return 0 if record.get('converged', True) else 1

@@ -11,11 +11,13 @@ import sys
 from typing import Any
 
 from surrogate.builder.tiers import build_surface, default_settings, find_tier, TIERS
+from surrogate.commands.output import add_json, show
 from surrogate.commands.point import add_inputs
 from surrogate.commands.surface_inspect import add_inspect_commands
 from surrogate.commands.sweep import add_sweep_command, add_workers
-from surrogate.files import InputError, json_text
+from surrogate.files import InputError
 from surrogate.parameters import load_lubricant, load_screw
+from surrogate.progress import Progress
 from surrogate.surface import find_surface
 from surrogate.surface.file import read, write
 from surrogate.units import RPM, ZERO_CELSIUS
@@ -87,7 +89,7 @@ def _add_info(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         'file', nargs='?', type=Path, help='a path, or a tier of those shipped (default full)'
     )
-    parser.add_argument('--json', action='store_true', help='print JSON in SI units')
+    add_json(parser)
     parser.set_defaults(handler=_info)
 
 
@@ -109,9 +111,10 @@ def _build(args: argparse.Namespace) -> int:
             ranges[setting] = getattr(args, name) * unit
     out = args.out or Path(f'{screw.name}_{lubricant.name}.npz')
     settings = default_settings(args.tier, screw, ranges)
+    progress = Progress(0, 'slices').show if sys.stderr.isatty() else lambda done, total: None
     with _workers(args) as pool:
         data = build_surface(
-            args.tier, screw, lubricant, settings, progress=_show_progress, pool=pool, out=out
+            args.tier, screw, lubricant, settings, progress=progress, pool=pool, out=out
         )
     write(out, data)
     print(f'{out}: {data.mask.size} nodes, sha256 {data.sha256}')
@@ -145,17 +148,6 @@ def _range(
     return low, high
 
 
-def _show_progress(done: int, total: int) -> None:
-    if sys.stderr.isatty():
-        bar = '#' * (40 * done // total)
-        print(
-            f'\r[{bar:40}] {done}/{total} slices',
-            end='\n' if done == total else '',
-            file=sys.stderr,
-            flush=True,
-        )
-
-
 def _clean(args: argparse.Namespace) -> int:
     from surrogate.tasks.store import clear, store_path
 
@@ -169,5 +161,5 @@ def _info(args: argparse.Namespace) -> int:
 
     path = find_surface(args.file)
     record = info_record(path, read(path))
-    print(json_text(record) if args.json else info_page(record))
+    show(record, info_page, json=args.json)
     return 0

@@ -10,11 +10,13 @@ import time
 from typing import Any
 
 from surrogate.builder.tiers import find_tier
+from surrogate.commands.output import add_json, show
 from surrogate.commands.point import add_operating_point
-from surrogate.files import InputError, json_text, replace_file
+from surrogate.files import InputError, replace_file
 from surrogate.parameters import OperatingPoint
 from surrogate.progress import Progress
 from surrogate.surface import find_surface, Surface
+from surrogate.surface.aims import EFFICIENCY_TOLERANCE, RCS_TOLERANCE
 from surrogate.surface.file import read
 from surrogate.units import RPM, ZERO_CELSIUS
 
@@ -67,7 +69,7 @@ def _add_query(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--out', type=Path, metavar='OUT.csv', help='table to write (default: print)'
     )
-    parser.add_argument('--json', action='store_true', help='print JSON in SI units')
+    add_json(parser)
     parser.set_defaults(handler=_query)
 
 
@@ -89,8 +91,8 @@ def _add_diff(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('first', type=Path, metavar='A')
     parser.add_argument('second', type=Path, metavar='B')
     for name, default, words in (
-        ('efficiency', 0.003, 'largest accepted difference of the efficiency [-]'),
-        ('rcs', 0.003, 'largest accepted difference of RCS [-]'),
+        ('efficiency', EFFICIENCY_TOLERANCE, 'largest accepted difference of the efficiency [-]'),
+        ('rcs', RCS_TOLERANCE, 'largest accepted difference of RCS [-]'),
         ('zone', 0.05, 'largest accepted shift of a limit of the zone, over its speed [-]'),
     ):
         parser.add_argument(
@@ -100,7 +102,7 @@ def _add_diff(parser: argparse.ArgumentParser) -> None:
             metavar='X',
             help=f'{words}, default {default}',
         )
-    parser.add_argument('--json', action='store_true', help='print JSON in SI units')
+    add_json(parser)
     parser.set_defaults(handler=_diff)
 
 
@@ -163,7 +165,7 @@ def _query(args: argparse.Namespace) -> int:
     )
     point = OperatingPoint(speed=args.speed_rpm * RPM, load=args.load, temperature=kelvin)
     record = query_record(surface, point)
-    print(json_text(record) if args.json else query_page(record))
+    show(record, query_page, json=args.json)
     return 1 if record['reason'] else 0
 
 
@@ -224,11 +226,8 @@ def _diff(args: argparse.Namespace) -> int:
             raise InputError(f'--{name}-tolerance is {value:g}, allowed is 0 or more')
     record = diff_record(read(args.first), read(args.second))
     sentences = exceeded(record, tolerances)
-    if args.json:
-        whole = {**record, 'tolerances': tolerances, 'exceeded': sentences}
-        print(json_text(whole))
-    else:
-        print(diff_page(record, sentences))
+    whole = {**record, 'tolerances': tolerances, 'exceeded': sentences}
+    show(whole, lambda one: diff_page(one, sentences), json=args.json)
     return 1 if sentences else 0
 
 

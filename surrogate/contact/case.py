@@ -25,8 +25,9 @@ from surrogate.ehl import Condition, ContactLubricant
 from surrogate.ehl.interface import LARGEST_GRID, Law
 from surrogate.files import InputError
 from surrogate.formulas.geometry import Contact
-from surrogate.raceway.fractal import Lay, Patch
+from surrogate.raceway.fractal import Lay
 from surrogate.raceway.measured import Outside
+from surrogate.raceway.patch import Patch
 
 CONSTANTS = (
     'fractal_dimension',

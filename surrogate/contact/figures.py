@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import QuadMesh
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
@@ -15,16 +14,12 @@ from matplotlib.lines import Line2D
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.ehl import ContactSolution
-from surrogate.files import new_file
-from surrogate.raceway.fractal import Surface
+from surrogate.plotting.style import BLUE, draw_picture, GREY, MAP, new_figure, VERMILION
+from surrogate.raceway.patch import Raceway
 from surrogate.units import GIGA, MICRO, NANO
 
 Array = NDArray[np.float64]
 
-DPI = 150  # [1/inch]
-BLUE, VERMILION, GREY = '#0072b2', '#d55e00', '#6f6f6f'
-"""Colours that colour-blind readers and a black and white print keep apart."""
-MAP = 'cividis'
 FILM_SPAN = 1.8
 """Top of the film scale over the 90th percentile of the film in the Hertz ellipse [-]."""
 INLET = 3.0
@@ -36,7 +31,7 @@ SPATIAL_NODES = 150
 
 
 def draw_contact(
-    folder: Path, solution: ContactSolution, surface: Surface | None = None
+    folder: Path, solution: ContactSolution, surface: Raceway | None = None
 ) -> Iterator[Path]:
     """Write the pictures of a solution to `folder` as PNG and yield their paths."""
     pictures: dict[str, Callable[[], Figure]] = {
@@ -47,21 +42,17 @@ def draw_contact(
     if surface is not None:
         pictures['contact_roughness.png'] = lambda: figure_roughness(solution, surface)
     for name, draw in pictures.items():
-        with new_file(folder / name) as file:
-            draw().savefig(file, format='png')
-        yield folder / name
+        yield draw_picture(folder / name, draw)
 
 
 def _figure(width: float, height: float, solution: ContactSolution) -> Figure:
-    figure = Figure(figsize=(width, height), dpi=DPI, layout='constrained')
-    FigureCanvasAgg(figure)
+    figure = new_figure(width, height)
     condition, lubricant = solution.condition, solution.lubricant
     figure.suptitle(
         f'{condition.load:g} N, {condition.entrainment_speed:g} m/s, '
         f'{lubricant.viscosity:g} Pa s; central film {NANO * solution.central_film:.3g} nm, '
         f'RCS {100 * solution.rcs:.2g} %'
         + ('' if solution.converged else f'\nNOT CONVERGED: {solution.status.value}'),
-        fontsize=10,
         color='black' if solution.converged else VERMILION,
     )
     return figure
@@ -87,10 +78,10 @@ def figure_profiles(solution: ContactSolution) -> Figure:
         ylabel='pressure [GPa]', ylim=(0, None), xlim=(MICRO * left, MICRO * solution.x[-1])
     )
     panels[1, 0].set(ylabel='film [nm]', ylim=(0, _film_top(solution)))
-    panels[0, 0].legend(frameon=False, fontsize=8, loc='upper left')
-    panels[0, -1].legend(frameon=False, fontsize=8, loc='upper left')
-    panels[1, 0].legend(frameon=False, fontsize=8, loc='center left')
-    panels[1, -1].legend(frameon=False, fontsize=8, loc='center left')
+    panels[0, 0].legend(frameon=False, loc='upper left')
+    panels[0, -1].legend(frameon=False, loc='upper left')
+    panels[1, 0].legend(frameon=False, loc='center left')
+    panels[1, -1].legend(frameon=False, loc='center left')
     return figure
 
 
@@ -112,8 +103,8 @@ def _draw_pressure(axes: Axes, solution: ContactSolution, column: int) -> None:
         axes.plot(x, total, color='black', linewidth=0.9, linestyle=':', label='total')
     hertz = GIGA * _hertz(solution, y)
     axes.plot(x, hertz, color=GREY, linestyle='--', linewidth=1.0, label='Hertz, dry and smooth')
-    axes.set_title(f'y = {MICRO * y:.0f} µm', fontsize=9)
-    _soft_grid(axes)
+    axes.set_title(f'y = {MICRO * y:.0f} µm')
+    axes.grid(visible=True)
 
 
 def _draw_film(axes: Axes, solution: ContactSolution, column: int) -> None:
@@ -131,12 +122,7 @@ def _draw_film(axes: Axes, solution: ContactSolution, column: int) -> None:
             'color': VERMILION,
         }
         axes.plot(x[touching], film[touching], label='asperity contact', **mark)
-    _soft_grid(axes)
-
-
-def _soft_grid(axes: Axes) -> None:
-    axes.grid(visible=True, color='#e6e6e6', linewidth=0.6)
-    axes.set_axisbelow(True)
+    axes.grid(visible=True)
 
 
 def _mark_semi_axes(axes: Axes, solution: ContactSolution) -> None:
@@ -164,7 +150,6 @@ def figure_maps(solution: ContactSolution) -> Figure:
             handles=[_swatch(VERMILION, 'asperity contact')],
             loc='outside lower right',
             frameon=False,
-            fontsize=8,
         )
     _finish_map(left, solution, 'Pressure')
     _finish_map(right, solution, 'Film')
@@ -198,7 +183,7 @@ def _draw_spatial(
     axes.view_init(elev=tilt, azim=-130)
 
 
-def figure_roughness(solution: ContactSolution, surface: Surface) -> Figure:
+def figure_roughness(solution: ContactSolution, surface: Raceway) -> Figure:
     """Return the rough surface and how film and asperities share the pressure."""
     figure = _figure(11.0, 6.0, solution)
     first, second, third = figure.subplots(1, 3, sharey=True)
@@ -214,7 +199,7 @@ def figure_roughness(solution: ContactSolution, surface: Surface) -> Figure:
         third, solution, GIGA * solution.asperity_pressure[rows, columns], cmap='inferno_r', vmin=0
     )
     figure.colorbar(mesh, ax=third, location='bottom', label='asperity pressure [GPa]')
-    _finish_map(first, solution, f'Surface, {surface.patch}, heights times {surface.scale:.3g}')
+    _finish_map(first, solution, f'Raceway, {surface.patch}, heights times {surface.scale:.3g}')
     _finish_map(second, solution, 'Carried by the film')
     _finish_map(third, solution, f'Carried by asperities: {100 * solution.asperity_share:.2g} %')
     return figure
@@ -228,10 +213,7 @@ def _hertz(solution: ContactSolution, y: float) -> Array:
 
 def _film_top(solution: ContactSolution) -> float:
     """Return the top of the film scale [nm]: what happens inside the Hertz ellipse fills it."""
-    inside = (solution.x[:, None] / solution.semi_axis_x) ** 2 + (
-        solution.y[None, :] / solution.semi_axis_y
-    ) ** 2 < 1
-    film = float(np.percentile(solution.film[inside], 90))
+    film = float(np.percentile(solution.film[solution.distance < 1], 90))
     return FILM_SPAN * NANO * max(film, solution.settings.film_floor)
 
 
@@ -277,7 +259,7 @@ def _finish_map(axes: Axes, solution: ContactSolution, title: str) -> None:
     y = MICRO * solution.semi_axis_y * np.sin(turn)
     axes.plot(x, y, color='white', linewidth=1.6)
     axes.plot(x, y, color='black', linewidth=0.8, linestyle='--')
-    axes.set_title(title, fontsize=9)
+    axes.set_title(title)
     axes.set_xlabel('x along the track [µm]')
     if axes.get_subplotspec().colspan.start == 0:  # type: ignore[union-attr]
         axes.set_ylabel('y across the track [µm]')

@@ -2,17 +2,42 @@
 # SPDX-License-Identifier: Apache-2.0
 """A solved contact as a record: plain numbers for JSON, and a page for a person."""
 
-from collections.abc import Mapping
 import math
-from typing import Any
+from typing import TypedDict
 
 from surrogate.contact.case import ContactCase
 from surrogate.ehl import ContactSolution
 from surrogate.ehl.friction import slide_roll_friction
-from surrogate.raceway.fractal import Surface
+from surrogate.raceway.patch import Raceway
 
 ASPERITY_FRICTION = 0.1
 """Boundary friction coefficient of a case without roughness [-], for dry contacts."""
+
+
+class ContactRecord(TypedDict):
+    """A solved contact for JSON, in the units of the keys; shares and errors [-]."""
+
+    status: str
+    converged: bool
+    central_film_m: float
+    minimum_film_m: float
+    max_pressure_Pa: float
+    hertz_pressure_Pa: float
+    semi_axis_x_m: float
+    semi_axis_y_m: float
+    rcs: float
+    asperity_share: float
+    rolling_force_N: float
+    friction_coefficient: list[float]
+    load_error: float
+    residual: float
+    newton_iterations: int
+    krylov_iterations: int
+    grid: list[int]
+    wall_s: float
+    central_film_error: float
+    rcs_error: float
+    film_floor_m: float
 
 
 def friction_coefficient(
@@ -27,7 +52,7 @@ def friction_coefficient(
     return found.coefficient
 
 
-def contact_record(case: ContactCase, solution: ContactSolution) -> dict[str, Any]:
+def contact_record(case: ContactCase, solution: ContactSolution) -> ContactRecord:
     """
     Return a solution in SI units, JSON types.
 
@@ -35,7 +60,7 @@ def contact_record(case: ContactCase, solution: ContactSolution) -> dict[str, An
 
     """
     friction = case.roughness.asperity_friction if case.roughness else ASPERITY_FRICTION
-    record: dict[str, Any] = {
+    return {
         'status': solution.status.value,
         'converged': bool(solution.converged),
         'central_film_m': float(solution.central_film),
@@ -46,7 +71,7 @@ def contact_record(case: ContactCase, solution: ContactSolution) -> dict[str, An
         'semi_axis_y_m': float(solution.semi_axis_y),
         'rcs': float(solution.rcs),
         'asperity_share': float(solution.asperity_share),
-        'rolling_force_N': float(solution.rolling_force + solution.rolling_tail),
+        'rolling_force_N': float(solution.whole_rolling_force),
         'friction_coefficient': [
             friction_coefficient(solution, ratio, friction) for ratio in case.slide_roll_ratio
         ],
@@ -60,14 +85,10 @@ def contact_record(case: ContactCase, solution: ContactSolution) -> dict[str, An
         'rcs_error': float(solution.rcs_error),
         'film_floor_m': float(solution.settings.film_floor),
     }
-    return record
 
 
 def contact_page(
-    record: Mapping[str, Any],
-    case: ContactCase,
-    solution: ContactSolution,
-    surface: Surface | None,
+    record: ContactRecord, case: ContactCase, solution: ContactSolution, surface: Raceway | None
 ) -> str:
     """Return a record as a page of text in workshop units."""
     error, half = solution.film_error, ''
@@ -117,7 +138,7 @@ def contact_page(
     )
 
 
-def _roughness_words(surface: Surface | None) -> str:
+def _roughness_words(surface: Raceway | None) -> str:
     if surface is None:
         return 'none'
     return (

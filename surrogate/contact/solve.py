@@ -11,37 +11,29 @@ estimated error of a smooth film.
 from dataclasses import replace
 from functools import cache
 import logging
-import math
 
 from surrogate.contact.case import CaseRoughness, CONSTANTS, ContactCase
 from surrogate.ehl import Condition, ContactLubricant, ContactSolution, Settings, solve_contact
 from surrogate.ehl.case import make_case
+from surrogate.ehl.domain import nodes_on_waves
 from surrogate.formulas.geometry import Contact, ellipticity, hertz
 from surrogate.parameters import load_screw
-from surrogate.raceway.fractal import (
-    fractal_surface,
-    FractalSurface,
-    shifted,
-    Surface,
-    take_patch,
-    Window,
-)
+from surrogate.raceway.fractal import fractal_surface, FractalSurface, shifted
 from surrogate.raceway.import_file import read_surface
 from surrogate.raceway.measured import MeasuredSurface
+from surrogate.raceway.patch import Raceway, take_patch, Window
 from surrogate.raceway.short_waves import subgrid_floor, without_short_waves
 
 SLENDER, WIDE_NY = 2.5, 257
 """Nodes across a contact with an axis ratio below that [-]: its least film lies at its sides."""
 FILM_ERROR, FINE_NX = 0.005, 513
 """Estimated error of the film above which a smooth case is refined, and nodes along x then [-]."""
-NODES_PER_WAVE = 6
-"""Nodes per shortest wavelength of a rough grid that the case does not state [-]."""
-ROUGH_NX, LARGEST_DEFAULT_GRID = 129, 513
-"""Fewest nodes along x, and most along a side, of such a grid [-]."""
+ROUGH_NX = 129
+"""Fewest nodes along x of a rough grid that the case does not state [-]."""
 LOG = logging.getLogger(__name__)
 
 
-def solve_case(case: ContactCase) -> tuple[ContactSolution, Surface | None]:
+def solve_case(case: ContactCase) -> tuple[ContactSolution, Raceway | None]:
     """
     Solve a case; return the solution and the rough surface on the grid, None if smooth.
 
@@ -67,7 +59,7 @@ def solve_case(case: ContactCase) -> tuple[ContactSolution, Surface | None]:
     return solution, surface
 
 
-def _on_grid(case: ContactCase, surface: Surface | None) -> tuple[Surface | None, float]:
+def _on_grid(case: ContactCase, surface: Raceway | None) -> tuple[Raceway | None, float]:
     """Return the surface less the waves that do not go on the grid, and their floor [m]."""
     shortest = case.roughness.grid_wavelength if case.roughness else None
     if shortest is None or not isinstance(surface, FractalSurface):
@@ -88,7 +80,7 @@ def _compile_kernels() -> None:
     )
 
 
-def _solve(case: ContactCase, surface: Surface | None, settings: Settings) -> ContactSolution:
+def _solve(case: ContactCase, surface: Raceway | None, settings: Settings) -> ContactSolution:
     return solve_contact(
         case.contact,
         case.lubricant,
@@ -98,7 +90,7 @@ def _solve(case: ContactCase, surface: Surface | None, settings: Settings) -> Co
     )
 
 
-def case_surface(case: ContactCase) -> Surface | None:
+def case_surface(case: ContactCase) -> Raceway | None:
     """Return the rough surface of a case as a patch, None when it is smooth."""
     rough = case.roughness
     if rough is None or (rough.file is None and not rough.rms):
@@ -125,7 +117,7 @@ def _measured(rough: CaseRoughness, file: str) -> MeasuredSurface:
     return read_surface(file, shortest_wavelength=rough.shortest_wavelength, outside=rough.outside)
 
 
-def case_settings(case: ContactCase, surface: Surface | None) -> Settings:
+def case_settings(case: ContactCase, surface: Raceway | None) -> Settings:
     """
     Return how to solve a case.
 
@@ -156,10 +148,7 @@ def _sides(case: ContactCase, settings: Settings) -> tuple[float, float]:
 
 def _rough_grid(case: ContactCase, settings: Settings, wave: float) -> Settings:
     """Return settings with the grid that the shortest wavelength [m] asks for, within bounds."""
-    along, across = (
-        min(2 * math.ceil(NODES_PER_WAVE * side / wave / 2) + 1, LARGEST_DEFAULT_GRID)
-        for side in _sides(case, settings)
-    )
+    along, across = (nodes_on_waves(side, wave) for side in _sides(case, settings))
     return replace(settings, nx=max(along, ROUGH_NX), ny=max(across, settings.ny))
 
 

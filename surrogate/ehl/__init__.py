@@ -3,9 +3,12 @@
 """
 Mixed elastohydrodynamic point contact: smooth, rough and dry in one solver.
 
-half_space (deformation) and _reynolds (film) make the system of one grid, which newton iterates
-with linear (_krylov over _line and, on coarser grids, _level and _transfer). case scales a contact
-to its domain, search finds the way to it, solver judges it, result returns to SI units.
+case scales a contact (scales) to its domain (domain) and grid. half_space (deformation) and
+kernels.reynolds (film) make the system of one grid, which newton iterates with linear:
+kernels.krylov over kernels.level, whose lines and bands (kernels.line, kernels.bands) precondition
+it, and kernels.transfer to coarser grids; kernels.fft convolves. search finds the way to the case,
+solver judges the solution, to_si returns it in SI units, friction integrates it. interface holds
+inputs and result.
 
 """
 

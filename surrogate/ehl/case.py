@@ -2,23 +2,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """One contact case in Hertz units: scales, domain, grids, equations at any speed and roughness."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 import math
 
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.ehl.domain import nodes_at_multiples, production_domain
-from surrogate.ehl.grid import Grid, make_grid, State
+from surrogate.ehl.grid import Grid, GridState, make_grid
 from surrogate.ehl.half_space import deform
-from surrogate.ehl.interface import Condition, ContactLubricant, Roughness, Settings
-from surrogate.ehl.system import Problem
+from surrogate.ehl.interface import Condition, ContactLubricant, RoughHeights, Settings
+from surrogate.ehl.scales import scale_contact, ScaledContact
+from surrogate.ehl.system import GridProblem
 from surrogate.files import InputError
-from surrogate.formulas.film import (
-    central_film_hamrock_dowson_1977,
-    central_film_nijenbanning_1994,
-    groups,
-)
-from surrogate.formulas.geometry import Contact, hertz
+from surrogate.formulas.geometry import Contact
 from surrogate.formulas.lubricant import ROELANDS_OFFSET, ROELANDS_PRESSURE
 
 Array = NDArray[np.float64]
@@ -42,30 +38,17 @@ TOUCHING = 2.0
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Case:
+class ScaledCase(ScaledContact):
     """
-    What to solve, with its scales.
+    A scaled contact on its domain, and how to solve it.
 
-    Semi-axes [m], Hertz pressure [Pa], height unit a^2/Rx [m], domain over the semi-axis a.
+    Domain: inlet, outlet and half width over the semi-axis a [-].
 
     """
 
-    contact: Contact
-    lubricant: ContactLubricant
-    condition: Condition
     settings: Settings
-    roughness: Roughness | None
-    semi_axis_x: float
-    semi_axis_y: float
-    hertz_pressure: float
-    height_unit: float
     domain: tuple[float, float, float]
     open_inlet: bool
-
-    @property
-    def ellipticity(self) -> float:
-        """Semi-axis along y over that along x [-]."""
-        return self.semi_axis_y / self.semi_axis_x
 
     @property
     def floor(self) -> float:
@@ -76,33 +59,6 @@ class Case:
     def load(self) -> float:
         """Load in Hertz units."""
         return 2 * math.pi / 3 * self.ellipticity
-
-    def film_estimate(self, speed: float) -> float:
-        """
-        Return the central film by formula, in Hertz units [-], at a speed [m/s].
-
-        The fit over all regimes; where it is far above the piezoviscous-elastic one, the geometric
-        mean of both: its rigid branch explodes below its range of loads.
-
-        """
-        g = groups(
-            self.contact,
-            self.condition.load,
-            speed,
-            self.lubricant.viscosity,
-            self.lubricant.pressure_viscosity,
-        )
-        all_regimes = float(central_film_nijenbanning_1994(self.contact, g))
-        elastic = float(central_film_hamrock_dowson_1977(self.contact, g))
-        film = min(all_regimes, max(1.5 * elastic, math.sqrt(all_regimes * elastic)))
-        return film / self.height_unit
-
-    def speed_of_film(self, film: float) -> float:
-        """Speed [m/s] whose smooth film is about `film` [Hertz units], by formula."""
-        trial = 1.0
-        for _ in range(12):
-            trial *= film / self.film_estimate(trial)
-        return trial
 
     def grid(self, nx: int, ny: int, *, symmetric: bool) -> Grid:
         """Return a grid of this case."""
@@ -204,12 +160,12 @@ class Case:
 
     def problem(
         self, grid: Grid, speed: float, heights: Array, order: float, softness: float = 0.0
-    ) -> Problem:
+    ) -> GridProblem:
         """Return the equations on a grid at a speed [m/s]; `softness` as in `fluid_numbers`."""
         lubricant, a = self.lubricant, self.semi_axis_x
         exponent, gain = self.fluid_numbers(softness)
         shear = 12 * lubricant.viscosity * speed * a / (self.hertz_pressure * self.height_unit**2)
-        return Problem(
+        return GridProblem(
             heights=heights,
             floor=self.floor,
             load=self.load,
@@ -249,9 +205,9 @@ class Case:
         if not self.open_inlet:
             return np.zeros(grid.y.size)
         heights = self.shape_heights(grid)
-        return grid.x[0] / grid.x[1] * (heights[1] / heights[0]) ** 2
+        return np.asarray(grid.x[0] / grid.x[1] * (heights[1] / heights[0]) ** 2)
 
-    def hertz_state(self, grid: Grid, speed: float) -> State:
+    def hertz_state(self, grid: Grid, speed: float) -> GridState:
         """Return Hertz's pressure [-], spread under a thick film, at the formula's film."""
         film = self.film_estimate(speed) if speed else self.floor
         spread = max(1.0, SPREAD * math.sqrt(2 * film))
@@ -262,7 +218,7 @@ class Case:
         deform(grid.space, pressure, lift)
         i, j = np.argmin(np.abs(grid.x)), np.argmin(np.abs(grid.y))
         nothing = np.zeros(grid.shape)
-        return State(
+        return GridState(
             film_pressure=pressure if speed else nothing,
             asperity_pressure=nothing if speed else pressure,
             approach=float(film - lift[i, j]),
@@ -274,36 +230,19 @@ def make_case(
     lubricant: ContactLubricant,
     condition: Condition,
     settings: Settings,
-    roughness: Roughness | None,
-) -> Case:
-    """Scale a case by its Hertz contact."""
-    dry = hertz(contact, condition.load)
-    a = float(dry.semi_axis_x)
-    case = Case(
-        contact=contact,
-        lubricant=lubricant,
-        condition=condition,
-        settings=settings,
-        roughness=roughness,
-        semi_axis_x=a,
-        semi_axis_y=float(dry.semi_axis_y),
-        hertz_pressure=float(dry.max_pressure),
-        height_unit=a * a / contact.radius_x,
-        domain=(0.0, 0.0, 0.0),
-        open_inlet=False,
-    )
-    domain = settings.domain or production_domain(case)
+    roughness: RoughHeights | None,
+) -> ScaledCase:
+    """Scale a case by its Hertz contact and find its domain."""
+    scaled = scale_contact(contact, lubricant, condition, roughness)
+    domain = settings.domain or production_domain(scaled, settings.summit_reach)
     if settings.spacing:
-        b = case.semi_axis_y
+        b = scaled.semi_axis_y
         ny, side = nodes_at_multiples(settings, domain[2] * b, b)
         settings, domain = replace(settings, ny=ny), (*domain[:2], side / b)
     open_inlet = settings.domain is None if settings.open_inlet is None else settings.open_inlet
-    k = case.ellipticity
-    return Case(
-        **{
-            **{name: getattr(case, name) for name in Case.__slots__},
-            'settings': settings,
-            'domain': (domain[0], domain[1], domain[2] * k),
-            'open_inlet': open_inlet,
-        }
+    return ScaledCase(
+        **{one.name: getattr(scaled, one.name) for one in fields(scaled)},
+        settings=settings,
+        domain=(domain[0], domain[1], domain[2] * scaled.ellipticity),
+        open_inlet=open_inlet,
     )

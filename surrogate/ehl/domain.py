@@ -1,18 +1,18 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The domain of a contact that states none: room for inlet, outlet, sides and summits."""
+"""
+The domain of a contact that states none, and the nodes across it that a rough surface asks for.
 
-from __future__ import annotations
+A domain has room for inlet, outlet, sides and summits.
+
+"""
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-
-if TYPE_CHECKING:
-    from surrogate.ehl.case import Case
-    from surrogate.ehl.interface import Settings
+from surrogate.ehl.interface import Settings
+from surrogate.ehl.scales import ScaledContact
 
 Array = NDArray[np.float64]
 RIGID = 1.5
@@ -22,11 +22,15 @@ FINEST, MOST_LINES, PLACES = 0.05, 60, 129
 [-]."""
 WIDE = 1.6
 """Side of a domain over the semi-axis from which on its nodes may lie further apart [-]."""
+NODES_PER_WAVE, MOST_NODES = 6.0, 513
+"""Nodes per shortest wavelength of a rough grid, and most along a side for its sake [-]."""
 
 
-def production_domain(case: Case) -> tuple[float, float, float]:
+def production_domain(scaled: ScaledContact, summit_reach: float) -> tuple[float, float, float]:
     """
     Return inlet, outlet and side over the semi-axes: with the open inlet, films within 0.3 %.
+
+    `summit_reach`: how far outside the Hertz zone summits are sought, over the semi-axes [-].
 
     The pressure in front of the contact falls off over the inlet length of the film; across, the
     more slowly the rounder the contact. A rough contact needs room where its summits still reach
@@ -35,20 +39,30 @@ def production_domain(case: Case) -> tuple[float, float, float]:
     15 % low at 5 to 40 height units, more beyond.
 
     """
-    speed = case.condition.entrainment_speed
-    before, behind, beside = _summit_reaches(case)
+    speed = scaled.condition.entrainment_speed
+    before, behind, beside = _summit_reaches(scaled, summit_reach)
     if not speed:
         return -max(1.4, 1 + before), max(1.4, 1 + behind), max(1.3, 1 + beside)
-    reach = (6 * case.film_estimate(speed)) ** (2 / 3)
-    thick = math.sqrt(2 * case.film_estimate(speed))
+    reach = (6 * scaled.film_estimate(speed)) ** (2 / 3)
+    thick = math.sqrt(2 * scaled.film_estimate(speed))
     rigid = max(0.0, thick - RIGID)
-    side = min(0.08 * reach**2 + reach / case.ellipticity**2, 1.0 + 2.0 * thick)
-    inlet = 2.1 if case.roughness is None else 1.75
+    side = min(0.08 * reach**2 + reach / scaled.ellipticity**2, 1.0 + 2.0 * thick)
+    inlet = 2.1 if scaled.roughness is None else 1.75
     return (
         -max(inlet + min(0.9 * reach, 4.0 + 3.0 * thick) + 6.0 * rigid, 1 + before),
         max(1.25 + min(0.03 * reach**2, 0.9 * thick), 1 + behind),
         max(1.2 + side + 4.0 * rigid, 1 + beside),
     )
+
+
+def nodes_on_waves(length: float, wave: float, per_wave: float = NODES_PER_WAVE) -> int:
+    """
+    Return the nodes [-] that a rough surface asks for along a `length` [m], an odd number.
+
+    So many per shortest `wave` [m], up to `MOST_NODES`.
+
+    """
+    return min(2 * math.ceil(per_wave * length / wave / 2) + 1, MOST_NODES)
 
 
 def nodes_at_multiples(settings: Settings, side: float, semi_axis: float) -> tuple[int, float]:
@@ -67,36 +81,35 @@ def nodes_at_multiples(settings: Settings, side: float, semi_axis: float) -> tup
     return 2 * half + 1, half * distance
 
 
-def _summit_reaches(case: Case) -> tuple[float, float, float]:
+def _summit_reaches(scaled: ScaledContact, reach: float) -> tuple[float, float, float]:
     """
     Return how far summits touch before, behind and beside the Hertz zone, over the semi-axes [-].
 
     Heights given at the nodes come with a domain of their own: nothing is known of them outside.
 
     """
-    if not callable(case.roughness):
+    if not callable(scaled.roughness):
         return 0.0, 0.0, 0.0
-    reach = case.settings.summit_reach
     out = np.linspace(0, reach, 1 + round(min(reach / FINEST, MOST_LINES)))
     across = np.linspace(-1.3, 1.3, PLACES)
-    unit = case.ellipticity**2 * case.contact.radius_x / case.contact.radius_y
+    unit = scaled.ellipticity**2 * scaled.contact.radius_x / scaled.contact.radius_y
     before, behind = (
-        _outermost(out, _heights(case, side * (1 + out), across), _gap_along(1 + out))
+        _outermost(out, _heights(scaled, side * (1 + out), across), _gap_along(1 + out))
         for side in (-1, 1)
     )
     along = np.linspace(-1 - before, 1 + behind, PLACES)
     beside = (
-        _outermost(out, _heights(case, along, side * (1 + out)).T, unit * _gap_across(1 + out))
+        _outermost(out, _heights(scaled, along, side * (1 + out)).T, unit * _gap_across(1 + out))
         for side in (-1, 1)
     )
     return before, behind, max(beside)
 
 
-def _heights(case: Case, x: Array, y: Array) -> Array:
+def _heights(scaled: ScaledContact, x: Array, y: Array) -> Array:
     """Return the roughness at x and y, over the semi-axes, in Hertz units [-]."""
-    assert callable(case.roughness)
-    places = np.meshgrid(x * case.semi_axis_x, y * case.semi_axis_y, indexing='ij')
-    return np.asarray(case.roughness(*places), dtype=float) / case.height_unit
+    assert callable(scaled.roughness)
+    places = np.meshgrid(x * scaled.semi_axis_x, y * scaled.semi_axis_y, indexing='ij')
+    return np.asarray(scaled.roughness(*places), dtype=float) / scaled.height_unit
 
 
 def _outermost(out: Array, heights: Array, gap: Array) -> float:

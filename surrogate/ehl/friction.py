@@ -9,15 +9,48 @@ tau0 asinh(eta(p) |slip| / (tau0 h)) elsewhere in the pressurised area.
 """
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import get_args, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from surrogate.ehl import ContactLubricant, ContactSolution, punctured_nodes
 from surrogate.files import InputError
-from surrogate.formulas.lubricant import shear_stress_eyring_1936, viscosity_roelands_1966
+from surrogate.formulas.lubricant import viscosity_roelands_1966
 
 Array = NDArray[np.float64]
+Film = Literal['local', 'central']
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class NodeStrengths:
+    """
+    What makes the friction force of each node of a contact, boundary + eyring asinh(rate slip).
+
+    Places `x` along the entrainment, `y` across [m]; `boundary` [N], the friction force of
+    punctured nodes, which slip does not change; `eyring` [N], Eyring stress times area of the
+    nodes that shear, and `rate` [s/m], eta(p)/(tau0 h) there. All arrays of one shape.
+
+    """
+
+    x: Array
+    y: Array
+    boundary: Array
+    eyring: Array
+    rate: Array
+
+    def sheared(self, speed: Array | float) -> Array:
+        """Return the friction force of the oil [N] at each node at a slip `speed` [m/s]."""
+        return np.asarray(self.eyring * np.arcsinh(self.rate * speed))
+
+    def taken(self, nodes: slice | NDArray[np.bool_], weight: float = 1.0) -> 'NodeStrengths':
+        """Return some of the nodes, each of which stands for `weight` of them [-]."""
+        return NodeStrengths(
+            x=self.x[nodes],
+            y=self.y[nodes],
+            boundary=weight * self.boundary[nodes],
+            eyring=weight * self.eyring[nodes],
+            rate=self.rate[nodes],
+        )
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -50,13 +83,39 @@ def viscosity_of(lubricant: ContactLubricant, pressure: ArrayLike) -> Array:
     return viscosity_roelands_1966(pressure, lubricant.viscosity, lubricant.pressure_viscosity)
 
 
+def node_strengths(
+    solution: ContactSolution, *, asperity_friction: float = 0.1, film: Film = 'local'
+) -> NodeStrengths:
+    """
+    Return the strengths of all nodes of a solved contact, arrays on the grid.
+
+    Boundary coefficient [-] of punctured nodes; `film` shears the local or the central film.
+    Raises InputError for options that make no sense.
+
+    """
+    _check_options(asperity_friction, film)
+    x, y = np.meshgrid(solution.x, solution.y, indexing='ij')
+    area, stress = solution.node_area, solution.lubricant.eyring_stress
+    thickness = solution.film if film == 'local' else np.full_like(x, solution.central_film)
+    dry = punctured_nodes(solution)
+    wet = ~dry & (solution.film_pressure > 0) & (thickness > 0)
+    viscosity = viscosity_of(solution.lubricant, solution.film_pressure)
+    return NodeStrengths(
+        x=x,
+        y=y,
+        boundary=np.where(dry, asperity_friction * solution.pressure, 0.0) * area,
+        eyring=np.where(wet, stress * area, 0.0),
+        rate=np.divide(viscosity, stress * thickness, out=np.zeros_like(x), where=wet),
+    )
+
+
 def contact_friction(
     solution: ContactSolution,
     *,
     slip_x: ArrayLike,
     slip_y: ArrayLike = 0.0,
     asperity_friction: float = 0.1,
-    film: Literal['local', 'central'] = 'local',
+    film: Film = 'local',
     slip_floor: float = 0.0,
 ) -> ContactFriction:
     """
@@ -68,25 +127,24 @@ def contact_friction(
 
     """
     vx, vy = _on_grid(solution, slip_x, 'slip_x'), _on_grid(solution, slip_y, 'slip_y')
-    _check_options(asperity_friction, film, slip_floor)
+    if not 0 <= slip_floor < np.inf:
+        raise InputError(f'slip_floor is {slip_floor!r} m/s, allowed is 0 or more')
+    nodes = node_strengths(solution, asperity_friction=asperity_friction, film=film)
     speed = np.sqrt(vx**2 + vy**2 + slip_floor**2)
-    dry = punctured_nodes(solution)
-    boundary = np.where(dry, asperity_friction * solution.pressure, 0.0)
-    sheared = np.where(dry, 0.0, _film_traction(solution, speed, film))
-    traction = boundary + sheared
-    per_speed = np.divide(traction, speed, out=np.zeros_like(traction), where=speed > 0)
-    tx, ty = -per_speed * vx, -per_speed * vy
-    area = (solution.x[1] - solution.x[0]) * (solution.y[1] - solution.y[0])
-    normal = solution.condition.load / area
+    sheared = nodes.sheared(speed)
+    friction = nodes.boundary + sheared
+    per_speed = np.divide(friction, speed, out=np.zeros_like(friction), where=speed > 0)
+    fx, fy = -per_speed * vx, -per_speed * vy
+    normal = solution.condition.load
     return ContactFriction(
-        force_x=float(tx.sum() * area),
-        force_y=float(ty.sum() * area),
-        spin_moment=float((solution.x[:, None] * ty - solution.y[None, :] * tx).sum() * area),
-        power=-float((tx * vx + ty * vy).sum() * area),
-        coefficient=float(traction.sum() / normal),
+        force_x=float(fx.sum()),
+        force_y=float(fy.sum()),
+        spin_moment=float((nodes.x * fy - nodes.y * fx).sum()),
+        power=-float((fx * vx + fy * vy).sum()),
+        coefficient=float(friction.sum() / normal),
         film_coefficient=float(sheared.sum() / normal),
-        asperity_coefficient=float(boundary.sum() / normal),
-        traction=traction,
+        asperity_coefficient=float(nodes.boundary.sum() / normal),
+        traction=friction / solution.node_area,
     )
 
 
@@ -95,7 +153,7 @@ def slide_roll_friction(
     slide_roll_ratio: float,
     *,
     asperity_friction: float = 0.1,
-    film: Literal['local', 'central'] = 'local',
+    film: Film = 'local',
 ) -> ContactFriction:
     """
     Integrate the friction under uniform sliding along x.
@@ -106,16 +164,6 @@ def slide_roll_friction(
     """
     slip = slide_roll_ratio * solution.condition.entrainment_speed
     return contact_friction(solution, slip_x=slip, asperity_friction=asperity_friction, film=film)
-
-
-def _film_traction(solution: ContactSolution, speed: Array, film: str) -> Array:
-    """Return Eyring's stress where the film carries pressure."""
-    pressure = solution.film_pressure
-    thickness = solution.film if film == 'local' else np.full_like(pressure, solution.central_film)
-    wet = pressure > 0
-    rate = np.divide(speed, thickness, out=np.zeros_like(speed), where=wet & (thickness > 0))
-    viscosity = viscosity_of(solution.lubricant, pressure)
-    return shear_stress_eyring_1936(viscosity, rate, solution.lubricant.eyring_stress)
 
 
 def _on_grid(solution: ContactSolution, slip: ArrayLike, name: str) -> Array:
@@ -130,10 +178,8 @@ def _on_grid(solution: ContactSolution, slip: ArrayLike, name: str) -> Array:
     return np.broadcast_to(values, solution.film.shape)
 
 
-def _check_options(asperity_friction: float, film: str, slip_floor: float) -> None:
+def _check_options(asperity_friction: float, film: str) -> None:
     if not 0 <= asperity_friction <= 1:
         raise InputError(f'asperity_friction is {asperity_friction!r}, allowed is 0 to 1')
-    if film not in ('local', 'central'):
+    if film not in get_args(Film):
         raise InputError(f'film is {film!r}, allowed is local or central')
-    if not 0 <= slip_floor < np.inf:
-        raise InputError(f'slip_floor is {slip_floor!r} m/s, allowed is 0 or more')

@@ -125,7 +125,7 @@ def make_grid(
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class State:
+class GridState:
     """Film and asperity pressure and approach, in Hertz units [-]."""
 
     film_pressure: Array
@@ -133,9 +133,9 @@ class State:
     approach: float
 
 
-def transfer(state: State, old: Grid, new: Grid) -> State:
+def transfer(state: GridState, old: Grid, new: Grid) -> GridState:
     """Interpolate a state bilinearly; zero outside the old grid."""
-    return State(
+    return GridState(
         film_pressure=_resample(state.film_pressure, old, new),
         asperity_pressure=_resample(state.asperity_pressure, old, new),
         approach=state.approach,

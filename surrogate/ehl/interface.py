@@ -16,7 +16,7 @@ from surrogate.formulas.geometry import Contact
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 Law = Literal['roelands_dh', 'barus_incompressible']
-Roughness = Array | Callable[[Array, Array], Array]
+RoughHeights = Array | Callable[[Array, Array], Array]
 """Heights [m], material positive: an array on the solution grid or a function of x and y [m]."""
 LARGEST_GRID = 2049
 
@@ -93,11 +93,11 @@ class Settings:
     touches on grids up to four times as fine (the result then has more nodes than asked for);
     order of the upstream wedge, 1 or 2 (None: 2, but 1 where all of a smooth contact touches);
     logarithm of the viscosity at which a limited wedge fades to order 1 [-],
-    docs/contact_solver.md; how far outside the Hertz zone summits are sought that need room on the
-    production domain, over the semi-axes; `spacing` puts nodes across the track of that domain at
-    multiples of it [m], at the same places of a rough surface whatever the load, or of it times a
-    power of sqrt(2): down to `ny` nodes, up where the domain is much wider than the contact;
-    distance of the inlet meniscus from the centre [m], for the rolling tail.
+    docs/theory/contact_solver.md; how far outside the Hertz zone summits are sought that need room
+    on the production domain, over the semi-axes; `spacing` puts nodes across the track of that
+    domain at multiples of it [m], at the same places of a rough surface whatever the load, or of
+    it times a power of sqrt(2): down to `ny` nodes, up where the domain is much wider than the
+    contact; distance of the inlet meniscus from the centre [m], for the rolling tail.
 
     """
 
@@ -209,6 +209,22 @@ class ContactSolution:
     def pressure(self) -> Array:
         """Total pressure [Pa]."""
         return self.film_pressure + self.asperity_pressure
+
+    @property
+    def node_area(self) -> float:
+        """Area that a node stands for [m2]."""
+        return float((self.x[1] - self.x[0]) * (self.y[1] - self.y[0]))
+
+    @property
+    def distance(self) -> Array:
+        """Distance of the nodes from the centre over the semi-axes [-]: 1 on the Hertz ellipse."""
+        x, y = self.x / self.semi_axis_x, self.y / self.semi_axis_y
+        return np.asarray(np.hypot(x[:, None], y[None, :]))
+
+    @property
+    def whole_rolling_force(self) -> float:
+        """Force on each surface by rolling [N], in the domain and in the tail to the meniscus."""
+        return self.rolling_force + self.rolling_tail
 
 
 def check_contact(contact: Contact) -> None:

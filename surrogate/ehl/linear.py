@@ -5,15 +5,15 @@
 from dataclasses import replace
 
 import numpy as np
-from surrogate.ehl.grid import Grid, KRYLOV_LIMIT, KRYLOV_TYPE, LEVELS, State
+from surrogate.ehl.grid import Grid, GridState, KRYLOV_LIMIT, KRYLOV_TYPE, LEVELS
 from surrogate.ehl.kernels.krylov import solve_newton_step
-from surrogate.ehl.kernels.level import Level
+from surrogate.ehl.kernels.level import GridLevel
 from surrogate.ehl.kernels.transfer import inject
-from surrogate.ehl.system import Array, Evaluation, film_rows, Mask, Problem
+from surrogate.ehl.system import Array, Evaluation, film_rows, GridProblem, Mask
 
 
 def solve_linear(
-    grid: Grid, problem: Problem, state: State, now: Evaluation, tolerance: float
+    grid: Grid, problem: GridProblem, state: GridState, now: Evaluation, tolerance: float
 ) -> tuple[Array, Array, float, int]:
     """Return changes of film pressure, total pressure and approach, and the iterations."""
     levels = jacobian_levels(grid, problem, state, now)
@@ -37,7 +37,9 @@ def solve_linear(
     return film, total, float(x[-1]), used
 
 
-def jacobian_levels(grid: Grid, problem: Problem, state: State, now: Evaluation) -> list[Level]:
+def jacobian_levels(
+    grid: Grid, problem: GridProblem, state: GridState, now: Evaluation
+) -> list[GridLevel]:
     """Return the Jacobian on the grid and, for a film without contact, on coarser ones."""
     levels = [_level(grid, now.contact, now.by_pressure, now.by_gap, now.sizes)]
     pressure, gap, film = state.film_pressure, now.gap, ~now.cavitated
@@ -50,10 +52,12 @@ def jacobian_levels(grid: Grid, problem: Problem, state: State, now: Evaluation)
     return levels
 
 
-def _level(grid: Grid, contact: Mask, by_pressure: Array, by_gap: Array, sizes: Array) -> Level:
+def _level(
+    grid: Grid, contact: Mask, by_pressure: Array, by_gap: Array, sizes: Array
+) -> GridLevel:
     work = grid.workspace
     work.by_pressure[:], work.by_gap[:] = by_pressure, by_gap
-    return Level(
+    return GridLevel(
         space=grid.krylov_space,
         work=work,
         nodes=np.flatnonzero(_own_nodes(grid, contact)),
@@ -77,14 +81,16 @@ def contact_box(contact: Mask) -> tuple[int, int, int, int]:
     return ends[0], ends[1], ends[2], ends[3]
 
 
-def _coarser(problem: Problem) -> Problem:
+def _coarser(problem: GridProblem) -> GridProblem:
     """Return the problem with twice the node distance, as far as its Jacobian goes."""
     return replace(
         problem, mobility=problem.mobility / 2, inlet=inject(problem.inlet[None])[0] ** 2
     )
 
 
-def _coarse_level(grid: Grid, problem: Problem, pressure: Array, gap: Array, film: Mask) -> Level:
+def _coarse_level(
+    grid: Grid, problem: GridProblem, pressure: Array, gap: Array, film: Mask
+) -> GridLevel:
     """Linearise about an injected state; nodes outside `film` are cavitated."""
     contact = np.zeros(grid.shape, bool)
     _, by_pressure, by_gap, _ = film_rows(grid, problem, pressure, gap, contact)

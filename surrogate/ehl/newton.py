@@ -7,10 +7,11 @@ import math
 import time
 
 import numpy as np
-from surrogate.ehl.grid import Grid, KRYLOV_LIMIT, State
+from surrogate.ehl.grid import Grid, GridState, KRYLOV_LIMIT
 from surrogate.ehl.kernels.reynolds import fluid_at, ROELANDS_PRESSURE
 from surrogate.ehl.linear import solve_linear
-from surrogate.ehl.system import Array, evaluate, Evaluation, Mask, Problem
+from surrogate.ehl.system import Array, evaluate, Evaluation, GridProblem, Mask
+from surrogate.ehl.watch import tell
 
 HOPELESS = 5
 """Linear solves cut at their limit after which an iteration is given up [-]."""
@@ -21,7 +22,7 @@ OVERSHOOT = 2.0
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Limits:
+class NewtonLimits:
     """
     Tolerances [-] and caps of one Newton solve.
 
@@ -44,10 +45,10 @@ class Limits:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Outcome:
+class NewtonResult:
     """Last state of a Newton solve, its fields, errors and counts."""
 
-    state: State
+    state: GridState
     gap: Array
     contact: Mask
     cavitated: Mask
@@ -60,11 +61,14 @@ class Outcome:
     krylov: int
 
 
-def solve_grid(grid: Grid, problem: Problem, start: State, limits: Limits) -> Outcome:
+def solve_grid(
+    grid: Grid, problem: GridProblem, start: GridState, limits: NewtonLimits
+) -> NewtonResult:
     """Iterate from `start` until all three errors are small, or say what is left."""
     state, krylov, count, hopeless, last = start, 0, 0, 0, math.inf
     while True:
         now = evaluate(grid, problem, state)
+        tell(count, now.flux_error)
         converged = _is_converged(now, problem, limits)
         late = time.perf_counter() > limits.deadline
         finite = math.isfinite(now.flux_error) and math.isfinite(now.load_rest)
@@ -75,7 +79,7 @@ def solve_grid(grid: Grid, problem: Problem, start: State, limits: Limits) -> Ou
         krylov += used
         count += 1
         hopeless += used == KRYLOV_LIMIT
-    return Outcome(
+    return NewtonResult(
         state=state,
         gap=now.gap,
         contact=now.contact,
@@ -90,7 +94,7 @@ def solve_grid(grid: Grid, problem: Problem, start: State, limits: Limits) -> Ou
     )
 
 
-def _is_converged(now: Evaluation, problem: Problem, limits: Limits) -> bool:
+def _is_converged(now: Evaluation, problem: GridProblem, limits: NewtonLimits) -> bool:
     return bool(
         now.flux_error < limits.flux
         and now.gap_error < limits.gap
@@ -98,7 +102,7 @@ def _is_converged(now: Evaluation, problem: Problem, limits: Limits) -> bool:
     )
 
 
-def _tightened(limits: Limits, flux: float, last: float) -> Limits:
+def _tightened(limits: NewtonLimits, flux: float, last: float) -> NewtonLimits:
     """Return limits of the next step; loose linear solves alone lose thick films of cold oil."""
     if flux < FALLING * last:
         return limits
@@ -106,8 +110,8 @@ def _tightened(limits: Limits, flux: float, last: float) -> Limits:
 
 
 def _step(
-    grid: Grid, problem: Problem, state: State, now: Evaluation, limits: Limits
-) -> tuple[State, int]:
+    grid: Grid, problem: GridProblem, state: GridState, now: Evaluation, limits: NewtonLimits
+) -> tuple[GridState, int]:
     """One Newton step, limited."""
     film_change, total_change, approach, used = solve_linear(
         grid, problem, state, now, limits.krylov
@@ -127,20 +131,20 @@ def _step(
     asperity_pressure = state.asperity_pressure + share * asperity_change
     if share == 1.0:
         asperity_pressure[~contact] = 0.0
-    return State(
+    return GridState(
         film_pressure=np.maximum(state.film_pressure + share * film_change, 0.0),
         asperity_pressure=asperity_pressure,
         approach=state.approach + share * approach,
     ), used
 
 
-def _stiffening(problem: Problem) -> float:
+def _stiffening(problem: GridProblem) -> float:
     """Return the slope of ln(viscosity) at the Hertz pressure."""
     slope = fluid_at(1.0, problem.pressure_scale, problem.growth, problem.exponent, 0.0)[1]
     return max(float(slope), 1e-30)
 
 
-def limit_on_contact(problem: Problem, pressure: Array, change: Array, rise: float) -> Array:
+def limit_on_contact(problem: GridProblem, pressure: Array, change: Array, rise: float) -> Array:
     """
     Limit the `change` of film `pressure` [-] where the viscosity law would throw it about.
 

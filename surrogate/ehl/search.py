@@ -15,14 +15,14 @@ from dataclasses import dataclass, replace
 import math
 
 import numpy as np
-from surrogate.ehl.case import Array, Case, COARSEST, STIFF
-from surrogate.ehl.grid import Grid, State, transfer
+from surrogate.ehl.case import Array, COARSEST, ScaledCase, STIFF
+from surrogate.ehl.grid import Grid, GridState, transfer
 from surrogate.ehl.interface import ContactSolution
-from surrogate.ehl.newton import Limits, Outcome, solve_grid
-from surrogate.ehl.system import Problem
+from surrogate.ehl.newton import NewtonLimits, NewtonResult, solve_grid
+from surrogate.ehl.system import GridProblem
 from surrogate.ehl.to_si import film_and_share, Half, state_from_solution
 
-Found = tuple[Grid, Outcome]
+Found = tuple[Grid, NewtonResult]
 FINEST_CUT = 1 / 64
 """Shortest step of a continuation path, as a share of it [-]."""
 WARM_CUT = 1 / 4
@@ -31,7 +31,7 @@ SAME_LOAD = 0.02
 """Largest relative difference of loads at which a rough contact starts from another [-]."""
 SAME_SPEED = 1.0
 """Largest difference of the logarithms of speeds at which a rough contact starts from another [-];
-docs/contact_solver.md."""
+docs/theory/contact_solver.md."""
 WARM_NEWTON = 25
 """Most Newton iterations of one step from a neighbouring solution [-]."""
 STALLED = 0.01
@@ -44,17 +44,17 @@ PARTING = 1.5
 class Search:
     """Counters of one call and what it has found."""
 
-    case: Case
+    case: ScaledCase
     deadline: float
     newton: int = 0
     krylov: int = 0
     half: Half = Half()
 
-    def limits(self, *, rough: bool, final: bool) -> Limits:
+    def limits(self, *, rough: bool, final: bool) -> NewtonLimits:
         """Return the tolerances of a smooth or rough solve, on the way or at the end."""
         settings, stiff = self.case.settings, self.case.fluid_numbers(0.0)[0] > STIFF
         steps = (10.0, 12.0, 1.0) if rough else (0.5, 3.0 if stiff else 6.0, 0.3)
-        return Limits(
+        return NewtonLimits(
             flux=settings.flux_tolerance if final else max(1e-2, settings.flux_tolerance),
             load=settings.load_tolerance,
             gap=settings.gap_tolerance,
@@ -67,7 +67,9 @@ class Search:
             deadline=self.deadline,
         )
 
-    def solve(self, grid: Grid, problem: Problem, state: State, limits: Limits) -> Outcome:
+    def solve(
+        self, grid: Grid, problem: GridProblem, state: GridState, limits: NewtonLimits
+    ) -> NewtonResult:
         """Solve on one grid and count."""
         outcome = solve_grid(grid, problem, state, limits)
         self.newton += outcome.newton
@@ -77,12 +79,12 @@ class Search:
     def march(
         self,
         grid: Grid,
-        state: State,
-        path: Callable[[float], Problem],
-        limits: Limits,
+        state: GridState,
+        path: Callable[[float], GridProblem],
+        limits: NewtonLimits,
         first: float = 1.0,
         finest: float = FINEST_CUT,
-    ) -> Outcome:
+    ) -> NewtonResult:
         """Follow `path` from 0, where `state` holds, to 1, in steps that are halved on failure."""
         place, step = 0.0, first
         loose = replace(
@@ -135,10 +137,10 @@ class Search:
 
     def _cascade(
         self, speed: float, levels: list[tuple[int, int]]
-    ) -> tuple[Grid | None, Outcome | None]:
+    ) -> tuple[Grid | None, NewtonResult | None]:
         """Solve the coarser grids at first order; on the last also at the final order."""
         grid: Grid | None = None
-        outcome: Outcome | None = None
+        outcome: NewtonResult | None = None
         limits = self.limits(rough=False, final=False)
         for place, shape in enumerate(levels):
             finer = self.case.grid(*shape, symmetric=True)
@@ -152,7 +154,9 @@ class Search:
                 outcome = self._half_grid(grid, problem, speed, outcome)
         return grid, outcome
 
-    def _half_grid(self, grid: Grid, problem: Problem, speed: float, start: Outcome) -> Outcome:
+    def _half_grid(
+        self, grid: Grid, problem: GridProblem, speed: float, start: NewtonResult
+    ) -> NewtonResult:
         """Solve the last but one grid as the finest is solved and note its film."""
         if not self.case.settings.error_estimate or self.case.touches:
             return start
@@ -164,7 +168,7 @@ class Search:
         self.half = film_and_share(self.case, grid, outcome)
         return outcome
 
-    def _from_hertz(self, grid: Grid, speed: float, limits: Limits) -> Outcome:
+    def _from_hertz(self, grid: Grid, speed: float, limits: NewtonLimits) -> NewtonResult:
         """Start from Hertz's pressure at this speed or, failing that, at a faster one."""
         heights = self.case.shape_heights(grid)
         if speed and self.case.fluid_numbers(0.0)[0] > STIFF:
@@ -189,10 +193,12 @@ class Search:
             1 / math.log2(2 * factor),
         )
 
-    def _from_soft(self, grid: Grid, speed: float, heights: Array, limits: Limits) -> Outcome:
+    def _from_soft(
+        self, grid: Grid, speed: float, heights: Array, limits: NewtonLimits
+    ) -> NewtonResult:
         """Start with a softer fluid and stiffen it."""
 
-        def stiffening(t: float) -> Problem:
+        def stiffening(t: float) -> GridProblem:
             return self.case.problem(grid, speed, heights, 1.0, 1.0 - t)
 
         outcome = self.solve(grid, stiffening(0.0), self.case.hertz_state(grid, speed), limits)
@@ -204,10 +210,10 @@ class Search:
 
     def _slowing(
         self, grid: Grid, heights: Array, fast: float, slow: float, order: float | None = None
-    ) -> Callable[[float], Problem]:
+    ) -> Callable[[float], GridProblem]:
         """Return the path in the logarithm of speed, at an order or at that of the finest grid."""
 
-        def problem(t: float) -> Problem:
+        def problem(t: float) -> GridProblem:
             speed = slow if t == 1.0 else fast * (slow / fast) ** t
             return self.case.problem(grid, speed, heights, order or self.case.order)
 
@@ -238,7 +244,7 @@ class Search:
                 return grid, outcome
         return self.thin()
 
-    def _refined(self, coarse: Grid, found: Outcome) -> Found:
+    def _refined(self, coarse: Grid, found: NewtonResult) -> Found:
         """Solve a rough contact on the finest grid from a coarser one."""
         case, settings = self.case, self.case.settings
         grid = case.grid(settings.nx, settings.ny, symmetric=False)
@@ -341,7 +347,7 @@ class Search:
             return True
         return abs(math.log(there.entrainment_speed / here.entrainment_speed)) <= SAME_SPEED
 
-    def estimate(self, grid: Grid, outcome: Outcome) -> None:
+    def estimate(self, grid: Grid, outcome: NewtonResult) -> None:
         """Solve the half grid from the solution, unless it was solved on the way."""
         case, shape = self.case, self._half_shape()
         speed = case.condition.entrainment_speed

@@ -8,7 +8,7 @@ import math
 import time
 
 import numpy as np
-from surrogate.ehl.case import Case, make_case, UNRESOLVED
+from surrogate.ehl.case import make_case, ScaledCase, UNRESOLVED
 from surrogate.ehl.grid import Grid, transfer
 from surrogate.ehl.interface import (
     check_contact,
@@ -16,13 +16,14 @@ from surrogate.ehl.interface import (
     ContactLubricant,
     ContactSolution,
     LARGEST_GRID,
-    Roughness,
+    RoughHeights,
     Settings,
     Status,
 )
-from surrogate.ehl.newton import Outcome
+from surrogate.ehl.newton import NewtonResult
 from surrogate.ehl.search import Found, Search
 from surrogate.ehl.to_si import film_and_share, make_solution
+from surrogate.ehl.watch import at
 from surrogate.formulas.geometry import Contact
 
 PRODUCTION = Settings()
@@ -37,7 +38,7 @@ def solve_contact(
     lubricant: ContactLubricant,
     condition: Condition,
     *,
-    roughness: Roughness | None = None,
+    roughness: RoughHeights | None = None,
     settings: Settings = PRODUCTION,
     start: ContactSolution | None = None,
 ) -> ContactSolution:
@@ -55,7 +56,8 @@ def solve_contact(
     began = time.perf_counter()
     case = make_case(contact, lubricant, condition, settings, roughness)
     search = Search(case=case, deadline=began + settings.time_cap)
-    grid, outcome, confirmed = _confirm(search, *_find(search, start))
+    with at(stage='smooth contact' if roughness is None else 'rough contact'):
+        grid, outcome, confirmed = _confirm(search, *_find(search, start))
     status = _status(search, grid, outcome) if confirmed else Status.GRID_TOO_COARSE
     if status is Status.CONVERGED:
         search.estimate(grid, outcome)
@@ -84,12 +86,13 @@ def prepare() -> None:
         )
         grid = search.case.grid(17, 17, symmetric=roughness is None)
         problem = search.case.problem(grid, 1.0, search.case.shape_heights(grid), 2.0)
-        search.solve(
-            grid,
-            problem,
-            search.case.hertz_state(grid, 1.0),
-            search.limits(rough=True, final=True),
-        )
+        with at(stage='loading'):
+            search.solve(
+                grid,
+                problem,
+                search.case.hertz_state(grid, 1.0),
+                search.limits(rough=True, final=True),
+            )
 
 
 def _find(search: Search, start: ContactSolution | None) -> Found:
@@ -105,7 +108,7 @@ def _find(search: Search, start: ContactSolution | None) -> Found:
     return search.thin() if case.touches and speed else search.smooth(speed, final=True)
 
 
-def _status(search: Search, grid: Grid, outcome: Outcome) -> Status:
+def _status(search: Search, grid: Grid, outcome: NewtonResult) -> Status:
     """Judge an outcome."""
     case = search.case
     if outcome.out_of_time:
@@ -122,7 +125,7 @@ def _status(search: Search, grid: Grid, outcome: Outcome) -> Status:
     return Status.CONVERGED
 
 
-def _confirm(search: Search, grid: Grid, outcome: Outcome) -> tuple[Grid, Outcome, bool]:
+def _confirm(search: Search, grid: Grid, outcome: NewtonResult) -> tuple[Grid, NewtonResult, bool]:
     """
     Solve a smooth contact that touches on finer grids, until it does not or is confirmed.
 
@@ -149,7 +152,7 @@ def _confirm(search: Search, grid: Grid, outcome: Outcome) -> tuple[Grid, Outcom
     return grid, outcome, settings.refine or not outcome.contact.any()
 
 
-def _finer(search: Search, case: Case, grid: Grid, outcome: Outcome) -> Found:
+def _finer(search: Search, case: ScaledCase, grid: Grid, outcome: NewtonResult) -> Found:
     """Solve on a finer grid, from the coarser one or else from cold."""
     speed, settings = case.condition.entrainment_speed, case.settings
     finer = case.grid(settings.nx, settings.ny, symmetric=True)
@@ -171,7 +174,7 @@ def _finer(search: Search, case: Case, grid: Grid, outcome: Outcome) -> Found:
     return finer, found
 
 
-def _touches_edge(case: Case, grid: Grid, outcome: Outcome) -> bool:
+def _touches_edge(case: ScaledCase, grid: Grid, outcome: NewtonResult) -> bool:
     """Tell whether the last rows of nodes before outlet and sides carry part of the load."""
     pressure = outcome.state.film_pressure + outcome.state.asperity_pressure
     edge = np.zeros(grid.shape)

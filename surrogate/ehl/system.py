@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.ehl.grid import Grid, State
+from surrogate.ehl.grid import Grid, GridState
 from surrogate.ehl.half_space import deform
 from surrogate.ehl.kernels.reynolds import (
     contact_set,
@@ -27,7 +27,7 @@ Mask = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Problem:
+class GridProblem:
     """
     Equations on one grid, in Hertz units [-].
 
@@ -69,7 +69,7 @@ class Evaluation:
     gap_error: float
 
 
-def evaluate(grid: Grid, problem: Problem, state: State) -> Evaluation:
+def evaluate(grid: Grid, problem: GridProblem, state: GridState) -> Evaluation:
     """Evaluate all equations at a state."""
     shape = grid.shape
     pressure = state.film_pressure
@@ -114,7 +114,7 @@ def evaluate(grid: Grid, problem: Problem, state: State) -> Evaluation:
 
 
 def film_rows(
-    grid: Grid, problem: Problem, pressure: Array, gap: Array, contact: Mask
+    grid: Grid, problem: GridProblem, pressure: Array, gap: Array, contact: Mask
 ) -> tuple[Array, Array, Array, Array]:
     """Return Reynolds' residual, its planes by pressure and by gap, and the film [-]."""
     residual, film = np.zeros(grid.shape), np.empty((7, *grid.shape))

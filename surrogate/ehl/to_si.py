@@ -4,15 +4,17 @@
 
 from dataclasses import dataclass
 import math
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.ehl.case import Case
-from surrogate.ehl.grid import Grid, State, transfer
+from surrogate.ehl.case import ScaledCase
+from surrogate.ehl.grid import Grid, GridState, transfer
 from surrogate.ehl.interface import ContactSolution, Status
-from surrogate.ehl.newton import Outcome
+from surrogate.ehl.newton import NewtonResult
 
 Array = NDArray[np.float64]
+Kind = TypeVar('Kind', bound=np.generic)
 THICK, CUT_OFF = (1.0, 5.0, 40.0), (0.0, 0.15, 0.3)
 """Films over a^2/Rx, and what the domain cuts off them [-]: bodies that hardly deform."""
 PUNCTURED = 1.001
@@ -43,9 +45,9 @@ def punctured_nodes(solution: ContactSolution) -> NDArray[np.bool_]:
 
 
 def make_solution(
-    case: Case,
+    case: ScaledCase,
     grid: Grid,
-    outcome: Outcome,
+    outcome: NewtonResult,
     status: Status,
     *,
     half: Half,
@@ -87,7 +89,7 @@ def make_solution(
     )
 
 
-def _numbers(case: Case, grid: Grid, outcome: Outcome, half: Half) -> dict[str, float]:
+def _numbers(case: ScaledCase, grid: Grid, outcome: NewtonResult, half: Half) -> dict[str, float]:
     """Return what is known of a converged contact only, in SI units."""
     height, pressure, state = case.height_unit, case.hertz_pressure, outcome.state
     own = film_and_share(case, grid, outcome)
@@ -109,7 +111,7 @@ def _numbers(case: Case, grid: Grid, outcome: Outcome, half: Half) -> dict[str, 
     }
 
 
-def film_and_share(case: Case, grid: Grid, outcome: Outcome) -> Half:
+def film_and_share(case: ScaledCase, grid: Grid, outcome: NewtonResult) -> Half:
     """Return the films [Hertz units] and the share of the load on punctured nodes [-]."""
     total = outcome.state.film_pressure + outcome.state.asperity_pressure
     punctured = outcome.gap <= PUNCTURED * case.floor
@@ -120,7 +122,7 @@ def film_and_share(case: Case, grid: Grid, outcome: Outcome) -> Half:
     )
 
 
-def _full(grid: Grid, field: NDArray) -> NDArray:
+def _full(grid: Grid, field: NDArray[Kind]) -> NDArray[Kind]:
     """Return a field on the full width."""
     if not grid.symmetric:
         return field.copy()
@@ -144,7 +146,7 @@ def _rolling(grid: Grid, gap: Array, pressure: Array, inlet: Array) -> float:
     return grid.integral(0.25 * (gap[1:] + gap[:-1]) * rise / grid.dx)
 
 
-def _rolling_tail(case: Case) -> float:
+def _rolling_tail(case: ScaledCase) -> float:
     """
     Return the rolling force [N] between the meniscus and the inlet edge of the domain.
 
@@ -166,7 +168,7 @@ def _rolling_tail(case: Case) -> float:
     return 6 * case.lubricant.viscosity * case.condition.entrainment_speed * integral
 
 
-def state_from_solution(case: Case, grid: Grid, start: ContactSolution) -> State:
+def state_from_solution(case: ScaledCase, grid: Grid, start: ContactSolution) -> GridState:
     """Return the fields of another solution on `grid`; at rest asperities carry all pressure."""
     old = Grid(
         x=start.x / start.semi_axis_x,
@@ -175,7 +177,7 @@ def state_from_solution(case: Case, grid: Grid, start: ContactSolution) -> State
         compliance=grid.compliance,
     )
     height = start.semi_axis_x**2 / start.contact.radius_x
-    state = State(
+    state = GridState(
         film_pressure=start.film_pressure / start.hertz_pressure,
         asperity_pressure=start.asperity_pressure / start.hertz_pressure,
         approach=-start.approach / height,
@@ -183,7 +185,7 @@ def state_from_solution(case: Case, grid: Grid, start: ContactSolution) -> State
     state = transfer(state, old, grid)
     if case.condition.entrainment_speed:
         return state
-    return State(
+    return GridState(
         film_pressure=np.zeros(grid.shape),
         approach=state.approach,
         asperity_pressure=state.film_pressure + state.asperity_pressure,

@@ -11,7 +11,6 @@ elastic hysteresis are left to the full model.
 """
 
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -25,13 +24,12 @@ from surrogate.formulas.film import (
 )
 from surrogate.formulas.geometry import Hertz, hertz, screw_contact, Side, SIDES
 from surrogate.formulas.kinematics import no_slip_rates
-from surrogate.formulas.load_sharing import normal_force, nut_forces
+from surrogate.formulas.load_sharing import normal_force, nut_forces, NutName
 from surrogate.formulas.lubricant import lubricant_state, LubricantState
 from surrogate.formulas.sliding import sliding_friction
 from surrogate.parameters import Lubricant, Screw
 
 Array = NDArray[np.float64]
-Nut = Literal['loaded', 'relieved']
 TIER = 'closed_form'
 
 
@@ -46,7 +44,7 @@ class ContactResult:
 
     """
 
-    nut: Nut
+    nut: NutName
     side: Side
     normal_force: Array
     ellipse: Hertz
@@ -101,7 +99,7 @@ def solve(
     )
     oil = lubricant_state(lubricant, temperature)
     forces = nut_forces(load, screw.preload)
-    nuts: tuple[tuple[Nut, Array], ...] = (('loaded', forces[0]), ('relieved', forces[1]))
+    nuts: tuple[tuple[NutName, Array], ...] = (('loaded', forces[0]), ('relieved', forces[1]))
     contacts = tuple(
         _solve_contact(screw, nut, side, normal_force(screw, force), oil, speed)
         for nut, force in nuts
@@ -111,7 +109,7 @@ def solve(
 
 
 def _solve_contact(
-    screw: Screw, nut: Nut, side: Side, force: Array, oil: LubricantState, speed: Array
+    screw: Screw, nut: NutName, side: Side, force: Array, oil: LubricantState, speed: Array
 ) -> ContactResult:
     contact, balls = screw_contact(screw, side), screw.loaded_balls_per_nut
     arm = no_slip_rates(screw).entrainment

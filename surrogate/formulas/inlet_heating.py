@@ -61,7 +61,7 @@ def heated_speed(
             'the fitted film factor is not known where it falls below '
             f'{LEAST_FACTOR:g}; leave --inlet-heating off'
         )
-    return speed * factor ** (1 / SPEED_EXPONENT)
+    return float(speed * factor ** (1 / SPEED_EXPONENT))
 
 
 def viscosity_slope(lubricant: Lubricant, temperature: float) -> float:

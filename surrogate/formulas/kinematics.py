@@ -84,4 +84,5 @@ def slip_arm(
     deformed_radius = 2 * f * screw.ball_diameter / (1 + 2 * f)
     relative_rolling = rates.entrainment / screw_contact(screw, side).radius_x
     bulge = (y * y - np.asarray(semi_axis_y) ** 2 / 5) / (2 * deformed_radius)
-    return np.hypot(rates.spin * y - relative_rolling * bulge, rates.helical_slip - rates.spin * x)
+    along = rates.spin * y - relative_rolling * bulge
+    return np.asarray(np.hypot(along, rates.helical_slip - rates.spin * x))

@@ -3,6 +3,7 @@
 """Load sharing of the two nuts of a preloaded pair."""
 
 import math
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -10,9 +11,13 @@ from surrogate.formulas.geometry import helix_angle
 from surrogate.parameters import Screw
 
 Array = NDArray[np.float64]
+NutName = Literal['loaded', 'relieved']
+"""Nut that a load presses, and the one that it relieves."""
 
 UNLOADING_RATIO = 2.0**1.5
 """Axial load over preload at which the relieved nut carries nothing [-]."""
+IDLE_SHARE = 1e-3
+"""Force of the relieved nut over that of the loaded one below which it counts as idle [-]."""
 
 
 def nut_forces(load: ArrayLike, preload: float) -> tuple[Array, Array]:
@@ -40,3 +45,15 @@ def normal_force(screw: Screw, nut_force: ArrayLike) -> Array:
         screw.loaded_balls_per_nut * math.sin(screw.contact_angle) * math.cos(helix_angle(screw))
     )
     return np.asarray(nut_force) / share
+
+
+def idle_load(screw: Screw) -> float:
+    """
+    Return the axial load [N] from which on the relieved nut is idle; 0 without preload.
+
+    Where F_R = e F_L with the least share e = `IDLE_SHARE`, of F_L^(2/3) + F_R^(2/3) = 2
+    F_pre^(2/3).
+
+    """
+    loaded = screw.preload * (2 / (1 + IDLE_SHARE ** (2 / 3))) ** 1.5
+    return float((1 - IDLE_SHARE) * loaded)

@@ -26,8 +26,6 @@ Array = NDArray[np.float64]
 
 RADIAL_NODES, ANGULAR_NODES = 12, 24
 """Quadrature of the ellipse: torque within 3e-4 of a grid four times finer each way."""
-
-
 HYSTERESIS = 3 / 32
 """Work of Hertz's pressure on the front half of the ellipse, as a force over Q b / Rx [-]."""
 
@@ -51,10 +49,22 @@ def ellipse_nodes(
     """Return nodes x, y on the unit disk [-] and weights that sum to pi [-], all flat."""
     points, weights = np.polynomial.legendre.leggauss(radial)
     radius = 0.5 * (points + 1)
+    return polar_nodes(radius, 0.5 * weights * radius, angular, around=2 * np.pi)
+
+
+def polar_nodes(
+    radius: Array, ring: Array, angular: int, *, around: float
+) -> tuple[Array, Array, Array]:
+    """
+    Return x, y on rings of `angular` nodes [-] and their weights, all flat.
+
+    `radius` of each ring and its weight `ring`, of a turn that counts `around` [-].
+
+    """
     angle = (np.arange(angular) + 0.5) * 2 * np.pi / angular
     x, y = np.outer(radius, np.cos(angle)), np.outer(radius, np.sin(angle))
-    area = np.outer(0.5 * weights * radius, np.full(angular, 2 * np.pi / angular))
-    return x.ravel(), y.ravel(), area.ravel()
+    weight = np.outer(ring, np.full(angular, around / angular))
+    return x.ravel(), y.ravel(), weight.ravel()
 
 
 def sliding_friction(

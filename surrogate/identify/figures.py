@@ -5,18 +5,14 @@
 from pathlib import Path
 
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullFormatter
 import numpy as np
-from surrogate.files import new_file
 from surrogate.identify.data import Array, NoLoadRun
 from surrogate.identify.fit import Identification
+from surrogate.plotting.style import BLUE, draw_picture, GREY, new_figure, VERMILION
 from surrogate.units import MILLI, RPM
 
-DPI = 110  # [1/inch]
-BLUE, VERMILION, GREY = '#0072b2', '#d55e00', '#6f6f6f'
-"""Colours that colour-blind readers and a black and white print keep apart."""
 DIRECTIONS = ((1.0, 'o', 'positive'), (-1.0, 's', 'negative'))
 LOG_SPAN = 20.0
 """Largest speed over smallest from which on the speed axis is logarithmic [-]."""
@@ -26,12 +22,16 @@ HEADROOM = 1.35
 
 def draw_identification(folder: Path, run: NoLoadRun, found: Identification, title: str) -> Path:
     """Write `identify.png` to a folder and return its path."""
-    figure = Figure(figsize=(7.0, 6.2), dpi=DPI, layout='constrained')
-    FigureCanvasAgg(figure)
+    return draw_picture(folder / 'identify.png', lambda: figure_identification(run, found, title))
+
+
+def figure_identification(run: NoLoadRun, found: Identification, title: str) -> Figure:
+    """Return torque over speed above, the residual below."""
+    figure = new_figure(7.0, 6.2)
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=[1.6, 1.0])
     _draw_torque(upper, run, found)
     _draw_residual(lower, run, found)
-    upper.set_title(title, fontsize=10)
+    upper.set_title(title)
     speed = np.abs(run.speed)
     if speed.max() > LOG_SPAN * speed.min():
         lower.set_xscale('log')
@@ -39,12 +39,8 @@ def draw_identification(folder: Path, run: NoLoadRun, found: Identification, tit
         lower.xaxis.set_major_formatter('{x:g}')
         lower.xaxis.set_minor_formatter(NullFormatter())
     for axes in (upper, lower):
-        axes.grid(visible=True, color='#e6e6e6', linewidth=0.6)
-        axes.set_axisbelow(True)
-    path = folder / 'identify.png'
-    with new_file(path) as file:
-        figure.savefig(file, format='png')
-    return path
+        axes.grid(visible=True)
+    return figure
 
 
 def _draw_torque(axes: Axes, run: NoLoadRun, found: Identification) -> None:
@@ -57,7 +53,7 @@ def _draw_torque(axes: Axes, run: NoLoadRun, found: Identification) -> None:
     for sign, _, name in _directions(run):
         chosen = order[run.direction[order] == sign]
         axes.plot(
-            RPM * np.abs(run.speed[chosen]),
+            np.abs(run.speed[chosen]) / RPM,
             MILLI * sign * found.before[chosen],
             color=GREY,
             linewidth=1.2,
@@ -65,7 +61,7 @@ def _draw_torque(axes: Axes, run: NoLoadRun, found: Identification) -> None:
             label=f'model, datasheet{name}',
         )
         axes.plot(
-            RPM * np.abs(run.speed[chosen]),
+            np.abs(run.speed[chosen]) / RPM,
             MILLI * sign * found.after[chosen],
             color=BLUE,
             linewidth=1.3,
@@ -75,7 +71,7 @@ def _draw_torque(axes: Axes, run: NoLoadRun, found: Identification) -> None:
     _draw_points(axes, run, run.torque, 'measured')
     axes.set_ylim(0 if (run.direction * run.torque > 0).all() else None)
     axes.set_ylabel('torque along the motion [mN m]')
-    axes.legend(frameon=False, fontsize=8)
+    axes.legend(frameon=False)
 
 
 def _draw_residual(axes: Axes, run: NoLoadRun, found: Identification) -> None:
@@ -89,7 +85,7 @@ def _draw_residual(axes: Axes, run: NoLoadRun, found: Identification) -> None:
     axes.set_ylim(top=HEADROOM * axes.get_ylim()[1])
     axes.set_ylabel('measured - model [mN m]')
     axes.set_xlabel('screw speed [rev/min]')
-    axes.legend(frameon=False, fontsize=8, loc='upper right')
+    axes.legend(frameon=False, loc='upper right')
 
 
 def _draw_points(axes: Axes, run: NoLoadRun, torque: Array, label: str) -> None:
@@ -97,7 +93,7 @@ def _draw_points(axes: Axes, run: NoLoadRun, torque: Array, label: str) -> None:
     for sign, marker, name in _directions(run):
         chosen = run.direction == sign
         axes.errorbar(
-            RPM * np.abs(run.speed[chosen]),
+            np.abs(run.speed[chosen]) / RPM,
             MILLI * sign * torque[chosen],
             yerr=None if run.torque_std is None else MILLI * run.torque_std[chosen],
             fmt=marker,

@@ -19,7 +19,7 @@ from scipy.optimize import least_squares
 from surrogate.identify.data import Array, NoLoadRun
 from surrogate.identify.intervals import correlation, covariance, student_factor, undetermined
 from surrogate.identify.model import ContactModel
-from surrogate.identify.problem import drag_problem, Problem
+from surrogate.identify.problem import drag_problem, DragProblem
 from surrogate.parameters import Screw
 
 Loss = Literal['linear', 'soft_l1']
@@ -32,7 +32,7 @@ MEDIAN_TO_SPREAD = 1.4826
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Estimate:
+class ParameterEstimate:
     """
     One parameter in SI units: value, ends of the 95 % interval, standard error.
 
@@ -62,7 +62,7 @@ class Identification:
     """
 
     converged: bool
-    estimates: tuple[Estimate, ...]
+    estimates: tuple[ParameterEstimate, ...]
     correlated: tuple[str, ...]
     correlation: Array
     before: Array
@@ -126,7 +126,7 @@ def identify(
 
 
 def _fit(
-    problem: Problem, start: Array, held: Mapping[str, str], sigma: Array, spread: float = 0.0
+    problem: DragProblem, start: Array, held: Mapping[str, str], sigma: Array, spread: float = 0.0
 ) -> _Fit:
     """Minimise over the parameters that are not held; residuals over `sigma` [N m]."""
     free = np.array([name not in held for name in problem.names])
@@ -153,7 +153,7 @@ def _fit(
     return _Fit(values=values(found.x), converged=bool(found.success), spread=spread)
 
 
-def _scatter(problem: Problem, fit: _Fit, held: Mapping[str, str], sigma: Array) -> _Scatter:
+def _scatter(problem: DragProblem, fit: _Fit, held: Mapping[str, str], sigma: Array) -> _Scatter:
     """Return how sure the parameters are; one at a bound counts as known."""
     reasons = dict(held) | problem.at_bounds(fit.values)
     free = [place for place, name in enumerate(problem.names) if name not in reasons]
@@ -167,7 +167,7 @@ def _scatter(problem: Problem, fit: _Fit, held: Mapping[str, str], sigma: Array)
     )
 
 
-def _result(problem: Problem, fit: _Fit, scatter: _Scatter, sigma: Array) -> Identification:
+def _result(problem: DragProblem, fit: _Fit, scatter: _Scatter, sigma: Array) -> Identification:
     run, values = problem.run, fit.values
     residual, jacobian = problem.residual(values), problem.jacobian(values)
     width = student_factor(scatter.freedom)
@@ -195,13 +195,13 @@ def _result(problem: Problem, fit: _Fit, scatter: _Scatter, sigma: Array) -> Ide
 
 
 def _estimate(
-    problem: Problem, values: Array, scatter: _Scatter, width: float, place: int
-) -> Estimate:
+    problem: DragProblem, values: Array, scatter: _Scatter, width: float, place: int
+) -> ParameterEstimate:
     name, value = problem.names[place], float(values[place])
     if name in scatter.reasons:
-        return Estimate(name=name, value=value, reason=scatter.reasons[name])
+        return ParameterEstimate(name=name, value=value, reason=scatter.reasons[name])
     error = math.sqrt(scatter.covariance[place, place])
-    return Estimate(
+    return ParameterEstimate(
         name=name,
         value=value,
         low=value - width * error,

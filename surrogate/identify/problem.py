@@ -32,7 +32,7 @@ AT_BOUND = 1e-9
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Problem:
+class DragProblem:
     """
     A run, its contacts, and the parameters in SI units.
 
@@ -119,7 +119,7 @@ class Problem:
 
 def drag_problem(
     screw: Screw, run: NoLoadRun, contacts: ContactModel, fitted: Sequence[str]
-) -> Problem:
+) -> DragProblem:
     """
     Return what is fitted: both parasitic parts, the offset if it shows, and those `fitted`.
 
@@ -130,7 +130,7 @@ def drag_problem(
         raise InputError(f'{run.source}: holds no point in motion')
     rows = _rows(screw, run, fitted)
     names, scale, low, high, start = zip(*rows)
-    problem = Problem(
+    problem = DragProblem(
         run=run,
         contacts=contacts,
         names=names,
@@ -164,7 +164,7 @@ def _rows(
     return rows
 
 
-def _check(problem: Problem) -> None:
+def _check(problem: DragProblem) -> None:
     """Refuse a run from which the parameters cannot follow."""
     run, wanted = problem.run, len(problem.names) + SPARE_POINTS
     speed = np.abs(run.speed) / RPM

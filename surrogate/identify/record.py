@@ -12,7 +12,7 @@ from surrogate.formulas import closed_form
 from surrogate.formulas.geometry import helix_angle
 from surrogate.formulas.torque import drag_torque_catalogue
 from surrogate.identify.data import NoLoadRun
-from surrogate.identify.fit import Estimate, Identification
+from surrogate.identify.fit import Identification, ParameterEstimate
 from surrogate.identify.model import ContactModel, thickened
 from surrogate.parameters import Lubricant, Screw
 from surrogate.units import RPM, ZERO_CELSIUS
@@ -68,7 +68,7 @@ def identification_record(
     }
 
 
-def _estimate_record(one: Estimate) -> dict[str, Any]:
+def _estimate_record(one: ParameterEstimate) -> dict[str, Any]:
     return {
         'name': one.name,
         'unit': UNITS[one.name],
@@ -184,7 +184,7 @@ def _provenance(run: NoLoadRun, contacts: ContactModel, found: Identification) -
     )
 
 
-def _sentence(one: Estimate) -> str:
+def _sentence(one: ParameterEstimate) -> str:
     unit = f' {UNITS[one.name]}' if UNITS[one.name] != '-' else ''
     if one.reason:
         return f'{one.name} {one.value:.5g}{unit} ({one.reason})'

@@ -10,7 +10,7 @@ contacts for every viscosity and every friction coefficient of the table, which 
 
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 import math
 
@@ -28,6 +28,7 @@ from surrogate.identify.model import (
     VISCOSITY_BOUNDS,
 )
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
+from surrogate.progress import OnProgress
 from surrogate.screw.contacts import ScrewSettings
 from surrogate.screw.solve import rebalance_screw, ScrewSolution, solve_screw, TIER
 from surrogate.units import RPM
@@ -46,8 +47,6 @@ TEMPERATURE_SPREAD, LOAD_SPREAD = 10.0, 0.1
 """Largest distance from the mean temperature [K], and from the mean load over the preload [-]."""
 SAME_VISCOSITY = 1e-3
 """Spread of the viscosity that counts as none [-]."""
-
-Progress = Callable[[int, int], None]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -84,7 +83,7 @@ def solved_model(
     fitted: Sequence[str] = (),
     *,
     settings: ScrewSettings | None = None,
-    progress: Progress | None = None,
+    progress: OnProgress | None = None,
 ) -> ContactModel:
     """
     Solve the table of a run for the `fitted` parameters and return what interpolates it.
@@ -123,7 +122,7 @@ def _solve_table(
     factors: Array,
     frictions: Array,
     settings: ScrewSettings | None,
-    progress: Progress,
+    progress: OnProgress,
 ) -> _Table:
     torque, shares = np.empty((len(nodes), len(factors), len(frictions))), np.empty(len(nodes))
     progress(0, len(nodes))

@@ -30,7 +30,7 @@ class Cancelled(Exception):
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class SolvedPoint:
+class PointOverDraws:
     """
     A point over its draws: means, deviations and standard errors of the fields of a surface [SI].
 
@@ -53,7 +53,7 @@ def solve_point(
     *,
     progress: Progress = lambda step: None,
     cancel: Callable[[], bool] = lambda: False,
-) -> SolvedPoint:
+) -> PointOverDraws:
     """
     Solve the point of a request by the full tier, for as many draws as it asks for.
 
@@ -75,14 +75,14 @@ def solve_point(
             watcher.draw = draw
             found.append(solve_screw(screw, oil, point, settings=replace(settings, draw=draw)))
             if not found[-1].converged:
-                return SolvedPoint(converged=False, status=found[-1].status, draws=draws)
+                return PointOverDraws(converged=False, status=found[-1].status, draws=draws)
     return _combined(found)
 
 
-def _combined(found: list[ScrewSolution]) -> SolvedPoint:
+def _combined(found: list[ScrewSolution]) -> PointOverDraws:
     """Return the numbers of a point over its draws."""
     spreads = {name: spread([getattr(one, name) for one in found]) for name in FIELDS}
-    return SolvedPoint(
+    return PointOverDraws(
         converged=True,
         status=found[0].status,
         draws=len(found),
@@ -125,7 +125,7 @@ class _Watcher:
         return min(done / self._total, 1.0)
 
 
-def solved_frame(found: SolvedPoint) -> dict[str, Any]:
+def solved_frame(found: PointOverDraws) -> dict[str, Any]:
     """Return a solved point as plain JSON."""
     return {
         'converged': found.converged,

@@ -22,7 +22,7 @@ SMOOTH = -1
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Case:
+class Assumptions:
     """
     Assumptions of a contact; None leaves ours.
 
@@ -38,19 +38,19 @@ class Case:
 
 OURS, RELIEVED, SHORT, THIN, HIGH = 'ours', 'relieved nut', 'short inlet', 'thin oil', 'high floor'
 CASES = {
-    OURS: Case(),
-    RELIEVED: Case(nut='relieved'),
+    OURS: Assumptions(),
+    RELIEVED: Assumptions(nut='relieved'),
     # With so little inlet the viscosity is what makes the published film of 153 nm.
-    SHORT: Case(inlet=1.5, viscosity=0.113),
+    SHORT: Assumptions(inlet=1.5, viscosity=0.113),
     # ISO VG 68 at 80 degC.
-    THIN: Case(viscosity=0.0144),
-    HIGH: Case(film_floor=10e-9),
+    THIN: Assumptions(viscosity=0.0144),
+    HIGH: Assumptions(film_floor=10e-9),
 }
 """Cases by name; `THIN` is the oil of the nominal screw at 80 degC."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Task:
+class StudyTask:
     """
     One solve.
 
@@ -103,75 +103,75 @@ EFFICIENCY_LOAD = 1000.0
 """Axial load at which efficiencies are compared over speed [N], about the preload."""
 
 
-def _fractal(draws: int) -> Iterator[Task]:
-    yield Task(kind='contact', rpm=SLOW, load=PRELOAD, draw=0, fields='map')
+def _fractal(draws: int) -> Iterator[StudyTask]:
+    yield StudyTask(kind='contact', rpm=SLOW, load=PRELOAD, draw=0, fields='map')
 
 
-def _stribeck(draws: int) -> Iterator[Task]:
+def _stribeck(draws: int) -> Iterator[StudyTask]:
     for draw in range(screw_draws(draws)):
         for rpm in STRIBECK_SPEEDS:
-            yield Task(kind='screw', rpm=rpm, load=PRELOAD, draw=draw)
+            yield StudyTask(kind='screw', rpm=rpm, load=PRELOAD, draw=draw)
 
 
-def _smooth_speed(draws: int) -> Iterator[Task]:
+def _smooth_speed(draws: int) -> Iterator[StudyTask]:
     for rpm in SMOOTH_SPEEDS:
-        yield Task(kind='contact', rpm=rpm, load=PRELOAD, fields='line')
+        yield StudyTask(kind='contact', rpm=rpm, load=PRELOAD, fields='line')
 
 
-def _smooth_load(draws: int) -> Iterator[Task]:
+def _smooth_load(draws: int) -> Iterator[StudyTask]:
     for load in LOADS:
-        yield Task(kind='contact', rpm=MARK_RPM, load=load, fields='line')
+        yield StudyTask(kind='contact', rpm=MARK_RPM, load=load, fields='line')
     for load in RELIEVED_LOADS:
-        yield Task(kind='contact', rpm=MARK_RPM, load=load, case=RELIEVED)
+        yield StudyTask(kind='contact', rpm=MARK_RPM, load=load, case=RELIEVED)
 
 
-def _rough_speed(draws: int) -> Iterator[Task]:
+def _rough_speed(draws: int) -> Iterator[StudyTask]:
     for rpm in ROUGH_SPEEDS:
-        yield Task(kind='contact', rpm=rpm, load=PRELOAD, draw=0, fields='line')
+        yield StudyTask(kind='contact', rpm=rpm, load=PRELOAD, draw=0, fields='line')
 
 
-def _rough_load(draws: int) -> Iterator[Task]:
+def _rough_load(draws: int) -> Iterator[StudyTask]:
     for load in ROUGH_LOADS:
-        yield Task(kind='contact', rpm=SLOW, load=load, draw=0, fields='line')
+        yield StudyTask(kind='contact', rpm=SLOW, load=load, draw=0, fields='line')
     for draw in range(draws):
         for load in ROUGH_LOADS:
             for rpm in (SLOW, ONSET, MARK_RPM):
-                yield Task(kind='contact', rpm=rpm, load=load, draw=draw)
-        yield Task(kind='contact', rpm=CLEAR, load=PRELOAD, draw=draw)
+                yield StudyTask(kind='contact', rpm=rpm, load=load, draw=draw)
+        yield StudyTask(kind='contact', rpm=CLEAR, load=PRELOAD, draw=draw)
         for load in ROUGH_LOADS[1:]:
-            yield Task(kind='contact', rpm=ONSET, load=load, draw=draw, case=RELIEVED)
+            yield StudyTask(kind='contact', rpm=ONSET, load=load, draw=draw, case=RELIEVED)
 
 
-def _film_speed(draws: int) -> Iterator[Task]:
+def _film_speed(draws: int) -> Iterator[StudyTask]:
     yield from _stribeck(draws)
     for rpm in STRIBECK_SPEEDS:
-        yield Task(kind='contact', rpm=rpm, load=PRELOAD)
+        yield StudyTask(kind='contact', rpm=rpm, load=PRELOAD)
 
 
-def _maps(draws: int) -> Iterator[Task]:
+def _maps(draws: int) -> Iterator[StudyTask]:
     for draw in range(map_draws(draws)):
         for load in MAP_LOADS:
             for rpm in MAP_SPEEDS:
-                yield Task(kind='screw', rpm=rpm, load=load, draw=draw)
+                yield StudyTask(kind='screw', rpm=rpm, load=load, draw=draw)
 
 
-def _alternatives(draws: int) -> Iterator[Task]:
+def _alternatives(draws: int) -> Iterator[StudyTask]:
     yield from _maps(draws)
     yield from _smooth_load(draws)
     yield from _rough_load(draws)
     yield from _stribeck(draws)
     for load in LOADS:
-        yield Task(kind='contact', rpm=MARK_RPM, load=load, case=SHORT)
-        yield Task(kind='formulas', rpm=MARK_RPM, load=load)
-        yield Task(kind='formulas', rpm=SLOW, load=load)
+        yield StudyTask(kind='contact', rpm=MARK_RPM, load=load, case=SHORT)
+        yield StudyTask(kind='formulas', rpm=MARK_RPM, load=load)
+        yield StudyTask(kind='formulas', rpm=SLOW, load=load)
     for rpm in sorted({*STRIBECK_SPEEDS, *MAP_SPEEDS}):
-        yield Task(kind='formulas', rpm=rpm, load=PRELOAD)
-        yield Task(kind='formulas', rpm=rpm, load=EFFICIENCY_LOAD)
-    yield Task(kind='contact', rpm=MARK_RPM, load=PRELOAD, case=THIN)
+        yield StudyTask(kind='formulas', rpm=rpm, load=PRELOAD)
+        yield StudyTask(kind='formulas', rpm=rpm, load=EFFICIENCY_LOAD)
+    yield StudyTask(kind='contact', rpm=MARK_RPM, load=PRELOAD, case=THIN)
     for draw in range(screw_draws(draws)):
         for rpm in OTHER_SPEEDS:
-            yield Task(kind='contact', rpm=rpm, load=PRELOAD, draw=draw, case=THIN)
-            yield Task(kind='contact', rpm=rpm, load=PRELOAD, draw=draw, case=HIGH)
+            yield StudyTask(kind='contact', rpm=rpm, load=PRELOAD, draw=draw, case=THIN)
+            yield StudyTask(kind='contact', rpm=rpm, load=PRELOAD, draw=draw, case=HIGH)
 
 
 NEEDS = {
@@ -199,7 +199,7 @@ def map_draws(draws: int) -> int:
     return max(1, draws // 6)
 
 
-def tasks(figures: tuple[str, ...], draws: int) -> list[Task]:
+def tasks(figures: tuple[str, ...], draws: int) -> list[StudyTask]:
     """
     Return every task of some figures once, in order; what keeps most fields is the one kept.
 
@@ -208,7 +208,7 @@ def tasks(figures: tuple[str, ...], draws: int) -> list[Task]:
     """
     if draws < 1:
         raise InputError(f'draws is {draws}, allowed is 1 or more')
-    found: dict[str, Task] = {}
+    found: dict[str, StudyTask] = {}
     for figure in figures:
         if figure not in NEEDS:
             raise InputError(f'figure is {figure!r}, allowed are {", ".join(NEEDS)}')

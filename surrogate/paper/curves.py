@@ -10,13 +10,13 @@ from typing import Any, Literal
 import numpy as np
 from surrogate.formulas.geometry import helix_angle
 from surrogate.formulas.load_sharing import nut_forces
+from surrogate.formulas.record import CONSTANT_FRICTION
 from surrogate.formulas.torque import efficiency, torque_constant_friction
 from surrogate.paper.cases import OURS, SMOOTH
-from surrogate.paper.rows import Array, Row
+from surrogate.paper.rows import Array, StudyRow
 from surrogate.parameters import Screw
-from surrogate.screw.formula_record import CONSTANT_FRICTION
 
-Axis = Literal['rpm', 'load']
+Along = Literal['rpm', 'load']
 NO_CONTACT = 1e-6
 """RCS that stands for none on logarithmic scales [-]."""
 
@@ -38,7 +38,7 @@ class Curve:
     draws: int
 
 
-def pick(rows: Iterable[Row], **wanted: Any) -> list[Row]:
+def pick(rows: Iterable[StudyRow], **wanted: Any) -> list[StudyRow]:
     """
     Return the converged rows whose columns have the wanted values, of our own case by default.
 
@@ -56,7 +56,7 @@ def pick(rows: Iterable[Row], **wanted: Any) -> list[Row]:
     ]
 
 
-def curve(rows: Iterable[Row], along: Axis, name: str, **wanted: Any) -> Curve:
+def curve(rows: Iterable[StudyRow], along: Along, name: str, **wanted: Any) -> Curve:
     """Return the mean of a column over draws, along speed or load."""
     groups: dict[float, list[float]] = {}
     for row in pick(rows, **wanted):
@@ -78,7 +78,7 @@ def _deviation(values: list[float]) -> float:
 
 
 def paired_change(
-    rows: Iterable[Row], name: str, along: Axis, first: float, last: float, **wanted: Any
+    rows: Iterable[StudyRow], name: str, along: Along, first: float, last: float, **wanted: Any
 ) -> tuple[float, float, int]:
     """
     Return by how much a column differs between two places, in the same draws.
@@ -120,7 +120,7 @@ def lowest(found: Curve) -> tuple[float, float]:
     return float(found.at[i]), float(found.mean[i])
 
 
-def efficiencies(screw: Screw, rows: Iterable[Row], column: str = 'friction_torque') -> Array:
+def efficiencies(screw: Screw, rows: Iterable[StudyRow], column: str = 'friction_torque') -> Array:
     """Return the efficiency [-] of rows with an opposing load, of the torque in a column."""
     return np.array([efficiency(getattr(row, column), row.load, screw.lead) for row in rows])
 
@@ -134,26 +134,26 @@ def constant_friction_efficiency(screw: Screw, load: float) -> float:
     return load * screw.lead / (2 * math.pi * driving)
 
 
-def mapped(rows: Iterable[Row]) -> list[Row]:
+def mapped(rows: Iterable[StudyRow]) -> list[StudyRow]:
     """Return the rows of the whole screw under load, one per point: means over the draws."""
-    groups: dict[tuple[float, float], list[Row]] = {}
+    groups: dict[tuple[float, float], list[StudyRow]] = {}
     for row in pick(rows, kind='screw'):
         if row.load > 0:
             groups.setdefault((row.load, row.rpm), []).append(row)
-    numbers = [spec.name for spec in fields(Row) if isinstance(spec.default, float)]
+    numbers = [spec.name for spec in fields(StudyRow) if isinstance(spec.default, float)]
     return [
         _mean_row(group, numbers) for _, group in sorted(groups.items(), key=lambda one: one[0])
     ]
 
 
-def _mean_row(rows: list[Row], numbers: list[str]) -> Row:
+def _mean_row(rows: list[StudyRow], numbers: list[str]) -> StudyRow:
     means: dict[str, Any] = {
         name: float(np.mean([getattr(row, name) for row in rows])) for name in numbers
     }
     return replace(rows[0], **means)
 
 
-def grid(rows: Iterable[Row], name: str) -> tuple[Array, Array, Array]:
+def grid(rows: Iterable[StudyRow], name: str) -> tuple[Array, Array, Array]:
     """Return speeds [rev/min], loads [N] and a column of the map; NaN where no draw was solved."""
     found = {(row.load, row.rpm): getattr(row, name) for row in mapped(rows)}
     loads, speeds = (sorted({key[i] for key in found}) for i in (0, 1))

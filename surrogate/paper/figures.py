@@ -1,46 +1,34 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What all pictures of the comparison with the published study share: style, axes, files."""
+"""What all pictures of the comparison with the published study share: captions and axes."""
 
 from collections.abc import Sequence
 from functools import cache
-from pathlib import Path
 import textwrap
 from typing import Any
 
 import matplotlib
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 import numpy as np
-from surrogate.files import new_file
 from surrogate.formulas.kinematics import entrainment_speed_paper
 from surrogate.paper.curves import Curve
 from surrogate.paper.rows import Array
 from surrogate.parameters import load_screw
+from surrogate.plotting.style import new_figure, PURPLE
 from surrogate.units import MILLI, RPM
 
-DPI, WIDTH, CAPTION_LETTERS = 110, 7.2, 118
-"""Resolution [1/inch], width [inch] and letters in a line of a caption."""
-BLUE, VERMILION, GREEN, PURPLE, GREY = '#0072b2', '#d55e00', '#009e73', '#7b2d8e', '#6f6f6f'
-"""Colours that colour-blind readers keep apart; curves differ by line style, too."""
+WIDTH, CAPTION_LETTERS = 7.2, 118
+"""Width [inch] and letters in a line of a caption."""
 STYLES = ('-', '--', '-.', ':', (0, (5, 1, 1, 1, 1, 1)), (0, (1, 1)))
 
 
-def new_figure(height: float, caption: str) -> Figure:
+def captioned_figure(height: float, caption: str) -> Figure:
     """Return an empty figure of a `height` [inch] with a caption below."""
-    figure = Figure(figsize=(WIDTH, height), dpi=DPI, layout='constrained')
-    FigureCanvasAgg(figure)
+    figure = new_figure(WIDTH, height)
     text = textwrap.fill(caption, CAPTION_LETTERS)
     figure.supxlabel(text, x=0.012, ha='left', fontsize=7.5, color='#333333')
     return figure
-
-
-def save(figure: Figure, path: Path) -> Path:
-    """Write a PNG by atomic rename and return its path."""
-    with new_file(path) as file:
-        figure.savefig(file, format='png')
-    return path
 
 
 def shades(count: int) -> list[Any]:
@@ -75,12 +63,11 @@ def speed_axis(axes: Axes, *, label: bool = True, top: bool = True) -> None:
 
 def finish(axes: Axes, letter: str = '', title: str = '', legend: Any = 'best') -> None:
     """Add grid, title and legend."""
-    axes.grid(visible=True, color='#e2e2e2', linewidth=0.6)
-    axes.set_axisbelow(True)
+    axes.grid(visible=True)
     if letter or title:
-        axes.set_title(f'({letter}) {title}' if letter else title, fontsize=9, loc='left')
+        axes.set_title(f'({letter}) {title}' if letter else title, loc='left')
     if legend and axes.get_legend_handles_labels()[0]:
-        axes.legend(fontsize=7, loc=legend, framealpha=0.85, edgecolor='none')
+        axes.legend(fontsize=7, loc=legend)
 
 
 def draw_curve(

@@ -11,23 +11,14 @@ from matplotlib.patches import Ellipse
 import numpy as np
 from surrogate.paper.cases import MARK_RPM, ONSET, RELIEVED, SLOW
 from surrogate.paper.curves import curve, pick
-from surrogate.paper.figures import (
-    BLUE,
-    finish,
-    GREY,
-    limit,
-    many,
-    new_figure,
-    shades,
-    STYLES,
-    VERMILION,
-)
+from surrogate.paper.figures import captioned_figure, finish, limit, many, shades, STYLES
 from surrogate.paper.mark import counted, REPORTED_FILM
-from surrogate.paper.rows import Array, ContactFields, Row
+from surrogate.paper.rows import Array, ContactFields, StudyRow
+from surrogate.plotting.style import BLUE, GREY, VERMILION
 from surrogate.raceway.fractal import FractalSurface
 from surrogate.units import GIGA, MICRO, NANO
 
-Drawn = tuple[Row, ContactFields]
+Drawn = tuple[StudyRow, ContactFields]
 VIEW = 1.3
 """Half width of maps over the semi-axes [-]."""
 WIDE = 0.5e-3
@@ -37,7 +28,7 @@ WIDE = 0.5e-3
 def figure_fractal(drawn: Drawn, raceway: FractalSurface) -> Figure:
     """Return surface, film and asperity pressure of a mixed contact, and a cut along it (4)."""
     row, found = drawn
-    figure = new_figure(
+    figure = captioned_figure(
         6.6,
         f'Draw {row.draw} of the raceway, D 2.68, G 0.97 nm, Rq 0.12 µm over the Hertz rectangle '
         'at unloading, waves down to 20.6 µm; contact of ball and screw (dashed) at '
@@ -62,7 +53,7 @@ def figure_fractal(drawn: Drawn, raceway: FractalSurface) -> Figure:
         _outline(axes, found)
         a, b = MICRO * found.semi_axis_x, MICRO * found.semi_axis_y
         axes.set(xlim=(-VIEW * a, VIEW * a), ylim=(-VIEW * b, VIEW * b), xlabel='x [µm]')
-        axes.set_title(f'({letter})', fontsize=9, loc='left')
+        axes.set_title(f'({letter})', loc='left')
     panels[1].set_ylabel('y across the track [µm]')
     axes = lower.subplots()
     _draw_split(axes, found)
@@ -83,7 +74,7 @@ def _draw_raceway(axes: Axes, found: ContactFields, raceway: FractalSurface) -> 
     bar.ax.tick_params(labelsize=7)
     _outline(axes, found)
     axes.set(xlabel='x [µm]', ylabel='y [µm]', aspect='equal')
-    axes.set_title('(a) 1 mm x 1 mm of one draw', fontsize=9, loc='left')
+    axes.set_title('(a) 1 mm x 1 mm of one draw', loc='left')
 
 
 def _outline(axes: Axes, found: ContactFields) -> None:
@@ -114,7 +105,7 @@ def _span(found: ContactFields) -> tuple[float, float]:
 
 def figure_smooth_speed(drawn: Sequence[Drawn]) -> Figure:
     """Return pressure and film of the smooth contact at several speeds (7)."""
-    figure = new_figure(
+    figure = captioned_figure(
         3.9,
         'Smooth contact of ball and screw, preload only (27.6 N), ISO VG 68 at 40 °C, centre '
         'line. The mark is the published central film at 502.65 mm/s, which is of a rough '
@@ -134,9 +125,9 @@ def figure_smooth_speed(drawn: Sequence[Drawn]) -> Figure:
     return figure
 
 
-def figure_smooth_load(drawn: Sequence[Drawn], rows: Sequence[Row]) -> Figure:
+def figure_smooth_load(drawn: Sequence[Drawn], rows: Sequence[StudyRow]) -> Figure:
     """Return pressure and film of the smooth contact at several loads (8)."""
-    figure = new_figure(
+    figure = captioned_figure(
         3.9,
         'Smooth contact of ball and screw of the loaded nut at 502.65 mm/s, ISO VG 68 at 40 °C, '
         'centre line, for axial loads on the screw; (c) central film of both nuts. The published '
@@ -217,7 +208,7 @@ def figure_rough_load(drawn: Sequence[Drawn]) -> Figure:
 
 
 def _rough_figure(drawn: Sequence[Drawn], titles: Sequence[str], caption: str) -> Figure:
-    figure = new_figure(4.9, caption)
+    figure = captioned_figure(4.9, caption)
     panels = figure.subplots(2, len(drawn), sharex='col', squeeze=False)
     top = 1.1 * GIGA * max(float(_total(found).max()) for _, found in drawn)
     for column, ((row, found), title) in enumerate(zip(drawn, titles, strict=True)):
@@ -241,11 +232,11 @@ def _total(found: ContactFields) -> Array:
     return found.film_pressure + found.asperity_pressure
 
 
-def figure_asperities(rows: Sequence[Row]) -> Figure:
+def figure_asperities(rows: Sequence[StudyRow]) -> Figure:
     """Return RCS and the place of the asperity load over the axial load (10, ensemble)."""
     wanted: dict[str, Any] = {'kind': 'contact', 'rough': True}
     draws = len({row.draw for row in pick(rows, rpm=SLOW, **wanted)})
-    figure = new_figure(
+    figure = captioned_figure(
         3.6,
         'Rough contact of ball and screw in the loaded nut, mean of '
         f'{counted(draws)} and standard deviation, {many((SLOW, ONSET), "rev/min")}. (b) Mean '

@@ -14,20 +14,21 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 import numpy as np
 from scipy.interpolate import PchipInterpolator
+from surrogate.formulas.record import CONSTANT_FRICTION
 from surrogate.formulas.torque import efficiency
 from surrogate.paper.curves import constant_friction_efficiency, grid, NO_CONTACT, pick
-from surrogate.paper.figures import entrainment, finish, GREY, new_figure, PURPLE, shades, STYLES
+from surrogate.paper.figures import captioned_figure, entrainment, finish, shades, STYLES
 from surrogate.paper.mark import counted, EFFICIENCY_LIMIT, RCS_LIMIT
-from surrogate.paper.rows import Array, Row
+from surrogate.paper.rows import Array, StudyRow
 from surrogate.parameters import Screw
-from surrogate.screw.formula_record import CONSTANT_FRICTION
+from surrogate.plotting.style import BLUE, GREY, PURPLE, VERMILION
 
 FINE = 161
 """Points of a map along a side [-]."""
-RCS_COLOUR, ETA_COLOUR = '#d55e00', '#0072b2'
+RCS_COLOUR, ETA_COLOUR = VERMILION, BLUE
 
 
-def fine_map(screw: Screw, rows: Sequence[Row]) -> tuple[Array, Array, Array, Array]:
+def fine_map(screw: Screw, rows: Sequence[StudyRow]) -> tuple[Array, Array, Array, Array]:
     """
     Return speeds [rev/min], loads [N], RCS and efficiency [-] between the nodes of the map.
 
@@ -60,9 +61,9 @@ def _filled(places: Array, line: Array) -> Array:
     return np.interp(places, places[good], line[good])
 
 
-def figure_maps(screw: Screw, rows: Sequence[Row]) -> Figure:
+def figure_maps(screw: Screw, rows: Sequence[StudyRow]) -> Figure:
     """Return maps of RCS and efficiency, and efficiency beside constant friction (12)."""
-    figure = new_figure(
+    figure = captioned_figure(
         6.9,
         f'Nominal screw, ISO VG 68 at 40 °C, full tier, mean of {_draws(rows)}, the nodes (dots) '
         'solved, torque interpolated between them and efficiency derived from it. RCS is that '
@@ -99,7 +100,7 @@ def figure_maps(screw: Screw, rows: Sequence[Row]) -> Figure:
     return figure
 
 
-def _draws(rows: Sequence[Row]) -> str:
+def _draws(rows: Sequence[StudyRow]) -> str:
     """Return how many draws the points of the map have at least."""
     points = [(row.load, row.rpm) for row in pick(rows, kind='screw') if row.load > 0]
     return counted(min(points.count(point) for point in points))
@@ -109,7 +110,7 @@ def _line(axes: Axes, speed: Array, load: Array, field: Array, value: float, col
     axes.contour(entrainment(speed), load, field, [value], colors=[colour], linewidths=2.0)
 
 
-def _map_axes(axes: Axes, rows: Sequence[Row]) -> None:
+def _map_axes(axes: Axes, rows: Sequence[StudyRow]) -> None:
     speeds, loads, solved = grid(rows, 'rcs')
     x, y = np.meshgrid(entrainment(speeds), loads)
     known = np.isfinite(solved)
@@ -119,7 +120,7 @@ def _map_axes(axes: Axes, rows: Sequence[Row]) -> None:
     )
 
 
-def _draw_loads(axes: Axes, screw: Screw, rows: Sequence[Row]) -> None:
+def _draw_loads(axes: Axes, screw: Screw, rows: Sequence[StudyRow]) -> None:
     """Draw efficiency over load at some speeds, and that of constant friction."""
     speeds, loads, torque = grid(rows, 'friction_torque')
     chosen = [i for i, rpm in enumerate(speeds) if rpm in (5.0, 25.0, 300.0, 1000.0)]
@@ -139,14 +140,14 @@ def _draw_loads(axes: Axes, screw: Screw, rows: Sequence[Row]) -> None:
     finish(axes, 'c', 'efficiency over load', legend='lower right')
 
 
-def figure_zone(screw: Screw, rows: Sequence[Row]) -> Figure:
+def figure_zone(screw: Screw, rows: Sequence[StudyRow]) -> Figure:
     """Return the optimal zone in the plane of speed and load (13)."""
-    figure = new_figure(
+    figure = captioned_figure(
         4.6,
         f'Optimal zone (shaded): RCS below {RCS_LIMIT:g} and efficiency {EFFICIENCY_LIMIT:g} or '
         f'more. Nominal screw, ISO VG 68 at 40 °C, full tier, mean of {_draws(rows)}, dots: '
         'solved points. The slow edge moves by a factor of about 1.3 with draw, grid and short '
-        'waves and by 3 to 4 with the film floor (docs/onset.md).',
+        'waves and by 3 to 4 with the film floor (docs/theory/roughness.md).',
     )
     axes = figure.subplots()
     speed, load, rcs, eta = fine_map(screw, rows)

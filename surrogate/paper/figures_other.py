@@ -27,27 +27,18 @@ from surrogate.paper.curves import (
     NO_CONTACT,
     pick,
 )
-from surrogate.paper.figures import (
-    BLUE,
-    entrainment,
-    finish,
-    GREEN,
-    GREY,
-    limit,
-    new_figure,
-    speed_axis,
-    VERMILION,
-)
+from surrogate.paper.figures import captioned_figure, entrainment, finish, limit, speed_axis
 from surrogate.paper.mark import EFFICIENCY_LIMIT, RCS_LIMIT, REPORTED_FILM
 from surrogate.paper.marks_contact import relieved_rows
-from surrogate.paper.rows import Row
+from surrogate.paper.rows import StudyRow
 from surrogate.parameters import Screw
+from surrogate.plotting.style import BLUE, GREEN, GREY, VERMILION
 from surrogate.units import NANO
 
 
-def figure_alternatives(screw: Screw, rows: Sequence[Row]) -> Figure:
+def figure_alternatives(screw: Screw, rows: Sequence[StudyRow]) -> Figure:
     """Return efficiency, film and RCS under other assumptions than ours."""
-    figure = new_figure(
+    figure = captioned_figure(
         7.2,
         'Black: our model. Reported: efficiency and film rise with speed and load, contact lasts '
         'to higher speeds than ours, RCS rises with load. (a) Screw under '
@@ -63,11 +54,11 @@ def figure_alternatives(screw: Screw, rows: Sequence[Row]) -> Figure:
     return figure
 
 
-def _draw_losses(axes: Axes, screw: Screw, rows: Sequence[Row]) -> None:
+def _draw_losses(axes: Axes, screw: Screw, rows: Sequence[StudyRow]) -> None:
     """Draw 1 - efficiency over speed; a logarithm shows all rules of friction at once."""
     solved = pick(mapped(rows), kind='screw', load=EFFICIENCY_LOAD)
     formulas = sorted(pick(rows, kind='formulas', load=EFFICIENCY_LOAD), key=lambda row: row.rpm)
-    lines: tuple[tuple[str, list[Row], str, dict[str, Any]], ...] = (
+    lines: tuple[tuple[str, list[StudyRow], str, dict[str, Any]], ...] = (
         ('full model', solved, 'friction_torque', {'color': 'black', 'marker': 'o'}),
         ('without rolling', solved, 'sliding_torque', {'color': BLUE, 'marker': 's', 'ls': '--'}),
         (
@@ -91,7 +82,7 @@ def _draw_losses(axes: Axes, screw: Screw, rows: Sequence[Row]) -> None:
     finish(axes, 'a', 'losses over speed', legend='upper right')
 
 
-def _draw_films(axes: Axes, rows: Sequence[Row]) -> None:
+def _draw_films(axes: Axes, rows: Sequence[StudyRow]) -> None:
     wanted: dict[str, Any] = {'kind': 'contact', 'rpm': MARK_RPM}
     ours = curve(rows, 'load', 'central_film', rough=False, **wanted)
     short = curve(rows, 'load', 'central_film', case=SHORT, **wanted)
@@ -109,7 +100,7 @@ def _draw_films(axes: Axes, rows: Sequence[Row]) -> None:
     finish(axes, 'b', 'film over load, loaded nut', legend='upper left')
 
 
-def _draw_speeds(axes: Axes, rows: Sequence[Row]) -> None:
+def _draw_speeds(axes: Axes, rows: Sequence[StudyRow]) -> None:
     lines: tuple[tuple[str, dict[str, Any], dict[str, Any]], ...] = (
         ('full model', {'kind': 'screw'}, {'color': 'black', 'marker': 'o'}),
         (
@@ -134,7 +125,7 @@ def _draw_speeds(axes: Axes, rows: Sequence[Row]) -> None:
     finish(axes, 'c', 'RCS over speed', legend='lower right')
 
 
-def _draw_loads(axes: Axes, rows: Sequence[Row]) -> None:
+def _draw_loads(axes: Axes, rows: Sequence[StudyRow]) -> None:
     """Draw RCS over that at preload, which differs by orders between the lines."""
     solved: dict[str, Any] = {'kind': 'contact', 'rough': True}
     lines: tuple[tuple[str, Curve, dict[str, Any]], ...] = (

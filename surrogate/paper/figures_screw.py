@@ -12,20 +12,17 @@ import numpy as np
 from surrogate.paper.cases import PRELOAD
 from surrogate.paper.curves import Curve, curve, lowest, NO_CONTACT
 from surrogate.paper.figures import (
-    BLUE,
+    captioned_figure,
     draw_curve,
     entrainment,
     finish,
-    GREEN,
     limit,
-    new_figure,
-    PURPLE,
     speed_axis,
-    VERMILION,
 )
 from surrogate.paper.mark import counted, RCS_LIMIT, REPORTED_FILM
 from surrogate.paper.marks_screw import apparent_friction
-from surrogate.paper.rows import Array, Row
+from surrogate.paper.rows import Array, StudyRow
+from surrogate.plotting.style import BLUE, GREEN, PURPLE, VERMILION
 from surrogate.units import MILLI, NANO
 
 SCREW: dict[str, Any] = {'kind': 'screw', 'load': PRELOAD}
@@ -36,7 +33,7 @@ MARK_SPEED = 502.65
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Measured:
+class MeasuredTorque:
     """Measured friction torque: speeds [rev/min], torque and its standard deviation [N m]."""
 
     rpm: Array
@@ -44,11 +41,11 @@ class Measured:
     deviation: Array
 
 
-def figure_torque(rows: Sequence[Row], measured: Measured | None = None) -> Figure:
+def figure_torque(rows: Sequence[StudyRow], measured: MeasuredTorque | None = None) -> Figure:
     """Return the friction torque over entrainment speed, with measurements if given (6b)."""
     torque = curve(rows, 'rpm', 'friction_torque', **SCREW)
     turn, least = lowest(torque)
-    figure = new_figure(
+    figure = captioned_figure(
         3.9,
         f'Friction torque of the nominal screw, preload only, ISO VG 68 at 40 °C, mean of '
         f'{counted(torque.draws)}; bands: standard deviation. Contacts of balls and raceways '
@@ -107,10 +104,10 @@ def _draw(
     )
 
 
-def figure_stribeck(rows: Sequence[Row]) -> Figure:
+def figure_stribeck(rows: Sequence[StudyRow]) -> Figure:
     """Return Stribeck curve, load shares and film over entrainment speed (11)."""
     friction = curve(rows, 'rpm', 'friction_coefficient', **SCREW)
-    figure = new_figure(
+    figure = captioned_figure(
         8.2,
         'Nominal screw, preload only, ISO VG 68 at 40 °C, mean of '
         f'{counted(friction.draws)}; bands: standard deviation. (a) Mean traction against the '
@@ -144,7 +141,7 @@ def figure_stribeck(rows: Sequence[Row]) -> Figure:
     return figure
 
 
-def _draw_films(axes: Axes, rows: Sequence[Row]) -> None:
+def _draw_films(axes: Axes, rows: Sequence[StudyRow]) -> None:
     smooth = curve(rows, 'rpm', 'central_film', kind='contact', load=PRELOAD, rough=False)
     _draw(axes, smooth, NANO, 'o-', 'black', 'central film, smooth')
     least = curve(rows, 'rpm', 'minimum_film', **SCREW)
@@ -169,7 +166,7 @@ def _draw_films(axes: Axes, rows: Sequence[Row]) -> None:
     axes.set(ylabel='film [nm]', yscale='log', ylim=(1, 1000))
 
 
-def read_measured(lines: Sequence[dict[str, str]]) -> Measured:
+def read_measured(lines: Sequence[dict[str, str]]) -> MeasuredTorque:
     """
     Return measurements from the lines of a CSV.
 
@@ -182,4 +179,4 @@ def read_measured(lines: Sequence[dict[str, str]]) -> Measured:
     ]
     if not len(lines) or not (np.isfinite(columns[:2]).all() and (columns[0] > 0).all()):
         raise ValueError('needs numbers in speed_rev_min, above 0, and torque_Nm')
-    return Measured(rpm=columns[0], torque=columns[1], deviation=np.nan_to_num(columns[2]))
+    return MeasuredTorque(rpm=columns[0], torque=columns[1], deviation=np.nan_to_num(columns[2]))

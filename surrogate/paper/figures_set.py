@@ -15,9 +15,8 @@ from surrogate.paper.cases import (
     SLOW,
     SMOOTH,
     SMOOTH_SPEEDS,
-    Task,
+    StudyTask,
 )
-from surrogate.paper.figures import save
 from surrogate.paper.figures_contact import (
     Drawn,
     figure_asperities,
@@ -29,10 +28,11 @@ from surrogate.paper.figures_contact import (
 )
 from surrogate.paper.figures_map import figure_maps, figure_zone
 from surrogate.paper.figures_other import figure_alternatives
-from surrogate.paper.figures_screw import figure_stribeck, figure_torque, Measured
+from surrogate.paper.figures_screw import figure_stribeck, figure_torque, MeasuredTorque
 from surrogate.paper.solve import SHORTEST_ON_GRID
 from surrogate.paper.study import SCREW, Study
 from surrogate.parameters import load_screw
+from surrogate.plotting.style import draw_picture
 from surrogate.raceway.short_waves import without_short_waves
 from surrogate.screw.contacts import raceway_patch
 
@@ -41,16 +41,16 @@ SHOWN_LOADS = tuple(LOADS[i] for i in (0, 2, 4, 5))
 
 
 def draw_figures(
-    study: Study, figures: tuple[str, ...], measured: Measured | None = None
+    study: Study, figures: tuple[str, ...], measured: MeasuredTorque | None = None
 ) -> Iterator[Path]:
     """Draw some figures of a study into its folder; yield the paths."""
     for figure in figures:
         for name, draw in _pictures(study, figure, measured).items():
-            yield save(draw(), study.folder / f'paper_{name}.png')
+            yield draw_picture(study.folder / f'paper_{name}.png', draw)
 
 
 def _pictures(
-    study: Study, figure: str, measured: Measured | None
+    study: Study, figure: str, measured: MeasuredTorque | None
 ) -> dict[str, Callable[[], Figure]]:
     """Return the pictures of one figure of the study by file name."""
     rows, screw = study.rows, load_screw(SCREW)
@@ -89,7 +89,7 @@ def _pictures(
 
 def _drawn(study: Study, draw: int, points: list[tuple[float, float]]) -> list[Drawn]:
     """Return row and fields of converged contacts at speeds [rev/min] and axial loads [N]."""
-    keys = [Task(kind='contact', rpm=rpm, load=load, draw=draw).key for rpm, load in points]
+    keys = [StudyTask(kind='contact', rpm=rpm, load=load, draw=draw).key for rpm, load in points]
     solved = [key for key in keys if study.rows[key].status == 'CONVERGED']
     return [(study.rows[key], study.fields(key)) for key in solved]
 

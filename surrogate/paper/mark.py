@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from surrogate.paper.cases import PRELOAD
 from surrogate.paper.curves import pick
-from surrogate.paper.rows import Row
+from surrogate.paper.rows import StudyRow
 
 RCS_LIMIT, EFFICIENCY_LIMIT = 0.01, 0.85
 """Limits of the optimal zone [-]."""
@@ -53,13 +53,13 @@ def counted(draws: int) -> str:
     return 'one draw' if draws == 1 else f'{draws} draws'
 
 
-def mean_of(rows: Iterable[Row], name: str, **wanted: Any) -> float:
+def mean_of(rows: Iterable[StudyRow], name: str, **wanted: Any) -> float:
     """Return the mean of a column over the rows with the wanted values; NaN without any."""
     values = [getattr(row, name) for row in pick(rows, **wanted)]
     return float(np.mean(values)) if values else math.nan
 
 
-def over_preload(rows: Iterable[Row], name: str, load: float, **wanted: Any) -> float:
+def over_preload(rows: Iterable[StudyRow], name: str, load: float, **wanted: Any) -> float:
     """Return a column at a `load` [N] over that at preload [-]."""
     rows = list(rows)
     last = mean_of(rows, name, load=load, **wanted)

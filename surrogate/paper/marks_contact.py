@@ -23,7 +23,7 @@ from surrogate.paper.cases import (
 )
 from surrogate.paper.curves import crossing, curve, paired_change, pick
 from surrogate.paper.mark import counted, FILM_SAID, Mark, mean_of, over_preload, RCS_LIMIT
-from surrogate.paper.rows import Row
+from surrogate.paper.rows import StudyRow
 from surrogate.units import NANO
 
 ROUGH: dict[str, Any] = {'kind': 'contact', 'rough': True}
@@ -31,7 +31,7 @@ FILM_RISES = 'trend: rises with load'
 RCS_RISES = 'trend: rises with load'
 
 
-def contact_marks(rows: list[Row]) -> list[Mark]:
+def contact_marks(rows: list[StudyRow]) -> list[Mark]:
     """Return the numbers of contacts."""
     return [
         *_smooth_film(rows),
@@ -42,7 +42,7 @@ def contact_marks(rows: list[Row]) -> list[Mark]:
     ]
 
 
-def _smooth_film(rows: list[Row]) -> list[Mark]:
+def _smooth_film(rows: list[StudyRow]) -> list[Mark]:
     smooth: dict[str, Any] = {'kind': 'contact', 'rpm': MARK_RPM, 'rough': False}
     top, relieved = LOADS[-1], RELIEVED_LOADS[-1]
     return [
@@ -65,7 +65,7 @@ def _smooth_film(rows: list[Row]) -> list[Mark]:
     ]
 
 
-def _rough_film(rows: list[Row]) -> list[Mark]:
+def _rough_film(rows: list[StudyRow]) -> list[Mark]:
     wanted, last = {'rpm': MARK_RPM, **ROUGH}, ROUGH_LOADS[-1]
     film = curve(rows, 'load', 'mean_film', **wanted)
     mean, error, draws = paired_change(rows, 'mean_film', 'load', PRELOAD, last, **wanted)
@@ -102,7 +102,7 @@ def _rough_film(rows: list[Row]) -> list[Mark]:
     ]
 
 
-def _asperities(rows: list[Row]) -> list[Mark]:
+def _asperities(rows: list[StudyRow]) -> list[Mark]:
     found = []
     for rpm in (SLOW, ONSET, CLEAR):
         rcs = curve(rows, 'rpm', 'rcs', rpm=rpm, load=PRELOAD, **ROUGH)
@@ -118,7 +118,7 @@ def _asperities(rows: list[Row]) -> list[Mark]:
     return found
 
 
-def _loads(rows: list[Row]) -> list[Mark]:
+def _loads(rows: list[StudyRow]) -> list[Mark]:
     """Return what changes with the load, in the same draws."""
     relieved = relieved_rows(rows)
     distance = 'distance of the asperity load from the centre'
@@ -135,7 +135,7 @@ def _loads(rows: list[Row]) -> list[Mark]:
     ]
 
 
-def relieved_rows(rows: list[Row]) -> list[Row]:
+def relieved_rows(rows: list[StudyRow]) -> list[StudyRow]:
     """Return rough contacts of the relieved nut as a case of its own, from preload on."""
     return [
         replace(row, case=OURS)
@@ -146,7 +146,9 @@ def relieved_rows(rows: list[Row]) -> list[Row]:
     ]
 
 
-def _change(name: str, column: str, rows: list[Row], rpm: float, load: float, said: str) -> Mark:
+def _change(
+    name: str, column: str, rows: list[StudyRow], rpm: float, load: float, said: str
+) -> Mark:
     """Return by how much a column differs from preload, in the same draws."""
     mean, error, draws = paired_change(rows, column, 'load', PRELOAD, load, rpm=rpm, **ROUGH)
     return Mark(
@@ -157,7 +159,7 @@ def _change(name: str, column: str, rows: list[Row], rpm: float, load: float, sa
     )
 
 
-def _other_contacts(rows: list[Row]) -> list[Mark]:
+def _other_contacts(rows: list[StudyRow]) -> list[Mark]:
     short: dict[str, Any] = {'kind': 'contact', 'case': SHORT, 'rpm': MARK_RPM}
     found = [
         Mark(

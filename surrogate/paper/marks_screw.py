@@ -27,7 +27,7 @@ from surrogate.paper.curves import (
     pick,
 )
 from surrogate.paper.mark import counted, EFFICIENCY_LIMIT, Mark, mean_of, over_preload, RCS_LIMIT
-from surrogate.paper.rows import Row
+from surrogate.paper.rows import StudyRow
 from surrogate.parameters import Screw
 from surrogate.units import MILLI
 
@@ -39,7 +39,7 @@ LOAD_STEPS = 400
 """Steps of a search over the load [-]."""
 
 
-def screw_marks(screw: Screw, rows: list[Row]) -> list[Mark]:
+def screw_marks(screw: Screw, rows: list[StudyRow]) -> list[Mark]:
     """Return the numbers of the screw."""
     return [
         *_torque(rows),
@@ -52,7 +52,7 @@ def screw_marks(screw: Screw, rows: list[Row]) -> list[Mark]:
     ]
 
 
-def _torque(rows: list[Row]) -> list[Mark]:
+def _torque(rows: list[StudyRow]) -> list[Mark]:
     torque = curve(rows, 'rpm', 'friction_torque', **SCREW)
     if not len(torque.at):
         return []
@@ -71,7 +71,7 @@ def _torque(rows: list[Row]) -> list[Mark]:
     ]
 
 
-def _friction(rows: list[Row]) -> list[Mark]:
+def _friction(rows: list[StudyRow]) -> list[Mark]:
     apparent = apparent_friction(rows)
     if not len(apparent.at):
         return []
@@ -99,7 +99,7 @@ def _friction(rows: list[Row]) -> list[Mark]:
     ]
 
 
-def apparent_friction(rows: list[Row]) -> Curve:
+def apparent_friction(rows: list[StudyRow]) -> Curve:
     """Return the friction coefficient that would make all losses by sliding, over speed."""
     friction, torque, sliding = (
         curve(rows, 'rpm', name, **SCREW)
@@ -115,7 +115,7 @@ def apparent_friction(rows: list[Row]) -> Curve:
     )
 
 
-def _onset(screw: Screw, rows: list[Row]) -> list[Mark]:
+def _onset(screw: Screw, rows: list[StudyRow]) -> list[Mark]:
     name = f'speed where RCS passes {RCS_LIMIT:g}'
     ours, share = (
         curve(rows, 'rpm', 'rcs', kind=kind, load=PRELOAD) for kind in ('screw', 'formulas')
@@ -137,7 +137,7 @@ def _onset(screw: Screw, rows: list[Row]) -> list[Mark]:
     ]
 
 
-def _nuts(rows: list[Row]) -> list[Mark]:
+def _nuts(rows: list[StudyRow]) -> list[Mark]:
     """Return how RCS of both nuts differs over the map, well inside contact."""
     ends = [pick(mapped(rows), kind='screw', rpm=SLOW, load=MAP_LOADS[i]) for i in (0, -1)]
     if not all(ends):
@@ -153,7 +153,7 @@ def _nuts(rows: list[Row]) -> list[Mark]:
     ]
 
 
-def _efficiency(screw: Screw, rows: list[Row]) -> list[Mark]:
+def _efficiency(screw: Screw, rows: list[StudyRow]) -> list[Mark]:
     points = mapped(rows)
     at_load = pick(points, kind='screw', load=EFFICIENCY_LOAD)
     if len(at_load) < 2:
@@ -199,7 +199,7 @@ def _efficiency(screw: Screw, rows: list[Row]) -> list[Mark]:
     ]
 
 
-def least_load(screw: Screw, rows: list[Row]) -> float:
+def least_load(screw: Screw, rows: list[StudyRow]) -> float:
     """Return the load [N] at which rows of one speed pass the limit, by their torque."""
     rows = sorted(rows, key=lambda row: row.load)
     places = np.log([row.load for row in rows])
@@ -212,7 +212,7 @@ def least_load(screw: Screw, rows: list[Row]) -> float:
     return float(np.interp(EFFICIENCY_LIMIT, eta, loads))
 
 
-def _statistical(screw: Screw, rows: list[Row]) -> list[Mark]:
+def _statistical(screw: Screw, rows: list[StudyRow]) -> list[Mark]:
     """Return what published formulas with a statistical asperity share say."""
     wanted: dict[str, Any] = {'kind': 'formulas'}
     speeds = sorted(pick(rows, load=EFFICIENCY_LOAD, **wanted), key=lambda row: row.rpm)
@@ -232,7 +232,7 @@ def _statistical(screw: Screw, rows: list[Row]) -> list[Mark]:
     ]
 
 
-def _other_rules(rows: list[Row]) -> list[Mark]:
+def _other_rules(rows: list[StudyRow]) -> list[Mark]:
     """Return what other rules of friction make of the same solved contacts."""
     torque, sliding, central, track = (
         mean_of(rows, f'{name}_torque', rpm=MARK_RPM, **SCREW)

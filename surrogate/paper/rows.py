@@ -9,8 +9,7 @@ others are not read.
 """
 
 from collections.abc import Iterable
-import csv
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass
 import hashlib
 import math
 from pathlib import Path
@@ -18,9 +17,10 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.files import InputError, new_file
-from surrogate.paper.cases import OURS, SMOOTH, Task
+from surrogate.files import new_file
+from surrogate.paper.cases import OURS, SMOOTH, StudyTask
 from surrogate.parameters import Lubricant, Screw
+from surrogate.tasks.table import read_table, write_table
 
 Array = NDArray[np.float64]
 TABLE, FIELDS = 'paper.csv', 'paper_fields'
@@ -30,7 +30,7 @@ VERSION = '1'
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Row:
+class StudyRow:
     """
     One solve; numbers that its kind does not have, or that did not converge, are NaN.
 
@@ -79,7 +79,7 @@ class Row:
     def key(self) -> str:
         """Name of the task that the row answers."""
         task: Any = {name: getattr(self, name) for name in ('kind', 'case', 'rpm', 'load', 'draw')}
-        return Task(**task).key
+        return StudyTask(**task).key
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -109,41 +109,15 @@ def inputs_hash(screw: Screw, lubricant: Lubricant) -> str:
     return hashlib.sha256(text.encode()).hexdigest()[:12]
 
 
-def read_rows(path: Path, inputs: str = '') -> dict[str, Row]:
+def read_rows(path: Path, inputs: str = '') -> dict[str, StudyRow]:
     """Return the rows of a table by key, those of one set of inputs if it is given; InputError."""
-    try:
-        with path.open(newline='', encoding='utf-8') as file:
-            rows = [_row(record) for record in csv.DictReader(file)]
-    except FileNotFoundError:
-        return {}
-    except (OSError, UnicodeDecodeError, ValueError, TypeError) as error:
-        raise InputError(f'{path}: cannot be read as rows of this study, {error}') from None
+    rows = read_table(path, StudyRow)
     return {row.key: row for row in rows if inputs in ('', row.inputs)}
 
 
-def _row(record: dict[str, str]) -> Row:
-    kinds = {'str': str, 'int': int, 'float': float}
-    values: dict[str, Any] = {
-        spec.name: kinds[getattr(spec.type, '__name__', str(spec.type))](record[spec.name])
-        for spec in fields(Row)
-        if spec.name in record
-    }
-    return Row(**values)
-
-
-def write_rows(path: Path, rows: Iterable[Row]) -> None:
-    """Write a table as a whole, by atomic rename."""
-    with new_file(path) as partial, partial.open('w', newline='', encoding='utf-8') as file:
-        writer = csv.DictWriter(file, [spec.name for spec in fields(Row)], lineterminator='\n')
-        writer.writeheader()
-        writer.writerows(_shown(row) for row in rows)
-
-
-def _shown(row: Row) -> dict[str, Any]:
-    return {
-        name: f'{value:.6g}' if isinstance(value, float) else value
-        for name, value in asdict(row).items()
-    }
+def write_rows(path: Path, rows: Iterable[StudyRow]) -> None:
+    """Write a table as a whole."""
+    write_table(path, StudyRow, rows, digits=6)
 
 
 def fields_path(folder: Path, inputs: str, key: str) -> Path:

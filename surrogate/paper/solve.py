@@ -15,24 +15,25 @@ from typing import Any
 
 import numpy as np
 from surrogate.ehl import Condition, ContactLubricant, ContactSolution, Settings, solve_contact
+from surrogate.ehl.domain import nodes_on_waves
 from surrogate.ehl.friction import contact_friction, ContactFriction
 from surrogate.formulas import closed_form
 from surrogate.formulas.geometry import hertz, screw_contact
 from surrogate.formulas.kinematics import entrainment_speed_paper
 from surrogate.formulas.load_sharing import normal_force, nut_forces
-from surrogate.paper.cases import CASES, SMOOTH, Task
-from surrogate.paper.rows import Array, ContactFields, Row
+from surrogate.paper.cases import CASES, SMOOTH, StudyTask
+from surrogate.paper.rows import ContactFields, StudyRow
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.raceway.fractal import FractalSurface
 from surrogate.raceway.short_waves import subgrid_floor, without_short_waves
 from surrogate.screw.ball_motion import slip_floor
-from surrogate.screw.contacts import ACROSS, MOST_NODES, raceway_patch, ScrewSettings
+from surrogate.screw.contacts import ACROSS, raceway_patch, ScrewSettings
 from surrogate.screw.nut import contact_slip, ScrewContact
 from surrogate.screw.solve import ScrewSolution, solve_screw
 from surrogate.units import RPM
 
-NX, NY, NODES_PER_WAVE = 129, 257, 6.0
-"""Nodes of a rough contact along and least across the track, and per wave on the grid [-]."""
+NX, NY = 129, 257
+"""Nodes of a rough contact along and least across the track [-]."""
 SHORTEST_ON_GRID = 16e-6
 """Waves below that raise the film floor [m]."""
 OUTLET, SIDE = 1.5, 1.5
@@ -42,11 +43,11 @@ INNER = 0.5
 
 
 def solve_task(
-    screw: Screw, lubricant: Lubricant, task: Task, inputs: str
-) -> tuple[Row, ContactFields | None]:
+    screw: Screw, lubricant: Lubricant, task: StudyTask, inputs: str
+) -> tuple[StudyRow, ContactFields | None]:
     """Solve one task; return its row and, for a contact that keeps them, its fields."""
     began = time.process_time()
-    row = Row(
+    row = StudyRow(
         inputs=inputs,
         kind=task.kind,
         case=task.case,
@@ -71,8 +72,8 @@ def rad_per_second(rpm: float) -> float:
 
 
 def _contact(
-    screw: Screw, lubricant: Lubricant, task: Task, row: Row
-) -> tuple[Row, ContactFields | None]:
+    screw: Screw, lubricant: Lubricant, task: StudyTask, row: StudyRow
+) -> tuple[StudyRow, ContactFields | None]:
     forces = nut_forces(task.load, screw.preload)
     force = float(normal_force(screw, forces[CASES[task.case].nut == 'relieved']))
     solution, surface = solve_patch(screw, lubricant, task, force, row.entrainment_speed)
@@ -97,7 +98,7 @@ def _contact(
 
 
 def solve_patch(
-    screw: Screw, lubricant: Lubricant, task: Task, force: float, speed: float
+    screw: Screw, lubricant: Lubricant, task: StudyTask, force: float, speed: float
 ) -> tuple[ContactSolution, FractalSurface | None]:
     """
     Solve the contact of a task under a normal `force` [N] at an entrainment `speed` [m/s].
@@ -122,11 +123,10 @@ def solve_patch(
     raised = subgrid_floor(surface, SHORTEST_ON_GRID)
     surface = without_short_waves(surface, SHORTEST_ON_GRID)
     width = ACROSS * float(hertz(contact, force).semi_axis_y)
-    across = 2 * math.ceil(NODES_PER_WAVE * width / surface.shortest_wavelength / 2) + 1
     settings = replace(
         settings,
         nx=NX,
-        ny=max(NY, min(across, MOST_NODES)),
+        ny=max(NY, nodes_on_waves(width, surface.shortest_wavelength)),
         film_floor=settings.film_floor + raised,
         error_estimate=False,
     )
@@ -136,13 +136,7 @@ def solve_patch(
 
 def inner_nodes(solution: ContactSolution, size: float) -> Any:
     """Return the mask of nodes inside `size` [-] times the Hertz ellipse."""
-    return _distance(solution) < size
-
-
-def _distance(solution: ContactSolution) -> Array:
-    """Return the distance of the nodes from the centre over the semi-axes [-]."""
-    x, y = solution.x / solution.semi_axis_x, solution.y / solution.semi_axis_y
-    return np.asarray(np.hypot(x[:, None], y[None, :]))
+    return solution.distance < size
 
 
 def asperity_distance(solution: ContactSolution) -> float:
@@ -155,7 +149,7 @@ def asperity_distance(solution: ContactSolution) -> float:
     carried = solution.asperity_pressure
     if not carried.any():
         return math.nan
-    return float(np.sum(carried * _distance(solution)) / np.sum(carried))
+    return float(np.sum(carried * solution.distance) / np.sum(carried))
 
 
 def _fields(solution: ContactSolution, surface: FractalSurface | None, kind: str) -> ContactFields:
@@ -177,7 +171,7 @@ def _fields(solution: ContactSolution, surface: FractalSurface | None, kind: str
     )
 
 
-def _screw(screw: Screw, lubricant: Lubricant, task: Task, row: Row) -> Row:
+def _screw(screw: Screw, lubricant: Lubricant, task: StudyTask, row: StudyRow) -> StudyRow:
     """Solve the whole screw in the full tier."""
     point = OperatingPoint(
         speed=rad_per_second(task.rpm), load=task.load, temperature=lubricant.reference_temperature
@@ -191,7 +185,7 @@ def _screw(screw: Screw, lubricant: Lubricant, task: Task, row: Row) -> Row:
         row,
         normal_force=found.normal_forces[0],
         central_film=found.central_film,
-        minimum_film=min(one.minimum_film for one in _rough(found, '')),
+        minimum_film=found.minimum_film,
         rcs=found.rcs,
         asperity_share=found.asperity_share,
         rcs_loaded=max(one.rcs for one in _rough(found, 'loaded')),
@@ -202,15 +196,15 @@ def _screw(screw: Screw, lubricant: Lubricant, task: Task, row: Row) -> Row:
 
 
 def _rough(found: ScrewSolution, nut: str) -> list[ContactSolution]:
-    """Return the rough contacts that carry load, of one nut or of both."""
+    """Return the rough contacts of a nut that carry load."""
     return [
         contact.rough
         for contact in found.contacts
-        if contact.rough is not None and nut in ('', contact.nut)
+        if contact.rough is not None and nut == contact.nut
     ]
 
 
-def _with_friction(screw: Screw, found: ScrewSolution, row: Row) -> Row:
+def _with_friction(screw: Screw, found: ScrewSolution, row: StudyRow) -> StudyRow:
     """Add the parts of torque and friction coefficient, and both other ways to a torque."""
     pressed = [contact for contact in found.contacts if contact.motion is not None]
     local = [_friction(screw, contact, 'local') for contact in pressed]
@@ -253,7 +247,7 @@ def _friction(screw: Screw, contact: ScrewContact, film: Any) -> ContactFriction
     )
 
 
-def _formulas(screw: Screw, lubricant: Lubricant, task: Task, row: Row) -> Row:
+def _formulas(screw: Screw, lubricant: Lubricant, task: StudyTask, row: StudyRow) -> StudyRow:
     """Take the screw by published formulas, asperities by a statistical share."""
     found = closed_form.solve(
         screw, lubricant, rad_per_second(task.rpm), task.load, lubricant.reference_temperature

@@ -3,32 +3,40 @@
 """
 The solves of the comparison with the published study: what is missing is solved, and kept.
 
-Every finished task is written at once, so that an interrupted study goes on where it stopped.
+Every finished task is kept at once in a store beside the table, so that an interrupted study goes
+on where it stopped. Table and fields are written from the results at the end.
 
 """
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
-from surrogate.paper.cases import Task
+import numpy as np
+from surrogate.files import InputError
+from surrogate.paper.cases import StudyTask
 from surrogate.paper.rows import (
     ContactFields,
     fields_path,
     inputs_hash,
     read_fields,
     read_rows,
-    Row,
+    StudyRow,
     TABLE,
     write_fields,
     write_rows,
 )
 from surrogate.paper.solve import solve_task
-from surrogate.parameters import load_lubricant, load_screw, Lubricant, Screw
+from surrogate.parameters import load_lubricant, load_screw
+from surrogate.tasks.pool import Outcome, Pool, run_tasks
+from surrogate.tasks.store import store_path, TaskStore
 
 SCREW, OIL = 'nominal', 'iso_vg_68'
 """Datasheets of the published screw."""
-Progress = Callable[[int, int, float, Task], None]
+WORK = 'surrogate.paper.study 1'
+"""Solver and version of the kept results."""
+Report = Callable[[int, int, float, StudyTask], None]
 """Told after each solve: tasks done, tasks in all, share of the work done [-], the task."""
 
 
@@ -36,7 +44,7 @@ Progress = Callable[[int, int, float, Task], None]
 class Study:
     """Rows of the asked tasks by key, in their order, and the folder that keeps the fields."""
 
-    rows: dict[str, Row]
+    rows: dict[str, StudyRow]
     folder: Path
     inputs: str
 
@@ -45,36 +53,76 @@ class Study:
         return read_fields(fields_path(self.folder, self.inputs, key))
 
 
-def run_study(folder: Path, wanted: list[Task], progress: Progress | None = None) -> Study:
-    """Solve the tasks that `folder` does not hold yet; return all that were wanted."""
+def run_study(
+    folder: Path, wanted: list[StudyTask], pool: Pool, report: Report | None = None
+) -> Study:
+    """
+    Solve the tasks whose results `folder` does not keep yet; return all that were wanted.
+
+    Raises InputError for a table without a store, which an earlier version left.
+
+    """
+    inputs, table = inputs_hash(load_screw(SCREW), load_lubricant(OIL)), folder / TABLE
+    if table.exists() and not store_path(table).exists():
+        raise InputError(
+            f'{table}: rows without the kept results they come from, allowed is a folder of this '
+            'version or an empty one'
+        )
+    before = read_rows(table, inputs)
+    tasks = {task.key: asdict(task) | {'inputs': inputs} for task in wanted}
+    with TaskStore(table, WORK) as store:
+        told = _Told(wanted, report)
+        found = run_tasks(pool, solve_plain, tasks, store=store, report=told)
+    rows = {task.key: _take(folder, inputs, task, found[task.key]) for task in wanted}
+    write_rows(table, (before | rows).values())
+    return Study(rows=rows, folder=folder, inputs=inputs)
+
+
+def solve_plain(inputs: Mapping[str, Any]) -> dict[str, Any]:
+    """Solve a task in plain JSON; return its row and, where they are kept, its fields."""
+    words = dict(inputs)
+    known = words.pop('inputs')
     screw, oil = load_screw(SCREW), load_lubricant(OIL)
-    inputs = inputs_hash(screw, oil)
-    folder.mkdir(parents=True, exist_ok=True)
-    rows = read_rows(folder / TABLE, inputs)
-    left = [task for task in wanted if not _done(folder, inputs, rows, task)]
-    total, spent = sum(task.cost for task in left), 0.0
-    for count, task in enumerate(left, 1):
-        rows[task.key] = _solve(folder, screw, oil, task, inputs)
-        write_rows(folder / TABLE, rows.values())
-        spent += task.cost
-        if progress:
-            progress(count, len(left), spent / total, task)
-    keys = [task.key for task in wanted]
-    return Study(rows={key: rows[key] for key in keys}, folder=folder, inputs=inputs)
+    row, found = solve_task(screw, oil, StudyTask(**words), known)
+    arrays = asdict(found) if found else {}
+    return {
+        'row': asdict(row),
+        'fields': {name: np.asarray(value).tolist() for name, value in arrays.items()},
+    }
 
 
-def _done(folder: Path, inputs: str, rows: dict[str, Row], task: Task) -> bool:
-    """Tell whether a row is there, and the fields that a picture needs of it."""
-    if task.key not in rows:
-        return False
-    if not task.fields or rows[task.key].status != 'CONVERGED':
-        return True
-    path = fields_path(folder, inputs, task.key)
-    return path.exists() and (task.fields == 'line' or read_fields(path).y.size > 1)
+class _Told:
+    """Tells how far the new solves are."""
+
+    def __init__(self, wanted: list[StudyTask], report: Report | None) -> None:
+        self._left = {task.key: task for task in wanted}
+        self._report, self._done, self._spent = report, 0, 0.0
+
+    def __call__(self, outcome: Outcome) -> None:
+        """Count an outcome; those that were kept come first."""
+        task = self._left.pop(outcome.name)
+        if outcome.stored or self._report is None:
+            return
+        self._done += 1
+        self._spent += task.cost
+        total = self._spent + sum(one.cost for one in self._left.values())
+        self._report(self._done, self._done + len(self._left), self._spent / total, task)
 
 
-def _solve(folder: Path, screw: Screw, oil: Lubricant, task: Task, inputs: str) -> Row:
-    row, found = solve_task(screw, oil, task, inputs)
-    if found is not None:
-        write_fields(fields_path(folder, inputs, task.key), found)
-    return row
+def _take(folder: Path, inputs: str, task: StudyTask, outcome: Outcome) -> StudyRow:
+    """Return the row of an outcome; write its fields."""
+    if outcome.result is None:
+        return StudyRow(
+            inputs=inputs,
+            kind=task.kind,
+            case=task.case,
+            rpm=task.rpm,
+            load=task.load,
+            draw=task.draw,
+            status=outcome.sentence,
+        )
+    path, found = fields_path(folder, inputs, task.key), outcome.result['fields']
+    if found:
+        arrays: Any = {name: np.array(value) for name, value in found.items()}
+        write_fields(path, ContactFields(**arrays))
+    return StudyRow(**outcome.result['row'])

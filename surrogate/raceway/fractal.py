@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Rough raceways: a fractal surface in metres, and the patches of it that a contact sees.
+Fractal raceways in metres, drawn from a seed.
 
 A surface is a fixed sum of plane waves, so that one draw is the same whatever load, speed, grid or
 domain looks at it. Its shortest wavelength never follows a grid. Heights are positive out of the
@@ -11,78 +11,21 @@ material.
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-import logging
 import math
-from typing import Any, ClassVar, get_args, Literal, Protocol, TypeVar
+from typing import get_args, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from surrogate.files import InputError
 from surrogate.parameters import Roughness
+from surrogate.raceway.patch import grid_axes, on_plane, Patch, Plane, take_patch, Window
 
 Array = NDArray[np.float64]
 Lay = Literal['isotropic', 'longitudinal', 'transverse']
-Patch = Literal['rescaled', 'cut']
-Draws = Literal['seeds', 'positions']
-Plane = tuple[float, float, float]
+DrawnBy = Literal['seeds', 'positions']
 
 LAY_SPREAD = math.radians(20.0)
 """Range of wave directions of a surface with a lay [rad]."""
-SAMPLES_PER_WAVE, FEWEST_SAMPLES = 4, 41
-"""Points per shortest wavelength, and in all along a side, when a patch is levelled [-]."""
-FLAT = 1e-12
-"""Rms height that counts as none [m]."""
-LOG = logging.getLogger(__name__)
-
-
-class Surface(Protocol):
-    """
-    What a contact needs of a rough surface, fractal or measured: heights in metres anywhere.
-
-    Heights are those of the raw surface less `plane` (offset [m], slopes [-]), times `scale` [-],
-    the factor of the rescaling, 1 for a patch as it was cut. `patch` is None before one was taken.
-
-    """
-
-    __dataclass_fields__: ClassVar[dict[str, Any]]
-
-    @property
-    def plane(self) -> Plane:
-        """Return the mean plane: offset [m] and slopes [-]."""
-
-    @property
-    def scale(self) -> float:
-        """Return the factor of the rescaling [-]."""
-
-    @property
-    def patch(self) -> Patch | None:
-        """Return the kind of the patch."""
-
-    @property
-    def shortest_wavelength(self) -> float:
-        """Return the shortest wavelength that the surface holds [m]."""
-
-    def heights(self, x: ArrayLike, y: ArrayLike) -> Array:
-        """Return heights [m], shape (nx, ny), on the grid of `x` and `y` [m] (see `grid_axes`)."""
-
-
-AnySurface = TypeVar('AnySurface', bound=Surface)
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Window:
-    """Rectangle about the contact centre where a patch is levelled and scaled, sides [m]."""
-
-    length_x: float
-    length_y: float
-
-    def __post_init__(self) -> None:
-        """Check the sides."""
-        for name in ('length_x', 'length_y'):
-            if not 0 < getattr(self, name) < math.inf:
-                raise InputError(
-                    f'window: {name} is {getattr(self, name):g} m, allowed is above 0'
-                )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -90,7 +33,7 @@ class FractalSurface:
     """
     Sum of plane waves less a plane: z = scale (sum a [cos phi - cos(kx x + ky y + phi)] - plane).
 
-    Amplitudes [m], wave numbers [rad/m], phases [rad]; plane, scale and patch as in `Surface`.
+    Amplitudes [m], wave numbers [rad/m], phases [rad]; plane, scale, patch as in `Raceway`.
 
     """
 
@@ -185,69 +128,13 @@ def shifted(surface: FractalSurface, x: float, y: float) -> FractalSurface:
     return replace(surface, phase=phase, plane=(offset, slope_x, slope_y))
 
 
-def take_patch(surface: AnySurface, kind: Patch, window: Window, rms: float) -> AnySurface:
-    """
-    Return the surface as a contact sees it, levelled over `window`.
-
-    `rescaled`: scaled once to `rms` [m] over the window, as the published study has it. `cut`: at
-    the height that it has. The window belongs to the draw: take a patch once, never per load. The
-    factor is kept in `scale` [-] and logged.
-
-    """
-    if kind not in get_args(Patch):
-        raise InputError(f'patch is {kind!r}, allowed is rescaled or cut')
-    plane, found = _level(replace(surface, plane=(0.0, 0.0, 0.0), scale=1.0), window)
-    if not found > FLAT:
-        raise InputError('roughness: the surface is flat over the window of the patch')
-    scale = rms / found if kind == 'rescaled' else 1.0
-    LOG.info(
-        'patch %s: rms %.4g um over %.4g x %.4g mm, times %.4g',
-        kind,
-        1e6 * found,
-        1e3 * window.length_x,
-        1e3 * window.length_y,
-        scale,
-    )
-    return replace(surface, plane=plane, scale=scale, patch=kind)
-
-
-def _level(surface: Surface, window: Window) -> tuple[Plane, float]:
-    """Return the mean plane of a surface over the window and its rms height [m] above it."""
-    x, y = (
-        np.linspace(-side / 2, side / 2, _samples(side / surface.shortest_wavelength))
-        for side in (window.length_x, window.length_y)
-    )
-    heights = surface.heights(x, y)
-    plane = (
-        float(heights.mean()),
-        float((x @ heights.mean(axis=1)) / (x @ x)),
-        float((y @ heights.mean(axis=0)) / (y @ y)),
-    )
-    return plane, float(np.std(heights - on_plane(plane, x, y)))
-
-
-def _samples(waves: float) -> int:
-    return max(FEWEST_SAMPLES, SAMPLES_PER_WAVE * math.ceil(waves) + 1)
-
-
-def grid_axes(x: ArrayLike, y: ArrayLike) -> tuple[Array, Array]:
-    """Return the axes of a grid from axes, or from the two arrays of a grid, first index x."""
-    x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
-    return np.atleast_1d(x[:, 0] if x.ndim == 2 else x), np.atleast_1d(y[0] if y.ndim == 2 else y)
-
-
-def on_plane(plane: Plane, x: Array, y: Array) -> Array:
-    """Return the heights of a plane [m] on the grid of `x` and `y` [m]."""
-    return np.asarray(plane[0] + plane[1] * x[:, None] + plane[2] * y[None, :])
-
-
 def ensemble(
     roughness: Roughness,
     count: int,
     kind: Patch,
     window: Window,
     *,
-    by: Draws = 'seeds',
+    by: DrawnBy = 'seeds',
     seed: int = 0,
     lay: Lay = 'isotropic',
 ) -> Iterator[FractalSurface]:
@@ -258,7 +145,7 @@ def ensemble(
     `seed`, random over its sample length less the window.
 
     """
-    if by not in get_args(Draws):
+    if by not in get_args(DrawnBy):
         raise InputError(f'draws by {by!r}, allowed is seeds or positions')
     if by == 'seeds':
         draws = (fractal_surface(roughness, seed + one, lay=lay) for one in range(count))

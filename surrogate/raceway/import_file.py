@@ -15,7 +15,6 @@ The first line of a CSV that is no comment (#) names its columns with their unit
 import math
 from pathlib import Path
 import re
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -157,7 +156,7 @@ def _points(table: Array, columns: dict[str, float], path: Path) -> tuple[Array,
     return heights, gaps[0] or gaps[1], gaps[1] or gaps[0]
 
 
-def _axis(places: Array, name: str, path: Path) -> tuple[Array, NDArray[Any]]:
+def _axis(places: Array, name: str, path: Path) -> tuple[Array, NDArray[np.intp]]:
     """Return the sorted places [m] and the number of each point's place."""
     # Places that differ by the rounding of a file are one.
     step = 1e-6 * max(float(np.ptp(places)), 1e-12)

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import make_interp_spline
 from scipy.ndimage import gaussian_filter1d
 from surrogate.files import InputError
-from surrogate.raceway.fractal import grid_axes, on_plane, Patch, Plane
+from surrogate.raceway.patch import grid_axes, on_plane, Patch, Plane
 
 Array = NDArray[np.float64]
 Outside = Literal['refuse', 'mirror']
@@ -37,7 +37,7 @@ class MeasuredSurface:
     `raw` heights [m], shape (nx, ny), one point along a direction that was not measured; spacings
     [m]; `shortest_wavelength` [m] is the cutoff of the filter, two spacings without one; `outside`
     the map: `refuse`, or `mirror`, which repeats the map with every second copy reversed. Plane,
-    scale and patch as in `surrogate.raceway.fractal.Surface`. Nothing is ever extrapolated.
+    scale and patch as in `surrogate.raceway.patch.Raceway`. Nothing is ever extrapolated.
 
     """
 

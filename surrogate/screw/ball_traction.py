@@ -14,10 +14,11 @@ from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.ehl import ContactSolution, punctured_nodes
-from surrogate.ehl.friction import viscosity_of
+from surrogate.ehl import ContactSolution
+from surrogate.ehl.friction import node_strengths, NodeStrengths
 from surrogate.files import InputError
 from surrogate.formulas.geometry import hertz, screw_contact, Side
+from surrogate.formulas.sliding import polar_nodes
 from surrogate.parameters import Screw
 from surrogate.screw.ball_motion import Array, heathcote_radius
 from surrogate.screw.ball_sums import sum_friction
@@ -121,21 +122,15 @@ class CoulombTraction:
 @dataclass(frozen=True, kw_only=True, slots=True)
 class SolvedTraction:
     """
-    Friction over the pressurised nodes of a solved contact, from any of its arrays.
+    Friction over the pressurised nodes of a solved contact, or over some of them.
 
-    Places `x` along the entrainment, `y` across [m]; `load` [N] of the solution, to which another
-    normal force is scaled; `boundary` [N], the friction force of punctured nodes, which slip does
-    not change; `eyring` [N], Eyring stress times area of the nodes that shear, and `eyring_rate`
-    [s/m], eta(p)/(tau0 h) there; slip floor [m/s].
+    Strengths of the `nodes` under the `load` [N] of the solution, to which another normal force is
+    scaled; slip floor [m/s].
 
     """
 
-    x: Array
-    y: Array
+    nodes: NodeStrengths
     load: float
-    boundary: Array
-    eyring: Array
-    eyring_rate: Array
     slip_floor: float = 1e-4
 
     @property
@@ -145,25 +140,18 @@ class SolvedTraction:
 
     def places(self, load: float) -> tuple[Array, Array]:
         """Return the nodes x, y [m], the same under any `load` [N]."""
-        return self.x, self.y
+        return self.nodes.x, self.nodes.y
 
     def strengths(self, load: float) -> tuple[Array, Array, Array]:
         """Return mu_a p and tau0 times the area of each node, scaled to `load` [N], the rate."""
-        scale = load / self.load
-        return scale * self.boundary, scale * self.eyring, self.eyring_rate
+        scale, nodes = load / self.load, self.nodes
+        return scale * nodes.boundary, scale * nodes.eyring, nodes.rate
 
     def sample(self) -> 'SolvedTraction':
         """Return every `SAMPLE`-th node, each for as many; itself where nodes are few."""
-        if self.x.size < FEW:
+        if self.nodes.x.size < FEW:
             return self
-        return replace(
-            self,
-            x=self.x[::SAMPLE],
-            y=self.y[::SAMPLE],
-            boundary=SAMPLE * self.boundary[::SAMPLE],
-            eyring=SAMPLE * self.eyring[::SAMPLE],
-            eyring_rate=self.eyring_rate[::SAMPLE],
-        )
+        return replace(self, nodes=self.nodes.taken(slice(None, None, SAMPLE), SAMPLE))
 
 
 def hertz_nodes(
@@ -177,11 +165,7 @@ def hertz_nodes(
     """
     points, weights = np.polynomial.legendre.leggauss(radial)
     u = 0.5 * (points + 1)
-    angle = (np.arange(angular) + 0.5) * 2 * np.pi / angular
-    radius = np.sqrt(1 - u * u)
-    x, y = np.outer(radius, np.cos(angle)), np.outer(radius, np.sin(angle))
-    share = np.outer(1.5 * weights * u * u, np.full(angular, 1 / angular))
-    return x.ravel(), y.ravel(), share.ravel()
+    return polar_nodes(np.sqrt(1 - u * u), 1.5 * weights * u * u, angular, around=1.0)
 
 
 def coulomb_traction(
@@ -225,27 +209,12 @@ def solved_traction(
     if not solution.converged:
         raise InputError(f'no traction without a solved contact: {solution.status.value}')
     _check_floor(slip_floor)
-    x, y = np.meshgrid(solution.x, solution.y, indexing='ij')
-    area = (solution.x[1] - solution.x[0]) * (solution.y[1] - solution.y[0])
-    dry = punctured_nodes(solution)
-    wet = ~dry & (solution.film_pressure > 0)
-    boundary = np.where(dry, asperity_friction * solution.pressure, 0.0) * area
-    stress = solution.lubricant.eyring_stress
-    viscosity = viscosity_of(solution.lubricant, solution.film_pressure)
-    rate = np.divide(viscosity, stress * solution.film, out=np.zeros_like(x), where=wet)
-    eyring = np.where(wet, stress * area, 0.0)
+    nodes = node_strengths(solution, asperity_friction=asperity_friction)
     # The weaker a node, the later it saturates: its share is largest at a slip above any.
     slip = LARGEST_SLIP * solution.condition.entrainment_speed
-    friction = boundary + eyring * np.arcsinh(rate * slip)
-    used = _strongest(friction, neglected)
+    used = _strongest(nodes.boundary + nodes.sheared(slip), neglected)
     return SolvedTraction(
-        x=x[used],
-        y=y[used],
-        load=solution.condition.load,
-        boundary=boundary[used],
-        eyring=eyring[used],
-        eyring_rate=rate[used],
-        slip_floor=slip_floor,
+        nodes=nodes.taken(used), load=solution.condition.load, slip_floor=slip_floor
     )
 
 

@@ -8,12 +8,14 @@ the grid is too coarse for raise the film floor.
 
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 import math
 
 from surrogate.ehl import Condition, ContactLubricant, ContactSolution, Settings, solve_contact
+from surrogate.ehl.domain import MOST_NODES, nodes_on_waves
+from surrogate.ehl.watch import at
 from surrogate.files import InputError
 from surrogate.formulas.geometry import Contact, hertz, screw_contact, Side, SIDES
 from surrogate.formulas.inlet_heating import heated_speed
@@ -21,18 +23,18 @@ from surrogate.formulas.kinematics import no_slip_rates
 from surrogate.formulas.load_sharing import normal_force, UNLOADING_RATIO
 from surrogate.formulas.lubricant import lubricant_state
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
-from surrogate.raceway.fractal import fractal_surface, FractalSurface, take_patch, Window
+from surrogate.raceway.fractal import fractal_surface, FractalSurface
+from surrogate.raceway.patch import take_patch, Window
 from surrogate.raceway.short_waves import subgrid_floor, without_short_waves
 from surrogate.units import ZERO_CELSIUS
 
 Pair = tuple[ContactSolution, ContactSolution]
 """The same contact smooth and rough."""
 Start = tuple[ContactSolution | None, ContactSolution | None]
-ACROSS, MOST_NODES = 2.42, 513
-"""About the width of a rough domain over the semi-axis across (2.4 to 3.1); most nodes there by
-the wavelength [-]."""
+ACROSS = 2.42
+"""About the width of a rough domain over the semi-axis across (2.4 to 3.1) [-]."""
 GRID_WAVELENGTH = 16e-6
-"""Shortest wavelength on the grid [m]; docs/onset.md."""
+"""Shortest wavelength on the grid [m]; docs/theory/roughness.md."""
 WINDOW_SHARE = 0.05
 """Least axial load whose Hertz rectangle is the window of the patch, over the rating [-]."""
 
@@ -62,13 +64,74 @@ class ScrewSettings:
     coupling_tolerance: float = 0.01
 
 
-def solve_sides(
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RollingContact:
+    """
+    A ball on one raceway at one point: all that a solve needs but the normal force.
+
+    Geometry; oil at its temperature; entrainment speed [m/s] by the normal force [N], lower where
+    a heated inlet thins the film; film floor of the datasheet [m], raceway on the grid (None when
+    smooth) and what its shorter waves lift the floor by [m]; how to solve.
+
+    """
+
+    geometry: Contact
+    oil: ContactLubricant
+    entrainment: Callable[[float], float]
+    film_floor: float
+    raceway: FractalSurface | None
+    raised: float
+    settings: ScrewSettings
+
+
+def make_contacts(
+    screw: Screw, lubricant: Lubricant, point: OperatingPoint, settings: ScrewSettings
+) -> tuple[RollingContact, ...]:
+    """Return the contacts of a ball with screw and nut, the same for both nuts of a point."""
+    oil = fluid_at(lubricant, point.temperature)
+    speeds = [
+        _entrainment(screw, lubricant, point, side, heated=settings.inlet_heating)
+        for side in SIDES
+    ]
+    return tuple(
+        _make_contact(screw, side, oil, speed, settings)
+        for side, speed in zip(SIDES, speeds, strict=True)
+    )
+
+
+def _make_contact(
     screw: Screw,
-    lubricant: Lubricant,
-    point: OperatingPoint,
+    side: Side,
+    oil: ContactLubricant,
+    entrainment: Callable[[float], float],
     settings: ScrewSettings,
-    loads: tuple[float, float],
-    start: Sequence[Start] = (),
+) -> RollingContact:
+    raceway, raised = None, 0.0
+    if settings.draw is not None:
+        raceway, raised = _on_grid(screw, side, settings.draw, settings.grid_wavelength)
+    return RollingContact(
+        geometry=screw_contact(screw, side),
+        oil=oil,
+        entrainment=entrainment,
+        film_floor=screw.roughness.film_floor,
+        raceway=raceway,
+        raised=raised,
+        settings=settings,
+    )
+
+
+def _entrainment(
+    screw: Screw, lubricant: Lubricant, point: OperatingPoint, side: Side, *, heated: bool
+) -> Callable[[float], float]:
+    """Return the entrainment speed [m/s] as a function of the normal force [N]."""
+    speed = no_slip_rates(screw).entrainment * abs(point.speed)
+    if not heated:
+        return lambda load: speed
+    return lambda load: heated_speed(screw, lubricant, side, load, speed, point.temperature)
+
+
+def solve_sides(
+    contacts: Sequence[RollingContact], loads: tuple[float, float], start: Sequence[Start] = ()
 ) -> tuple[Pair, ...]:
     """
     Solve the contacts of a nut under their normal forces [N], with the screw and with the nut.
@@ -80,10 +143,11 @@ def solve_sides(
     if not any(loads):
         return ()
     known = start or [(None, None)] * len(SIDES)
-    return tuple(
-        _solve_side(screw, lubricant, point, settings, side, load, near)
-        for side, load, near in zip(SIDES, loads, known, strict=True)
-    )
+    solved = []
+    for side, (contact, load, near) in enumerate(zip(contacts, loads, known, strict=True)):
+        with at(side=side + 1):
+            solved.append(_solve_side(contact, load, near))
+    return tuple(solved)
 
 
 def smooth_film(smooth: ContactSolution) -> float:
@@ -94,43 +158,25 @@ def smooth_film(smooth: ContactSolution) -> float:
     return smooth.central_film if math.isnan(extrapolated) else extrapolated
 
 
-def _solve_side(
-    screw: Screw,
-    lubricant: Lubricant,
-    point: OperatingPoint,
-    settings: ScrewSettings,
-    side: Side,
-    load: float,
-    start: tuple[ContactSolution | None, ContactSolution | None],
-) -> Pair:
+def _solve_side(contact: RollingContact, load: float, start: Start) -> Pair:
     """Return the smooth and the rough contact under a normal force [N], from a near pair."""
-    contact = screw_contact(screw, side)
-    speed = no_slip_rates(screw).entrainment * abs(point.speed)
-    if settings.inlet_heating:
-        speed = heated_speed(screw, lubricant, side, load, speed, point.temperature)
-    condition = Condition(load=load, entrainment_speed=speed)
-    fluid = fluid_at(lubricant, point.temperature)
-    even = replace(settings.smooth, film_floor=screw.roughness.film_floor)
-    known = start[0]
-    if known is not None and _is_of(known, (contact, fluid, condition, even)):
+    condition = Condition(load=load, entrainment_speed=contact.entrainment(load))
+    case = contact.geometry, contact.oil, condition
+    even, known = replace(contact.settings.smooth, film_floor=contact.film_floor), start[0]
+    if known is not None and _is_of(known, (*case, even)):
         smooth = known
     else:
-        smooth = solve_contact(contact, fluid, condition, settings=even, start=known)
-    if settings.draw is None or not smooth.converged:
+        smooth = solve_contact(*case, settings=even, start=known)
+    raceway = contact.raceway
+    if raceway is None or not smooth.converged:
         return smooth, smooth
-    surface, raised = _on_grid(screw, side, settings.draw, settings.grid_wavelength)
-    rough = solve_contact(
-        contact,
-        fluid,
-        condition,
-        roughness=surface.heights,
-        settings=replace(
-            _across(settings, smooth.semi_axis_y, surface.shortest_wavelength),
-            film_floor=screw.roughness.film_floor + raised,
-        ),
+    rough = _across(contact.settings, smooth.semi_axis_y, raceway.shortest_wavelength)
+    return smooth, solve_contact(
+        *case,
+        roughness=raceway.heights,
+        settings=replace(rough, film_floor=contact.film_floor + contact.raised),
         start=start[1],
     )
-    return smooth, rough
 
 
 @lru_cache(maxsize=8)
@@ -184,11 +230,10 @@ def shortest_on_grid(screw: Screw, settings: ScrewSettings) -> float:
 def _across(settings: ScrewSettings, semi_axis: float, wave: float) -> Settings:
     """Return the rough settings with the nodes across that a semi-axis and a wave [m] ask for."""
     rough, width = settings.rough, ACROSS * semi_axis
-    spacing = max(wave / settings.nodes_per_wave, width / MOST_NODES)
     if settings.same_places:
-        return replace(rough, spacing=spacing)
-    wanted = 2 * math.ceil(width / spacing / 2) + 1
-    return replace(rough, ny=max(rough.ny, min(wanted, MOST_NODES)))
+        return replace(rough, spacing=max(wave / settings.nodes_per_wave, width / MOST_NODES))
+    wanted = nodes_on_waves(width, wave, settings.nodes_per_wave)
+    return replace(rough, ny=max(rough.ny, wanted))
 
 
 def raceway_patch(screw: Screw, side: Side, draw: int) -> FractalSurface:

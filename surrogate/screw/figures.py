@@ -6,23 +6,20 @@ from pathlib import Path
 from typing import Any
 
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import ListedColormap, LogNorm
 from matplotlib.figure import Figure
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.ehl import ContactSolution, punctured_nodes
-from surrogate.files import new_file
 from surrogate.formulas.geometry import SIDES
 from surrogate.parameters import Screw
+from surrogate.plotting.style import draw_picture, MAP, new_figure, VERMILION
 from surrogate.screw.nut import contact_slip, ScrewContact
 from surrogate.screw.solve import ScrewSolution
 from surrogate.units import GIGA, MICRO, MILLI, NANO, RPM, ZERO_CELSIUS
 
 Array = NDArray[np.float64]
 
-DPI = 120  # [1/inch]
-VERMILION = '#d55e00'
 VIEW = 1.2
 """Half width of the maps over the semi-axes [-]."""
 ARROWS = (5, 9)
@@ -33,10 +30,7 @@ FILM_SPAN = 30.0
 
 def draw_point(folder: Path, screw: Screw, found: ScrewSolution, record: dict[str, Any]) -> Path:
     """Write the picture of a point to `folder` as PNG and return its path."""
-    path = folder / 'point_contacts.png'
-    with new_file(path) as file:
-        figure_point(screw, found, record).savefig(file, format='png')
-    return path
+    return draw_picture(folder / 'point_contacts.png', lambda: figure_point(screw, found, record))
 
 
 def figure_point(screw: Screw, found: ScrewSolution, record: dict[str, Any]) -> Figure:
@@ -46,9 +40,8 @@ def figure_point(screw: Screw, found: ScrewSolution, record: dict[str, Any]) -> 
         for contact in found.contacts
         if contact.rough is not None and contact.rough.converged
     ]
-    figure = Figure(figsize=(2.3 * max(len(pressed), 2) + 1.2, 7.4), dpi=DPI, layout='constrained')
-    FigureCanvasAgg(figure)
-    figure.suptitle(_title(record), fontsize=10)
+    figure = new_figure(2.3 * max(len(pressed), 2) + 1.2, 7.4)
+    figure.suptitle(_title(record))
     if pressed:
         _draw_columns(figure, screw, pressed)
     return figure
@@ -78,8 +71,7 @@ def _draw_columns(figure: Figure, screw: Screw, pressed: list[ScrewContact]) -> 
         _draw_slip(lower, screw, contact, rough)
         upper.set_title(
             f'{contact.nut} nut, ball on {contact.side}\n{contact.ball.normal_force:.1f} N, '
-            f'RCS {100 * rough.rcs:.2g} %',
-            fontsize=9,
+            f'RCS {100 * rough.rcs:.2g} %'
         )
         lower.set_xlabel('along the track [µm]', fontsize=8)
     for row in (0, 1):
@@ -90,9 +82,7 @@ def _draw_columns(figure: Figure, screw: Screw, pressed: list[ScrewContact]) -> 
 
 def _map(axes: Axes, rough: ContactSolution, field: Array, **options: Any) -> Any:
     x, y = MICRO * rough.x, MICRO * rough.y
-    mesh = axes.pcolormesh(
-        x, y, field.T, cmap='cividis', shading='nearest', rasterized=True, **options
-    )
+    mesh = axes.pcolormesh(x, y, field.T, cmap=MAP, shading='nearest', rasterized=True, **options)
     turn = np.linspace(0, 2 * np.pi, 181)
     a, b = MICRO * rough.semi_axis_x, MICRO * rough.semi_axis_y
     axes.plot(a * np.cos(turn), b * np.sin(turn), color='white', linestyle='--', linewidth=0.9)

@@ -9,10 +9,10 @@ from typing import Any
 
 from surrogate.formulas.geometry import opposite_flank_approach, SIDES
 from surrogate.formulas.inlet_heating import heating_factor
+from surrogate.formulas.record import closed_form_record
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.screw.contacts import ScrewSettings, shortest_on_grid
 from surrogate.screw.ensemble import EnsembleSolution
-from surrogate.screw.formula_record import closed_form_record
 from surrogate.screw.nut import rolling_force, ScrewContact
 from surrogate.screw.solve import ScrewSolution, solve_screw, TIER
 from surrogate.surface import regime_of
@@ -96,7 +96,7 @@ def solution_record(
     """Return a solved point as plain numbers, SI units, NaN where unknown."""
     formulas = closed_form_record(screw, lubricant, point)
     contacts = [_contact_record(screw, found, contact) for contact in found.contacts]
-    worst = min(contacts, key=_mildness)
+    worst = found.contacts[found.worst_contact]
     return formulas | {
         'tier': TIER,
         'status': found.status,
@@ -121,10 +121,10 @@ def solution_record(
         'central_film_m': found.central_film,
         'inlet_heating': settings.inlet_heating,
         'inlet_heating_factor': _heating_factor(screw, lubricant, point, found),
-        'minimum_film_m': _least(found, contacts, 'minimum_film_m'),
+        'minimum_film_m': found.minimum_film,
         'friction_coefficient': found.friction_coefficient,
-        'max_pressure_Pa': -_least(found, contacts, 'max_pressure_Pa', -1.0),
-        'worst_contact': {key: worst[key] for key in ('nut', 'side')},
+        'max_pressure_Pa': found.max_pressure,
+        'worst_contact': {'nut': worst.nut, 'side': worst.side},
         'contact_angle_A_rad': contacts[0]['contact_angle_rad'],
         'contact_angle_B_rad': contacts[1]['contact_angle_rad'],
         'contacts': contacts,
@@ -188,12 +188,6 @@ def _speed(contact: ScrewContact) -> float:
     return contact.motion.screw_speed if contact.motion else math.nan
 
 
-def _mildness(contact: dict[str, Any]) -> tuple[float, float]:
-    """Order contacts: the largest RCS first, then the smallest film ratio, unknown ones last."""
-    rcs, ratio = contact['rcs'], contact['film_ratio']
-    return (math.inf, math.inf) if math.isnan(rcs) else (-rcs, ratio)
-
-
 def _warnings(rated: list[str], found: ScrewSolution, wave: float) -> list[str]:
     """Return the warnings about ratings, and those of the full model."""
     warnings = [text for text in rated if 'outside its range' not in text]
@@ -252,11 +246,3 @@ def _heating_factor(
 def _nodes_per_wave(contact: ScrewContact, wave: float) -> float:
     rough = contact.rough
     return wave / float(rough.y[1] - rough.y[0]) if rough is not None else math.inf
-
-
-def _least(
-    found: ScrewSolution, contacts: list[dict[str, Any]], key: str, sign: float = 1.0
-) -> float:
-    """Return the least of `sign` times a number of the contacts, NaN unless solved."""
-    known = [sign * contact[key] for contact in contacts if not math.isnan(contact[key])]
-    return min(known) if known and found.converged else math.nan

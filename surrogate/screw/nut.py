@@ -8,23 +8,23 @@ balance the ball.
 
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 import math
-from typing import Literal
 
 import numpy as np
 from surrogate.ehl import ContactSolution
 from surrogate.ehl.friction import contact_friction
 from surrogate.formulas.geometry import Side, SIDES
+from surrogate.formulas.load_sharing import NutName
 from surrogate.formulas.sliding import hysteresis_force
-from surrogate.parameters import Lubricant, OperatingPoint, Screw
+from surrogate.parameters import OperatingPoint, Screw
 from surrogate.screw.ball_balance import balance_ball
 from surrogate.screw.ball_motion import Array, BallMotion, Flank, slip_field, slip_floor
 from surrogate.screw.ball_result import BallBalance, BallContact
 from surrogate.screw.ball_traction import solved_traction
-from surrogate.screw.contacts import Pair, ScrewSettings, smooth_film, solve_sides
+from surrogate.screw.contacts import Pair, RollingContact, smooth_film, solve_sides
 
-NutName = Literal['loaded', 'relieved']
 CREEP = 1e-3
 """Screw speed of the limit of slow motion [rad/s]."""
 COUPLING_ROUNDS = 4
@@ -54,10 +54,18 @@ class ScrewContact:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Nut:
+class NutLoad:
+    """What a nut carries: its axial force [N] and the flanks that it presses."""
+
+    nut: NutName
+    force: float
+    flank: Flank
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class SolvedNut:
     """One nut: its axial force [N], contacts, ball (None without load or solved contacts)."""
 
-    name: NutName
     force: float
     contacts: tuple[ScrewContact, ...]
     ball: BallBalance | None
@@ -66,32 +74,30 @@ class Nut:
 
 def solve_nut(
     screw: Screw,
-    lubricant: Lubricant,
     point: OperatingPoint,
-    settings: ScrewSettings,
-    name: NutName,
-    force: float,
-    flank: Flank,
+    carried: NutLoad,
+    contacts: Sequence[RollingContact],
     pairs: tuple[Pair, ...],
-) -> Nut:
+    *,
+    tolerance: float,
+) -> SolvedNut:
     """
-    Balance the ball of a nut with an axial force [N] between contacts solved without friction.
+    Balance the ball of a nut between `pairs`, its `contacts` solved without friction.
 
-    Friction and inertia move the normal forces; where by more than the tolerance of the settings,
-    contacts are solved again under the forces found, until they agree or `COUPLING_ROUNDS`.
+    Friction and inertia move the normal forces; where by more than the `tolerance` [-], contacts
+    are solved again under the forces found, until they agree or `COUPLING_ROUNDS`.
 
     """
-    nut = make_nut(screw, point, name, force, flank, pairs)
+    nut = make_nut(screw, point, carried, pairs)
     for _ in range(COUPLING_ROUNDS):
-        if not load_change(nut) > settings.coupling_tolerance:
+        if not load_change(nut) > tolerance:
             break
         first, second = (contact.ball.normal_force for contact in nut.contacts)
-        pairs = solve_sides(screw, lubricant, point, settings, (first, second))
-        nut = make_nut(screw, point, name, force, flank, pairs)
+        nut = make_nut(screw, point, carried, solve_sides(contacts, (first, second)))
     return nut
 
 
-def load_change(nut: Nut) -> float:
+def load_change(nut: SolvedNut) -> float:
     """Return the largest change of a normal force by friction over that solved [-], or NaN."""
     changes = [
         abs(contact.ball.normal_force / contact.rough.condition.load - 1)
@@ -102,25 +108,21 @@ def load_change(nut: Nut) -> float:
 
 
 def make_nut(
-    screw: Screw,
-    point: OperatingPoint,
-    name: NutName,
-    force: float,
-    flank: Flank,
-    pairs: tuple[Pair, ...],
-) -> Nut:
-    """Balance the ball of a nut with an axial force [N] between its solved contacts."""
+    screw: Screw, point: OperatingPoint, carried: NutLoad, pairs: tuple[Pair, ...]
+) -> SolvedNut:
+    """Balance the ball of a nut between its solved contacts."""
+    name, force = carried.nut, carried.force
     if force == 0:
         idle = tuple(_contact(screw, name, side, None, None, None) for side in SIDES)
-        return Nut(name=name, force=force, contacts=idle, ball=None)
+        return SolvedNut(force=force, contacts=idle, ball=None)
     failure, ball = _failure(name, pairs), None
     if not failure:
-        ball = balance_nut(screw, point, force, flank, [rough for _, rough in pairs])
+        ball = balance_nut(screw, point, force, carried.flank, [rough for _, rough in pairs])
         failure = '' if ball.converged else f'{name} nut, ball: {ball.status.value}'
     contacts = tuple(
         _contact(screw, name, side, *pair, ball) for side, pair in zip(SIDES, pairs, strict=True)
     )
-    return Nut(name=name, force=force, contacts=contacts, ball=ball, failure=failure)
+    return SolvedNut(force=force, contacts=contacts, ball=ball, failure=failure)
 
 
 def _failure(name: NutName, pairs: tuple[Pair, ...]) -> str:
@@ -191,7 +193,7 @@ def rolling_force(screw: Screw, found: ContactSolution) -> float:
     elastic = hysteresis_force(
         screw.hysteresis_loss, found.condition.load, found.semi_axis_x, found.contact.radius_x
     )
-    return found.rolling_force + found.rolling_tail + elastic
+    return found.whole_rolling_force + elastic
 
 
 def friction_coefficient(

@@ -8,19 +8,28 @@ screw and, apart from it, the power that it loses.
 
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 import math
 
 from surrogate.ehl import ContactSolution
+from surrogate.ehl.watch import at
 from surrogate.files import InputError
 from surrogate.formulas.geometry import SIDES
 from surrogate.formulas.kinematics import no_slip_rates
-from surrogate.formulas.load_sharing import normal_force, nut_forces
+from surrogate.formulas.load_sharing import IDLE_SHARE, normal_force, nut_forces
 from surrogate.formulas.torque import driving_torque, efficiency, is_back_driving
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.screw.ball_motion import Flank
-from surrogate.screw.contacts import fluid_at, ScrewSettings, smooth_film, solve_sides
-from surrogate.screw.nut import load_change, make_nut, Nut, ScrewContact, solve_nut
+from surrogate.screw.contacts import (
+    fluid_at,
+    make_contacts,
+    RollingContact,
+    ScrewSettings,
+    smooth_film,
+    solve_sides,
+)
+from surrogate.screw.nut import load_change, make_nut, NutLoad, ScrewContact, solve_nut, SolvedNut
 
 TIER = 'full'
 SOLVED = (
@@ -31,8 +40,6 @@ SOLVED = (
 """Status by the number of nuts that carry load."""
 SAME_FORCE = 1e-3
 """Normal forces that differ by less, over the larger, count as the same [-]."""
-IDLE_SHARE = 1e-3
-"""Force of the relieved nut over that of the loaded one below which it counts as idle [-]."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -68,6 +75,40 @@ class ScrewSolution:
     friction_coefficient: float = math.nan
     load_change: float = math.nan
 
+    @property
+    def rough_contacts(self) -> tuple[ContactSolution, ...]:
+        """Rough solutions of the contacts that carry load."""
+        return tuple(one.rough for one in self.contacts if one.rough is not None)
+
+    @property
+    def worst_contact(self) -> int:
+        """Place in `contacts` of the largest RCS, of equal ones that of the thinnest film."""
+        pressed = [
+            (one.rough.rcs, -one.film_ratio, -place)
+            for place, one in enumerate(self.contacts)
+            if one.rough is not None and not math.isnan(one.rough.rcs)
+        ]
+        return -max(pressed)[2] if pressed else 0
+
+    @property
+    def minimum_film(self) -> float:
+        """Least rough film of all contacts [m]."""
+        return min(self._of_rough('minimum_film'), default=math.nan)
+
+    @property
+    def max_pressure(self) -> float:
+        """Largest pressure of all contacts, that of asperities with it [Pa]."""
+        return max(self._of_rough('max_pressure'), default=math.nan)
+
+    @property
+    def film_over_floor(self) -> float:
+        """Least rough film over the floor that stands for asperities [-]."""
+        films = (one.minimum_film / one.settings.film_floor for one in self.rough_contacts)
+        return min(films, default=math.nan) if self.converged else math.nan
+
+    def _of_rough(self, name: str) -> list[float]:
+        return [getattr(one, name) for one in self.rough_contacts] if self.converged else []
+
 
 def solve_screw(
     screw: Screw,
@@ -87,20 +128,23 @@ def solve_screw(
 
     """
     settings = settings or ScrewSettings()
-    forces = _forces(screw, point)
+    nuts = _nut_loads(screw, point)
     near = [(found.smooth, found.rough) for found in start.contacts] if start else []
-    given = (screw, lubricant, point, settings)
-    loads = [float(normal_force(screw, force)) for force in forces]
-    loaded = solve_sides(*given, (loads[0], loads[0]), near[:2])
-    relieved = loaded
-    if forces[0] != forces[1]:
-        relieved = solve_sides(*given, (loads[1], loads[1]), near[2:])
-    ahead, behind = _flanks(point)
-    nuts = (
-        solve_nut(*given, 'loaded', forces[0], ahead, loaded),
-        solve_nut(*given, 'relieved', forces[1], behind, relieved),
-    )
-    return _combine(screw, point, nuts)
+    contacts: tuple[RollingContact, ...] = ()
+    if any(nut.force for nut in nuts):
+        contacts = make_contacts(screw, lubricant, point, settings)
+    loaded, relieved = (float(normal_force(screw, nut.force)) for nut in nuts)
+    with at(nut=1):
+        pairs = [solve_sides(contacts, (loaded, loaded), near[:2])]
+    same = nuts[0].force == nuts[1].force
+    with at(nut=2):
+        pairs.append(pairs[0] if same else solve_sides(contacts, (relieved, relieved), near[2:]))
+    solved = []
+    for place, (nut, pair) in enumerate(zip(nuts, pairs, strict=True)):
+        with at(nut=place + 1):
+            tolerance = settings.coupling_tolerance
+            solved.append(solve_nut(screw, point, nut, contacts, pair, tolerance=tolerance))
+    return _combine(screw, point, solved)
 
 
 def rebalance_screw(
@@ -124,17 +168,13 @@ def rebalance_screw(
         )
         for contacts in (found.contacts[:2], found.contacts[2:])
     )
-    forces, (ahead, behind) = _forces(screw, point), _flanks(point)
-    nuts = (
-        make_nut(screw, point, 'loaded', forces[0], ahead, loaded),
-        make_nut(screw, point, 'relieved', forces[1], behind, relieved),
-    )
-    return _combine(screw, point, nuts)
+    pairs = zip(_nut_loads(screw, point), (loaded, relieved), strict=True)
+    return _combine(screw, point, [make_nut(screw, point, *given) for given in pairs])
 
 
 def _check_same_load(screw: Screw, point: OperatingPoint, found: ScrewSolution) -> None:
     """Raise InputError when the contacts of a solution belong to other normal forces."""
-    wanted = [float(normal_force(screw, force)) for force in _forces(screw, point)]
+    wanted = [float(normal_force(screw, nut.force)) for nut in _nut_loads(screw, point)]
     unsolved = any(
         force > 0 and contact.rough is None
         for place, contact in enumerate(found.contacts)
@@ -149,20 +189,20 @@ def _check_same_load(screw: Screw, point: OperatingPoint, found: ScrewSolution) 
         )
 
 
-def _flanks(point: OperatingPoint) -> tuple[Flank, Flank]:
-    """Return the flanks of the loaded and of the relieved nut that carry."""
-    return (1, -1) if point.opposing_load >= 0 else (-1, 1)
-
-
-def _forces(screw: Screw, point: OperatingPoint) -> tuple[float, float]:
-    """Return the axial forces of both nuts [N]; a share too small to hold its balls is none."""
+def _nut_loads(screw: Screw, point: OperatingPoint) -> tuple[NutLoad, NutLoad]:
+    """Return what both nuts carry; a share too small to hold its balls is none."""
+    ahead: Flank = 1 if point.opposing_load >= 0 else -1
+    behind: Flank = -1 if ahead == 1 else 1
     loaded, relieved = (float(force) for force in nut_forces(point.opposing_load, screw.preload))
     if relieved < IDLE_SHARE * loaded:
-        return abs(point.opposing_load), 0.0
-    return loaded, relieved
+        loaded, relieved = abs(point.opposing_load), 0.0
+    return (
+        NutLoad(nut='loaded', force=loaded, flank=ahead),
+        NutLoad(nut='relieved', force=relieved, flank=behind),
+    )
 
 
-def _combine(screw: Screw, point: OperatingPoint, nuts: tuple[Nut, Nut]) -> ScrewSolution:
+def _combine(screw: Screw, point: OperatingPoint, nuts: Sequence[SolvedNut]) -> ScrewSolution:
     """Add up both nuts."""
     speed, load = abs(point.speed), point.opposing_load
     found = ScrewSolution(
@@ -195,15 +235,11 @@ def _combine(screw: Screw, point: OperatingPoint, nuts: tuple[Nut, Nut]) -> Scre
         back_driving=is_back_driving(friction, load, screw.lead),
         load_change=max(load_change(nut) for nut in nuts),
         friction_coefficient=_mean_friction(found),
-        rcs=max((rough.rcs for rough in _rough(found)), default=0.0),
-        asperity_share=max((rough.asperity_share for rough in _rough(found)), default=0.0),
+        rcs=max((rough.rcs for rough in found.rough_contacts), default=0.0),
+        asperity_share=max((rough.asperity_share for rough in found.rough_contacts), default=0.0),
         film_ratio=min(films) / screw.roughness.rms if films else math.nan,
         central_film=min(films) if films else math.nan,
     )
-
-
-def _rough(found: ScrewSolution) -> list[ContactSolution]:
-    return [contact.rough for contact in found.contacts if contact.rough is not None]
 
 
 def _films(found: ScrewSolution) -> list[float]:

@@ -8,21 +8,15 @@ Needs numpy alone.
 """
 
 from surrogate.surface.correction import Correction
-from surrogate.surface.lookup import (
-    FIELDS,
-    find_surface,
-    shipped_surface,
-    Surface,
-    SurfaceError,
-    SurfacePoint,
-    Validity,
-)
-from surrogate.surface.point import solved_point
+from surrogate.surface.file import SurfaceError
+from surrogate.surface.lookup import Surface
+from surrogate.surface.point import FIELDS, solved_point, SurfacePoint, Validity
 from surrogate.surface.regime import FILM_RATIO_LIMITS, Regime, regime_of, REGIMES
+from surrogate.surface.shipped import find_surface, shipped_surface
+from surrogate.surface.solved import SolvedPoint
 
 __all__ = [
     'Correction',
-    'solved_point',
     'FIELDS',
     'FILM_RATIO_LIMITS',
     'find_surface',
@@ -30,6 +24,8 @@ __all__ = [
     'regime_of',
     'REGIMES',
     'shipped_surface',
+    'solved_point',
+    'SolvedPoint',
     'Surface',
     'SurfaceError',
     'SurfacePoint',

@@ -29,7 +29,7 @@ Cell = tuple[int, int, int]
 Fractions = tuple[float, float, float]
 
 
-class Point(Protocol):
+class HasOperatingPoint(Protocol):
     """Where a full solve was made: an operating point, or anything with these three."""
 
     @property
@@ -126,7 +126,7 @@ def places_of(cell: Cell, fractions: Fractions, cells: Cell) -> list[tuple[Cell,
 
 
 def make_correction(
-    point: Point,
+    point: HasOperatingPoint,
     cell: Cell,
     fractions: Fractions,
     values: Sequence[float],

@@ -22,9 +22,9 @@ from surrogate.surface import file as surface_file
 from surrogate.surface.correction import (
     corrected_hash,
     Correction,
+    HasOperatingPoint,
     make_correction,
     places_of,
-    Point,
     solved_values,
 )
 from surrogate.surface.file import SurfaceData, SurfaceError
@@ -36,18 +36,8 @@ from surrogate.surface.hermite import (
     patch_weights,
     trilinear_weights,
 )
-from surrogate.surface.point import FIELDS, NO_SPREADS, SurfacePoint, Validity
+from surrogate.surface.point import FIELDS, MEASURED, NO_SPREADS, SurfacePoint, Validity
 from surrogate.surface.tables import open_cells, spread_table, summary, transform
-
-__all__ = [
-    'FIELDS',
-    'find_surface',
-    'shipped_surface',
-    'Surface',
-    'SurfaceError',
-    'SurfacePoint',
-    'Validity',
-]
 
 Place = tuple[int, float, float]
 """Cell, its width and the fraction of it at which a value lies."""
@@ -55,9 +45,6 @@ Located = tuple[Place, Place, Place, list[float]]
 """Places along speed, load and temperature, and the weights of the face of the last two."""
 ROUNDING = 1e-9
 """Largest error of a mapped speed [-]."""
-SHIPPED_TIERS = ('full', 'closed_form')
-"""Tiers of shipped surfaces, the one that is taken first coming first."""
-SHIPPED = Path(__file__).parent.parent / 'data' / 'surfaces'
 
 
 class Surface:
@@ -82,7 +69,7 @@ class Surface:
         self._worst = data.worst_contact
         self._spreads = spread_table(data)
         self._open_cells = open_cells(data.mask)
-        self._errors = np.stack([data.errors[name] for name in ('friction_torque', 'rcs')], -1)
+        self._errors = np.stack([data.errors[name] for name in MEASURED], -1)
         self.errors = {name: summary(error) for name, error in data.errors.items()}
 
     @classmethod
@@ -190,7 +177,7 @@ class Surface:
         solves = {_solve_of(self._pulls[cell]): self._pulls[cell] for cell in sorted(self._pulls)}
         return tuple(solves.values())
 
-    def with_correction(self, point: Point, solution: object) -> 'Surface':
+    def with_correction(self, point: HasOperatingPoint, solution: object) -> 'Surface':
         """
         Return a surface that agrees with a full solve at `point`, and with this one elsewhere.
 
@@ -264,7 +251,8 @@ class Surface:
     def _log_onset(self, load: Place, heat: Place, patch: list[float]) -> float:
         j, k = self._rows[1][load[0]], self._rows[2][heat[0]]
         low, high = self._onset[j], self._onset[j + 1]
-        return sum(map(mul, patch, (*low[k], *low[k + 1], *high[k], *high[k + 1])))
+        onset: float = sum(map(mul, patch, (*low[k], *low[k + 1], *high[k], *high[k + 1])))
+        return onset
 
     def _values(self, fast: Place, load: Place, heat: Place, patch: list[float]) -> list[float]:
         """Return the fields, transformed, without corrections."""
@@ -317,40 +305,3 @@ class Surface:
 def _solve_of(pull: Correction) -> tuple[float, float, float]:
     """Return what tells one solve from another; it may have pulled two cells."""
     return pull.speed, pull.opposing_load, pull.temperature
-
-
-def find_surface(
-    wanted: str | Path | None, screw: str = 'nominal', oil: str = 'iso_vg_68'
-) -> Path:
-    """
-    Return the file that is wanted: a path, or a tier of those shipped; nothing means any tier.
-
-    Raises SurfaceError when no such surface is shipped.
-
-    """
-    text = str(wanted or '')
-    if text and text not in surface_file.TIERS:
-        return Path(text)
-    return shipped_surface(screw, oil, text or None)
-
-
-def shipped_surface(
-    screw: str = 'nominal', oil: str = 'iso_vg_68', tier: str | None = None
-) -> Path:
-    """
-    Return where the shipped surface of `screw` and `oil` lies.
-
-    Without a tier it is of solved contacts where such a one is shipped. Raises SurfaceError if
-    there is none.
-
-    """
-    for kind in SHIPPED_TIERS if tier is None else (tier,):
-        ending = '' if kind == 'closed_form' else f'_{kind}'
-        path = SHIPPED / f'{screw}_{oil}{ending}.npz'
-        if path.is_file():
-            return path
-    shipped = ', '.join(sorted(found.stem for found in SHIPPED.glob('*.npz')))
-    raise SurfaceError(
-        f'no surface {f"of tier {tier} " if tier else ""}is shipped for screw {screw!r} and oil '
-        f'{oil!r}, shipped are {shipped or "none"}'
-    )

@@ -20,6 +20,10 @@ FIELDS = (
     'max_pressure',
 )
 """Interpolated fields in table order."""
+INDEX = {name: place for place, name in enumerate(FIELDS)}
+"""Place of a field in a row of the table."""
+MEASURED = FIELDS[:2]
+"""Fields whose measured interpolation error a point tells, torque and RCS."""
 LOGARITHMIC = ('film_ratio', 'central_film', 'minimum_film')
 NOTHING = (math.nan,) * len(FIELDS)
 NO_SPREADS = 2 * NOTHING
@@ -43,7 +47,7 @@ class SurfacePoint:
     What the surface says of one point; every number is NaN unless `validity` is VALID.
 
     Opposing load [N] and lead [m] belong to the question; `values` are in the order of `FIELDS`,
-    `errors` the measured interpolation errors of the cell, of torque [N m] and RCS [-].
+    `errors` the measured interpolation errors of the cell, of `MEASURED` in their units.
     `spreads` over roughness draws are the standard deviations of the values and then the standard
     errors of their means, NaN without draws. `corrected`: a full solve near this point has pulled
     the numbers.
@@ -62,42 +66,42 @@ class SurfacePoint:
     @property
     def friction_torque(self) -> float:
         """Torque lost to friction [N m]."""
-        return self.values[0]
+        return self.values[INDEX['friction_torque']]
 
     @property
     def rcs(self) -> float:
         """RCS of the worst contact [-]; a patch may pass its corners by a hair, this may not."""
-        return _share(self.values[1])
+        return _share(self.values[INDEX['rcs']])
 
     @property
     def asperity_share(self) -> float:
         """Share of the load on asperities in the worst contact [-]."""
-        return _share(self.values[2])
+        return _share(self.values[INDEX['asperity_share']])
 
     @property
     def film_ratio(self) -> float:
         """Film ratio Lambda of the thinnest contact [-]."""
-        return math.exp(self.values[3])
+        return math.exp(self.values[INDEX['film_ratio']])
 
     @property
     def central_film(self) -> float:
         """Central film of the thinnest contact [m]."""
-        return math.exp(self.values[4])
+        return math.exp(self.values[INDEX['central_film']])
 
     @property
     def minimum_film(self) -> float:
         """Minimum film of the thinnest contact [m]."""
-        return math.exp(self.values[5])
+        return math.exp(self.values[INDEX['minimum_film']])
 
     @property
     def friction_coefficient(self) -> float:
         """Load-weighted mean coefficient of sliding friction [-]."""
-        return self.values[6]
+        return self.values[INDEX['friction_coefficient']]
 
     @property
     def max_pressure(self) -> float:
         """Largest Hertz pressure [Pa]."""
-        return self.values[7]
+        return self.values[INDEX['max_pressure']]
 
     @property
     def worst_nut(self) -> int:
@@ -112,50 +116,50 @@ class SurfacePoint:
     @property
     def friction_torque_error(self) -> float:
         """Measured interpolation error of the torque in this cell [N m]."""
-        return self.errors[0]
+        return self.errors[INDEX['friction_torque']]
 
     @property
     def rcs_error(self) -> float:
         """Measured interpolation error of RCS in this cell [-]."""
-        return self.errors[1]
+        return self.errors[INDEX['rcs']]
 
     @property
     def rcs_std(self) -> float:
         """Return the standard deviation of RCS over roughness draws [-]; NaN without draws."""
-        return self.spreads[1]
+        return self.spreads[INDEX['rcs']]
 
     @property
     def rcs_stderr(self) -> float:
         """Return the standard error of the mean RCS [-]; NaN without draws."""
-        return self.spreads[len(FIELDS) + 1]
+        return self.spreads[len(FIELDS) + INDEX['rcs']]
 
     @property
     def friction_torque_std(self) -> float:
         """Return the standard deviation of the torque over draws [N m]; NaN without draws."""
-        return self.spreads[0]
+        return self.spreads[INDEX['friction_torque']]
 
     @property
     def friction_torque_stderr(self) -> float:
         """Return the standard error of the mean torque [N m]; NaN without draws."""
-        return self.spreads[len(FIELDS)]
+        return self.spreads[len(FIELDS) + INDEX['friction_torque']]
 
     @property
     def efficiency_std(self) -> float:
         """Return the standard deviation of efficiency over draws [-]; NaN without draws."""
-        return self.spreads[0] * self._efficiency_slope()
+        return self.spreads[INDEX['friction_torque']] * self._efficiency_slope()
 
     @property
     def efficiency_stderr(self) -> float:
         """Return the standard error of the mean efficiency [-]; NaN without draws."""
-        return self.spreads[len(FIELDS)] * self._efficiency_slope()
+        return self.spreads[len(FIELDS) + INDEX['friction_torque']] * self._efficiency_slope()
 
     def std(self, name: str) -> float:
         """Return the standard deviation over draws of one of `FIELDS`, in its unit."""
-        return self.spreads[FIELDS.index(name)]
+        return self.spreads[INDEX[name]]
 
     def stderr(self, name: str) -> float:
         """Return the standard error of the mean over draws of one of `FIELDS`, in its unit."""
-        return self.spreads[len(FIELDS) + FIELDS.index(name)]
+        return self.spreads[len(FIELDS) + INDEX[name]]
 
     @property
     def efficiency(self) -> float:
@@ -177,10 +181,12 @@ class SurfacePoint:
     @property
     def efficiency_error(self) -> float:
         """Interpolation error of the efficiency [-], to first order in that of the torque."""
-        return self.errors[0] * self._efficiency_slope()
+        return self.errors[INDEX['friction_torque']] * self._efficiency_slope()
 
     def _efficiency_slope(self) -> float:
-        return torque.efficiency_slope(self.values[0], self.opposing_load, self.lead)
+        return torque.efficiency_slope(
+            self.values[INDEX['friction_torque']], self.opposing_load, self.lead
+        )
 
 
 def solved_point(

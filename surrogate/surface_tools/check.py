@@ -17,12 +17,9 @@ import numpy as np
 from surrogate.builder.tiers import solve_point
 from surrogate.formulas import torque
 from surrogate.surface import Surface
+from surrogate.surface.aims import EFFICIENCY_TOLERANCE, rcs_tolerance
 from surrogate.surface.file import SurfaceData
 
-EFFICIENCY_TOLERANCE = 0.003
-"""Error of the efficiency that is aimed at [-]."""
-RCS_TOLERANCE, RCS_RELATIVE_TOLERANCE = 0.003, 0.05
-"""Error of RCS that is aimed at [-]: absolute, and relative where that is more."""
 STATED_FACTOR = 3.0
 """Largest error found over one that the file states [-]; it is stated for few places of a cell,
 which are not the worst."""
@@ -144,12 +141,12 @@ def _compare(
     load = drawn.uniform(*surface.load_range)
     kelvin = drawn.uniform(*surface.temperature_range)
     solved = solve_point(header, speed, load, kelvin)
-    if not solved or not np.isfinite(solved['rcs']):
+    if not (solved.converged and math.isfinite(solved.rcs)):
         return None
-    found, rcs = surface.lookup(speed, load, kelvin), solved['rcs']
-    aim = max(RCS_TOLERANCE, RCS_RELATIVE_TOLERANCE * rcs)
-    errors = {name: abs(getattr(found, name) - solved[name]) for name in STATED}
-    efficiency = torque.efficiency(solved['friction_torque'], load, surface.lead)
+    found, rcs = surface.lookup(speed, load, kelvin), solved.rcs
+    aim = rcs_tolerance(rcs)
+    errors = {name: abs(getattr(found, name) - getattr(solved, name)) for name in STATED}
+    efficiency = torque.efficiency(solved.friction_torque, load, surface.lead)
     wrong = abs(found.efficiency - efficiency)
     return {
         'efficiency': wrong,

@@ -4,34 +4,41 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-import io
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import BoundaryNorm, ListedColormap, LogNorm
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.files import replace_file
+from surrogate.plotting.style import (
+    BLUE,
+    BROWN,
+    draw_picture,
+    GREEN,
+    MAP,
+    new_figure,
+    ORANGE,
+    SKY,
+    VERMILION,
+    YELLOW,
+)
 from surrogate.surface import FILM_RATIO_LIMITS, REGIMES, Surface, Validity
 from surrogate.surface_tools.diff import EFFICIENCY_LIMIT, LIGHT_LOAD, RCS_LIMIT
 from surrogate.units import RPM, ZERO_CELSIUS
 
 Array = NDArray[np.float64]
 
-DPI = 110  # [1/inch]
 GRID = (181, 141)
 """Points along speed and load [-]."""
-MAP = 'cividis'
 EFFICIENCY_SHOWN = 0.6
 """Lower end of the efficiency scale [-]: what lies below is as dark as this."""
-LIMIT: dict[str, Any] = {'colors': '#d55e00', 'linewidths': 1.6}
-BOUNDARY, MIXED, FULL = '#d55e00', '#f0e442', '#56b4e9'
-OPTIMAL, RUBBING, LOSSY, BOTH, LIGHT = '#009e73', '#e69f00', '#0072b2', '#a8433a', '#d9d9d9'
-"""Colours that colour-blind readers and a black and white print keep apart."""
+LIMIT: dict[str, Any] = {'colors': VERMILION, 'linewidths': 1.6}
+LIGHT, UNKNOWN = '#d9d9d9', '#bdbdbd'
+"""Colours of a light load and of no answer."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -72,11 +79,8 @@ def cut(surface: Surface, temperature: float) -> Slice:
 def draw_surface(folder: Path, surface: Surface, temperatures: Sequence[float]) -> Iterator[Path]:
     """Write a picture per temperature [K] to `folder` as PNG and yield the paths."""
     for kelvin in temperatures:
-        path = folder / f'surface_{kelvin - ZERO_CELSIUS:g}degC.png'
-        out = io.BytesIO()
-        figure_surface(surface, kelvin).savefig(out, format='png')
-        replace_file(path, out.getvalue())
-        yield path
+        name = f'surface_{kelvin - ZERO_CELSIUS:g}degC.png'
+        yield draw_picture(folder / name, partial(figure_surface, surface, kelvin))
 
 
 def figure_surface(surface: Surface, temperature: float) -> Figure:
@@ -93,12 +97,10 @@ def figure_surface(surface: Surface, temperature: float) -> Figure:
     if np.isfinite(part.fields['rcs_std']).any():
         panels += [_draw_efficiency_spread, _draw_rcs_spread]
     rows = len(panels) // 2
-    figure = Figure(figsize=(7.2, 0.7 + 2.9 * rows), dpi=DPI, layout='constrained')
-    FigureCanvasAgg(figure)
+    figure = new_figure(7.2, 0.7 + 2.9 * rows)
     figure.suptitle(
         f'{surface.screw_name}, {surface.oil_name}, {temperature - ZERO_CELSIUS:g} degC, '
-        f'tier {surface.tier}, surface {surface.sha256[:8]}; grey: not known',
-        fontsize=10,
+        f'tier {surface.tier}, surface {surface.sha256[:8]}; grey: not known'
     )
     grid = figure.subplots(rows, 2, sharex=True, sharey=True)
     for draw, axes in zip(panels, grid.flat):
@@ -114,8 +116,8 @@ def figure_surface(surface: Surface, temperature: float) -> Figure:
 def _map(
     figure: Figure, axes: Axes, part: Slice, values: Array, title: str, label: str, **options: Any
 ) -> None:
-    axes.set_title(title, fontsize=9)
-    axes.set_facecolor('#bdbdbd')
+    axes.set_title(title)
+    axes.set_facecolor(UNKNOWN)
     if not np.isfinite(values).any():
         axes.text(0.5, 0.5, 'not known', transform=axes.transAxes, ha='center')
         return
@@ -169,8 +171,8 @@ def _classes(
         norm=BoundaryNorm(np.arange(len(colours) + 1) - 0.5, len(colours)),
         rasterized=True,
     )
-    axes.set_facecolor('#bdbdbd')
-    axes.set_title(title, fontsize=9)
+    axes.set_facecolor(UNKNOWN)
+    axes.set_title(title)
     found = {int(value) for value in values[np.isfinite(values)]}
     patches = [
         Patch(color=colour, label=name)
@@ -187,7 +189,7 @@ def _draw_regime(figure: Figure, axes: Axes, part: Slice) -> None:
     ranges = (f'< {low:g}', f'{low:g} to {high:g}', f'>= {high:g}')
     names = [
         (f'{regime.word}, {span}', colour)
-        for regime, span, colour in zip(REGIMES, ranges, (BOUNDARY, MIXED, FULL))
+        for regime, span, colour in zip(REGIMES, ranges, (VERMILION, YELLOW, SKY))
     ]
     _classes(axes, part, bands, 'Regime by Lambda', names)
 
@@ -195,10 +197,10 @@ def _draw_regime(figure: Figure, axes: Axes, part: Slice) -> None:
 def _draw_zone(figure: Figure, axes: Axes, part: Slice) -> None:
     title = f'Zone: RCS < {RCS_LIMIT}, efficiency >= {EFFICIENCY_LIMIT}'
     names = [
-        ('optimal', OPTIMAL),
-        ('too much contact', RUBBING),
-        ('too much loss', LOSSY),
-        ('both', BOTH),
+        ('optimal', GREEN),
+        ('too much contact', ORANGE),
+        ('too much loss', BLUE),
+        ('both', BROWN),
         ('light load, no efficiency', LIGHT),
     ]
     _classes(axes, part, zone_classes(part), title, names)

@@ -52,7 +52,7 @@ def limit_errors(
         place = _random_place(surface, drawn) if has_time() else None
         if place is None:
             return
-        solved = solve_point(data.header, *place).get('rcs', math.nan)
+        solved = solve_point(data.header, *place).rcs
         speed, load, temperature = place
         yield LimitError(
             speed=speed,

@@ -6,7 +6,8 @@ An executor of spawned processes that survives the loss of any of them.
 Each process has a pipe of its own and a thread here that feeds it. Nothing is shared between the
 processes, so one that is killed, even in the middle of a large result, can neither hold a lock nor
 leave half a message for the others, and it is known at which call it was. The standard executor
-shares a pipe and a lock, and a kill at the wrong moment makes it wait forever.
+shares a pipe and a lock, and a kill at the wrong moment makes it wait forever; loky shares a queue
+of results, too, gives up all its workers when one is lost, and pickles code.
 
 """
 

@@ -6,8 +6,9 @@ Results of solves, kept while a surface is built, so that an interruption costs 
 One file that only grows, beside the output: a line of header, then a line per result, each with
 its own checksum, written by one call and flushed to the disk. A directory with a file per result
 would be as safe, but a map has thousands; a line needs no rename, and a reader sees at once which
-results there are. A line that was torn by a kill or a full disk fails its checksum and is dropped.
-Floats are kept in hexadecimal, bit for bit.
+results there are. SQLite survives a kill as well, but has no checksums: a file that is cut off or
+damaged in one byte costs it all results, or none and a wrong number. A line that was torn by a
+kill or a full disk fails its checksum and is dropped. Floats are kept in hexadecimal, bit for bit.
 
 """
 

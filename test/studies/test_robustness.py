@@ -51,10 +51,9 @@ def test_cases_lie_in_their_ranges():
 
 
 def test_rows_come_back_from_the_table(tmp_path, row):
-    """What was appended is read, whatever its kind."""
+    """What was written is read, whatever its kind."""
     other = replace(row, key='other', rcs=0.25, converged=False)
-    for one in (row, other):
-        bench.append(tmp_path / 'table.csv', one)
+    bench.write_rows(tmp_path / 'table.csv', [row, other])
     back = bench.read_rows(tmp_path / 'table.csv')
     assert list(back) == [row.key, 'other']
     assert back['other'].rcs == 0.25

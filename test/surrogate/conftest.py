@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 from surrogate.builder.closed_form import build_closed_form, default_settings
-from surrogate.builder.full.chain import SENSES
+from surrogate.builder.full.chain import solved_chain
 from surrogate.builder.tiers import screw_and_oil
 from surrogate.formulas import closed_form
 from surrogate.parameters import load_lubricant, load_screw, Lubricant, Screw
@@ -71,7 +71,7 @@ def solve_stand_in(inputs: Mapping[str, Any]) -> dict[str, Any]:
     scale, shift = np.exp(drawn.normal(0.0, 0.1, size=2))
     return {
         sense: [stand_in_record(inputs, speed, sign, scale, shift) for speed in inputs['speeds']]
-        for sense, sign in SENSES.items()
+        for sense, sign in (('opposing', 1.0), ('assisting', -1.0))
     }
 
 
@@ -104,4 +104,4 @@ def stand_in_record(
 
 def run_stand_in(purpose: str, chains: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
     """Solve chains in this process."""
-    return {name: solve_stand_in(inputs) for name, inputs in chains.items()}
+    return {name: solved_chain(solve_stand_in(inputs)) for name, inputs in chains.items()}

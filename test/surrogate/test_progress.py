@@ -77,3 +77,16 @@ def test_work_may_grow():
     progress.add(1)
     progress.step()
     assert stream.getvalue() == '1/2 solves\n'
+
+
+def test_steps_that_differ_tell_their_share():
+    """A quarter of the work in 10 s leaves 30 s, whatever the number of steps; notes come last."""
+    stream, now = Terminal(), [0.0]
+    progress = Progress(0, 'solves', stream=stream, clock=lambda: now[0])
+    now[0] = 5.0
+    progress.show(0, 8)
+    now[0] = 15.0
+    progress.show(3, 8, share=0.25, note='screw 5 rev/min 50 N')
+    line = stream.getvalue().removeprefix('\r').removesuffix('\x1b[K')
+    assert line.startswith('[##########' + 30 * ' ' + '] 3/8 solves, 3.3 s each, 30 s left')
+    assert line.endswith(', screw 5 rev/min 50 N')

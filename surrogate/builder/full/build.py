@@ -12,26 +12,25 @@ for more nodes, these are solved, too. What is solved, and where, is left to the
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.builder.closed_form import check_ranges, surface_header
-from surrogate.builder.full.columns import Columns, Node, Records
+from surrogate.builder.full.columns import Columns, moved_records, Records
 from surrogate.builder.full.finer import nodes_for_misses, Room
 from surrogate.builder.full.held_out import (
     cell_errors,
     held_out_points,
     HeldOut,
-    Point,
+    HeldOutPlace,
     solve_held_out,
 )
 from surrogate.builder.full.loads import LoadPieces, signed_loads
 from surrogate.builder.full.nodes import gather_nodes
 from surrogate.builder.full.onset import find_loads, find_onset, middle, Profiles
 from surrogate.builder.full.run import Once
-from surrogate.builder.full.settings import error_target, FullSettings, Run
-from surrogate.builder.full.speed_nodes import Sample
+from surrogate.builder.full.settings import error_target, FullSettings, SolveChains
+from surrogate.builder.full.speed_nodes import NodeSample
 from surrogate.builder.full.speeds import find_speed_nodes, speed_room
 from surrogate.builder.full.temperatures import file_temperatures, solved_temperatures
 from surrogate.files import InputError
@@ -46,7 +45,7 @@ GAIN = 0.9
 
 
 @dataclass(frozen=True, slots=True)
-class Plan:
+class NodePlan:
     """
     Nodes of a surface: columns at the solved temperatures, all temperatures [K], load breaks [N].
 
@@ -68,7 +67,7 @@ class Plan:
 
 
 @dataclass(frozen=True, slots=True)
-class Measured:
+class JudgedSurface:
     """A surface and its held-out points."""
 
     data: SurfaceData
@@ -80,11 +79,11 @@ class Measured:
         return max(self.misses.values(), default=None)
 
     @property
-    def misses(self) -> dict[Point, float]:
+    def misses(self) -> dict[HeldOutPlace, float]:
         """Return the errors over the allowed ones by point [-]."""
         return {one.point: one.miss for one in self.held_out}
 
-    def is_worse_than(self, other: 'Measured') -> bool:
+    def is_worse_than(self, other: 'JudgedSurface') -> bool:
         """Tell whether a point is lost or the largest error has grown."""
         lost = other.misses.keys() - self.misses.keys()
         return bool(lost) or (self.reached or 0.0) > (other.reached or 0.0)
@@ -96,18 +95,20 @@ class Builder:
     Solves and measures a surface, with more nodes each time; no node is solved twice.
 
     `known` are the profiles by the magnitude of the load [N], `heats` the solved temperatures [K],
-    `first` the speed nodes [-] of the first time, `points` those held out then.
+    `first` the speed nodes [-] of the first time, `points` those held out then. `records` are on
+    the speeds [-] and loads [N] of `axes`.
 
     """
 
     profiles: Profiles
-    known: Mapping[float, Sample]
+    known: Mapping[float, NodeSample]
     heats: Array
     first: Array | None = None
-    points: list[Point] | None = None
-    records: dict[Node, Any] = field(default_factory=dict)
+    points: list[HeldOutPlace] | None = None
+    records: Records = field(default_factory=dict)
+    axes: tuple[Array, Array] = (np.empty(0), np.empty(0))
 
-    def plan(self, pieces: LoadPieces) -> Plan:
+    def plan(self, pieces: LoadPieces) -> NodePlan:
         """Return the columns of some loads."""
         screw, lubricant = self.profiles.screw, self.profiles.lubricant
         settings, heats = self.profiles.settings, self.heats
@@ -129,22 +130,24 @@ class Builder:
             grid_wavelength=settings.grid_wavelength,
             first=self.first,
         )
-        return Plan(columns, temperature, breaks, onset, both)
+        return NodePlan(columns, temperature, breaks, onset, both)
 
-    def measure(self, pieces: LoadPieces, s: Array) -> Measured:
+    def measure(self, pieces: LoadPieces, s: Array) -> JudgedSurface:
         """Solve what is not known of the speed nodes `s` [-] at some loads, then the points."""
         plan, settings, run = self.plan(pieces), self.profiles.settings, self.profiles.run
         columns, purpose = plan.columns, 'more nodes' if self.records else 'nodes'
-        results = run(purpose, columns.chains(s, self.records))
-        self.records |= columns.records(s, results, self.records)
+        axes = s, columns.load
+        known, self.axes = moved_records(self.records, self.axes, axes), axes
+        results = run(purpose, columns.chains(s, known))
+        self.records = known | columns.records(s, results, known)
         data = _surface(plan, s, self.records, settings)
         if self.points is None:
             self.points = held_out_points(Surface(data), columns.screw, settings)
-        return Measured(data, solve_held_out(data, self.points, columns, settings, run))
+        return JudgedSurface(data, solve_held_out(data, self.points, columns, settings, run))
 
 
 def build_full(
-    screw: Screw, lubricant: Lubricant, settings: FullSettings, run: Run
+    screw: Screw, lubricant: Lubricant, settings: FullSettings, run: SolveChains
 ) -> SurfaceData:
     """
     Build the surface of the full tier from chains that `run` solves.
@@ -167,7 +170,9 @@ def build_full(
     return replace(last.data, errors=errors, header={**last.data.header, 'reached': last.reached})
 
 
-def _refined(builder: Builder, pieces: LoadPieces, speeds: int) -> tuple[Measured, Measured]:
+def _refined(
+    builder: Builder, pieces: LoadPieces, speeds: int
+) -> tuple[JudgedSurface, JudgedSurface]:
     """
     Return the surface at first and with nodes added as long as held-out points come nearer by it.
 
@@ -192,7 +197,7 @@ def _refined(builder: Builder, pieces: LoadPieces, speeds: int) -> tuple[Measure
         asking = [one for one in found.held_out if one.miss < GAIN * misses.get(one.point, np.inf)]
 
 
-def _surface(plan: Plan, s: Array, records: Records, settings: FullSettings) -> SurfaceData:
+def _surface(plan: NodePlan, s: Array, records: Records, settings: FullSettings) -> SurfaceData:
     """Return the surface of solved nodes, errors unknown; InputError if all failed."""
     columns, temperature = plan.columns, plan.temperature
     nodes = gather_nodes(columns, s, records, temperature, plan.log_onset)

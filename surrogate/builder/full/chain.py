@@ -9,9 +9,8 @@ from the one before it; the chain is a fixed unit, and its numbers do not depend
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict, replace
+from dataclasses import asdict, dataclass, replace
 from functools import lru_cache
-import math
 from typing import Any
 
 from surrogate.builder.tiers import screw_and_oil
@@ -20,13 +19,25 @@ from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.screw.contacts import GRID_WAVELENGTH, ScrewSettings
 from surrogate.screw.nut import ScrewContact
 from surrogate.screw.solve import rebalance_screw, ScrewSolution, solve_screw
+from surrogate.surface import FIELDS, SolvedPoint
 
 WORK = 'full tier 9'
 """Solver and version of what a chain returns; part of the key under which it is kept."""
 FLUX_TOLERANCE = 3e-3
 """Rest of the flux of a rough contact per line over that of the film, weighted as there [-];
-docs/contact_solver.md."""
-SENSES = {'opposing': 1.0, 'assisting': -1.0}
+docs/theory/contact_solver.md."""
+
+
+@dataclass(frozen=True, slots=True)
+class SolvedChain:
+    """Points of a chain in the order of its speeds: load against the motion, and with it."""
+
+    opposing: tuple[SolvedPoint, ...]
+    assisting: tuple[SolvedPoint, ...]
+
+    def under(self, load: float) -> tuple[SolvedPoint, ...]:
+        """Return the points under a load [N] of either sign."""
+        return self.opposing if load >= 0 else self.assisting
 
 
 def chain_inputs(
@@ -59,18 +70,25 @@ def solve_chain(inputs: Mapping[str, Any]) -> dict[str, Any]:
     """
     Solve a chain, with the load against the motion and, unless it is zero, with it.
 
-    Returns lists of point records in the order of the speeds, under `opposing` and `assisting`;
-    a record has the fields of a surface, `worst_contact` (0 to 3), the least rough film over its
-    floor, whether it converged, and a status.
+    Returns a `SolvedChain` in plain JSON types, which `solved_chain` reads.
 
     """
     screw, lubricant = screw_and_oil(inputs)
     settings = chain_settings(inputs['draw'], inputs['grid_wavelength'])
-    rows: dict[str, list[dict[str, Any]]] = {sense: [] for sense in SENSES}
-    for opposing, assisting in _points(screw, lubricant, settings, inputs):
-        rows['opposing'].append(point_record(opposing))
-        rows['assisting'].append(point_record(assisting))
-    return dict(rows)
+    pairs = list(_points(screw, lubricant, settings, inputs))
+    return {
+        sense: [asdict(solved_point(pair[place])) for pair in pairs]
+        for place, sense in enumerate(('opposing', 'assisting'))
+    }
+
+
+def solved_chain(result: Mapping[str, Any]) -> SolvedChain:
+    """Return what `solve_chain` returned, typed; the only reader of its JSON."""
+    opposing, assisting = (
+        tuple(SolvedPoint(**point) for point in result[sense])
+        for sense in ('opposing', 'assisting')
+    )
+    return SolvedChain(opposing, assisting)
 
 
 def chain_settings(draw: int | None, grid_wavelength: float | None) -> ScrewSettings:
@@ -79,8 +97,8 @@ def chain_settings(draw: int | None, grid_wavelength: float | None) -> ScrewSett
 
     A quarter fewer nodes along, a sixth fewer across, for light contacts half as many, and a
     limited wedge that fades later: as near to the finest grid at 27.6 N and as the grid of a point
-    at 100 N, in half the time; docs/onset.md. Balls with a thousandth of the load rest on summits
-    far beside the middle.
+    at 100 N, in half the time; docs/theory/roughness.md. Balls with a thousandth of the load rest
+    on summits far beside the middle.
 
     """
     rough = Settings(
@@ -157,30 +175,12 @@ def _with_rough(smooth: ScrewSolution, last: ScrewSolution | None) -> ScrewSolut
     )
 
 
-def point_record(found: ScrewSolution) -> dict[str, Any]:
-    """Return the numbers of a solution that a surface keeps."""
-    pressed = [
-        (place, contact.rough, contact)
-        for place, contact in enumerate(found.contacts)
-        if contact.rough is not None
-    ]
-    worst = max(
-        pressed, key=lambda item: (item[1].rcs, -item[2].film_ratio), default=(0, None, None)
+def solved_point(found: ScrewSolution) -> SolvedPoint:
+    """Return what a surface keeps of a solution."""
+    return SolvedPoint(
+        converged=found.converged and bool(found.rough_contacts),
+        status=found.status,
+        worst_contact=found.worst_contact,
+        film_over_floor=found.film_over_floor,
+        **{name: getattr(found, name) for name in FIELDS},
     )
-    return {
-        'friction_torque': found.friction_torque,
-        'rcs': found.rcs,
-        'asperity_share': found.asperity_share,
-        'film_ratio': found.film_ratio,
-        'central_film': found.central_film,
-        'minimum_film': min((rough.minimum_film for _, rough, _ in pressed), default=math.nan),
-        'friction_coefficient': found.friction_coefficient,
-        'max_pressure': max((rough.max_pressure for _, rough, _ in pressed), default=math.nan),
-        'worst_contact': worst[0],
-        'film_over_floor': min(
-            (rough.minimum_film / rough.settings.film_floor for _, rough, _ in pressed),
-            default=math.nan,
-        ),
-        'converged': found.converged and bool(pressed),
-        'status': found.status,
-    }

@@ -15,25 +15,29 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter, minimum_filter
-from surrogate.builder.full.chain import chain_inputs
-from surrogate.builder.full.draws import Draws, draws_of
-from surrogate.builder.full.idle import BESIDE, idle_load
+from surrogate.builder.full.chain import chain_inputs, SolvedChain
+from surrogate.builder.full.draws import draws_of, WeightedDraws
+from surrogate.formulas.load_sharing import idle_load
 from surrogate.parameters import Lubricant, Screw
 from surrogate.screw.contacts import GRID_WAVELENGTH
+from surrogate.surface import SolvedPoint
 
 Array = NDArray[np.float64]
 Chains = dict[str, dict[str, Any]]
-Results = Mapping[str, Mapping[str, Any] | None]
-Place = tuple[int, int, int]
+Results = Mapping[str, SolvedChain | None]
+"""By name what a chain yields, None where it failed."""
+ColumnPlace = tuple[int, int, int]
 """Numbers of a load, a temperature and a draw."""
-Node = tuple[float, float, int, int]
-"""Speed coordinate [-], magnitude of the load [N], numbers of a temperature and a draw."""
-Records = Mapping[Node, Mapping[str, Mapping[str, Any]] | None]
-"""By node what a chain says of both senses of the load, None where it failed."""
+Node = tuple[int, int, int, int]
+"""Numbers of a speed, a load, a temperature and a draw."""
+Records = Mapping[Node, SolvedPoint | None]
+"""By node what was solved there, None where the chain failed."""
 NEAR_ONSET = (-1.25, 0.75)
 """Speed coordinates between which contact sets in, and draws differ most [-]."""
 ROUNDING = 1e-9
 """Error of a mapped speed [-]."""
+BESIDE = 1e-4
+"""Distance of the nodes beside the idle load, over that load [-]."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -71,7 +75,7 @@ class Columns:
         return len(self.temperature) // 2
 
     @property
-    def ensemble(self) -> Draws:
+    def ensemble(self) -> WeightedDraws:
         """Return the draws, with their weights."""
         return draws_of(self.screw, self.draws)
 
@@ -171,27 +175,26 @@ class Columns:
 
     def chain_nodes(
         self, s: Array, known: Collection[Node] = ()
-    ) -> Iterator[tuple[str, Place, NDArray[np.intp]]]:
+    ) -> Iterator[tuple[str, ColumnPlace, NDArray[np.intp]]]:
         """Yield, for every load that presses a ball, the chains' names, places, speed nodes."""
         asked = self.asked(s)
         for j, k, draw in np.ndindex(asked.shape[1:]):
             load = float(abs(self.load[j]))
-            lacking = [float(place) for place in s if (float(place), load, k, draw) not in known]
-            places = np.flatnonzero(asked[:, j, k, draw] & np.isin(s, lacking))
+            wanted = np.flatnonzero(asked[:, j, k, draw])
+            places = wanted[[(int(i), j, k, draw) not in known for i in wanted]]
             if presses(self.screw, load) and places.size:
                 yield chain_name(load, k, draw), (j, k, draw), places
 
     def records(
         self, s: Array, results: Results, known: Collection[Node] = ()
-    ) -> dict[Node, dict[str, Any] | None]:
+    ) -> dict[Node, SolvedPoint | None]:
         """Return the records of the nodes in the results of `chains` of the same arguments."""
-        found: dict[Node, dict[str, Any] | None] = {}
+        found: dict[Node, SolvedPoint | None] = {}
         for name, (j, k, draw), places in self.chain_nodes(s, known):
             chain = results.get(name)
-            for fast, i in enumerate(places[::-1]):
-                found[float(s[i]), float(abs(self.load[j])), k, draw] = (
-                    None if chain is None else {sense: chain[sense][fast] for sense in chain}
-                )
+            points = chain.under(self.load[j]) if chain else (None,) * len(places)
+            for i, point in zip(places[::-1].tolist(), points, strict=True):
+                found[i, j, k, draw] = point
         return found
 
     def verges(self) -> list[tuple[int, int]]:
@@ -237,15 +240,24 @@ def chain_name(load: float, heat: int, draw: int) -> str:
     return f'{load!r} N, temperature {heat}, draw {draw}'
 
 
-def records_by_speed(
-    chains: Sequence[Mapping[str, Any] | None], sense: str, count: int
-) -> Iterator[list[dict[str, Any]]]:
-    """Yield, from the slowest speed on, the records of all chains that were solved."""
+def moved_records(
+    records: Records, before: tuple[Array, Array], after: tuple[Array, Array]
+) -> dict[Node, SolvedPoint | None]:
+    """Return records on the speeds and loads `after`, which hold all of those `before`."""
+    speeds, loads = (np.searchsorted(new, old).tolist() for new, old in zip(after, before))
+    return {(speeds[i], loads[j], k, draw): point for (i, j, k, draw), point in records.items()}
+
+
+def points_by_speed(
+    chains: Sequence[SolvedChain | None], count: int
+) -> Iterator[list[SolvedPoint]]:
+    """Yield, from the slowest speed on, the points of all chains, the load against the motion."""
     solved = [chain for chain in chains if chain is not None]
     for place in range(count):
-        yield [chain[sense][count - 1 - place] for chain in solved]
+        yield [chain.opposing[count - 1 - place] for chain in solved]
 
 
-def mean_over_draws(records: Sequence[Mapping[str, Any]], name: str) -> float:
-    """Return the mean of a field over solved records, NaN without any."""
-    return float(np.mean([record[name] for record in records])) if records else math.nan
+def mean_over_draws(points: Sequence[SolvedPoint], name: str) -> float:
+    """Return the mean of a field over points that converged, NaN without any."""
+    values = [getattr(point, name) for point in points if point.converged]
+    return float(np.mean(values)) if values else math.nan

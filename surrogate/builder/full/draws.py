@@ -12,18 +12,18 @@ Calibration by exponential weights (raking): Deville, Sarndal, J. Am. Stat. Asso
 
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 import math
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq
-from surrogate.builder.full.idle import idle_load
+from surrogate.formulas.load_sharing import idle_load
 from surrogate.parameters import Screw
 from surrogate.screw.contacts import raceway_patch
+from surrogate.surface import FIELDS, SolvedPoint
 
 Array = NDArray[np.float64]
 POPULATION = 1000
@@ -41,7 +41,7 @@ decides."""
 
 
 @dataclass(frozen=True, slots=True)
-class Draws:
+class WeightedDraws:
     """
     How many draws there are, the load [N] from which on the relieved nut is idle, weights.
 
@@ -135,12 +135,12 @@ class Draws:
         return np.asarray(left - slope[..., None] * off), np.asarray(leverage), np.asarray(rest)
 
 
-def draws_of(screw: Screw, count: int) -> Draws:
+def draws_of(screw: Screw, count: int) -> WeightedDraws:
     """Return `count` draws of a screw, weighted if there are enough of them."""
     if count < LEAST_DRAWS:
-        return Draws(count)
+        return WeightedDraws(count)
     powers = _powers(screw, max(POPULATION, 2 * count))
-    return Draws(count, idle_load(screw), powers[: 2 * count], float(np.mean(powers)))
+    return WeightedDraws(count, idle_load(screw), powers[: 2 * count], float(np.mean(powers)))
 
 
 @lru_cache(maxsize=8)
@@ -196,22 +196,22 @@ def deviation(values: Array, weights: Array) -> Array:
 
 
 def mean_of_draws(
-    records: Sequence[Mapping[str, Any] | None], names: Sequence[str], draws: Draws, load: float
-) -> dict[str, float]:
+    points: Sequence[SolvedPoint | None], draws: WeightedDraws, load: float
+) -> SolvedPoint:
     """
-    Return the means of named fields over the records of the draws at a load [N], in their order.
+    Return the means of the fields over the points of the draws at a load [N], in their order.
 
-    None stands for a chain that failed. Nothing where fewer than half of the draws converged.
+    None stands for a chain that failed. Not converged where fewer than half of the draws did.
 
     """
-    good = [bool(record and record['converged']) for record in records]
+    good = [point is not None and point.converged for point in points]
     if 2 * sum(good) < len(good):
-        return {}
+        return SolvedPoint(converged=False, status='Too few draws of the roughness converged.')
     values = np.array(
         [
-            [record[name] if record and kept else np.nan for record, kept in zip(records, good)]
-            for name in names
+            [getattr(point, name) if kept else np.nan for point, kept in zip(points, good)]
+            for name in FIELDS
         ]
     )
-    means = weighted_mean(values, draws.weights(values, np.full(len(names), load)))
-    return dict(zip(names, means.tolist()))
+    means = weighted_mean(values, draws.weights(values, np.full(len(FIELDS), load)))
+    return SolvedPoint(converged=True, **dict(zip(FIELDS, means.tolist())))

@@ -18,8 +18,8 @@ from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.builder.full.held_out import HeldOut, judged, Point
-from surrogate.builder.full.speed_nodes import Sample, Target
+from surrogate.builder.full.held_out import HeldOut, HeldOutPlace, judged
+from surrogate.builder.full.speed_nodes import NodeSample, Target
 from surrogate.surface import Surface
 from surrogate.surface.file import SurfaceData
 
@@ -114,9 +114,9 @@ def _axis(data: SurfaceData, axis: str) -> Array:
     return data.speed_coordinate if axis == 'speed' else data.load
 
 
-def _sample(data: SurfaceData, point: Point) -> Sample:
+def _sample(data: SurfaceData, point: HeldOutPlace) -> NodeSample:
     found = Surface(data).lookup(*point)
-    return Sample(found.friction_torque, found.rcs)
+    return NodeSample(found.friction_torque, found.rcs)
 
 
 def with_nodes(data: SurfaceData, speeds: Places, loads: Places) -> SurfaceData:

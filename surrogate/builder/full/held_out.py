@@ -3,7 +3,7 @@
 """Error of a full-tier surface, measured at points that are no nodes, with the same draws."""
 
 from bisect import bisect_right
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 import math
 
@@ -11,16 +11,16 @@ import numpy as np
 from numpy.typing import NDArray
 from surrogate.builder.full.columns import Columns, NEAR_ONSET
 from surrogate.builder.full.draws import mean_of_draws
-from surrogate.builder.full.idle import idle_load
-from surrogate.builder.full.settings import error_target, FullSettings, Run
-from surrogate.builder.full.speed_nodes import Sample, Target
+from surrogate.builder.full.settings import error_target, FullSettings, SolveChains
+from surrogate.builder.full.speed_nodes import NodeSample, Target
+from surrogate.formulas.load_sharing import idle_load
 from surrogate.parameters import Screw
-from surrogate.surface import FIELDS, Surface, Validity
+from surrogate.surface import FIELDS, SolvedPoint, Surface, SurfacePoint, Validity
 from surrogate.surface.file import SurfaceData
 
 Array = NDArray[np.float64]
 Ends = tuple[float, float]
-Point = tuple[float, float, float]
+HeldOutPlace = tuple[float, float, float]
 """Speed [rad/s], load [N], temperature [K]."""
 
 NEAR_IDLE = 0.8
@@ -40,16 +40,20 @@ class HeldOut:
 
     """
 
-    point: Point
+    point: HeldOutPlace
     speed_coordinate: float
     cell: tuple[int, int, int]
-    found: dict[str, float]
-    mean: dict[str, float]
+    found: SurfacePoint
+    mean: SolvedPoint
     miss: float
 
 
 def solve_held_out(
-    data: SurfaceData, points: Sequence[Point], columns: Columns, settings: FullSettings, run: Run
+    data: SurfaceData,
+    points: Sequence[HeldOutPlace],
+    columns: Columns,
+    settings: FullSettings,
+    run: SolveChains,
 ) -> list[HeldOut]:
     """
     Solve `points` that are no nodes with the draws of a surface, and compare it with them.
@@ -67,17 +71,16 @@ def solve_held_out(
     surface, target = Surface(data), error_target(columns.screw, settings)
     compared = []
     for place, point in enumerate(points):
-        sense = 'opposing' if point[1] >= 0 else 'assisting'
-        solved = [results.get(f'{place} {draw}') for draw in range(draws.at(point[1]))]
-        records = [chain and chain[sense][0] for chain in solved]
-        mean = mean_of_draws(records, FIELDS, draws, point[1])
-        found = surface.lookup(*point)
-        if mean and found.validity is Validity.VALID:
-            here = {name: float(getattr(found, name)) for name in FIELDS}
+        chains_there = [results.get(f'{place} {draw}') for draw in range(draws.at(point[1]))]
+        solved = [one.under(point[1])[0] if one else None for one in chains_there]
+        mean, found = mean_of_draws(solved, draws, point[1]), surface.lookup(*point)
+        if mean.converged and found.validity is Validity.VALID:
             s = math.log(point[0] / surface.onset_speed(*point[1:]))
             cell = _cell(data, (s, *point[1:]))
-            miss = judged(target, point[1], columns.screw.lead).worst(*map(_sample, (here, mean)))
-            compared.append(HeldOut(point, s, cell, here, mean, miss))
+            miss = judged(target, point[1], columns.screw.lead).worst(
+                _sample(found), _sample(mean)
+            )
+            compared.append(HeldOut(point, s, cell, found, mean, miss))
     return compared
 
 
@@ -86,8 +89,8 @@ def judged(target: Target, load: float, lead: float) -> Target:
     return replace(target, ideal_torque=max(target.ideal_torque, abs(load) * lead / (2 * math.pi)))
 
 
-def _sample(fields: Mapping[str, float]) -> Sample:
-    return Sample(fields['friction_torque'], fields['rcs'])
+def _sample(point: SurfacePoint | SolvedPoint) -> NodeSample:
+    return NodeSample(point.friction_torque, point.rcs)
 
 
 def cell_errors(
@@ -122,7 +125,7 @@ def load_bands(screw: Screw, settings: FullSettings) -> list[Ends]:
     return list(zip(marks, marks[1:]))
 
 
-def held_out_points(surface: Surface, screw: Screw, settings: FullSettings) -> list[Point]:
+def held_out_points(surface: Surface, screw: Screw, settings: FullSettings) -> list[HeldOutPlace]:
     """Return points of the range, from all strata in turn; fewer where a stratum is empty."""
     drawn = np.random.default_rng(settings.seed)
     strata = [(speeds, loads) for speeds in SPEEDS for loads in load_bands(screw, settings)]
@@ -135,7 +138,7 @@ def held_out_points(surface: Surface, screw: Screw, settings: FullSettings) -> l
 
 def _point(
     surface: Surface, drawn: np.random.Generator, speeds: Ends, loads: Ends, settings: FullSettings
-) -> Point | None:
+) -> HeldOutPlace | None:
     """Return a point of a stratum; cold or hot oil may have none, then another is tried."""
     for _ in range(TRIES):
         load = _signed(drawn, loads, settings.load_range)
@@ -196,7 +199,7 @@ def _errors(
 
 
 def _wrong(one: HeldOut, name: str) -> float:
-    return abs(one.found[name] - one.mean[name])
+    return abs(float(getattr(one.found, name)) - float(getattr(one.mean, name)))
 
 
 def _within(places: Array, ends: Ends) -> NDArray[np.bool_]:

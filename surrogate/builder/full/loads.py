@@ -16,9 +16,10 @@ import math
 
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.builder.full.idle import BESIDE, idle_load
+from surrogate.builder.full.columns import BESIDE
 from surrogate.builder.full.settings import FullSettings
-from surrogate.builder.full.speed_nodes import refine_nodes, Sample, Target
+from surrogate.builder.full.speed_nodes import NodeSample, refine_nodes, Target
+from surrogate.formulas.load_sharing import idle_load
 from surrogate.parameters import Screw
 
 Array = NDArray[np.float64]
@@ -72,7 +73,7 @@ def _towards(loads: Array, times: int) -> Array:
 
 
 def refine_loads(
-    first: LoadPieces, solve: Callable[[Array], dict[float, Sample]], target: Target, most: int
+    first: LoadPieces, solve: Callable[[Array], dict[float, NodeSample]], target: Target, most: int
 ) -> LoadPieces:
     """
     Return magnitudes with more of them where `solve`, which returns profiles, differs.

@@ -31,7 +31,6 @@ SHARES = ('rcs', 'asperity_share')
 FRICTION = ('friction_torque', 'friction_coefficient')
 """Fields that do not know of the oil where asperities carry everything."""
 FAR = 'film_over_floor'
-SENSES = ('assisting', 'opposing')
 CERTAIN = 2.0
 """Least rough film over the floor at which no asperity is near [-]."""
 
@@ -93,13 +92,11 @@ def _solved(
     values = {name: np.full((*shape, most), np.nan) for name in (*FIELDS, FAR)}
     places: dict[tuple[int, ...], list[int]] = {}
     for i, j, k, draw in np.ndindex(*shape, most):
-        load = float(columns.load[j])
-        both = records.get((float(s[i]), abs(load), k, draw))
-        record = both[SENSES[int(load >= 0)]] if both else {'converged': False}
-        if record['converged']:
-            places.setdefault((i, j, k), []).append(record['worst_contact'])
+        point = records.get((i, j, k, draw))
+        if point is not None and point.converged:
+            places.setdefault((i, j, k), []).append(point.worst_contact)
             for field, column in values.items():
-                column[i, j, k, draw] = record[field]
+                column[i, j, k, draw] = getattr(point, field)
     worst = np.zeros(shape, dtype=np.uint8)
     for node, contacts in places.items():
         worst[node] = commonest(contacts)

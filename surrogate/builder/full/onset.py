@@ -17,18 +17,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.builder.closed_form import speed_at_film_ratio
-from surrogate.builder.full.chain import chain_inputs
-from surrogate.builder.full.columns import mean_over_draws, presses, records_by_speed
+from surrogate.builder.full.chain import chain_inputs, SolvedChain
+from surrogate.builder.full.columns import mean_over_draws, points_by_speed, presses
 from surrogate.builder.full.loads import first_loads, LoadPieces, refine_loads
-from surrogate.builder.full.settings import error_target, FullSettings, Run
-from surrogate.builder.full.speed_nodes import Sample
+from surrogate.builder.full.settings import error_target, FullSettings, SolveChains
+from surrogate.builder.full.speed_nodes import NodeSample
 from surrogate.builder.full.temperatures import between, log_viscosity
 from surrogate.parameters import Lubricant, Screw
 
 Array = NDArray[np.float64]
 
 ONSET_FILM_RATIO = 0.08
-"""Film ratio near which RCS passes 0.01 on the nominal screw [-]; docs/onset.md."""
+"""Film ratio near which RCS passes 0.01 on the nominal screw [-]; docs/theory/roughness.md."""
 ONSET_STEPS = (1.0, 0.6, 0.3, 0.0, -0.3, -0.6, -1.0)
 """Where the onset is looked for, as logarithms of speed over that of the film ratio [-]."""
 ONSET_DRAWS = 2
@@ -43,7 +43,7 @@ class Profiles:
     screw: Screw
     lubricant: Lubricant
     settings: FullSettings
-    run: Run
+    run: SolveChains
 
     def guess(self, load: Array, temperature: Array) -> Array:
         """Return the logarithm of the onset speed [rad/s] by formula, over [load, temperature]."""
@@ -55,7 +55,7 @@ class Profiles:
             )
         )
 
-    def solve(self, loads: Sequence[float] | Array, temperature: float) -> dict[float, Sample]:
+    def solve(self, loads: Sequence[float] | Array, temperature: float) -> dict[float, NodeSample]:
         """Return torque [N m] and RCS over `ONSET_STEPS` for magnitudes [N] at a temperature."""
         chains = {
             f'{load!r} N, {temperature:g} K, draw {draw}': self._chain(load, temperature, draw)
@@ -80,24 +80,23 @@ class Profiles:
         )
 
 
-def _profile(chains: Sequence[Mapping[str, Any] | None]) -> Sample:
+def _profile(chains: Sequence[SolvedChain | None]) -> NodeSample:
     """Return the means of chains in the order of `ONSET_STEPS`."""
-    solved = [
-        [record for record in records if record['converged']]
-        for records in records_by_speed(chains, 'opposing', len(ONSET_STEPS))
-    ][::-1]
+    solved = list(points_by_speed(chains, len(ONSET_STEPS)))[::-1]
     torque, rcs = (
-        np.array([mean_over_draws(records, name) for records in solved])
+        np.array([mean_over_draws(points, name) for points in solved])
         for name in ('friction_torque', 'rcs')
     )
-    return Sample(torque, rcs)
+    return NodeSample(torque, rcs)
 
 
-def find_loads(profiles: Profiles, temperature: float) -> tuple[LoadPieces, dict[float, Sample]]:
+def find_loads(
+    profiles: Profiles, temperature: float
+) -> tuple[LoadPieces, dict[float, NodeSample]]:
     """Return the magnitudes [N] that the profiles at a temperature [K] need, and these."""
     settings, known = profiles.settings, {}
 
-    def solve(loads: Array) -> dict[float, Sample]:
+    def solve(loads: Array) -> dict[float, NodeSample]:
         found = profiles.solve(loads, temperature)
         known.update(found)
         return found
@@ -110,7 +109,7 @@ def find_loads(profiles: Profiles, temperature: float) -> tuple[LoadPieces, dict
 def find_onset(
     profiles: Profiles,
     pieces: LoadPieces,
-    known: Mapping[float, Sample],
+    known: Mapping[float, NodeSample],
     loads: Array,
     solved: Array,
     temperature: Array,
@@ -176,7 +175,7 @@ def smooth_shifts(
     return smooth
 
 
-def _shift(profile: Sample, onset_rcs: float) -> float:
+def _shift(profile: NodeSample, onset_rcs: float) -> float:
     """Return the step at which the RCS of a profile passes `onset_rcs`, or NaN."""
     logs = np.log(np.maximum(profile.rcs, NOTHING))
     known = np.isfinite(logs)

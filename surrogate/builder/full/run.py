@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 import sys
 from typing import Any
 
-from surrogate.builder.full.chain import solve_chain
+from surrogate.builder.full.chain import solve_chain, solved_chain, SolvedChain
 from surrogate.builder.full.columns import Results
-from surrogate.builder.full.settings import Run
+from surrogate.builder.full.settings import SolveChains
 from surrogate.progress import Progress
 from surrogate.tasks.pool import Outcome, Pool, run_tasks
 from surrogate.tasks.store import task_key, TaskStore
@@ -52,15 +52,18 @@ class ChainRun:
                 print(self.failures[-1], file=sys.stderr)
 
         done = run_tasks(self.pool, self.task, chains, store=self.store, report=count)
-        return {name: outcome.result for name, outcome in done.items()}
+        return {
+            name: None if outcome.result is None else solved_chain(outcome.result)
+            for name, outcome in done.items()
+        }
 
 
 @dataclass(slots=True)
 class Once:
     """Asks a builder's `run` for no chain twice, by whatever name; call it as that `run`."""
 
-    run: Run
-    known: dict[str, Mapping[str, Any] | None] = field(default_factory=dict)
+    run: SolveChains
+    known: dict[str, SolvedChain | None] = field(default_factory=dict)
 
     def __call__(self, purpose: str, chains: Mapping[str, Mapping[str, Any]]) -> Results:
         """Return the results of named chains, solved now or before."""

@@ -13,13 +13,9 @@ from surrogate.builder.full.speed_nodes import Target
 from surrogate.files import InputError
 from surrogate.parameters import Screw
 from surrogate.screw.contacts import GRID_WAVELENGTH
-from surrogate.surface_tools.check import (
-    EFFICIENCY_TOLERANCE,
-    RCS_RELATIVE_TOLERANCE,
-    RCS_TOLERANCE,
-)
+from surrogate.surface.aims import EFFICIENCY_TOLERANCE, RCS_RELATIVE_TOLERANCE, RCS_TOLERANCE
 
-Run = Callable[[str, Mapping[str, Mapping[str, Any]]], Results]
+SolveChains = Callable[[str, Mapping[str, Mapping[str, Any]]], Results]
 """Solves named chains: takes what they are for, returns their results, None for a failure."""
 LEAST_JUDGED, LEAST_IN_RATINGS = 0.25, 0.01
 """Least load whose efficiency is judged, in preloads, or of a free screw in ratings [-]."""

@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
-class Sample:
+class NodeSample:
     """Friction torque [N m] and RCS [-] at one place of the axis, or over another axis there."""
 
     torque: ArrayLike
@@ -34,7 +34,7 @@ class Target:
     rcs: float
     rcs_relative: float
 
-    def worst(self, found: Sample, wanted: Sample) -> float:
+    def worst(self, found: NodeSample, wanted: NodeSample) -> float:
         """Return the largest error of an interpolated sample over the allowed one, or NaN [-]."""
         share, wanted_share = np.asarray(found.rcs), np.asarray(wanted.rcs)
         allowed = np.maximum(self.rcs, self.rcs_relative * wanted_share)
@@ -50,7 +50,7 @@ class Target:
 
 
 def refine_nodes(
-    first: Array, solve: Callable[[Array], dict[float, Sample]], target: Target, most: int
+    first: Array, solve: Callable[[Array], dict[float, NodeSample]], target: Target, most: int
 ) -> Array:
     """
     Return nodes of an axis, intervals halved until their middles are met or `most` are used.
@@ -84,17 +84,17 @@ def refine_nodes(
     return np.array(sorted(known))
 
 
-def interpolate(known: dict[float, Sample], place: float) -> Sample:
+def interpolate(known: dict[float, NodeSample], place: float) -> NodeSample:
     """Return a sample between solved ones by the monotone cubic of a surface; NaN if too few."""
     places = sorted(place for place, sample in known.items() if _is_known(sample))
     if len(places) < 2:
-        return Sample(np.nan, np.nan)
+        return NodeSample(np.nan, np.nan)
     torque, rcs = (
         PchipInterpolator(places, [getattr(known[p], name) for p in places])(place)
         for name in ('torque', 'rcs')
     )
-    return Sample(torque, rcs)
+    return NodeSample(torque, rcs)
 
 
-def _is_known(sample: Sample) -> bool:
+def _is_known(sample: NodeSample) -> bool:
     return bool(np.isfinite(sample.torque).all() and np.isfinite(sample.rcs).all())

@@ -3,19 +3,19 @@
 """Speed nodes of a full-tier surface: where a column of a few draws needs them."""
 
 import math
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.builder.full.columns import (
     Columns,
     mean_over_draws,
+    points_by_speed,
     presses,
-    records_by_speed,
     ROUNDING,
 )
-from surrogate.builder.full.settings import error_target, FullSettings, Run
-from surrogate.builder.full.speed_nodes import refine_nodes, Sample
+from surrogate.builder.full.settings import error_target, FullSettings, SolveChains
+from surrogate.builder.full.speed_nodes import NodeSample, refine_nodes
+from surrogate.surface import SolvedPoint
 
 Array = NDArray[np.float64]
 
@@ -27,7 +27,7 @@ FIRST_NODES = (-1.2, -0.6, -0.2, 0.0, 0.2, 0.4, 0.8, 1.5)
 
 
 def find_speed_nodes(
-    columns: Columns, log_onset: Array, settings: FullSettings, run: Run
+    columns: Columns, log_onset: Array, settings: FullSettings, run: SolveChains
 ) -> Array:
     """
     Return nodes of the speed coordinate that cover the range wherever the onset lies.
@@ -44,15 +44,15 @@ def find_speed_nodes(
     ends = low - columns.log_onset[j, k], high - columns.log_onset[j, k]
     first = [ends[0], *(s for s in FIRST_NODES if ends[0] < s < ends[1]), ends[1]]
 
-    def solve(places: Array) -> dict[float, Sample]:
+    def solve(places: Array) -> dict[float, NodeSample]:
         speeds = columns.speeds(places, j, k)
         chains = {
             str(draw): columns.chain(pressed[0], columns.temperature[k], draw, speeds)
             for draw in range(min(REFERENCE_DRAWS, settings.draws))
         }
         results = run('speed nodes', chains)
-        records = records_by_speed(list(results.values()), 'opposing', len(places))
-        return {float(place): _sample(solved) for place, solved in zip(np.sort(places), records)}
+        found = points_by_speed(list(results.values()), len(places))
+        return {float(place): _sample(points) for place, points in zip(np.sort(places), found)}
 
     target = error_target(columns.screw, settings)
     inner = refine_nodes(np.array(first), solve, target, settings.speed_nodes)
@@ -81,8 +81,7 @@ def _extended(inner: Array, low: float, high: float) -> Array:
     )
 
 
-def _sample(records: list[dict[str, Any]]) -> Sample:
-    solved = [record for record in records if record['converged']]
-    return Sample(
-        torque=mean_over_draws(solved, 'friction_torque'), rcs=mean_over_draws(solved, 'rcs')
+def _sample(points: list[SolvedPoint]) -> NodeSample:
+    return NodeSample(
+        torque=mean_over_draws(points, 'friction_torque'), rcs=mean_over_draws(points, 'rcs')
     )

@@ -14,15 +14,15 @@ import numba
 import numpy as np
 import scipy
 from surrogate.builder.full.build import build_full
-from surrogate.builder.full.chain import chain_inputs, solve_chain, WORK
+from surrogate.builder.full.chain import chain_inputs, solve_chain, solved_chain, WORK
 from surrogate.builder.full.columns import covering
-from surrogate.builder.full.draws import Draws, mean_of_draws
+from surrogate.builder.full.draws import mean_of_draws, WeightedDraws
 from surrogate.builder.full.run import ChainRun
 from surrogate.builder.full.settings import FullSettings
 from surrogate.builder.tiers import screw_and_oil
 from surrogate.parameters import Lubricant, Screw
 from surrogate.screw.contacts import GRID_WAVELENGTH
-from surrogate.surface import FIELDS
+from surrogate.surface import SolvedPoint
 from surrogate.surface.file import SurfaceData
 from surrogate.tasks.pool import Pool
 from surrogate.tasks.store import TaskStore
@@ -80,31 +80,31 @@ def _missing(data: SurfaceData, speed_range: tuple[float, float]) -> Iterator[st
 
 def solve_full(
     header: Mapping[str, Any], speed: float, load: float, temperature: float
-) -> dict[str, float]:
+) -> SolvedPoint:
     """
     Solve a point [rad/s, N, K] with the draws of a surface and return the means of its fields.
 
-    Nothing where more than half of the draws do not converge, as for a node.
+    Not converged where more than half of the draws are not, as for a node.
 
     """
     screw, lubricant = screw_and_oil(header['inputs'])
-    draws, sense = drawn(header), 'opposing' if load >= 0 else 'assisting'
+    draws = drawn(header)
     # Files of builders that had no such setting were solved with its default.
     wavelength = header['settings'].get('grid_wavelength', GRID_WAVELENGTH)
     chains = (
         chain_inputs(screw, lubricant, abs(load), temperature, draw, [speed], wavelength)
         for draw in range(draws.at(load))
     )
-    records = [solve_chain(chain)[sense][0] for chain in chains]
-    return mean_of_draws(records, FIELDS, draws, load)
+    points = [solved_chain(solve_chain(chain)).under(load)[0] for chain in chains]
+    return mean_of_draws(points, draws, load)
 
 
-def drawn(header: Mapping[str, Any]) -> Draws:
+def drawn(header: Mapping[str, Any]) -> WeightedDraws:
     """Return the draws of a surface; files of builders without weights say how many alone."""
     kept = header.get('weighted_draws')
     if kept is None:
-        return Draws(int(header['settings']['draws']))
-    return Draws(**{**kept, 'powers': tuple(kept['powers'])})
+        return WeightedDraws(int(header['settings']['draws']))
+    return WeightedDraws(**{**kept, 'powers': tuple(kept['powers'])})
 
 
 def _provenance(run: ChainRun, seconds: float) -> dict[str, Any]:

@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 from surrogate.ehl.kernels.level import (
     apply_operator,
     factor,
+    GridLevel,
     hand_down,
-    Level,
     precondition,
     take_up,
     unknowns,
@@ -84,7 +84,7 @@ def rotate(upper: Array, turns: Array, rest: Array, k: int) -> bool:
 
 
 @njit(cache=True, error_model='numpy')
-def start(level: Level) -> None:
+def start(level: GridLevel) -> None:
     """Begin GMRES with the right-hand side in basis[0]."""
     work = level.work
     first = work.basis[0][: unknowns(level)]
@@ -96,7 +96,7 @@ def start(level: Level) -> None:
 
 
 @njit(cache=True, error_model='numpy')
-def advance(level: Level, direction: Array) -> None:
+def advance(level: GridLevel, direction: Array) -> None:
     """Extend the basis by J times a direction."""
     work, length = level.work, unknowns(level)
     k = work.used[0]
@@ -134,7 +134,7 @@ def combine(work: Workspace, vectors: Array, out: Array) -> None:
 
 
 @njit(cache=True, error_model='numpy')
-def finish(level: Level, varied: bool) -> None:
+def finish(level: GridLevel, varied: bool) -> None:
     """Leave the solution in `answer`; a varied preconditioner has kept its directions."""
     work, length = level.work, unknowns(level)
     if varied:
@@ -145,14 +145,14 @@ def finish(level: Level, varied: bool) -> None:
 
 
 @njit(cache=True, error_model='numpy')
-def descend(fine: Level, coarse: Level) -> None:
+def descend(fine: GridLevel, coarse: GridLevel) -> None:
     """Begin the solve on the coarser grid that the next step waits for."""
     hand_down(fine, coarse, fine.work.basis[fine.work.used[0]])
     start(coarse)
 
 
 @njit(cache=True, error_model='numpy')
-def ascend(fine: Level, coarse: Level) -> None:
+def ascend(fine: GridLevel, coarse: GridLevel) -> None:
     """Take the step that has waited for the coarser grid."""
     k = fine.work.used[0]
     direction = fine.work.directions[k]
@@ -161,7 +161,9 @@ def ascend(fine: Level, coarse: Level) -> None:
 
 
 @njit(cache=True, error_model='numpy')
-def solve_newton_step(levels: tuple[Level, ...], count: int, tolerance: float, limit: int) -> int:
+def solve_newton_step(
+    levels: tuple[GridLevel, ...], count: int, tolerance: float, limit: int
+) -> int:
     """
     Solve J x = rhs on the first of `count` levels; return the iterations there.
 

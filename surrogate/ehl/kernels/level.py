@@ -71,7 +71,7 @@ class Workspace(NamedTuple):
     used: NDArray[np.int64]
 
 
-class Level(NamedTuple):
+class GridLevel(NamedTuple):
     """
     Jacobian on one grid with what it takes to apply and precondition it.
 
@@ -127,7 +127,7 @@ def make_workspace(nx: int, ny: int, krylov: int, flexible: bool, dtype: type) -
 
 
 @njit(cache=True, error_model='numpy')
-def unknowns(level: Level) -> int:
+def unknowns(level: GridLevel) -> int:
     """Count the unknowns."""
     return int(level.work.total.size + level.nodes.size + 1)
 
@@ -174,7 +174,7 @@ def load_of(total: Array, weights: Array) -> np.floating:
 
 
 @njit(cache=True, error_model='numpy')
-def apply_operator(level: Level, x: Array, out: Array) -> None:
+def apply_operator(level: GridLevel, x: Array, out: Array) -> None:
     """Multiply the full Jacobian: out = J x."""
     space, work, nodes = level.space, level.work, level.nodes
     nx, ny = work.total.shape
@@ -197,7 +197,7 @@ def apply_operator(level: Level, x: Array, out: Array) -> None:
 
 
 @njit(cache=True, error_model='numpy')
-def apply_lines(level: Level, x: Array, out: Array) -> None:
+def apply_lines(level: GridLevel, x: Array, out: Array) -> None:
     """Precondition all but the border of load and approach."""
     work, nodes, symmetric = level.work, level.nodes, level.space.symmetric
     nx, ny = work.total.shape
@@ -212,7 +212,7 @@ def apply_lines(level: Level, x: Array, out: Array) -> None:
 
 
 @njit(cache=True, error_model='numpy')
-def _solve_total(level: Level, rhs: Array, total: Array) -> None:
+def _solve_total(level: GridLevel, rhs: Array, total: Array) -> None:
     """Precondition the total pressure: bands of thick film, then the lines from there."""
     work, started = level.work, level.work.used[2] == 1
     if started:
@@ -223,7 +223,7 @@ def _solve_total(level: Level, rhs: Array, total: Array) -> None:
 
 
 @njit(cache=True, error_model='numpy')
-def _apply_contact_lines(level: Level, x: Array, out: Array) -> None:
+def _apply_contact_lines(level: GridLevel, x: Array, out: Array) -> None:
     work, nodes, symmetric = level.work, level.nodes, level.space.symmetric
     nx, ny = work.total.shape
     size, count = nx * ny, nodes.size
@@ -251,7 +251,7 @@ def _apply_contact_lines(level: Level, x: Array, out: Array) -> None:
 
 
 @njit(cache=True, error_model='numpy')
-def precondition(level: Level, x: Array, out: Array) -> None:
+def precondition(level: GridLevel, x: Array, out: Array) -> None:
     """Apply the lines and eliminate the border: load row and approach column."""
     nx, ny = level.work.total.shape
     size, count = nx * ny, level.nodes.size
@@ -265,7 +265,7 @@ def precondition(level: Level, x: Array, out: Array) -> None:
 
 
 @njit(cache=True, error_model='numpy')
-def _factor_thick_film(level: Level) -> None:
+def _factor_thick_film(level: GridLevel) -> None:
     """Factor the bands of thick film; a symmetric grid has coarser ones instead."""
     work, few = level.work, level.nodes.size < FEW_IN_CONTACT * level.contact.size
     work.used[2] = 0
@@ -281,7 +281,7 @@ def _factor_thick_film(level: Level) -> None:
 
 
 @njit(cache=True, error_model='numpy')
-def factor(level: Level) -> None:
+def factor(level: GridLevel) -> None:
     """Factor the lines and bands of a level and precondition its approach column."""
     work, nodes = level.work, level.nodes
     nx, ny = work.total.shape
@@ -310,7 +310,7 @@ def factor(level: Level) -> None:
 
 
 @njit(cache=True, error_model='numpy')
-def hand_down(fine: Level, coarse: Level, x: Array) -> None:
+def hand_down(fine: GridLevel, coarse: GridLevel, x: Array) -> None:
     """Restrict a residual to the right-hand side of the coarser grid."""
     nx, ny = fine.work.total.shape
     mx, my = coarse.work.total.shape
@@ -321,7 +321,7 @@ def hand_down(fine: Level, coarse: Level, x: Array) -> None:
 
 
 @njit(cache=True, error_model='numpy')
-def take_up(fine: Level, coarse: Level, x: Array, out: Array) -> None:
+def take_up(fine: GridLevel, coarse: GridLevel, x: Array, out: Array) -> None:
     """
     Interpolate the answer of the coarser grid and smooth what it leaves of `x` with the lines.
 

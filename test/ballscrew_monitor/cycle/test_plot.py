@@ -15,6 +15,7 @@ from ballscrew_monitor.recordings.summary import Summarizer
 from matplotlib.figure import Figure
 import numpy as np
 import pytest
+from surrogate.plotting.style import DPI
 
 
 @pytest.fixture(scope='module')
@@ -35,7 +36,7 @@ def test_it_is_a_png_of_the_stated_size(drawn, tmp_path):
     data = (tmp_path / 'cycle.png').read_bytes()
     assert data.startswith(b'\x89PNG')
     size = struct.unpack('>II', data[16:24])
-    assert size == tuple(round(side * cycle_plot.DPI) for side in cycle_plot.SIZE)
+    assert size == tuple(round(side * DPI) for side in cycle_plot.SIZE)
     assert [path.name for path in tmp_path.iterdir()] == ['cycle.png']
 
 

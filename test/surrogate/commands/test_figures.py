@@ -6,9 +6,7 @@ import argparse
 
 import pytest
 from surrogate.cli import add_commands
-from surrogate.commands.figures import progress_line
 from surrogate.files import InputError
-from surrogate.paper.cases import Task
 
 pytest.importorskip('matplotlib')
 
@@ -29,7 +27,8 @@ def test_one_figure(tmp_path, capsys):
     assert said.err.count(' solves, ') == 4
     assert str(tmp_path / 'paper_07_smooth_speed.png') in said.err
     names = {path.name for path in tmp_path.iterdir()}
-    assert names == {'paper.csv', 'paper_fields', 'paper_07_smooth_speed.png'}
+    picture = 'paper_07_smooth_speed.png'
+    assert names == {'paper.csv', 'paper.csv.store', 'paper_fields', picture}
     assert run('figures', '--out', str(tmp_path), '--only', '7') == 0
     assert ' solves, ' not in capsys.readouterr().err
 
@@ -47,11 +46,3 @@ def test_bad_input_is_one_sentence(tmp_path, words, sentence):
     with pytest.raises(InputError, match=sentence):
         run('figures', '--out', str(tmp_path / 'out'), *words)
     assert not (tmp_path / 'out').exists()
-
-
-def test_progress_tells_rate_and_time_left():
-    """A quarter done in 10 s leaves 30 s."""
-    task = Task(kind='screw', rpm=5.0, load=50.0, draw=0)
-    line = progress_line(3, 8, 0.25, 10.0, task)
-    assert line.startswith('[######                  ] 3/8 solves, 18 per min, 30 s left')
-    assert line.endswith('screw 5 rev/min 50 N')

@@ -11,7 +11,8 @@ from surrogate.contact.case import load_case
 from surrogate.contact.solve import case_settings, case_surface, solve_case
 from surrogate.files import InputError
 from surrogate.parameters import DATA, load_screw
-from surrogate.raceway.fractal import fractal_surface, shifted, take_patch, Window
+from surrogate.raceway.fractal import fractal_surface, shifted
+from surrogate.raceway.patch import take_patch, Window
 import yaml
 
 NOMINAL = DATA / 'cases' / 'nominal_smooth.yaml'

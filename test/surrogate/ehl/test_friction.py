@@ -6,10 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from surrogate.ehl import Condition, ContactLubricant, Settings, solve_contact
+from surrogate.ehl import Condition, ContactLubricant, punctured_nodes, Settings, solve_contact
 from surrogate.ehl.friction import contact_friction, slide_roll_friction, viscosity_of
 from surrogate.files import InputError
 from surrogate.formulas.geometry import Contact
+from surrogate.formulas.lubricant import shear_stress_eyring_1936
 
 
 @pytest.fixture(scope='module')
@@ -89,6 +90,32 @@ def test_central_film_changes_the_film_only(solved):
     central = slide_roll_friction(solved, 0.02, film='central')
     assert central.coefficient == pytest.approx(local.coefficient, rel=0.05)
     assert central.coefficient != local.coefficient
+
+
+@pytest.mark.parametrize('film', ['local', 'central'])
+def test_traction_is_that_of_each_node_by_the_laws(solved, film):
+    """The plain version: Eyring's stress of the oil, or mu p where the film is at the floor."""
+    thin = solved.film.copy()
+    thin[100:140, 20:40] = solved.settings.film_floor
+    mixed, slip = replace(solved, film=thin), 0.01 + 20.0 * solved.y
+    found = contact_friction(
+        mixed, slip_x=np.broadcast_to(slip, thin.shape), asperity_friction=0.12, film=film
+    )
+    dry = punctured_nodes(mixed)
+    thickness = thin if film == 'local' else np.full_like(thin, solved.central_film)
+    viscosity = viscosity_of(solved.lubricant, solved.film_pressure)
+    sheared = shear_stress_eyring_1936(
+        viscosity, np.abs(slip) / thickness, solved.lubricant.eyring_stress
+    )
+    sheared[dry | (solved.film_pressure == 0)] = 0.0
+    boundary = np.where(dry, 0.12 * mixed.pressure, 0.0)
+    assert boundary.any()
+    np.testing.assert_allclose(found.traction, sheared + boundary, rtol=1e-12)
+    area = (solved.x[1] - solved.x[0]) * (solved.y[1] - solved.y[0])
+    power = ((sheared + boundary) * np.abs(slip)).sum() * area
+    assert found.power == pytest.approx(power, rel=1e-12)
+    assert found.film_coefficient == pytest.approx(sheared.sum() * area / 27.6, rel=1e-12)
+    assert found.asperity_coefficient == pytest.approx(boundary.sum() * area / 27.6, rel=1e-12)
 
 
 def test_dry_contact_has_the_boundary_coefficient(nominal, raceway):

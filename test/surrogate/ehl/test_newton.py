@@ -46,7 +46,7 @@ def test_linear_solves_are_tight_where_newton_stalls(at_hertz, monkeypatch):
         return solve(grid, problem, state, now, tolerance)
 
     monkeypatch.setattr(newton, 'solve_linear', watch)
-    limits = newton.Limits(krylov=0.3, stalled=0.02)
+    limits = newton.NewtonLimits(krylov=0.3, stalled=0.02)
     assert newton.solve_grid(*at_hertz, limits).converged
     flux, tolerance = zip(*seen, strict=True)
     falls = [True, *(after < 0.5 * before for before, after in pairwise(flux))]

@@ -2,12 +2,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """Load sharing of the nuts: table, identities, limits."""
 
+from dataclasses import replace
 import math
 
 from hypothesis import given
 from hypothesis import strategies as st
 import pytest
-from surrogate.formulas.load_sharing import normal_force, nut_forces, UNLOADING_RATIO
+from surrogate.formulas.load_sharing import (
+    idle_load,
+    IDLE_SHARE,
+    normal_force,
+    nut_forces,
+    UNLOADING_RATIO,
+)
 
 
 def test_preload_sharing_table(table):
@@ -49,3 +56,13 @@ def test_normal_force_at_preload_is_the_published_one(screw):
     assert normal_force(screw, 990.0) == pytest.approx(27.6, abs=0.05)
     back = normal_force(screw, 990.0) * 51 * math.sin(screw.contact_angle)
     assert back == pytest.approx(990.0, rel=0.01)
+
+
+def test_idle_is_where_load_sharing_says_so(screw):
+    """On either side of it the relieved nut has more and less than the least share."""
+    idle = idle_load(screw)
+    for side, shared in ((-1e-4, True), (1e-4, False)):
+        loaded, relieved = nut_forces((1 + side) * idle, screw.preload)
+        assert (relieved >= IDLE_SHARE * loaded) == shared
+    assert 0.95 * 2**1.5 * screw.preload < idle < 2**1.5 * screw.preload
+    assert idle_load(replace(screw, preload=0.0)) == 0.0

@@ -14,12 +14,12 @@ from surrogate.paper.cases import (
     PRELOAD,
     SMOOTH,
     STRIBECK_SPEEDS,
-    Task,
+    StudyTask,
     tasks,
 )
 from surrogate.paper.mark import table
 from surrogate.paper.marks import marks
-from surrogate.paper.rows import ContactFields, fields_path, Row, write_fields
+from surrogate.paper.rows import ContactFields, fields_path, StudyRow, write_fields
 from surrogate.paper.study import Study
 from surrogate.parameters import load_screw
 
@@ -32,11 +32,11 @@ SCREW = load_screw('nominal')
 UNITS = ('[-]', '[mm/s]', '[mN m]', '[nm]', '[N]', '[GPa]', '[µm]', '[rev/min]')
 
 
-def made_up(task: Task) -> Row:
+def made_up(task: StudyTask) -> StudyRow:
     """Return a row with numbers of the right size: friction falls, then rises with speed."""
     slow = 1 / (1 + (task.rpm / 8) ** 4)
     torque = 0.02 + 0.07 * slow + 1e-4 * task.rpm
-    return Row(
+    return StudyRow(
         inputs='made up',
         kind=task.kind,
         case=task.case,
@@ -135,7 +135,7 @@ def test_axes_say_quantity_and_unit(study, name):
 
 def test_torque_with_its_least_and_measurements(study):
     """The marked least is that of the mean; measurements stand at their speed and torque."""
-    measured = screws.Measured(
+    measured = screws.MeasuredTorque(
         rpm=np.array([100.0]), torque=np.array([0.05]), deviation=np.array([0.01])
     )
     axes = screws.figure_torque(list(study.rows.values()), measured).axes[0]
@@ -169,7 +169,7 @@ def test_measurements_are_read_and_refused():
 def test_maps_meet_their_nodes(study):
     """Between the nodes lies a map that returns them; efficiency rises with load."""
     speed, load, rcs, eta = maps.fine_map(SCREW, list(study.rows.values()))
-    corner = study.rows[Task(kind='screw', rpm=MAP_SPEEDS[0], load=MAP_LOADS[-1], draw=0).key]
+    corner = study.rows[StudyTask(kind='screw', rpm=MAP_SPEEDS[0], load=MAP_LOADS[-1], draw=0).key]
     assert rcs[-1, 0] == pytest.approx(corner.rcs)
     ideal = corner.load * SCREW.lead / (2 * np.pi)
     assert eta[-1, 0] == pytest.approx(ideal / (ideal + corner.friction_torque))
@@ -180,8 +180,8 @@ def test_maps_meet_their_nodes(study):
 def test_a_point_that_failed_leaves_a_gap(study):
     """Its profile is left out, and the map bridges it between its neighbours."""
     failed = [
-        Task(kind='contact', rpm=600.0, load=PRELOAD).key,
-        Task(kind='screw', rpm=MAP_SPEEDS[3], load=MAP_LOADS[0], draw=0).key,
+        StudyTask(kind='contact', rpm=600.0, load=PRELOAD).key,
+        StudyTask(kind='screw', rpm=MAP_SPEEDS[3], load=MAP_LOADS[0], draw=0).key,
     ]
     rows = study.rows | {key: replace(study.rows[key], status='STALLED') for key in failed}
     gap = replace(study, rows=rows)

@@ -1,24 +1,24 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The page docs/paper.md: its claims against its table of rows, and the rows against the code."""
+"""The page docs/theory/published_study.md: its claims against its rows, the rows against code."""
 
 from pathlib import Path
 import re
 
 import pytest
 from surrogate.commands.figures import DRAWS
-from surrogate.paper.cases import NEEDS, Task, tasks
+from surrogate.paper.cases import NEEDS, StudyTask, tasks
 from surrogate.paper.mark import Mark, table
 from surrogate.paper.marks import marks
 from surrogate.paper.rows import inputs_hash, read_rows
 from surrogate.paper.solve import solve_task
 from surrogate.parameters import load_lubricant, load_screw
 
-DOCS = Path(__file__).parents[3] / 'docs'
+TREE = Path(__file__).parents[3]
 SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
-ROWS = read_rows(DOCS / 'paper.csv')
+ROWS = read_rows(TREE / 'test' / 'data' / 'paper.csv')
 MARKS = marks(SCREW, ROWS)
-PAGE = (DOCS / 'paper.md').read_text(encoding='utf-8')
+PAGE = (TREE / 'docs' / 'theory' / 'published_study.md').read_text(encoding='utf-8')
 LOADED, RELIEVED = 'RCS, loaded nut', 'RCS, relieved nut'
 LAST = '2000 N less preload only'
 
@@ -93,10 +93,11 @@ def test_sentences_have_the_numbers_of_the_table(words):
 
 def test_every_picture_is_there_and_small():
     """Each picture of the page is a small PNG, and each in the folder is on the page."""
-    shown = set(re.findall(r'\]\((paper_\w+\.png)\)', PAGE))
-    assert shown == {path.name for path in DOCS.glob('paper_*.png')}
+    pictures = TREE / 'docs' / 'pictures'
+    shown = set(re.findall(r'\]\(\.\./pictures/(paper_\w+\.png)\)', PAGE))
+    assert shown == {path.name for path in pictures.glob('paper_*.png')}
     assert len(shown) == 11
-    assert all((DOCS / name).stat().st_size < 300_000 for name in shown)
+    assert all((pictures / name).stat().st_size < 300_000 for name in shown)
 
 
 def test_film_is_that_of_the_study():
@@ -231,35 +232,43 @@ def test_other_rules_of_friction():
 @pytest.mark.parametrize(
     ('task', 'columns', 'tolerance'),
     [
-        (Task(kind='contact', rpm=600.0, load=2400.0), ('central_film', 'minimum_film'), 2e-3),
         (
-            Task(kind='contact', rpm=600.0, load=2400.0, case='short inlet'),
+            StudyTask(kind='contact', rpm=600.0, load=2400.0),
+            ('central_film', 'minimum_film'),
+            2e-3,
+        ),
+        (
+            StudyTask(kind='contact', rpm=600.0, load=2400.0, case='short inlet'),
             ('central_film', 'max_pressure'),
             2e-3,
         ),
         (
-            Task(kind='contact', rpm=12.0, load=0.0, draw=3),
+            StudyTask(kind='contact', rpm=12.0, load=0.0, draw=3),
             ('rcs', 'asperity_share', 'asperity_distance', 'mean_film'),
             0.02,
         ),
         (
-            Task(kind='contact', rpm=12.0, load=1000.0, draw=1, case='relieved nut'),
+            StudyTask(kind='contact', rpm=12.0, load=1000.0, draw=1, case='relieved nut'),
             ('rcs', 'mean_film'),
             0.02,
         ),
         (
-            Task(kind='screw', rpm=1000.0, load=1000.0, draw=0),
+            StudyTask(kind='screw', rpm=1000.0, load=1000.0, draw=0),
             ('friction_torque', 'sliding_torque', 'track_torque', 'central_film'),
             5e-3,
         ),
         (
-            Task(kind='screw', rpm=12.0, load=0.0, draw=1),
+            StudyTask(kind='screw', rpm=12.0, load=0.0, draw=1),
             ('friction_torque', 'friction_coefficient', 'rcs', 'asperity_coefficient'),
             0.02,
         ),
-        (Task(kind='formulas', rpm=600.0, load=2400.0), ('rcs_loaded', 'friction_torque'), 1e-4),
+        (
+            StudyTask(kind='formulas', rpm=600.0, load=2400.0),
+            ('rcs_loaded', 'friction_torque'),
+            1e-4,
+        ),
     ],
-    ids=lambda value: value.key if isinstance(value, Task) else '',
+    ids=lambda value: value.key if isinstance(value, StudyTask) else '',
 )
 def test_rows_are_what_the_code_solves(task, columns, tolerance):
     """One row of every kind, solved again; none of the compared numbers is zero."""

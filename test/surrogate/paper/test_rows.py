@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 from surrogate.files import InputError
-from surrogate.paper.cases import NEEDS, SHORT, SMOOTH, Task, tasks
+from surrogate.paper.cases import NEEDS, SHORT, SMOOTH, StudyTask, tasks
 from surrogate.paper.curves import (
     constant_friction_efficiency,
     crossing,
@@ -19,12 +19,13 @@ from surrogate.paper.curves import (
     paired_change,
     pick,
 )
-from surrogate.paper.rows import inputs_hash, read_rows, Row, write_rows
+from surrogate.paper.rows import inputs_hash, read_rows, StudyRow, write_rows
 from surrogate.paper.study import run_study
 from surrogate.parameters import load_lubricant, load_screw
+from surrogate.tasks.workers import open_pool
 
 SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
-BASE = Row(inputs='a', kind='contact', rpm=5.0, load=0.0, draw=0, status='CONVERGED', rcs=0.1)
+BASE = StudyRow(inputs='a', kind='contact', rpm=5.0, load=0.0, draw=0, status='CONVERGED', rcs=0.1)
 
 
 def test_every_task_is_asked_once():
@@ -81,20 +82,32 @@ def test_another_screw_is_another_study():
     assert inputs_hash(SCREW, OIL) != inputs_hash(SCREW, changed)
 
 
-def test_a_study_goes_on_where_it_stopped(tmp_path, monkeypatch):
-    """Rows that are there are not solved again, missing fields are."""
+def test_a_study_goes_on_where_it_stopped(tmp_path):
+    """What is kept is not solved again; fields that were removed are written again."""
     wanted = tasks(('7',), 1)
     told = []
-    run_study(tmp_path, wanted[:2], lambda *now: told.append(now[:3]))
-    assert told == [(1, 2, 0.5), (2, 2, 1.0)]
-    told.clear()
-    study = run_study(tmp_path, wanted[:2], lambda *now: told.append(now))
-    assert not told
-    assert list(study.rows) == [task.key for task in wanted[:2]]
-    assert study.fields(wanted[0].key).film.shape == (257, 1)
-    next(tmp_path.rglob('*.npz')).unlink()
-    run_study(tmp_path, wanted[:2], lambda *now: told.append(now))
-    assert len(told) == 1
+    with open_pool(1) as pool:
+        run_study(tmp_path, wanted[:2], pool, lambda *now: told.append(now[:3]))
+        assert told == [(1, 2, 0.5), (2, 2, 1.0)]
+        told.clear()
+        study = run_study(tmp_path, wanted[:2], pool, lambda *now: told.append(now))
+        assert not told
+        assert list(study.rows) == [task.key for task in wanted[:2]]
+        assert study.fields(wanted[0].key).film.shape == (257, 1)
+        next(tmp_path.rglob('*.npz')).unlink()
+        run_study(tmp_path, wanted[:2], pool, lambda *now: told.append(now))
+        assert not told
+        assert len(list(tmp_path.rglob('*.npz'))) == 2
+        run_study(tmp_path, wanted[1:3], pool, lambda *now: told.append(now))
+        assert len(told) == 1
+    assert list(read_rows(tmp_path / 'paper.csv')) == [task.key for task in wanted[:3]]
+
+
+def test_rows_of_an_earlier_version_are_refused(tmp_path):
+    """They came without the results that are kept now."""
+    write_rows(tmp_path / 'paper.csv', [BASE])
+    with open_pool(1) as pool, pytest.raises(InputError, match='rows without the kept results'):
+        run_study(tmp_path, tasks(('7',), 1), pool)
 
 
 def test_mean_and_spread_over_draws():
@@ -157,5 +170,5 @@ def test_the_map_is_a_grid():
 
 def test_key_names_the_task():
     """A row has the key of its task."""
-    task = Task(kind='contact', rpm=5.0, load=0.0, draw=0)
+    task = StudyTask(kind='contact', rpm=5.0, load=0.0, draw=0)
     assert task.key == BASE.key == 'contact_ours_5rpm_0N_draw0'

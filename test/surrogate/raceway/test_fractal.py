@@ -12,15 +12,9 @@ import numpy as np
 import pytest
 from surrogate.files import InputError
 from surrogate.parameters import load_screw
-from surrogate.raceway.fractal import (
-    ensemble,
-    fractal_surface,
-    shifted,
-    take_patch,
-    theoretical_rms,
-    Window,
-)
+from surrogate.raceway.fractal import ensemble, fractal_surface, shifted, theoretical_rms
 from surrogate.raceway.fractal_fit import structure_function
+from surrogate.raceway.patch import take_patch, Window
 
 NOMINAL = load_screw('nominal').roughness
 COARSE = replace(NOMINAL, shortest_wavelength=64e-6)
@@ -115,7 +109,7 @@ def test_a_rescaled_patch_has_the_rms_of_the_datasheet(seed):
 
 def test_the_factor_of_a_patch_is_logged(caplog):
     """One line says kind, rms before, window and factor."""
-    with caplog.at_level(logging.INFO, 'surrogate.raceway.fractal'):
+    with caplog.at_level(logging.INFO, 'surrogate.raceway.patch'):
         patch = take_patch(fractal_surface(NOMINAL, 0), 'rescaled', HERTZ, NOMINAL.rms)
     (line,) = caplog.messages
     before = NOMINAL.rms / patch.scale

@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 from surrogate.files import InputError
 from surrogate.parameters import load_screw
-from surrogate.raceway.fractal import fractal_surface, take_patch, Window
+from surrogate.raceway.fractal import fractal_surface
 from surrogate.raceway.measured import measured_surface
+from surrogate.raceway.patch import take_patch, Window
 
 NOMINAL = load_screw('nominal').roughness
 STEP = 2e-6

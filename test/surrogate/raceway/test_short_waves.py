@@ -12,7 +12,8 @@ from surrogate.ehl import Condition, ContactLubricant, Settings, solve_contact
 from surrogate.files import InputError
 from surrogate.formulas.geometry import hertz, screw_contact
 from surrogate.parameters import load_lubricant, load_screw
-from surrogate.raceway.fractal import fractal_surface, take_patch, theoretical_rms, Window
+from surrogate.raceway.fractal import fractal_surface, theoretical_rms
+from surrogate.raceway.patch import take_patch, Window
 from surrogate.raceway.short_waves import STANDING, subgrid_floor, wave_rms, without_short_waves
 
 ROUGHNESS = replace(load_screw('nominal').roughness, shortest_wavelength=13e-6)

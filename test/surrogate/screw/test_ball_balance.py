@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 import numpy as np
 import pytest
+from surrogate.ehl.friction import NodeStrengths
 from surrogate.files import InputError
 from surrogate.formulas.geometry import conformity, helix_angle, hertz, screw_contact, SIDES
 from surrogate.formulas.kinematics import no_slip_rates
@@ -257,14 +258,14 @@ def test_slow_motion_has_a_limit(screw):
 
 def test_a_solved_contact_scales_with_its_load(screw):
     """Three places of a film and an asperity: it balances, and energy holds in both modes."""
-    law = SolvedTraction(
+    nodes = NodeStrengths(
         x=np.array([-2e-5, 0.0, 3e-5]),
         y=np.array([1e-4, -2e-4, 2e-5]),
-        load=20.0,
         boundary=np.array([0.0, 0.3, 0.0]),
         eyring=np.array([0.2, 0.0, 0.4]),
-        eyring_rate=np.array([300.0, 0.0, 50.0]),
+        rate=np.array([300.0, 0.0, 50.0]),
     )
+    law = SolvedTraction(nodes=nodes, load=20.0)
     for given_load in ({'normal_force': 21.0}, {'axial_force': 15.0}):
         found = balance_ball(
             screw,

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Traction on a ball: closed forms, derivatives, power, and the same sums as for the contact."""
 
-from dataclasses import replace
+from dataclasses import fields, replace
 import math
 
 from hypothesis import given
@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 from surrogate.ehl import Condition, ContactLubricant, Settings, solve_contact, Status
-from surrogate.ehl.friction import contact_friction
+from surrogate.ehl.friction import contact_friction, NodeStrengths
 from surrogate.files import InputError
 from surrogate.formulas.geometry import hertz, screw_contact
 from surrogate.parameters import load_screw
@@ -28,15 +28,16 @@ SCREW = load_screw('nominal')
 LAWS = {
     'coulomb': coulomb_traction(SCREW, 'nut', 0.05),
     'solved': SolvedTraction(
-        x=np.array([-2e-5, 0.0, 3e-5]),
-        y=np.array([1e-4, -2e-4, 2e-5]),
+        nodes=NodeStrengths(
+            x=np.array([-2e-5, 0.0, 3e-5]),
+            y=np.array([1e-4, -2e-4, 2e-5]),
+            boundary=np.array([0.0, 0.3, 0.0]),
+            eyring=np.array([0.2, 0.0, 0.4]),
+            rate=np.array([300.0, 0.0, 50.0]),
+        ),
         load=20.0,
-        boundary=np.array([0.0, 0.3, 0.0]),
-        eyring=np.array([0.2, 0.0, 0.4]),
-        eyring_rate=np.array([300.0, 0.0, 50.0]),
     ),
 }
-ARRAYS = ('x', 'y', 'boundary', 'eyring', 'eyring_rate')
 SLIPS, TURNS = st.floats(-0.02, 0.02), st.floats(-50.0, 50.0)
 MOTIONS = st.builds(
     lambda *numbers: np.array(numbers), SLIPS, SLIPS, st.floats(-5.0, 5.0), TURNS, SLIPS
@@ -123,7 +124,8 @@ def test_the_compiled_sums_are_those_of_the_slip_maps(motion):
     along, across = slip_maps(SCREW, 'nut', *law.places(load))
     slip = np.array([motion @ along, motion @ across])
     speed = np.sqrt((slip**2).sum(axis=0) + law.slip_floor**2)
-    force = load / law.load * (law.boundary + law.eyring * np.arcsinh(law.eyring_rate * speed))
+    nodes = law.nodes
+    force = load / law.load * (nodes.boundary + nodes.eyring * np.arcsinh(nodes.rate * speed))
     drag = -force * slip / speed
     found = integrate_traction(SCREW, 'nut', law, load, motion)
     assert found.values == pytest.approx(along @ drag[0] + across @ drag[1], rel=1e-9, abs=1e-15)
@@ -134,7 +136,7 @@ def test_the_compiled_sums_are_those_of_the_slip_maps(motion):
 def test_weak_nodes_that_are_left_out_bear_little(solved, share):
     """Friction in a sliding contact falls by no more than the share; many nodes are saved."""
     whole, strong = solved_traction(solved), solved_traction(solved, neglected=share)
-    assert strong.x.size < 0.95 * whole.x.size
+    assert strong.nodes.x.size < 0.95 * whole.nodes.x.size
     motion = np.array([0.01, 0.0, 0.0, 0.0, 0.0])
     all_of_it = integrate_traction(SCREW, 'nut', whole, 27.6, motion).values[0]
     most_of_it = integrate_traction(SCREW, 'nut', strong, 27.6, motion).values[0]
@@ -144,8 +146,9 @@ def test_weak_nodes_that_are_left_out_bear_little(solved, share):
 def test_a_sample_has_about_the_friction(solved):
     """Every seventh node stands for seven; few nodes and a quadrature stay as they are."""
     law, motion = solved_traction(solved), np.array([0.01, 0.005, 0.0, 20.0, 0.0])
-    many = replace(law, **{name: np.tile(getattr(law, name), 9) for name in ARRAYS})
-    assert many.sample().x.size == -(-many.x.size // 7)
+    arrays = {one.name: np.tile(getattr(law.nodes, one.name), 9) for one in fields(law.nodes)}
+    many = replace(law, nodes=NodeStrengths(**arrays))
+    assert many.sample().nodes.x.size == -(-many.nodes.x.size // 7)
     whole = integrate_traction(SCREW, 'nut', many, 27.6, motion)
     part = integrate_traction(SCREW, 'nut', many.sample(), 27.6, motion)
     assert part.values[:2] == pytest.approx(whole.values[:2], rel=0.02)

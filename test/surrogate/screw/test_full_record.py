@@ -12,12 +12,12 @@ import pytest
 from surrogate.ehl import Settings
 from surrogate.ehl.friction import contact_friction
 from surrogate.files import InputError, to_json
+from surrogate.formulas.record import closed_form_record, page
 from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
 from surrogate.screw import figures as figures_point
 from surrogate.screw.ball_motion import slip_floor
 from surrogate.screw.contacts import ScrewSettings
 from surrogate.screw.ensemble import solve_ensemble
-from surrogate.screw.formula_record import closed_form_record, page
 from surrogate.screw.full_record import ensemble_record, full_record, solution_record
 from surrogate.screw.nut import contact_slip
 from surrogate.screw.solve import solve_screw
@@ -216,9 +216,9 @@ def test_an_ensemble_shows_a_draw_that_converged():
 
 
 def test_the_page_lists_every_key():
-    """docs/screw.md has the keys of both tiers, with a star on those of the full one alone."""
-    page_text = (Path(__file__).parents[3] / 'docs' / 'screw.md').read_text(encoding='utf-8')
-    table = page_text.split('## Keys of `--json`')[1].split('## ')[0]
+    """The guide has the keys of both tiers, with a star on those of the full one alone."""
+    page = Path(__file__).parents[3] / 'docs' / 'guide' / 'operating_point.md'
+    table = page.read_text(encoding='utf-8').split('## Keys of `--json`')[1].split('## ')[0]
     (own,) = (line for line in table.splitlines() if line.startswith('| `contacts`'))
     point, found = record(60, 800.0)
     formulas = closed_form_record(SCREW, OIL, point)

@@ -15,16 +15,8 @@ import numpy as np
 import pytest
 from surrogate.formulas import closed_form, torque
 from surrogate.formulas.load_sharing import UNLOADING_RATIO
-from surrogate.surface import (
-    FIELDS,
-    find_surface,
-    shipped_surface,
-    Surface,
-    SurfaceError,
-    Validity,
-)
+from surrogate.surface import FIELDS, shipped_surface, Surface, SurfaceError, Validity
 from surrogate.surface.file import ENSEMBLE_VERSION, SurfaceData, write
-import surrogate.surface.lookup
 
 SPEEDS = st.floats(0.06, 229.0)
 LOADS = st.floats(-3960.0, 3960.0)
@@ -239,40 +231,6 @@ def test_a_surface_of_another_screw_or_oil_is_refused(tmp_path: Path, surface_da
         Surface.load(path, screw='z_axis')
     with pytest.raises(SurfaceError, match="built for lubricant 'iso_vg_68', configured is 'iso_"):
         Surface.load(path, oil='iso_vg_32')
-
-
-def test_an_unshipped_surface_lists_the_shipped_ones():
-    """A missing map names what there is."""
-    with pytest.raises(SurfaceError, match='shipped are nominal_iso_vg_68'):
-        shipped_surface('nominal', 'iso_vg_32')
-
-
-def test_a_surface_is_found_by_path_or_tier(tmp_path: Path):
-    """The name of a tier is one that is shipped, all else a path."""
-    for tier in ('closed_form', 'full'):
-        for wanted in (tier, Path(tier)):
-            assert find_surface(wanted) == shipped_surface(tier=tier)
-        assert Surface.load(find_surface(tier)).tier == tier
-    assert find_surface(tmp_path / 'mine.npz') == tmp_path / 'mine.npz'
-    with pytest.raises(SurfaceError, match='no surface of tier full is shipped for screw'):
-        find_surface('full', 'nominal', 'iso_vg_32')
-
-
-def test_without_a_wish_solved_contacts_come_first(tmp_path: Path, monkeypatch):
-    """Nothing means the full tier where such a file is shipped, otherwise the closed form."""
-    for wanted in (None, ''):
-        assert find_surface(wanted) == shipped_surface() == shipped_surface(tier='full')
-    monkeypatch.setattr(surrogate.surface.lookup, 'SHIPPED', tmp_path)
-    for name in ('a_oil.npz', 'a_oil_full.npz', 'b_oil.npz', 'c_oil_full.npz'):
-        (tmp_path / name).touch()
-    assert find_surface('', 'a', 'oil').name == 'a_oil_full.npz'
-    assert find_surface('', 'b', 'oil').name == 'b_oil.npz'
-    assert find_surface('closed_form', 'a', 'oil').name == 'a_oil.npz'
-    sentence = "no surface is shipped for screw 'd' and oil 'oil', shipped are a_oil, a_oil_full, "
-    with pytest.raises(SurfaceError, match=sentence):
-        find_surface('', 'd', 'oil')
-    with pytest.raises(SurfaceError, match='no surface of tier closed_form is shipped'):
-        find_surface('closed_form', 'c', 'oil')
 
 
 def test_the_lookup_needs_numpy_alone():

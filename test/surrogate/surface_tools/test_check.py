@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 from surrogate.builder import closed_form as build
 from surrogate.builder.tiers import TIERS
-from surrogate.surface import shipped_surface
+from surrogate.surface import shipped_surface, SolvedPoint
+from surrogate.surface.aims import EFFICIENCY_TOLERANCE
 from surrogate.surface.file import read
-from surrogate.surface_tools.check import check_surface, EFFICIENCY_TOLERANCE, STATED_FACTOR
+from surrogate.surface_tools.check import check_surface, STATED_FACTOR
 
 DATA = read(shipped_surface(tier='closed_form'))
 
@@ -67,13 +68,13 @@ def test_the_tier_of_the_file_chooses_the_solver(monkeypatch):
 
 def test_what_does_not_converge_is_counted_and_not_compared(monkeypatch):
     """Half of the solves fail: the others decide; when all fail nothing was shown."""
-    calls = iter(range(100))
-    with_solver(monkeypatch, lambda *a: build.solve_closed_form(*a) if next(calls) % 2 else {})
+    calls, failed = iter(range(100)), SolvedPoint(converged=False)
+    with_solver(monkeypatch, lambda *a: build.solve_closed_form(*a) if next(calls) % 2 else failed)
     full = replace(DATA, header={**DATA.header, 'tier': 'full'})
     half = check_surface(full, 10, 1, always)
     assert half.passed
     assert half.unsolved == 5
-    with_solver(monkeypatch, lambda *a: {'rcs': float('nan')})
+    with_solver(monkeypatch, lambda *a: SolvedPoint(converged=True))
     none = check_surface(full, 10, 1, always)
     assert not none.passed
     assert none.unsolved == 10
@@ -101,7 +102,7 @@ def test_what_a_cell_states_is_accepted_and_said(monkeypatch):
 
     def shifted(*args):
         solved = build.solve_closed_form(*args)
-        return solved | {'rcs': solved['rcs'] + 0.006 * (solved['rcs'] < 0.04)}
+        return replace(solved, rcs=solved.rcs + 0.006 * (solved.rcs < 0.04))
 
     with_solver(monkeypatch, shifted)
     for stated, passes in ((0.0021, True), (0.0015, False)):

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from surrogate.builder.full import tier
 from surrogate.builder.full.build import build_full
-from surrogate.builder.full.chain import chain_inputs
+from surrogate.builder.full.chain import chain_inputs, solved_chain
 from surrogate.builder.full.draws import draws_of, mean_of_draws
 from surrogate.builder.full.settings import FullSettings
 from surrogate.files import InputError
@@ -81,16 +81,19 @@ def test_draws_from_eight_on_are_weighted(screw, oil, stand_in, monkeypatch):
             float(data.load[j]),
             math.exp(data.speed_coordinate[i] + data.log_onset[j, k]),
         )
-        records = [
-            stand_in.solve(chain_inputs(screw, oil, load, heat, draw, [speed]))['opposing'][0]
+        chains = [
+            solved_chain(stand_in.solve(chain_inputs(screw, oil, load, heat, draw, [speed])))
             for draw in range(draws)
         ]
-        mean = mean_of_draws(records, FIELDS, ensemble, load)
-        plain = float(np.mean([record['rcs'] for record in records[:8]]))
-        assert data.fields['rcs'][i, j, k] == pytest.approx(mean['rcs'], rel=1e-9)
-        assert mean['rcs'] != pytest.approx(plain, rel=1e-3)
-        assert tier.solve_full(header, speed, load, heat) == pytest.approx(mean, rel=1e-9)
-        assert tier.solve_full(without, speed, load, heat)['rcs'] == pytest.approx(plain, rel=1e-9)
+        points = [chain.opposing[0] for chain in chains]
+        mean = mean_of_draws(points, ensemble, load)
+        plain = float(np.mean([point.rcs for point in points[:8]]))
+        assert data.fields['rcs'][i, j, k] == pytest.approx(mean.rcs, rel=1e-9)
+        assert mean.rcs != pytest.approx(plain, rel=1e-3)
+        again = tier.solve_full(header, speed, load, heat)
+        for name in FIELDS:
+            assert getattr(again, name) == pytest.approx(getattr(mean, name), rel=1e-9)
+        assert tier.solve_full(without, speed, load, heat).rcs == pytest.approx(plain, rel=1e-9)
 
 
 def test_onset_is_near_rcs_of_one_percent(mean):

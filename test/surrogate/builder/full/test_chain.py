@@ -2,14 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """The unit of work of a full-tier surface is what the solver gives, whoever solves it."""
 
-from dataclasses import replace
+from dataclasses import asdict, replace
 import json
 import math
 
 import numpy as np
 import pytest
 from surrogate.builder.full import chain as full_chain
-from surrogate.builder.full.chain import chain_inputs, point_record, solve_chain
+from surrogate.builder.full.chain import chain_inputs, solve_chain, solved_chain, solved_point
 from surrogate.builder.tiers import screw_and_oil
 from surrogate.ehl import Settings, Status
 from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
@@ -21,7 +21,7 @@ from surrogate.surface import FIELDS
 SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
 WARM = 313.15
 LOOSE = 6e-4
-"""What 0.3 % of the flux changes the torque by at most [-]; docs/surface.md."""
+"""What 0.3 % of the flux changes the torque by at most [-]; docs/notes/full_tier_surface.md."""
 
 
 def tight(draw):
@@ -139,17 +139,20 @@ def test_record_of_a_point():
     settings = ScrewSettings(smooth=small, draw=None)
     point = OperatingPoint(speed=60.0, load=500.0, temperature=WARM)
     found = solve_screw(SCREW, OIL, point, settings=settings)
-    record = point_record(found)
-    assert set(FIELDS) <= set(record)
+    record = solved_point(found)
+    assert {name: getattr(record, name) for name in FIELDS} == {
+        name: getattr(found, name) for name in FIELDS
+    }
+    assert solved_chain({'opposing': [asdict(record)], 'assisting': []}).under(1.0) == (record,)
     ratios = [contact.film_ratio for contact in found.contacts]
-    assert record['worst_contact'] == ratios.index(min(ratios))
+    assert record.worst_contact == ratios.index(min(ratios))
     floor = SCREW.roughness.film_floor
-    assert record['film_over_floor'] == pytest.approx(record['minimum_film'] / floor)
+    assert record.film_over_floor == pytest.approx(record.minimum_film / floor)
     free = solve_screw(
         replace(SCREW, preload=0.0), OIL, replace(point, load=0.0), settings=settings
     )
-    assert not point_record(free)['converged']
-    assert math.isnan(point_record(free)['film_over_floor'])
+    assert not solved_point(free).converged
+    assert math.isnan(solved_point(free).film_over_floor)
 
 
 def test_shorter_waves_are_solved_when_asked_for():

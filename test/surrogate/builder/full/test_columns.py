@@ -6,9 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from surrogate.builder.full.columns import Columns, NEAR_ONSET
-from surrogate.builder.full.idle import BESIDE, idle_load
+from surrogate.builder.full.columns import BESIDE, Columns, moved_records, NEAR_ONSET
+from surrogate.formulas.load_sharing import idle_load
 from surrogate.parameters import load_lubricant, load_screw
+from surrogate.surface import SolvedPoint
 
 LOADS, HEATS = np.array([-1000.0, 0.0, 1000.0]), np.array([293.15, 313.15, 333.15])
 S = np.linspace(-3.0, 6.0, 10)
@@ -153,3 +154,20 @@ def test_loads_beside_the_idle_one_know_their_neighbours(columns):
     wide = replace(columns, load=loads, log_onset=np.zeros((6, 3)))
     assert wide.verges() == [(0, 1), (4, 3)]
     assert columns.verges() == []
+
+
+def test_records_move_with_their_nodes():
+    """More speeds and loads: each record is found under the numbers of its own node."""
+    before, loads = S, LOADS
+    records = {
+        (i, j, 1, 0): SolvedPoint(
+            converged=True, rcs=float(before[i]), max_pressure=float(loads[j])
+        )
+        for i, j in np.ndindex(len(before), len(loads))
+    }
+    after = np.union1d(before, [-1.5, 0.5]), np.union1d(loads, [-1500.0, 300.0])
+    moved = moved_records(records, (before, loads), after)
+    assert len(moved) == len(records)
+    for (i, j, _, _), point in moved.items():
+        assert (after[0][i], after[1][j]) == (point.rcs, point.max_pressure)
+    assert moved_records({}, (np.empty(0), np.empty(0)), after) == {}

@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 from surrogate.builder.full.draws import (
     deviation,
-    Draws,
     draws_of,
     LEAST_DRAWS,
     mean_of_draws,
@@ -20,13 +19,15 @@ from surrogate.builder.full.draws import (
     raked,
     STEEPEST,
     weighted_mean,
+    WeightedDraws,
 )
-from surrogate.builder.full.idle import idle_load
+from surrogate.formulas.load_sharing import idle_load
 from surrogate.parameters import load_screw
 from surrogate.screw.contacts import raceway_patch
+from surrogate.surface import SolvedPoint
 
 POWERS = (14.0, 31.0, 23.0, 20.0, 29.0, 24.0, 26.0, 28.0, 19.0, 17.0)
-TEN = Draws(len(POWERS), powers=POWERS, mean=24.0)
+TEN = WeightedDraws(len(POWERS), powers=POWERS, mean=24.0)
 IDLE = 1000.0
 
 
@@ -63,7 +64,7 @@ def test_a_field_that_is_linear_in_the_power_is_found_without_error():
 
 def test_few_draws_have_plain_means():
     """Of those that are known, with the textbook error and deviation; NaN of none or one."""
-    values, few = np.random.default_rng(1).normal(3.0, 1.0, (4, 6)), Draws(6)
+    values, few = np.random.default_rng(1).normal(3.0, 1.0, (4, 6)), WeightedDraws(6)
     values[1, 4], values[2, 1:], values[3] = np.nan, np.nan, np.nan
     weights = few.weights(values, np.zeros(4))
     assert weighted_mean(values, weights)[:3] == pytest.approx(np.nanmean(values[:3], axis=-1))
@@ -84,7 +85,7 @@ def test_the_stated_error_is_the_scatter_of_the_mean(count, bend):
     values = x + bend * x**2 + 0.3 * drawn.normal(size=x.shape)
     means, stated = [], []
     for powers, row in zip(x, values, strict=True):
-        draws = Draws(count, powers=tuple(powers), mean=1.0)
+        draws = WeightedDraws(count, powers=tuple(powers), mean=1.0)
         weights = draws.weights(row, 0.0)
         means.append(float(weighted_mean(row, weights)))
         stated.append(float(draws.standard_error(row, weights)))
@@ -107,7 +108,7 @@ def test_where_no_weights_are_found_the_error_says_so():
 
 def test_draws_of_the_verge_gain_weight_without_a_step():
     """Twice as many from 7/8 of the idle load to it; there alone the second half weighs."""
-    draws = Draws(5, idle=IDLE, powers=POWERS, mean=24.0)
+    draws = WeightedDraws(5, idle=IDLE, powers=POWERS, mean=24.0)
     loads = np.array([0.0, 875.0, 875.1, 900.0, -937.6, 999.0, 1000.0, 4000.0])
     assert [draws.at(load) for load in loads] == [5, 5, 10, 10, 10, 10, 5, 5]
     weights = draws.weights(np.ones((len(loads), 10)), loads)
@@ -123,7 +124,7 @@ def test_draws_of_the_verge_gain_weight_without_a_step():
 def test_factors_are_those_of_the_raceway():
     """The first of a thousand draws; fewer than eight are not weighted."""
     screw = load_screw('nominal')
-    assert draws_of(screw, LEAST_DRAWS - 1) == Draws(LEAST_DRAWS - 1)
+    assert draws_of(screw, LEAST_DRAWS - 1) == WeightedDraws(LEAST_DRAWS - 1)
     draws = draws_of(screw, LEAST_DRAWS)
     assert draws.powers[3] == raceway_patch(screw, 'screw', 3).scale ** POWER
     assert (draws.count, draws.most) == (LEAST_DRAWS, 2 * LEAST_DRAWS)
@@ -137,11 +138,18 @@ def test_factors_are_those_of_the_raceway():
 
 def test_records_of_draws_have_one_mean():
     """A chain that failed or a draw that did not converge is left out, half of them at most."""
-    records = [{'converged': True, 'rcs': 0.1 * power, 'torque': 2.0 - power} for power in POWERS]
-    records[1] = None
-    records[4] = {'converged': False, 'rcs': math.nan, 'torque': math.nan}
-    found = mean_of_draws(records, ('rcs', 'torque'), TEN, 0.0)
-    assert found == pytest.approx({'rcs': 2.4, 'torque': -22.0}, rel=1e-9)
-    assert mean_of_draws([None] * 6 + records[6:], ('rcs',), TEN, 0.0) == {}
+    points = [
+        SolvedPoint(converged=True, rcs=0.1 * power, friction_torque=2.0 - power)
+        for power in POWERS
+    ]
+    points[1] = None
+    points[4] = SolvedPoint(converged=False)
+    found = mean_of_draws(points, TEN, 0.0)
+    assert found.converged
+    assert (found.rcs, found.friction_torque) == pytest.approx((2.4, -22.0), rel=1e-9)
+    assert not mean_of_draws([None] * 6 + points[6:], TEN, 0.0).converged
     more = replace(TEN, powers=(*POWERS, *POWERS))
-    assert mean_of_draws(records, ('rcs', 'torque'), more, 0.0) == pytest.approx(found, rel=1e-12)
+    again = mean_of_draws(points, more, 0.0)
+    assert (again.rcs, again.friction_torque) == pytest.approx(
+        (found.rcs, found.friction_torque), rel=1e-12
+    )

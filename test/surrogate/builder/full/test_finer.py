@@ -14,8 +14,8 @@ from surrogate.builder.full.held_out import HeldOut, judged
 from surrogate.builder.full.loads import LoadPieces
 from surrogate.builder.full.run import Once
 from surrogate.builder.full.settings import default_full_settings, error_target, FullSettings
-from surrogate.builder.full.speed_nodes import Sample
-from surrogate.surface import FIELDS, Surface
+from surrogate.builder.full.speed_nodes import NodeSample
+from surrogate.surface import FIELDS, SolvedPoint, Surface
 
 PLENTY = Room(9, 9)
 
@@ -31,13 +31,11 @@ def held_out(data, whole, target, place):
     s, load, heat = place
     surface = Surface(data)
     point = (math.exp(s) * surface.onset_speed(load, heat), load, heat)
-    found, mean = (
-        {name: getattr(one.lookup(*point), name) for name in FIELDS}
-        for one in (surface, Surface(whole))
-    )
+    found, there = (one.lookup(*point) for one in (surface, Surface(whole)))
+    mean = SolvedPoint(converged=True, **{name: getattr(there, name) for name in FIELDS})
     axes = (data.speed_coordinate, data.load, data.temperature)
     cell = tuple(int(np.searchsorted(axis, at)) - 1 for axis, at in zip(axes, place))
-    samples = (Sample(one['friction_torque'], one['rcs']) for one in (found, mean))
+    samples = (NodeSample(one.friction_torque, one.rcs) for one in (found, mean))
     lead = data.header['inputs']['screw']['lead']
     return HeldOut(point, s, cell, found, mean, judged(target, load, lead).worst(*samples))
 

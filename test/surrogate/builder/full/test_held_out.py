@@ -8,6 +8,7 @@ import math
 import numpy as np
 import pytest
 from surrogate.builder.closed_form import build_closed_form
+from surrogate.builder.full.chain import SolvedChain
 from surrogate.builder.full.columns import Columns, NEAR_ONSET
 from surrogate.builder.full.held_out import (
     cell_errors,
@@ -15,9 +16,9 @@ from surrogate.builder.full.held_out import (
     load_bands,
     solve_held_out,
 )
-from surrogate.builder.full.idle import idle_load
 from surrogate.builder.full.settings import default_full_settings
-from surrogate.surface import Surface
+from surrogate.formulas.load_sharing import idle_load
+from surrogate.surface import SolvedPoint, Surface
 
 POINTS = 180
 
@@ -93,17 +94,14 @@ def test_errors_stand_in_their_cells_and_strata(coarse, screw, oil, settings, st
             (speed,), load, heat = chain['speeds'], chain['load'], chain['temperature']
             s = math.log(speed / surface.onset_speed(load, heat))
             fault = 0.01 * (s > NEAR_ONSET[1] and load > idle_load(screw))
-            results[name] = {
-                sense: [
-                    {
-                        **{field: getattr(found, field) for field in coarse.fields},
-                        'rcs': found.rcs + fault,
-                        'converged': True,
-                    }
-                ]
-                for sense, sign in (('opposing', 1), ('assisting', -1))
-                for found in [surface.lookup(speed, sign * load, heat)]
-            }
+            results[name] = SolvedChain(
+                *(
+                    (SolvedPoint(converged=True, **fields | {'rcs': fields['rcs'] + fault}),)
+                    for sign in (1, -1)
+                    for found in [surface.lookup(speed, sign * load, heat)]
+                    for fields in [{field: getattr(found, field) for field in coarse.fields}]
+                )
+            )
         return results
 
     points = held_out_points(Surface(coarse), screw, settings)
@@ -116,7 +114,7 @@ def test_errors_stand_in_their_cells_and_strata(coarse, screw, oil, settings, st
     shared = np.ix_(s < NEAR_ONSET[1], np.abs(load) < 0.8 * idle_load(screw))
     assert errors['rcs'][shared].max() < 1e-9
     assert errors['friction_torque'].max() < 1e-9
-    worse = [replace(one, found={**one.found, 'rcs': one.mean['rcs'] + 0.5}) for one in solved[:9]]
+    worse = [replace(one, mean=replace(one.mean, rcs=one.found.rcs - 0.5)) for one in solved[:9]]
     widened = cell_errors(coarse, solved, screw, settings, worse)['rcs']
     own = {one.cell for one in solved}
     assert all(widened[cell] == errors['rcs'][cell] for cell in own)

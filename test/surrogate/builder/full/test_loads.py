@@ -1,34 +1,23 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Loads: where the relieved nut becomes idle, and where an interpolation needs more of them."""
+"""Loads: nodes beside the idle one, and where an interpolation needs more of them."""
 
 from dataclasses import replace
 import math
 
 import numpy as np
 import pytest
-from surrogate.builder.full.idle import BESIDE, idle_load
+from surrogate.builder.full.columns import BESIDE
 from surrogate.builder.full.loads import first_loads, refine_loads, signed_loads
 from surrogate.builder.full.settings import default_full_settings, error_target
-from surrogate.builder.full.speed_nodes import Sample
-from surrogate.formulas.load_sharing import nut_forces
-from surrogate.screw.solve import IDLE_SHARE
+from surrogate.builder.full.speed_nodes import NodeSample
+from surrogate.formulas.load_sharing import idle_load
 
 
 @pytest.fixture(name='settings')
 def defaults(screw):
     """Return the defaults of the nominal screw."""
     return default_full_settings(screw)
-
-
-def test_idle_is_where_load_sharing_says_so(screw):
-    """On either side of it the relieved nut has more and less than the least share."""
-    idle = idle_load(screw)
-    for side, shared in ((-BESIDE, True), (BESIDE, False)):
-        loaded, relieved = nut_forces((1 + side) * idle, screw.preload)
-        assert (relieved >= IDLE_SHARE * loaded) == shared
-    assert 0.95 * 2**1.5 * screw.preload < idle < 2**1.5 * screw.preload
-    assert idle_load(replace(screw, preload=0.0)) == 0.0
 
 
 def test_nodes_sit_on_zero_and_on_both_sides_of_idle(screw, settings):
@@ -86,7 +75,7 @@ def test_loads_crowd_where_profiles_change(screw, settings):
     def solve(loads):
         steps = np.linspace(0.5, 1.0, 3)
         return {
-            float(load): Sample(0.05 + 0 * steps, steps / (1 + math.exp((load - 2000) / 60)))
+            float(load): NodeSample(0.05 + 0 * steps, steps / (1 + math.exp((load - 2000) / 60)))
             for load in loads
         }
 

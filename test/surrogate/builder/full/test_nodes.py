@@ -8,9 +8,10 @@ import math
 import numpy as np
 import pytest
 from surrogate.builder.closed_form import speed_at_film_ratio
-from surrogate.builder.full.columns import Columns, covering
-from surrogate.builder.full.idle import BESIDE, idle_load
+from surrogate.builder.full.chain import SolvedChain
+from surrogate.builder.full.columns import BESIDE, Columns, covering
 from surrogate.builder.full.nodes import commonest, continued, gather_nodes
+from surrogate.formulas.load_sharing import idle_load
 from surrogate.parameters import load_lubricant, load_screw
 
 LOADS, HEATS = np.array([-1000.0, 0.0, 1000.0]), np.array([293.15, 313.15, 333.15])
@@ -41,6 +42,15 @@ def at_node(columns, stand_in, s, j, k, draws):
     speed = math.exp(s + columns.log_onset[j, k])
     chains = [columns.chain(abs(LOADS[j]), HEATS[k], draw, np.array([speed])) for draw in draws]
     return [stand_in.solve(chain)[sense][0] for chain in chains]
+
+
+def failing_at(chain, places):
+    """Return a chain of which some points did not converge."""
+    senses = [list(chain.opposing), list(chain.assisting)]
+    for points in senses:
+        for place in places:
+            points[place] = replace(points[place], converged=False)
+    return SolvedChain(*map(tuple, senses))
 
 
 def gather(columns, results, s=S):
@@ -120,9 +130,7 @@ def test_ends_that_failed_are_masked_and_not_continued(columns, stand_in):
     slowest = np.flatnonzero(columns.needed(S)[:, 0, 2])[:2]
     for name in results:
         if name.startswith('1000.0 N, temperature 2'):
-            for records in results[name].values():
-                for record in records[-2:]:
-                    record['converged'] = False
+            results[name] = failing_at(results[name], (-1, -2))
     nodes = gather(columns, results)
     assert nodes.mask[slowest, 0, 2].all()
     assert not nodes.mask[slowest[-1] + 1, 0, 2]
@@ -139,9 +147,7 @@ def test_a_column_beside_the_idle_load_is_completed(columns, stand_in):
     failing = np.flatnonzero(wide.needed(S)[:, 3, 2])[[0, 3]]
     for name in results:
         if name.startswith(f'{below!r} N, temperature 2'):
-            for records in results[name].values():
-                for place in (-1, -4):
-                    records[place]['converged'] = False
+            results[name] = failing_at(results[name], (-1, -4))
     found = gather(wide, results)
     assert np.array_equal(found.mask, whole.mask)
     for name in ('friction_torque', 'central_film'):

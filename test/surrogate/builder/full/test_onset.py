@@ -31,7 +31,7 @@ def test_onset_is_where_the_share_is_one_percent(profiles, screw, stand_in):
             for draw in (0, 1)
         }
         solved = stand_in.run('', chains).values()
-        share = np.mean([chain['opposing'][0]['rcs'] for chain in solved])
+        share = np.mean([chain.opposing[0].rcs for chain in solved])
         assert 0.007 < share < 0.014
 
 

@@ -100,7 +100,8 @@ def test_a_point_is_solved_with_the_draws_of_the_surface(screw, oil, tmp_path, h
     """A check passes at points that were never nodes; the fields are all there."""
     data = build(screw, oil, tmp_path / 'a.npz', here())
     solved = full_tier.solve_full(data.header, 10.0, 300.0, 310.0)
-    assert set(solved) == set(FIELDS)
+    assert solved.converged
+    assert all(math.isfinite(getattr(solved, name)) for name in FIELDS)
     result = check_surface(data, points=10, seed=4, has_time=lambda: True)
     assert result.tried == 10
     assert result.silent == result.unsolved == 0

@@ -1,0 +1,21 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What commands print: a page for people, or JSON for programs."""
+
+import argparse
+from collections.abc import Callable, Mapping
+from typing import Any, TypeVar
+
+from surrogate.files import json_text
+
+Record = TypeVar('Record', bound=Mapping[str, Any])
+
+
+def add_json(parser: argparse.ArgumentParser) -> None:
+    """Add the option that asks for JSON."""
+    parser.add_argument('--json', action='store_true', help='print JSON in SI units')
+
+
+def show(record: Record, page: Callable[[Record], str], *, json: bool) -> None:
+    """Print a record as JSON in SI units, or the page of it."""
+    print(json_text(record) if json else page(record))

@@ -1,0 +1,48 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Where the surfaces lie that come with the package."""
+
+from pathlib import Path
+
+from surrogate.surface.file import SurfaceError, TIERS
+
+SHIPPED_TIERS = ('full', 'closed_form')
+"""Tiers of shipped surfaces, the one that is taken first coming first."""
+SHIPPED = Path(__file__).parent.parent / 'data' / 'surfaces'
+
+
+def find_surface(
+    wanted: str | Path | None, screw: str = 'nominal', oil: str = 'iso_vg_68'
+) -> Path:
+    """
+    Return the file that is wanted: a path, or a tier of those shipped; nothing means any tier.
+
+    Raises SurfaceError when no such surface is shipped.
+
+    """
+    text = str(wanted or '')
+    if text and text not in TIERS:
+        return Path(text)
+    return shipped_surface(screw, oil, text or None)
+
+
+def shipped_surface(
+    screw: str = 'nominal', oil: str = 'iso_vg_68', tier: str | None = None
+) -> Path:
+    """
+    Return where the shipped surface of `screw` and `oil` lies.
+
+    Without a tier it is of solved contacts where such a one is shipped. Raises SurfaceError if
+    there is none.
+
+    """
+    for kind in SHIPPED_TIERS if tier is None else (tier,):
+        ending = '' if kind == 'closed_form' else f'_{kind}'
+        path = SHIPPED / f'{screw}_{oil}{ending}.npz'
+        if path.is_file():
+            return path
+    shipped = ', '.join(sorted(found.stem for found in SHIPPED.glob('*.npz')))
+    raise SurfaceError(
+        f'no surface {f"of tier {tier} " if tier else ""}is shipped for screw {screw!r} and oil '
+        f'{oil!r}, shipped are {shipped or "none"}'
+    )

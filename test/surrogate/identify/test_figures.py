@@ -1,0 +1,32 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The picture of an identification: everything in it stands over the same speeds."""
+
+import numpy as np
+import pytest
+from surrogate.identify.data import no_load_run
+from surrogate.identify.fit import identify
+from surrogate.identify.model import closed_form_model
+from surrogate.units import RPM
+
+figures = pytest.importorskip('surrogate.identify.figures')
+SPEEDS = [60.0, 120.0, 300.0, 600.0, 1200.0, 2400.0]
+"""Screw speeds [rev/min]."""
+
+
+def test_curves_bands_and_points_share_the_speed_axis(screw, oil):
+    """In rev/min: lines and points reach from the slowest to the fastest speed."""
+    speed = np.array(SPEEDS) * RPM
+    columns = {'speed': speed, 'torque': 0.1 + 1e-4 * speed}
+    run = no_load_run(columns, source='made up', temperature=oil.reference_temperature, notes=())
+    contacts = closed_form_model(screw, oil, run)
+    figure = figures.figure_identification(run, identify(screw, run, contacts, ()), 'made up')
+    upper = figure.axes[0]
+    lines = {line.get_label(): line for line in upper.get_lines()}
+    for name in ('model, datasheet', 'model, identified'):
+        np.testing.assert_allclose(lines[name].get_xdata(), SPEEDS)
+    band = upper.collections[0].get_datalim(upper.transData)
+    assert (band.x0, band.x1) == (pytest.approx(60.0), pytest.approx(2400.0))
+    points = upper.containers[0].lines[0]
+    np.testing.assert_allclose(points.get_xdata(), SPEEDS)
+    assert upper.get_ylabel().endswith('[mN m]')

@@ -1,0 +1,43 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Shipped surfaces: found by tier, the full one first, and listed when there is none."""
+
+from pathlib import Path
+
+import pytest
+from surrogate.surface import find_surface, shipped_surface, Surface, SurfaceError
+import surrogate.surface.shipped
+
+
+def test_an_unshipped_surface_lists_the_shipped_ones():
+    """A missing map names what there is."""
+    with pytest.raises(SurfaceError, match='shipped are nominal_iso_vg_68'):
+        shipped_surface('nominal', 'iso_vg_32')
+
+
+def test_a_surface_is_found_by_path_or_tier(tmp_path: Path):
+    """The name of a tier is one that is shipped, all else a path."""
+    for tier in ('closed_form', 'full'):
+        for wanted in (tier, Path(tier)):
+            assert find_surface(wanted) == shipped_surface(tier=tier)
+        assert Surface.load(find_surface(tier)).tier == tier
+    assert find_surface(tmp_path / 'mine.npz') == tmp_path / 'mine.npz'
+    with pytest.raises(SurfaceError, match='no surface of tier full is shipped for screw'):
+        find_surface('full', 'nominal', 'iso_vg_32')
+
+
+def test_without_a_wish_solved_contacts_come_first(tmp_path: Path, monkeypatch):
+    """Nothing means the full tier where such a file is shipped, otherwise the closed form."""
+    for wanted in (None, ''):
+        assert find_surface(wanted) == shipped_surface() == shipped_surface(tier='full')
+    monkeypatch.setattr(surrogate.surface.shipped, 'SHIPPED', tmp_path)
+    for name in ('a_oil.npz', 'a_oil_full.npz', 'b_oil.npz', 'c_oil_full.npz'):
+        (tmp_path / name).touch()
+    assert find_surface('', 'a', 'oil').name == 'a_oil_full.npz'
+    assert find_surface('', 'b', 'oil').name == 'b_oil.npz'
+    assert find_surface('closed_form', 'a', 'oil').name == 'a_oil.npz'
+    sentence = "no surface is shipped for screw 'd' and oil 'oil', shipped are a_oil, a_oil_full, "
+    with pytest.raises(SurfaceError, match=sentence):
+        find_surface('', 'd', 'oil')
+    with pytest.raises(SurfaceError, match='no surface of tier closed_form is shipped'):
+        find_surface('closed_form', 'c', 'oil')

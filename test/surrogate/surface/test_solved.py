@@ -1,0 +1,23 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""A solved point and a looked-up one have the same fields."""
+
+from dataclasses import fields
+import math
+
+from surrogate.surface import FIELDS, SolvedPoint, SurfacePoint
+
+
+def test_fields_are_those_of_a_surface():
+    """In their order, with what tells how far they hold."""
+    names = [field.name for field in fields(SolvedPoint)]
+    assert tuple(name for name in names if name in FIELDS) == FIELDS
+    assert set(names) - set(FIELDS) == {'converged', 'status', 'worst_contact', 'film_over_floor'}
+    assert all(hasattr(SurfacePoint, name) for name in (*FIELDS, 'worst_contact'))
+
+
+def test_a_point_that_is_not_solved_has_no_numbers():
+    """All NaN, the worst contact unknown."""
+    none = SolvedPoint(converged=False)
+    assert all(math.isnan(getattr(none, name)) for name in FIELDS)
+    assert none.worst_contact == -1
