@@ -12,11 +12,11 @@ Takes minutes.
 """
 
 import argparse
-from concurrent.futures import ProcessPoolExecutor
+from collections.abc import Mapping
 from dataclasses import replace
-import multiprocessing
 from pathlib import Path
 import sys
+from typing import Any
 
 import numpy as np
 from surrogate.builder.full.chain import chain_settings
@@ -24,8 +24,11 @@ from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
 from surrogate.plotting.style import new_figure, save, styled
 from surrogate.screw.contacts import GRID_WAVELENGTH, ScrewSettings
 from surrogate.screw.solve import solve_screw
+from surrogate.tasks.kept import run_kept
 from surrogate.units import RPM
 
+WORK = 'studies/close_loads.py 1'
+"""Solver and version of the kept results."""
 DRAWS = (3, 7, 11, 14)
 SPEED = 23.0
 """Speed near the onset [rev/min]."""
@@ -43,15 +46,15 @@ def grids(draw: int) -> dict[str, ScrewSettings]:
     }
 
 
-def rcs_of(case: tuple[str, int]) -> list[float]:
+def rcs_of(inputs: Mapping[str, Any]) -> dict[str, Any]:
     """Return RCS [-] of a grid and draw at all loads, NaN where it does not converge."""
     screw, oil = load_screw('nominal'), load_lubricant('iso_vg_68')
-    settings = grids(case[1])[case[0]]
+    settings = grids(inputs['draw'])[inputs['grid']]
     points = [
         OperatingPoint(speed=SPEED * RPM, load=float(load), temperature=oil.reference_temperature)
         for load in LOADS
     ]
-    return [solve_screw(screw, oil, point, settings=settings).rcs for point in points]
+    return {'rcs': [solve_screw(screw, oil, point, settings=settings).rcs for point in points]}
 
 
 def scatter(rcs: np.ndarray) -> float:
@@ -84,11 +87,13 @@ def main() -> None:
     parser.add_argument('--workers', type=int, default=2)
     parser.add_argument('--out', type=Path, default=Path('studies/results'))
     args = parser.parse_args()
-    cases = [(name, draw) for name in grids(0) for draw in DRAWS]
-    with ProcessPoolExecutor(
-        args.workers, mp_context=multiprocessing.get_context('spawn')
-    ) as pool:
-        rows = np.array(list(pool.map(rcs_of, cases)))
+    cases = {
+        f'{name}, draw {draw}': {'grid': name, 'draw': draw} for name in grids(0) for draw in DRAWS
+    }
+    done = run_kept(
+        args.out / 'close_loads', WORK, rcs_of, cases, workers=args.workers, unit='chains'
+    )
+    rows = np.array([done[name]['rcs'] for name in cases])
     found = dict(zip(grids(0), rows.reshape(-1, len(DRAWS), len(LOADS)), strict=True))
     print('grid                   mean RCS  scatter')
     for name, rcs in found.items():

@@ -12,30 +12,35 @@ factor. Takes minutes.
 """
 
 import argparse
-from concurrent.futures import ProcessPoolExecutor
+from collections.abc import Mapping
 import math
-import multiprocessing
 from pathlib import Path
 import sys
+from typing import Any
 
 import numpy as np
 from surrogate.builder.full.chain import chain_inputs, solve_chain
 from surrogate.builder.full.draws import draws_of, POWER, weighted_mean, WeightedDraws
 from surrogate.parameters import load_lubricant, load_screw
 from surrogate.plotting.style import new_figure, save, styled
+from surrogate.tasks.kept import run_kept
 from surrogate.units import RPM
 
+WORK = 'studies/draw_factors.py 1'
+"""Solver and version of the kept results."""
 FEW = 16
 SPEEDS = (24.0, 17.0, 11.0, 7.0)
 """Speeds from the end of contact down [rev/min]."""
 
 
-def rcs_of(draw: int) -> list[float]:
+def rcs_of(inputs: Mapping[str, Any]) -> dict[str, Any]:
     """Return RCS of a draw at all speeds [-], NaN where it does not converge."""
     screw, oil = load_screw('nominal'), load_lubricant('iso_vg_68')
     speeds = [rpm * RPM for rpm in SPEEDS]
-    chain = solve_chain(chain_inputs(screw, oil, 0.0, oil.reference_temperature, draw, speeds))
-    return [row['rcs'] if row['converged'] else math.nan for row in chain['opposing']]
+    chain = solve_chain(
+        chain_inputs(screw, oil, 0.0, oil.reference_temperature, inputs['draw'], speeds)
+    )
+    return {'rcs': [row['rcs'] if row['converged'] else math.nan for row in chain['opposing']]}
 
 
 def summary(rcs: np.ndarray, draws: WeightedDraws) -> tuple[float, float]:
@@ -107,9 +112,11 @@ def main() -> None:
     if args.draws < FEW:
         parser.error(f'--draws is {args.draws}, allowed is {FEW} or more')
     screw = load_screw('nominal')
-    spawn = multiprocessing.get_context('spawn')
-    with ProcessPoolExecutor(args.workers, mp_context=spawn) as pool:
-        rcs = np.array(list(pool.map(rcs_of, range(args.draws))))
+    inputs = {f'draw {draw}': {'draw': draw} for draw in range(args.draws)}
+    done = run_kept(
+        args.out / 'draw_factors', WORK, rcs_of, inputs, workers=args.workers, unit='draws'
+    )
+    rcs = np.array([done[name]['rcs'] for name in inputs])
     few, every = draws_of(screw, FEW), draws_of(screw, args.draws)
     powers = np.array(every.powers[: args.draws])
     print('rev/min  correlation  plain 16         weighted 16      plain all        weighted all')

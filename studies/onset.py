@@ -18,13 +18,10 @@ from typing import Any
 from surrogate.ehl import Condition, ContactLubricant, ContactSolution, Settings, solve_contact
 from surrogate.formulas.geometry import hertz, screw_contact
 from surrogate.parameters import load_lubricant, load_screw
-from surrogate.progress import Progress
 from surrogate.raceway.fractal import fractal_surface
 from surrogate.raceway.patch import take_patch, Window
-from surrogate.tasks.pool import run_tasks
-from surrogate.tasks.store import TaskStore
+from surrogate.tasks.kept import run_kept
 from surrogate.tasks.table import read_table, write_table
-from surrogate.tasks.workers import open_pool
 
 WORK = 'studies/onset.py 1'
 """Solver and version of the kept results."""
@@ -166,17 +163,8 @@ def chain(variation: Variation, draw: int) -> Iterator[OnsetRow]:
 
 def run(tasks: Mapping[str, Mapping[str, Any]], path: Path, workers: int) -> list[OnsetRow]:
     """Solve the chains that the store beside the table does not keep; return the rows of all."""
-    progress = Progress(len(tasks), 'chains')
-    with TaskStore(path, WORK) as store, open_pool(workers) as pool:
-        found = run_tasks(
-            pool,
-            solve_chain,
-            tasks,
-            store=store,
-            report=lambda outcome: progress.step(there=outcome.stored),
-        )
-    results = [outcome.result for outcome in found.values() if outcome.result is not None]
-    return [OnsetRow(**row) for result in results for row in result['rows']]
+    found = run_kept(path, WORK, solve_chain, tasks, workers=workers, unit='chains')
+    return [OnsetRow(**row) for result in found.values() for row in result['rows']]
 
 
 def main() -> None:

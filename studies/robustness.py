@@ -28,13 +28,10 @@ from surrogate.ehl import Condition, ContactLubricant, ContactSolution, Settings
 from surrogate.formulas.film import groups, minimum_film_hamrock_dowson_1977
 from surrogate.formulas.geometry import Contact, hertz, screw_contact
 from surrogate.parameters import load_lubricant, load_screw
-from surrogate.progress import Progress
 from surrogate.raceway.fractal import fractal_surface, FractalSurface
 from surrogate.raceway.patch import take_patch, Window
-from surrogate.tasks.pool import run_tasks
-from surrogate.tasks.store import TaskStore
+from surrogate.tasks.kept import run_kept
 from surrogate.tasks.table import read_table, write_table
-from surrogate.tasks.workers import open_pool
 
 WORK = 'studies/robustness.py 1'
 """Solver and version of the kept results."""
@@ -303,16 +300,9 @@ def solve_plain(inputs: Mapping[str, Any]) -> dict[str, Any]:
 
 def run(cases: list[ColdCase], path: Path, workers: int) -> dict[str, Ending]:
     """Solve what the store beside the table does not keep; return all rows by their keys."""
-    tasks, progress = {case.key: asdict(case) for case in cases}, Progress(len(cases), 'cases')
-    with TaskStore(path, WORK) as store, open_pool(workers) as pool:
-        found = run_tasks(
-            pool,
-            solve_plain,
-            tasks,
-            store=store,
-            report=lambda outcome: progress.step(there=outcome.stored),
-        )
-    return {key: Ending(**one.result) for key, one in found.items() if one.result}
+    tasks = {case.key: asdict(case) for case in cases}
+    found = run_kept(path, WORK, solve_plain, tasks, workers=workers, unit='cases')
+    return {key: Ending(**result) for key, result in found.items()}
 
 
 def print_report(rows: list[Ending]) -> None:

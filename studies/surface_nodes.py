@@ -22,7 +22,7 @@ import numpy as np
 from surrogate.builder.full.columns import Columns
 from surrogate.builder.full.finer import with_nodes
 from surrogate.builder.full.settings import default_full_settings, error_target
-from surrogate.builder.full.speed_nodes import Sample
+from surrogate.builder.full.speed_nodes import NodeSample
 from surrogate.builder.full.temperatures import solved_temperatures
 from surrogate.builder.tiers import screw_and_oil
 from surrogate.plotting.style import new_figure, save, styled
@@ -92,7 +92,7 @@ def compare(whole: Surface, data: SurfaceData) -> list[float]:
         here, there = fewer.lookup(*point), whole.lookup(*point)
         if here.validity is there.validity is Validity.VALID:
             ideal = max(target.ideal_torque, abs(point[1]) * screw.lead / (2 * math.pi))
-            samples = (Sample(one.friction_torque, one.rcs) for one in (here, there))
+            samples = (NodeSample(one.friction_torque, one.rcs) for one in (here, there))
             found.append(replace(target, ideal_torque=ideal).worst(*samples))
     return found
 

@@ -7,7 +7,7 @@ import subprocess
 import sys
 
 import pytest
-from surrogate.formulas.record import regime
+from surrogate.surface import regime_of
 
 
 def test_the_record_loads_no_solver():
@@ -31,4 +31,4 @@ def test_the_record_loads_no_solver():
 )
 def test_regimes_begin_at_their_limits(ratio, word):
     """The limit belongs to the thicker film."""
-    assert regime(ratio) == word
+    assert regime_of(ratio).word == word

@@ -1,0 +1,22 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""A study goes on where it stopped, and says what failed."""
+
+from surrogate.tasks.kept import run_kept
+from surrogate.tasks.store import plain_result, store_path, TaskStore
+
+
+def test_kept_results_are_returned_and_failures_told(tmp_path, capsys):
+    """By name; a second run asks no task again that has a result."""
+    inputs = {'good': {'value': 1.0}, 'bad': {1: 2.0}}
+    out = tmp_path / 'table.csv'
+    assert run_kept(out, 'test 1', plain_result, inputs, workers=1) == {'good': {'value': 1.0}}
+    told = capsys.readouterr().err
+    assert 'bad: TypeError: keys of a result are words' in told
+    assert '2/2 tasks' in told
+    with TaskStore(out, 'test 1') as store:
+        assert len(store) == 1
+    assert store_path(out).exists()
+    assert run_kept(out, 'test 1', plain_result, {'other name': {'value': 1.0}}) == {
+        'other name': {'value': 1.0}
+    }
