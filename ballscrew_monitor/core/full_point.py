@@ -8,7 +8,7 @@ error must not exceed the error that the surface states there, interpolation and
 
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 import dataclasses
 import math
 import types
@@ -22,6 +22,8 @@ NAN = math.nan
 JUDGED = ('efficiency', 'rcs')
 """What the zone is judged by, and so what a surface is corrected for."""
 MODEL = 'full'
+TOLD = ('tier', 'inputs', 'settings', 'weighted_draws')
+"""What the solver needs to know of a surface."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -115,10 +117,9 @@ def corrected(surface: Surface, kept: Iterable[Solve]) -> Surface:
 
 
 def request_of(surface: Surface, point: MachinePoint, draws: int) -> dict[str, Any]:
-    """Return what is asked of the solver: the inputs of the surface, the point, the draws."""
-    inputs: Mapping[str, Any] = surface.header['inputs']
-    place = dataclasses.asdict(solved_at(point))
-    return {'inputs': dict(inputs), 'point': place, 'draws': draws}
+    """Return what is asked of the solver: the surface, the point, the draws, 0 for its own."""
+    header = {name: surface.header[name] for name in TOLD if name in surface.header}
+    return {'header': header, 'point': dataclasses.asdict(solved_at(point)), 'draws': draws}
 
 
 def known(number: float) -> float:

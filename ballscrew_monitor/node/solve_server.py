@@ -31,7 +31,6 @@ from rclpy.action.server import ServerGoalHandle
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 
-DEFAULT_DRAWS = 4
 DEFAULT_TIMEOUT = 120.0  # [s]
 POLL = 0.1  # [s]
 FEEDBACK_PERIOD = 0.5  # [s]
@@ -98,7 +97,7 @@ class SolveServer:
 
     def solve(self, axis: SolvableAxis, point: MachinePoint) -> None:
         """Solve a point for the node itself, to correct the surface; the outcome is logged."""
-        self._begin(axis, point, DEFAULT_DRAWS, DEFAULT_TIMEOUT, None)
+        self._begin(axis, point, 0, DEFAULT_TIMEOUT, None)
 
     def _on_goal(self, request: Any) -> GoalResponse:
         refusal = self._solver.refusal
@@ -117,8 +116,8 @@ class SolveServer:
         if isinstance(axis, str) or isinstance(point, str):
             self._answer(handle, empty_result(str(point)), End.FAILED)
             return
-        draws, timeout = request.draws or DEFAULT_DRAWS, request.timeout or DEFAULT_TIMEOUT
-        self._begin(axis, point, draws, timeout, handle)
+        timeout = request.timeout or DEFAULT_TIMEOUT
+        self._begin(axis, point, request.draws, timeout, handle)
 
     def _begin(
         self,

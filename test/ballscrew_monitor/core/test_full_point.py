@@ -105,6 +105,7 @@ def test_corrections_are_made_again_on_a_surface_of_the_same_content(core):
 
 def test_a_request_holds_the_inputs_of_the_surface_and_no_names_to_look_up(core):
     request = request_of(SURFACE, core.point(speed=-10.0, axial_load=500.0), 3)
-    assert request['inputs'] == SURFACE.header['inputs']
+    assert request['header']['inputs'] == SURFACE.header['inputs']
+    assert request['header']['tier'] == 'full'
     assert request['point'] == {'speed': 10.0, 'opposing_load': 500.0, 'temperature': 313.15}
     assert request['draws'] == 3

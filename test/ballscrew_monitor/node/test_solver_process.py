@@ -13,7 +13,7 @@ from ballscrew_monitor.node.solver_process import SolverProcess, worker_environm
 import pytest
 
 DEADLINE = 60.0  # [s]
-BAD_REQUEST = {'solve': {'inputs': {}, 'point': {}, 'draws': 1}}
+BAD_REQUEST = {'solve': {'point': {}, 'draws': 1}}
 
 
 @pytest.fixture(name='process')
@@ -37,7 +37,7 @@ def test_a_request_that_cannot_be_solved_is_a_sentence_and_the_process_goes_on(p
     for _ in range(2):
         process.send(BAD_REQUEST)
         (frame,) = until(process.frames)
-        assert frame == {'failed': "KeyError: 'screw'"}
+        assert frame == {'failed': "KeyError: 'header'"}
 
 
 def test_it_holds_nothing_of_ros_and_runs_nicely(process):
