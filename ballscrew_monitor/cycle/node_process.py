@@ -33,6 +33,9 @@ class NodeProcess:
             str(params),
             '-p',
             'use_sim_time:=true',
+            # Every run is the same: none takes up what solves of an earlier one have corrected.
+            '-p',
+            "state_dir:=''",
         ]
         libc = ctypes.CDLL(None)
         with log.open('wb') as stream:

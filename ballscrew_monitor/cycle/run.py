@@ -64,6 +64,8 @@ def _supervise(made: Plan, stop: threading.Event) -> Outcome:
         print(
             f'node ballscrew_monitor: process {node.pid}, ROS_DOMAIN_ID={domain} '
             'ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST',
+            *(f'full solve  {line}' for line in solve_lines(made, domain)),
+            sep='\n',
             flush=True,
         )
         writer = stack.enter_context(BagWriter(made.out, RECORDING))
@@ -72,6 +74,12 @@ def _supervise(made: Plan, stop: threading.Event) -> Outcome:
             return supervision.carry_out(stop)
         except RunFailure as failure:
             return supervision.outcome(str(failure))
+
+
+def solve_lines(made: Plan, domain: int) -> list[str]:
+    """Return what to type in another terminal for a full solve of the current point."""
+    variables = ' '.join(f'{name}={value}' for name, value in ros_environment(domain).items())
+    return [f'{variables} ballscrew solve --axis {axis.name}' for axis in made.axes]
 
 
 @contextlib.contextmanager
