@@ -18,6 +18,7 @@ contact        a contact as a file: case, record, pictures
 screw          one point of the full tier: contacts, balance of the balls, torque
 builder        datasheet to surface: tiers, sweeps; full: draws, nodes, errors
 surface        all that the node loads: lookup and file, numpy alone
+on_demand      a full solve for the running node, by a process of its own
 surface_tools  what people do with a surface file: check, query, compare, draw
 plotting       the one style of all pictures
 tasks          solves kept by content, on processes or a cluster

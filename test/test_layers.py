@@ -34,7 +34,7 @@ NUMERICAL = {
 PLOTTING = {'surrogate.plotting.style'}  # for the pictures of a cycle alone
 LOOKUP = {'surrogate', 'surrogate.files', 'surrogate.surface', 'surrogate.units'}
 
-FLOORS = ('core', 'node', 'recordings', 'cycle')
+FLOORS = ('core', 'node', 'clients', 'recordings', 'cycle')
 """Folders of the online half, the lowest first."""
 
 
