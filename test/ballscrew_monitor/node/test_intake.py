@@ -1,0 +1,131 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""All that waits is taken at once, in the order of arrival, and what was lost is counted."""
+
+import time
+import types
+
+from ballscrew_monitor.core.conversions import Scaling
+from ballscrew_monitor.core.inputs import make_input, Source
+from ballscrew_monitor.cycle.domain import free_domain
+from ballscrew_monitor.node.intake import Intake
+import pytest
+import rclpy
+from rclpy.executors import SingleThreadedExecutor
+from std_msgs.msg import Float64
+
+DEADLINE = 30.0  # [s]
+
+
+def float_input(source, topic):
+    return make_input(
+        source,
+        topic=topic,
+        type_name='std_msgs/msg/Float64',
+        field='data',
+        scaling=Scaling(factor=1.0, shift=0.0),
+    )
+
+
+class Bench:
+    """A node with an intake, publishers beside it, and what was taken."""
+
+    def __init__(self, domain):
+        self.context = rclpy.Context()
+        rclpy.init(context=self.context, domain_id=domain)
+        self.node = rclpy.create_node('taker', context=self.context, enable_rosout=False)
+        self.executor = SingleThreadedExecutor(context=self.context)
+        self.executor.add_node(self.node)
+        inputs = (float_input(Source.LOAD, 'load'), float_input(Source.SPEED, 'speed'))
+        self.axis = types.SimpleNamespace(name='x', inputs=inputs, max_future=0)
+        self.taken = []
+        self.intake = Intake(self.node, [self.axis], lambda axis, event: self.taken.append(event))
+        self.publishers = {
+            name: self.node.create_publisher(Float64, name, 300) for name in ('load', 'speed')
+        }
+        self.until(lambda: self.intake.publishers('x') == {Source.LOAD: 1, Source.SPEED: 1})
+        self.drain_events()
+
+    def until(self, condition):
+        end = time.monotonic() + DEADLINE
+        while not condition():
+            assert time.monotonic() < end, 'the condition did not come'
+            self.executor.spin_once(timeout_sec=0.02)
+
+    def drain_events(self):
+        """Let the executor hand over what the match of the publishers has left."""
+        for _ in range(20):
+            self.executor.spin_once(timeout_sec=0.0)
+
+    def publish(self, name, value):
+        self.publishers[name].publish(Float64(data=float(value)))
+
+    def close(self):
+        self.executor.shutdown()
+        self.node.destroy_node()
+        rclpy.shutdown(context=self.context)
+
+
+@pytest.fixture(name='bench')
+def make_bench():
+    with free_domain() as domain:
+        made = Bench(domain)
+        yield made
+        made.close()
+
+
+def test_one_wake_up_takes_all_topics_in_the_order_of_arrival(bench):
+    for i in range(50):
+        bench.publish('speed', 2 * i)
+        bench.publish('load', 2 * i + 1)
+    bench.until(lambda: bench.taken)
+    before = len(bench.taken)
+    bench.until(lambda: len(bench.taken) == 100)
+    assert [event.value for event in bench.taken] == list(range(100))
+    assert {event.lost for event in bench.taken} == {0}
+    assert before > 1  # not a message for each wake-up
+    arrivals = [event.arrival for event in bench.taken]
+    assert arrivals == sorted(arrivals)
+
+
+def test_what_waits_is_taken_without_a_wake_up(bench):
+    bench.publish('speed', 1)
+    end = time.monotonic() + DEADLINE
+    while not bench.taken and time.monotonic() < end:
+        bench.intake.drain()
+    assert [event.value for event in bench.taken] == [1.0]
+    bench.executor.spin_once(timeout_sec=0.0)  # finds nothing left
+    assert len(bench.taken) == 1
+
+
+def test_what_a_full_queue_drops_is_counted(bench):
+    bench.publish('speed', 0)
+    bench.until(lambda: bench.taken)
+    for i in range(1, 1000):
+        bench.publish('speed', i)
+    bench.until(lambda: bench.taken[-1].value == 999.0)
+    lost = sum(event.lost for event in bench.taken)
+    assert len(bench.taken) + lost == 1000
+    assert lost > 0
+
+
+def test_with_a_second_publisher_loss_is_not_known(bench):
+    bench.publish('speed', 1)
+    bench.until(lambda: bench.taken)
+    assert bench.taken[-1].lost == 0
+    second = bench.node.create_publisher(Float64, 'speed', 10)
+    bench.until(lambda: bench.intake.publishers('x')[Source.SPEED] == 2)
+    bench.drain_events()
+    bench.publish('speed', 2)
+    second.publish(Float64(data=3.0))
+    bench.until(lambda: len(bench.taken) == 3)
+    assert [event.lost for event in bench.taken[1:]] == [None, None]
+
+
+def test_a_closed_intake_takes_nothing(bench):
+    bench.intake.close()
+    bench.publish('speed', 1)
+    bench.intake.drain()
+    bench.drain_events()
+    assert bench.taken == []
+    assert bench.intake.publishers('x') == {}
