@@ -229,11 +229,13 @@ class BallscrewMonitor(LifecycleNode):
         now = self._steady.now().nanoseconds
         if now - self._news_time >= NEWS_INTERVAL:  # else the next state or the timer sends it
             self._news_time = now
-            station.say_news()
+            station.say_news(now)
             self._publish_diagnostics()
 
     def _publish_diagnostics(self) -> None:
         now = self.get_clock().now()
+        for station in self._stations.values():
+            station.log_inputs(self._steady.now().nanoseconds)
         stood = self._pulse.stood(now.nanoseconds, self._steady.now().nanoseconds)
         message = DiagnosticArray(status=self._statuses(stood))
         message.header.stamp = now.to_msg()

@@ -5,6 +5,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from ballscrew_monitor.core.conversions import nanoseconds
 from ballscrew_monitor.core.dwell import Dwell
 from ballscrew_monitor.core.estimate import estimate, MachinePoint
 from ballscrew_monitor.core.full_point import corrected, objection, solved_at
@@ -31,6 +32,7 @@ from surrogate.files import InputError
 from surrogate.surface import Surface, SurfaceError, SurfacePoint
 
 STATE_QOS = QoSProfile(depth=10, reliability=QoSReliabilityPolicy.RELIABLE)
+LOG_INTERVAL = nanoseconds(1.0)  # [ns] shortest time between two lines about the inputs
 LATCHED_QOS = QoSProfile(
     depth=1,
     reliability=QoSReliabilityPolicy.RELIABLE,
@@ -58,6 +60,8 @@ class Station:
         self._writer = StateWriter(axis.name, TIERS[axis.surface.tier])
         self._last: State | None = None
         self._said: tuple[diagnostics.StatusSummary, ...] = ()
+        self._logged: diagnostics.StatusSummary | None = None
+        self._logged_at = -LOG_INTERVAL
         make = node.create_lifecycle_publisher
         self._state = make(BallScrewState, f'~/{axis.name}/state', STATE_QOS)
         self._event = make(OutOfZone, f'~/{axis.name}/out_of_zone', LATCHED_QOS)
@@ -198,14 +202,18 @@ class Station:
         """Tell whether the diagnostics of the last state differ from what was said."""
         return self._last is not None and self._summaries(self._last) != self._said
 
-    def say_news(self) -> None:
-        """Take the last state for said, and log a change of the inputs."""
-        if self._last is None:
+    def say_news(self, now: int) -> None:
+        """Take the last state for said at `now` [ns], and log a change of the inputs."""
+        if self._last is not None:
+            self._said = self._summaries(self._last)
+            self.log_inputs(now)
+
+    def log_inputs(self, now: int) -> None:
+        """Log what the inputs are like, when that has changed; an input may alternate fast."""
+        if not self._said or self._said[1] == self._logged or now - self._logged_at < LOG_INTERVAL:
             return
-        before, self._said = self._said, self._summaries(self._last)
-        level, text = self._said[1]
-        if before and before[1] == self._said[1]:
-            return
+        self._logged, self._logged_at = self._said[1], now
+        level, text = self._logged
         # Two calls: rclpy ties one severity to one place in the code.
         if level == diagnostics.OK:
             self._node.get_logger().info(f'axis {self.axis.name}: {text}')
