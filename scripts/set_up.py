@@ -38,6 +38,8 @@ BAG_SOURCES = (
     f'{PACKAGE}/recordings/bag_writer.py',
     f'{PACKAGE}/recordings/message_definitions.py',
 )
+# What is compiled, and what calls it.
+SOLVER_SOURCES = ('surrogate/ehl/kernels/*.py', 'surrogate/ehl/*.py')
 # An installer must neither ask nor follow a user's own idea of where packages go.
 PIP = (PYTHON, '-m', 'pip', '--disable-pip-version-check', '--no-input')
 # Bytecode is made when a module is first imported: most of what is installed never is.
@@ -163,6 +165,11 @@ def generate_bag() -> None:
     run(PYTHON, BAG_GENERATOR)
 
 
+def compile_solver() -> None:
+    """Compile the contact solver, so that the first solve does not take minutes."""
+    run(PYTHON, '-c', 'from surrogate.ehl.solver import prepare; prepare()')
+
+
 def steps() -> list[Step]:
     """Return the steps in order, with their keys as the tree is now."""
     environment = digest(
@@ -175,6 +182,7 @@ def steps() -> list[Step]:
     cmake = TREE / 'scripts' / 'relocate_ros_wheels.cmake'
     declared = [TREE / name for name in ('package.xml', 'setup.cfg', 'setup.py')]
     bag = [path for pattern in BAG_SOURCES for path in TREE.glob(pattern)]
+    solver = [path for pattern in SOLVER_SOURCES for path in TREE.glob(pattern)]
     version = '.'.join(map(str, sys.version_info[:3]))
     made = [
         Step(
@@ -196,6 +204,16 @@ def steps() -> list[Step]:
             key=digest(environment, files=declared),
         ),
     ]
+    if solver:
+        made.append(
+            Step(
+                name='solver',
+                text='the contact solver, compiled',
+                work=compile_solver,
+                key=digest(environment, files=solver),
+                made=any((TREE / 'surrogate' / 'ehl' / 'kernels' / '__pycache__').glob('*.nbc')),
+            )
+        )
     if BAG_GENERATOR.exists():
         made.append(
             Step(

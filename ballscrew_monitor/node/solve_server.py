@@ -31,7 +31,7 @@ from rclpy.action.server import ServerGoalHandle
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 
-DEFAULT_TIMEOUT = 120.0  # [s]
+DEFAULT_TIMEOUT = 300.0  # [s]
 POLL = 0.1  # [s]
 FEEDBACK_PERIOD = 0.5  # [s]
 
