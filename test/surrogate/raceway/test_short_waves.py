@@ -60,9 +60,9 @@ def test_floor_is_a_share_of_the_waves_that_are_lost(surface):
 
 
 def resolved_rcs(speed):
-    """Return RCS of the draws of the onset study whose 9.1 um waves were solved."""
-    with (ROOT / 'docs' / 'onset.csv').open(newline='') as file:
-        rows = [row for row in csv.DictReader(file) if row['variation'] == 'wave 9.1 um']
+    """Return RCS of the draws whose 9.1 um waves were solved, on a grid that resolves them."""
+    with (ROOT / 'test' / 'data' / 'resolved_waves.csv').open(newline='') as file:
+        rows = list(csv.DictReader(file))
     return {int(r['draw']): float(r['rcs']) for r in rows if abs(float(r['speed']) - speed) < 1e-6}
 
 
