@@ -155,7 +155,11 @@ class Station:
             return ''
         if sha256 != self.surface.base_sha256:
             return f'{len(kept)} kept corrections are of another surface and not used'
-        self.axis.use_surface(corrected(self.surface, kept), self._values)
+        try:
+            surface = corrected(self.surface, kept)
+        except SurfaceError as error:
+            return f'{len(kept)} kept corrections are not used: {error}'
+        self.axis.use_surface(surface, self._values)
         return f'{len(kept)} kept corrections are in use'
 
     def reload(self, surface: Surface) -> str:
