@@ -25,10 +25,12 @@ from ballscrew_monitor.core.monitor import Monitor
 from ballscrew_monitor.core.state import MonitorSettings
 from ballscrew_monitor.cycle.domain import DOMAIN_GAIN, DOMAINS, free_domain, held, PORT_BASE
 from ballscrew_monitor.cycle.node_process import child_environment
+from ballscrew_monitor.node.solver_process import MODULE
 from ballscrew_msgs.msg import BallScrewState
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import WrenchStamped
 from lifecycle_msgs.srv import ChangeState, GetState
+import numpy as np
 import pytest
 from rcl_interfaces.srv import SetParametersAtomically
 import rclpy
@@ -36,6 +38,8 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile, QoSReliabilityPolicy
 from sensor_msgs.msg import JointState
+from surrogate.surface import file as surface_file
+from surrogate.surface import shipped_surface
 import yaml
 
 with warnings.catch_warnings():
@@ -220,6 +224,14 @@ def shared_memory():
                 path.unlink()
 
 
+def content_of(path):
+    """Return what a file holds; nothing if the process that it speaks of is gone."""
+    try:
+        return path.read_bytes()
+    except (FileNotFoundError, ProcessLookupError):
+        return b''
+
+
 class NodeProcess:
     """The node in a process of its own, and a small node here that talks to it."""
 
@@ -243,12 +255,13 @@ class NodeProcess:
         """
         Start the node; parameters of axis x are named with `__` for a dot.
 
-        Each sample gives a state unless told otherwise.
+        Each sample gives a state and nothing is kept unless told otherwise.
 
         """
         command = [sys.executable, '-m', 'ballscrew_monitor.node', '--ros-args', *arguments]
         axes = yaml.safe_load(parameters.get('axes', '[x]'))
-        defaults = {f'{axis}__publish_period': 0.0 for axis in axes} | {'diagnostics_period': 0.1}
+        defaults = {f'{axis}__publish_period': 0.0 for axis in axes}
+        defaults |= {'diagnostics_period': 0.1, 'state_dir': "''"}
         for name, value in (defaults | parameters).items():
             command += ['-p', f'{name.replace("__", ".")}:={value}']
         paths = (str(ROOT), os.environ.get('PYTHONPATH', ''))
@@ -369,6 +382,15 @@ class NodeProcess:
 
         return publish
 
+    def solvers(self):
+        """Return the numbers of the processes that solve for the node."""
+        command = f'-m\0{MODULE}\0{self.process.pid}\0'.encode()
+        return [
+            int(path.parent.name)
+            for path in pathlib.Path('/proc').glob('[0-9]*/cmdline')
+            if command in content_of(path)
+        ]
+
     def stop(self, number=signal.SIGINT):
         """Send a signal; return the exit code."""
         self.process.send_signal(number)
@@ -385,6 +407,18 @@ class NodeProcess:
         self.executor.shutdown()
         self.node.destroy_node()
         rclpy.shutdown(context=self.context)
+
+
+@pytest.fixture(scope='session')
+def quick_surface(tmp_path_factory):
+    """Return the shipped surface as if it had two plain draws, and wide stated errors."""
+    data = surface_file.read(shipped_surface())
+    header = {name: value for name, value in data.header.items() if name != 'weighted_draws'}
+    header['settings'] |= {'draws': 2, 'grid_wavelength': 30e-6}
+    errors = {name: np.full_like(values, 0.5) for name, values in data.errors.items()}
+    path = tmp_path_factory.mktemp('surface') / 'quick.npz'
+    surface_file.write(path, dataclasses.replace(data, header=header, errors=errors))
+    return path
 
 
 @pytest.fixture
