@@ -20,6 +20,8 @@ SLOW = (
     'ballscrew_monitor/cycle/test_node_process.py',
     'ballscrew_monitor/cycle/test_run.py',
     'ballscrew_monitor/clients/test_solve.py',
+    'ballscrew_monitor/node/test_clocks.py',
+    'ballscrew_monitor/node/test_loss.py',
     'ballscrew_monitor/node/test_node.py',
     'ballscrew_monitor/node/test_solve.py',
     'ballscrew_monitor/recordings/test_player.py',

@@ -350,24 +350,7 @@ class NodeProcess:
         """
         speeds = self.node.create_publisher(JointState, speed_topic, 100)
         loads = self.node.create_publisher(WrenchStamped, load_topic, 100)
-        told = self.listen(DiagnosticArray, '/diagnostics')
-        # A best-effort sample is lost unless both sides know of each other.
-        self.until(
-            lambda: (
-                speeds.get_subscription_count()
-                and loads.get_subscription_count()
-                and told
-                and {'Speed publishers [-]', 'Load publishers [-]'}
-                <= {
-                    pair.key
-                    for status in told[-1].status
-                    for pair in status.values
-                    if pair.value == '1'
-                }
-            ),
-            'the match with the inputs of the node',
-        )
-
+        self.until_matched(speeds, loads)
         self.stamp = self.now() + 100 * SECOND
 
         def publish(speed, force=-1000.0, *, step=SECOND // 100, joint='x_axis'):
@@ -381,6 +364,25 @@ class NodeProcess:
             speeds.publish(joints)
 
         return publish
+
+    def until_matched(self, *publishers):
+        """Wait until speed and load have one publisher each, and these their node."""
+        told = self.listen(DiagnosticArray, '/diagnostics')
+        # A best-effort sample is lost unless both sides know of each other.
+        self.until(
+            lambda: (
+                all(publisher.get_subscription_count() for publisher in publishers)
+                and told
+                and {'Speed publishers [-]', 'Load publishers [-]'}
+                <= {
+                    pair.key
+                    for status in told[-1].status
+                    for pair in status.values
+                    if pair.value == '1'
+                }
+            ),
+            'the match with the inputs of the node',
+        )
 
     def solvers(self):
         """Return the numbers of the processes that solve for the node."""
