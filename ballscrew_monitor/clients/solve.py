@@ -150,12 +150,14 @@ class _Conversation:
         if not handle.accepted:
             return _complain(REJECTED)
         answer = handle.get_result_async()
-        result = self._until(lambda: answer.done() and answer.result())
+        over = self._until(lambda: answer.done() or not client.server_is_ready())
         _wipe()
-        if result is None:
+        if not over:
             self._take_back(handle)
             return INTERRUPTED
-        return _print(self._question.axis, result.result, as_json=as_json)
+        if not answer.done():
+            return _complain(f'{action} is gone, its node has ended')
+        return _print(self._question.axis, answer.result().result, as_json=as_json)
 
     def _find(self, wait: float) -> str | None:
         """Return the name of the action; raises InputError when several nodes offer it."""

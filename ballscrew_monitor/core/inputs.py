@@ -61,6 +61,7 @@ class Why(enum.IntEnum):
     OTHER_JOINTS = 0  # the message speaks of other joints: dropped, and nothing is wrong
     NOT_A_NUMBER = 1
     FUTURE = 2
+    OTHER_CLOCK = 3  # stamps of the wall clock, far ahead of simulated time
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -126,7 +127,8 @@ class Input:
             return refuse(why=Why.OTHER_JOINTS)
         stamp = stamp_of(message) if self.stamped else 0
         if now and stamp - now > max_future:
-            return refuse(why=Why.FUTURE, text=_future_text(stamp - now, max_future))
+            why = Why.OTHER_CLOCK if stamp - now > YEAR else Why.FUTURE
+            return refuse(why=why, text=_future_text(stamp - now, max_future))
         si_value = self.scaling(value)
         if not math.isfinite(si_value):
             text = f'the field holds {value}, it must be a finite number'

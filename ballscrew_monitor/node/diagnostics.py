@@ -59,6 +59,8 @@ _INPUT_WORDS = {
 _REFUSED = {
     Why.NOT_A_NUMBER: 'it is not a finite number',
     Why.FUTURE: 'its stamps lie ahead of the clock, set the clocks alike or raise max_future',
+    Why.OTHER_CLOCK: 'its stamps are of the wall clock and the node runs on simulated time, '
+    'stamp with /clock or unset use_sim_time',
 }
 _TROUBLES: tuple[tuple[Callable[[Health], bool], str], ...] = (
     (
@@ -129,8 +131,9 @@ def statuses(
     )
     if state is None or publishers is None:
         for status in made[:2]:
-            status.level = STALE
-            status.message = INACTIVE if publishers is None else NOTHING_YET
+            status.level, status.message = STALE, CLOCK_STANDS if clock_stands else NOTHING_YET
+            if publishers is None:
+                status.message = INACTIVE
         return made
     for status, (level, message) in zip(made, summaries(state, event)):
         status.level, status.message = level, message

@@ -18,7 +18,7 @@ from ballscrew_monitor.node.axis import Axis, build_axis, check_topics, reload_s
 from ballscrew_monitor.node.correction_store import CorrectionStore, state_directory
 from ballscrew_monitor.node.intake import Intake
 from ballscrew_monitor.node.parameter_store import ParameterStore
-from ballscrew_monitor.node.solve_server import SolveServer
+from ballscrew_monitor.node.solve_server import MOST_SOLVES, SolveServer
 from ballscrew_monitor.node.solver_process import SolverProcess
 from ballscrew_monitor.node.station import STATE_QOS, Station
 from ballscrew_msgs.srv import EvaluateOperatingPoint
@@ -318,6 +318,8 @@ def main(args: list[str] | None = None) -> int:
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, signal.SIG_IGN)
     node.finish()
+    for _ in range(MOST_SOLVES):  # the goals that this has ended are answered
+        executor.spin_once(timeout_sec=0.0)
     executor.shutdown()
     node.destroy_node()
     rclpy.shutdown()

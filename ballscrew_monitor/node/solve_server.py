@@ -17,7 +17,7 @@ from typing import Any
 
 from ballscrew_monitor.core.estimate import MachinePoint
 from ballscrew_monitor.core.full_point import request_of
-from ballscrew_monitor.core.solver import Done, End, Job, Process, Solver
+from ballscrew_monitor.core.solver import Done, End, Job, MOST_WAITING, Process, Solver
 from ballscrew_monitor.node.solve_messages import (
     empty_result,
     feedback_message,
@@ -30,10 +30,14 @@ from rclpy.action import ActionServer, CancelResponse, GoalResponse
 from rclpy.action.server import ServerGoalHandle
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
+from rclpy.qos import QoSProfile
 
 DEFAULT_TIMEOUT = 300.0  # [s]
 POLL = 0.1  # [s]
 FEEDBACK_PERIOD = 0.5  # [s]
+MOST_SOLVES = 1 + MOST_WAITING
+# With the ten of the default a burst of goals loses some, and who sent them waits for ever.
+SERVICE_QOS = QoSProfile(depth=100)
 
 
 @dataclasses.dataclass(kw_only=True, eq=False, slots=True)
@@ -81,6 +85,9 @@ class SolveServer:
             goal_callback=self._on_goal,
             handle_accepted_callback=self._on_accepted,
             cancel_callback=lambda handle: CancelResponse.ACCEPT,
+            goal_service_qos_profile=SERVICE_QOS,
+            result_service_qos_profile=SERVICE_QOS,
+            cancel_service_qos_profile=SERVICE_QOS,
         )
 
     def close(self, reason: str) -> None:

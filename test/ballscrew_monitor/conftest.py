@@ -25,10 +25,12 @@ from ballscrew_monitor.core.monitor import Monitor
 from ballscrew_monitor.core.state import MonitorSettings
 from ballscrew_monitor.cycle.domain import DOMAIN_GAIN, DOMAINS, free_domain, held, PORT_BASE
 from ballscrew_monitor.cycle.node_process import child_environment
+from ballscrew_monitor.node.solver_process import MODULE
 from ballscrew_msgs.msg import BallScrewState
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import WrenchStamped
 from lifecycle_msgs.srv import ChangeState, GetState
+import numpy as np
 import pytest
 from rcl_interfaces.srv import SetParametersAtomically
 import rclpy
@@ -36,6 +38,8 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile, QoSReliabilityPolicy
 from sensor_msgs.msg import JointState
+from surrogate.surface import file as surface_file
+from surrogate.surface import shipped_surface
 import yaml
 
 with warnings.catch_warnings():
@@ -220,6 +224,14 @@ def shared_memory():
                 path.unlink()
 
 
+def content_of(path):
+    """Return what a file holds; nothing if the process that it speaks of is gone."""
+    try:
+        return path.read_bytes()
+    except (FileNotFoundError, ProcessLookupError):
+        return b''
+
+
 class NodeProcess:
     """The node in a process of its own, and a small node here that talks to it."""
 
@@ -243,12 +255,13 @@ class NodeProcess:
         """
         Start the node; parameters of axis x are named with `__` for a dot.
 
-        Each sample gives a state unless told otherwise.
+        Each sample gives a state and nothing is kept unless told otherwise.
 
         """
         command = [sys.executable, '-m', 'ballscrew_monitor.node', '--ros-args', *arguments]
         axes = yaml.safe_load(parameters.get('axes', '[x]'))
-        defaults = {f'{axis}__publish_period': 0.0 for axis in axes} | {'diagnostics_period': 0.1}
+        defaults = {f'{axis}__publish_period': 0.0 for axis in axes}
+        defaults |= {'diagnostics_period': 0.1, 'state_dir': "''"}
         for name, value in (defaults | parameters).items():
             command += ['-p', f'{name.replace("__", ".")}:={value}']
         paths = (str(ROOT), os.environ.get('PYTHONPATH', ''))
@@ -337,24 +350,7 @@ class NodeProcess:
         """
         speeds = self.node.create_publisher(JointState, speed_topic, 100)
         loads = self.node.create_publisher(WrenchStamped, load_topic, 100)
-        told = self.listen(DiagnosticArray, '/diagnostics')
-        # A best-effort sample is lost unless both sides know of each other.
-        self.until(
-            lambda: (
-                speeds.get_subscription_count()
-                and loads.get_subscription_count()
-                and told
-                and {'Speed publishers [-]', 'Load publishers [-]'}
-                <= {
-                    pair.key
-                    for status in told[-1].status
-                    for pair in status.values
-                    if pair.value == '1'
-                }
-            ),
-            'the match with the inputs of the node',
-        )
-
+        self.until_matched(speeds, loads)
         self.stamp = self.now() + 100 * SECOND
 
         def publish(speed, force=-1000.0, *, step=SECOND // 100, joint='x_axis'):
@@ -368,6 +364,34 @@ class NodeProcess:
             speeds.publish(joints)
 
         return publish
+
+    def until_matched(self, *publishers):
+        """Wait until speed and load have one publisher each, and these their node."""
+        told = self.listen(DiagnosticArray, '/diagnostics')
+        # A best-effort sample is lost unless both sides know of each other.
+        self.until(
+            lambda: (
+                all(publisher.get_subscription_count() for publisher in publishers)
+                and told
+                and {'Speed publishers [-]', 'Load publishers [-]'}
+                <= {
+                    pair.key
+                    for status in told[-1].status
+                    for pair in status.values
+                    if pair.value == '1'
+                }
+            ),
+            'the match with the inputs of the node',
+        )
+
+    def solvers(self):
+        """Return the numbers of the processes that solve for the node."""
+        command = f'-m\0{MODULE}\0{self.process.pid}\0'.encode()
+        return [
+            int(path.parent.name)
+            for path in pathlib.Path('/proc').glob('[0-9]*/cmdline')
+            if command in content_of(path)
+        ]
 
     def stop(self, number=signal.SIGINT):
         """Send a signal; return the exit code."""
@@ -385,6 +409,18 @@ class NodeProcess:
         self.executor.shutdown()
         self.node.destroy_node()
         rclpy.shutdown(context=self.context)
+
+
+@pytest.fixture(scope='session')
+def quick_surface(tmp_path_factory):
+    """Return the shipped surface as if it had two plain draws, and wide stated errors."""
+    data = surface_file.read(shipped_surface())
+    header = {name: value for name, value in data.header.items() if name != 'weighted_draws'}
+    header['settings'] |= {'draws': 2, 'grid_wavelength': 30e-6}
+    errors = {name: np.full_like(values, 0.5) for name, values in data.errors.items()}
+    path = tmp_path_factory.mktemp('surface') / 'quick.npz'
+    surface_file.write(path, dataclasses.replace(data, header=header, errors=errors))
+    return path
 
 
 @pytest.fixture

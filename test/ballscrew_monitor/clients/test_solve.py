@@ -1,0 +1,156 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""`ballscrew solve` as the console script, beside a node that is started plainly."""
+
+import itertools
+import json
+import os
+from pathlib import Path
+import signal
+import subprocess
+import sys
+
+from ballscrew_monitor.cycle.node_process import child_environment
+from ballscrew_monitor.node.solver_process import worker_environment
+import pytest
+
+ROOT = Path(__file__).resolve().parents[3]
+SCRIPT = Path(sys.executable).with_name('ballscrew')
+DEADLINE = 60.0  # [s]
+SIGNS = tuple(itertools.product((955.0, -955.0), (500.0, -500.0)))  # [rev/min], [N]
+LONG = ('--speed-rpm', '955', '--load-N', '500', '--draws', '16')
+# What `ballscrew point` says of the same points, on one thread as the node solves.
+POINTS = (
+    'import sys\n'
+    'from ballscrew_monitor.cli import main\n'
+    'for place in sys.argv[1:]:\n'
+    "    speed, load = place.split(',')\n"
+    "    options = ['--tier', 'full', '--draws', '1', '--json', '--temperature-degC', '40']\n"
+    "    main(['point', f'--speed-rpm={speed}', f'--load-N={load}', *options])\n"
+    "    print('end of a point')\n"
+)
+
+
+def begin(node, *arguments):
+    """Start the command in the domain of a node."""
+    environment = child_environment(node.domain)
+    environment['PYTHONPATH'] = str(ROOT)
+    return subprocess.Popen(
+        [SCRIPT, 'solve', *map(str, arguments)],
+        env=environment,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+
+
+def end(process):
+    """Wait for the command; return its exit code and what it said."""
+    out, err = process.communicate(timeout=DEADLINE)
+    return process.returncode, out, err
+
+
+def ask(node, *arguments):
+    """Run the command; return its exit code and what it said."""
+    return end(begin(node, *arguments))
+
+
+def said(node, words):
+    """Tell whether the node has said something."""
+    return words in node.output.read_text()
+
+
+def test_all_four_pairs_of_signs_are_those_of_point(node):
+    reference = subprocess.Popen(
+        [sys.executable, '-c', POINTS, *(f'{speed},{load}' for speed, load in SIGNS)],
+        env=worker_environment(),
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    node.start()
+    found = []
+    for speed, load in SIGNS:
+        place = (f'--speed-rpm={speed}', f'--load-N={load}', '--temperature-degC=40')
+        code, out, err = ask(node, '--axis', 'x', *place, '--draws', 1, '--json')
+        assert (code, err) == (0, '')
+        found.append(json.loads(out))
+    points = reference.communicate(timeout=DEADLINE)[0].split('end of a point')[: len(SIGNS)]
+    for (speed, load), record, text in zip(SIGNS, found, points, strict=True):
+        point, full = json.loads(text), record['full']
+        assert point['opposing_load_N'] == pytest.approx(load if speed > 0 else -load)
+        assert full['efficiency'] == pytest.approx(point['efficiency'], rel=1e-6)
+        assert full['friction_torque'] == pytest.approx(point['friction_torque_Nm'], rel=1e-6)
+        assert full['rcs'] == pytest.approx(point['rcs'], abs=1e-6)
+        # The surface was asked for the same point.
+        assert record['efficiency_difference'] == pytest.approx(0.0, abs=0.02)
+        assert not record['corrected']
+    # Motion and load turned around together is the same point.
+    efficiencies = [record['full']['efficiency'] for record in found]
+    assert efficiencies == [*efficiencies[:2], efficiencies[1], efficiencies[0]]
+    assert efficiencies[0] != pytest.approx(efficiencies[1], rel=1e-3)
+
+
+def test_a_page_is_for_a_person(node):
+    node.start()
+    place = ('--speed-rpm', 955, '--load-N', 500, '--draws', 1)
+    code, out, err = ask(node, '--axis', 'x', *place)
+    assert (code, err) == (0, '')
+    lines = out.splitlines()
+    assert lines[0].startswith('axis x: Solved')
+    assert lines[1].split() == ['full', 'solve', 'surface']
+    assert [line.split()[0] for line in lines[2:9]] == [
+        *('efficiency', 'RCS', 'asperity', 'film', 'central', 'friction', 'driving')
+    ]
+    assert lines[-1].startswith('surface not corrected: one draw of the roughness')
+
+
+def test_what_the_node_cannot_solve_is_a_sentence_and_exit_code_1(node):
+    node.start()
+    place = ('--speed-rpm', 955, '--load-N', 500)
+    for arguments, sentence in (
+        (('--axis', 'q', *place), "ballscrew: axis 'q' is unknown, known are: x\n"),
+        (('--axis', 'x'), 'ballscrew: no valid sample of speed and load\n'),
+    ):
+        assert ask(node, *arguments) == (1, '', sentence)
+
+
+def test_half_a_point_is_bad_input(node):
+    for half in (('--speed-rpm', 955), ('--load-N', 500)):
+        code, out, err = ask(node, '--axis', 'x', *half)
+        assert (code, out) == (2, '')
+        assert err.startswith('ballscrew: speed and load belong together: give both')
+
+
+def test_without_a_node_it_waits_no_longer_than_told(node):
+    code, out, err = ask(node, '--axis', 'x', '--wait', 0.5)
+    assert (code, out) == (1, '')
+    assert err.startswith('ballscrew: no node offers ballscrew_msgs/action/SolveOperatingPoint')
+    assert 'within 0.5 s' in err
+
+
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
+def test_an_interrupt_takes_the_goal_back(node, number):
+    node.start()
+    process = begin(node, '--axis', 'x', *LONG)
+    (worker,) = node.until(node.solvers, 'the solve')
+    process.send_signal(number)
+    code, out, err = end(process)
+    assert (code, out, err) == (130, '', '')
+    node.until(lambda: worker not in node.solvers(), 'the end of the solve')
+    assert node.process.poll() is None
+
+
+@pytest.mark.parametrize(
+    ('number', 'sentence'),
+    [
+        (signal.SIGINT, 'ballscrew: stopped, the node is no longer active\n'),
+        (signal.SIGKILL, 'ballscrew: /ballscrew_monitor/solve is gone, its node has ended\n'),
+    ],
+)
+def test_a_node_that_ends_meanwhile_is_told(node, number, sentence):
+    node.start()
+    process = begin(node, '--axis', 'x', *LONG)
+    (worker,) = node.until(node.solvers, 'the solve')
+    node.stop(number)
+    assert end(process) == (1, '', sentence)
+    node.until(lambda: not os.path.exists(f'/proc/{worker}'), 'the end of the worker')

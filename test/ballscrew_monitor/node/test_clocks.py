@@ -1,0 +1,258 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Clocks that are not alike, over the real middleware: what can be judged is, and the cure is told.
+
+Lags and timeouts are long, so that a machine that is busy elsewhere changes nothing: what counts
+is that the lag is longer than the timeout.
+
+"""
+
+import time
+
+from ballscrew_monitor.node import diagnostics
+from ballscrew_msgs.msg import BallScrewState, InputHealth, PointResult
+from diagnostic_msgs.msg import DiagnosticArray
+import pytest
+from rosgraph_msgs.msg import Clock
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Float64
+
+FAST, SLOW = 100.0, 0.8  # [rad/s] optimal and outside at 1 kN and 40 degC
+SECOND = 10**9  # [ns]
+PERIOD = 0.01  # [s]
+TIMEOUTS = {'x__speed__timeout': 20.0, 'x__load__timeout': 20.0}
+SOON = {'x__speed__timeout': 2.0, 'x__load__timeout': 2.0}  # a refusal is told after that
+LAG = 30 * SECOND  # [ns] beyond the timeouts
+QUICK = {'x__limits__raise_delay': 0.0, 'x__limits__clear_delay': 0.2}
+OK, WARN = BallScrewState.LEVEL_OK, BallScrewState.LEVEL_WARN
+GOOD = 'all inputs arrive'
+BOTH = 'speed and load '
+LAGS = 'stamps lag behind their arrival: set the clocks alike, or raise max_lag'
+SIMULATED = 'stamps are of simulated time and the node runs on the wall clock: set use_sim_time'
+AHEAD = (
+    'is not usable: its stamps lie ahead of the clock, set the clocks alike or raise max_future'
+)
+WALL = (
+    'is not usable: its stamps are of the wall clock and the node runs on simulated time, '
+    'stamp with /clock or unset use_sim_time'
+)
+
+
+class Source:
+    """A machine whose stamps are those of its own clock [ns]."""
+
+    def __init__(self, node, clock):
+        self.clock = clock
+        self.sent = 0
+        self._node, self._publish, self._next = node, node.machine(), 0.0
+        self._node.stamp = 0
+
+    def go_on(self, speed=FAST):
+        """Publish a sample if one is due."""
+        now = time.monotonic()
+        if now < self._next:
+            return
+        self._next = now + PERIOD
+        self._node.stamp = max(self.clock(), self._node.stamp + 1)
+        self._publish(speed, step=0)
+        self.sent += 1
+
+    def until(self, condition, what, speed=FAST):
+        """Publish until there is something."""
+        return self._node.until(lambda: self.go_on(speed) or condition(), what)
+
+
+class Listener:
+    """What the node says."""
+
+    def __init__(self, node):
+        self.states = node.states()
+        self._told = node.listen(DiagnosticArray, '/diagnostics')
+
+    @property
+    def level(self):
+        """Return the last level."""
+        return self.states[-1].level if self.states else None
+
+    def has_judged(self, count):
+        """Tell whether a number of samples has been judged."""
+        return bool(self.states) and self.states[-1].judged >= count
+
+    def sentences(self, part='Inputs'):
+        """Return the messages of a status since the first sample, without repetition."""
+        found = [
+            status.message
+            for message in self._told
+            for status in message.status
+            if status.name == f'ballscrew_monitor: x: {part}'
+        ]
+        return list(dict.fromkeys(found))
+
+    def faults(self):
+        """Return what was wrong with the inputs once they had all arrived."""
+        begin = (
+            'speed was never',
+            'load was never',
+            diagnostics.INACTIVE,
+            diagnostics.NOTHING_YET,
+        )
+        return [one for one in self.sentences() if one != GOOD and not one.startswith(begin)]
+
+
+def stamps_of(states):
+    """Return the stamps of states [ns]."""
+    return [state.header.stamp.sec * SECOND + state.header.stamp.nanosec for state in states]
+
+
+def judged_of(states):
+    """Return the states from the first judged one on."""
+    first = next(i for i, state in enumerate(states) if state.judged)
+    return states[first:]
+
+
+def test_a_constant_lag_is_judged_and_told_and_a_warning_clears(node):
+    node.start(**TIMEOUTS, **QUICK)
+    heard, source = Listener(node), Source(node, lambda: node.now() - LAG)
+    source.until(lambda: heard.level == WARN, 'the warning', SLOW)
+    source.until(lambda: heard.level == OK, 'its end')
+    # Many ticks later nothing has changed.
+    source.until(lambda: heard.has_judged(source.sent // 2 + 100), 'more states')
+    node.until(lambda: heard.has_judged(source.sent), 'the last state')
+    found = judged_of(heard.states)
+    assert stamps_of(found) == sorted(stamps_of(found))
+    assert {state.result.validity for state in found} == {PointResult.VALIDITY_VALID}
+    assert found[-1].judged == source.sent
+    assert found[-1].level == OK
+    assert found[-1].inputs[0].lag == pytest.approx(LAG / SECOND, abs=10.0)
+    assert heard.faults() == [BOTH + LAGS]
+
+
+def test_silence_of_a_lagging_source_stays_on_its_line_of_time(node):
+    node.start(x__speed__timeout=0.2, **QUICK)
+    heard, source = Listener(node), Source(node, lambda: node.now() - LAG)
+    source.until(lambda: heard.level == WARN, 'the warning', SLOW)
+    node.until(
+        lambda: heard.states[-1].result.validity == PointResult.VALIDITY_NO_INPUT, 'the silence'
+    )
+    assert heard.level == WARN
+    assert stamps_of(heard.states[-1:])[0] < node.now() - LAG // 2
+    found = stamps_of(judged_of(heard.states))
+    assert found == sorted(found)
+
+
+def test_a_lead_beyond_what_is_allowed_is_refused_and_clears_nothing(node):
+    node.start(**SOON, **QUICK)
+    heard, source = Listener(node), Source(node, node.now)
+    source.until(lambda: heard.level == WARN, 'the warning', SLOW)
+    assert heard.faults() == []
+    source.clock = lambda: node.now() + LAG
+    source.until(lambda: heard.faults(), 'the refusal')
+    source.until(lambda: heard.states[-1].inputs[0].dropped > 100, 'more of it')
+    assert heard.faults() == [f'speed {AHEAD}, load {AHEAD}']
+    assert heard.level == WARN
+    for health in heard.states[-1].inputs[:2]:
+        assert health.state == InputHealth.STATE_BAD
+        assert health.refusal.endswith(
+            'set the clocks of both machines alike, or raise max_future'
+        )
+
+
+def test_a_drift_is_told_when_it_has_grown(node):
+    """The clock of the source runs at a tenth of its rate."""
+    node.start(**TIMEOUTS, **(QUICK | {'x__limits__clear_delay': 0.02}))
+    heard, source = Listener(node), Source(node, node.now)
+    begin = node.now()
+    source.clock = lambda: begin + source.sent * SECOND // 1000
+    source.until(lambda: heard.faults() and heard.level == OK, 'lag and level')
+    node.until(lambda: heard.has_judged(source.sent), 'the last state')
+    found = judged_of(heard.states)
+    assert stamps_of(found) == sorted(stamps_of(found))
+    assert {state.result.validity for state in found} == {PointResult.VALIDITY_VALID}
+    assert heard.faults() == [BOTH + LAGS]
+
+
+def test_a_lagging_source_beside_one_without_stamps(node):
+    node.start(
+        *('-p', 'x.load.type:=std_msgs/msg/Float64', '-p', 'x.load.field:=data'),
+        **TIMEOUTS,
+        **QUICK,
+    )
+    heard = Listener(node)
+    speeds = node.node.create_publisher(JointState, 'joint_states', 100)
+    loads = node.node.create_publisher(Float64, 'axial_load', 100)
+    node.until_matched(speeds, loads)
+
+    def go_on():
+        joints = JointState(name=['x_axis'], velocity=[FAST])
+        joints.header.stamp.sec, joints.header.stamp.nanosec = divmod(node.now() - LAG, SECOND)
+        loads.publish(Float64(data=-1000.0))
+        speeds.publish(joints)
+
+    node.until(lambda: go_on() or heard.level == OK, 'the level')
+    found = judged_of(heard.states)
+    assert stamps_of(found) == sorted(stamps_of(found))
+    speed, load = found[-1].inputs[:2]
+    assert speed.stamp_source == InputHealth.STAMP_HEADER
+    assert load.stamp_source == InputHealth.STAMP_RECEIVE
+    assert load.lag != load.lag
+    assert heard.faults() == ['speed ' + LAGS]
+
+
+@pytest.mark.parametrize('speed', [None, SLOW])
+def test_simulated_time_without_a_clock(node, speed):
+    node.start(use_sim_time='true', **QUICK)
+    heard, source = Listener(node), Source(node, lambda: 50 * SECOND)
+    if speed is not None:
+        source.until(lambda: heard.level == WARN, 'the warning', speed)
+    node.until(lambda: heard.sentences()[-1:] == [diagnostics.CLOCK_STANDS], 'the sentence')
+    assert heard.faults() == [diagnostics.CLOCK_STANDS]
+    assert heard.level == (None if speed is None else WARN)
+
+
+class Simulated:
+    """A simulated clock that runs from 60 s on by 10 ms at each sample."""
+
+    def __init__(self, node):
+        self._publisher = node.node.create_publisher(Clock, '/clock', 10)
+        self.now = 60 * SECOND
+        node.until(self._publisher.get_subscription_count)
+
+    def __call__(self):
+        """Let the clock run on; return the time [ns]."""
+        self.now += SECOND // 100
+        message = Clock()
+        message.clock.sec, message.clock.nanosec = divmod(self.now, SECOND)
+        self._publisher.publish(message)
+        return self.now
+
+
+def test_stamps_of_the_wall_clock_on_simulated_time(node):
+    node.start(use_sim_time='true', **SOON, **QUICK)
+    heard, simulated = Listener(node), Simulated(node)
+    source = Source(node, simulated)
+    source.until(lambda: heard.level == WARN, 'the warning', SLOW)
+    source.clock = lambda: simulated() and node.now()
+    source.until(
+        lambda: heard.states[-1].inputs[0].state == InputHealth.STATE_BAD, 'the refusal', FAST
+    )
+    source.until(lambda: WALL in ''.join(heard.sentences()), 'the sentence')
+    assert [one for one in heard.faults() if one != diagnostics.CLOCK_STANDS] == [
+        f'speed {WALL}, load {WALL}'
+    ]
+    assert heard.states[-1].inputs[0].refusal == (
+        'the stamps are of the wall clock and the node runs on simulated time: '
+        'set use_sim_time to false, or stamp with /clock'
+    )
+    assert heard.level == WARN
+
+
+def test_stamps_of_simulated_time_on_the_wall_clock(node):
+    node.start(**TIMEOUTS, **QUICK)
+    heard, source = Listener(node), Source(node, lambda: node.stamp + SECOND // 100)
+    source.until(lambda: heard.level == WARN, 'the warning', SLOW)
+    source.until(lambda: heard.level == OK, 'its end')
+    found = judged_of(heard.states)
+    assert stamps_of(found) == sorted(stamps_of(found))
+    assert {state.result.validity for state in found} == {PointResult.VALIDITY_VALID}
+    assert heard.faults() == [BOTH + SIMULATED]

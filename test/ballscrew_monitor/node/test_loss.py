@@ -1,0 +1,136 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Messages that are sent and never arrive, over the real middleware: each of them is counted."""
+
+import dataclasses
+
+from ballscrew_msgs.msg import OperatingPoint
+from ballscrew_msgs.srv import EvaluateOperatingPoint
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from geometry_msgs.msg import WrenchStamped
+import pytest
+from rclpy.qos import QoSProfile, QoSReliabilityPolicy
+from sensor_msgs.msg import JointState
+
+FAST = 100.0  # [rad/s]
+TIMEOUTS = {'x__speed__timeout': 60.0, 'x__load__timeout': 60.0}
+BURST = 5000
+LOSES = 'speed messages are lost on the way: lower their rate, raise publish_period, or give'
+UNKNOWN = 'speed loss is unknown: let the topic have one publisher that numbers its messages'
+BEST_EFFORT = QoSProfile(depth=10, reliability=QoSReliabilityPolicy.BEST_EFFORT)
+MANY = [OperatingPoint(speed=FAST, axial_load=-1000.0, temperature=40.0)] * 10_000
+
+
+@dataclasses.dataclass
+class Machine:
+    """Publishers of speed and load, without stamps, and what the node says."""
+
+    node: object
+
+    def __post_init__(self):
+        make = self.node.node.create_publisher
+        self.speeds = make(JointState, 'joint_states', BEST_EFFORT)
+        self.loads = make(WrenchStamped, 'axial_load', BEST_EFFORT)
+        self.states = self.node.states()
+        self.told = self.node.listen(DiagnosticArray, '/diagnostics')
+        self.node.until_matched(self.speeds, self.loads)
+        self.sent = 0
+        self.loads.publish(WrenchStamped())
+
+    def publish(self, publisher=None):
+        """Publish a speed."""
+        (publisher or self.speeds).publish(JointState(name=['x_axis'], velocity=[FAST]))
+        self.sent += 1
+
+    @property
+    def speed(self):
+        """Return the health of the speed, if there is a state."""
+        return self.states[-1].inputs[0] if self.states else None
+
+    def has(self, condition):
+        """Tell whether the health of the speed is so."""
+        return self.speed is not None and condition(self.speed)
+
+    def judge(self, publisher=None):
+        """Publish one speed and wait for the state that it gives."""
+        before = len(self.states)
+        self.publish(publisher)
+        self.node.until(lambda: len(self.states) > before, 'a state')
+
+    def said(self):
+        """Return the levels and messages of the inputs, in order, without repetition."""
+        found = [
+            (status.level, status.message)
+            for message in self.told
+            for status in message.status
+            if status.name == 'ballscrew_monitor: x: Inputs'
+        ]
+        return list(dict.fromkeys(found))
+
+    def is_said(self, sentence):
+        """Tell whether the last word about the inputs begins so, as a warning."""
+        level, message = self.said()[-1]
+        return level == DiagnosticStatus.WARN and message.startswith(sentence)
+
+
+def test_each_message_of_a_burst_is_received_or_counted_as_lost(node):
+    node.start(**TIMEOUTS)
+    machine = Machine(node)
+    machine.judge()
+    client = node.node.create_client(EvaluateOperatingPoint, f'{node.name}/evaluate')
+    node.until(client.service_is_ready)
+    answer = client.call_async(EvaluateOperatingPoint.Request(axis='x', points=MANY))
+    for _ in range(BURST):
+        machine.publish()
+    node.until(answer.done, 'the answer')
+    # What was sent last may be lost too, which the next one tells.
+    machine.judge()
+    node.until(
+        lambda: machine.has(lambda speed: speed.received + speed.lost == machine.sent),
+        'all that was sent',
+    )
+    assert machine.speed.lost_known
+    assert machine.speed.lost > 0
+    node.until(lambda: machine.is_said(LOSES), 'the warning')
+    assert len([one for one in machine.said() if one[1].startswith(LOSES)]) == 1
+
+
+def test_the_loss_of_two_publishers_is_unknown_and_said(node):
+    node.start(**TIMEOUTS)
+    machine = Machine(node)
+    machine.judge()
+    assert (machine.speed.lost_known, machine.speed.lost) == (True, 0)
+    second = node.node.create_publisher(JointState, 'joint_states', BEST_EFFORT)
+
+    def is_unknown(publisher):
+        machine.publish(publisher)
+        return machine.has(lambda speed: not speed.lost_known)
+
+    node.until(lambda: is_unknown(second) and is_unknown(machine.speeds), 'the doubt')
+    node.until(lambda: machine.is_said(UNKNOWN), 'the warning')
+    node.node.destroy_publisher(second)
+
+    def is_known():
+        machine.publish()
+        return machine.has(lambda speed: speed.lost_known and speed.lost == 0)
+
+    node.until(is_known, 'the end of the doubt')
+
+
+@pytest.mark.parametrize('count', [1, 50])
+def test_a_publisher_that_returns_begins_anew(node, count):
+    node.start(**TIMEOUTS)
+    machine = Machine(node)
+    for _ in range(count):
+        machine.judge()
+    node.node.destroy_publisher(machine.speeds)
+    machine.speeds = node.node.create_publisher(JointState, 'joint_states', BEST_EFFORT)
+    before, received = len(machine.told), machine.speed.received
+
+    def is_back():
+        machine.publish()
+        return machine.has(lambda speed: speed.received > received + 100)
+
+    node.until(is_back, 'samples of the new publisher')
+    assert before < len(machine.told)
+    assert (machine.speed.lost_known, machine.speed.lost) == (True, 0)

@@ -1,0 +1,339 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Full solves asked of the running node, over the real middleware, and what may go wrong."""
+
+import contextlib
+import functools
+import math
+import os
+import signal
+import time
+
+from action_msgs.msg import GoalStatus
+from ballscrew_monitor.core.full_point import request_of
+from ballscrew_monitor.node.messages import read_point
+from ballscrew_monitor.node.solve_server import SERVICE_QOS
+from ballscrew_msgs.action import SolveOperatingPoint
+from ballscrew_msgs.msg import OperatingPoint, PointResult, SurfaceInfo
+from ballscrew_msgs.srv import EvaluateOperatingPoint
+import pytest
+from rclpy.action import ActionClient
+from rclpy.qos import QoSDurabilityPolicy, QoSProfile
+from std_srvs.srv import Trigger
+from surrogate.on_demand.solve import solve_point
+from surrogate.surface import FIELDS, shipped_surface, Surface
+
+LATCHED = QoSProfile(depth=1, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL)
+AHEAD = {'x__max_future': 3600.0}  # the stamps of a test run ahead of the clock
+PLACE = OperatingPoint(speed=100.0, axial_load=-500.0, temperature=40.0)
+SUCCEEDED, CANCELED = GoalStatus.STATUS_SUCCEEDED, GoalStatus.STATUS_CANCELED
+ABORTED = GoalStatus.STATUS_ABORTED
+MOST = 9  # goals that the node takes: one at work and eight that wait
+LONG = {'draws': 16}  # more than any test waits for
+
+
+class Goal:
+    """A goal that was sent, and what has come back."""
+
+    def __init__(self, node, client, request):
+        self._node = node
+        self.feedback = []
+        self._sent = client.send_goal_async(request, feedback_callback=self._on_feedback)
+        self._answer = None
+
+    def _on_feedback(self, message):
+        self.feedback.append(message.feedback)
+
+    @property
+    def accepted(self):
+        """Wait whether the node has taken it."""
+        return self._node.until(self._sent.done, 'the word on a goal') and self._handle.accepted
+
+    @property
+    def _handle(self):
+        return self._sent.result()
+
+    def cancel(self):
+        """Take it back."""
+        return self._handle.cancel_goal_async()
+
+    def poll(self):
+        """Return the status and the result, if they have come."""
+        if self._answer is None:
+            self._answer = self._handle.get_result_async()
+        return self._answer.done() and (self._answer.result().status, self._answer.result().result)
+
+    def end(self):
+        """Wait for the status and the result."""
+        assert self.accepted
+        return self._node.until(self.poll, 'the result of a goal')
+
+    def at(self, stage):
+        """Tell whether it has come to a stage."""
+        return any(stage in step.stage for step in self.feedback)
+
+
+class Solves:
+    """What asks the node for solves."""
+
+    def __init__(self, node):
+        self._node = node
+        # Room for answers to as many goals as a test sends at once.
+        kinds = ('goal', 'result', 'cancel')
+        room = {f'{kind}_service_qos_profile': SERVICE_QOS for kind in kinds}
+        self._client = ActionClient(node.node, SolveOperatingPoint, f'{node.name}/solve', **room)
+        node.until(self._client.server_is_ready, 'the action')
+        node.until(lambda: node.lifecycle() == 'active', 'the active node')
+
+    def ask(self, place=PLACE, **request):
+        """Send a goal for one draw at a place, or as asked."""
+        request = {'axis': 'x', 'point': place, 'draws': 1} | request
+        return Goal(self._node, self._client, SolveOperatingPoint.Goal(**request))
+
+
+def is_alive(pid):
+    """Tell whether a process is there."""
+    return os.path.exists(f'/proc/{pid}')
+
+
+def test_a_solve_of_one_draw_is_told_beside_the_surface_and_corrects_nothing(node):
+    node.start()
+    goal = Solves(node).ask()
+    status, result = goal.end()
+    assert (status, result.success) == (SUCCEEDED, True)
+    surface = Surface.load(shipped_surface())
+    answer = surface.lookup(100.0, 500.0, 313.15)
+    alone = solve_point(request_of(surface, read_point(PLACE, default_temperature=math.nan), 1))
+    for name in FIELDS:
+        # The node solves on one thread; sums over several differ in their last digits.
+        assert getattr(result.full, name) == pytest.approx(alone.means[name], rel=1e-5), name
+        assert getattr(result.surface, name) == getattr(answer, name), name
+    assert (result.full.tier, result.surface.tier) == (PointResult.TIER_FULL,) * 2
+    assert result.surface.efficiency == answer.efficiency
+    difference = result.full.efficiency - answer.efficiency
+    assert result.efficiency_difference == pytest.approx(difference, rel=1e-9)
+    assert result.rcs_difference == pytest.approx(result.full.rcs - answer.rcs, rel=1e-9)
+    stated = [
+        error + stderr
+        for error, stderr in (
+            (answer.efficiency_error, answer.efficiency_stderr),
+            (answer.rcs_error, answer.rcs_stderr),
+        )
+    ]
+    differences = result.efficiency_difference, result.rcs_difference
+    within = all(abs(one) <= most for one, most in zip(differences, stated, strict=True))
+    assert result.within_stated_error is within
+    assert not result.corrected
+    assert result.correction.startswith('one draw of the roughness has no standard error')
+    assert math.isnan(result.efficiency_stderr)
+    assert result.wall_time > 0.0
+    fractions = [step.fraction for step in goal.feedback]
+    assert fractions == sorted(fractions)
+    assert 0.0 < fractions[-1] <= 1.0
+    assert goal.at('draw 1 of 1, ')
+
+
+def test_what_cannot_be_solved_is_one_sentence(node):
+    node.start()
+    solves = Solves(node)
+    for request, sentence in (
+        ({'use_current': True}, 'no valid sample of speed and load'),
+        ({'axis': 'q'}, "axis 'q' is unknown, known are: x"),
+        ({'place': OperatingPoint(speed=math.nan)}, 'must be finite'),
+        ({'place': OperatingPoint(speed=0.0, temperature=40.0)}, 'is 0 rad/s, a solve needs'),
+        ({'draws': 1000}, 'draws is 1000, allowed is 1 to 64, or 0 for the default'),
+        ({'timeout': -1.0}, 'timeout is -1 s, allowed is 0 to 3600 s'),
+        ({'timeout': math.nan}, 'timeout is nan s, allowed is 0 to 3600 s'),
+    ):
+        status, result = solves.ask(**request).end()
+        assert (status, result.success) == (ABORTED, False)
+        assert sentence in result.status
+        assert result.status.count('. ') == 0
+    assert not node.solvers()
+    assert node.transition('deactivate')
+    status, result = solves.ask().end()
+    assert (status, result.status) == (ABORTED, 'the node is inactive, activate it first')
+
+
+def test_a_solve_corrects_the_surface_and_outlives_the_node(node, quick_surface, tmp_path):
+    kept = {'x__surface': quick_surface, 'state_dir': tmp_path / 'state'}
+    node.start(**kept)
+    states = node.states()
+    infos = node.listen(SurfaceInfo, f'{node.name}/x/surface_info', LATCHED)
+    solves = Solves(node)
+    base = node.until(lambda: infos and infos[-1].sha256, 'the surface')
+    status, result = solves.ask(draws=0).end()
+    assert (status, result.corrected) == (SUCCEEDED, True)
+    assert result.correction == 'corrected the surface about this point, kept'
+    assert result.efficiency_stderr > 0.0
+    assert node.solvers()
+
+    def lists_it():
+        return list(infos[-1].corrected_speed) == [100.0] and infos[-1].sha256 != base
+
+    node.until(lists_it, 'the correction in the surface info')
+    assert list(infos[-1].corrected_load) == [500.0]
+    assert list(infos[-1].corrected_temperature) == [pytest.approx(40.0)]
+    evaluated = node.call(EvaluateOperatingPoint, 'evaluate', axis='x', points=[PLACE])
+    assert evaluated.results[0].corrected
+    assert evaluated.results[0].efficiency == pytest.approx(result.full.efficiency, rel=1e-9)
+    publish = node.machine()
+    node.stamp = node.now() - 10_000_000
+    publish(100.0, -500.0)
+    node.until(lambda: states and states[-1].result.corrected, 'a corrected state')
+
+    reloaded = node.call(Trigger, 'reload_surface')
+    assert reloaded.success
+    assert '1 corrections stay' in reloaded.message
+    node.until(lists_it, 'the correction after the reload')
+
+    node.stop(signal.SIGKILL)
+    infos.clear()
+    node.start(**kept)
+    node.until(lambda: infos and lists_it(), 'the correction after the restart')
+    assert 'axis x: 1 kept corrections are in use' in node.output.read_text()
+
+
+class Paced:
+    """Samples at a moderate rate while something else is waited for."""
+
+    def __init__(self, node):
+        self._publish = node.machine()
+        self._next = 0.0
+        self.sent = 0
+
+    def go_on(self):
+        """Publish a sample if one is due."""
+        now = time.monotonic()
+        if now >= self._next:
+            self._next = now + 0.01
+            self._publish(100.0)
+            self.sent += 1
+
+
+def test_a_killed_worker_ends_its_goal_alone_and_no_message_is_missed(node):
+    node.start(**AHEAD)
+    states, samples, solves = node.states(), Paced(node), Solves(node)
+
+    def until(condition):
+        return node.until(lambda: samples.go_on() or condition())
+
+    for turn in range(10):
+        goal = solves.ask(**LONG)
+        assert goal.accepted
+        # At its first steps, or as soon as it is there.
+        until(functools.partial(goal.at, 'draw') if turn % 3 == 0 else node.solvers)
+        (worker,) = node.solvers()
+        os.kill(worker, signal.SIGKILL)
+        status, result = until(goal.poll)
+        assert status == ABORTED
+        assert result.status == 'the process of the solve was killed by signal 9'
+    last = solves.ask()
+    assert last.accepted
+    assert until(last.poll)[0] == SUCCEEDED
+    node.until(lambda: states[-1].judged == samples.sent, 'the last state')
+    # A state of a tick that found nothing new repeats the number.
+    assert {state.judged for state in states} - {0} == set(range(1, samples.sent + 1))
+
+
+def test_of_fifty_goals_at_once_nine_are_taken_and_the_others_rejected(node):
+    node.start()
+    solves = Solves(node)
+    goals = [solves.ask(**LONG) for _ in range(50)]
+    taken = [goal for goal in goals if goal.accepted]
+    assert taken == goals[:MOST]
+    for goal in taken:
+        goal.cancel()
+    assert {goal.end()[0] for goal in taken} == {CANCELED}
+    said = node.output.read_text()
+    assert 'solve of axis x rejected: 8 solves wait already, no more than 8 may' in said
+    assert 'Traceback' not in said
+    status, result = solves.ask(axis='q').end()
+    assert (status, 'is unknown' in result.status) == (ABORTED, True)
+
+
+def test_a_goal_is_taken_back_while_it_waits_starts_or_solves(node):
+    node.start()
+    solves = Solves(node)
+    begun = solves.ask(**LONG)
+    waiting = solves.ask(**LONG)
+    assert begun.accepted
+    assert waiting.accepted
+    # The worker is at its imports still, the other goal has not been begun.
+    for goal in (waiting, begun):
+        assert not goal.at('draw')
+        take_back(node, goal)
+    solving = solves.ask(**LONG)
+    assert solving.accepted
+    node.until(lambda: solving.at('draw'), 'the solve')
+    take_back(node, solving)
+    assert solves.ask().end()[0] == SUCCEEDED
+
+
+def take_back(node, goal):
+    """Cancel a goal and wait for its end."""
+    began = time.monotonic()
+    goal.cancel()
+    status, result = node.until(goal.poll, 'the end of a goal', deadline=10.0)
+    print(f'cancelled in {time.monotonic() - began:.3f} s')
+    assert (status, result.success, result.status) == (CANCELED, False, 'cancelled')
+
+
+def test_an_overdue_solve_says_how_far_it_came(node):
+    node.start()
+    status, result = Solves(node).ask(**LONG, timeout=0.5).end()
+    assert status == ABORTED
+    assert result.status.startswith('stopped after its timeout of 0.5 s, ')
+    assert not node.solvers()
+
+
+def test_a_signal_during_a_solve_ends_goal_worker_and_node(node):
+    node.start()
+    goal, worker = solving(node)
+    assert node.stop() == 0
+    assert not is_alive(worker)
+    status, result = goal.end()
+    assert (status, result.status) == (ABORTED, 'stopped, the node is no longer active')
+    assert 'Traceback' not in node.output.read_text()
+
+
+def test_a_killed_node_leaves_no_worker(node):
+    node.start()
+    _, worker = solving(node)
+    node.stop(signal.SIGKILL)
+    node.until(lambda: not is_alive(worker), 'the end of the worker')
+
+
+def solving(node):
+    """Begin a long solve; return its goal and the process that does it."""
+    goal = Solves(node).ask(**LONG)
+    assert goal.accepted
+    goal.poll()  # asks for the result
+    node.until(lambda: goal.at('draw'), 'the solve')
+    (worker,) = node.solvers()
+    return goal, worker
+
+
+@contextlib.contextmanager
+def other_of(node, tmp_path):
+    """Make another node in the same domain."""
+    folder = tmp_path / 'other'
+    folder.mkdir()
+    made = type(node)(node.domain, folder)
+    try:
+        yield made
+    finally:
+        made.close()
+
+
+def test_of_two_nodes_of_one_name_the_second_keeps_nothing_and_says_so(node, tmp_path):
+    kept = {'state_dir': tmp_path / 'state'}
+    node.start(**kept)
+    node.until(lambda: node.lifecycle() == 'active')
+    with other_of(node, tmp_path) as second:
+        second.start(**kept)
+        second.until(
+            lambda: 'no corrections are kept: ' in second.output.read_text(), 'the warning'
+        )
+        assert 'is in use by another node of this name' in second.output.read_text()
+    assert 'no corrections are kept' not in node.output.read_text()
