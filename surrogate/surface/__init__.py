@@ -7,6 +7,7 @@ Needs numpy alone.
 
 """
 
+from surrogate.surface.aims import EFFICIENCY_LIMIT, LIGHT_LOAD, RCS_LIMIT
 from surrogate.surface.file import SurfaceError
 from surrogate.surface.lookup import Surface
 from surrogate.surface.point import FIELDS, SurfacePoint, Validity
@@ -15,9 +16,12 @@ from surrogate.surface.shipped import find_surface, shipped_surface
 from surrogate.surface.solved import SolvedPoint
 
 __all__ = [
+    'EFFICIENCY_LIMIT',
     'FIELDS',
     'FILM_RATIO_LIMITS',
     'find_surface',
+    'LIGHT_LOAD',
+    'RCS_LIMIT',
     'Regime',
     'regime_of',
     'REGIMES',
