@@ -24,6 +24,7 @@ from surrogate.units import RPM
 TREE = Path(__file__).resolve().parent.parent
 """The repository, when the package runs from it: the defaults hold in any working directory."""
 BAG, PARAMS = TREE / 'bags' / 'nominal_cycle', TREE / 'config' / 'nominal_cycle.yaml'
+BAG_TEXT, PARAMS_TEXT = (f'{path.relative_to(TREE)} of the repository' for path in (BAG, PARAMS))
 OUT = Path('out')
 BAD_INPUT, INTERRUPTED = 2, SIGNALLED + signal.SIGINT
 # What some commands need beyond the rest, and how to get it.
@@ -90,13 +91,13 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _add_run(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument('--bag', type=Path, default=BAG, help='bag to play (default %(default)s)')
+    parser.add_argument('--bag', type=Path, default=BAG, help=f'bag to play (default {BAG_TEXT})')
     parser.add_argument(
         '--params',
         type=Path,
         default=PARAMS,
         metavar='FILE',
-        help='parameters of the node (default %(default)s)',
+        help=f'parameters of the node (default {PARAMS_TEXT})',
     )
     parser.add_argument(
         '--out',
@@ -118,7 +119,7 @@ def _add_replay(parser: argparse.ArgumentParser) -> None:
         type=Path,
         default=PARAMS,
         metavar='FILE',
-        help='parameters of the node (default %(default)s)',
+        help=f'parameters of the node (default {PARAMS_TEXT})',
     )
     parser.add_argument('--json', action='store_true', help='print JSON')
     parser.set_defaults(handler=_replay)

@@ -16,7 +16,6 @@ from surrogate.units import RPM, ZERO_CELSIUS
 
 __all__ = [
     'DATA',
-    'InputError',
     'load_lubricant',
     'load_screw',
     'Lubricant',
@@ -24,7 +23,6 @@ __all__ = [
     'OperatingPoint',
     'Roughness',
     'Screw',
-    'ZERO_CELSIUS',
 ]
 
 NAME = (r'[A-Za-z0-9][A-Za-z0-9_.-]*', 'letters, digits and _ . - (it becomes a file name)')

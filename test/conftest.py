@@ -27,7 +27,7 @@ SLOW = (
     'ballscrew_monitor/recordings/test_player.py',
     'ballscrew_monitor/recordings/test_recorder.py',
     'ballscrew_monitor/test_cli.py',
-    'ballscrew_monitor/test_launch.py',
+    'launch',
     'scripts',
     'studies/test_surface.py',
     'studies/test_surface_nodes.py',

@@ -6,6 +6,7 @@ import ast
 from importlib.metadata import requires
 from pathlib import Path
 import re
+import runpy
 import subprocess
 import sys
 from xml.etree import ElementTree
@@ -83,6 +84,14 @@ ROSDEP = {
     'numpy': 'python3-numpy',
     'scipy': 'python3-scipy',
     'yaml': 'python3-yaml',
+}
+# Tests of a whole folder instead of one of its files, by what they hold it against.
+THEMES = {
+    'ballscrew_monitor/test_shared_memory.py',
+    'surrogate/builder/full/test_shipped.py',
+    'surrogate/ehl/test_identities.py',
+    'surrogate/ehl/test_mixed.py',
+    'surrogate/ehl/test_tables.py',
 }
 # By the extras `bags`, `areal`, `dask` and `netcdf`.
 OPTIONAL = {'mcap', 'zstandard', 'SurfaceTopography', 'distributed', 'xarray'}
@@ -226,6 +235,24 @@ def test_every_file_of_tests_is_collected() -> None:
         ]
         assert len(names) == len(set(names)), f'{path.name}: a test hides another of its name'
         assert path.name == 'conftest.py' or (path.name.startswith('test_') and names), path.name
+
+
+def test_tests_mirror_the_sources() -> None:
+    """Each file of tests in a folder stands where the file stands that it tests."""
+    folder = TREE / 'test'
+    nested = {path.relative_to(folder) for path in folder.glob('*/**/test_*.py')}
+    alone = {
+        str(path)
+        for path in nested
+        if not list((TREE / path.parent).glob(f'{path.stem.removeprefix("test_")}.*'))
+    }
+    assert alone == THEMES
+
+
+def test_slow_tests_are_there() -> None:
+    """What is named as slow is a file or folder of tests; a move would make it fast unseen."""
+    slow = runpy.run_path(str(TREE / 'test' / 'conftest.py'))['SLOW']
+    assert not [name for name in slow if not (TREE / 'test' / name).exists()]
 
 
 def test_only_sources_are_in_the_repository() -> None:

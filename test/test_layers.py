@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Who imports whom: `surrogate` never ROS, the node of `surrogate` the lookup alone.
+Who imports whom: `surrogate` never ROS, the node of `surrogate` the lookup alone, all downward.
 
 Once as the sources say it, once as a fresh process does it.
 
@@ -36,6 +36,24 @@ LOOKUP = {'surrogate', 'surrogate.files', 'surrogate.surface', 'surrogate.units'
 
 FLOORS = ('core', 'node', 'clients', 'recordings', 'cycle')
 """Folders of the online half, the lowest first."""
+OFFLINE_FLOORS = (
+    ('units', 'files', 'progress'),
+    ('datasheet', 'plotting'),
+    ('parameters', 'surface'),
+    ('datasheet_writer', 'formulas', 'raceway', 'tasks'),
+    ('ehl',),
+    ('contact', 'screw'),
+    ('builder',),
+    ('surface_tools', 'identify', 'paper'),
+    ('commands',),
+    ('cli',),
+)
+"""Folders and single modules of the offline half, the lowest first."""
+STANDS_ON = {
+    'surface': {'surrogate.files', 'surrogate.formulas.torque', 'surrogate.units'},
+    'tasks': {'surrogate.files', 'surrogate.progress', 'surrogate.surface.file'},
+}
+"""Folders that import these modules alone: what the node loads, and what knows no physics."""
 
 
 def name_of(path: Path) -> str:
@@ -98,6 +116,31 @@ def test_online_half_imports_downward(path: Path) -> None:
     }
     parts = [name.split('.') for name in imports(path) if name.startswith('ballscrew_monitor.')]
     assert not {part[1] for part in parts} & {*above, 'cli'}
+
+
+def offline_room(name: str) -> str:
+    """Return the folder or single module of the offline half that holds a module."""
+    return f'{name}.'.split('.')[1]
+
+
+def test_every_room_of_the_offline_half_has_a_floor() -> None:
+    """No folder and no single module is forgotten, and none is named that is gone."""
+    rooms = {offline_room(name_of(path)) for path in MODULES['surrogate']} - {''}
+    assert rooms == {room for floor in OFFLINE_FLOORS for room in floor}
+
+
+@pytest.mark.parametrize('path', MODULES['surrogate'], ids=name_of)
+def test_offline_half_imports_downward(path: Path) -> None:
+    """A folder imports itself and the floors below it; two import a few modules alone."""
+    own = offline_room(name_of(path))
+    named = {name for name in imports(path) if name.startswith('surrogate.')}
+    others = {name for name in named if offline_room(name) != own}
+    if own in STANDS_ON:
+        assert others <= STANDS_ON[own]
+        return
+    floor = next((at for at, rooms in enumerate(OFFLINE_FLOORS) if own in rooms), 0)
+    below = {room for rooms in OFFLINE_FLOORS[:floor] for room in rooms}
+    assert {offline_room(name) for name in others} <= below
 
 
 def test_surrogate_loads_no_ros() -> None:

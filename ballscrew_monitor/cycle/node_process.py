@@ -44,7 +44,7 @@ class NodeProcess:
                 stdin=subprocess.DEVNULL,
                 stdout=stream,
                 stderr=subprocess.STDOUT,
-                env=child_environment(domain) | {'PYTHONPATH': _path_to_this_code()},
+                env=child_environment(domain) | {'PYTHONPATH': path_to_this_code()},
                 start_new_session=True,
                 # The kernel kills the child when this process dies, whatever kills it.
                 preexec_fn=lambda: libc.prctl(PR_SET_PDEATHSIG, signal.SIGKILL),
@@ -99,9 +99,10 @@ class NodeProcess:
             pass
 
 
-def _path_to_this_code() -> str:
-    package = Path(__file__).resolve().parents[1]
-    return os.pathsep.join(filter(None, (str(package), os.environ.get('PYTHONPATH', ''))))
+def path_to_this_code() -> str:
+    """Return a PYTHONPATH that begins with the folder of both packages."""
+    folder = Path(__file__).resolve().parents[2]
+    return os.pathsep.join(filter(None, (str(folder), os.environ.get('PYTHONPATH', ''))))
 
 
 def child_environment(domain: int) -> dict[str, str]:

@@ -18,6 +18,7 @@ from ballscrew_monitor.core.conversions import (
 )
 from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
 from surrogate.files import InputError
+from surrogate.surface import EFFICIENCY_LIMIT, LIGHT_LOAD, RCS_LIMIT
 
 Value = str | float | bool | list[str]
 _TYPE_NAMES = {
@@ -257,7 +258,7 @@ AXIS_ROWS = (
     ),
     ParameterRow(
         name='limits.rcs',
-        default=0.01,
+        default=RCS_LIMIT,
         unit='-',
         low=1e-6,
         high=0.999,
@@ -266,7 +267,7 @@ AXIS_ROWS = (
     ),
     ParameterRow(
         name='limits.efficiency',
-        default=0.85,
+        default=EFFICIENCY_LIMIT,
         unit='-',
         low=0.01,
         high=0.999,
@@ -275,7 +276,7 @@ AXIS_ROWS = (
     ),
     ParameterRow(
         name='limits.light_load_fraction',
-        default=0.25,
+        default=LIGHT_LOAD,
         unit='-',
         low=0.0,
         high=4.0,

@@ -165,7 +165,7 @@ def _yaml(value: Any) -> str:
 
 
 def markdown_table() -> str:
-    """Return the table of all parameters for the README."""
+    """Return the table of all parameters for docs/guide/parameters.md."""
     lines = [
         '| parameter | default | allowed | unit | changes | meaning |',
         '|---|---|---|---|---|---|',

@@ -28,7 +28,7 @@ from surrogate.datasheet import changed_sheet, read_yaml
 from surrogate.files import InputError
 from surrogate.parameters import load_lubricant, load_screw, Lubricant, NAME, Screw
 from surrogate.surface.file import from_bytes, SurfaceData, SurfaceError, to_bytes, write
-from surrogate.tasks.pool import Outcome, Pool, run_tasks
+from surrogate.tasks.pool import Pool, run_tasks, TaskOutcome
 from surrogate.tasks.worker import describe_failure, worker_name
 from surrogate.units import RPM, ZERO_CELSIUS
 
@@ -67,7 +67,7 @@ class Built:
     """
 
     item: Item
-    outcome: Outcome
+    outcome: TaskOutcome
     file: Path | None = None
     data: SurfaceData | None = None
 
@@ -213,7 +213,7 @@ def build_item(inputs: Mapping[str, Any]) -> dict[str, str]:
     return {'file': base64.b64encode(to_bytes(data)).decode()}
 
 
-def _written(item: Item, outcome: Outcome, out: Path) -> Built:
+def _written(item: Item, outcome: TaskOutcome, out: Path) -> Built:
     """Verify and write what a worker has built."""
     if outcome.result is None:
         return Built(item=item, outcome=outcome)
@@ -229,7 +229,7 @@ def _written(item: Item, outcome: Outcome, out: Path) -> Built:
 def _build_here(item: Item, out: Path, pool: Pool) -> Built:
     """Build a surface whose solves the builder itself gives to the workers."""
     file, began = out / f'{item.name}.npz', time.perf_counter()
-    outcome = Outcome(name=item.name, result=None, worker=worker_name())
+    outcome = TaskOutcome(name=item.name, result=None, worker=worker_name())
     try:
         settings = default_settings(item.tier, item.screw, item.ranges)
         data = build_surface(item.tier, item.screw, item.lubricant, settings, pool=pool, out=file)

@@ -88,8 +88,10 @@ def _add_plot(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_diff(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument('first', type=Path, metavar='A')
-    parser.add_argument('second', type=Path, metavar='B')
+    for name, letter in (('first', 'A'), ('second', 'B')):
+        parser.add_argument(
+            name, type=Path, metavar=letter, help='a path, or a tier of those shipped'
+        )
     for name, default, words in (
         ('efficiency', EFFICIENCY_TOLERANCE, 'largest accepted difference of the efficiency [-]'),
         ('rcs', RCS_TOLERANCE, 'largest accepted difference of RCS [-]'),
@@ -224,7 +226,7 @@ def _diff(args: argparse.Namespace) -> int:
     for name, value in tolerances.items():
         if not 0.0 <= value < math.inf:
             raise InputError(f'--{name}-tolerance is {value:g}, allowed is 0 or more')
-    record = diff_record(read(args.first), read(args.second))
+    record = diff_record(read(find_surface(args.first)), read(find_surface(args.second)))
     sentences = exceeded(record, tolerances)
     whole = {**record, 'tolerances': tolerances, 'exceeded': sentences}
     show(whole, lambda one: diff_page(one, sentences), json=args.json)

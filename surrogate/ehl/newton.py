@@ -8,10 +8,11 @@ import time
 
 import numpy as np
 from surrogate.ehl.grid import Grid, GridState, KRYLOV_LIMIT
-from surrogate.ehl.kernels.reynolds import fluid_at, ROELANDS_PRESSURE
+from surrogate.ehl.kernels.reynolds import fluid_at
 from surrogate.ehl.linear import solve_linear
 from surrogate.ehl.system import Array, evaluate, Evaluation, GridProblem, Mask
 from surrogate.ehl.watch import tell
+from surrogate.formulas.lubricant import ROELANDS_PRESSURE
 
 HOPELESS = 5
 """Linear solves cut at their limit after which an iteration is given up [-]."""

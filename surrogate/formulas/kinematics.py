@@ -68,6 +68,12 @@ def entrainment_speed_paper(screw: Screw, speed: ArrayLike) -> Array:
     return np.asarray(speed) * screw.pitch_radius / 2
 
 
+def heathcote_radius(screw: Screw, side: Side) -> float:
+    """Return the radius of the pressed surface across the track, 2 r_b r_g/(r_b + r_g) [m]."""
+    f = conformity(screw, side)
+    return 2 * f * screw.ball_diameter / (1 + 2 * f)
+
+
 def slip_arm(
     screw: Screw, side: Side, x: ArrayLike, y: ArrayLike, semi_axis_y: ArrayLike
 ) -> Array:
@@ -80,9 +86,8 @@ def slip_arm(
 
     """
     x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
-    rates, f = no_slip_rates(screw), conformity(screw, side)
-    deformed_radius = 2 * f * screw.ball_diameter / (1 + 2 * f)
+    rates = no_slip_rates(screw)
     relative_rolling = rates.entrainment / screw_contact(screw, side).radius_x
-    bulge = (y * y - np.asarray(semi_axis_y) ** 2 / 5) / (2 * deformed_radius)
+    bulge = (y * y - np.asarray(semi_axis_y) ** 2 / 5) / (2 * heathcote_radius(screw, side))
     along = rates.spin * y - relative_rolling * bulge
     return np.asarray(np.hypot(along, rates.helical_slip - rates.spin * x))

@@ -31,7 +31,7 @@ EXPECTED_SCATTER = (0.5, 2.0)
 """Residual over the standard deviation given, root mean square, that is not warned about [-]."""
 STRONG = 0.95
 """Correlation from which on two parameters are warned about [-]."""
-LIGHT_LOAD = 0.25
+MOST_LOAD = 0.25
 """Axial load over the preload up to which a run counts as without load [-]."""
 PROVENANCE = 'Parasitic torque identified from'
 SUFFIX = '_identified'
@@ -114,9 +114,9 @@ def _warnings(
             + (', the model misses something' if scatter > 1 else '')
         )
     load = float(np.abs(run.load).max())
-    if load > LIGHT_LOAD * screw.preload:
+    if load > MOST_LOAD * screw.preload:
         warnings.append(
-            f'the load is up to {load:.4g} N, above {LIGHT_LOAD:g} of the preload: what the '
+            f'the load is up to {load:.4g} N, above {MOST_LOAD:g} of the preload: what the '
             'model misses under load counts as parasitic'
         )
     return warnings + _entangled(found)

@@ -18,10 +18,11 @@ from surrogate.formulas.record import CONSTANT_FRICTION
 from surrogate.formulas.torque import efficiency
 from surrogate.paper.curves import constant_friction_efficiency, grid, NO_CONTACT, pick
 from surrogate.paper.figures import captioned_figure, entrainment, finish, shades, STYLES
-from surrogate.paper.mark import counted, EFFICIENCY_LIMIT, RCS_LIMIT
+from surrogate.paper.mark import counted
 from surrogate.paper.rows import Array, StudyRow
 from surrogate.parameters import Screw
 from surrogate.plotting.style import BLUE, GREY, PURPLE, VERMILION
+from surrogate.surface.aims import EFFICIENCY_LIMIT, RCS_LIMIT
 
 FINE = 161
 """Points of a map along a side [-]."""

@@ -28,11 +28,12 @@ from surrogate.paper.curves import (
     pick,
 )
 from surrogate.paper.figures import captioned_figure, entrainment, finish, limit, speed_axis
-from surrogate.paper.mark import EFFICIENCY_LIMIT, RCS_LIMIT, REPORTED_FILM
+from surrogate.paper.mark import REPORTED_FILM
 from surrogate.paper.marks_contact import relieved_rows
 from surrogate.paper.rows import StudyRow
 from surrogate.parameters import Screw
 from surrogate.plotting.style import BLUE, GREEN, GREY, VERMILION
+from surrogate.surface.aims import EFFICIENCY_LIMIT, RCS_LIMIT
 from surrogate.units import NANO
 
 

@@ -19,10 +19,11 @@ from surrogate.paper.figures import (
     limit,
     speed_axis,
 )
-from surrogate.paper.mark import counted, RCS_LIMIT, REPORTED_FILM
+from surrogate.paper.mark import counted, REPORTED_FILM
 from surrogate.paper.marks_screw import apparent_friction
 from surrogate.paper.rows import Array, StudyRow
 from surrogate.plotting.style import BLUE, GREEN, PURPLE, VERMILION
+from surrogate.surface.aims import RCS_LIMIT
 from surrogate.units import MILLI, NANO
 
 SCREW: dict[str, Any] = {'kind': 'screw', 'load': PRELOAD}

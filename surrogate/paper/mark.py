@@ -12,8 +12,6 @@ from surrogate.paper.cases import PRELOAD
 from surrogate.paper.curves import pick
 from surrogate.paper.rows import StudyRow
 
-RCS_LIMIT, EFFICIENCY_LIMIT = 0.01, 0.85
-"""Limits of the optimal zone [-]."""
 REPORTED_FILM = 153.0
 """Central film at 502.65 mm/s and preload only, published for the rough surface [nm]."""
 FILM_SAID = f'{REPORTED_FILM:.0f} nm, rough'

@@ -22,8 +22,9 @@ from surrogate.paper.cases import (
     THIN,
 )
 from surrogate.paper.curves import crossing, curve, paired_change, pick
-from surrogate.paper.mark import counted, FILM_SAID, Mark, mean_of, over_preload, RCS_LIMIT
+from surrogate.paper.mark import counted, FILM_SAID, Mark, mean_of, over_preload
 from surrogate.paper.rows import StudyRow
+from surrogate.surface.aims import RCS_LIMIT
 from surrogate.units import NANO
 
 ROUGH: dict[str, Any] = {'kind': 'contact', 'rough': True}

@@ -26,9 +26,10 @@ from surrogate.paper.curves import (
     mapped,
     pick,
 )
-from surrogate.paper.mark import counted, EFFICIENCY_LIMIT, Mark, mean_of, over_preload, RCS_LIMIT
+from surrogate.paper.mark import counted, Mark, mean_of, over_preload
 from surrogate.paper.rows import StudyRow
 from surrogate.parameters import Screw
+from surrogate.surface.aims import EFFICIENCY_LIMIT, RCS_LIMIT
 from surrogate.units import MILLI
 
 SCREW: dict[str, Any] = {'kind': 'screw', 'load': PRELOAD}

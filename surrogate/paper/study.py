@@ -29,7 +29,7 @@ from surrogate.paper.rows import (
 )
 from surrogate.paper.solve import solve_task
 from surrogate.parameters import load_lubricant, load_screw
-from surrogate.tasks.pool import Outcome, Pool, run_tasks
+from surrogate.tasks.pool import Pool, run_tasks, TaskOutcome
 from surrogate.tasks.store import store_path, TaskStore
 
 SCREW, OIL = 'nominal', 'iso_vg_68'
@@ -98,7 +98,7 @@ class _Told:
         self._left = {task.key: task for task in wanted}
         self._report, self._done, self._spent = report, 0, 0.0
 
-    def __call__(self, outcome: Outcome) -> None:
+    def __call__(self, outcome: TaskOutcome) -> None:
         """Count an outcome; those that were kept come first."""
         task = self._left.pop(outcome.name)
         if outcome.stored or self._report is None:
@@ -109,7 +109,7 @@ class _Told:
         self._report(self._done, self._done + len(self._left), self._spent / total, task)
 
 
-def _take(folder: Path, inputs: str, task: StudyTask, outcome: Outcome) -> StudyRow:
+def _take(folder: Path, inputs: str, task: StudyTask, outcome: TaskOutcome) -> StudyRow:
     """Return the row of an outcome; write its fields."""
     if outcome.result is None:
         return StudyRow(

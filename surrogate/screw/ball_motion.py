@@ -15,8 +15,8 @@ from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from surrogate.formulas.geometry import conformity, helix_angle, Side
-from surrogate.formulas.kinematics import no_slip_rates
+from surrogate.formulas.geometry import helix_angle, Side
+from surrogate.formulas.kinematics import heathcote_radius, no_slip_rates
 from surrogate.parameters import Screw
 
 Array = NDArray[np.float64]
@@ -101,12 +101,6 @@ def slip_maps(screw: Screw, side: Side, x: Array, y: Array) -> tuple[Array, Arra
     arm = 0.5 * screw.ball_diameter - y * y / (2 * heathcote_radius(screw, side))
     none, one = np.zeros_like(x), np.ones_like(x)
     return np.array([one, none, none, y, -arm]), np.array([none, one, arm, -x, none])
-
-
-def heathcote_radius(screw: Screw, side: Side) -> float:
-    """Return the radius of the pressed surface across the track, 2 r_b r_g/(r_b + r_g) [m]."""
-    f = conformity(screw, side)
-    return 2 * f * screw.ball_diameter / (1 + 2 * f)
 
 
 def slip_field(

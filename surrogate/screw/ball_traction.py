@@ -18,9 +18,10 @@ from surrogate.ehl import ContactSolution
 from surrogate.ehl.friction import node_strengths, NodeStrengths
 from surrogate.files import InputError
 from surrogate.formulas.geometry import hertz, screw_contact, Side
+from surrogate.formulas.kinematics import heathcote_radius
 from surrogate.formulas.sliding import polar_nodes
 from surrogate.parameters import Screw
-from surrogate.screw.ball_motion import Array, heathcote_radius
+from surrogate.screw.ball_motion import Array
 from surrogate.screw.ball_sums import sum_friction
 
 RADIAL_NODES, ANGULAR_NODES = 20, 60

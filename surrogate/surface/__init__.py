@@ -7,6 +7,7 @@ Needs numpy alone.
 
 """
 
+from surrogate.surface.aims import EFFICIENCY_LIMIT, LIGHT_LOAD, RCS_LIMIT
 from surrogate.surface.correction import Correction
 from surrogate.surface.file import SurfaceError
 from surrogate.surface.lookup import Surface
@@ -17,9 +18,12 @@ from surrogate.surface.solved import SolvedPoint
 
 __all__ = [
     'Correction',
+    'EFFICIENCY_LIMIT',
     'FIELDS',
     'FILM_RATIO_LIMITS',
     'find_surface',
+    'LIGHT_LOAD',
+    'RCS_LIMIT',
     'Regime',
     'regime_of',
     'REGIMES',

@@ -1,7 +1,11 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Accuracy that a surface aims at; builders refine to it, checks judge by it."""
+"""What is aimed at: the optimal zone of a screw, and the accuracy of a surface."""
 
+RCS_LIMIT, EFFICIENCY_LIMIT = 0.01, 0.85
+"""Limits of the optimal zone unless others are stated [-]."""
+LIGHT_LOAD = 0.25
+"""Load below which no efficiency is judged, over the preload [-]."""
 EFFICIENCY_TOLERANCE = 0.003
 """Error of the efficiency that is aimed at [-]."""
 RCS_TOLERANCE, RCS_RELATIVE_TOLERANCE = 0.003, 0.05

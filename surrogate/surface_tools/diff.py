@@ -9,15 +9,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.surface import FIELDS, Surface, SurfaceError, Validity
+from surrogate.surface.aims import EFFICIENCY_LIMIT, LIGHT_LOAD, RCS_LIMIT
 from surrogate.surface.file import SurfaceData
 from surrogate.surface_tools.fields import FIELD_TEXTS
 
 Array = NDArray[np.float64]
 
-RCS_LIMIT, EFFICIENCY_LIMIT = 0.01, 0.85
-"""Limits of the optimal zone [-]."""
-LIGHT_LOAD = 0.25
-"""Load below which no efficiency is judged, over the preload [-]."""
 SPEEDS = 40
 """Speeds in equal ratios at which fields are compared [-]."""
 LINES = (31, 7)

@@ -27,7 +27,7 @@ from surrogate.plotting.style import (
     YELLOW,
 )
 from surrogate.surface import FILM_RATIO_LIMITS, REGIMES, Surface, Validity
-from surrogate.surface_tools.diff import EFFICIENCY_LIMIT, LIGHT_LOAD, RCS_LIMIT
+from surrogate.surface.aims import EFFICIENCY_LIMIT, LIGHT_LOAD, RCS_LIMIT
 from surrogate.units import RPM, ZERO_CELSIUS
 
 Array = NDArray[np.float64]

@@ -16,8 +16,8 @@ import random
 from scipy.optimize import brentq
 from surrogate.builder.tiers import solve_point
 from surrogate.surface import Surface
+from surrogate.surface.aims import RCS_LIMIT
 from surrogate.surface.file import SurfaceData
-from surrogate.surface_tools.diff import RCS_LIMIT
 
 STEP = 0.01
 """Change of the logarithm of the speed over which the slope of RCS is taken [-]."""

@@ -8,7 +8,7 @@ import sys
 from typing import Any
 
 from surrogate.progress import Progress
-from surrogate.tasks.pool import Outcome, run_tasks
+from surrogate.tasks.pool import run_tasks, TaskOutcome
 from surrogate.tasks.store import TaskStore
 from surrogate.tasks.worker import Task
 from surrogate.tasks.workers import open_pool
@@ -32,7 +32,7 @@ def run_kept(
     """
     progress = Progress(len(inputs), unit)
 
-    def report(outcome: Outcome) -> None:
+    def report(outcome: TaskOutcome) -> None:
         progress.step(there=outcome.stored)
         if outcome.result is None:
             print(f'{outcome.name}: {outcome.sentence}', file=sys.stderr)

@@ -25,7 +25,7 @@ MOST_TRIES = 3
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Outcome:
+class TaskOutcome:
     """
     What became of a task: its result, or None and a sentence.
 
@@ -44,7 +44,7 @@ class Outcome:
 
 
 class Pool(Protocol):
-    """Workers, wherever they are; made by `task_workers.open_pool`, closed by `with`."""
+    """Workers, wherever they are; made by `workers.open_pool`, closed by `with`."""
 
     def __enter__(self) -> Self:
         """Return the open pool."""
@@ -65,8 +65,8 @@ def run_tasks(
     inputs: Mapping[str, Mapping[str, Any]],
     *,
     store: TaskStore | None = None,
-    report: Callable[[Outcome], None] = lambda outcome: None,
-) -> dict[str, Outcome]:
+    report: Callable[[TaskOutcome], None] = lambda outcome: None,
+) -> dict[str, TaskOutcome]:
     """
     Run `task` on every one of the named inputs and return the outcomes in the order of the names.
 
@@ -99,7 +99,7 @@ class _Run:
         self._names: dict[Future[dict[str, Any]], str] = {}
         self._done: queue.SimpleQueue[Future[dict[str, Any]]] = queue.SimpleQueue()
 
-    def outcomes(self) -> Iterator[Outcome]:
+    def outcomes(self) -> Iterator[TaskOutcome]:
         """Yield outcomes as they come, those of the store first."""
         yield from self._kept()
         for name in self._left:
@@ -114,14 +114,14 @@ class _Run:
             else:
                 yield self._finish(name, future, error)
 
-    def _kept(self) -> Iterator[Outcome]:
+    def _kept(self) -> Iterator[TaskOutcome]:
         if self._store is None:
             return
         for name, inputs in tuple(self._left.items()):
             result = self._store.get(task_key(self._store.work, inputs))
             if result is not None:
                 del self._left[name]
-                yield Outcome(name=name, result=result, stored=True)
+                yield TaskOutcome(name=name, result=result, stored=True)
 
     def _submit(self, name: str) -> None:
         future = self._pool.submit(self._task, name, self._left[name])
@@ -130,20 +130,20 @@ class _Run:
 
     def _finish(
         self, name: str, future: Future[dict[str, Any]], error: BaseException | None
-    ) -> Outcome:
+    ) -> TaskOutcome:
         inputs, lost = self._left.pop(name), list(dict.fromkeys(self._begun[name]))
         if error is not None:
             sentence = describe_failure(error)
             if isinstance(error, BrokenExecutor):
                 sentence = f'its worker was lost {len(lost)} times'
             worker = lost[-1] if lost else ''
-            return Outcome(
+            return TaskOutcome(
                 name=name, result=None, sentence=sentence, lost=tuple(lost), worker=worker
             )
         done = future.result()
         if self._store is not None and done['result'] is not None:
             self._store.put(task_key(self._store.work, inputs), done['result'])
-        return Outcome(
+        return TaskOutcome(
             name=name, lost=tuple(worker for worker in lost if worker != done['worker']), **done
         )
 

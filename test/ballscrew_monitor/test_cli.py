@@ -11,7 +11,6 @@ from ballscrew_monitor import cli
 from ballscrew_monitor.cycle.node_process import child_environment
 import pytest
 from surrogate.files import InputError
-from surrogate.files import InputError as SheetError
 from surrogate.surface import SurfaceError
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -57,7 +56,7 @@ def test_a_full_disk_is_named(monkeypatch, capsys):
     )
 
 
-@pytest.mark.parametrize('error', [InputError, SheetError, SurfaceError])
+@pytest.mark.parametrize('error', [InputError, SurfaceError])
 def test_bad_input_is_a_sentence_and_exit_code_2(error, monkeypatch, capsys):
     def refuse(args):
         raise error('oil: viscosity is -1 Pa s, allowed is above 0')
@@ -124,6 +123,15 @@ def test_every_command_is_listed(capsys):
     out = capsys.readouterr().out
     for command in ('run', 'replay', 'play', 'point', 'surface'):
         assert f'    {command} ' in out
+
+
+@pytest.mark.parametrize('command', ['run', 'replay'])
+def test_help_names_the_defaults_without_the_place_of_the_clone(command, capsys):
+    with pytest.raises(SystemExit):
+        cli.main([command, '--help'])
+    out = ' '.join(capsys.readouterr().out.split())
+    assert 'default config/nominal_cycle.yaml of the repository' in out
+    assert str(ROOT) not in out
 
 
 def test_offline_commands_import_no_ros():

@@ -11,7 +11,7 @@ from surrogate.builder.full.chain import solve_chain, solved_chain, SolvedChain
 from surrogate.builder.full.columns import Results
 from surrogate.builder.full.settings import SolveChains
 from surrogate.progress import Progress
-from surrogate.tasks.pool import Outcome, Pool, run_tasks
+from surrogate.tasks.pool import Pool, run_tasks, TaskOutcome
 from surrogate.tasks.store import task_key, TaskStore
 from surrogate.tasks.worker import Task
 
@@ -29,7 +29,7 @@ class ChainRun:
     pool: Pool
     store: TaskStore | None = None
     task: Task = solve_chain
-    report: Callable[[str, Outcome], None] = lambda purpose, outcome: None
+    report: Callable[[str, TaskOutcome], None] = lambda purpose, outcome: None
     chains: int = 0
     kept: int = 0
     points: int = 0
@@ -40,7 +40,7 @@ class ChainRun:
         """Solve named chains; None for one that failed."""
         progress = Progress(len(chains), f'chains, {purpose}')
 
-        def count(outcome: Outcome) -> None:
+        def count(outcome: TaskOutcome) -> None:
             progress.step(there=outcome.stored)
             self.report(purpose, outcome)
             self.chains += 1

@@ -13,12 +13,17 @@ from surrogate.builder.full.speed_nodes import Target
 from surrogate.files import InputError
 from surrogate.parameters import Screw
 from surrogate.screw.contacts import GRID_WAVELENGTH
-from surrogate.surface.aims import EFFICIENCY_TOLERANCE, RCS_RELATIVE_TOLERANCE, RCS_TOLERANCE
+from surrogate.surface.aims import (
+    EFFICIENCY_TOLERANCE,
+    LIGHT_LOAD,
+    RCS_RELATIVE_TOLERANCE,
+    RCS_TOLERANCE,
+)
 
 SolveChains = Callable[[str, Mapping[str, Mapping[str, Any]]], Results]
 """Solves named chains: takes what they are for, returns their results, None for a failure."""
-LEAST_JUDGED, LEAST_IN_RATINGS = 0.25, 0.01
-"""Least load whose efficiency is judged, in preloads, or of a free screw in ratings [-]."""
+LEAST_IN_RATINGS = 0.01
+"""Stands for the preload of a screw without one, over the static rating [-]."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -84,7 +89,7 @@ def default_full_settings(screw: Screw) -> FullSettings:
 
 def error_target(screw: Screw, settings: FullSettings) -> Target:
     """Return the allowed errors, with the efficiency at the least load that is judged."""
-    least = LEAST_JUDGED * (screw.preload or LEAST_IN_RATINGS * screw.static_rating)
+    least = LIGHT_LOAD * (screw.preload or LEAST_IN_RATINGS * screw.static_rating)
     return Target(
         ideal_torque=least * screw.lead / (2 * math.pi),
         efficiency=settings.accuracy * EFFICIENCY_TOLERANCE,

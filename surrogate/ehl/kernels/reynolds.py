@@ -14,14 +14,13 @@ import math
 from numba import njit
 import numpy as np
 from numpy.typing import NDArray
+from surrogate.formulas.lubricant import ROELANDS_PRESSURE
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 DENSITY_PRESSURE = 5.9e8
 """Pressure constant of the Dowson-Higginson density [Pa]."""
-ROELANDS_PRESSURE = 1.96e8
-"""Reference pressure of the Roelands law [Pa]."""
 LEAST_REACTION = 0.1
 """Least weight of a row in the flux error, where flow outweighs the film by far [-]."""
 

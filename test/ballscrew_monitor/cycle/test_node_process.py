@@ -12,7 +12,7 @@ import time
 
 from ballscrew_monitor.cycle import node_process
 from ballscrew_monitor.cycle.domain import free_domain
-from ballscrew_monitor.cycle.node_process import child_environment, NodeProcess
+from ballscrew_monitor.cycle.node_process import child_environment, NodeProcess, path_to_this_code
 from diagnostic_msgs.msg import DiagnosticArray
 import pytest
 import rclpy
@@ -121,6 +121,14 @@ def test_its_words_are_kept(tmp_path):
             wait_for_the_end(node.pid)
             assert node.returncode == 2
             assert node.last_words().startswith('ballscrew_monitor: ')
+
+
+def test_the_node_is_of_this_very_code(monkeypatch):
+    """The folder of both packages comes first, before what the caller has."""
+    monkeypatch.setenv('PYTHONPATH', '/somewhere')
+    assert path_to_this_code().split(os.pathsep) == [str(ROOT), '/somewhere']
+    assert (ROOT / 'ballscrew_monitor').is_dir()
+    assert (ROOT / 'surrogate').is_dir()
 
 
 def test_the_environment_is_of_this_machine_and_without_borrowed_libraries(monkeypatch):

@@ -49,6 +49,12 @@ def test_equal_surfaces_do_not_differ(capsys):
     assert found['exceeded'] == []
 
 
+def test_a_surface_may_be_a_shipped_tier(capsys):
+    """As for the other commands on a file."""
+    assert run('closed_form', CLOSED_FORM) == 0
+    assert capsys.readouterr().out.endswith('within the tolerances\n')
+
+
 def test_a_scaled_field_differs_by_its_scale():
     """A torque 1 % higher: the largest difference is 1 % of the largest torque, no other field."""
     fields = diff_record(DATA, scaled(DATA, friction_torque=1.01))['fields']

@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 from surrogate.surface import Surface
-from surrogate.surface_tools.diff import RCS_LIMIT
+from surrogate.surface.aims import RCS_LIMIT
 from surrogate.surface_tools.limit import limit_error, limit_errors, limit_speed
 
 
