@@ -44,7 +44,7 @@ OFFLINE_FLOORS = (
     ('ehl',),
     ('contact', 'screw'),
     ('builder',),
-    ('surface_tools', 'identify', 'paper'),
+    ('surface_tools', 'identify', 'paper', 'on_demand'),
     ('commands',),
     ('cli',),
 )
