@@ -18,7 +18,7 @@ from typing import Any, Protocol
 
 MOST_WAITING = 8
 """Solves that may wait while one is at work [-]."""
-GRACE = 0.3  # [s] in which a solve may end by itself when it is taken back
+GRACE = 0.2  # [s] in which a solve may end by itself when it is taken back
 NAN = math.nan
 
 
