@@ -52,7 +52,7 @@ class Mailbox:
                 self.cancelled.set()
         os._exit(0)  # the parent is gone or wants no more, whatever the solver is at
 
-    def next(self) -> Mapping[str, Any]:
+    def take(self) -> Mapping[str, Any]:
         """Wait for a request."""
         return self._requests.get()
 
@@ -65,7 +65,7 @@ def main() -> None:
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
     mailbox = Mailbox(sys.stdin)
     while True:
-        request = mailbox.next()
+        request = mailbox.take()
         _send(out, _answer(request, mailbox, out))
 
 
