@@ -90,11 +90,14 @@ def test_all_four_pairs_of_signs_are_those_of_point(node):
     assert efficiencies[0] != pytest.approx(efficiencies[1], rel=1e-3)
 
 
-def test_a_page_is_for_a_person(node):
-    node.start()
-    place = ('--speed-rpm', 955, '--load-N', 500, '--draws', 1)
-    code, out, err = ask(node, '--axis', 'x', *place)
+def test_a_page_about_the_current_point_is_for_a_person(node):
+    node.start(x__max_future=3600.0, x__speed__timeout=60.0, x__load__timeout=60.0)
+    states, publish = node.states(), node.machine()
+    publish(100.0, -500.0)
+    node.until(lambda: states and states[-1].judged, 'the judged point')
+    code, out, err = ask(node, '--axis', 'x', '--draws', 1)
     assert (code, err) == (0, '')
+    assert f'{states[-1].result.efficiency:14.5g}' in out
     lines = out.splitlines()
     assert lines[0].startswith('axis x: Solved')
     assert lines[1].split() == ['full', 'solve', 'surface']

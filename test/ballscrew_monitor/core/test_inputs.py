@@ -69,16 +69,22 @@ def test_a_stamp_exactly_as_far_ahead_as_allowed_is_taken():
 
 
 @pytest.mark.parametrize(
-    ('ahead', 'words'),
+    ('ahead', 'why', 'words'),
     [
-        (2 * SECOND, ['2 s ahead of the clock', 'max_future, 0.5 s', 'set the clocks']),
-        (YEAR + 1, ['wall clock', 'simulated time', 'set use_sim_time to false']),
+        (
+            2 * SECOND,
+            Why.FUTURE,
+            ['2 s ahead of the clock', 'max_future, 0.5 s', 'set the clocks'],
+        ),
+        (YEAR, Why.FUTURE, ['ahead of the clock']),
+        (YEAR + 1, Why.OTHER_CLOCK, ['wall clock', 'simulated time', 'set use_sim_time to false']),
     ],
 )
-def test_a_refused_stamp_says_what_mends_it(ahead, words):
+def test_a_refused_stamp_says_what_mends_it(ahead, why, words):
     message = joints('x_axis', velocity=[3.0], stamp=SECOND + ahead)
-    text = speed_input().read(message, now=SECOND, max_future=SECOND // 2).text
-    assert all(word in text for word in words)
+    refusal = speed_input().read(message, now=SECOND, max_future=SECOND // 2)
+    assert refusal.why is why
+    assert all(word in refusal.text for word in words)
 
 
 def test_a_clock_that_has_not_started_refuses_no_stamp():

@@ -108,6 +108,8 @@ def test_inputs_name_what_is_wrong(core):
         'load is not usable: its stamps lie ahead of the clock, set the clocks alike or raise '
         'max_future',
     )
+    wall = after(core, LOAD, Refusal(source=Source.LOAD, why=Why.OTHER_CLOCK), SPEED)['Inputs']
+    assert wall.message.endswith('stamp with /clock or unset use_sim_time')
     late = sample(Source.SPEED, 10.0, START + 10 * SECOND)
     assert after(core, LOAD, late)['Inputs'].message == 'load is stale'
 
@@ -118,6 +120,8 @@ def test_while_the_clock_stands_nothing_is_well_and_a_warning_stays(core):
     for part in ('Lubrication', 'Inputs'):
         assert (made[part].level, made[part].message) == stands
     assert made['Surface'].level == OK
+    made = after(core, clock_stands=True)
+    assert (made['Inputs'].level, made['Inputs'].message) == stands
     made = after(core, LOAD, SPEED, surface=core.surface(rcs=0.5), clock_stands=True)
     assert made['Lubrication'].level == WARN
     assert (made['Inputs'].level, made['Inputs'].message) == stands
