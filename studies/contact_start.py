@@ -18,7 +18,7 @@ from surrogate.formulas.geometry import screw_contact
 from surrogate.formulas.load_sharing import normal_force
 from surrogate.parameters import load_lubricant, load_screw
 from surrogate.raceway.short_waves import without_short_waves
-from surrogate.screw.contacts import fluid_at, GRID_WAVELENGTH, raceway_patch, ScrewSettings
+from surrogate.screw.contacts import GRID_WAVELENGTH, oil_at, raceway_patch, ScrewSettings
 
 SLOWEST, STEP, COUNT, STEPS = 0.002, 0.5, 14, 4
 """Speed [m/s], step of its logarithm, speeds, most steps of a start [-]."""
@@ -30,7 +30,7 @@ def timed(screw, speed, start=None):
     patch = without_short_waves(raceway_patch(screw, 'screw', 3), GRID_WAVELENGTH)
     found = solve_contact(
         contact,
-        fluid_at(load_lubricant('iso_vg_68'), 313.15),
+        oil_at(load_lubricant('iso_vg_68'), 313.15),
         Condition(load=float(normal_force(screw, screw.preload)), entrainment_speed=speed),
         roughness=patch.heights,
         settings=ScrewSettings().rough,

@@ -1,3 +1,3 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Closed-form tier: published laws of the ball screw, each a function with author and year."""
+"""Published laws of the ball screw, a function each; closed_form chains them to a tier."""

@@ -82,6 +82,13 @@ class StudyRow:
         return StudyTask(**task).key
 
 
+def empty_row(task: StudyTask, inputs: str) -> StudyRow:
+    """Return the row of a task before it is solved."""
+    return StudyRow(
+        inputs=inputs, kind=task.kind, case=task.case, rpm=task.rpm, load=task.load, draw=task.draw
+    )
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ContactFields:
     """

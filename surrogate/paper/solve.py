@@ -22,7 +22,7 @@ from surrogate.formulas.geometry import hertz, screw_contact
 from surrogate.formulas.kinematics import entrainment_speed_paper
 from surrogate.formulas.load_sharing import normal_force, nut_forces
 from surrogate.paper.cases import CASES, SMOOTH, StudyTask
-from surrogate.paper.rows import ContactFields, StudyRow
+from surrogate.paper.rows import ContactFields, empty_row, StudyRow
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.raceway.fractal import FractalSurface
 from surrogate.raceway.short_waves import subgrid_floor, without_short_waves
@@ -47,15 +47,8 @@ def solve_task(
 ) -> tuple[StudyRow, ContactFields | None]:
     """Solve one task; return its row and, for a contact that keeps them, its fields."""
     began = time.process_time()
-    row = StudyRow(
-        inputs=inputs,
-        kind=task.kind,
-        case=task.case,
-        rpm=task.rpm,
-        load=task.load,
-        draw=task.draw,
-        entrainment_speed=float(entrainment_speed_paper(screw, rad_per_second(task.rpm))),
-    )
+    speed = float(entrainment_speed_paper(screw, rad_per_second(task.rpm)))
+    row = replace(empty_row(task, inputs), entrainment_speed=speed)
     kept = None
     if task.kind == 'contact':
         row, kept = _contact(screw, lubricant, task, row)

@@ -9,7 +9,7 @@ on where it stopped. Table and fields are written from the results at the end.
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +18,7 @@ from surrogate.files import InputError
 from surrogate.paper.cases import StudyTask
 from surrogate.paper.rows import (
     ContactFields,
+    empty_row,
     fields_path,
     inputs_hash,
     read_fields,
@@ -112,15 +113,7 @@ class _Told:
 def _take(folder: Path, inputs: str, task: StudyTask, outcome: TaskOutcome) -> StudyRow:
     """Return the row of an outcome; write its fields."""
     if outcome.result is None:
-        return StudyRow(
-            inputs=inputs,
-            kind=task.kind,
-            case=task.case,
-            rpm=task.rpm,
-            load=task.load,
-            draw=task.draw,
-            status=outcome.sentence,
-        )
+        return replace(empty_row(task, inputs), status=outcome.sentence)
     path, found = fields_path(folder, inputs, task.key), outcome.result['fields']
     if found:
         arrays: Any = {name: np.array(value) for name, value in found.items()}

@@ -88,7 +88,7 @@ def make_contacts(
     screw: Screw, lubricant: Lubricant, point: OperatingPoint, settings: ScrewSettings
 ) -> tuple[RollingContact, ...]:
     """Return the contacts of a ball with screw and nut, the same for both nuts of a point."""
-    oil = fluid_at(lubricant, point.temperature)
+    oil = oil_at(lubricant, point.temperature)
     speeds = [
         _entrainment(screw, lubricant, point, side, heated=settings.inlet_heating)
         for side in SIDES
@@ -202,7 +202,7 @@ def _is_of(
     )
 
 
-def fluid_at(lubricant: Lubricant, temperature: float) -> ContactLubricant:
+def oil_at(lubricant: Lubricant, temperature: float) -> ContactLubricant:
     """Return the oil at a temperature [K]; InputError where it is no liquid any more."""
     oil = lubricant_state(lubricant, temperature)
     try:

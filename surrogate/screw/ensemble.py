@@ -17,7 +17,7 @@ from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.screw.contacts import ScrewSettings
 from surrogate.screw.solve import ScrewSolution, solve_screw
 
-FIELDS = (
+DRAWN_FIELDS = (
     'efficiency',
     'friction_torque',
     'driving_torque',
@@ -40,7 +40,7 @@ class Spread:
 @dataclass(frozen=True, kw_only=True, slots=True)
 class EnsembleSolution:
     """
-    One point over draws: the spread of each of `FIELDS`, and what each draw gave.
+    One point over draws: the spread of each of `DRAWN_FIELDS`, and what each draw gave.
 
     Draws that did not converge are left out of the spreads, and counted.
 
@@ -76,7 +76,9 @@ def solve_ensemble(
     )
     solved = [found for found in solutions if found.converged]
     return EnsembleSolution(
-        spreads={name: spread([getattr(found, name) for found in solved]) for name in FIELDS},
+        spreads={
+            name: spread([getattr(found, name) for found in solved]) for name in DRAWN_FIELDS
+        },
         solutions=solutions,
         failed=len(solutions) - len(solved),
     )

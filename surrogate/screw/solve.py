@@ -22,8 +22,8 @@ from surrogate.formulas.torque import driving_torque, efficiency, is_back_drivin
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.screw.ball_motion import Flank
 from surrogate.screw.contacts import (
-    fluid_at,
     make_contacts,
+    oil_at,
     RollingContact,
     ScrewSettings,
     smooth_film,
@@ -159,7 +159,7 @@ def rebalance_screw(
 
     """
     _check_same_load(screw, point, found)
-    fluid = fluid_at(lubricant, point.temperature)
+    fluid = oil_at(lubricant, point.temperature)
     loaded, relieved = (
         tuple(
             (contact.smooth, replace(contact.rough, lubricant=fluid))

@@ -11,7 +11,7 @@ from surrogate.ehl import Settings
 from surrogate.files import InputError
 from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
 from surrogate.screw.contacts import ScrewSettings
-from surrogate.screw.ensemble import FIELDS, solve_ensemble, spread
+from surrogate.screw.ensemble import DRAWN_FIELDS, solve_ensemble, spread
 from surrogate.screw.solve import solve_screw
 
 SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
@@ -29,7 +29,7 @@ def test_spread_is_that_of_the_draws():
     single = [
         solve_screw(SCREW, OIL, SLOW, settings=replace(SETTINGS, draw=draw)) for draw in (3, 4)
     ]
-    for name in FIELDS:
+    for name in DRAWN_FIELDS:
         values = [getattr(one, name) for one in single]
         assert values[0] != values[1]
         assert found.spreads[name].mean == pytest.approx(np.mean(values), rel=1e-6)
