@@ -5,7 +5,6 @@
 import collections
 import dataclasses
 import enum
-import functools
 import math
 from typing import Any
 
@@ -122,17 +121,16 @@ class Input:
 
         """
         value = self.read_field(message)
-        refuse = functools.partial(Refusal, source=self.source, arrival=now, lost=lost)
         if value is None:
-            return refuse(why=Why.OTHER_JOINTS)
+            return self._refuse(Why.OTHER_JOINTS, '', now, lost)
         stamp = stamp_of(message) if self.stamped else 0
         if now and stamp - now > max_future:
             why = Why.OTHER_CLOCK if stamp - now > YEAR else Why.FUTURE
-            return refuse(why=why, text=_future_text(stamp - now, max_future))
+            return self._refuse(why, _future_text(stamp - now, max_future), now, lost)
         si_value = self.scaling(value)
         if not math.isfinite(si_value):
             text = f'the field holds {value}, it must be a finite number'
-            return refuse(why=Why.NOT_A_NUMBER, text=text)
+            return self._refuse(Why.NOT_A_NUMBER, text, now, lost)
         return InputSample(
             source=self.source,
             value=si_value,
@@ -141,6 +139,9 @@ class Input:
             arrival=now,
             lost=lost,
         )
+
+    def _refuse(self, why: Why, text: str, now: int, lost: int | None) -> Refusal:
+        return Refusal(source=self.source, why=why, text=text, arrival=now, lost=lost)
 
 
 def make_input(
