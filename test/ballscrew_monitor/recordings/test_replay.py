@@ -57,9 +57,14 @@ def write(directory, *timed):
     return Bag(directory)
 
 
+def every_state():
+    """Return parameters with which each sample gives a state."""
+    return parameters.defaults(['x']) | {'x.publish_period': 0.0}
+
+
 def judged(bag, **changes):
     """Return copies of the numbers that matter of every state of the replay."""
-    values = parameters.defaults(['x']) | changes
+    values = every_state() | changes
     return [
         (stamp_of(state), state.point.speed, state.point.axial_load, state.judged)
         for state, _ in replay(bag, values)
@@ -95,7 +100,7 @@ def test_the_end_of_the_data_is_seen_on_the_grid_of_ticks(tmp_path):
     )
     states = [
         (stamp_of(state), state.inputs[0].state)
-        for state, _ in replay(bag, parameters.defaults(['x']))
+        for state, _ in replay(bag, every_state())
     ]
     # The speed is stale after 0.5 s: ticks from 0.6 s after the second on, every 0.1 s.
     ticks = [BEGIN + 100_000_000 * number for number in range(6, 11)]
@@ -112,7 +117,7 @@ def test_stamps_on_another_clock_do_not_move_the_ticks(tmp_path):
             for number, time in enumerate(times)
         ),
     )
-    states = [stamp_of(state) for state, _ in replay(bag, parameters.defaults(['x']))]
+    states = [stamp_of(state) for state, _ in replay(bag, every_state())]
     assert sorted(states) == [10**9, *times[:20], *times[21:]]
 
 
@@ -124,7 +129,7 @@ def test_a_hole_is_not_filled_with_ticks_for_ever(tmp_path, far):
         (BEGIN, speed_message(BEGIN, 100.0)),
         (far, load_message(BEGIN, -1000.0)),
     )
-    states = [stamp_of(state) for state, _ in replay(bag, parameters.defaults(['x']))]
+    states = [stamp_of(state) for state, _ in replay(bag, every_state())]
     assert BEGIN in states
     assert len(states) <= 1 + LONGEST_HOLE // 100_000_000
 
