@@ -98,10 +98,7 @@ def test_the_end_of_the_data_is_seen_on_the_grid_of_ticks(tmp_path):
         (begin, speed_message(begin, 100.0)),
         (begin + SECOND, load_message(begin + SECOND, -1000.0)),
     )
-    states = [
-        (stamp_of(state), state.inputs[0].state)
-        for state, _ in replay(bag, every_state())
-    ]
+    states = [(stamp_of(state), state.inputs[0].state) for state, _ in replay(bag, every_state())]
     # The speed is stale after 0.5 s: ticks from 0.6 s after the second on, every 0.1 s.
     ticks = [BEGIN + 100_000_000 * number for number in range(6, 11)]
     assert states == [(begin, InputState.OK), *((tick, InputState.STALE) for tick in ticks)]
