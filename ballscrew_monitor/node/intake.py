@@ -5,7 +5,8 @@ Takes what the inputs have received: all that waits, whatever woke the node, by 
 
 An executor costs more for each message than its judgement does, and hands the messages of several
 topics over in an order of its own. So the first message of a burst brings along all the others,
-and the clock is asked once for all of them.
+and the clock is asked once for all of them. Simulated time is read in the same order: a message
+arrived at the last `/clock` before it, whatever of both the executor has handed over by now.
 
 """
 
@@ -16,6 +17,7 @@ import operator
 import time
 from typing import Any
 
+from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.inputs import Input, InputSample, Refusal, Source
 from ballscrew_monitor.core.loss import LossCounter
 from ballscrew_monitor.node.axis import Axis
@@ -23,6 +25,7 @@ from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.node import Node
 from rclpy.qos import QoSDurabilityPolicy, QoSHistoryPolicy, QoSProfile, QoSReliabilityPolicy
 from rclpy.subscription import Subscription
+from rosgraph_msgs.msg import Clock
 
 INPUT_QOS = QoSProfile(
     history=QoSHistoryPolicy.KEEP_LAST,
@@ -30,6 +33,7 @@ INPUT_QOS = QoSProfile(
     reliability=QoSReliabilityPolicy.BEST_EFFORT,
     durability=QoSDurabilityPolicy.VOLATILE,
 )
+CLOCK = '/clock'
 MOST = 2 * INPUT_QOS.depth  # messages of one topic that are taken before anything else has a turn
 
 Reader = tuple[Axis, Input]
@@ -86,6 +90,7 @@ class Intake:
         """Subscribe once to each topic, however many inputs read it."""
         self._node = node
         self._take = take
+        self._simulated = 0  # the last `/clock` [ns]
         readers: dict[str, list[Reader]] = {}
         for axis in axes:
             for source in axis.inputs:
@@ -93,11 +98,22 @@ class Intake:
                     (axis, source)
                 )
         self.topics = {name: self._subscribe(name, those) for name, those in readers.items()}
+        self._clock: Topic | None = None
+        if node.get_parameter('use_sim_time').value:
+            self._clock = self._subscribe_to(CLOCK, Clock, [])
+
+    @property
+    def _all(self) -> list[Topic]:
+        clock = [] if self._clock is None else [self._clock]
+        return [*clock, *self.topics.values()]
 
     def _subscribe(self, name: str, readers: list[Reader]) -> Topic:
+        return self._subscribe_to(name, readers[0][1].message_type, readers)
+
+    def _subscribe_to(self, name: str, kind: Any, readers: list[Reader]) -> Topic:
         topic = Topic(readers=readers, loss=LossCounter())
         topic.subscription = self._node.create_subscription(
-            readers[0][1].message_type,
+            kind,
             name,
             functools.partial(self._on_message, topic),
             INPUT_QOS,
@@ -107,10 +123,10 @@ class Intake:
 
     def close(self) -> None:
         """Unsubscribe."""
-        for topic in self.topics.values():
+        for topic in self._all:
             if topic.subscription is not None:
                 self._node.destroy_subscription(topic.subscription)
-        self.topics = {}
+        self.topics, self._clock = {}, None
 
     def publishers(self, axis: str) -> dict[Source, int]:
         """Return how many publishers each input of an axis is matched with."""
@@ -130,12 +146,16 @@ class Intake:
 
     def _read(self, first: list[Arrival]) -> None:
         """Hand over the first arrivals and all others that wait, oldest first."""
-        arrivals = first + [one for topic in self.topics.values() for one in topic.waiting()]
+        arrivals = first + [one for topic in self._all for one in topic.waiting()]
         arrivals.sort(key=operator.attrgetter('received'))
         now, wall = self._node.get_clock().now().nanoseconds, time.time_ns()
         for arrival in arrivals:
+            if arrival.topic is self._clock:
+                shown = arrival.message.clock
+                self._simulated = shown.sec * SECOND + shown.nanosec
+                continue
             waited = max(wall - arrival.received, 0) if arrival.received else 0
-            self._hand_over(arrival, max(now - waited, 0))
+            self._hand_over(arrival, self._simulated or max(now - waited, 0))
 
     def _hand_over(self, arrival: Arrival, now: int) -> None:
         """Hand over a message that arrived at `now` [ns] of the node's clock."""
