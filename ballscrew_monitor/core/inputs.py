@@ -136,7 +136,8 @@ class Input:
             value=si_value,
             stamp=stamp or now,
             stamp_source=StampSource.HEADER if stamp else StampSource.RECEIVE,
-            arrival=now,
+            # A clock that has not started times nothing: the stamp is all there is.
+            arrival=now or stamp,
             lost=lost,
         )
 

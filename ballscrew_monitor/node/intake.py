@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Takes what the inputs have received: all that waits, whatever woke the node, by time of arrival.
+Takes what the inputs have received: all that waits, whatever woke the node, oldest first.
 
 An executor costs more for each message than its judgement does, and hands the messages of several
 topics over in an order of its own. So the first message of a burst brings along all the others,
@@ -37,6 +37,7 @@ CLOCK = '/clock'
 MOST = 2 * INPUT_QOS.depth  # messages of one topic that are taken before anything else has a turn
 
 Reader = tuple[Axis, Input]
+AxisEvent = tuple[Axis, InputSample | Refusal]
 Take = Callable[[Axis, InputSample | Refusal], None]
 
 
@@ -149,17 +150,37 @@ class Intake:
         arrivals = first + [one for topic in self._all for one in topic.waiting()]
         arrivals.sort(key=operator.attrgetter('received'))
         now, wall = self._node.get_clock().now().nanoseconds, time.time_ns()
+        events: list[AxisEvent] = []
         for arrival in arrivals:
             if arrival.topic is self._clock:
                 shown = arrival.message.clock
                 self._simulated = shown.sec * SECOND + shown.nanosec
                 continue
             waited = max(wall - arrival.received, 0) if arrival.received else 0
-            self._hand_over(arrival, self._simulated or max(now - waited, 0))
-
-    def _hand_over(self, arrival: Arrival, now: int) -> None:
-        """Hand over a message that arrived at `now` [ns] of the node's clock."""
-        lost = arrival.topic.loss.take(arrival.number)
-        for axis, source in arrival.topic.readers:
-            event = source.read(arrival.message, now=now, max_future=axis.max_future, lost=lost)
+            events += _events(arrival, self._simulated or max(now - waited, 0))
+        for axis, event in ordered(events):
             self._take(axis, event)
+
+
+def _events(arrival: Arrival, now: int) -> list[AxisEvent]:
+    """Return what a message that arrived at `now` [ns] of the node's clock says of each axis."""
+    lost = arrival.topic.loss.take(arrival.number)
+    return [
+        (axis, source.read(arrival.message, now=now, max_future=axis.max_future, lost=lost))
+        for axis, source in arrival.topic.readers
+    ]
+
+
+def ordered(events: Sequence[AxisEvent]) -> list[AxisEvent]:
+    """
+    Return events in the order in which they came, but those of equal stamps by their sources.
+
+    The speed is the last of them, so that it is judged with what was measured with it.
+
+    """
+    first: dict[int, int] = {}
+    keys = []
+    for place, (_, event) in enumerate(events):
+        stamp = event.arrival if isinstance(event, Refusal) else event.stamp
+        keys.append((first.setdefault(stamp, place), event.source, place))
+    return [events[place] for _, _, place in sorted(keys)]

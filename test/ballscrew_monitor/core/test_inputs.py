@@ -87,11 +87,10 @@ def test_a_refused_stamp_says_what_mends_it(ahead, why, words):
     assert all(word in refusal.text for word in words)
 
 
-def test_a_clock_that_has_not_started_refuses_no_stamp():
-    assert isinstance(
-        speed_input().read(joints('x_axis', velocity=[3.0], stamp=NOW), now=0, max_future=0),
-        InputSample,
-    )
+def test_a_clock_that_has_not_started_refuses_no_stamp_and_times_nothing():
+    message = joints('x_axis', velocity=[3.0], stamp=NOW)
+    sample = speed_input().read(message, now=0, max_future=0)
+    assert (sample.stamp, sample.arrival) == (NOW, NOW)
 
 
 @pytest.mark.parametrize('bad', [math.nan, math.inf, -math.inf])

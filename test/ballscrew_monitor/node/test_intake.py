@@ -6,9 +6,9 @@ import time
 import types
 
 from ballscrew_monitor.core.conversions import Scaling
-from ballscrew_monitor.core.inputs import make_input, Source
+from ballscrew_monitor.core.inputs import InputSample, make_input, Source
 from ballscrew_monitor.cycle.domain import free_domain
-from ballscrew_monitor.node.intake import Intake
+from ballscrew_monitor.node.intake import Intake, ordered
 import pytest
 import rclpy
 from rclpy.executors import SingleThreadedExecutor
@@ -129,3 +129,23 @@ def test_a_closed_intake_takes_nothing(bench):
     bench.drain_events()
     assert bench.taken == []
     assert bench.intake.publishers('x') == {}
+
+
+def test_of_equal_stamps_the_speed_is_last_and_all_else_stays_in_order():
+    """Whatever order a burst arrived in, also across a clock that was set back."""
+
+    def event(source, stamp):
+        return ('x', InputSample(source=source, value=1.0, stamp=stamp))
+
+    speed, load, heat = Source.SPEED, Source.LOAD, Source.TEMPERATURE
+    came = [(speed, 50), (load, 40), (speed, 60), (load, 60), (heat, 60), (speed, 1), (load, 1)]
+    taken = [(one.source, one.stamp) for _, one in ordered([event(*pair) for pair in came])]
+    assert taken == [
+        (speed, 50),
+        (load, 40),
+        (heat, 60),
+        (load, 60),
+        (speed, 60),
+        (load, 1),
+        (speed, 1),
+    ]
