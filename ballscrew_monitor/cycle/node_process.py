@@ -11,10 +11,10 @@ import subprocess
 import sys
 from typing import Any
 
+from ballscrew_monitor.node.solver_process import WHEEL_VARIABLES
+
 PATIENCE = ((signal.SIGINT, 8.0), (signal.SIGTERM, 3.0), (signal.SIGKILL, 5.0))  # [s] after each
 PR_SET_PDEATHSIG = 1
-# Set by the ROS wheels for their own process; a child finds its libraries itself.
-WHEEL_VARIABLES = ('LD_LIBRARY_PATH', '_ROS_WHEELS_BOOTSTRAP_COMPLETE')
 
 
 class NodeProcess:
