@@ -51,6 +51,11 @@ class Grid:
         return float(self.y[1] - self.y[0])
 
     @property
+    def aspect(self) -> float:
+        """Square of the node distance along x over that along y."""
+        return (self.dx / self.dy) ** 2
+
+    @property
     def shape(self) -> tuple[int, int]:
         """Shape of an array."""
         return self.x.size, self.y.size

@@ -19,6 +19,8 @@ Law = Literal['roelands_dh', 'barus_incompressible']
 RoughHeights = Array | Callable[[Array, Array], Array]
 """Heights [m], material positive: an array on the solution grid or a function of x and y [m]."""
 LARGEST_GRID = 2049
+NO_FADING = 1e9
+"""Logarithm of the viscosity that no oil reaches: the wedge is of order 2 throughout [-]."""
 
 
 class Status(Enum):
@@ -136,7 +138,7 @@ class Settings:
         _require('krylov_tolerance', self.krylov_tolerance, '-', 1e-6, 0.5)
         _require('newton_limit', self.newton_limit, '-', 1, 1000)
         _require('time_cap', self.time_cap, 's', 1e-3, 1e6)
-        _require('wedge_fading', self.wedge_fading, '-', 0.1, 100)
+        _require('wedge_fading', self.wedge_fading, '-', 0.1, NO_FADING)
         _require('summit_reach', self.summit_reach, '-', 0.1, 20)
         if self.spacing is not None:
             _require('spacing', self.spacing, 'm', 1e-9, 1e-2)

@@ -15,15 +15,32 @@ import numpy as np
 from numpy.typing import NDArray
 from surrogate.ehl.grid import Grid, GridState
 from surrogate.ehl.half_space import deform
+from surrogate.ehl.kernels.moving import column_rows
 from surrogate.ehl.kernels.reynolds import (
+    clear_border,
     contact_set,
     film_properties,
+    flow_rows,
     free_boundary_rows,
     reynolds_rows,
 )
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Columns:
+    """
+    What the material columns bring to the nodes that they have reached, in Hertz units [-].
+
+    rho h and the mass carried of the step before, and by how many nodes a step moves them.
+
+    """
+
+    mass: Array
+    carried: Array
+    stride: int
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -34,7 +51,8 @@ class GridProblem:
     Heights of the undeformed gap, film floor, load, pressed width along y; dry or not; mobility
     (flow factor over rho h^3/eta, times dx), the numbers of the fluid laws, order of the wedge (1
     to 2), logarithm of the viscosity over which a limited wedge fades to order 1, 0 where wedge
-    and flow factors are not limited, pressure just outside the inlet over that inside per column.
+    and flow factors are not limited, pressure just outside the inlet over that inside per column;
+    what moving columns bring, None where nothing moves.
 
     """
 
@@ -51,6 +69,7 @@ class GridProblem:
     order: float
     fading: float
     inlet: Array
+    columns: Columns | None = None
 
 
 @dataclass(slots=True)
@@ -117,25 +136,18 @@ def film_rows(
     grid: Grid, problem: GridProblem, pressure: Array, gap: Array, contact: Mask
 ) -> tuple[Array, Array, Array, Array]:
     """Return Reynolds' residual, its planes by pressure and by gap, and the film [-]."""
-    residual, film = np.zeros(grid.shape), np.empty((7, *grid.shape))
-    by_pressure, by_gap = np.zeros((6, *grid.shape)), np.zeros((6, *grid.shape))
-    if not problem.dry:
-        film_properties(
-            pressure,
-            gap,
-            contact,
-            problem.floor,
-            problem.pressure_scale,
-            problem.growth,
-            problem.exponent,
-            problem.density_gain,
-            film,
-        )
+    residual, by_pressure, by_gap = _no_rows(grid)
+    if problem.dry:
+        return residual, by_pressure, by_gap, np.empty(grid.shape)
+    film = film_planes(problem, pressure, gap, contact)
+    if problem.columns is not None:
+        _moving_rows(grid, problem, problem.columns, pressure, film, residual, by_pressure, by_gap)
+    else:
         reynolds_rows(
             pressure,
             film,
             problem.mobility,
-            (grid.dx / grid.dy) ** 2,
+            grid.aspect,
             problem.order,
             problem.fading,
             problem.inlet,
@@ -144,3 +156,64 @@ def film_rows(
             by_gap,
         )
     return residual, by_pressure, by_gap, film[2]
+
+
+def _no_rows(grid: Grid) -> tuple[Array, Array, Array]:
+    return np.zeros(grid.shape), np.zeros((6, *grid.shape)), np.zeros((6, *grid.shape))
+
+
+def film_planes(problem: GridProblem, pressure: Array, gap: Array, contact: Mask) -> Array:
+    """Return the planes of `film_properties` [-]."""
+    film = np.empty((7, *gap.shape))
+    film_properties(
+        pressure,
+        gap,
+        contact,
+        problem.floor,
+        problem.pressure_scale,
+        problem.growth,
+        problem.exponent,
+        problem.density_gain,
+        film,
+    )
+    return film
+
+
+def _moving_rows(
+    grid: Grid,
+    problem: GridProblem,
+    columns: Columns,
+    pressure: Array,
+    film: Array,
+    residual: Array,
+    by_pressure: Array,
+    by_gap: Array,
+) -> Array:
+    """Assemble Reynolds' equation of moving columns; return the mass that they carry on [-]."""
+    carried = np.empty(grid.shape)
+    column_rows(
+        film, columns.mass, columns.carried, columns.stride, carried, residual, by_pressure, by_gap
+    )
+    flow_rows(
+        pressure,
+        film,
+        problem.mobility,
+        grid.aspect,
+        problem.fading > 0.0,
+        problem.inlet,
+        residual,
+        by_pressure,
+        by_gap,
+    )
+    clear_border(residual, by_pressure, by_gap)
+    return carried
+
+
+def carried_on(
+    grid: Grid, problem: GridProblem, pressure: Array, gap: Array, contact: Mask
+) -> tuple[Array, Array]:
+    """Return rho h and the mass carried at the end of a step, where the next one starts [-]."""
+    film = film_planes(problem, pressure, gap, contact)
+    assert problem.columns is not None
+    carried = _moving_rows(grid, problem, problem.columns, pressure, film, *_no_rows(grid))
+    return film[0] * film[2], carried

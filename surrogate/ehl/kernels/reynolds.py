@@ -253,34 +253,27 @@ def _push(
 
 
 @njit(cache=True, error_model='numpy')
-def reynolds_rows(
+def flow_rows(
     pressure: Array,
     film: Array,
     mobility: float,
     aspect: float,
-    order: float,
-    fading: float,
+    limited: bool,
     inlet: Array,
     residual: Array,
     by_pressure: Array,
     by_gap: Array,
 ) -> None:
     """
-    Assemble F = -div(flow grad p) dx + d(rho h)/dx dx and its planes dF/dp, dF/dh, face by face.
+    Add -div(flow grad p) dx and its planes dF/dp, dF/dh, face by face, in Hertz units [-].
 
-    `mobility` multiplies all flow factors, `aspect` is (dx/dy)^2; `order` and `fading` as in
-    `carried_mass`, flow factors are limited with it. Just outside the first row the pressure is
-    `inlet` times that inside it. Border rows get zero planes. Hertz units [-].
+    `mobility` multiplies all flow factors, `aspect` is (dx/dy)^2; `limited` flow factors as in
+    `face_flow`. Just outside the first row the pressure is `inlet` times that inside it.
 
     """
     nx, ny = pressure.shape
-    limited = fading > 0.0
-    residual[:] = 0.0
-    by_pressure[:] = 0.0
-    by_gap[:] = 0.0
     for i in range(nx - 1):
         for j in range(1, ny - 1):
-            _pass_on(film, i, j, order if i > 1 else 1.0, fading, residual, by_pressure, by_gap)
             before = pressure[i, j] if i > 0 else inlet[j] * pressure[1, j]
             rise = pressure[i + 1, j] - before
             flow = _push(
@@ -316,6 +309,12 @@ def reynolds_rows(
                     by_pressure,
                     by_gap,
                 )
+
+
+@njit(cache=True, error_model='numpy')
+def clear_border(residual: Array, by_pressure: Array, by_gap: Array) -> None:
+    """Take the border rows out of the residual and its planes [-]."""
+    nx, ny = residual.shape
     for j in (0, ny - 1):
         residual[:, j] = 0.0
         by_pressure[:, :, j] = 0.0
@@ -324,6 +323,37 @@ def reynolds_rows(
         residual[i] = 0.0
         by_pressure[:, i] = 0.0
         by_gap[:, i] = 0.0
+
+
+@njit(cache=True, error_model='numpy')
+def reynolds_rows(
+    pressure: Array,
+    film: Array,
+    mobility: float,
+    aspect: float,
+    order: float,
+    fading: float,
+    inlet: Array,
+    residual: Array,
+    by_pressure: Array,
+    by_gap: Array,
+) -> None:
+    """
+    Assemble F = -div(flow grad p) dx + d(rho h)/dx dx and its planes dF/dp, dF/dh [-].
+
+    `order` and `fading` as in `carried_mass`, flow factors are limited with it; the rest as in
+    `flow_rows`. Border rows get zero planes.
+
+    """
+    nx, ny = pressure.shape
+    residual[:] = 0.0
+    by_pressure[:] = 0.0
+    by_gap[:] = 0.0
+    for i in range(nx - 1):
+        for j in range(1, ny - 1):
+            _pass_on(film, i, j, order if i > 1 else 1.0, fading, residual, by_pressure, by_gap)
+    flow_rows(pressure, film, mobility, aspect, fading > 0.0, inlet, residual, by_pressure, by_gap)
+    clear_border(residual, by_pressure, by_gap)
 
 
 @njit(cache=True, error_model='numpy')

@@ -1,0 +1,155 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+One step in time after the other: in each the raceway and the oil on it move on by whole nodes.
+
+A step is a Newton solve of the project's discrete system with the material derivative of
+`kernels.moving` in place of the wedge, and it balances the load. It starts from the last one,
+whose ripples over the smooth contact move on with the raceway.
+
+"""
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from surrogate.ehl.case import ScaledCase
+from surrogate.ehl.grid import Grid, GridState
+from surrogate.ehl.newton import NewtonLimits, NewtonResult, solve_grid
+from surrogate.ehl.system import carried_on, Columns, evaluate, film_planes, GridProblem
+
+Array = NDArray[np.float64]
+TIGHT = 0.01
+"""What linear solves leave of their residual where a step is tried again [-]."""
+PATIENT = 40
+"""Most Newton iterations of a step that is tried again [-]."""
+
+
+def step_limits(flux: float, load: float, gap: float) -> NewtonLimits:
+    """Return the tolerances of a step [-] with the caps of a rough contact."""
+    return NewtonLimits(
+        flux=flux,
+        load=load,
+        gap=gap,
+        krylov=0.05,
+        stalled=TIGHT,
+        newton=25,
+        step=10.0,
+        viscous=12.0,
+        rise=1.0,
+    )
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Step:
+    """Outcome of a step, its speed [m/s] and equations, and what all tries took."""
+
+    speed: float
+    problem: GridProblem
+    outcome: NewtonResult
+    newton: int
+    krylov: int
+
+
+@dataclass(kw_only=True)
+class Stepper:
+    """
+    A contact on its grid, from a `smooth` state on, in Hertz units.
+
+    `speed` [m/s] and `smooth` may be changed between steps, for a speed that falls slowly.
+
+    """
+
+    case: ScaledCase
+    grid: Grid
+    smooth: GridState
+    limits: NewtonLimits
+    stride: int = 1
+    moving: bool = True
+    speed: float = field(init=False)
+    _state: GridState = field(init=False)
+    _approach_before: float = field(init=False)
+    _mass: Array = field(init=False)
+    _carried: Array = field(init=False)
+
+    def __post_init__(self) -> None:
+        """Take the steady smooth contact as what was before the first step."""
+        self.speed = self.case.condition.entrainment_speed
+        self._state, self._approach_before = self.smooth, self.smooth.approach
+        problem = self._problem(np.zeros(self.grid.shape))
+        pressure = self.smooth.film_pressure
+        now = evaluate(self.grid, problem, self.smooth)
+        film = film_planes(problem, pressure, now.gap, now.contact)
+        mass = film[0] * film[2]
+        steady = Columns(mass=arrived(mass, 1), carried=mass, stride=1)
+        problem = replace(problem, columns=steady)
+        self._mass, self._carried = carried_on(self.grid, problem, pressure, now.gap, now.contact)
+
+    def step(self, rough: Array) -> Step:
+        """Solve one step on, with the heights `rough` that are on the grid then."""
+        columns = Columns(
+            mass=arrived(self._mass, self.stride),
+            carried=arrived(self._carried, self.stride),
+            stride=self.stride,
+        )
+        problem = replace(self._problem(rough), columns=columns)
+        made = self._solve(problem)
+        state = made.outcome.state
+        self._approach_before, self._state = self._state.approach, state
+        self._mass, self._carried = carried_on(
+            self.grid, problem, state.film_pressure, made.outcome.gap, made.outcome.contact
+        )
+        return made
+
+    def _problem(self, rough: Array) -> GridProblem:
+        case, grid = self.case, self.grid
+        heights = case.shape_heights(grid) - rough
+        return case.problem(grid, self.speed, heights, case.order)
+
+    def _solve(self, problem: GridProblem) -> Step:
+        """Solve from the predicted state or, failing that, from the last or the smooth one."""
+        newton = krylov = 0
+        limits = self.limits
+        for start in (self._predicted(), self._state, self.smooth):
+            outcome = solve_grid(self.grid, problem, start, limits)
+            newton, krylov = newton + outcome.newton, krylov + outcome.krylov
+            if outcome.converged:
+                break
+            limits = replace(self.limits, krylov=TIGHT, newton=PATIENT)
+        return Step(
+            speed=self.speed, problem=problem, outcome=outcome, newton=newton, krylov=krylov
+        )
+
+    def _predicted(self) -> GridState:
+        """Return the last state with its ripples moved on."""
+        if not self.moving:
+            return self._state
+        state, smooth = self._state, self.smooth
+        return GridState(
+            film_pressure=_moved_on(state.film_pressure, smooth.film_pressure, self.stride),
+            asperity_pressure=_moved_on(
+                state.asperity_pressure, smooth.asperity_pressure, self.stride
+            ),
+            approach=2 * state.approach - self._approach_before,
+        )
+
+
+def arrived(before: Array, stride: int) -> Array:
+    """
+    Return a field of material columns where they are after `stride` nodes.
+
+    Those that come from outside the grid continue the first two rows.
+
+    """
+    now = np.empty_like(before)
+    now[stride:] = before[:-stride]
+    outside = np.arange(-stride, 0)[:, None]
+    now[:stride] = before[0] + outside * (before[1] - before[0])
+    return now
+
+
+def _moved_on(field: Array, smooth: Array, stride: int) -> Array:
+    now = smooth.copy()
+    now[stride:] += field[:-stride] - smooth[:-stride]
+    now[0] = now[-1] = 0.0
+    return np.maximum(now, 0.0)

@@ -1,0 +1,172 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What a step of a march is measured by, and the averages over its steps and places."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+from surrogate.ehl.case import ScaledCase
+from surrogate.ehl.friction import viscosity_of
+from surrogate.ehl.grid import Grid
+from surrogate.ehl.kernels.moving import dissipated
+from surrogate.ehl.moving.interface import Mean, THIN_FILMS
+from surrogate.ehl.moving.step import Step
+from surrogate.ehl.system import film_planes
+from surrogate.ehl.to_si import central_film, PUNCTURED
+
+Array = NDArray[np.float64]
+CORE = 0.8
+"""Part of the Hertz zone, over its semi-axes, where the film is averaged [-]."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Measure:
+    """
+    Numbers of one step, as in `MovingSolution`.
+
+    Shares and traction [-], films [m], losses [N]; RCS along the track per semi-axis [-].
+
+    """
+
+    rcs: float
+    asperity_share: float
+    mean_film: float
+    film_rms: float
+    least_film: float
+    film_traction: float
+    rolling_loss: float
+    moment_loss: float
+    centre_film: float
+    thin_shares: Array
+    rcs_along: Array
+
+
+@dataclass(frozen=True, kw_only=True)
+class Gauge:
+    """Measures the steps of one contact on its grid."""
+
+    case: ScaledCase
+    grid: Grid
+    slide_roll_ratio: float
+
+    def measure(self, step: Step) -> Measure:
+        """Return the numbers of a step."""
+        case, grid, outcome = self.case, self.grid, step.outcome
+        unit, gap = case.height_unit, np.maximum(outcome.gap, case.floor)
+        punctured = outcome.gap <= PUNCTURED * case.floor
+        total = outcome.state.film_pressure + outcome.state.asperity_pressure
+        touching = np.where(punctured, total, 0.0)
+        core = self._distance() < CORE
+        inside = gap[self._distance() < 1.0] * unit
+        return Measure(
+            rcs=grid.integral(touching) / case.load,
+            asperity_share=grid.integral(outcome.state.asperity_pressure) / case.load,
+            mean_film=float(gap[core].mean()) * unit,
+            film_rms=float(gap[core].std()) * unit,
+            least_film=float(inside.min()),
+            film_traction=self._film_traction(step, gap, punctured),
+            rolling_loss=self._rolling_loss(step),
+            moment_loss=-0.5 * grid.integral(total * grid.x[:, None]) * self._force,
+            centre_film=central_film(grid, outcome.gap) * unit,
+            thin_shares=np.array([np.mean(inside < film) for film in THIN_FILMS]),
+            rcs_along=touching @ grid.weights / grid.dx / case.load,
+        )
+
+    def _distance(self) -> Array:
+        """Return the distance of the nodes from the centre over the semi-axes [-]."""
+        across = self.grid.y / self.case.ellipticity
+        return np.asarray(np.hypot(self.grid.x[:, None], across[None, :]))
+
+    def _film_traction(self, step: Step, gap: Array, punctured: NDArray[np.bool_]) -> float:
+        """Return the Eyring traction of the film over the load [-]."""
+        case, oil = self.case, self.case.lubricant
+        pressure = step.outcome.state.film_pressure
+        wet = ~punctured & (pressure > 0)
+        viscosity = viscosity_of(oil, pressure[wet] * case.hertz_pressure)
+        slip = self.slide_roll_ratio * step.speed
+        stress = oil.eyring_stress * np.arcsinh(
+            viscosity * slip / (oil.eyring_stress * gap[wet] * case.height_unit)
+        )
+        area = self.grid.dx * self.grid.dy * case.semi_axis_x**2
+        return float(stress.sum()) * area / case.condition.load
+
+    def _rolling_loss(self, step: Step) -> float:
+        """Return the Poiseuille dissipation over twice the entrainment speed [N]."""
+        grid, problem, outcome = self.grid, step.problem, step.outcome
+        pressure = outcome.state.film_pressure
+        film = film_planes(problem, pressure, outcome.gap, outcome.contact)
+        lost = dissipated(
+            pressure, film, problem.mobility, grid.aspect, problem.fading > 0.0, problem.inlet
+        )
+        return 0.5 * lost * grid.dy * self._force
+
+    @property
+    def _force(self) -> float:
+        """Return the unit of a force along the track [N]."""
+        return self.case.hertz_pressure * self.case.height_unit * self.case.semi_axis_x
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Averages:
+    """Averages over places, each an equal share of the steps, and how long RCS remembers."""
+
+    numbers: dict[str, Mean]
+    thin_shares: tuple[Mean, ...]
+    rcs_along: Array
+    memory: float
+
+
+NUMBERS = (
+    'rcs',
+    'asperity_share',
+    'mean_film',
+    'film_rms',
+    'least_film',
+    'film_traction',
+    'rolling_loss',
+    'moment_loss',
+)
+"""Numbers of a `Measure` that are averaged into a `Mean` of the same name."""
+
+
+def average(places: Sequence[Sequence[Measure]], step_length: float) -> Averages:
+    """Average the steps, `step_length` [semi-axes] apart, of all places that have any."""
+    places = [steps for steps in places if steps]
+    numbers = {
+        name: _mean([np.mean([getattr(one, name) for one in steps]) for steps in places])
+        for name in NUMBERS
+    }
+    thin = np.array([np.mean([one.thin_shares for one in steps], axis=0) for steps in places])
+    along = [np.mean([one.rcs_along for one in steps], axis=0) for steps in places]
+    tracks = [np.array([one.rcs for one in steps]) for steps in places]
+    return Averages(
+        numbers=numbers,
+        thin_shares=tuple(_mean(column) for column in thin.T),
+        rcs_along=np.mean(along, axis=0),
+        memory=_memory(tracks) * step_length,
+    )
+
+
+def _mean(values: Sequence[float] | Array) -> Mean:
+    """Return the mean of equal shares and its standard error, in their unit [any]."""
+    value = float(np.mean(values))
+    if len(values) < 2:
+        return Mean(value=value)
+    return Mean(value=value, error=float(np.std(values, ddof=1)) / math.sqrt(len(values)))
+
+
+def _memory(tracks: Sequence[Array]) -> float:
+    """Return after how many steps the autocorrelation is below 1/e [-]; NaN if it never is."""
+    longest = min(track.size for track in tracks)
+    total = np.zeros(longest)
+    for track in tracks:
+        rest = track - track.mean()
+        start = track.size - 1
+        total += np.correlate(rest, rest, 'full')[start:][:longest]
+    if not total[0] > 0:
+        return math.nan
+    below = np.flatnonzero(total < total[0] / math.e)
+    return float(below[0]) if below.size else math.nan

@@ -1,0 +1,187 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Marches against what is known: rest, the smooth contact, one wave, energy, and bad input."""
+
+from dataclasses import replace
+import math
+
+import numpy as np
+import pytest
+from surrogate.ehl import Settings, solve_contact, Status
+from surrogate.ehl.interface import NO_FADING
+from surrogate.ehl.moving import march_contact, MarchSettings, MarchStatus, step
+from surrogate.ehl.newton import solve_grid
+from surrogate.files import InputError
+
+
+def flat(x, y):
+    """Return a raceway without roughness."""
+    return 0.0 * x * y
+
+
+def wave_amplitude(march, length):
+    """Return the amplitude of a wave, `length` over the semi-axis, in the film at the centre."""
+    films = march.centre_films
+    steps = np.arange(films.size) - films.size / 2
+    turn = 2 * np.pi * (march.x[1] - march.x[0]) * march.settings.stride / length
+    waves = np.stack([1 + 0 * steps, steps, np.cos(turn * steps), np.sin(turn * steps)], axis=1)
+    _, _, along, across = np.linalg.lstsq(waves, films, rcond=None)[0]
+    return math.hypot(along, across)
+
+
+def test_a_flat_raceway_leaves_the_steady_contact_alone(circular):
+    """Nothing moves: no Newton step, no contact, the loss of the smooth contact at every step."""
+    march = circular(flat)
+    assert march.status is MarchStatus.CONVERGED
+    steady = solve_contact(
+        march.contact,
+        march.lubricant,
+        march.condition,
+        roughness=flat,
+        settings=march.settings.steady((-2.6, 1.5, 1.5)),
+    )
+    assert march.rcs.value == 0.0
+    assert march.asperity_share.value == 0.0
+    assert march.rolling_loss.value == pytest.approx(march.smooth_rolling_loss, rel=1e-12)
+    assert march.centre_films == pytest.approx(march.central_film, rel=1e-6)
+    assert march.central_film == pytest.approx(steady.central_film, rel=0.02)
+
+
+def test_a_standing_raceway_comes_to_the_steady_solution(circular, semi_axis, transverse):
+    """Marched to rest with the roughness held, the gap is that of the steady solver."""
+    rough = transverse(20e-9, semi_axis)
+    march = circular(rough, transits=3.0, moving=False, flux_tolerance=1e-5, load_tolerance=1e-6)
+    domain = (march.x[0], march.x[-1], march.y_nodes[-1] / semi_axis)
+    settings = Settings(
+        nx=65,
+        ny=65,
+        domain=tuple(map(float, domain)),
+        open_inlet=True,
+        film_floor=1e-10,
+        flux_tolerance=1e-5,
+        error_estimate=False,
+        wedge_fading=NO_FADING,
+    )
+    steady = solve_contact(
+        march.contact, march.lubricant, march.condition, roughness=rough, settings=settings
+    )
+    assert steady.status is Status.CONVERGED
+    inside = steady.distance < 1
+    assert np.abs(march.film - steady.film)[inside].max() < 0.1e-9
+    assert march.film[inside].std() > 5e-9
+
+
+@pytest.mark.parametrize('length', [1.0, 2.0])
+def test_a_wave_keeps_the_amplitude_of_the_published_curve(
+    circular, semi_axis, transverse, length
+):
+    """Ad/Ai = 1/(1 + 0.15 n + 0.015 n^2), n = (lambda/a) sqrt(M/L): Venner, Lubrecht."""
+    flat_film = circular(flat).central_film
+    march = circular(transverse(0.1 * flat_film, length * semi_axis), transits=2.0)
+    n = length * math.sqrt(100 / 10)
+    found = wave_amplitude(march, length) / (0.1 * flat_film)
+    assert found == pytest.approx(1 / (1 + 0.15 * n + 0.015 * n**2), rel=0.1)
+
+
+def test_losses_by_dissipation_and_by_moment_agree(circular, semi_axis, transverse):
+    """Over whole periods of a wave they differ as for the smooth contact, whose inlet is cut."""
+    smooth = circular(flat)
+    march = circular(transverse(80e-9, semi_axis), transits=4.0)
+    left_out = smooth.moment_loss.value - smooth.rolling_loss.value
+    assert march.moment_loss.value - left_out == pytest.approx(march.rolling_loss.value, rel=0.02)
+    assert march.rolling_loss.value > 1.01 * smooth.rolling_loss.value
+
+
+def test_a_column_is_carried_through_a_stiff_oil(circular, semi_axis, transverse):
+    """Waves too short to be flattened pass the contact nearly as high as they came in."""
+    march = circular(transverse(2e-9, 0.25 * semi_axis), nx=129, ny=33, transits=1.0)
+    assert 0.94 < wave_amplitude(march, 0.25) / 2e-9 < 1.0
+
+
+def test_longer_steps_find_the_same_wave(circular, semi_axis, transverse):
+    """Steps over two nodes of half the distance: the same steps in time, other nodes."""
+    rough = transverse(20e-9, semi_axis)
+    films = [
+        wave_amplitude(circular(rough, transits=2.0, **grid), 1.0)
+        for grid in ({}, {'nx': 129, 'stride': 2}, {'nx': 129})
+    ]
+    assert films[1] == pytest.approx(films[0], rel=0.02)
+    assert films[2] == pytest.approx(films[0], rel=0.03)
+
+
+def test_places_give_the_standard_error(circular, semi_axis):
+    """A raceway of ridges along the track: time averages differ from place to place alone."""
+
+    def ridges(x, y):
+        return 20e-9 * np.cos(2 * np.pi * y / (1.37 * semi_axis)) + 0 * x
+
+    march = circular(ridges, transits=3.0, places=3)
+    assert march.rcs.value == 0.0
+    assert march.least_film.error > 1e-10
+    assert math.isnan(circular(ridges).least_film.error)
+
+
+def test_a_summit_that_fills_the_film_touches(circular, semi_axis, transverse):
+    """Waves higher than the film: asperities carry part of the load, and numbers are bounded."""
+    march = circular(transverse(400e-9, 0.5 * semi_axis), film_floor=20e-9)
+    assert march.converged
+    assert 0.0 < march.asperity_share.value < march.rcs.value < 1.0
+    assert march.thin_shares[0].value == 0.0
+    assert march.rcs_along.sum() * (march.x[1] - march.x[0]) == pytest.approx(march.rcs.value)
+    assert march.least_film.value == pytest.approx(20e-9, rel=1e-3)
+
+
+def test_a_late_march_returns_what_it_has(circular, semi_axis, transverse):
+    """The cap ends it: a status, the transits so far, and numbers that are not known are NaN."""
+    march = circular(transverse(20e-9, semi_axis), time_cap=1e-6)
+    assert march.status is MarchStatus.OUT_OF_TIME
+    assert not march.converged
+    assert march.transits == 0.0
+    assert math.isnan(march.rcs.value)
+
+
+def test_a_stalled_march_says_so(circular, semi_axis, transverse, monkeypatch):
+    """Newton that never ends well: given up after three steps in a row, each tried three times."""
+    starts = []
+
+    def hopeless(grid, problem, start, limits):
+        starts.append(start)
+        return replace(solve_grid(grid, problem, start, limits), converged=False)
+
+    monkeypatch.setattr(step, 'solve_grid', hopeless)
+    march = circular(transverse(20e-9, semi_axis))
+    assert march.status is MarchStatus.STALLED
+    assert (march.steps, march.steps_failed, len(starts)) == (3, 3, 9)
+    assert math.isnan(march.rcs.value)
+
+
+@pytest.mark.parametrize(
+    ('change', 'sentence'),
+    [
+        ({'transits': 0.5}, 'transits is 0.5, allowed is 1 or more at each of 1 places'),
+        ({'stride': 0}, 'stride is 0, allowed is a number from 1 to 16'),
+        ({'places': 0}, 'places is 0, allowed is a number from 1 to 1000'),
+        ({'slide_roll_ratio': -1.0}, 'slide_roll_ratio is -1.0, allowed is 0 to 2'),
+        ({'time_cap': 0.0}, 'time_cap is 0.0 s, allowed is above 0'),
+        ({'nx': 64}, 'nx is 64, allowed is an odd number'),
+    ],
+)
+def test_bad_settings_are_one_sentence(circular, change, sentence):
+    """What, value, allowed."""
+    with pytest.raises(InputError, match=sentence):
+        circular(flat, **change)
+
+
+def test_a_raceway_must_go_on_for_ever(circular):
+    """An array ends, and heights that are not finite are none."""
+    with pytest.raises(InputError, match='a strip has no end'):
+        circular(np.zeros((65, 65)))
+    with pytest.raises(InputError, match='not finite'):
+        circular(lambda x, y: np.nan * x * y)
+
+
+def test_settings_are_those_of_the_module(moes_case):
+    """The default march of a smooth nominal raceway asks for as many transits as places."""
+    contact, oil, condition, _ = moes_case(100, 10, 'roelands_dh')
+    with pytest.raises(InputError, match='at each of 4 places'):
+        march_contact(contact, oil, condition, flat, transits=2.0, settings=MarchSettings())
