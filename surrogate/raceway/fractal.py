@@ -9,7 +9,7 @@ material.
 
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 import math
 from typing import get_args, Literal
@@ -18,7 +18,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from surrogate.files import InputError
 from surrogate.parameters import Roughness
-from surrogate.raceway.patch import grid_axes, on_plane, Patch, Plane, take_patch, Window
+from surrogate.raceway.patch import grid_axes, Patch, Plane, take_patch, Window
+from surrogate.raceway.strip import Strip
 
 Array = NDArray[np.float64]
 Lay = Literal['isotropic', 'longitudinal', 'transverse']
@@ -53,11 +54,19 @@ class FractalSurface:
     def heights(self, x: ArrayLike, y: ArrayLike) -> Array:
         """Return heights [m], shape (nx, ny), on the grid of `x` and `y` [m] (see `grid_axes`)."""
         x, y = grid_axes(x, y)
-        along = np.exp(1j * np.outer(x, self.wave_number_x))
-        across = np.exp(1j * np.outer(self.wave_number_y, y))
-        weight = self.amplitude * np.exp(1j * self.phase)
-        waves = np.sum(weight.real) - ((along * weight) @ across).real
-        return np.asarray(self.scale * (waves - on_plane(self.plane, x, y)))
+        return self.strip(y).rows(x)
+
+    def strip(self, y: ArrayLike) -> Strip:
+        """Return the strip at the places `y` [m], which gives heights block by block along x."""
+        y = np.atleast_1d(np.asarray(y, dtype=float))
+        return Strip(
+            y=y,
+            wave_number_x=self.wave_number_x,
+            weight=self.amplitude * np.exp(1j * self.phase),
+            across=np.exp(1j * np.outer(self.wave_number_y, y)),
+            plane=self.plane,
+            scale=self.scale,
+        )
 
 
 def fractal_surface(roughness: Roughness, seed: int, *, lay: Lay = 'isotropic') -> FractalSurface:
@@ -70,7 +79,19 @@ def fractal_surface(roughness: Roughness, seed: int, *, lay: Lay = 'isotropic') 
 
     """
     number, amplitude = wave_spectrum(roughness)
-    direction = wave_directions(roughness.ridges, lay)
+    return wave_sum(number, amplitude, wave_directions(roughness.ridges, lay), seed)
+
+
+def wave_sum(
+    number: Array, amplitude: Array, direction: Array, seed: int | Sequence[int]
+) -> FractalSurface:
+    """
+    Return one draw of a sum of waves in all `direction` [rad] at each wave number [rad/m].
+
+    `amplitude` [m] is that of one wave at each wave number; phases [rad] from `seed`, long waves
+    first, so that adding shorter ones changes none.
+
+    """
     phase = np.random.default_rng(seed).uniform(0, 2 * math.pi, (len(number), len(direction)))
     return FractalSurface(
         amplitude=np.repeat(amplitude, len(direction)),
@@ -89,8 +110,7 @@ def wave_spectrum(roughness: Roughness) -> tuple[Array, Array]:
             f'roughness: shortest wavelength is {1e6 * shortest:g} um, allowed is less than the '
             f'sample length ({1e6 * length:g} um)'
         )
-    # The rounding of a logarithm must not cost the last wave.
-    order = np.arange(int(math.log(length / shortest) / math.log(g) + 1e-9) + 1)
+    order = wave_orders(length, shortest, g)
     dimension = roughness.fractal_dimension
     height = length * (roughness.fractal_roughness / length) ** (dimension - 2)
     one_ridge = math.sqrt(math.log(g) / roughness.ridges)
@@ -98,14 +118,25 @@ def wave_spectrum(roughness: Roughness) -> tuple[Array, Array]:
     return number, height * one_ridge * g ** ((dimension - 3) * order)
 
 
-def wave_directions(ridges: int, lay: Lay) -> Array:
-    """Return the directions of the waves [rad]; a lay along x has its waves along y."""
+def wave_orders(longest: float, shortest: float, ratio: float) -> NDArray[np.int64]:
+    """Return 0, 1, ... of the waves from `longest` down to `shortest` [m] in steps of `ratio`."""
+    # The rounding of a logarithm must not cost the last wave.
+    return np.arange(int(math.log(longest / shortest) / math.log(ratio) + 1e-9) + 1)
+
+
+def wave_directions(ridges: int, lay: Lay, fan: float = LAY_SPREAD) -> Array:
+    """
+    Return the directions of the waves [rad]; a lay along x has its waves along y.
+
+    `fan` is the angle [rad] over which those of a lay spread; isotropic ones have none.
+
+    """
     if lay not in get_args(Lay):
         raise InputError(f'lay is {lay!r}, allowed is isotropic, longitudinal or transverse')
     if lay == 'isotropic':
         return math.pi * np.arange(1, ridges + 1) / ridges
     centre = 0.5 * math.pi if lay == 'longitudinal' else 0.0
-    return centre + LAY_SPREAD * (np.arange(ridges) / max(ridges - 1, 1) - 0.5)
+    return centre + fan * (np.arange(ridges) - 0.5 * (ridges - 1)) / max(ridges - 1, 1)
 
 
 def theoretical_rms(roughness: Roughness) -> float:

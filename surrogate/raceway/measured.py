@@ -16,17 +16,15 @@ from typing import get_args, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import make_interp_spline
-from scipy.ndimage import gaussian_filter1d
 from surrogate.files import InputError
 from surrogate.raceway.patch import grid_axes, on_plane, Patch, Plane
+from surrogate.raceway.stylus import low_pass
 
 Array = NDArray[np.float64]
 Outside = Literal['refuse', 'mirror']
 
 FEWEST_POINTS = 16
 """Fewest points along a measured direction [-]."""
-GAUSSIAN_ALPHA = math.sqrt(math.log(2) / math.pi)
-"""Constant of the Gaussian profile filter, ISO 16610-21: half passes at the cutoff [-]."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -127,7 +125,7 @@ def measured_surface(
                 f'two spacings of the points ({2e6 * coarsest:g} um) or more'
             )
         for axis, gap in enumerate((spacing_x, spacing_y)):
-            raw = _filtered(raw, axis, shortest_wavelength / gap)
+            raw = low_pass(raw, axis, shortest_wavelength / gap)
     return MeasuredSurface(
         raw=raw,
         spacing_x=spacing_x,
@@ -152,11 +150,3 @@ def _check_heights(raw: Array, source: str) -> None:
             f'{source}: {missing} of {raw.size} heights are not finite numbers, allowed is none: '
             'fill the gaps with the software of the instrument'
         )
-
-
-def _filtered(raw: Array, axis: int, cutoff: float) -> Array:
-    """Return heights through the Gaussian filter; `cutoff` in samples, ends mirrored."""
-    if raw.shape[axis] == 1:
-        return raw
-    sigma = GAUSSIAN_ALPHA * cutoff / math.sqrt(2 * math.pi)
-    return np.asarray(gaussian_filter1d(raw, sigma, axis=axis, mode='mirror'))

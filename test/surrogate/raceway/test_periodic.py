@@ -1,0 +1,92 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Surfaces periodic across the track: exactly so, near the ones they come from, cost reported."""
+
+from dataclasses import replace
+import math
+
+from hypothesis import given
+from hypothesis import strategies as st
+import numpy as np
+import pytest
+from surrogate.files import InputError
+from surrogate.raceway.fractal import FractalSurface
+from surrogate.raceway.periodic import periodic_across
+from surrogate.raceway.scaling import draw_raceway, scale_spectrum
+from surrogate.raceway.spectrum import RoughnessSpectrum
+
+SPECTRUM = RoughnessSpectrum(rms=1e-7, cutoff_long=0.25e-3, fractal_dimension=2.5)
+
+
+def one_wave(along, across, amplitude=1e-7):
+    """Return a surface of one wave with its wave numbers in turns per millimetre."""
+    numbers = {
+        f'wave_number_{name}': np.array([2e3 * math.pi * value])
+        for name, value in (('x', along), ('y', across))
+    }
+    return FractalSurface(amplitude=np.array([amplitude]), phase=np.array([0.3]), **numbers)
+
+
+@given(width=st.floats(1e-4, 5e-3), seed=st.integers(0, 50), y=st.floats(-1e-3, 1e-3))
+def test_heights_repeat_across_the_track(width, seed, y):
+    """To rounding, at any place, after any number of widths."""
+    surface = periodic_across(draw_raceway(scale_spectrum(SPECTRUM), seed), width).surface
+    heights = surface.heights(np.linspace(0, 1e-3, 7), y + width * np.array([0, 1, -1, 10]))
+    np.testing.assert_allclose(heights, heights[:, :1] * np.ones(4), atol=1e-17)
+
+
+@given(width=st.floats(1e-4, 5e-3), seed=st.integers(0, 50))
+def test_waves_move_by_half_a_step_across_or_keep_their_length(width, seed):
+    """Nearest multiples; where the length changes, the part along the track does not."""
+    before = draw_raceway(scale_spectrum(SPECTRUM), seed)
+    after = periodic_across(before, width).surface
+    step = 2 * math.pi / width
+    assert np.all(np.abs(after.wave_number_y - before.wave_number_y) <= step / 2 * (1 + 1e-9))
+    old, new = (np.hypot(one.wave_number_x, one.wave_number_y) for one in (before, after))
+    kept = np.isclose(old, new, rtol=1e-9)
+    assert np.all(kept | (after.wave_number_x == before.wave_number_x))
+    np.testing.assert_array_equal(after.amplitude, before.amplitude)
+    np.testing.assert_array_equal(after.phase, before.phase)
+
+
+def test_the_cost_falls_with_the_width():
+    """A surface that fits already costs nothing; ten times the width costs a tenth or less."""
+    surface = draw_raceway(scale_spectrum(SPECTRUM), 1)
+    narrow, wide, wider = (periodic_across(surface, width) for width in (5e-4, 5e-3, 5e-2))
+    for name in ('turn', 'length_change', 'largest_length_change'):
+        assert getattr(narrow, name) > getattr(wide, name) > getattr(wider, name)
+    assert wider.turn < 0.02 * narrow.turn
+    assert wider.length_change < 0.02 * narrow.length_change
+    again = periodic_across(wide.surface, wide.width)
+    assert (again.turn, again.length_change, again.lost) == pytest.approx((0, 0, 0), abs=1e-9)
+
+
+def test_single_waves():
+    """A steep wave keeps its length, one that runs across keeps its part along the track."""
+    turned = periodic_across(one_wave(40.0, 1.1), 1e-3)
+    assert turned.surface.wave_number_y == pytest.approx(2e3 * math.pi)
+    assert turned.length_change == pytest.approx(0, abs=1e-12)
+    assert turned.turn == pytest.approx(0.1 / 40, rel=0.01)
+    stretched = periodic_across(one_wave(0.2, 10.4), 1e-3)
+    assert stretched.surface.wave_number_x == pytest.approx(2e3 * math.pi * 0.2)
+    assert stretched.length_change == pytest.approx(0.04, rel=0.01)
+    assert stretched.length_change == stretched.largest_length_change
+    lost = periodic_across(one_wave(0.0, 0.3), 1e-3)
+    assert (lost.lost, lost.length_change) == (1.0, 0.0)
+
+
+def test_ridges_along_the_track_stay_so():
+    """A longitudinal lay without a fan is the same at every place of the track, snapped or not."""
+    ridges = replace(SPECTRUM, lay='longitudinal', fan_angle=0.0)
+    found = periodic_across(draw_raceway(scale_spectrum(ridges), 2), 0.7e-3)
+    heights = found.surface.heights(np.linspace(0, 1e-3, 5), np.linspace(0, 1e-3, 50))
+    np.testing.assert_allclose(heights, heights[:1] * np.ones((5, 1)), atol=1e-17)
+    assert found.turn < 1e-9 < found.length_change
+
+
+def test_what_has_no_period_is_refused():
+    """A width that is none, and a surface that slopes."""
+    with pytest.raises(InputError, match='strip: width is -1 mm, allowed is above 0'):
+        periodic_across(one_wave(1.0, 1.0), -1e-3)
+    with pytest.raises(InputError, match='slopes across the track, allowed is a level one'):
+        periodic_across(replace(one_wave(1.0, 1.0), plane=(0.0, 0.0, 1e-3)), 1e-3)
