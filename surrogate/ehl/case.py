@@ -81,6 +81,11 @@ class ScaledCase(ScaledContact):
             levels.insert(0, (nx, ny))
         return levels
 
+    def distance(self, grid: Grid) -> Array:
+        """Return the distance of the nodes from the centre over the semi-axes [-]."""
+        across = grid.y / self.ellipticity
+        return np.asarray(np.hypot(grid.x[:, None], across[None, :]))
+
     def shape_heights(self, grid: Grid) -> Array:
         """Return the smooth undeformed gap."""
         ratio = self.contact.radius_x / self.contact.radius_y

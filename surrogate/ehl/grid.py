@@ -15,7 +15,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import map_coordinates
-from surrogate.ehl.half_space import HalfSpace, make_half_space
+from surrogate.ehl.half_space import HalfSpace, make_half_space, repeat
 from surrogate.ehl.kernels.level import make_workspace, Workspace
 
 Array = NDArray[np.float64]
@@ -33,12 +33,18 @@ SHORTEST_CELL, LONGEST_CELL = 0.5, 6.0
 
 @dataclass(frozen=True, kw_only=True)
 class Grid:
-    """Nodes x (nx) and y (array columns, mirror column included), elastic scale."""
+    """
+    Nodes x (nx) and y (array columns, mirror column or copies included), elastic scale.
+
+    A periodic grid repeats its columns 1 to the last but one for ever across the track.
+
+    """
 
     x: Array
     y: Array
     symmetric: bool
     compliance: float
+    periodic: bool = False
 
     @property
     def dx(self) -> float:
@@ -67,13 +73,20 @@ class Grid:
         if self.symmetric:
             weights[2:] *= 2
             weights[0] = 0
+        if self.periodic:
+            weights[[0, -1]] = 0
         return weights
 
     @cached_property
     def space(self) -> HalfSpace:
         """Half-space in double precision."""
         return make_half_space(
-            *self.shape, self.dx, self.dy, symmetric=self.symmetric, scale=self.compliance
+            *self.shape,
+            self.dx,
+            self.dy,
+            symmetric=self.symmetric,
+            periodic=self.periodic,
+            scale=self.compliance,
         )
 
     @cached_property
@@ -84,6 +97,7 @@ class Grid:
             self.dx,
             self.dy,
             symmetric=self.symmetric,
+            periodic=self.periodic,
             scale=self.compliance,
             dtype=KRYLOV_TYPE,
         )
@@ -129,6 +143,21 @@ def make_grid(
     return Grid(x=x, y=y[first:] if symmetric else y, symmetric=symmetric, compliance=compliance)
 
 
+def make_strip_grid(
+    nx: int, columns: int, ends: tuple[float, float], width: float, compliance: float
+) -> Grid:
+    """
+    Return nx nodes from inlet to outlet and `columns` across a `width`, all over the semi-axis a.
+
+    The strip repeats across the track; `columns` is 3^n * 2^k with k at least 2.
+
+    """
+    dy = width / columns
+    y = np.asarray((np.arange(columns + 2) - 0.5 * (columns + 1)) * dy)
+    x = np.linspace(*ends, nx)
+    return Grid(x=x, y=y, symmetric=False, compliance=compliance, periodic=True)
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class GridState:
     """Film and asperity pressure and approach, in Hertz units [-]."""
@@ -153,6 +182,9 @@ def _resample(field: Array, old: Grid, new: Grid) -> Array:
     places = np.stack(np.meshgrid(rows, columns, indexing='ij'))
     values = np.asarray(map_coordinates(field, places, order=1, mode='constant', cval=0.0))
     values[0] = values[-1] = 0.0
+    if new.periodic:
+        repeat(values)
+        return values
     values[:, -1] = 0.0
     if not new.symmetric:
         values[:, 0] = 0.0

@@ -7,7 +7,8 @@ Arrays have x along the first axis and y along the second. A symmetric half-spac
 y >= 0 in columns 1 on and keeps column 0 for the mirror image at y = -dy; otherwise all columns
 are nodes. The pressure is zero in the last row, in the first row and in the last column (and in
 the first column if not symmetric), as on every contact grid here, so that lengths of about twice
-the grid are enough.
+the grid are enough. A periodic half-space repeats its columns 1 to the last but one for ever; the
+first and the last column are copies.
 
 """
 
@@ -23,6 +24,9 @@ Array = NDArray[np.floating]
 MOST_LANES = 128
 """Pairs of rows that one transform along y takes at a time, at most."""
 
+IMAGES = 20
+"""Images of a periodic load on each side that are summed up one by one [-]."""
+
 BLOCK = 8
 """Lanes that are turned from rows into columns together."""
 
@@ -32,7 +36,7 @@ class HalfSpace(NamedTuple):
     Spectrum, tables and work space of a convolution; `symbol` in natural order.
 
     Tables of y and x, spectrum in the order of the transforms (two planes), scratch (real,
-    imaginary) of both transforms, and whether the half y >= 0 stands for all.
+    imaginary) of both transforms, and whether the half y >= 0 stands for all, or a period.
 
     """
 
@@ -42,6 +46,7 @@ class HalfSpace(NamedTuple):
     tile: Array
     columns: Array
     symmetric: bool
+    periodic: bool
     near: Array
 
 
@@ -71,14 +76,26 @@ def make_half_space(
     dy: float,
     *,
     symmetric: bool,
+    periodic: bool = False,
     scale: float = 1.0,
     dtype: DTypeLike = np.float64,
 ) -> HalfSpace:
-    """Prepare `scale` times the influence of all nodes of an (nx, ny) array on each other."""
+    """
+    Prepare `scale` times the influence of all nodes of an (nx, ny) array on each other.
+
+    Periodic across, it is but for a constant: the deflection under a load without end has none.
+    The number of columns less two is then a length of the transforms.
+
+    """
     length_x = good_length(2 * nx - 3)
     length_y = good_length(4 * (ny - 1) - 5 if symmetric else 2 * ny - 3)
+    if periodic:
+        length_y = ny - 2
+        assert length_y == good_length(length_y)
     # The kernel is homogeneous of degree one: only the shape of a cell matters, but for a factor.
-    symbol = scale * dx * _symbol(length_x, length_y, float(f'{dy / dx:.12g}'))
+    symbol = scale * dx * _symbol(length_x, length_y, float(f'{dy / dx:.12g}'), periodic)
+    if periodic:  # the constant left out must not depend on the grid
+        symbol[0, 0] -= scale * dx * 2 * length_x * np.log(dx)
     x, y = make_fft(length_x, dtype), make_fft(length_y, dtype)
     spectrum = _pack(symbol / (length_x * length_y), symmetric)
     ordered = np.empty_like(spectrum)
@@ -91,6 +108,7 @@ def make_half_space(
         x=x,
         spectrum=ordered.astype(dtype),
         symmetric=symmetric,
+        periodic=periodic,
         tile=np.zeros((2, length_y, lanes), dtype),
         near=_near_kernel(symbol).astype(dtype),
         columns=np.zeros((2, length_x, columns), dtype),
@@ -98,14 +116,35 @@ def make_half_space(
 
 
 @lru_cache(maxsize=32)
-def _symbol(length_x: int, length_y: int, aspect: float) -> Array:
+def _symbol(length_x: int, length_y: int, aspect: float, periodic: bool) -> Array:
     """Return the spectrum of the kernel between cells of size 1 by `aspect`."""
     lag_x, lag_y = 1.0 * np.arange(length_x // 2 + 1), aspect * np.arange(length_y // 2 + 1)
-    quarter = influence_love_1929(lag_x[:, None], lag_y[None, :], 1.0, aspect)
+    x, y = lag_x[:, None], lag_y[None, :]
+    if periodic:
+        quarter = _influence_of_images(x, y, aspect, length_y * aspect)
+    else:
+        quarter = influence_love_1929(x, y, 1.0, aspect)
     rows = np.fft.hfft(quarter, axis=1)[:, : length_y // 2 + 1]
     symbol = np.fft.hfft(rows, axis=0)
     symbol.flags.writeable = False
     return symbol
+
+
+def _influence_of_images(x: Array, y: Array, aspect: float, width: float) -> Array:
+    """
+    Return the influence of a cell and of its images every `width` along y, less a constant.
+
+    Beyond `IMAGES` of them on each side the load is spread evenly, so that their sum is an
+    integral, -aspect/width ln(s + sqrt(s^2 + x^2)) from the distance s on, to either side.
+
+    """
+    total = np.zeros(np.broadcast_shapes(x.shape, y.shape))
+    for image in range(-IMAGES, IMAGES + 1):
+        total += influence_love_1929(x, y + image * width, 1.0, aspect)
+    reach = (IMAGES + 0.5) * width
+    for beyond in (reach - y, reach + y):
+        total -= aspect / width * np.log(beyond + np.hypot(beyond, x))
+    return total
 
 
 def _pack(symbol: Array, symmetric: bool) -> Array:
@@ -149,6 +188,8 @@ def deform(space: HalfSpace, pressure: Array, out: Array) -> None:
         _multiply(space)
         fft_inverse(space.columns[0], space.columns[1], space.x.cos, space.x.sin)
         _spectrum_to_rows(space, out)
+        if space.periodic:
+            repeat(out)
 
 
 @njit(cache=True, error_model='numpy')
@@ -178,12 +219,14 @@ def _multiply_even(space: HalfSpace) -> None:
 
 
 @njit(cache=True, error_model='numpy')
-def _load_tile(tile: Array, values: Array, start: int, symmetric: bool) -> None:
-    """Copy two rows into each lane, zero beyond, mirrored when symmetric."""
+def _load_tile(
+    tile: Array, values: Array, start: int, symmetric: bool, periodic: bool = False
+) -> None:
+    """Copy two rows into each lane, zero beyond, mirrored when symmetric, a period of them."""
     nx, ny = values.shape
     length, lanes = tile.shape[1], tile.shape[2]
-    first = 1 if symmetric else 0
-    used = ny - first
+    first = 1 if symmetric or periodic else 0
+    used = ny - 2 if periodic else ny - first
     for part in range(2):
         plane, offset = tile[part], start + part * lanes
         rows = max(0, min(lanes, nx - offset))
@@ -203,20 +246,32 @@ def _load_tile(tile: Array, values: Array, start: int, symmetric: bool) -> None:
 
 
 @njit(cache=True, error_model='numpy')
-def _store_tile(tile: Array, values: Array, start: int, symmetric: bool) -> None:
-    """Copy the lanes back into rows, with the mirror column when symmetric."""
+def _store_tile(
+    tile: Array, values: Array, start: int, symmetric: bool, periodic: bool = False
+) -> None:
+    """Copy the lanes back into rows, with the mirror column or the copies of a period."""
     nx, ny = values.shape
     lanes = tile.shape[2]
-    first = 1 if symmetric else 0
+    first = 1 if symmetric or periodic else 0
+    end = ny - 1 if periodic else ny
     for part in range(2):
         plane, offset = tile[part], start + part * lanes
         rows = max(0, min(lanes, nx - offset))
         for lane in range(rows):
-            for j in range(ny - first):
+            for j in range(end - first):
                 values[offset + lane, first + j] = plane[j, lane]
     if symmetric:
         for i in range(nx):
             values[i, 0] = values[i, 2]
+
+
+@njit(cache=True, error_model='numpy')
+def repeat(values: Array) -> None:
+    """Fill the copies on both sides of a period [any unit]."""
+    last = values.shape[1] - 1
+    for i in range(values.shape[0]):
+        values[i, 0] = values[i, last - 1]
+        values[i, last] = values[i, 1]
 
 
 @njit(cache=True, error_model='numpy')
@@ -271,7 +326,7 @@ def _rows_to_spectrum(space: HalfSpace, values: Array) -> None:
     place, lanes = space.y.place, tile.shape[2]
     size, half, nx = place.size, re.dtype.type(0.5), values.shape[0]
     for start in range(0, nx, 2 * lanes):
-        _load_tile(tile, values, start, False)
+        _load_tile(tile, values, start, False, space.periodic)
         fft_forward(tile[0], tile[1], space.y.cos, space.y.sin)
         real, imaginary, second = tile[0], tile[1], start + lanes
         for block in range(0, min(lanes, nx - start), BLOCK):
@@ -313,4 +368,4 @@ def _spectrum_to_rows(space: HalfSpace, values: Array) -> None:
                     real[b, lane], imaginary[b, lane] = re[i, k], -im[i, k]
                     real[a, lane], imaginary[a, lane] = re[i, k], im[i, k]
         fft_inverse(tile[0], tile[1], space.y.cos, space.y.sin)
-        _store_tile(tile, values, start, False)
+        _store_tile(tile, values, start, False, space.periodic)

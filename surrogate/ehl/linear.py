@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 from surrogate.ehl.grid import Grid, GridState, KRYLOV_LIMIT, KRYLOV_TYPE, LEVELS
+from surrogate.ehl.half_space import repeat
 from surrogate.ehl.kernels.krylov import solve_newton_step
 from surrogate.ehl.kernels.level import GridLevel
 from surrogate.ehl.kernels.transfer import inject
@@ -34,6 +35,9 @@ def solve_linear(
     film.ravel()[nodes] = x[size:-1]
     if grid.symmetric:
         total[:, 0], film[:, 0] = total[:, 2], film[:, 2]
+    if grid.periodic:
+        repeat(total)
+        repeat(film)
     return film, total, float(x[-1]), used
 
 
@@ -103,11 +107,12 @@ def _coarse_level(
 
 
 def _own_nodes(grid: Grid, mask: Mask) -> Mask:
-    """Drop the mirror column of a mask."""
-    if not grid.symmetric:
-        return mask
+    """Drop the mirror column of a mask, or the copies of a period."""
     own = mask.copy()
-    own[:, 0] = False
+    if grid.symmetric:
+        own[:, 0] = False
+    if grid.periodic:
+        own[:, [0, -1]] = False
     return own
 
 

@@ -117,7 +117,7 @@ class Search:
         )
         first = self.case.problem(fine, speed, heights, 1.0)
         if state is None:
-            outcome = self._from_hertz(fine, speed, limits)
+            outcome = self.from_hertz(fine, speed, limits)
             if not outcome.converged:
                 return fine, outcome
             state = outcome.state
@@ -148,7 +148,7 @@ class Search:
             if outcome is not None and outcome.converged and grid is not None:
                 outcome = self.solve(finer, problem, transfer(outcome.state, grid, finer), limits)
             else:
-                outcome = self._from_hertz(finer, speed, limits)
+                outcome = self.from_hertz(finer, speed, limits)
             grid = finer
             if place == len(levels) - 1 and outcome.converged:
                 outcome = self._half_grid(grid, problem, speed, outcome)
@@ -168,8 +168,8 @@ class Search:
         self.half = film_and_share(self.case, grid, outcome)
         return outcome
 
-    def _from_hertz(self, grid: Grid, speed: float, limits: NewtonLimits) -> NewtonResult:
-        """Start from Hertz's pressure at this speed or, failing that, at a faster one."""
+    def from_hertz(self, grid: Grid, speed: float, limits: NewtonLimits) -> NewtonResult:
+        """Start from Hertz's pressure at this speed [m/s] or, failing that, at a faster one."""
         heights = self.case.shape_heights(grid)
         if speed and self.case.fluid_numbers(0.0)[0] > STIFF:
             return self._from_soft(grid, speed, heights, limits)

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.ehl.grid import Grid, GridState
-from surrogate.ehl.half_space import deform
+from surrogate.ehl.half_space import deform, repeat
 from surrogate.ehl.kernels.moving import column_rows
 from surrogate.ehl.kernels.reynolds import (
     clear_border,
@@ -99,6 +99,8 @@ def evaluate(grid: Grid, problem: GridProblem, state: GridState) -> Evaluation:
     count = contact_set(
         state.asperity_pressure, gap, problem.floor, grid.stiffness, grid.symmetric, contact
     )
+    if grid.periodic:
+        repeat(contact)
     residual, by_pressure, by_gap, heights = film_rows(grid, problem, pressure, gap, contact)
     sizes = np.zeros(shape)
     flux = free_boundary_rows(

@@ -79,7 +79,7 @@ def _assemble(by_pressure: Array, thick: Array, rows: Array) -> None:
     Sum up the rows of each band, with columns beside it one band apart.
 
     Those two nodes away join the next ones. A step to the next band is `BAND` times as long as one
-    to the next line.
+    to the next line. What a periodic grid has beyond its sides counts to the outer bands.
 
     """
     nx, ny = thick.shape
@@ -99,12 +99,12 @@ def _assemble(by_pressure: Array, thick: Array, rows: Array) -> None:
             row[0] += west * thick[i - 1, j]
             row[count] += by_pressure[0, i, j]
             row[2 * count] += by_pressure[2, i, j] * thick[i + 1, j]
-            if (j - 1) % BAND > 0:
+            if (j - 1) % BAND > 0 or j == 1:
                 row[count] += south
             else:
                 row[count] += rest * south
                 row[count - 1] += share * south
-            if j % BAND > 0:
+            if j % BAND > 0 or j == ny - 2:
                 row[count] += north
             else:
                 row[count] += rest * north

@@ -14,7 +14,7 @@ from typing import NamedTuple
 from numba import njit
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.ehl.half_space import deform, HalfSpace
+from surrogate.ehl.half_space import deform, HalfSpace, repeat
 from surrogate.ehl.kernels.bands import bands_across, factor_bands, mark_thick_film, solve_bands
 from surrogate.ehl.kernels.line import (
     film_factors,
@@ -189,6 +189,8 @@ def apply_operator(level: GridLevel, x: Array, out: Array) -> None:
     lift += x[size + count]
     if space.symmetric:
         mirror(film)
+    if space.periodic:
+        repeat(film)
     stencil(work.by_pressure, work.by_gap, film, lift, out[:size].reshape(nx, ny))
     raised = lift.reshape(size)
     for k in range(count):
@@ -207,8 +209,10 @@ def apply_lines(level: GridLevel, x: Array, out: Array) -> None:
         _solve_total(level, rhs, total)
     else:
         _apply_contact_lines(level, x, out)
-    if symmetric:
+    if symmetric or level.space.periodic:
         total[:, 0] = 0
+    if level.space.periodic:
+        total[:, ny - 1] = 0
 
 
 @njit(cache=True, error_model='numpy')
@@ -218,8 +222,17 @@ def _solve_total(level: GridLevel, rhs: Array, total: Array) -> None:
     if started:
         rows, lower = work.thick_rows, work.thick_lower
         solve_bands(rows, lower, work.thick, rhs, work.thick_values, total)
-    symmetric = level.space.symmetric
-    solve_lines(work.bands, work.sides, rhs, LINE_STEPS, started, symmetric, work.halves, total)
+    solve_lines(
+        work.bands,
+        work.sides,
+        rhs,
+        LINE_STEPS,
+        started,
+        level.space.symmetric,
+        level.space.periodic,
+        work.halves,
+        total,
+    )
 
 
 @njit(cache=True, error_model='numpy')
@@ -276,6 +289,8 @@ def _factor_thick_film(level: GridLevel) -> None:
             work.by_pressure, work.by_gap, level.contact, level.sizes, level.space.near, work.thick
         )
     ):
+        if level.space.periodic:
+            repeat(work.thick)
         factor_bands(work.by_pressure, work.thick, work.thick_rows, work.thick_lower)
         work.used[2] = 1
 

@@ -115,6 +115,7 @@ def solve_lines(
     steps: int,
     started: bool,
     symmetric: bool,
+    periodic: bool,
     work: Array,
     value: Array,
 ) -> None:
@@ -124,6 +125,7 @@ def solve_lines(
     From `value` if started or else zero; `work` is six planes of a kind that once were zero.
 
     """
+    last = rhs.shape[1] // 2 - 1
     known, found = work[:2], work[2:4]
     part(rhs, known)
     if started:
@@ -142,6 +144,11 @@ def solve_lines(
         if symmetric and kind == 0:
             for i in range(rhs.shape[0]):
                 found[0, i, 0] = found[0, i, 1]
+        if periodic:
+            # The copies on either side are the first even line and the last odd one.
+            end, own = (last, 0) if kind == 1 else (0, last)
+            for i in range(rhs.shape[0]):
+                found[kind, i, end] = found[kind, i, own]
     join(found, value)
 
 

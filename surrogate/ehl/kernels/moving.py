@@ -55,10 +55,17 @@ def column_rows(
 
 @njit(cache=True, error_model='numpy')
 def dissipated(
-    pressure: Array, film: Array, mobility: float, aspect: float, limited: bool, inlet: Array
+    pressure: Array,
+    film: Array,
+    mobility: float,
+    aspect: float,
+    limited: bool,
+    inlet: Array,
+    periodic: bool,
 ) -> float:
     """Return the sum over all faces of the flux per density times the rise of pressure [-]."""
     nx, ny = pressure.shape
+    first = 1 if periodic else 0
     total = 0.0
     for i in range(nx - 1):
         for j in range(1, ny - 1):
@@ -67,7 +74,7 @@ def dissipated(
             flow = face_flow(film, i, j, i + 1, j, rise > 0.0, limited)[0]
             total += 2.0 * mobility * flow * rise * rise / (film[0, i, j] + film[0, i + 1, j])
         if i > 0:
-            for j in range(ny - 1):
+            for j in range(first, ny - 1):
                 rise = pressure[i, j + 1] - pressure[i, j]
                 flow = face_flow(film, i, j, i, j + 1, limited, limited)[0]
                 dense = 0.5 * (film[0, i, j] + film[0, i, j + 1])

@@ -4,11 +4,22 @@
 Contact whose rough raceway rolls through it: marched in time, averaged over many transits.
 
 interface holds settings and result. feed hands the raceway to the grid, row by row; step solves
-one step after the other; sums measures each and averages them; march puts them together.
+one step after the other; sums measures each and averages them; march puts them together. line is
+a strip of a long contact, for waves that are too short for a grid over the whole.
 
 """
 
 from surrogate.ehl.moving.interface import MarchSettings, MarchStatus, Mean, MovingSolution
-from surrogate.ehl.moving.march import march_contact
+from surrogate.ehl.moving.line import strip_at, StripContact
+from surrogate.ehl.moving.march import march_contact, march_strip
 
-__all__ = ['MarchSettings', 'MarchStatus', 'Mean', 'MovingSolution', 'march_contact']
+__all__ = [
+    'MarchSettings',
+    'MarchStatus',
+    'Mean',
+    'MovingSolution',
+    'StripContact',
+    'march_contact',
+    'march_strip',
+    'strip_at',
+]

@@ -9,6 +9,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.ehl.interface import Condition, ContactLubricant, NO_FADING, Settings
+from surrogate.ehl.moving.line import StripContact
 from surrogate.files import InputError
 from surrogate.formulas.geometry import Contact
 
@@ -114,7 +115,7 @@ class MovingSolution:
 
     """
 
-    contact: Contact
+    contact: Contact | StripContact
     lubricant: ContactLubricant
     condition: Condition
     settings: MarchSettings

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from surrogate.ehl.case import make_case, ScaledCase
 from surrogate.ehl.domain import production_domain
+from surrogate.ehl.grid import Grid, GridState
 from surrogate.ehl.interface import (
     check_contact,
     Condition,
@@ -24,6 +25,7 @@ from surrogate.ehl.moving.interface import (
     MarchStatus,
     MovingSolution,
 )
+from surrogate.ehl.moving.line import scale_strip, smooth_strip, strip_case, StripContact
 from surrogate.ehl.moving.step import Step, step_limits, Stepper
 from surrogate.ehl.moving.sums import average, Gauge, Measure
 from surrogate.ehl.scales import scale_contact, ScaledContact
@@ -68,11 +70,7 @@ def march_contact(
 
     """
     check_contact(contact)
-    if not transits >= LEAST_TRANSITS * settings.places:
-        raise InputError(
-            f'transits is {transits!r}, allowed is {LEAST_TRANSITS:g} or more at each of '
-            f'{settings.places} places: a shorter strip has not been through the contact'
-        )
+    _check_transits(transits, settings)
     began = time.perf_counter()
     scaled = scale_contact(contact, lubricant, condition, raceway)
     steady = settings.steady(settings.domain or marching_domain(scaled))
@@ -80,15 +78,60 @@ def march_contact(
         smooth = solve_contact(
             contact, lubricant, condition, roughness=flat, settings=steady, start=start
         )
+        case = make_case(contact, lubricant, condition, steady, raceway)
+        grid = case.grid(settings.nx, settings.ny, symmetric=False)
         march = _March(
-            case=make_case(contact, lubricant, condition, steady, raceway),
+            case=case,
+            grid=grid,
             settings=settings,
-            smooth=smooth,
+            smooth=state_from_solution(case, grid, smooth) if smooth.converged else None,
             deadline=began + settings.time_cap,
         )
-        if smooth.converged:
-            march.run(transits / settings.places)
-    return march.solution(time.perf_counter() - began)
+        march.run(transits / settings.places)
+    return march.solution(contact, time.perf_counter() - began)
+
+
+def march_strip(
+    strip: StripContact,
+    lubricant: ContactLubricant,
+    entrainment_speed: float,
+    raceway: RoughHeights,
+    *,
+    transits: float,
+    settings: MarchSettings = PRODUCTION,
+) -> MovingSolution:
+    """
+    Let a rough raceway roll through a strip of a long contact and average over time.
+
+    As `march_contact`, at an entrainment speed [m/s]. The raceway has to repeat with the width of
+    the strip; the columns of the strip stand in for `settings.ny`, and of a domain only inlet and
+    outlet count.
+
+    """
+    _check_transits(transits, settings)
+    began = time.perf_counter()
+    scaled = scale_strip(strip, lubricant, entrainment_speed, raceway)
+    case = strip_case(scaled, settings.steady(settings.domain or marching_domain(scaled)))
+    grid = case.grid(settings.nx, strip.columns, symmetric=False)
+    with at(stage='rolling contact'):
+        smooth, converged = smooth_strip(case, grid)
+        march = _March(
+            case=case,
+            grid=grid,
+            settings=settings,
+            smooth=smooth if converged else None,
+            deadline=began + settings.time_cap,
+        )
+        march.run(transits / settings.places)
+    return march.solution(strip, time.perf_counter() - began)
+
+
+def _check_transits(transits: float, settings: MarchSettings) -> None:
+    if not transits >= LEAST_TRANSITS * settings.places:
+        raise InputError(
+            f'transits is {transits!r}, allowed is {LEAST_TRANSITS:g} or more at each of '
+            f'{settings.places} places: a shorter strip has not been through the contact'
+        )
 
 
 def flat(x: Array, y: Array) -> Array:
@@ -113,8 +156,9 @@ class _March:
     """A march under way: what has been measured at each place, and what it took."""
 
     case: ScaledCase
+    grid: Grid
     settings: MarchSettings
-    smooth: ContactSolution
+    smooth: GridState | None
     deadline: float
     places: list[list[Measure]] = field(default_factory=list)
     last: Step | None = None
@@ -125,15 +169,14 @@ class _March:
     ended: MarchStatus | None = None
 
     def __post_init__(self) -> None:
-        """Make the grid and the gauge."""
-        self.grid = self.case.grid(self.settings.nx, self.settings.ny, symmetric=False)
+        """Make the gauge."""
         self.gauge = Gauge(
             case=self.case, grid=self.grid, slide_roll_ratio=self.settings.slide_roll_ratio
         )
 
     def run(self, transits: float) -> None:
         """March so many transits at each place, until the march ends."""
-        for place in range(self.settings.places):
+        for place in range(self.settings.places if self.smooth else 0):
             self.places.append([])
             for step in self._track(place, transits):
                 self.places[-1].append(self.gauge.measure(step))
@@ -173,10 +216,11 @@ class _March:
 
     def _stepper(self) -> Stepper:
         settings = self.settings
+        assert self.smooth is not None
         return Stepper(
             case=self.case,
             grid=self.grid,
-            smooth=state_from_solution(self.case, self.grid, self.smooth),
+            smooth=self.smooth,
             limits=step_limits(
                 settings.flux_tolerance, settings.load_tolerance, settings.gap_tolerance
             ),
@@ -192,33 +236,32 @@ class _March:
         self.krylov += step.krylov
 
     def _status(self) -> MarchStatus:
-        if not self.smooth.converged:
+        if self.smooth is None:
             return MarchStatus.NO_SMOOTH_FILM
         if self.ended is None and self.failed > FEW * self.steps:
             return MarchStatus.STALLED
         return self.ended or (MarchStatus.SOME_STEPS if self.failed else MarchStatus.CONVERGED)
 
-    def solution(self, wall_time: float) -> MovingSolution:
+    def solution(self, contact: Contact | StripContact, wall_time: float) -> MovingSolution:
         """Return the averages of what was measured, in whatever way the march ended."""
-        case, smooth = self.case, self.smooth
+        case = self.case
         bare = MovingSolution(
-            contact=case.contact,
+            contact=contact,
             lubricant=case.lubricant,
             condition=case.condition,
             settings=self.settings,
             status=self._status(),
             steps=self.steps,
             steps_failed=self.failed,
-            newton_iterations=smooth.newton_iterations + self.newton,
-            krylov_iterations=smooth.krylov_iterations + self.krylov,
+            newton_iterations=self.newton,
+            krylov_iterations=self.krylov,
             wall_time=wall_time,
-            central_film=smooth.central_film,
         )
         return self._with_averages(bare) if any(self.places) else bare
 
     def _with_averages(self, bare: MovingSolution) -> MovingSolution:
         step_length = self.settings.stride * self.grid.dx
-        found = average(self.places, step_length)
+        found, smooth = average(self.places, step_length), self._smooth()
         assert self.last is not None
         state, case = self.last.outcome.state, self.case
         return replace(
@@ -230,14 +273,14 @@ class _March:
             centre_films=np.array([one.centre_film for steps in self.places for one in steps]),
             memory=found.memory,
             transits=sum(map(len, self.places)) * step_length / 2,
-            smooth_rolling_loss=self._smooth_loss(),
+            smooth_rolling_loss=smooth.rolling_loss,
+            central_film=smooth.centre_film,
             x_nodes=self.grid.x * case.semi_axis_x,
             y_nodes=self.grid.y * case.semi_axis_x,
             film=self.last.outcome.gap * case.height_unit,
             pressure=(state.film_pressure + state.asperity_pressure) * case.hertz_pressure,
         )
 
-    def _smooth_loss(self) -> float:
-        """Return the rolling loss of the smooth contact [N]."""
-        step = self._stepper().step(np.zeros(self.grid.shape))
-        return self.gauge.measure(step).rolling_loss
+    def _smooth(self) -> Measure:
+        """Return the numbers of the smooth contact."""
+        return self.gauge.measure(self._stepper().step(np.zeros(self.grid.shape)))

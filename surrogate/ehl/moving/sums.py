@@ -4,6 +4,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 import math
 
 import numpy as np
@@ -52,6 +53,12 @@ class Gauge:
     grid: Grid
     slide_roll_ratio: float
 
+    @cached_property
+    def _distance(self) -> Array:
+        """Return the distance of the nodes that count over the semi-axes [-]; else infinity."""
+        counts = self.grid.weights > 0
+        return np.where(counts[None, :], self.case.distance(self.grid), np.inf)
+
     def measure(self, step: Step) -> Measure:
         """Return the numbers of a step."""
         case, grid, outcome = self.case, self.grid, step.outcome
@@ -59,8 +66,8 @@ class Gauge:
         punctured = outcome.gap <= PUNCTURED * case.floor
         total = outcome.state.film_pressure + outcome.state.asperity_pressure
         touching = np.where(punctured, total, 0.0)
-        core = self._distance() < CORE
-        inside = gap[self._distance() < 1.0] * unit
+        core = self._distance < CORE
+        inside = gap[self._distance < 1.0] * unit
         return Measure(
             rcs=grid.integral(touching) / case.load,
             asperity_share=grid.integral(outcome.state.asperity_pressure) / case.load,
@@ -75,16 +82,11 @@ class Gauge:
             rcs_along=touching @ grid.weights / grid.dx / case.load,
         )
 
-    def _distance(self) -> Array:
-        """Return the distance of the nodes from the centre over the semi-axes [-]."""
-        across = self.grid.y / self.case.ellipticity
-        return np.asarray(np.hypot(self.grid.x[:, None], across[None, :]))
-
     def _film_traction(self, step: Step, gap: Array, punctured: NDArray[np.bool_]) -> float:
         """Return the Eyring traction of the film over the load [-]."""
         case, oil = self.case, self.case.lubricant
         pressure = step.outcome.state.film_pressure
-        wet = ~punctured & (pressure > 0)
+        wet = ~punctured & (pressure > 0) & (self.grid.weights > 0)
         viscosity = viscosity_of(oil, pressure[wet] * case.hertz_pressure)
         slip = self.slide_roll_ratio * step.speed
         stress = oil.eyring_stress * np.arcsinh(
@@ -99,7 +101,13 @@ class Gauge:
         pressure = outcome.state.film_pressure
         film = film_planes(problem, pressure, outcome.gap, outcome.contact)
         lost = dissipated(
-            pressure, film, problem.mobility, grid.aspect, problem.fading > 0.0, problem.inlet
+            pressure,
+            film,
+            problem.mobility,
+            grid.aspect,
+            problem.fading > 0.0,
+            problem.inlet,
+            grid.periodic,
         )
         return 0.5 * lost * grid.dy * self._force
 

@@ -104,3 +104,47 @@ def test_near_kernel_has_the_symbol_of_the_full_one_at_high_frequency():
     ).real
     assert symbol.min() > 0
     assert symbol[-1, -1] == pytest.approx(full[32, 32], rel=1e-10)
+
+
+def test_a_periodic_half_space_is_the_sum_of_its_images():
+    """Differences of deflection, with images summed up far out; the copies at both ends."""
+    rng = np.random.default_rng(1)
+    pressure = np.zeros((15, 14))
+    pressure[1:-1, 1:-1] = rng.random((13, 12))
+    found = np.empty_like(pressure)
+    space = make_half_space(15, 14, 0.1, 0.07, symmetric=False, periodic=True)
+    deform(space, pressure, found)
+    many, period = 401, 12
+    wide = np.zeros((15, period * many))
+    wide[:] = np.tile(pressure[:, 1:-1], many)
+    middle = period * (many // 2) + np.arange(period)
+    x, y = 0.1 * np.arange(15), 0.07 * np.arange(period * many)
+    twin = np.zeros((15, period))
+    for i in range(1, 14):
+        for k in range(period):
+            lag = y[middle][None, None, :] - y[k::period][:, None, None]
+            part = influence_love_1929(x[None, :, None] - x[i], lag, 0.1, 0.07).sum(axis=0)
+            twin += pressure[i, k + 1] * part
+    assert found[:, 1:-1] - found[7, 6] == pytest.approx(twin - twin[7, 5], abs=2e-5)
+    assert (found[:, 0] == found[:, -2]).all()
+    assert (found[:, -1] == found[:, 1]).all()
+
+
+@pytest.mark.parametrize('waves', [1, 3])
+def test_a_wave_across_a_periodic_strip_decays_as_in_the_half_space(waves):
+    """Of p = cos(q y) on |x| < c, far inside: 2 pi/q times the pressure, in units of 1/r."""
+    nx, columns, spacing = 257, 24, 0.05
+    width = columns * spacing
+    y = (np.arange(columns + 2) - 0.5) * spacing
+    number = 2 * np.pi * waves / width
+    pressure = np.zeros((nx, columns + 2))
+    pressure[1:-1] = np.cos(number * y)
+    found = np.empty_like(pressure)
+    deform(
+        make_half_space(nx, columns + 2, spacing, spacing, symmetric=False, periodic=True),
+        pressure,
+        found,
+    )
+    found_there = found[nx // 2] @ pressure[nx // 2] / (pressure[nx // 2] @ pressure[nx // 2])
+    blunt = np.sinc(number * spacing / 2 / np.pi)  # the pressure is constant on a cell
+    assert found_there == pytest.approx(2 * np.pi / number * blunt, rel=1e-2)

@@ -130,7 +130,7 @@ def test_lines_from_bands_leave_less_of_a_slow_wave():
             thick, values = inner((nx, ny)), np.zeros((nx + 1) * count, np.float32)
             factor_bands(planes, thick, rows, lower)
             solve_bands(rows, lower, thick, rhs, values, found)
-        solve_lines(lines, sides, rhs, 4, started, False, work, found)
+        solve_lines(lines, sides, rhs, 4, started, False, False, work, found)
         rest[started] = np.abs(found - wave).max()
     assert rest[False] > 0.8
     assert rest[True] < 0.3 * rest[False]

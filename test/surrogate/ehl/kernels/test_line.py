@@ -54,7 +54,7 @@ def solved_lines(planes, contact, rhs, steps, start=None, symmetric=False):
     bands, sides = np.zeros((2, 5, nx, half)), np.zeros((2, 6, nx, half))
     line_factors(planes, 0.1 * planes, contact, NEAR, np.float64(1.0), bands, sides)
     found, work = np.zeros((nx, ny)) if start is None else start.copy(), np.zeros((6, nx, half))
-    solve_lines(bands, sides, rhs, steps, start is not None, symmetric, work, found)
+    solve_lines(bands, sides, rhs, steps, start is not None, symmetric, False, work, found)
     return found
 
 
