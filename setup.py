@@ -89,6 +89,7 @@ setup(
             'hypothesis>=6.90',
             'pytest>=7.4',
             'pytest-timeout>=2.2',
+            'pytest-xdist>=3.5',
             'xarray>=2024.1',
             *LINTERS,
         ],

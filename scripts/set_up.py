@@ -5,11 +5,14 @@ Make `.venv` and the nominal bag; run by the Python that `.venv` is to be made o
 
 Each step has a stamp, the hash of what it depends on: a step is done again when its stamp is
 missing or different, and so are those after it that build on it. A stamp is written when its step
-is complete, so an interrupted set-up goes on where it stopped. Only the standard library is used.
+is complete, so an interrupted set-up goes on where it stopped. Compiling the solver takes one core
+longer than anything else: it begins as soon as it can, beside the steps after it. Only the
+standard library is used.
 
 """
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
 import contextlib
 import dataclasses
 import fcntl
@@ -20,13 +23,16 @@ from pathlib import Path
 import shutil
 import subprocess
 import sys
+import threading
 import time
 
 TREE = Path(__file__).resolve().parent.parent
 VENV = TREE / '.venv'
 PYTHON = VENV / 'bin' / 'python'
+PINS = TREE / 'constraints.txt'
 STAMPS = VENV / 'set_up.json'
 LOG = TREE / 'log' / 'set_up.log'
+SOLVER_LOG = TREE / 'log' / 'solver.log'  # of what is at work at the same time
 INTERFACES = TREE / 'msg_defs'
 INSTALLED_INTERFACES = VENV / 'ballscrew_msgs.txt'
 PACKAGE = 'ballscrew_monitor'
@@ -38,6 +44,8 @@ BAG_SOURCES = (
     f'{PACKAGE}/recordings/bag_writer.py',
     f'{PACKAGE}/recordings/message_definitions.py',
 )
+# What the solver is compiled with.
+NUMERICAL = ('llvmlite', 'numba', 'numpy', 'pyyaml', 'scipy')
 # What is compiled, and what calls it.
 SOLVER_SOURCES = ('surrogate/ehl/kernels/*.py', 'surrogate/ehl/*.py')
 # An installer must neither ask nor follow a user's own idea of where packages go.
@@ -55,10 +63,43 @@ class Step:
     key: str
     work: Callable[[], None]
     made: bool = True  # False when what the step makes is plainly not there
+    beside: bool = False  # True when no step after it needs what it makes
 
 
 class Failure(Exception):
-    """One sentence about what went wrong."""
+    """One sentence about what went wrong, and the log that tells the rest."""
+
+    def __init__(self, sentence: str, log: Path | None = None) -> None:
+        """Take the log of all steps unless told otherwise."""
+        super().__init__(sentence)
+        self.log = log or LOG
+
+
+class Stamps:
+    """The keys of the steps that are complete, in a file that is replaced as a whole."""
+
+    def __init__(self, kept: dict[str, str]) -> None:
+        """Begin with what is known to be complete."""
+        self._kept = kept
+        self._one_at_a_time = threading.Lock()
+
+    def remove(self, step: Step) -> None:
+        """Have a step count as not done."""
+        with self._one_at_a_time:
+            self._kept.pop(step.name, None)
+            if STAMPS.exists():
+                self._write()
+
+    def add(self, step: Step) -> None:
+        """Have a step count as done."""
+        with self._one_at_a_time:
+            self._kept[step.name] = step.key
+            self._write()
+
+    def _write(self) -> None:
+        fresh = STAMPS.with_suffix('.new')
+        fresh.write_text(json.dumps(self._kept, indent=2) + '\n')
+        fresh.replace(STAMPS)
 
 
 def digest(*parts: str, files: Iterable[Path] = ()) -> str:
@@ -69,31 +110,37 @@ def digest(*parts: str, files: Iterable[Path] = ()) -> str:
     return content.hexdigest()
 
 
-def run(*command: object, **variables: str) -> None:
-    """Run a command with its output going to the log; raise Failure when it fails."""
+def run(
+    *command: object, log: Path | None = None, variables: Mapping[str, str] | None = None
+) -> None:
+    """Run a command with its output going to a log; raise Failure when it fails."""
     words = [str(word) for word in command]
-    with LOG.open('a') as log:
-        print('$', *words, file=log, flush=True)
+    log = log or LOG
+    with log.open('a') as output:
+        print('$', *words, file=output, flush=True)
         done = subprocess.run(
             words,
             stdin=subprocess.DEVNULL,
-            stdout=log,
-            stderr=log,
+            stdout=output,
+            stderr=output,
             cwd=TREE,
-            env={**os.environ, 'PIP_USER': '0', **variables},
+            env={**os.environ, 'PIP_USER': '0', **(variables or {})},
             check=False,
         )
     if done.returncode:
-        raise Failure(f'{Path(words[0]).name} failed with exit code {done.returncode}')
+        raise Failure(f'{Path(words[0]).name} failed with exit code {done.returncode}', log)
 
 
 def make_environment() -> None:
-    """Make the environment anew with exactly the pinned packages."""
-    pins = TREE / 'constraints.txt'
+    """Make the environment anew with what the solver is compiled with."""
     run(sys.executable, '-m', 'venv', '--clear', VENV)
     # What has no wheel is built with the pinned setuptools too.
-    run(*INSTALL, '--constraint', pins, 'setuptools')
-    run(*INSTALL, '--requirement', pins)
+    run(*INSTALL, '--constraint', PINS, 'setuptools', *NUMERICAL)
+
+
+def install_packages() -> None:
+    """Install the other pinned packages."""
+    run(*INSTALL, '--requirement', PINS)
 
 
 def build_interfaces() -> None:
@@ -119,9 +166,9 @@ def build_interfaces() -> None:
         f'-DCMAKE_INSTALL_PREFIX={VENV}',
         f'-DPython3_EXECUTABLE={PYTHON}',
         f'-DCMAKE_PROJECT_INCLUDE={TREE / "scripts" / "relocate_ros_wheels.cmake"}',
-        **prefix,
+        variables=prefix,
     )
-    run(VENV / 'bin' / 'cmake', '--build', build, '--target', 'install', **prefix)
+    run(VENV / 'bin' / 'cmake', '--build', build, '--target', 'install', variables=prefix)
     shutil.copy(build / 'install_manifest.txt', INSTALLED_INTERFACES)
     shutil.rmtree(build)
     run(
@@ -167,16 +214,14 @@ def generate_bag() -> None:
 
 def compile_solver() -> None:
     """Compile the contact solver, so that the first solve does not take minutes."""
-    run(PYTHON, '-c', 'from surrogate.ehl.solver import prepare; prepare()')
+    SOLVER_LOG.write_text('')
+    run(PYTHON, '-c', 'from surrogate.ehl.solver import prepare; prepare()', log=SOLVER_LOG)
 
 
 def steps() -> list[Step]:
     """Return the steps in order, with their keys as the tree is now."""
     environment = digest(
-        sys.executable,
-        sys.version,
-        str(VENV),
-        files=[Path(__file__).resolve(), TREE / 'constraints.txt'],
+        sys.executable, sys.version, str(VENV), files=[Path(__file__).resolve(), PINS]
     )
     interfaces = [path for path in INTERFACES.rglob('*') if path.is_file()]
     cmake = TREE / 'scripts' / 'relocate_ros_wheels.cmake'
@@ -187,9 +232,23 @@ def steps() -> list[Step]:
     made = [
         Step(
             name='environment',
-            text=f'Python {version} and the pinned packages in .venv',
+            text=f'.venv with Python {version} and its numerical packages',
             key=environment,
             work=make_environment,
+        ),
+        Step(
+            name='solver',
+            text='the contact solver, compiled',
+            work=compile_solver,
+            key=digest(environment, files=solver),
+            made=any((TREE / 'surrogate' / 'ehl' / 'kernels' / '__pycache__').glob('*.nbc')),
+            beside=True,
+        ),
+        Step(
+            name='packages',
+            text='the other pinned packages',
+            work=install_packages,
+            key=environment,
         ),
         Step(
             name='interfaces',
@@ -204,16 +263,6 @@ def steps() -> list[Step]:
             key=digest(environment, files=declared),
         ),
     ]
-    if solver:
-        made.append(
-            Step(
-                name='solver',
-                text='the contact solver, compiled',
-                work=compile_solver,
-                key=digest(environment, files=solver),
-                made=any((TREE / 'surrogate' / 'ehl' / 'kernels' / '__pycache__').glob('*.nbc')),
-            )
-        )
     if BAG_GENERATOR.exists():
         made.append(
             Step(
@@ -237,13 +286,6 @@ def read_stamps() -> dict[str, str]:
     return stamps
 
 
-def write_stamps(stamps: dict[str, str]) -> None:
-    """Replace the stamps as a whole."""
-    fresh = STAMPS.with_suffix('.new')
-    fresh.write_text(json.dumps(stamps, indent=2) + '\n')
-    fresh.replace(STAMPS)
-
-
 def set_up() -> None:
     """Do the steps that are not done."""
     stamps = read_stamps()
@@ -256,23 +298,34 @@ def set_up() -> None:
     LOG.parent.mkdir(exist_ok=True)
     LOG.write_text('')
     begin = time.monotonic()
-    for number, step in enumerate(missing, start=1):
-        say(f'{number} of {len(missing)}: {step.text} ...', end=' ')
-        since = time.monotonic()
-        # Gone while its step is at work, so that an interruption leaves no false stamp.
-        stamps.pop(step.name, None)
-        if STAMPS.exists():
-            write_stamps(stamps)
-        step.work()
-        stamps[step.name] = step.key
-        write_stamps(stamps)
-        print(f'{time.monotonic() - since:.0f} s', flush=True)
+    kept = Stamps(stamps)
+    with ThreadPoolExecutor() as pool:
+        begun = []
+        for number, step in enumerate(missing, start=1):
+            place = f'{number} of {len(missing)}'
+            if step.beside:
+                begun.append(pool.submit(do, step, place, kept))
+            else:
+                do(step, place, kept)
+        for other in begun:
+            other.result()
     say(f'done in {time.monotonic() - begin:.0f} s')
 
 
-def say(text: str, end: str = '\n') -> None:
+def do(step: Step, place: str, stamps: Stamps) -> None:
+    """Do a step, and say so at its begin and its end."""
+    say(f'{place}: {step.text} ...')
+    since = time.monotonic()
+    # Gone while its step is at work, so that an interruption leaves no false stamp.
+    stamps.remove(step)
+    step.work()
+    stamps.add(step)
+    say(f'{place}: {time.monotonic() - since:.0f} s')
+
+
+def say(text: str) -> None:
     """Print a line of progress."""
-    print(f'set-up: {text}', end=end, flush=True)
+    print(f'set-up: {text}', flush=True)
 
 
 @contextlib.contextmanager
@@ -299,8 +352,9 @@ def main() -> int:
         print('\nset-up: interrupted; the next call goes on from here', file=sys.stderr)
         return 130
     except (Failure, OSError) as reason:
-        print('\n' + ''.join(LOG.read_text().splitlines(True)[-30:]), file=sys.stderr)
-        print(f'set-up: {reason}; the whole output is in {LOG.relative_to(TREE)}', file=sys.stderr)
+        log = getattr(reason, 'log', LOG)
+        print('\n' + ''.join(log.read_text().splitlines(True)[-30:]), file=sys.stderr)
+        print(f'set-up: {reason}; the whole output is in {log.relative_to(TREE)}', file=sys.stderr)
         return 1
     return 0
 

@@ -7,6 +7,7 @@ import importlib.util
 from pathlib import Path
 import sys
 
+from hypothesis import HealthCheck, settings
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -55,6 +56,10 @@ SLOW = (
 )
 SLOW_FIXTURES = {'nominal_bag', 'short_bag'}
 
+# Two workers share the machine with others: how long an example takes says nothing of the code.
+settings.register_profile('unhurried', deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile('unhurried')
+
 
 class Skipper(MetaPathFinder):
     """Skips what imports an optional package, after every other finder has found nothing."""
@@ -68,7 +73,8 @@ sys.meta_path.append(Skipper())
 
 
 def pytest_collection_modifyitems(items):
-    """Mark what is fast: all but what is named as slow."""
+    """Mark what is fast, all but what is named as slow; linters come first, so long are they."""
+    items.sort(key=lambda item: item.get_closest_marker('linter') is None)
     for item in items:
         path = item.path.relative_to(ROOT / 'test')
         slow = any(path.is_relative_to(name) for name in SLOW)

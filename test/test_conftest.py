@@ -7,6 +7,8 @@ from pathlib import Path
 import subprocess
 import sys
 
+from hypothesis import HealthCheck, settings
+
 TREE = Path(__file__).resolve().parents[1]
 BLIND = """
 from importlib.machinery import PathFinder
@@ -43,3 +45,9 @@ def test_without_mcap_the_tests_that_need_it_are_skipped(tmp_path: Path) -> None
     assert done.returncode == 0, done.stdout + done.stderr
     assert 'mcap is not installed' in done.stdout
     assert 'passed, 1 skipped' in done.stdout
+
+
+def test_no_example_is_judged_by_its_time() -> None:
+    """A busy machine fails no property."""
+    assert settings().deadline is None
+    assert HealthCheck.too_slow in settings().suppress_health_check

@@ -3,14 +3,18 @@
 """Stamps of the set-up: what is done again, and what an interruption leaves."""
 
 from collections.abc import Callable
+from functools import partial
 import importlib.util
 from pathlib import Path
 import sys
+import threading
 from types import ModuleType
 
 import pytest
 
 SCRIPT = Path(__file__).resolve().parents[2] / 'scripts' / 'set_up.py'
+
+DEADLINE = 60.0  # [s]
 
 SetUp = Callable[..., list[str]]
 
@@ -28,6 +32,7 @@ def module(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
     monkeypatch.setattr(loaded, 'PYTHON', Path(sys.executable))
     monkeypatch.setattr(loaded, 'STAMPS', tmp_path / 'set_up.json')
     monkeypatch.setattr(loaded, 'LOG', tmp_path / 'log' / 'set_up.log')
+    monkeypatch.setattr(loaded, 'SOLVER_LOG', tmp_path / 'log' / 'solver.log')
     return loaded
 
 
@@ -105,6 +110,57 @@ def test_failure_is_one_sentence(
     assert capsys.readouterr().err.endswith(
         'set-up: pip failed with exit code 1; the whole output is in log/set_up.log\n'
     )
+
+
+def test_step_beside_others_does_not_hold_them_up(
+    module: ModuleType, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each waits for the other to be at work."""
+    met = threading.Barrier(2)
+    done: list[str] = []
+
+    def meet(name: str) -> None:
+        met.wait(DEADLINE)
+        done.append(name)
+
+    monkeypatch.setattr(
+        module,
+        'steps',
+        lambda: [
+            module.Step(name=name, text=name, key='', work=partial(meet, name), beside=beside)
+            for name, beside in (('environment', True), ('interfaces', False))
+        ],
+    )
+    assert [module.main(), module.main()] == [0, 0]
+    assert sorted(done) == ['environment', 'interfaces']
+
+
+def test_failure_beside_others_is_told_from_its_own_log(
+    module: ModuleType, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The others are done meanwhile, and the next call repeats that one alone."""
+    done: list[str] = []
+
+    def fail() -> None:
+        done.append('solver')
+        module.SOLVER_LOG.write_text('why\n')
+        raise module.Failure('python failed with exit code 1', module.SOLVER_LOG)
+
+    monkeypatch.setattr(
+        module,
+        'steps',
+        lambda: [
+            module.Step(name='environment', text='', key='', work=lambda: None),
+            module.Step(name='solver', text='', key='', work=fail, beside=True),
+            module.Step(name='bag', text='', key='', work=lambda: done.append('bag')),
+        ],
+    )
+    assert module.main() == 1
+    assert capsys.readouterr().err.endswith(
+        'why\n\nset-up: python failed with exit code 1; the whole output is in log/solver.log\n'
+    )
+    assert module.main() == 1
+    assert sorted(done) == ['bag', 'solver', 'solver']
 
 
 def test_failing_command_is_named(module: ModuleType) -> None:

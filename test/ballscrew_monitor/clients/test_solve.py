@@ -16,7 +16,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[3]
 SCRIPT = Path(sys.executable).with_name('ballscrew')
-DEADLINE = 60.0  # [s]
+DEADLINE = 120.0  # [s] the node solves at low priority
 SIGNS = tuple(itertools.product((955.0, -955.0), (500.0, -500.0)))  # [rev/min], [N]
 LONG = ('--speed-rpm', '955', '--load-N', '500', '--draws', '16')
 # What `ballscrew point` says of the same points, on one thread as the node solves.

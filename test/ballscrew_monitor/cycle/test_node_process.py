@@ -20,7 +20,7 @@ from rclpy.executors import SingleThreadedExecutor
 
 ROOT = Path(__file__).resolve().parents[3]
 PARAMS = ROOT / 'config' / 'nominal_cycle.yaml'
-DEADLINE = 30.0  # [s]
+DEADLINE = 60.0  # [s]
 
 
 def wait_for_a_sign(domain):

@@ -14,7 +14,7 @@ import rclpy
 from rclpy.executors import SingleThreadedExecutor
 from std_msgs.msg import Float64
 
-DEADLINE = 30.0  # [s]
+DEADLINE = 60.0  # [s]
 
 
 def float_input(source, topic):

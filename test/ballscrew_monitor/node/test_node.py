@@ -231,7 +231,7 @@ def test_a_failed_configure_leaves_the_node_alive_with_the_reason(node, name, va
 )
 def test_a_bad_parameter_at_start_is_one_sentence_and_exit_code_2(node, argument, sentence):
     node.start('-p', argument)
-    assert node.process.wait(30.0) == 2
+    assert node.process.wait(60.0) == 2
     said = node.output.read_text().splitlines()
     assert len(said) == 1
     assert said[0].startswith(f'ballscrew_monitor: {sentence}')

@@ -47,7 +47,8 @@ def test_it_holds_nothing_of_ros_and_runs_nicely(process):
     assert 'numba' in maps  # the solver is loaded
     assert 'rclpy' not in maps
     assert 'fastrtps' not in maps
-    assert os.getpriority(os.PRIO_PROCESS, process.pid) == 10
+    here = os.getpriority(os.PRIO_PROCESS, 0)
+    assert os.getpriority(os.PRIO_PROCESS, process.pid) == min(here + 10, 19)
 
 
 def test_what_the_worker_imports_is_the_offline_half_alone():

@@ -77,7 +77,7 @@ def test_a_boundary_lubricated_contact_rubs_by_the_slip_arm(screw, oil):
     assert helical < rest.friction_torque < 2.5 * helical
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(st.floats(0.0, 2000.0), st.floats(0.0, 3.9), st.floats(283.0, 353.0))
 def test_friction_does_not_know_the_direction_of_the_load(rpm, ratio, kelvin):
     """Two equal nuts: the sign of the load picks the nut, not the friction."""

@@ -59,7 +59,7 @@ def test_the_standard_error_is_that_of_the_draws(solved):
     found, _ = solved
     for name in FIELDS:
         assert found.standard_errors[name] == pytest.approx(
-            found.deviations[name] / math.sqrt(2), abs=1e-15
+            found.deviations[name] / math.sqrt(2), rel=1e-12, abs=1e-15
         )
 
 

@@ -49,7 +49,7 @@ SCREWS = st.builds(
 )
 FRICTION, SPEEDS, LOADS = st.floats(0.01, 0.12), st.floats(1.0, 60.0), st.floats(20.0, 200.0)
 SIGNS = st.sampled_from([1, -1])
-FEW = settings(max_examples=15, deadline=None)
+FEW = settings(max_examples=15)
 
 
 def coulomb(screw, speed, friction, *, floor=None, **given):

@@ -65,7 +65,7 @@ def solution(surface, where, drawn) -> SimpleNamespace:
 
 
 @both
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 @given(CELLS, FRACTIONS, SOLUTIONS)
 def test_the_corrected_point_is_the_solve(shipped, cell, fractions, drawn):
     """Every field, to rounding; what follows from the torque too; the flag tells."""
@@ -79,7 +79,7 @@ def test_the_corrected_point_is_the_solve(shipped, cell, fractions, drawn):
 
 
 @both
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(CELLS, FRACTIONS, SOLUTIONS, CELLS, FRACTIONS)
 def test_elsewhere_nothing_changes_by_a_bit(shipped, cell, fractions, drawn, other, others):
     """In any other cell, and in the same cell beyond the trust region, bit for bit."""
@@ -94,7 +94,7 @@ def test_elsewhere_nothing_changes_by_a_bit(shipped, cell, fractions, drawn, oth
 
 
 @both
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(CELLS, FRACTIONS, SOLUTIONS, FRACTIONS)
 def test_signs_and_ranges_hold(shipped, cell, fractions, drawn, others):
     """Anywhere in the cell: positive stays positive, shares stay shares, and no overshoot."""
@@ -114,7 +114,7 @@ def test_signs_and_ranges_hold(shipped, cell, fractions, drawn, others):
 
 
 @both
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(CELLS, FRACTIONS, SOLUTIONS, FRACTIONS, st.integers(0, 2), st.sampled_from([0, 1]))
 def test_the_pull_and_its_slope_vanish_at_the_faces(
     shipped, cell, fractions, drawn, others, axis, side

@@ -54,7 +54,7 @@ def test_the_hash_covers_content_and_not_provenance(surface_data: SurfaceData):
     )
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(st.integers(0, len(SHIPPED) - 1))
 def test_a_truncated_file_is_refused(tmp_path_factory, length):
     """Whatever is cut off, the answer is one sentence and never a surface."""
@@ -65,7 +65,7 @@ def test_a_truncated_file_is_refused(tmp_path_factory, length):
     assert '\n' not in str(caught.value)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(st.integers(0, len(SHIPPED) - 1), st.integers(1, 255))
 def test_a_flipped_byte_is_refused_or_harmless(tmp_path_factory, place, change):
     """A changed byte is found, unless it lies where the archive keeps nothing that is read."""

@@ -68,7 +68,7 @@ def test_lookup_is_exact_at_the_nodes(surface, surface_data):
     assert checked > 500
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(SPEEDS, LOADS, KELVINS)
 def test_lookup_agrees_with_the_model(speed, load, kelvin):
     """Anywhere: efficiency and RCS within 0.003 of a solve at the same point."""
@@ -86,7 +86,7 @@ def test_lookup_agrees_with_the_model(speed, load, kelvin):
 
 
 @both
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(SPEEDS, st.floats(1.001, 3.0), LOADS, KELVINS)
 def test_rcs_never_rises_with_speed(shipped, speed, factor, load, kelvin):
     """A monotone field stays monotone between the nodes."""
@@ -96,7 +96,7 @@ def test_rcs_never_rises_with_speed(shipped, speed, factor, load, kelvin):
 
 
 @both
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(SPEEDS, st.floats(1.001, 3.0), LOADS, KELVINS)
 def test_film_never_thins_with_speed(shipped, speed, factor, load, kelvin):
     """Strictly; in the full tier once the film is off the floor that stands for asperities."""
@@ -119,7 +119,7 @@ def test_nodes_whose_film_thins_with_speed_are_on_the_floor():
 
 
 @both
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(SPEEDS, LOADS, KELVINS, st.sampled_from(FIELDS))
 def test_lookup_is_continuous(shipped, speed, load, kelvin, name):
     """A step of a millionth changes nothing by more than a part in ten thousand."""

@@ -52,7 +52,7 @@ def filled(out: Path, number: int = 3) -> bytes:
     return store_path(out).read_bytes()
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.dictionaries(WORDS, PLAIN, max_size=5))
 def test_results_come_back_bit_for_bit(tmp_path_factory, result):
     """Whatever the floats are, in the same process and after opening the file again."""
@@ -108,7 +108,7 @@ def test_a_torn_end_is_dropped_wherever_it_was_torn(tmp_path: Path):
             assert again.dropped == 0
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.data())
 def test_a_damaged_line_costs_that_line_alone(tmp_path_factory, data):
     """A flipped byte in a result is found by its checksum; the others stay."""

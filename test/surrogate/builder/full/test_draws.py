@@ -32,7 +32,7 @@ IDLE = 1000.0
 
 
 @given(powers=st.lists(st.floats(1.0, 90.0), min_size=2, max_size=24), place=st.floats(0.05, 0.95))
-@settings(deadline=None, max_examples=300)
+@settings(max_examples=300)
 def test_weights_meet_the_mean_or_are_even_where_only_steep_ones_would(powers, place):
     """Positive, with the sum 1."""
     x = np.array(powers)
