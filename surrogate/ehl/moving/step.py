@@ -56,7 +56,8 @@ class Stepper:
     """
     A contact on its grid, from a `smooth` state on, in Hertz units.
 
-    `speed` [m/s] and `smooth` may be changed between steps, for a speed that falls slowly.
+    Entrainment `speed` [m/s]; the raceway moves unless `moving` is False; `stride` nodes are one
+    step. Between steps the last state and the mass of the columns are kept [-].
 
     """
 
@@ -68,6 +69,7 @@ class Stepper:
     moving: bool = True
     speed: float = field(init=False)
     _state: GridState = field(init=False)
+    _ripples_over: GridState = field(init=False)
     _approach_before: float = field(init=False)
     _mass: Array = field(init=False)
     _carried: Array = field(init=False)
@@ -76,6 +78,7 @@ class Stepper:
         """Take the steady smooth contact as what was before the first step."""
         self.speed = self.case.condition.entrainment_speed
         self._state, self._approach_before = self.smooth, self.smooth.approach
+        self._ripples_over = self.smooth
         problem = self._problem(np.zeros(self.grid.shape))
         pressure = self.smooth.film_pressure
         now = evaluate(self.grid, problem, self.smooth)
@@ -84,6 +87,11 @@ class Stepper:
         steady = Columns(mass=arrived(mass, 1), carried=mass, stride=1)
         problem = replace(problem, columns=steady)
         self._mass, self._carried = carried_on(self.grid, problem, pressure, now.gap, now.contact)
+
+    def follow(self, speed: float, smooth: GridState) -> None:
+        """Go on at an entrainment speed [m/s] near the last one, and its smooth contact."""
+        self.speed = speed
+        self._ripples_over, self.smooth = self.smooth, smooth
 
     def step(self, rough: Array) -> Step:
         """Solve one step on, with the heights `rough` that are on the grid then."""
@@ -124,12 +132,12 @@ class Stepper:
         """Return the last state with its ripples moved on."""
         if not self.moving:
             return self._state
-        state, smooth = self._state, self.smooth
+        state, smooth, before = self._state, self.smooth, self._ripples_over
+        film = state.film_pressure - before.film_pressure
+        asperity = state.asperity_pressure - before.asperity_pressure
         return GridState(
-            film_pressure=_moved_on(state.film_pressure, smooth.film_pressure, self.stride),
-            asperity_pressure=_moved_on(
-                state.asperity_pressure, smooth.asperity_pressure, self.stride
-            ),
+            film_pressure=_moved_on(film, smooth.film_pressure, self.stride),
+            asperity_pressure=_moved_on(asperity, smooth.asperity_pressure, self.stride),
             approach=2 * state.approach - self._approach_before,
         )
 
@@ -148,8 +156,9 @@ def arrived(before: Array, stride: int) -> Array:
     return now
 
 
-def _moved_on(field: Array, smooth: Array, stride: int) -> Array:
+def _moved_on(ripples: Array, smooth: Array, stride: int) -> Array:
+    """Return a smooth field with ripples on it that have moved on by `stride` nodes [-]."""
     now = smooth.copy()
-    now[stride:] += field[:-stride] - smooth[:-stride]
+    now[stride:] += ripples[:-stride]
     now[0] = now[-1] = 0.0
     return np.maximum(now, 0.0)

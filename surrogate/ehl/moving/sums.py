@@ -28,10 +28,12 @@ class Measure:
     """
     Numbers of one step, as in `MovingSolution`.
 
-    Shares and traction [-], films [m], losses [N]; RCS along the track per semi-axis [-].
+    Entrainment speed [m/s], shares and traction [-], films [m], losses [N]; RCS along the track
+    per semi-axis [-].
 
     """
 
+    speed: float
     rcs: float
     asperity_share: float
     mean_film: float
@@ -69,6 +71,7 @@ class Gauge:
         core = self._distance < CORE
         inside = gap[self._distance < 1.0] * unit
         return Measure(
+            speed=step.speed,
             rcs=grid.integral(touching) / case.load,
             asperity_share=grid.integral(outcome.state.asperity_pressure) / case.load,
             mean_film=float(gap[core].mean()) * unit,

@@ -1,0 +1,157 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+A speed that changes slowly along one track: a whole column of speeds in one march.
+
+What lags behind the speed shows where the same track is marched the other way.
+
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+import math
+import time
+
+import numpy as np
+from numpy.typing import NDArray
+from surrogate.ehl.interface import ContactLubricant, RoughHeights
+from surrogate.ehl.moving.interface import MarchSettings, MarchStatus
+from surrogate.ehl.moving.line import StripContact
+from surrogate.ehl.moving.march import check_transits, contact_march, strip_march
+from surrogate.ehl.moving.run import March
+from surrogate.ehl.watch import at
+from surrogate.files import InputError
+from surrogate.formulas.geometry import Contact
+
+Array = NDArray[np.float64]
+KNOTS_PER_E = 3.0
+"""Smooth contacts that are solved over a factor e in speed [-]."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class SpeedRamp:
+    """
+    What a contact did while its speed changed.
+
+    Entrainment speeds of the steps [m/s], share of the load on punctured nodes and share that
+    asperities carry, averages over the places [-]; steps of a transit; status, steps, those that
+    did not converge, wall time [s]. A march that ended early holds the steps that all places have.
+
+    """
+
+    status: MarchStatus
+    speeds: Array = field(default_factory=lambda: np.empty(0))
+    rcs: Array = field(default_factory=lambda: np.empty(0))
+    asperity_share: Array = field(default_factory=lambda: np.empty(0))
+    transit: float = math.nan
+    steps: int = 0
+    steps_failed: int = 0
+    wall_time: float = 0.0
+
+    def means(self, transits: float) -> tuple[Array, Array]:
+        """Return speeds [m/s] and RCS [-], each the mean over so many transits."""
+        count = max(1, round(self.speeds.size / (transits * self.transit)))
+        parts = np.array_split(np.arange(self.speeds.size), count)
+        logs = np.log(self.speeds)
+        return (
+            np.array([math.exp(logs[part].mean()) for part in parts]),
+            np.array([self.rcs[part].mean() for part in parts]),
+        )
+
+    def onset(self, rcs: float = 0.01, transits: float = 2.0) -> float:
+        """
+        Return the speed at which RCS passes a value [m/s]; NaN if it does not on this ramp.
+
+        Log-linear between means over so many transits, which are first made to rise as the speed
+        falls, neighbours being averaged where they do not.
+
+        """
+        speeds, means = self.means(transits)
+        order = np.argsort(-speeds)
+        logs, rising = np.log(speeds[order]), _rising(means[order])
+        if not (rising[0] < rcs <= rising[-1]):
+            return math.nan
+        last = int(np.argmax(rising >= rcs))
+        low, high = (math.log(max(rising[one], 1e-9)) for one in (last - 1, last))
+        weight = (math.log(rcs) - low) / (high - low)
+        return math.exp(logs[last - 1] + weight * (logs[last] - logs[last - 1]))
+
+
+def _rising(values: Array) -> Array:
+    """Return the rising sequence nearest to `values` [any]: neighbours that fall are pooled."""
+    pools: list[list[float]] = []
+    for value in values:
+        pools.append([float(value), 1.0])
+        while len(pools) > 1 and pools[-2][0] > pools[-1][0]:
+            (high, many), (low, few) = pools[-2:]
+            pools[-2:] = [[(high * many + low * few) / (many + few), many + few]]
+    return np.concatenate([np.full(int(count), value) for value, count in pools])
+
+
+def ramp_contact(
+    contact: Contact,
+    lubricant: ContactLubricant,
+    load: float,
+    speeds: tuple[float, float],
+    raceway: RoughHeights,
+    *,
+    transits: float,
+    settings: MarchSettings,
+) -> SpeedRamp:
+    """
+    March a contact under a load [N] while its speed goes from one of `speeds` to the other [m/s].
+
+    The logarithm of the speed changes evenly over the `transits`, which are shared over the
+    places. Raises InputError as `march_contact`, and for speeds that are not above 0.
+
+    """
+    check_transits(transits, settings)
+    with at(stage='rolling contact'):
+        march = contact_march(contact, lubricant, load, knots(speeds), raceway, settings)
+        return _ramp(march, transits)
+
+
+def ramp_strip(
+    strip: StripContact,
+    lubricant: ContactLubricant,
+    speeds: tuple[float, float],
+    raceway: RoughHeights,
+    *,
+    transits: float,
+    settings: MarchSettings,
+) -> SpeedRamp:
+    """March a strip while its speed goes from one of `speeds` to the other [m/s]; see above."""
+    check_transits(transits, settings)
+    with at(stage='rolling contact'):
+        return _ramp(strip_march(strip, lubricant, knots(speeds), raceway, settings), transits)
+
+
+def knots(speeds: tuple[float, float]) -> Sequence[float]:
+    """Return the speeds [m/s] at which the smooth contact is solved."""
+    first, last = speeds
+    if not (0 < first < math.inf and 0 < last < math.inf and first != last):
+        raise InputError(f'speeds is {speeds!r} m/s, allowed are two, different and above 0')
+    count = 2 + math.ceil(KNOTS_PER_E * abs(math.log(first / last)))
+    return [float(speed) for speed in np.geomspace(first, last, count)]
+
+
+def _ramp(march: March, transits: float) -> SpeedRamp:
+    began = time.perf_counter()
+    march.deadline = began + march.settings.time_cap
+    march.run(transits / march.settings.places)
+    shortest = min(map(len, march.places), default=0)
+    steps = [place[:shortest] for place in march.places]
+    return SpeedRamp(
+        status=march.status,
+        speeds=np.array([one.speed for place in steps[:1] for one in place]),
+        rcs=_over_places([[one.rcs for one in place] for place in steps]),
+        asperity_share=_over_places([[one.asperity_share for one in place] for place in steps]),
+        transit=2 / (march.settings.stride * march.grid.dx),
+        steps=march.steps,
+        steps_failed=march.failed,
+        wall_time=time.perf_counter() - began,
+    )
+
+
+def _over_places(tracks: list[list[float]]) -> Array:
+    return np.asarray(np.mean(tracks, axis=0)) if tracks else np.empty(0)

@@ -1,0 +1,205 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""A march under way: step after step at one place of the raceway after the other."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+import math
+import time
+
+import numpy as np
+from numpy.typing import NDArray
+from surrogate.ehl.case import ScaledCase
+from surrogate.ehl.grid import Grid, GridState
+from surrogate.ehl.moving.feed import Feed
+from surrogate.ehl.moving.interface import MarchSettings, MarchStatus, MovingSolution
+from surrogate.ehl.moving.line import StripContact
+from surrogate.ehl.moving.step import Step, step_limits, Stepper
+from surrogate.ehl.moving.sums import average, Gauge, Measure
+from surrogate.formulas.geometry import Contact
+
+Array = NDArray[np.float64]
+RUN_IN = 2.7
+"""Way of the raceway until rough material fills the contact [semi-axes]."""
+STALLED = 3
+"""Steps in a row without convergence after which a march is given up [-]."""
+FEW = 0.02
+"""Share of steps that may fail without a march being in doubt [-]."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class SmoothPath:
+    """
+    Smooth contacts along the way of a march: one, or those of a speed that changes.
+
+    Entrainment speeds [m/s] in equal steps of their logarithm, and the contact at each.
+
+    """
+
+    speeds: Array
+    states: tuple[GridState, ...]
+
+    def at(self, share: float) -> tuple[float, GridState]:
+        """Return speed [m/s] and smooth contact at a share of the way [-]."""
+        last = len(self.states) - 1
+        place = min(max(share, 0.0), 1.0) * last
+        first = min(int(place), last - 1)
+        if last == 0 or first < 0:
+            return float(self.speeds[0]), self.states[0]
+        weight = place - first
+        low, high = self.states[first], self.states[first + 1]
+        return float(math.exp(np.interp(place, np.arange(last + 1), np.log(self.speeds)))), (
+            GridState(
+                film_pressure=(1 - weight) * low.film_pressure + weight * high.film_pressure,
+                asperity_pressure=low.asperity_pressure,
+                approach=(1 - weight) * low.approach + weight * high.approach,
+            )
+        )
+
+
+@dataclass(kw_only=True)
+class March:
+    """A march under way: what has been measured at each place, and what it took."""
+
+    case: ScaledCase
+    grid: Grid
+    settings: MarchSettings
+    path: SmoothPath | None
+    deadline: float = math.inf
+    places: list[list[Measure]] = field(default_factory=list)
+    last: Step | None = None
+    steps: int = 0
+    failed: int = 0
+    failed_in_a_row: int = 0
+    newton: int = 0
+    krylov: int = 0
+    ended: MarchStatus | None = None
+
+    def __post_init__(self) -> None:
+        """Make the gauge."""
+        self.gauge = Gauge(
+            case=self.case, grid=self.grid, slide_roll_ratio=self.settings.slide_roll_ratio
+        )
+
+    def run(self, transits: float) -> None:
+        """March so many transits at each place, until the march ends."""
+        for place in range(self.settings.places if self.path else 0):
+            self.places.append([])
+            for step in self._track(place, transits):
+                self.places[-1].append(self.gauge.measure(step))
+            if self.ended is not None:
+                return
+
+    def _track(self, place: int, transits: float) -> Iterator[Step]:
+        """Yield the steps at a place, less the run-in."""
+        stepper, settings, path = self._stepper(), self.settings, self.path
+        assert path is not None
+        run_in, length = RUN_IN / self.grid.dx, 2 * transits / self.grid.dx
+        feed = Feed(
+            case=self.case,
+            grid=self.grid,
+            place=self._place(place, RUN_IN + 2 * transits),
+            ramp=settings.moving,
+        )
+        for moved in range(
+            settings.stride, round(run_in + length) + settings.stride, settings.stride
+        ):
+            stepper.follow(*path.at((moved - run_in) / length))
+            step = stepper.step(feed.at(moved if settings.moving else 0))
+            self._count(step)
+            if self.ended is not None:
+                return
+            if moved > run_in:
+                yield step
+
+    def _place(self, number: int, length: float) -> tuple[float, float]:
+        """
+        Return a place on the raceway [m], so far from the others that no track overlaps.
+
+        `length` is that of a track over the semi-axis [-]. A strip that repeats has none beside
+        it, but for itself.
+
+        """
+        x, y = self.grid.x, self.grid.y
+        along = number * (length + float(x[-1] - x[0]))
+        across = 0.0 if self.grid.periodic else number * float(y[-1] - y[0])
+        return along * self.case.semi_axis_x, across * self.case.semi_axis_x
+
+    def _stepper(self) -> Stepper:
+        settings = self.settings
+        assert self.path is not None
+        return Stepper(
+            case=self.case,
+            grid=self.grid,
+            smooth=self.path.states[0],
+            limits=step_limits(
+                settings.flux_tolerance, settings.load_tolerance, settings.gap_tolerance
+            ),
+            stride=settings.stride,
+            moving=settings.moving,
+        )
+
+    def _count(self, step: Step) -> None:
+        good = step.outcome.converged
+        self.last = step
+        self.steps += 1
+        self.failed += not good
+        self.failed_in_a_row = 0 if good else self.failed_in_a_row + 1
+        self.newton += step.newton
+        self.krylov += step.krylov
+        if self.failed_in_a_row == STALLED:
+            self.ended = MarchStatus.STALLED
+        elif time.perf_counter() > self.deadline:
+            self.ended = MarchStatus.OUT_OF_TIME
+
+    @property
+    def status(self) -> MarchStatus:
+        """How the march ended."""
+        if self.path is None:
+            return MarchStatus.NO_SMOOTH_FILM
+        if self.ended is None and self.failed > FEW * self.steps:
+            return MarchStatus.STALLED
+        return self.ended or (MarchStatus.SOME_STEPS if self.failed else MarchStatus.CONVERGED)
+
+    def solution(self, contact: Contact | StripContact, wall_time: float) -> MovingSolution:
+        """Return the averages of what was measured, however the march ended; wall time [s]."""
+        case = self.case
+        bare = MovingSolution(
+            contact=contact,
+            lubricant=case.lubricant,
+            condition=case.condition,
+            settings=self.settings,
+            status=self.status,
+            steps=self.steps,
+            steps_failed=self.failed,
+            newton_iterations=self.newton,
+            krylov_iterations=self.krylov,
+            wall_time=wall_time,
+        )
+        return self._with_averages(bare) if any(self.places) else bare
+
+    def _with_averages(self, bare: MovingSolution) -> MovingSolution:
+        step_length = self.settings.stride * self.grid.dx
+        found, smooth = average(self.places, step_length), self.smooth()
+        assert self.last is not None
+        state, case = self.last.outcome.state, self.case
+        return replace(
+            bare,
+            **found.numbers,  # type: ignore[arg-type]
+            thin_shares=found.thin_shares,
+            x=self.grid.x,
+            rcs_along=found.rcs_along,
+            centre_films=np.array([one.centre_film for steps in self.places for one in steps]),
+            memory=found.memory,
+            transits=sum(map(len, self.places)) * step_length / 2,
+            smooth_rolling_loss=smooth.rolling_loss,
+            central_film=smooth.centre_film,
+            x_nodes=self.grid.x * case.semi_axis_x,
+            y_nodes=self.grid.y * case.semi_axis_x,
+            film=self.last.outcome.gap * case.height_unit,
+            pressure=(state.film_pressure + state.asperity_pressure) * case.hertz_pressure,
+        )
+
+    def smooth(self) -> Measure:
+        """Return the numbers of the smooth contact."""
+        return self.gauge.measure(self._stepper().step(np.zeros(self.grid.shape)))

@@ -1,0 +1,96 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Speed ramps: the onset of made-up columns, and a march down and up against standing speeds."""
+
+import math
+
+import numpy as np
+import pytest
+from surrogate.ehl import ContactLubricant
+from surrogate.ehl.moving import (
+    march_strip,
+    MarchSettings,
+    MarchStatus,
+    ramp_strip,
+    SpeedRamp,
+    StripContact,
+)
+from surrogate.files import InputError
+
+OIL = ContactLubricant(viscosity=0.04, pressure_viscosity=2.2e-8)
+STRIP = StripContact(
+    radius=0.0127, reduced_modulus=226e9, max_pressure=0.8e9, width=30e-6, columns=12
+)
+SETTINGS = MarchSettings(nx=65, places=1, film_floor=5e-9)
+
+
+def rough(x, y):
+    """Return a raceway of crossing waves that repeats with the strip."""
+    return 90e-9 * np.cos(2 * np.pi * x / 40e-6) * np.cos(2 * np.pi * y / 30e-6)
+
+
+def column(rcs):
+    """Return a ramp with an RCS of the speed."""
+    speeds = np.geomspace(0.1, 0.001, 400)
+    return SpeedRamp(
+        status=MarchStatus.CONVERGED, speeds=speeds, rcs=rcs(speeds), transit=10.0, steps=400
+    )
+
+
+def test_the_onset_of_a_power_law_is_its_own():
+    """RCS = 0.01 (u0/u)^6 passes 0.01 at u0, whatever means are taken of a slow ramp."""
+    ramp = column(lambda u: 0.01 * (0.013 / u) ** 6)
+    for transits in (1.0, 2.0):
+        assert ramp.onset(transits=transits) == pytest.approx(0.013, rel=0.03)
+    assert ramp.onset(rcs=0.3) == pytest.approx(0.013 * (0.01 / 0.3) ** (1 / 6), rel=0.03)
+
+
+def test_the_onset_of_a_scattered_column_is_that_of_its_trend():
+    """Scatter of a factor two that falls now and then."""
+    rng = np.random.default_rng(1)
+    ramp = column(lambda u: 0.01 * (0.013 / u) ** 6 * rng.uniform(0.4, 1.6, u.size))
+    assert ramp.onset() == pytest.approx(0.013, rel=0.1)
+
+
+@pytest.mark.parametrize('level', [0.0, 1.0])
+def test_an_onset_that_is_not_on_the_ramp_is_nan(level):
+    """Never touched, or touched at all speeds."""
+    assert math.isnan(column(lambda u: level + 0.0 * u).onset())
+
+
+def test_means_keep_the_sum():
+    """Every step counts once."""
+    ramp = column(lambda u: u)
+    speeds, means = ramp.means(4.0)
+    assert means.size == 10
+    assert means.mean() == pytest.approx(ramp.rcs.mean())
+    assert speeds[0] > speeds[-1]
+
+
+def test_down_and_up_enclose_the_standing_speed():
+    """Contact lags behind the speed, the less the slower it changes; no lag at one speed."""
+    ends = {}
+    for transits in (6.0, 18.0):
+        known = {'transits': transits, 'settings': SETTINGS}
+        down = ramp_strip(STRIP, OIL, (0.1, 0.03), rough, **known)
+        up = ramp_strip(STRIP, OIL, (0.03, 0.1), rough, **known)
+        assert down.status is up.status is MarchStatus.CONVERGED
+        assert down.speeds[0] == pytest.approx(0.1, rel=0.01)
+        assert down.speeds[-1] == pytest.approx(0.03, rel=1e-6)
+        ends[transits] = [ramp.onset(rcs=0.02, transits=1.0) for ramp in (down, up)]
+    lags = [math.log(up / down) for down, up in ends.values()]
+    assert 0 < lags[1] < lags[0] < 0.3
+    slow, fast = 0.9 * ends[6.0][0], 1.1 * ends[6.0][1]
+    touching, parted = (
+        march_strip(STRIP, OIL, speed, rough, transits=2.0, settings=SETTINGS).rcs.value
+        for speed in (slow, fast)
+    )
+    assert parted < 0.02 < touching
+
+
+def test_a_ramp_without_an_end_is_one_sentence():
+    """Two speeds, different and above 0."""
+    with pytest.raises(InputError, match='speeds is'):
+        ramp_strip(STRIP, OIL, (0.1, 0.1), rough, transits=2.0, settings=SETTINGS)
+    with pytest.raises(InputError, match='transits is 0.5'):
+        ramp_strip(STRIP, OIL, (0.1, 0.05), rough, transits=0.5, settings=SETTINGS)
