@@ -33,14 +33,16 @@ class SpeedRamp:
     """
     What a contact did while its speed changed.
 
-    Entrainment speeds of the steps [m/s], share of the load on punctured nodes and share that
-    asperities carry, averages over the places [-]; steps of a transit; status, steps, those that
-    did not converge, wall time [s]. A march that ended early holds the steps that all places have.
+    Entrainment speeds of the steps [m/s], central film of the smooth contact at each [m], share of
+    the load on punctured nodes and share that asperities carry, averages over the places [-];
+    steps of a transit; status, steps, those that did not converge, wall time [s]. A march that
+    ended early holds the steps that all places have.
 
     """
 
     status: MarchStatus
     speeds: Array = field(default_factory=lambda: np.empty(0))
+    central_films: Array = field(default_factory=lambda: np.empty(0))
     rcs: Array = field(default_factory=lambda: np.empty(0))
     asperity_share: Array = field(default_factory=lambda: np.empty(0))
     transit: float = math.nan
@@ -57,6 +59,11 @@ class SpeedRamp:
             np.array([math.exp(logs[part].mean()) for part in parts]),
             np.array([self.rcs[part].mean() for part in parts]),
         )
+
+    def film_at(self, speed: float) -> float:
+        """Return the smooth central film [m] at an entrainment speed [m/s] of the ramp."""
+        order = np.argsort(self.speeds)
+        return float(np.interp(speed, self.speeds[order], self.central_films[order]))
 
     def onset(self, rcs: float = 0.01, transits: float = 2.0) -> float:
         """
@@ -141,9 +148,11 @@ def _ramp(march: March, transits: float) -> SpeedRamp:
     march.run(transits / march.settings.places)
     shortest = min(map(len, march.places), default=0)
     steps = [place[:shortest] for place in march.places]
+    speeds = np.array([one.speed for place in steps[:1] for one in place])
     return SpeedRamp(
         status=march.status,
-        speeds=np.array([one.speed for place in steps[:1] for one in place]),
+        speeds=speeds,
+        central_films=_films_at(march, speeds),
         rcs=_over_places([[one.rcs for one in place] for place in steps]),
         asperity_share=_over_places([[one.asperity_share for one in place] for place in steps]),
         transit=2 / (march.settings.stride * march.grid.dx),
@@ -151,6 +160,15 @@ def _ramp(march: March, transits: float) -> SpeedRamp:
         steps_failed=march.failed,
         wall_time=time.perf_counter() - began,
     )
+
+
+def _films_at(march: March, speeds: Array) -> Array:
+    """Return the smooth central films [m] at some speeds [m/s] of the way."""
+    if march.path is None or not speeds.size:
+        return np.empty(0)
+    order = np.argsort(march.path.speeds)
+    knots, films = np.log(march.path.speeds[order]), np.log(march.smooth_films()[order])
+    return np.asarray(np.exp(np.interp(np.log(speeds), knots, films)))
 
 
 def _over_places(tracks: list[list[float]]) -> Array:

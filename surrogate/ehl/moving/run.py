@@ -11,11 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 from surrogate.ehl.case import ScaledCase
 from surrogate.ehl.grid import Grid, GridState
+from surrogate.ehl.half_space import deform
 from surrogate.ehl.moving.feed import Feed
 from surrogate.ehl.moving.interface import MarchSettings, MarchStatus, MovingSolution
 from surrogate.ehl.moving.line import StripContact
 from surrogate.ehl.moving.step import Step, step_limits, Stepper
 from surrogate.ehl.moving.sums import average, Gauge, Measure
+from surrogate.ehl.to_si import central_film
 from surrogate.formulas.geometry import Contact
 
 Array = NDArray[np.float64]
@@ -199,6 +201,16 @@ class March:
             film=self.last.outcome.gap * case.height_unit,
             pressure=(state.film_pressure + state.asperity_pressure) * case.hertz_pressure,
         )
+
+    def smooth_films(self) -> Array:
+        """Return the central films of the smooth contacts along the way [m]."""
+        films = []
+        for state in self.path.states if self.path else ():
+            gap = np.empty(self.grid.shape)
+            deform(self.grid.space, state.film_pressure + state.asperity_pressure, gap)
+            gap += self.case.shape_heights(self.grid) + state.approach
+            films.append(central_film(self.grid, gap) * self.case.height_unit)
+        return np.array(films)
 
     def smooth(self) -> Measure:
         """Return the numbers of the smooth contact."""
