@@ -37,7 +37,7 @@ INPUT_QOS = QoSProfile(
     durability=QoSDurabilityPolicy.VOLATILE,
 )
 CLOCK = '/clock'
-PAUSE = 5e-4  # [s] between two looks at the inputs while messages come
+PAUSE = 2.5e-4  # [s] between two looks at the inputs while messages come
 QUIET = 1.5e-3  # [s] without a message after which the executor waits for the next one
 STAY = 0.02  # [s] for which the inputs are looked at before anything else has a turn
 MOST = 2 * INPUT_QOS.depth  # messages of one topic that are taken before anything else has a turn
