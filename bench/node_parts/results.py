@@ -114,9 +114,14 @@ def draw(found: Findings) -> 'Figure':
         title='one axis, a state for each sample',
     )
     latency.yaxis.set_major_formatter('{x:g}')
-    latency.yaxis.set_minor_formatter('{x:g}')
-    memory.plot(
-        [at / 60 for at, _ in found.memory], [size for _, size in found.memory], color=BLUE
+    latency.yaxis.set_minor_formatter('')
+    latency.set_ylim(bottom=0.1)
+    times, sizes = zip(*found.memory)
+    memory.plot([at / 60 for at in times], sizes, '.-', color=BLUE)
+    memory.set(
+        xlabel='time [min]',
+        ylabel='memory [MB]',
+        title='one axis, 1 kHz',
+        ylim=(0, 1.2 * max(sizes)),
     )
-    memory.set(xlabel='time [min]', ylabel='memory [MB]', title='one axis, 1 kHz', ylim=(0, None))
     return figure
