@@ -6,19 +6,20 @@ The nearest speed and load at which the warning of a point would clear.
 To be just optimal is not enough: the advised point keeps the hysteresis, or whoever follows the
 advice would be warned for ever. The surface is scanned along one axis at a time with the other
 two quantities kept, and the border of the nearest good stretch is bisected. A stretch narrower
-than the scan can be missed. This takes a few hundred lookups, so it is done at the start of an
-event only.
+than the scan can be missed. This takes a few hundred lookups, so it is done once for an event, and
+only when the advice is asked for: the state that raises the warning is not to wait for it.
 
 """
 
 from collections.abc import Callable, Iterable
 import dataclasses
+import functools
 import math
 
 from ballscrew_monitor.core.conversions import axial_load, opposing_load, signed_speed
-from ballscrew_monitor.core.estimate import estimate, MachinePoint, PointValidity
+from ballscrew_monitor.core.estimate import MachinePoint
 from ballscrew_monitor.core.judgement import clears, Limits
-from surrogate.surface import Surface
+from surrogate.surface import Surface, Validity
 from surrogate.units import RPM
 
 SCAN_POINTS = 64
@@ -47,6 +48,20 @@ class Advice:
         return ' or '.join(parts)
 
 
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class Advisor:
+    """What an event was raised by, and the advice on it, worked out when first asked for."""
+
+    point: MachinePoint
+    surface: Surface
+    limits: Limits
+
+    @functools.cached_property
+    def advice(self) -> Advice:
+        """Return the nearest speed and load that clear."""
+        return advise(self.point, self.surface, self.limits)
+
+
 def advise(point: MachinePoint, surface: Surface, limits: Limits) -> Advice:
     """Return the nearest speed and load that clear at `point`, its direction kept."""
     return Advice(
@@ -64,9 +79,11 @@ def optimal_speed(point: MachinePoint, surface: Surface, limits: Limits) -> floa
     ratio = fastest / slowest
     grid = (slowest * ratio ** (i / (SCAN_POINTS - 1)) for i in range(SCAN_POINTS))
 
+    light = _light(point.axial_load, limits)
+    load = opposing_load(point.axial_load, point.direction)
+
     def good(speed: float) -> bool:
-        moved = dataclasses.replace(point, speed=signed_speed(speed, point.direction))
-        return _good(moved, surface, limits, light=_light(moved, limits))
+        return _good(speed, load, point.temperature, surface, limits, light=light)
 
     return signed_speed(
         _nearest(abs(point.speed), (min(s, fastest) for s in grid), good), point.direction
@@ -82,26 +99,30 @@ def optimal_load(point: MachinePoint, surface: Surface, limits: Limits) -> float
 
     """
     low, high = surface.load_range
-    was_light = _light(point, limits)
+    was_light = _light(point.axial_load, limits)
     grid = (low + (high - low) * i / (SCAN_POINTS - 1) for i in range(SCAN_POINTS))
+    speed = abs(point.speed)
 
     def good(load: float) -> bool:
-        moved = dataclasses.replace(point, axial_load=axial_load(load, point.direction))
-        return _good(moved, surface, limits, light=was_light and _light(moved, limits))
+        light = was_light and _light(load, limits)
+        return _good(speed, load, point.temperature, surface, limits, light=light)
 
     here = opposing_load(point.axial_load, point.direction)
     return axial_load(_nearest(here, grid, good), point.direction)
 
 
-def _light(point: MachinePoint, limits: Limits) -> bool:
-    return abs(point.axial_load) < limits.light_load
+def _light(load: float, limits: Limits) -> bool:
+    return abs(load) < limits.light_load
 
 
-def _good(point: MachinePoint, surface: Surface, limits: Limits, *, light: bool) -> bool:
-    result = estimate(point, surface, rcs_limit=limits.rcs)
-    if result.validity is not PointValidity.VALID or math.isnan(result.rcs + result.efficiency):
+def _good(
+    speed: float, load: float, temperature: float, surface: Surface, limits: Limits, *, light: bool
+) -> bool:
+    """Tell whether the warning clears at a speed [rad/s] and an opposing load [N]."""
+    numbers = surface.lookup(speed, load, temperature)
+    if numbers.validity != Validity.VALID or math.isnan(numbers.rcs + numbers.efficiency):
         return False
-    return clears(result, limits, light=light)
+    return clears(numbers, limits, light=light)
 
 
 def _nearest(here: float, grid: Iterable[float], is_good: Callable[[float], bool]) -> float:

@@ -15,6 +15,7 @@ import math
 
 from ballscrew_monitor.core.estimate import MachinePoint, PointEstimate, PointSource, PointValidity
 from surrogate.files import InputError
+from surrogate.surface import SurfacePoint
 
 NAN = math.nan
 
@@ -115,7 +116,7 @@ def _check(name: str, value: float, good: bool, allowed: str) -> None:
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Finding:
-    """One thing worth saying; value and limit in `unit`, targets [rad/s] and [N], NaN is none."""
+    """One thing worth saying; value and limit in `unit`, NaN is none."""
 
     code: Code
     severity: Severity
@@ -123,8 +124,6 @@ class Finding:
     limit: float = NAN
     unit: str = '-'
     text: str = ''
-    target_speed: float = NAN
-    target_load: float = NAN
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -179,7 +178,7 @@ def is_judged(verdict: Verdict) -> bool:
     return verdict.zone is not Zone.UNKNOWN or Gate.STANDSTILL in verdict.gates
 
 
-def clears(estimate: PointEstimate, limits: Limits, *, light: bool) -> bool:
+def clears(estimate: PointEstimate | SurfacePoint, limits: Limits, *, light: bool) -> bool:
     """Tell whether an estimate counts towards clearing; efficiency is left out if `light`."""
     return estimate.rcs < limits.rcs_to_clear and (
         light or estimate.efficiency >= limits.efficiency_to_clear

@@ -12,11 +12,11 @@ class LossCounter:
     def __init__(self) -> None:
         """Begin before the first message."""
         self._last: int | None = None
-        self._publishers = 1
+        self.publishers = 1
 
     def match(self, publishers: int) -> None:
         """Note how many publishers there are now; the count of each of them begins anew."""
-        self._publishers = publishers
+        self.publishers = publishers
         self._last = None
 
     def take(self, number: int) -> int | None:
@@ -27,7 +27,7 @@ class LossCounter:
         none. A number that falls back belongs to a publisher that has begun anew.
 
         """
-        if self._publishers > 1 or number == NO_NUMBER:
+        if self.publishers > 1 or number == NO_NUMBER:
             self._last = None
             return None
         last, self._last = self._last, number

@@ -13,7 +13,7 @@ events gives the same list of states, bit for bit.
 import dataclasses
 import math
 
-from ballscrew_monitor.core.advice import advise
+from ballscrew_monitor.core.advice import Advisor
 from ballscrew_monitor.core.conversions import Direction, direction_of, nanoseconds, SECOND
 from ballscrew_monitor.core.estimate import (
     estimate,
@@ -230,19 +230,12 @@ class Monitor:
         """Return the event that the change of the level begins or ends, if any."""
         level = self._hold.level
         if level is Level.WARN and before is not Level.WARN and self._pending is not None:
-            advice = advise(point, self.surface, self.settings.limits)
-            cause = dataclasses.replace(
-                self._pending.cause,
-                target_speed=advice.target_speed,
-                target_load=advice.target_load,
-            )
             self.event = dataclasses.replace(
                 self._pending,
                 number=self.event.number + 1,
                 active=True,
                 stamp=stamp,
-                cause=cause,
-                advice=advice,
+                advisor=Advisor(point=point, surface=self.surface, limits=self.settings.limits),
             )
             self._pending = None
             return self.event

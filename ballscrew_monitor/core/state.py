@@ -6,7 +6,7 @@ from collections.abc import Mapping
 import dataclasses
 import math
 
-from ballscrew_monitor.core.advice import Advice
+from ballscrew_monitor.core.advice import Advice, Advisor
 from ballscrew_monitor.core.estimate import MachinePoint, PointEstimate
 from ballscrew_monitor.core.inputs import Health, Source, YEAR
 from ballscrew_monitor.core.judgement import Code, Finding, Level, Limits, Severity, Verdict
@@ -40,7 +40,12 @@ class MonitorSettings:
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Event:
-    """One stay outside the optimal zone; stamps [ns], event 0 is none yet."""
+    """
+    One stay outside the optimal zone; stamps [ns], event 0 is none yet.
+
+    The first reading of `advice` takes milliseconds.
+
+    """
 
     number: int = 0
     active: bool = False
@@ -48,7 +53,12 @@ class Event:
     start: int = 0
     worst_value: float = NAN
     cause: Finding = Finding(code=Code.UNKNOWN, severity=Severity.UNKNOWN)
-    advice: Advice = Advice()
+    advisor: Advisor | None = None
+
+    @property
+    def advice(self) -> Advice:
+        """Return where the warning would clear."""
+        return Advice() if self.advisor is None else self.advisor.advice
 
     def worsened(self, estimate: PointEstimate) -> 'Event':
         """Return the event with its worst value after one more sample outside."""

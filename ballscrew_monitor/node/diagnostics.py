@@ -66,7 +66,7 @@ _TROUBLES: tuple[tuple[Callable[[Health], bool], str], ...] = (
     (
         lambda health: health.losing,
         'messages are lost on the way: lower their rate, raise publish_period, or give the node '
-        'more of the processor',
+        'fewer axes or more of the processor',
     ),
     (
         lambda health: health.lag > seconds(YEAR),

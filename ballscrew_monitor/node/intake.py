@@ -3,10 +3,11 @@
 """
 Takes what the inputs have received: all that waits, whatever woke the node, oldest first.
 
-An executor costs more for each message than its judgement does, and hands the messages of several
-topics over in an order of its own. So the first message of a burst brings along all the others,
-and the clock is asked once for all of them. Simulated time is read in the same order: a message
-arrived at the last `/clock` before it, whatever of both the executor has handed over by now.
+An executor costs more for each message than its judgement does, looks at every subscription in
+every round, and hands the messages of several topics over in an order of its own. So it waits for
+all inputs as one, the first message of a burst brings along all the others, and the clock is asked
+once for all of them. Simulated time is read in the same order: a message arrived at the last
+`/clock` before it.
 
 """
 
@@ -21,10 +22,12 @@ from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.inputs import Input, InputSample, Refusal, Source
 from ballscrew_monitor.core.loss import LossCounter
 from ballscrew_monitor.node.axis import Axis
-from rclpy.event_handler import SubscriptionEventCallbacks
+from rclpy.callback_groups import CallbackGroup
+from rclpy.event_handler import EventHandler, SubscriptionEventCallbacks
 from rclpy.node import Node
 from rclpy.qos import QoSDurabilityPolicy, QoSHistoryPolicy, QoSProfile, QoSReliabilityPolicy
 from rclpy.subscription import Subscription
+from rclpy.waitable import NumberOfEntities, Waitable
 from rosgraph_msgs.msg import Clock
 
 INPUT_QOS = QoSProfile(
@@ -34,6 +37,9 @@ INPUT_QOS = QoSProfile(
     durability=QoSDurabilityPolicy.VOLATILE,
 )
 CLOCK = '/clock'
+PAUSE = 2.5e-4  # [s] between two looks at the inputs while messages come
+QUIET = 1.5e-3  # [s] without a message after which the executor waits for the next one
+STAY = 0.02  # [s] for which the inputs are looked at before anything else has a turn
 MOST = 2 * INPUT_QOS.depth  # messages of one topic that are taken before anything else has a turn
 
 Reader = tuple[Axis, Input]
@@ -57,11 +63,7 @@ class Topic:
 
     readers: Sequence[Reader]
     loss: LossCounter
-    subscription: Subscription | None = None  # until it is made with a callback of this
-
-    def match(self, event: Any) -> None:
-        """Note how many publishers the topic has now."""
-        self.loss.match(event.current_count)
+    subscription: Subscription
 
     def arrival(self, message: Any, info: Mapping[str, Any]) -> Arrival:
         """Return a message with what the middleware says of it."""
@@ -73,25 +75,39 @@ class Topic:
         """Return what waits in the queue of the subscription, which is then empty."""
         found: list[Arrival] = []
         subscription = self.subscription
-        if subscription is None:
-            return found
         with subscription.handle:
             while len(found) < MOST:
                 taken = subscription.handle.take_message(subscription.msg_type, subscription.raw)
                 if taken is None:
                     break
                 found.append(self.arrival(*taken))
+        if found:  # the event that tells of it may not have had its turn
+            count = subscription.get_publisher_count()
+            if count != self.loss.publishers:
+                self.loss.match(count)
         return found
 
 
-class Intake:
+class Apart(CallbackGroup):
+    """Keeps the executor from waiting for its members one by one."""
+
+    def can_execute(self, entity: Any) -> bool:
+        """Return False: what happens to a member is seen by the intake."""
+        return False
+
+
+class Intake(Waitable):
     """The subscriptions of all axes; each sample and refusal is handed to `take`."""
 
     def __init__(self, node: Node, axes: Iterable[Axis], take: Take) -> None:
         """Subscribe once to each topic, however many inputs read it."""
+        super().__init__(node.default_callback_group)
         self._node = node
         self._take = take
+        self._apart = Apart()
         self._simulated = 0  # the last `/clock` [ns]
+        self._places: list[int] = []  # of the subscriptions in the wait set
+        self._changed: list[EventHandler] = []  # that tell of publishers come or gone
         readers: dict[str, list[Reader]] = {}
         for axis in axes:
             for source in axis.inputs:
@@ -102,6 +118,7 @@ class Intake:
         self._clock: Topic | None = None
         if node.get_parameter('use_sim_time').value:
             self._clock = self._subscribe_to(CLOCK, Clock, [])
+        node.add_waitable(self)
 
     @property
     def _all(self) -> list[Topic]:
@@ -112,21 +129,66 @@ class Intake:
         return self._subscribe_to(name, readers[0][1].message_type, readers)
 
     def _subscribe_to(self, name: str, kind: Any, readers: list[Reader]) -> Topic:
-        topic = Topic(readers=readers, loss=LossCounter())
-        topic.subscription = self._node.create_subscription(
+        loss = LossCounter()
+        subscription = self._node.create_subscription(
             kind,
             name,
-            functools.partial(self._on_message, topic),
+            _never_called,
             INPUT_QOS,
-            event_callbacks=SubscriptionEventCallbacks(matched=topic.match),
+            callback_group=self._apart,
+            # The others have nothing to tell: best effort and volatile suit every publisher.
+            event_callbacks=SubscriptionEventCallbacks(
+                matched=functools.partial(_count, loss), use_default_callbacks=False
+            ),
         )
-        return topic
+        return Topic(readers=readers, loss=loss, subscription=subscription)
+
+    @property
+    def _matches(self) -> list[EventHandler]:
+        # rclpy annotates the list as one handler.
+        made: list[Any] = [topic.subscription.event_handlers for topic in self._all]
+        return [handler for handlers in made for handler in handlers]
+
+    def get_num_entities(self) -> NumberOfEntities:
+        """Return how much the executor is to wait for."""
+        return NumberOfEntities(num_subs=len(self._all), num_events=len(self._matches))
+
+    def add_to_wait_set(self, wait_set: Any) -> None:
+        """Let the executor wait for messages, and for publishers that come or go."""
+        self._places = [
+            wait_set.add_subscription(topic.subscription.handle) for topic in self._all
+        ]
+        for handler in self._matches:
+            handler.add_to_wait_set(wait_set)
+
+    def is_ready(self, wait_set: Any) -> bool:
+        """Tell whether anything has come."""
+        self._changed = [handler for handler in self._matches if handler.is_ready(wait_set)]
+        return bool(self._changed) or any(
+            wait_set.is_ready('subscription', place) for place in self._places
+        )
+
+    def take_data(self) -> None:
+        """Count the publishers anew, before their messages are counted."""
+        for handler in self._changed:
+            if status := handler.take_data():
+                handler.callback(status)
+
+    async def execute(self, taken_data: None) -> None:
+        """Take what waits, and look again while more comes: cheaper than to be woken for each."""
+        self.drain()
+        now = begin = came = time.monotonic()
+        while now - came < QUIET and now - begin < STAY:
+            time.sleep(PAUSE)
+            now = time.monotonic()
+            if self.drain():
+                came = now
 
     def close(self) -> None:
         """Unsubscribe."""
+        self._node.remove_waitable(self)
         for topic in self._all:
-            if topic.subscription is not None:
-                self._node.destroy_subscription(topic.subscription)
+            self._node.destroy_subscription(topic.subscription)
         self.topics, self._clock = {}, None
 
     def publishers(self, axis: str) -> dict[Source, int]:
@@ -135,19 +197,14 @@ class Intake:
             source.source: topic.subscription.get_publisher_count()
             for topic in self.topics.values()
             for reader, source in topic.readers
-            if reader.name == axis and topic.subscription is not None
+            if reader.name == axis
         }
 
-    def drain(self) -> None:
-        """Take what waits."""
-        self._read([])
-
-    def _on_message(self, topic: Topic, message: Any, info: Mapping[str, Any]) -> None:
-        self._read([topic.arrival(message, info)])
-
-    def _read(self, first: list[Arrival]) -> None:
-        """Hand over the first arrivals and all others that wait, oldest first."""
-        arrivals = first + [one for topic in self._all for one in topic.waiting()]
+    def drain(self) -> bool:
+        """Hand over all that waits, oldest first; return whether that was anything."""
+        arrivals = [one for topic in self._all for one in topic.waiting()]
+        if not arrivals:
+            return False
         arrivals.sort(key=operator.attrgetter('received'))
         now, wall = self._node.get_clock().now().nanoseconds, time.time_ns()
         events: list[AxisEvent] = []
@@ -160,6 +217,16 @@ class Intake:
             events += _events(arrival, self._simulated or max(now - waited, 0))
         for axis, event in ordered(events):
             self._take(axis, event)
+        return True
+
+
+def _count(loss: LossCounter, event: Any) -> None:
+    """Note how many publishers a topic has now."""
+    loss.match(event.current_count)
+
+
+def _never_called(message: Any) -> None:
+    """Stand where rclpy wants a callback; the intake takes the messages itself."""
 
 
 def _events(arrival: Arrival, now: int) -> list[AxisEvent]:

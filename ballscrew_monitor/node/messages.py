@@ -12,6 +12,7 @@ import math
 from typing import Any
 
 from ballscrew_monitor.core import inputs, judgement, tally
+from ballscrew_monitor.core.advice import Advice
 from ballscrew_monitor.core.conversions import (
     celsius,
     Direction,
@@ -39,6 +40,7 @@ from surrogate.surface import Surface
 
 TIERS = {'closed_form': PointResult.TIER_CLOSED_FORM, 'full': PointResult.TIER_FULL}
 NAN = math.nan
+NO_ADVICE = Advice()
 # The numbers of a surface that a PointResult repeats under the same name.
 NUMBERS = (
     'friction_torque',
@@ -112,8 +114,8 @@ def fill_result(message: PointResult, result: PointEstimate, tier: int) -> None:
     message.contact_state = int(result.contact_state)
 
 
-def finding_message(finding: judgement.Finding) -> Finding:
-    """Return a finding as a message."""
+def finding_message(finding: judgement.Finding, advice: Advice = NO_ADVICE) -> Finding:
+    """Return a finding as a message, with the advice on it."""
     return Finding(
         code=int(finding.code),
         severity=int(finding.severity),
@@ -121,8 +123,8 @@ def finding_message(finding: judgement.Finding) -> Finding:
         limit=float(finding.limit),
         unit=finding.unit,
         text=finding.text,
-        target_speed=float(finding.target_speed),
-        target_load=float(finding.target_load),
+        target_speed=float(advice.target_speed),
+        target_load=float(advice.target_load),
     )
 
 
@@ -215,7 +217,7 @@ def out_of_zone_message(axis: str, event: Event) -> OutOfZone:
         active=event.active,
         duration=seconds(event.stamp - event.start),
         worst_value=float(event.worst_value),
-        cause=finding_message(event.cause),
+        cause=finding_message(event.cause, event.advice),
         advice=event.advice.text,
     )
     message.header.frame_id = axis

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The lifecycle node: declare, subscribe, call the monitor, publish. It decides nothing itself."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 import functools
 import signal
 import sys
@@ -230,20 +230,23 @@ class BallscrewMonitor(LifecycleNode):
         if now - self._news_time >= NEWS_INTERVAL:  # else the next state or the timer sends it
             self._news_time = now
             station.say_news(now)
-            self._publish_diagnostics()
+            self._publish_diagnostics([station.name])
 
-    def _publish_diagnostics(self) -> None:
+    def _publish_diagnostics(self, axes: Sequence[str] | None = None) -> None:
+        """Publish the diagnostics of some axes, or of all."""
         now = self.get_clock().now()
         for station in self._stations.values():
             station.log_inputs(self._steady.now().nanoseconds)
         stood = self._pulse.stood(now.nanoseconds, self._steady.now().nanoseconds)
-        message = DiagnosticArray(status=self._statuses(stood))
+        message = DiagnosticArray(
+            status=self._statuses(self._values['axes'] if axes is None else axes, stood)
+        )
         message.header.stamp = now.to_msg()
         self._diagnostics.publish(message)
 
-    def _statuses(self, stood: int) -> list[DiagnosticStatus]:
+    def _statuses(self, axes: Sequence[str], stood: int) -> list[DiagnosticStatus]:
         made = []
-        for name in self._values['axes']:
+        for name in axes:
             if name in self._stations:
                 publishers = self._intake.publishers(name) if self._intake else None
                 made += self._stations[name].statuses(publishers=publishers, stood=stood)

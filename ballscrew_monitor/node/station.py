@@ -3,6 +3,7 @@
 """What the node keeps of one axis: the axis, its publishers, and what it last said."""
 
 from collections.abc import Mapping, Sequence
+import functools
 from typing import Any
 
 from ballscrew_monitor.core.conversions import nanoseconds
@@ -26,6 +27,7 @@ from ballscrew_monitor.node.messages import (
 from ballscrew_msgs.msg import BallScrewState, OperatingPoint, OutOfZone, PointResult, SurfaceInfo
 from ballscrew_msgs.srv import EvaluateOperatingPoint
 from diagnostic_msgs.msg import DiagnosticStatus
+from rclpy.event_handler import PublisherEventCallbacks
 from rclpy.lifecycle import LifecycleNode
 from rclpy.qos import QoSDurabilityPolicy, QoSProfile, QoSReliabilityPolicy
 from surrogate.files import InputError
@@ -62,7 +64,10 @@ class Station:
         self._said: tuple[diagnostics.StatusSummary, ...] = ()
         self._logged: diagnostics.StatusSummary | None = None
         self._logged_at = -LOG_INTERVAL
-        make = node.create_lifecycle_publisher
+        # rclpy looks at every event of every publisher in every round. What these would warn of,
+        # a subscriber with QoS that does not fit, its own node warns of too.
+        quiet = {'event_callbacks': PublisherEventCallbacks(use_default_callbacks=False)}
+        make = functools.partial(node.create_lifecycle_publisher, **quiet)
         self._state = make(BallScrewState, f'~/{axis.name}/state', STATE_QOS)
         self._event = make(OutOfZone, f'~/{axis.name}/out_of_zone', LATCHED_QOS)
         self._info = make(SurfaceInfo, f'~/{axis.name}/surface_info', LATCHED_QOS)

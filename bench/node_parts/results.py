@@ -105,12 +105,23 @@ def draw(found: Findings) -> 'Figure':
             ]
             latency.bar(places, values, 0.4, color=colour, alpha=alpha)
     shares.set_xticks(range(len(thinned)), [f'{axes} x\n{rate:g} Hz' for rate, axes in thinned])
-    shares.set(ylabel='share of a core [%]', title='publish_period 0.1 s')
+    shares.set(ylabel='share of a core [%]', title='ten states a second')
     shares.legend()
     latency.set_xticks(range(len(each)), [f'{rate:g} Hz' for rate in each])
-    latency.set(ylabel='latency, p50 dark, p99 light [ms]', yscale='log', title='each sample')
-    memory.plot(
-        [at / 60 for at, _ in found.memory], [size for _, size in found.memory], color=BLUE
+    latency.set(
+        ylabel='latency, p50 dark, p99 light [ms]',
+        yscale='log',
+        title='one axis, a state for each sample',
     )
-    memory.set(xlabel='time [min]', ylabel='memory [MB]', title='1 kHz', ylim=(0, None))
+    latency.yaxis.set_major_formatter('{x:g}')
+    latency.yaxis.set_minor_formatter('')
+    latency.set_ylim(bottom=0.1)
+    times, sizes = zip(*found.memory)
+    memory.plot([at / 60 for at in times], sizes, '.-', color=BLUE)
+    memory.set(
+        xlabel='time [min]',
+        ylabel='memory [MB]',
+        title='one axis, 1 kHz',
+        ylim=(0, 1.2 * max(sizes)),
+    )
     return figure

@@ -205,13 +205,26 @@ def test_an_event_begins_and_ends_with_its_facts(core):
     assert (event.number, event.active, event.start) == (1, True, START + 2 * SECOND)
     assert event.stamp == edges[0].stamp == START + 2 * SECOND + SECOND // 2
     assert (event.cause.code, event.worst_value) == (Code.RCS_HIGH, 1.0)
-    assert event.cause.target_speed == pytest.approx(30.0, rel=1e-5)
+    assert event.advice.target_speed == pytest.approx(30.0, rel=1e-5)
     assert event.advice.text.startswith('at this load run at 30 rad/s (286 rev/min)')
     states = feed(monitor, motion(40.0, start=START + 3 * SECOND, count=120))
     (over,) = [state.event for state in states if state.event is not None]
     assert (over.number, over.active, over.start) == (1, False, START + 2 * SECOND)
     assert over.stamp == START + 4 * SECOND
     assert {state.event_id for state in states} == {1}
+
+
+def test_the_state_that_raises_does_not_wait_for_the_advice(core):
+    """One lookup for a sample, as ever; the scan of the surface comes when it is asked for."""
+    monitor = core.monitor(core.surface(rcs=1.0), core.limits(raise_delay=0))
+    (state,) = feed(monitor, motion(10.0))
+    assert state.event.active
+    assert len(monitor.surface.asked) == 1
+    assert math.isnan(state.event.advice.target_speed)  # bad everywhere
+    asked = len(monitor.surface.asked)
+    assert asked > 100
+    assert monitor.event.advice is state.event.advice
+    assert len(monitor.surface.asked) == asked
 
 
 def test_the_worst_value_counts_from_the_first_sample_outside(core):

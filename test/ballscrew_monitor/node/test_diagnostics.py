@@ -143,7 +143,7 @@ def test_an_input_slower_than_its_timeout_is_told(core):
         (
             {'lost': 2},
             'speed messages are lost on the way: lower their rate, raise publish_period, or give '
-            'the node more of the processor',
+            'the node fewer axes or more of the processor',
         ),
         (
             {'lost': None},

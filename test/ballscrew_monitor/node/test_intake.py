@@ -122,6 +122,30 @@ def test_with_a_second_publisher_loss_is_not_known(bench):
     assert [event.lost for event in bench.taken[1:]] == [None, None]
 
 
+def test_a_second_publisher_is_noticed_before_the_executor_tells_of_it(bench):
+    bench.publish('speed', 1)
+    bench.until(lambda: bench.taken)
+    second = bench.node.create_publisher(Float64, 'speed', 10)
+    end = time.monotonic() + DEADLINE
+    while bench.intake.publishers('x')[Source.SPEED] < 2 and time.monotonic() < end:
+        pass
+    second.publish(Float64(data=2.0))
+    bench.publish('speed', 3)
+    while len(bench.taken) < 3 and time.monotonic() < end:
+        bench.intake.drain()
+    assert [event.lost for event in bench.taken] == [0, None, None]
+
+
+def test_a_look_tells_whether_anything_has_come(bench):
+    assert not bench.intake.drain()
+    bench.publish('speed', 1)
+    end = time.monotonic() + DEADLINE
+    while not bench.intake.drain() and time.monotonic() < end:
+        pass
+    assert [event.value for event in bench.taken] == [1.0]
+    assert not bench.intake.drain()
+
+
 def test_a_closed_intake_takes_nothing(bench):
     bench.intake.close()
     bench.publish('speed', 1)

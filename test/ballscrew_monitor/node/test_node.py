@@ -39,6 +39,11 @@ def levels(heard, part='Inputs'):
     return [now for now, before in zip(found, [None, *found], strict=False) if now != before]
 
 
+def axes_told(message):
+    """Return the axes that a message of the diagnostics speaks of."""
+    return tuple(dict.fromkeys(status.name.split(': ')[1] for status in message.status))
+
+
 def feed(node, publish, states, speed, count, **changes):
     """Publish samples and wait until each of them was judged."""
     done = states[-1].judged if states else 0
@@ -286,6 +291,7 @@ def test_evaluate_answers_for_many_points_at_once(node):
 def test_several_axes_share_one_topic(node):
     node.start(axes="['x','y']", y__max_future=3600.0, **AHEAD)
     x, y = node.states('x'), node.states('y')
+    told = node.listen(DiagnosticArray, '/diagnostics')
     publish = node.machine()
     node.until(lambda: node.node.count_publishers(f'{node.name}/y/state'))
     feed(node, publish, x, FAST, 3)
@@ -297,6 +303,8 @@ def test_several_axes_share_one_topic(node):
     # A tick between two samples has a state of its own, without a speed.
     assert FAST in [state.point.speed for state in x]
     assert y[-1].point.speed == SLOW
+    # A change is told of its own axis, the rest once a second.
+    node.until(lambda: {('x',), ('x', 'y')} <= {axes_told(message) for message in told})
 
 
 def test_the_small_services(node, tmp_path):
