@@ -146,6 +146,7 @@ class _Conversation:
         sent = client.send_goal_async(goal_of(self._question), feedback_callback=_show)
         handle = self._until(lambda: sent.done() and sent.result(), wait)
         if handle is None:
+            self._take_back_late(sent)
             return _complain(f'{action} does not answer within {wait:g} s')
         if not handle.accepted:
             return _complain(REJECTED)
@@ -179,9 +180,18 @@ class _Conversation:
 
     def _take_back(self, handle: Any) -> None:
         """Cancel a goal, and wait until the node knows."""
-        cancelled, end = handle.cancel_goal_async(), time.monotonic() + 1.0
-        executor = self._node.executor
-        while executor and not cancelled.done() and time.monotonic() < end:
+        self._spin_until(handle.cancel_goal_async().done)
+
+    def _take_back_late(self, sent: Any) -> None:
+        """Cancel a goal that may be accepted only now, as nobody waits for it any more."""
+        self._spin_until(sent.done)
+        if sent.done() and sent.result().accepted:
+            self._take_back(sent.result())
+
+    def _spin_until(self, condition: Callable[[], bool]) -> None:
+        """Spin until something is done, for a second at most, whatever interrupts."""
+        executor, end = self._node.executor, time.monotonic() + 1.0
+        while executor and not condition() and time.monotonic() < end:
             executor.spin_once(timeout_sec=POLL)
 
 

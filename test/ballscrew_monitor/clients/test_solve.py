@@ -9,10 +9,13 @@ from pathlib import Path
 import signal
 import subprocess
 import sys
+from types import SimpleNamespace
 
+from ballscrew_monitor.clients.solve import _Conversation
 from ballscrew_monitor.cycle.node_process import child_environment
 from ballscrew_monitor.node.solver_process import worker_environment
 import pytest
+from rclpy.task import Future
 
 ROOT = Path(__file__).resolve().parents[3]
 SCRIPT = Path(sys.executable).with_name('ballscrew')
@@ -157,3 +160,22 @@ def test_a_node_that_ends_meanwhile_is_told(node, number, sentence):
     node.stop(number)
     assert end(process) == (1, '', sentence)
     node.until(lambda: not os.path.exists(f'/proc/{worker}'), 'the end of the worker')
+
+
+def test_a_goal_that_is_accepted_too_late_is_taken_back():
+    """Interrupted before the node answers: the answer is waited for, and the goal cancelled."""
+    sent, cancelled = Future(), Future()
+    handle = SimpleNamespace(accepted=True, cancel_goal_async=lambda: cancelled)
+    calls = []
+
+    def spin_once(timeout_sec):
+        calls.append(timeout_sec)
+        if len(calls) == 3:
+            sent.set_result(handle)
+        if len(calls) == 5:
+            cancelled.set_result('cancelled')
+
+    node = SimpleNamespace(executor=SimpleNamespace(spin_once=spin_once))
+    _Conversation(node, None, None)._take_back_late(sent)
+    assert cancelled.done()
+    assert len(calls) == 5
