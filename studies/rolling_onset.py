@@ -42,7 +42,8 @@ class Variation:
     Shortest wave [um], nodes per it along and across the track, load [N], place across over the
     semi-axis [-], None for the whole contact, width of the strip over the half length of the
     contact [-], floor [nm], first and last speed [m/s], transits, nodes of a step, seed of the
-    draw; roughness: Rq [um], long cut-off [mm], fractal dimension.
+    draw; roughness: Rq [um], long cut-off [mm], fractal dimension; Eyring stress of the ripples'
+    flow [MPa], None for a Newtonian oil; sideways slip [-].
 
     """
 
@@ -62,6 +63,8 @@ class Variation:
     rms_um: float = 0.12
     cutoff_long_mm: float = 0.25
     dimension: float = 2.68
+    eyring_MPa: float | None = None
+    side_slip: float = 0.0
 
 
 BASE = Variation(name='base')
@@ -91,6 +94,9 @@ STUDY = (
     replace(BASE, name='whole contact', place=None),
     replace(BASE, name='100 N', load=100.0),
     replace(BASE, name='5 N', load=5.0),
+    replace(BASE, name='Eyring stress 5 MPa', eyring_MPa=5.0),
+    replace(BASE, name='Eyring stress 20 MPa', eyring_MPa=20.0),
+    replace(BASE, name='1.9 % sideways slip', side_slip=0.019),
     replace(BASE, name='cut-off 0.8 mm', cutoff_long_mm=0.8, first=0.2, last=0.02),
     replace(BASE, name='dimension 2.4', dimension=2.4, first=0.2, last=0.02),
 )
@@ -160,7 +166,12 @@ def march(variation: Variation) -> tuple[SpeedRamp, int, int]:
     shortest = surface.shortest_wavelength
     nx = 2 * math.ceil(0.5 * variation.along * 5.2 * a / shortest) + 1
     settings = MarchSettings(
-        nx=nx, places=1, stride=variation.stride, film_floor=variation.floor_nm * 1e-9
+        nx=nx,
+        places=1,
+        stride=variation.stride,
+        film_floor=variation.floor_nm * 1e-9,
+        ripple_eyring_stress=1e6 * (variation.eyring_MPa or math.inf),
+        side_slip=variation.side_slip,
     )
     speeds, ways = (variation.first, variation.last), {'transits': variation.transits}
     if variation.place is None:

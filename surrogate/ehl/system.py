@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from surrogate.ehl.grid import Grid, GridState
 from surrogate.ehl.half_space import deform, repeat
-from surrogate.ehl.kernels.moving import column_rows
+from surrogate.ehl.kernels.moving import column_rows, thin_by_shear
 from surrogate.ehl.kernels.reynolds import (
     clear_border,
     contact_set,
@@ -34,13 +34,16 @@ class Columns:
     """
     What the material columns bring to the nodes that they have reached, in Hertz units [-].
 
-    rho h and the mass carried of the step before, and by how many nodes a step moves them.
+    rho h and the mass carried of the step before, and by how many nodes a step moves them; shear
+    stress at the wall under a unit gradient of pressure and film, over Eyring's, 0 for an oil
+    that shear does not thin.
 
     """
 
     mass: Array
     carried: Array
     stride: int
+    shear: float = 0.0
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -143,6 +146,7 @@ def film_rows(
         return residual, by_pressure, by_gap, np.empty(grid.shape)
     film = film_planes(problem, pressure, gap, contact)
     if problem.columns is not None:
+        thin_film(grid, problem.columns, pressure, film)
         _moving_rows(grid, problem, problem.columns, pressure, film, residual, by_pressure, by_gap)
     else:
         reynolds_rows(
@@ -158,6 +162,13 @@ def film_rows(
             by_gap,
         )
     return residual, by_pressure, by_gap, film[2]
+
+
+def thin_film(grid: Grid, columns: Columns, pressure: Array, film: Array) -> None:
+    """Thin the oil of a film by shear, where it does that [-]."""
+    if columns.shear:
+        along, across = 0.5 * columns.shear / grid.dx, 0.5 * columns.shear / grid.dy
+        thin_by_shear(pressure, film, along, across)
 
 
 def _no_rows(grid: Grid) -> tuple[Array, Array, Array]:

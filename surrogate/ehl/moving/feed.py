@@ -30,7 +30,9 @@ class Feed:
     Rows of a raceway that enters a smooth contact.
 
     `place` [m] is where on the raceway the middle of the contact's track lies, along it and
-    across. With `ramp` the rough material enters from the inlet, else it is there from the start.
+    across. With `side_slip` [-] it drifts sideways, against the oil by half as much as against
+    the ball. With `ramp` the rough material enters from the inlet, else it is there from the
+    start.
 
     """
 
@@ -38,6 +40,7 @@ class Feed:
     grid: Grid
     place: tuple[float, float] = (0.0, 0.0)
     ramp: bool = True
+    side_slip: float = 0.0
     _rows: Array = field(init=False)
     _first: int = field(init=False)  # number of the first row that is kept
 
@@ -49,6 +52,8 @@ class Feed:
     def at(self, moved: int) -> Array:
         """Return the heights on the grid after the strip has moved on by so many nodes [-]."""
         nx = self.grid.shape[0]
+        if self.side_slip:
+            return self._heights(-moved, nx, 0.5 * self.side_slip * moved * self.grid.dx)
         while -moved < self._first:
             block = self._heights(self._first - BLOCK, BLOCK)
             self._rows = np.concatenate([block, self._rows[:nx]])
@@ -56,14 +61,14 @@ class Feed:
         start = -moved - self._first
         return self._rows[start:][:nx]
 
-    def _heights(self, first: int, count: int) -> Array:
-        """Return rows of the strip in Hertz units [-]."""
+    def _heights(self, first: int, count: int, drift: float = 0.0) -> Array:
+        """Return rows of the strip after a drift sideways, in Hertz units [-]."""
         case, grid = self.case, self.grid
         x = grid.x[0] + grid.dx * np.arange(first, first + count)
         rows = raceway_heights(
             case.roughness,
             x * case.semi_axis_x + self.place[0],
-            grid.y * case.semi_axis_x + self.place[1],
+            (grid.y - drift) * case.semi_axis_x + self.place[1],
         )
         rows = rows / case.height_unit
         if self.ramp:

@@ -17,6 +17,10 @@ Array = NDArray[np.float64]
 THIN_FILMS = (1e-9, 3e-9, 5e-9, 10e-9)
 """Films below which the share of the contact is reported [m]."""
 LEAST_TRANSITS = 1.0
+LEAST_EYRING = 1e5
+"""Least Eyring stress of the flow of the ripples [Pa]."""
+HARDNESS = 7e9
+"""Pressure that steel of 60 HRC bears before it yields, about its hardness [Pa]."""
 
 
 class MarchStatus(Enum):
@@ -38,7 +42,9 @@ class MarchSettings:
     `domain` as in `Settings`, None for one with room for all summits; places beside each other on
     the raceway over which the transits are shared; film floor [m]; relative tolerances of flux,
     load and contact gap of a step; slide-roll ratio at which traction is measured [-]; cap of the
-    whole call [s]. `moving` False lets the raceway stand still, for comparison.
+    whole call [s]. `moving` False lets the raceway stand still, for comparison. Eyring stress of
+    an oil that the flow of its ripples thins [Pa], infinity for a Newtonian one; way sideways over
+    way along of the raceway against the ball [-], the oil goes half of it.
 
     """
 
@@ -54,6 +60,8 @@ class MarchSettings:
     slide_roll_ratio: float = 0.019
     time_cap: float = math.inf
     moving: bool = True
+    ripple_eyring_stress: float = math.inf
+    side_slip: float = 0.0
 
     def __post_init__(self) -> None:
         """Check the numbers; those of `Settings` are checked there."""
@@ -64,6 +72,13 @@ class MarchSettings:
                 raise InputError(f'{name} is {value!r}, allowed is a number from {low} to {high}')
         if not 0 <= self.slide_roll_ratio <= 2:
             raise InputError(f'slide_roll_ratio is {self.slide_roll_ratio!r}, allowed is 0 to 2')
+        if not self.ripple_eyring_stress >= LEAST_EYRING:
+            raise InputError(
+                f'ripple_eyring_stress is {self.ripple_eyring_stress!r} Pa, allowed is '
+                f'{LEAST_EYRING:g} Pa or more'
+            )
+        if not abs(self.side_slip) <= 1:
+            raise InputError(f'side_slip is {self.side_slip!r}, allowed is -1 to 1')
         if not self.time_cap > 0:
             raise InputError(f'time_cap is {self.time_cap!r} s, allowed is above 0')
 
@@ -102,7 +117,8 @@ class MovingSolution:
 
     Share of the load on punctured nodes `rcs` and share that asperities carry [-]; mean film and
     its rms over the inner 0.8 of the Hertz zone [m]; mean over time of the least film there [m];
-    share of the Hertz zone with films below `THIN_FILMS` [-]; traction coefficient of the film at
+    share of the Hertz zone with films below `THIN_FILMS` [-]; largest pressure [Pa] and share of
+    the load at pressures above `HARDNESS` [-]; traction coefficient of the film at
     the slide-roll ratio of the settings [-]. Loss by rolling as a force on each surface [N]:
     Poiseuille dissipation over twice the entrainment speed; the same from the moment of the
     pressure over twice the radius, which also holds what the inlet outside the domain takes and
@@ -126,6 +142,8 @@ class MovingSolution:
     film_rms: Mean = Mean()
     least_film: Mean = Mean()
     thin_shares: tuple[Mean, ...] = field(default=(Mean(),) * len(THIN_FILMS))
+    max_pressure: Mean = Mean()
+    hard_share: Mean = Mean()
     film_traction: Mean = Mean()
     rolling_loss: Mean = Mean()
     moment_loss: Mean = Mean()

@@ -102,6 +102,7 @@ class March:
             grid=self.grid,
             place=self._place(place, RUN_IN + 2 * transits),
             ramp=settings.moving,
+            side_slip=settings.side_slip,
         )
         for moved in range(
             settings.stride, round(run_in + length) + settings.stride, settings.stride
@@ -128,7 +129,7 @@ class March:
         return along * self.case.semi_axis_x, across * self.case.semi_axis_x
 
     def _stepper(self) -> Stepper:
-        settings = self.settings
+        settings, case = self.settings, self.case
         assert self.path is not None
         return Stepper(
             case=self.case,
@@ -139,6 +140,10 @@ class March:
             ),
             stride=settings.stride,
             moving=settings.moving,
+            shear=0.5
+            * case.hertz_pressure
+            * case.height_unit
+            / (case.semi_axis_x * settings.ripple_eyring_stress),
         )
 
     def _count(self, step: Step) -> None:

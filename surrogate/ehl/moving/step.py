@@ -57,7 +57,8 @@ class Stepper:
     A contact on its grid, from a `smooth` state on, in Hertz units.
 
     Entrainment `speed` [m/s]; the raceway moves unless `moving` is False; `stride` nodes are one
-    step. Between steps the last state and the mass of the columns are kept [-].
+    step; `shear` as in `Columns` [-]. Between steps the last state and the mass of the columns are
+    kept [-].
 
     """
 
@@ -67,6 +68,7 @@ class Stepper:
     limits: NewtonLimits
     stride: int = 1
     moving: bool = True
+    shear: float = 0.0
     speed: float = field(init=False)
     _state: GridState = field(init=False)
     _ripples_over: GridState = field(init=False)
@@ -99,6 +101,7 @@ class Stepper:
             mass=arrived(self._mass, self.stride),
             carried=arrived(self._carried, self.stride),
             stride=self.stride,
+            shear=self.shear,
         )
         problem = replace(self._problem(rough), columns=columns)
         made = self._solve(problem)

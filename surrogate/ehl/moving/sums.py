@@ -13,9 +13,9 @@ from surrogate.ehl.case import ScaledCase
 from surrogate.ehl.friction import viscosity_of
 from surrogate.ehl.grid import Grid
 from surrogate.ehl.kernels.moving import dissipated
-from surrogate.ehl.moving.interface import Mean, THIN_FILMS
+from surrogate.ehl.moving.interface import HARDNESS, Mean, THIN_FILMS
 from surrogate.ehl.moving.step import Step
-from surrogate.ehl.system import film_planes
+from surrogate.ehl.system import film_planes, thin_film
 from surrogate.ehl.to_si import central_film, PUNCTURED
 
 Array = NDArray[np.float64]
@@ -28,8 +28,8 @@ class Measure:
     """
     Numbers of one step, as in `MovingSolution`.
 
-    Entrainment speed [m/s], shares and traction [-], films [m], losses [N]; RCS along the track
-    per semi-axis [-].
+    Entrainment speed [m/s], shares and traction [-], films [m], pressure [Pa], losses [N]; RCS
+    along the track per semi-axis [-].
 
     """
 
@@ -39,6 +39,8 @@ class Measure:
     mean_film: float
     film_rms: float
     least_film: float
+    max_pressure: float
+    hard_share: float
     film_traction: float
     rolling_loss: float
     moment_loss: float
@@ -68,6 +70,7 @@ class Gauge:
         punctured = outcome.gap <= PUNCTURED * case.floor
         total = outcome.state.film_pressure + outcome.state.asperity_pressure
         touching = np.where(punctured, total, 0.0)
+        hard = total > HARDNESS / case.hertz_pressure
         core = self._distance < CORE
         inside = gap[self._distance < 1.0] * unit
         return Measure(
@@ -77,6 +80,8 @@ class Gauge:
             mean_film=float(gap[core].mean()) * unit,
             film_rms=float(gap[core].std()) * unit,
             least_film=float(inside.min()),
+            max_pressure=float(total.max()) * case.hertz_pressure,
+            hard_share=grid.integral(np.where(hard, total, 0.0)) / case.load,
             film_traction=self._film_traction(step, gap, punctured),
             rolling_loss=self._rolling_loss(step),
             moment_loss=-0.5 * grid.integral(total * grid.x[:, None]) * self._force,
@@ -103,6 +108,8 @@ class Gauge:
         grid, problem, outcome = self.grid, step.problem, step.outcome
         pressure = outcome.state.film_pressure
         film = film_planes(problem, pressure, outcome.gap, outcome.contact)
+        assert problem.columns is not None
+        thin_film(grid, problem.columns, pressure, film)
         lost = dissipated(
             pressure,
             film,
@@ -136,6 +143,8 @@ NUMBERS = (
     'mean_film',
     'film_rms',
     'least_film',
+    'max_pressure',
+    'hard_share',
     'film_traction',
     'rolling_loss',
     'moment_loss',

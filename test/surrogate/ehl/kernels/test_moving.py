@@ -5,7 +5,7 @@
 import numpy as np
 import pytest
 from surrogate.ehl.interface import NO_FADING
-from surrogate.ehl.kernels.moving import column_rows, dissipated
+from surrogate.ehl.kernels.moving import column_rows, dissipated, thin_by_shear
 from surrogate.ehl.kernels.reynolds import film_properties, reynolds_rows
 
 LAW = (np.log(0.04) + 9.67, 0.55, 0.34)
@@ -99,3 +99,21 @@ def test_dissipation_is_flow_times_rise(film):
     work = float((pressure * (rows - still)).sum())
     lost = dissipated(pressure, planes, 3.0, ASPECT, True, inlet, False)
     assert lost == pytest.approx(work, rel=1e-12)
+
+
+def test_shear_thins_as_the_plain_twin(film):
+    """The fluidity grows by sinh(S)/S, its logarithm falls by as much; the border stays."""
+    rng = np.random.default_rng(7)
+    pressure, thinned = rng.random((9, 8)), film.copy()
+    thin_by_shear(pressure, thinned, 30.0, 20.0)
+    twin = np.ones((9, 8))
+    for i in range(1, 8):
+        for j in range(1, 7):
+            shear = film[2, i, j] * np.hypot(
+                30.0 * (pressure[i + 1, j] - pressure[i - 1, j]),
+                20.0 * (pressure[i, j + 1] - pressure[i, j - 1]),
+            )
+            twin[i, j] = np.sinh(shear) / shear
+    assert thinned[5] == pytest.approx(film[5] * twin, rel=1e-12)
+    assert thinned[3] == pytest.approx(film[3] - np.log(twin), rel=1e-12, abs=1e-12)
+    assert twin.max() > 1.05

@@ -127,8 +127,35 @@ def test_a_summit_that_fills_the_film_touches(circular, semi_axis, transverse):
     assert march.converged
     assert 0.0 < march.asperity_share.value < march.rcs.value < 1.0
     assert march.thin_shares[0].value == 0.0
+    assert march.max_pressure.value > 1e9
+    assert 0.0 <= march.hard_share.value <= march.rcs.value
     assert march.rcs_along.sum() * (march.x[1] - march.x[0]) == pytest.approx(march.rcs.value)
     assert march.least_film.value == pytest.approx(20e-9, rel=1e-3)
+
+
+def test_shear_thinning_flattens_a_wave(circular, semi_axis, transverse):
+    """Oil that the flow of the ripples thins leaks more, if little: the amplitude falls."""
+    rough = transverse(60e-9, 0.5 * semi_axis)
+    sizes = [
+        wave_amplitude(circular(rough, nx=97, ripple_eyring_stress=stress), 0.5)
+        for stress in (math.inf, 1e9, 1e6)
+    ]
+    assert sizes[1] == pytest.approx(sizes[0], rel=1e-5)
+    assert sizes[2] < 0.9995 * sizes[0]
+
+
+def test_ridges_that_slip_sideways_move_through_the_film(circular, semi_axis):
+    """Ridges along the track: the film at the centre stands without slip, and swings with it."""
+
+    def ridges(x, y):
+        return 20e-9 * np.cos(2 * np.pi * y / (0.5 * semi_axis)) + 0 * x
+
+    still, one, other = (
+        circular(ridges, transits=2.0, side_slip=slip).centre_films for slip in (0.0, 0.4, -0.4)
+    )
+    assert np.ptp(still) < 0.5e-9
+    assert np.ptp(one) > 5e-9
+    assert other == pytest.approx(one, abs=0.3e-9)  # the ridges are even in y
 
 
 def test_a_late_march_returns_what_it_has(circular, semi_axis, transverse):
@@ -163,6 +190,8 @@ def test_a_stalled_march_says_so(circular, semi_axis, transverse, monkeypatch):
         ({'places': 0}, 'places is 0, allowed is a number from 1 to 1000'),
         ({'slide_roll_ratio': -1.0}, 'slide_roll_ratio is -1.0, allowed is 0 to 2'),
         ({'time_cap': 0.0}, 'time_cap is 0.0 s, allowed is above 0'),
+        ({'ripple_eyring_stress': 1.0}, 'ripple_eyring_stress is 1.0 Pa'),
+        ({'side_slip': 2.0}, 'side_slip is 2.0, allowed is -1 to 1'),
         ({'nx': 64}, 'nx is 64, allowed is an odd number'),
     ],
 )
