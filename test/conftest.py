@@ -42,6 +42,7 @@ SLOW = (
     'surrogate/paper/test_figures.py',
     'surrogate/paper/test_marks.py',
     'surrogate/paper/test_rows.py',
+    'surrogate/raceway/test_scaling.py',
     'surrogate/raceway/test_short_waves.py',
     'surrogate/screw',
     'surrogate/surface_tools/test_figures.py',

@@ -18,6 +18,8 @@ HOPELESS = 5
 """Linear solves cut at their limit after which an iteration is given up [-]."""
 FALLING = 0.5
 """Flux error over that of the step before from which on Newton counts as stalled [-]."""
+LEAST_FALL = 0.1
+"""Fall of the flux error over the length of a step below which the step is halved [-]."""
 OVERSHOOT = 2.0
 """Largest fall of the film pressure over that which is exact for exponential viscosity [-]."""
 
@@ -29,7 +31,9 @@ class NewtonLimits:
 
     A step may change the pressure of a film node by `step` and the logarithm of the viscosity at
     the Hertz pressure by `viscous`, and may raise the film pressure of a contact node by `rise`.
-    Linear solves leave `krylov` of their residual, after a stalled step `stalled` if that is less.
+    A step that lowers the flux error by less than `LEAST_FALL` of its length is halved, `halvings`
+    times at most. Linear solves leave `krylov` of their residual, after a stalled step `stalled`
+    if that is less.
 
     """
 
@@ -42,6 +46,7 @@ class NewtonLimits:
     step: float = 0.5
     viscous: float = 6.0
     rise: float = 0.3
+    halvings: int = 0
     deadline: float = math.inf
 
 
@@ -75,7 +80,8 @@ def solve_grid(
         finite = math.isfinite(now.flux_error) and math.isfinite(now.load_rest)
         if converged or late or not finite or count >= limits.newton or hopeless >= HOPELESS:
             break
-        state, used = _step(grid, problem, state, now, _tightened(limits, now.flux_error, last))
+        new, used = _step(grid, problem, state, now, _tightened(limits, now.flux_error, last))
+        state = _shortened(grid, problem, state, new, now.flux_error, limits.halvings)
         last = now.flux_error
         krylov += used
         count += 1
@@ -92,6 +98,27 @@ def solve_grid(
         gap_error=now.gap_error,
         newton=count,
         krylov=krylov,
+    )
+
+
+def _shortened(
+    grid: Grid, problem: GridProblem, old: GridState, new: GridState, flux: float, halvings: int
+) -> GridState:
+    """Return the new state, or one between whose flux error falls below that of the old one."""
+    share = 1.0
+    for _ in range(halvings):
+        if evaluate(grid, problem, new).flux_error < (1 - LEAST_FALL * share) * flux:
+            break
+        new, share = _between(old, new), share / 2
+    return new
+
+
+def _between(old: GridState, new: GridState) -> GridState:
+    """Return the state in the middle of two."""
+    return GridState(
+        film_pressure=0.5 * (old.film_pressure + new.film_pressure),
+        asperity_pressure=0.5 * (old.asperity_pressure + new.asperity_pressure),
+        approach=0.5 * (old.approach + new.approach),
     )
 
 

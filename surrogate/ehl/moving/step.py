@@ -21,8 +21,8 @@ from surrogate.ehl.system import carried_on, Columns, evaluate, film_planes, Gri
 Array = NDArray[np.float64]
 TIGHT = 0.01
 """What linear solves leave of their residual where a step is tried again [-]."""
-PATIENT = 40
-"""Most Newton iterations of a step that is tried again [-]."""
+PATIENT, HALVINGS = 40, 4
+"""Most Newton iterations of a step that is tried again, and halvings of each [-]."""
 
 
 def step_limits(flux: float, load: float, gap: float) -> NewtonLimits:
@@ -118,15 +118,15 @@ class Stepper:
         return case.problem(grid, self.speed, heights, case.order)
 
     def _solve(self, problem: GridProblem) -> Step:
-        """Solve from the predicted state or, failing that, from the last or the smooth one."""
+        """Solve from the predicted state; failing that more carefully, or from another one."""
         newton = krylov = 0
-        limits = self.limits
-        for start in (self._predicted(), self._state, self.smooth):
+        limits, predicted = self.limits, self._predicted()
+        for start in (predicted, predicted, self._state, self.smooth):
             outcome = solve_grid(self.grid, problem, start, limits)
             newton, krylov = newton + outcome.newton, krylov + outcome.krylov
             if outcome.converged:
                 break
-            limits = replace(self.limits, krylov=TIGHT, newton=PATIENT)
+            limits = replace(self.limits, krylov=TIGHT, newton=PATIENT, halvings=HALVINGS)
         return Step(
             speed=self.speed, problem=problem, outcome=outcome, newton=newton, krylov=krylov
         )

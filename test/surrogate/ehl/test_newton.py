@@ -57,6 +57,20 @@ def test_linear_solves_are_tight_where_newton_stalls(at_hertz, monkeypatch):
     assert {tight for _, tight in seen} == {0.3}
 
 
+def test_a_step_that_does_not_help_is_halved(at_hertz):
+    """Away from a solution: halved as often as told; towards it: taken whole."""
+    grid, problem, start = at_hertz
+    solved = newton.solve_grid(grid, problem, start, newton.NewtonLimits(flux=1e-6)).state
+    flux = evaluate(grid, problem, solved).flux_error
+    wrong = replace(solved, approach=solved.approach + 1.0)
+    kept = newton._shortened(grid, problem, solved, wrong, flux, 4)
+    assert kept.approach == pytest.approx(solved.approach + 1 / 16)
+    whole = newton._shortened(
+        grid, problem, start, solved, evaluate(grid, problem, start).flux_error, 4
+    )
+    assert whole is solved
+
+
 def limited(at_hertz, change):
     """Return what is taken of changes of the film pressure from half the Hertz pressure."""
     _, problem, _ = at_hertz
