@@ -118,17 +118,24 @@ class Stepper:
         return case.problem(grid, self.speed, heights, case.order)
 
     def _solve(self, problem: GridProblem) -> Step:
-        """Solve from the predicted state; failing that more carefully, or from another one."""
-        newton = krylov = 0
-        limits, predicted = self.limits, self._predicted()
-        for start in (predicted, predicted, self._state, self.smooth):
-            outcome = solve_grid(self.grid, problem, start, limits)
-            newton, krylov = newton + outcome.newton, krylov + outcome.krylov
-            if outcome.converged:
-                break
-            limits = replace(self.limits, krylov=TIGHT, newton=PATIENT, halvings=HALVINGS)
+        """
+        Solve from the predicted state; failing that more carefully, or from another one.
+
+        Where nothing converges the next step goes on from what came nearest.
+
+        """
+        predicted = self._predicted()
+        tries = [solve_grid(self.grid, problem, predicted, self.limits)]
+        careful = replace(self.limits, krylov=TIGHT, newton=PATIENT, halvings=HALVINGS)
+        for start in (predicted, self._state, self.smooth):
+            if not tries[-1].converged:
+                tries.append(solve_grid(self.grid, problem, start, careful))
         return Step(
-            speed=self.speed, problem=problem, outcome=outcome, newton=newton, krylov=krylov
+            speed=self.speed,
+            problem=problem,
+            outcome=min(tries, key=lambda one: (not one.converged, one.flux_error)),
+            newton=sum(one.newton for one in tries),
+            krylov=sum(one.krylov for one in tries),
         )
 
     def _predicted(self) -> GridState:
