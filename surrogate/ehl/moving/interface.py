@@ -118,16 +118,16 @@ class MovingSolution:
     Share of the load on punctured nodes `rcs` and share that asperities carry [-]; mean film and
     its rms over the inner 0.8 of the Hertz zone [m]; mean over time of the least film there [m];
     share of the Hertz zone with films below `THIN_FILMS` [-]; largest pressure [Pa] and share of
-    the load at pressures above `HARDNESS` [-]; traction coefficient of the film at
-    the slide-roll ratio of the settings [-]. Loss by rolling as a force on each surface [N]:
-    Poiseuille dissipation over twice the entrainment speed; the same from the moment of the
-    pressure over twice the radius, which also holds what the inlet outside the domain takes and
-    what the elastic bodies keep; dissipation of the smooth contact. Central film of the smooth
-    contact [m]; `rcs_along` over `x` over the semi-axis [-]: share of the load on punctured nodes
-    per semi-axis; film at the centre in each averaged step, place after place [m]; length over
-    which RCS forgets [semi-axes]; transits made, steps and those that did not converge;
-    iterations; wall time [s]; film and pressure of the last step at `x_nodes`, `y_nodes` [m, Pa].
-    Numbers are NaN where nothing was averaged.
+    the load at pressures above `HARDNESS` [-]; traction coefficient of the film at the slide-roll
+    ratio of the settings [-]. Loss by rolling as a force on each surface [N]: Poiseuille
+    dissipation over twice the entrainment speed; the same from the moment of the pressure over
+    twice the radius, less what load and elastic bodies take up, which also holds what the inlet
+    outside the domain takes; dissipation of the smooth contact. Central film of the smooth contact
+    [m]; `rcs_along` over `x` over the semi-axis [-]: share of the load on punctured nodes per
+    semi-axis; film at the centre in each averaged step, place after place [m]; length over which
+    RCS forgets [semi-axes]; transits made, steps and those that did not converge; iterations; wall
+    time [s]; film and pressure of the last step at `x_nodes`, `y_nodes` [m, Pa]. Numbers are NaN
+    where nothing was averaged.
 
     """
 

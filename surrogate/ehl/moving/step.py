@@ -42,9 +42,15 @@ def step_limits(flux: float, load: float, gap: float) -> NewtonLimits:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Step:
-    """Outcome of a step, its speed [m/s] and equations, and what all tries took."""
+    """
+    Outcome of a step, its speed [m/s] and equations, and what all tries took.
+
+    `stored` is the work that load and elastic bodies took up on the way, over its length [-].
+
+    """
 
     speed: float
+    stored: float
     problem: GridProblem
     outcome: NewtonResult
     newton: int
@@ -73,6 +79,7 @@ class Stepper:
     _state: GridState = field(init=False)
     _ripples_over: GridState = field(init=False)
     _approach_before: float = field(init=False)
+    _energy: float = field(init=False)
     _mass: Array = field(init=False)
     _carried: Array = field(init=False)
 
@@ -84,6 +91,7 @@ class Stepper:
         problem = self._problem(np.zeros(self.grid.shape))
         pressure = self.smooth.film_pressure
         now = evaluate(self.grid, problem, self.smooth)
+        self._energy = self._energy_of(problem, self.smooth, now.gap)
         film = film_planes(problem, pressure, now.gap, now.contact)
         mass = film[0] * film[2]
         steady = Columns(mass=arrived(mass, 1), carried=mass, stride=1)
@@ -105,12 +113,22 @@ class Stepper:
         )
         problem = replace(self._problem(rough), columns=columns)
         made = self._solve(problem)
-        state = made.outcome.state
+        state, before = made.outcome.state, self._energy
+        self._energy = self._energy_of(problem, state, made.outcome.gap)
+        length = self.stride * self.grid.dx
+        made = replace(made, stored=(self._energy - before) / length)
         self._approach_before, self._state = self._state.approach, state
         self._mass, self._carried = carried_on(
             self.grid, problem, state.film_pressure, made.outcome.gap, made.outcome.contact
         )
         return made
+
+    def _energy_of(self, problem: GridProblem, state: GridState, gap: Array) -> float:
+        """Return half the integral of pressure times deflection, and load times approach [-]."""
+        deflection = gap - problem.heights - state.approach
+        pressure = state.film_pressure + state.asperity_pressure
+        elastic = 0.5 * self.grid.integral(pressure * deflection)
+        return elastic + problem.load * state.approach
 
     def _problem(self, rough: Array) -> GridProblem:
         case, grid = self.case, self.grid
@@ -132,6 +150,7 @@ class Stepper:
                 tries.append(solve_grid(self.grid, problem, start, careful))
         return Step(
             speed=self.speed,
+            stored=0.0,
             problem=problem,
             outcome=min(tries, key=lambda one: (not one.converged, one.flux_error)),
             newton=sum(one.newton for one in tries),

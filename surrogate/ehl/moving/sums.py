@@ -84,7 +84,9 @@ class Gauge:
             hard_share=grid.integral(np.where(hard, total, 0.0)) / case.load,
             film_traction=self._film_traction(step, gap, punctured),
             rolling_loss=self._rolling_loss(step),
-            moment_loss=-0.5 * grid.integral(total * grid.x[:, None]) * self._force,
+            moment_loss=-0.5
+            * (grid.integral(total * grid.x[:, None]) + step.stored)
+            * self._force,
             centre_film=central_film(grid, outcome.gap) * unit,
             thin_shares=np.array([np.mean(inside < film) for film in THIN_FILMS]),
             rcs_along=touching @ grid.weights / grid.dx / case.load,
