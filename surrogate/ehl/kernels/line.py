@@ -125,11 +125,13 @@ def solve_lines(
     From `value` if started or else zero; `work` is six planes of a kind that once were zero.
 
     """
-    last = rhs.shape[1] // 2 - 1
     known, found = work[:2], work[2:4]
     part(rhs, known)
     if started:
         part(value, found)
+        if periodic:
+            _repeat_lines(found, 0)
+            _repeat_lines(found, 1)
     else:
         found[:] = 0
     for step in range(steps):
@@ -145,11 +147,17 @@ def solve_lines(
             for i in range(rhs.shape[0]):
                 found[0, i, 0] = found[0, i, 1]
         if periodic:
-            # The copies on either side are the first even line and the last odd one.
-            end, own = (last, 0) if kind == 1 else (0, last)
-            for i in range(rhs.shape[0]):
-                found[kind, i, end] = found[kind, i, own]
+            _repeat_lines(found, kind)
     join(found, value)
+
+
+@njit(cache=True, error_model='numpy')
+def _repeat_lines(found: Array, kind: int) -> None:
+    """Fill the copy beside a period: the first even line, or the last odd one."""
+    last = found.shape[2] - 1
+    copy, own = (last, 0) if kind == 1 else (0, last)
+    for i in range(found.shape[1]):
+        found[kind, i, copy] = found[kind, i, own]
 
 
 @njit(cache=True, error_model='numpy')
