@@ -71,6 +71,11 @@ class Progress:
             print(self._text(), file=self._stream, flush=True)
             self._said, self._last = self._done, self._clock()
 
+    def close(self) -> None:
+        """End the line of a terminal where the work ended early."""
+        if self._terminal and 0 < self._done < self._total:
+            print(file=self._stream, flush=True)
+
     def _draw(self) -> None:
         drawn = bar(self._part(), WIDTH)
         end = '\n' if self._done == self._total else ''

@@ -3,6 +3,7 @@
 """The subcommand `contact`: solve one contact from a case file."""
 
 import argparse
+from importlib import import_module
 import logging
 from pathlib import Path
 import sys
@@ -10,6 +11,7 @@ from typing import Any
 
 from surrogate.commands.output import add_json, show
 from surrogate.files import InputError
+from surrogate.progress import Progress
 
 
 def add_contact_command(subparsers: Any) -> None:
@@ -24,29 +26,57 @@ def add_contact_command(subparsers: Any) -> None:
 def _contact(args: argparse.Namespace) -> int:
     """Solve a case; exit code 1 when the solution is not converged."""
     from surrogate.contact.case import load_case
-    from surrogate.contact.record import contact_page, contact_record
-    from surrogate.contact.solve import solve_case
 
     # What was done to a surface belongs to the result, so it is said whatever the output.
     logging.basicConfig(level=logging.INFO, format='ballscrew: %(message)s')
     case = load_case(args.case)
+    return (_rolling if case.kinematics == 'rolling' else _standing)(case, args)
+
+
+def _standing(case: Any, args: argparse.Namespace) -> int:
+    from surrogate.contact.record import contact_page, contact_record
+    from surrogate.contact.solve import solve_case
+
     solution, surface = solve_case(case)
     record = contact_record(case, solution)
     show(record, lambda one: contact_page(one, case, solution, surface), json=args.json)
     if args.plot:
-        _plot(args.plot, solution, surface)
+        _plot(args.plot, 'figures', 'draw_contact', solution, surface)
     return 0 if solution.converged else 1
 
 
-def _plot(folder: Path, solution: Any, surface: Any) -> None:
+def _rolling(case: Any, args: argparse.Namespace) -> int:
+    from surrogate.contact.rolling import march_case
+    from surrogate.contact.rolling_record import rolling_page, rolling_record
+    from surrogate.ehl.watch import Iteration, watched
+
+    progress = Progress(0, 'steps')
+
+    def show_step(now: Iteration) -> None:
+        if now.steps:
+            progress.show(now.step, now.steps)
+
+    try:
+        with watched(show_step):
+            solution, surface = march_case(case)
+    finally:
+        progress.close()
+    record = rolling_record(case, solution, surface)
+    show(record, lambda one: rolling_page(one, case, solution), json=args.json)
+    if args.plot:
+        _plot(args.plot, 'rolling_figure', 'draw_rolling', solution)
+    return 0 if solution.converged else 1
+
+
+def _plot(folder: Path, module: str, function: str, *results: Any) -> None:
     """Draw the pictures of a contact; only this needs matplotlib."""
     try:
-        from surrogate.contact.figures import draw_contact
+        draw = getattr(import_module(f'surrogate.contact.{module}'), function)
     except ImportError:
         raise InputError('--plot needs matplotlib: install the extra `plot`') from None
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        for path in draw_contact(folder, solution, surface):
+        for path in draw(folder, *results):
             print(path, file=sys.stderr)
     except OSError as error:
         raise InputError(f'--plot: {folder} cannot be written, {error.strerror}') from None

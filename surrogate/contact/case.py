@@ -4,11 +4,13 @@
 One contact as a file: what to solve, in unit-suffixed keys, and its result as a record.
 
 A case names two radii, a modulus, a load, a speed and an oil; roughness, grid and domain are
-optional.
+optional. The roughness stands still in the contact, or rolls through it.
 
 """
 
 from dataclasses import dataclass, replace
+import math
+from typing import Literal
 
 from surrogate.datasheet import (
     block,
@@ -25,6 +27,7 @@ from surrogate.ehl import Condition, ContactLubricant
 from surrogate.ehl.interface import LARGEST_GRID, Law
 from surrogate.files import InputError
 from surrogate.formulas.geometry import Contact
+from surrogate.raceway.ball import BALL_RA
 from surrogate.raceway.fractal import Lay
 from surrogate.raceway.measured import Outside
 from surrogate.raceway.patch import Patch
@@ -42,12 +45,26 @@ GENERATED = ('seed', 'lay', 'position_x', 'position_y', 'grid_wavelength') + tup
     name for name in CONSTANTS if name != 'shortest_wavelength'
 )
 """What only a generated surface has."""
+STANDARD = ('cutoff_long', 'cutoff_short', 'rms_slope', 'fan_angle', 'ball_rms', 'ball_grade')
+"""What only a surface by the standard has."""
+NOT_STANDARD = (
+    'file',
+    'fractal_roughness',
+    'sample_length',
+    'grid_wavelength',
+    'window_x',
+    'window_y',
+)
+"""What a surface by the standard does not have."""
+ROLLING = ('transits', 'places', 'strip')
+"""What only a contact has whose roughness rolls."""
+Kinematics = Literal['standing', 'rolling']
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class CaseRoughness(Checked):
     """
-    Raceway of a case: a fractal surface from a seed, or a measured one from a file.
+    Raceway of a case: a surface from a seed, by formula or by the standard, or one from a file.
 
     Rq `rms` [m]; a generated surface has dimension D [-], G [m], sample length, shortest
     wavelength [m], scale ratio and ridges [-], lay and the place [m] that comes to the contact
@@ -56,13 +73,18 @@ class CaseRoughness(Checked):
     cut, levelled over a window with sides `window_x`, `window_y` [m], by default the Hertz
     rectangle of the case: state it in a series over loads. Boundary friction coefficient [-].
 
+    `standard` is the surface whose expected profile between `cutoff_short` and `cutoff_long` [m]
+    has the rms, with a fractal dimension [-] or an rms slope [rad], a lay that fans over an angle
+    [rad], and a ball with an Rq [m] or a grade; waves shorter than `shortest_wavelength` are left
+    out of it.
+
     """
 
     rms: float | None = quantity('um', 1e-6, 0.0, 10.0, default=None)
     file: str | None = text(default=None)
     outside: Outside = choice('refuse', 'mirror', default='refuse')
     seed: int | None = count(0, 2**32 - 1, default=None)
-    patch: Patch | None = choice('rescaled', 'cut', default=None)
+    patch: Patch | Literal['standard'] | None = choice('rescaled', 'cut', 'standard', default=None)
     lay: Lay | None = choice('isotropic', 'longitudinal', 'transverse', default=None)
     shortest_wavelength: float | None = quantity('um', 1e-6, 0.1, 1000.0, default=None)
     grid_wavelength: float | None = quantity('um', 1e-6, 0.1, 1000.0, default=None)
@@ -75,11 +97,26 @@ class CaseRoughness(Checked):
     position_y: float | None = quantity('mm', 1e-3, -1e3, 1e3, default=None)
     window_x: float | None = quantity('mm', 1e-3, 1e-3, 100.0, default=None)
     window_y: float | None = quantity('mm', 1e-3, 1e-3, 100.0, default=None)
+    cutoff_long: float | None = quantity('mm', 1e-3, 0.001, 100.0, default=None)
+    cutoff_short: float | None = quantity('um', 1e-6, 0.1, 1000.0, default=None)
+    rms_slope: float | None = quantity('deg', math.pi / 180, 0.001, 45.0, default=None)
+    fan_angle: float | None = quantity('deg', math.pi / 180, 0.0, 90.0, default=None)
+    ball_rms: float | None = quantity('um', 1e-6, 0.0, 10.0, default=None)
+    ball_grade: str | None = choice(*BALL_RA, default=None)
     asperity_friction: float = quantity('', 1.0, 0.0, 1.0, default=0.1)
 
     def __post_init__(self) -> None:
-        """Check ranges, and that the keys of a file and of a generated surface do not mix."""
+        """Check ranges, and that the keys of one kind of surface do not mix with another's."""
         Checked.__post_init__(self)
+        other = NOT_STANDARD if self.patch == 'standard' else STANDARD
+        mixed = [name for name in other if getattr(self, name) is not None]
+        if mixed:
+            raise InputError(
+                f'{mixed[0]} does not belong to patch {self.patch or "rescaled"}, allowed is it '
+                f'with {"another patch" if self.patch == "standard" else "patch: standard"}'
+            )
+        if self.ball_rms is not None and self.ball_grade is not None:
+            raise InputError('ball_rms and ball_grade are given, allowed is one of the two')
         if self.file is None and self.rms is None:
             raise InputError('missing key rms_um, or file for a measured surface')
         stated = [name for name in GENERATED if getattr(self, name) is not None]
@@ -114,13 +151,23 @@ class CaseDomain(Checked):
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
+class CaseStrip(Checked):
+    """Strip across the contact: its place over b [-], its width [m] and columns of nodes [-]."""
+
+    place: float = quantity('', 1.0, -0.99, 0.99, default=0.0)
+    width: float = quantity('um', 1e-6, 0.1, 1e5)
+    columns: int = count(4, LARGEST_GRID)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
 class ContactCase(Checked):
     """
     One contact to solve.
 
     Radii of relative curvature [m], E' [Pa], load [N], entrainment speed [m/s] (0 is the dry
     contact), ambient viscosity [Pa s], pressure-viscosity [1/Pa], Eyring stress [Pa], slide-roll
-    ratios |u1 - u2| / entrainment speed [-], film floor [m].
+    ratios |u1 - u2| / entrainment speed [-], film floor [m]. Roughness that is `rolling` is
+    marched through the whole contact or a strip of it, over transits [-] shared by some places.
 
     """
 
@@ -138,6 +185,43 @@ class ContactCase(Checked):
     film_floor: float = quantity('nm', 1e-9, 1e-3, 1e3, default=3e-9)
     grid: CaseGrid | None = block(CaseGrid, default=None)
     domain: CaseDomain | None = block(CaseDomain, default=None)
+    kinematics: Kinematics = choice('standing', 'rolling', default='standing')
+    transits: float | None = quantity('', 1.0, 1.0, 1e5, default=None)
+    places: int | None = count(1, 1000, default=None)
+    strip: CaseStrip | None = block(CaseStrip, default=None)
+
+    def __post_init__(self) -> None:
+        """Check ranges, and that what rolls can roll."""
+        Checked.__post_init__(self)
+        stated = [name for name in ROLLING if getattr(self, name) is not None]
+        if self.kinematics == 'standing' and stated:
+            raise InputError(f'{stated[0]} belongs to kinematics rolling, stated is standing')
+        if self.kinematics == 'rolling':
+            self._check_rolling()
+
+    def _check_rolling(self) -> None:
+        rough = self.roughness
+        if rough is not None and rough.file is not None:
+            raise InputError(
+                'kinematics is rolling, roughness is a measured file, allowed is a generated '
+                'surface: a measured one has an end'
+            )
+        if rough is None or not rough.rms:
+            raise InputError('kinematics is rolling, which needs roughness with rms_um above 0')
+        if rough.grid_wavelength is not None:
+            raise InputError(
+                'grid_wavelength belongs to kinematics standing: by how much waves off the grid '
+                'raise the floor is known for roughness that stands'
+            )
+        if self.entrainment_speed == 0.0:
+            raise InputError(
+                'entrainment_speed_m_s is 0, allowed is above 0 where roughness rolls'
+            )
+        if len(self.slide_roll_ratio) > 1:
+            raise InputError(
+                f'slide_roll_ratio has {len(self.slide_roll_ratio)} values, allowed is one where '
+                'roughness rolls'
+            )
 
     @property
     def contact(self) -> Contact:

@@ -199,7 +199,8 @@ def figure_roughness(solution: ContactSolution, surface: Raceway) -> Figure:
         third, solution, GIGA * solution.asperity_pressure[rows, columns], cmap='inferno_r', vmin=0
     )
     figure.colorbar(mesh, ax=third, location='bottom', label='asperity pressure [GPa]')
-    _finish_map(first, solution, f'Raceway, {surface.patch}, heights times {surface.scale:.3g}')
+    kind = f', {surface.patch}, heights times {surface.scale:.3g}' if surface.patch else ''
+    _finish_map(first, solution, f'Raceway{kind}')
     _finish_map(second, solution, 'Carried by the film')
     _finish_map(third, solution, f'Carried by asperities: {100 * solution.asperity_share:.2g} %')
     return figure

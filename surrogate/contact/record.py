@@ -6,6 +6,7 @@ import math
 from typing import TypedDict
 
 from surrogate.contact.case import ContactCase
+from surrogate.contact.surface import roughness_words
 from surrogate.ehl import ContactSolution
 from surrogate.ehl.friction import slide_roll_friction
 from surrogate.raceway.patch import Raceway
@@ -99,7 +100,7 @@ def contact_page(
         for ratio, value in zip(case.slide_roll_ratio, record['friction_coefficient'], strict=True)
     ]
     rows = [
-        ('roughness', _roughness_words(surface)),
+        ('roughness', roughness_words(case.roughness, surface)),
         ('film floor', f'{1e9 * solution.settings.film_floor:.3g} nm'),
         (
             'central film',
@@ -135,13 +136,4 @@ def contact_page(
             *(f'  {name:22} {words}' for name, words in rows),
             f'  status: {record["status"]}',
         ]
-    )
-
-
-def _roughness_words(surface: Raceway | None) -> str:
-    if surface is None:
-        return 'none'
-    return (
-        f'patch {surface.patch}, heights times {surface.scale:.4g}, shortest wavelength '
-        f'{1e6 * surface.shortest_wavelength:.3g} um'
     )

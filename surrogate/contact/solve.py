@@ -12,16 +12,14 @@ from dataclasses import replace
 from functools import cache
 import logging
 
-from surrogate.contact.case import CaseRoughness, CONSTANTS, ContactCase
+from surrogate.contact.case import ContactCase
+from surrogate.contact.surface import case_surface
 from surrogate.ehl import Condition, ContactLubricant, ContactSolution, Settings, solve_contact
 from surrogate.ehl.case import make_case
 from surrogate.ehl.domain import nodes_on_waves
-from surrogate.formulas.geometry import Contact, ellipticity, hertz
-from surrogate.parameters import load_screw
-from surrogate.raceway.fractal import fractal_surface, FractalSurface, shifted
-from surrogate.raceway.import_file import read_surface
-from surrogate.raceway.measured import MeasuredSurface
-from surrogate.raceway.patch import Raceway, take_patch, Window
+from surrogate.formulas.geometry import Contact, ellipticity
+from surrogate.raceway.fractal import FractalSurface
+from surrogate.raceway.patch import Raceway
 from surrogate.raceway.short_waves import subgrid_floor, without_short_waves
 
 SLENDER, WIDE_NY = 2.5, 257
@@ -90,33 +88,6 @@ def _solve(case: ContactCase, surface: Raceway | None, settings: Settings) -> Co
     )
 
 
-def case_surface(case: ContactCase) -> Raceway | None:
-    """Return the rough surface of a case as a patch, None when it is smooth."""
-    rough = case.roughness
-    if rough is None or (rough.file is None and not rough.rms):
-        return None
-    ellipse = hertz(case.contact, case.load)
-    window = Window(
-        length_x=rough.window_x or 2 * float(ellipse.semi_axis_x),
-        length_y=rough.window_y or 2 * float(ellipse.semi_axis_y),
-    )
-    if rough.file is None:
-        return take_patch(_generated(rough), rough.patch or 'rescaled', window, rough.rms or 0.0)
-    kind = rough.patch or ('rescaled' if rough.rms else 'cut')
-    return take_patch(_measured(rough, rough.file), kind, window, rough.rms or 0.0)
-
-
-def _generated(rough: CaseRoughness) -> FractalSurface:
-    stated = {name: getattr(rough, name) for name in CONSTANTS if getattr(rough, name) is not None}
-    constants = replace(load_screw('nominal').roughness, **stated)
-    draw = fractal_surface(constants, rough.seed or 0, lay=rough.lay or 'isotropic')
-    return shifted(draw, rough.position_x or 0.0, rough.position_y or 0.0)
-
-
-def _measured(rough: CaseRoughness, file: str) -> MeasuredSurface:
-    return read_surface(file, shortest_wavelength=rough.shortest_wavelength, outside=rough.outside)
-
-
 def case_settings(case: ContactCase, surface: Raceway | None) -> Settings:
     """
     Return how to solve a case.
@@ -135,7 +106,11 @@ def case_settings(case: ContactCase, surface: Raceway | None) -> Settings:
     elif ellipticity(case.contact) < SLENDER:
         settings = replace(settings, ny=WIDE_NY)
     if surface is not None:
-        _check_resolution(case, settings, surface.shortest_wavelength)
+        sides = _sides(case, settings)
+        warn_of_coarse_nodes(
+            (sides[0] / (settings.nx - 1), sides[1] / (settings.ny - 1)),
+            surface.shortest_wavelength,
+        )
     return settings
 
 
@@ -152,10 +127,9 @@ def _rough_grid(case: ContactCase, settings: Settings, wave: float) -> Settings:
     return replace(settings, nx=max(along, ROUGH_NX), ny=max(across, settings.ny))
 
 
-def _check_resolution(case: ContactCase, settings: Settings, wave: float) -> None:
-    """Warn when the grid sees less than two nodes of the shortest wavelength [m]."""
-    for name, side in zip('xy', _sides(case, settings), strict=True):
-        distance = side / (getattr(settings, f'n{name}') - 1)
+def warn_of_coarse_nodes(distances: tuple[float, float], wave: float) -> None:
+    """Warn of nodes further apart along x or y [m] than half the shortest wavelength [m]."""
+    for name, distance in zip('xy', distances, strict=True):
         if distance > 0.5 * wave:
             LOG.warning(
                 'the nodes are %.3g um apart along %s, the shortest wavelength is %.3g um: '

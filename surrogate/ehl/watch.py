@@ -21,7 +21,8 @@ class Iteration:
     Where a solve is.
 
     Stage in words; nut 1 loaded, 2 relieved; side 1 screw, 2 nut; 0 none; count of the Newton
-    iteration on the grid at work and its relative residual [-].
+    iteration on the grid at work and its relative residual [-]. Between the steps of a march, how
+    many are made, of how many; else 0.
 
     """
 
@@ -30,6 +31,8 @@ class Iteration:
     side: int = 0
     count: int = 0
     residual: float = math.nan
+    step: int = 0
+    steps: int = 0
 
 
 Watcher = Callable[[Iteration], None]
@@ -50,10 +53,15 @@ def watched(watcher: Watcher) -> Iterator[None]:
 
 @contextmanager
 def at(
-    *, stage: str | None = None, nut: int | None = None, side: int | None = None
+    *,
+    stage: str | None = None,
+    nut: int | None = None,
+    side: int | None = None,
+    step: int | None = None,
+    steps: int | None = None,
 ) -> Iterator[None]:
     """Say where the solves in this context are."""
-    here = {'stage': stage, 'nut': nut, 'side': side}
+    here = {'stage': stage, 'nut': nut, 'side': side, 'step': step, 'steps': steps}
     known = {name: value for name, value in here.items() if value is not None}
     token = _PLACE.set(replace(_PLACE.get(), **known))  # type: ignore[arg-type]
     try:

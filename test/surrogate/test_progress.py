@@ -90,3 +90,19 @@ def test_steps_that_differ_tell_their_share():
     line = stream.getvalue().removeprefix('\r').removesuffix('\x1b[K')
     assert line.startswith('[##########' + 30 * ' ' + '] 3/8 solves, 3.3 s each, 30 s left')
     assert line.endswith(', screw 5 rev/min 50 N')
+
+
+def test_work_that_ends_early_ends_its_line():
+    """Once, on a terminal alone, and not after the last step, which has ended it."""
+    for stream, done, expected in (
+        (Terminal(), 2, True),
+        (Terminal(), 4, False),
+        (Terminal(), 0, False),
+        (io.StringIO(), 1, False),
+    ):
+        progress = Progress(4, 'steps', stream=stream)
+        for _ in range(done):
+            progress.step()
+        before = stream.getvalue()
+        progress.close()
+        assert (stream.getvalue() == before + '\n') is expected

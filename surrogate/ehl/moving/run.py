@@ -18,6 +18,7 @@ from surrogate.ehl.moving.line import StripContact
 from surrogate.ehl.moving.step import Step, step_limits, Stepper
 from surrogate.ehl.moving.sums import average, Gauge, Measure
 from surrogate.ehl.to_si import central_film
+from surrogate.ehl.watch import at, tell
 from surrogate.formulas.geometry import Contact
 
 Array = NDArray[np.float64]
@@ -71,6 +72,7 @@ class March:
     places: list[list[Measure]] = field(default_factory=list)
     last: Step | None = None
     steps: int = 0
+    planned: int = 0
     failed: int = 0
     failed_in_a_row: int = 0
     newton: int = 0
@@ -85,6 +87,8 @@ class March:
 
     def run(self, transits: float) -> None:
         """March so many transits at each place, until the march ends."""
+        self.planned = self.settings.places * len(self._moves(transits))
+        self._tell(0, math.nan)
         for place in range(self.settings.places if self.path else 0):
             self.places.append([])
             for step in self._track(place, transits):
@@ -104,9 +108,7 @@ class March:
             ramp=settings.moving,
             side_slip=settings.side_slip,
         )
-        for moved in range(
-            settings.stride, round(run_in + length) + settings.stride, settings.stride
-        ):
+        for moved in self._moves(transits):
             stepper.follow(*path.at((moved - run_in) / length))
             step = stepper.step(feed.at(moved if settings.moving else 0))
             self._count(step)
@@ -114,6 +116,11 @@ class March:
                 return
             if moved > run_in:
                 yield step
+
+    def _moves(self, transits: float) -> range:
+        """Return by how many nodes the raceway has moved on at each step at a place [-]."""
+        stride = self.settings.stride
+        return range(stride, round((RUN_IN + 2 * transits) / self.grid.dx) + stride, stride)
 
     def _place(self, number: int, length: float) -> tuple[float, float]:
         """
@@ -154,10 +161,16 @@ class March:
         self.failed_in_a_row = 0 if good else self.failed_in_a_row + 1
         self.newton += step.newton
         self.krylov += step.krylov
+        self._tell(step.newton, step.outcome.flux_error)
         if self.failed_in_a_row == STALLED:
             self.ended = MarchStatus.STALLED
         elif time.perf_counter() > self.deadline:
             self.ended = MarchStatus.OUT_OF_TIME
+
+    def _tell(self, count: int, residual: float) -> None:
+        """Tell who watches how many steps are made, and what the last one took [-]."""
+        with at(step=self.steps, steps=self.planned):
+            tell(count, residual)
 
     @property
     def status(self) -> MarchStatus:

@@ -7,9 +7,12 @@ from dataclasses import replace
 import json
 import sys
 
+from ballscrew_monitor.cli import INTERRUPTED, main
 import pytest
 from surrogate.cli import add_commands
+from surrogate.contact.rolling import march_case
 from surrogate.ehl import solve_contact, Status
+from surrogate.ehl.moving import MarchStatus
 from surrogate.files import InputError
 from surrogate.parameters import DATA
 
@@ -65,6 +68,71 @@ def test_a_result_that_is_not_converged_exits_with_1(capsys, small, monkeypatch)
     found = json.loads(capsys.readouterr().out)
     assert found['converged'] is False
     assert found['status'] == Status.STALLED.value
+
+
+ROLLING = """
+radius_x_mm: 10.0
+radius_y_mm: 10.0
+reduced_modulus_GPa: 226.4
+load_N: 3.66445
+entrainment_speed_m_s: 0.1
+viscosity_Pa_s: 0.040
+pressure_viscosity_1_GPa: 22.0
+kinematics: rolling
+transits: 2
+places: 2
+grid: [65, 65]
+roughness:
+  patch: standard
+  rms_um: 0.1
+  fractal_dimension: 2.3
+  shortest_wavelength_um: 20
+"""
+
+
+@pytest.fixture
+def rolling(tmp_path):
+    """Return the path of a small case whose roughness rolls."""
+    path = tmp_path / 'rolling.yaml'
+    path.write_text(ROLLING, encoding='utf-8')
+    return path
+
+
+def test_a_rolling_contact(capsys, rolling, tmp_path):
+    """JSON on one stream, progress and the path of the picture on the other, exit code 0."""
+    pytest.importorskip('matplotlib')
+    folder = tmp_path / 'plots'
+    assert run('contact', rolling, '--json', '--plot', folder) == 0
+    out, err = capsys.readouterr()
+    found = json.loads(out)
+    assert found['kinematics'] == 'rolling'
+    assert found['converged'] is True
+    assert 'by the table' in found['roughness']['sentence']
+    assert f'{found["steps"]}/{found["steps"]} steps' in err
+    assert [path.name for path in folder.iterdir()] == ['rolling_contact.png']
+
+
+def test_a_march_that_stalls_exits_with_1(capsys, rolling, monkeypatch):
+    """The page says why."""
+
+    def stalled(case):
+        solution, surface = march_case(case)
+        return replace(solution, status=MarchStatus.STALLED), surface
+
+    monkeypatch.setattr('surrogate.contact.rolling.march_case', stalled)
+    assert run('contact', rolling) == 1
+    assert f'status: {MarchStatus.STALLED.value}' in capsys.readouterr().out
+
+
+def test_an_interrupted_march_leaves_no_traceback(capsys, rolling, monkeypatch):
+    """One line, the exit code of an interrupt."""
+
+    def interrupted(step, progress):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr('surrogate.ehl.moving.step.Stepper.step', interrupted)
+    assert main(['contact', str(rolling)]) == INTERRUPTED
+    assert capsys.readouterr().err.splitlines()[-1] == 'ballscrew: interrupted'
 
 
 def test_pictures(small, tmp_path):

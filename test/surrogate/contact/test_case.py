@@ -3,10 +3,18 @@
 """Case files: units, defaults and one sentence for each mistake."""
 
 from dataclasses import fields
+import math
 from pathlib import Path
 
 import pytest
-from surrogate.contact.case import CaseDomain, CaseGrid, CaseRoughness, ContactCase, load_case
+from surrogate.contact.case import (
+    CaseDomain,
+    CaseGrid,
+    CaseRoughness,
+    CaseStrip,
+    ContactCase,
+    load_case,
+)
 from surrogate.files import InputError
 from surrogate.parameters import DATA
 import yaml
@@ -22,6 +30,8 @@ SMALLEST = {
     'viscosity_Pa_s': 0.06,
     'pressure_viscosity_1_GPa': 20.0,
 }
+STANDARD = {'patch': 'standard', 'rms_um': 0.12, 'fractal_dimension': 2.5}
+ROLLING = {'kinematics': 'rolling', 'roughness': STANDARD}
 
 
 def write(folder, **keys):
@@ -69,7 +79,31 @@ def test_optional_keys(tmp_path):
     assert load(tmp_path, slide_roll_ratio=0.02).slide_roll_ratio == (0.02,)
 
 
-@pytest.mark.parametrize('cls', [ContactCase, CaseRoughness, CaseGrid, CaseDomain])
+def test_a_rolling_case(tmp_path):
+    """The march, the strip and the roughness by the standard in SI units."""
+    rough = {
+        'patch': 'standard',
+        'rms_um': 0.12,
+        'rms_slope_deg': 2.0,
+        'cutoff_long_mm': 0.8,
+        'cutoff_short_um': 8,
+        'lay': 'transverse',
+        'fan_angle_deg': 30,
+        'ball_grade': 'G10',
+    }
+    strip = {'width_um': 80, 'columns': 64}
+    case = load(tmp_path, kinematics='rolling', transits=6, places=3, strip=strip, roughness=rough)
+    assert (case.kinematics, case.transits, case.places) == ('rolling', 6, 3)
+    assert (case.strip.place, case.strip.columns) == (0.0, 64)
+    assert case.strip.width == pytest.approx(80e-6)
+    assert case.roughness.rms_slope == pytest.approx(math.radians(2.0))
+    assert case.roughness.fan_angle == pytest.approx(math.radians(30.0))
+    assert case.roughness.cutoff_long == pytest.approx(0.8e-3)
+    assert case.roughness.cutoff_short == pytest.approx(8e-6)
+    assert load(tmp_path).kinematics == 'standing'
+
+
+@pytest.mark.parametrize('cls', [ContactCase, CaseRoughness, CaseGrid, CaseDomain, CaseStrip])
 def test_the_page_of_the_command_names_every_key(cls):
     """A key that is added without a word about it fails here."""
     page = PAGE.read_text(encoding='utf-8')
@@ -120,6 +154,37 @@ BAD = [
     ({'roughness': {'rms_um': 0.1, 'patch': 'whole'}}, "patch is 'whole', allowed is rescaled"),
     ({'roughness': {'file': 'a.csv', 'seed': 1}}, 'seed belongs to a generated surface'),
     ({'roughness': {'file': 'a.csv', 'patch': 'rescaled'}}, 'which needs rms_um above 0'),
+    (
+        {'roughness': {'rms_um': 0.1, 'patch': 'rescaled', 'cutoff_long_mm': 0.8}},
+        'cutoff_long does not belong to patch rescaled, allowed is it with patch: standard',
+    ),
+    ({'roughness': {'rms_um': 0.1, 'ball_grade': 'G10'}}, 'ball_grade does not belong to patch'),
+    (
+        {'roughness': {**STANDARD, 'window_x_mm': 0.2}},
+        'window_x does not belong to patch standard, allowed is it with another patch',
+    ),
+    ({'roughness': {**STANDARD, 'file': 'a.csv'}}, 'file does not belong to patch standard'),
+    ({'roughness': {**STANDARD, 'ball_grade': 'G7'}}, "ball_grade is 'G7', allowed is G3 or G5"),
+    (
+        {'roughness': {**STANDARD, 'ball_grade': 'G10', 'ball_rms_um': 0.1}},
+        'ball_rms and ball_grade are given, allowed is one of the two',
+    ),
+    ({'roughness': STANDARD, 'transits': 4}, 'transits belongs to kinematics rolling'),
+    ({'strip': {'width_um': 80, 'columns': 64}}, 'strip belongs to kinematics rolling'),
+    ({'kinematics': 'sliding'}, "kinematics is 'sliding', allowed is standing or rolling"),
+    ({**ROLLING, 'roughness': {'file': 'a.csv'}}, 'surface: a measured one has an end'),
+    ({**ROLLING, 'roughness': None}, 'which needs roughness with rms_um above 0'),
+    ({**ROLLING, 'roughness': {'rms_um': 0}}, 'which needs roughness with rms_um above 0'),
+    (
+        {**ROLLING, 'roughness': {'rms_um': 0.1, 'grid_wavelength_um': 20}},
+        'grid_wavelength belongs to kinematics standing',
+    ),
+    ({**ROLLING, 'entrainment_speed_m_s': 0}, 'entrainment_speed_m_s is 0, allowed is above 0'),
+    ({**ROLLING, 'slide_roll_ratio': [0.01, 0.02]}, 'slide_roll_ratio has 2 values'),
+    ({**ROLLING, 'places': 2.5}, 'places is 2.5, allowed is a whole number from 1 to 1000'),
+    ({**ROLLING, 'transits': 0.5}, 'transits is 0.5, allowed is 1 to'),
+    ({**ROLLING, 'strip': {'columns': 64}}, 'strip: missing key width_um'),
+    ({**ROLLING, 'strip': [1.0, 80, 64]}, 'strip: place is 1, allowed is -0.99 to 0.99'),
     ({'roughness': {'file': ''}}, "file is '', allowed is a text that is not empty"),
 ]
 

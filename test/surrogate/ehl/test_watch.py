@@ -25,6 +25,15 @@ def test_a_watcher_is_told_of_what_happens_in_its_context():
     ]
 
 
+def test_a_march_says_how_many_steps_are_made():
+    seen = []
+    with watched(seen.append):
+        with at(step=3, steps=8):
+            tell(5, 0.5)
+        tell(1, 0.5)
+    assert [(one.step, one.steps) for one in seen] == [(3, 8), (0, 0)]
+
+
 def test_a_watcher_may_end_a_solve_and_leaves_nothing_behind():
     def stop(now):
         raise InterruptedError

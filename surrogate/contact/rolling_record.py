@@ -1,0 +1,219 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""A contact with rolling roughness as a record: plain numbers for JSON, a page for a person."""
+
+from collections.abc import Iterator
+import math
+from typing import TypedDict
+
+from surrogate.contact.case import CaseRoughness, ContactCase
+from surrogate.contact.surface import composite_rms, raceway_spectrum, roughness_words
+from surrogate.ehl.moving import Mean, MovingSolution, StripContact
+from surrogate.ehl.moving.interface import HARDNESS, THIN_FILMS
+from surrogate.formulas.geometry import hertz
+from surrogate.raceway.patch import Raceway
+from surrogate.units import GIGA, MICRO, MILLI, NANO
+
+
+class RoughnessRecord(TypedDict):
+    """Roughness of a record; NaN or None where a surface is not by the standard."""
+
+    sentence: str
+    rms_m: float
+    raceway_rms_m: float
+    cutoff_long_m: float
+    cutoff_short_m: float
+    cutoff_by_table: bool | None
+    rms_slope_rad: float
+    fractal_dimension: float
+    fractal_roughness_m: float
+    shortest_wavelength_m: float
+
+
+class RollingRecord(TypedDict):
+    """
+    Averages of a march for JSON, in the units of the keys; shares, errors and transits [-].
+
+    A standard error is that of the average before it, and in its unit.
+
+    """
+
+    status: str
+    converged: bool
+    kinematics: str
+    rcs: float
+    rcs_standard_error: float
+    asperity_share: float
+    asperity_share_standard_error: float
+    mean_film_m: float
+    mean_film_standard_error_m: float
+    film_rms_m: float
+    film_rms_standard_error_m: float
+    least_film_m: float
+    least_film_standard_error_m: float
+    thin_film_m: list[float]
+    thin_share: list[float]
+    thin_share_standard_error: list[float]
+    max_pressure_Pa: float
+    max_pressure_standard_error_Pa: float
+    hard_pressure_Pa: float
+    hard_share: float
+    hard_share_standard_error: float
+    film_traction: float
+    film_traction_standard_error: float
+    slide_roll_ratio: float
+    rolling_force_N: float
+    rolling_force_standard_error_N: float
+    smooth_rolling_force_N: float
+    central_film_m: float
+    film_ratio: float
+    memory_length_m: float
+    transits: float
+    places: int
+    steps: int
+    steps_failed: int
+    newton_iterations: int
+    krylov_iterations: int
+    grid: list[int]
+    strip_width_m: float
+    semi_axis_x_m: float
+    hertz_pressure_Pa: float
+    film_floor_m: float
+    roughness: RoughnessRecord
+    wall_s: float
+
+
+def rolling_record(case: ContactCase, solution: MovingSolution, surface: Raceway) -> RollingRecord:
+    """Return the averages of a march in SI units, JSON types."""
+    assert case.roughness is not None
+    settings, (semi_axis, pressure) = solution.settings, _hertz_of(solution)
+    roughness = _roughness_record(case.roughness, surface)
+    strip = solution.contact if isinstance(solution.contact, StripContact) else None
+    return {
+        'status': solution.status.value,
+        'converged': bool(solution.converged),
+        'kinematics': case.kinematics,
+        'rcs': solution.rcs.value,
+        'rcs_standard_error': solution.rcs.error,
+        'asperity_share': solution.asperity_share.value,
+        'asperity_share_standard_error': solution.asperity_share.error,
+        'mean_film_m': solution.mean_film.value,
+        'mean_film_standard_error_m': solution.mean_film.error,
+        'film_rms_m': solution.film_rms.value,
+        'film_rms_standard_error_m': solution.film_rms.error,
+        'least_film_m': solution.least_film.value,
+        'least_film_standard_error_m': solution.least_film.error,
+        'thin_film_m': list(THIN_FILMS),
+        'thin_share': [share.value for share in solution.thin_shares],
+        'thin_share_standard_error': [share.error for share in solution.thin_shares],
+        'max_pressure_Pa': solution.max_pressure.value,
+        'max_pressure_standard_error_Pa': solution.max_pressure.error,
+        'hard_pressure_Pa': HARDNESS,
+        'hard_share': solution.hard_share.value,
+        'hard_share_standard_error': solution.hard_share.error,
+        'film_traction': solution.film_traction.value,
+        'film_traction_standard_error': solution.film_traction.error,
+        'slide_roll_ratio': settings.slide_roll_ratio,
+        'rolling_force_N': solution.rolling_loss.value,
+        'rolling_force_standard_error_N': solution.rolling_loss.error,
+        'smooth_rolling_force_N': solution.smooth_rolling_loss,
+        'central_film_m': solution.central_film,
+        'film_ratio': solution.central_film / roughness['rms_m'],
+        'memory_length_m': solution.memory * semi_axis,
+        'transits': solution.transits,
+        'places': settings.places,
+        'steps': solution.steps,
+        'steps_failed': solution.steps_failed,
+        'newton_iterations': solution.newton_iterations,
+        'krylov_iterations': solution.krylov_iterations,
+        'grid': [settings.nx, strip.columns if strip else settings.ny],
+        'strip_width_m': strip.width if strip else math.nan,
+        'semi_axis_x_m': semi_axis,
+        'hertz_pressure_Pa': pressure,
+        'film_floor_m': settings.film_floor,
+        'roughness': roughness,
+        'wall_s': solution.wall_time,
+    }
+
+
+def _hertz_of(solution: MovingSolution) -> tuple[float, float]:
+    """Return the half length of the Hertz zone along the track [m] and its pressure [Pa]."""
+    contact = solution.contact
+    if isinstance(contact, StripContact):
+        return contact.semi_axis, contact.max_pressure
+    ellipse = hertz(contact, solution.condition.load)
+    return float(ellipse.semi_axis_x), float(ellipse.max_pressure)
+
+
+def _roughness_record(rough: CaseRoughness, surface: Raceway) -> RoughnessRecord:
+    standard = raceway_spectrum(rough) if rough.patch == 'standard' else None
+    return {
+        'sentence': roughness_words(rough, surface),
+        'rms_m': composite_rms(rough),
+        'raceway_rms_m': rough.rms or 0.0,
+        'cutoff_long_m': standard.band.cutoff_long if standard else math.nan,
+        'cutoff_short_m': standard.band.cutoff_short if standard else math.nan,
+        'cutoff_by_table': standard.cutoff_by_table if standard else None,
+        'rms_slope_rad': standard.rms_slope if standard else math.nan,
+        'fractal_dimension': standard.fractal_dimension if standard else math.nan,
+        'fractal_roughness_m': standard.fractal_roughness if standard else math.nan,
+        'shortest_wavelength_m': surface.shortest_wavelength,
+    }
+
+
+def rolling_page(record: RollingRecord, case: ContactCase, solution: MovingSolution) -> str:
+    """Return a record as a page of text in workshop units."""
+    return '\n'.join(
+        [
+            f'rolling contact {1e3 * case.radius_x:g} x {1e3 * case.radius_y:g} mm: '
+            f'{case.load:g} N, {case.entrainment_speed:g} m/s, {case.viscosity:g} Pa s, '
+            f'{case.fluid}',
+            *(f'  {name:22} {words}' for name, words in _rows(record, case, solution)),
+            f'  status: {record["status"]}',
+        ]
+    )
+
+
+def _rows(
+    record: RollingRecord, case: ContactCase, solution: MovingSolution
+) -> Iterator[tuple[str, str]]:
+    """Yield names and words of the lines of a page."""
+    for part in record['roughness']['sentence'].split('; '):
+        yield 'roughness', part
+    if case.strip is not None:
+        words = f'at {case.strip.place:g} b across, {MICRO * record["strip_width_m"]:g} um wide'
+        yield 'strip', words
+    film, ratio = NANO * record['central_film_m'], record['film_ratio']
+    yield 'smooth central film', f'{film:.2f} nm, Lambda {ratio:.3g}'
+    yield 'film floor', f'{NANO * record["film_floor_m"]:.3g} nm'
+    yield 'RCS', _with_error(solution.rcs)
+    yield 'asperity share', _with_error(solution.asperity_share)
+    yield 'mean film', f'{_with_error(solution.mean_film, NANO)} nm'
+    yield 'film rms', f'{_with_error(solution.film_rms, NANO)} nm'
+    yield 'least film', f'{_with_error(solution.least_film, NANO)} nm'
+    for thin, share in zip(THIN_FILMS, solution.thin_shares, strict=True):
+        yield f'zone below {NANO * thin:g} nm', f'{_with_error(share, 100.0)} %'
+    yield 'largest pressure', f'{_with_error(solution.max_pressure, GIGA)} GPa'
+    yield f'load above {GIGA * HARDNESS:g} GPa', f'{_with_error(solution.hard_share, 100.0)} %'
+    slip = f'slip {100 * record["slide_roll_ratio"]:g} %'
+    yield 'film traction', f'{_with_error(solution.film_traction)}, {slip}'
+    smooth = f'smooth {MILLI * record["smooth_rolling_force_N"]:.3g} mN'
+    loss = _with_error(solution.rolling_loss, MILLI)
+    yield 'rolling force', f'{loss} mN on each surface, {smooth}'
+    yield 'memory', f'RCS forgets over {MICRO * record["memory_length_m"]:.3g} um of the way'
+    yield 'march', _march_words(record)
+
+
+def _with_error(mean: Mean, unit: float = 1.0) -> str:
+    """Return an average and its standard error, which one place does not have."""
+    error = '' if math.isnan(mean.error) else f' +- {unit * mean.error:.2g}'
+    return f'{unit * mean.value:.3g}{error}'
+
+
+def _march_words(record: RollingRecord) -> str:
+    nx, ny = record['grid']
+    return (
+        f'{record["transits"]:.3g} transits over {record["places"]} places, {nx} x {ny} nodes, '
+        f'{record["steps"]} steps, {record["steps_failed"]} of them failed, '
+        f'{record["wall_s"]:.1f} s'
+    )
