@@ -47,14 +47,15 @@ def solve(planes, contact, rhs, total, steps, box):
     return found
 
 
-def solved_lines(planes, contact, rhs, steps, start=None, symmetric=False):
+def solved_lines(planes, contact, rhs, steps, start=None, symmetric=False, periodic=False):
     """Return the total pressure after some steps, with gap planes a tenth of the pressure's."""
     nx, ny = rhs.shape
     half = lines_of_a_kind(ny)
     bands, sides = np.zeros((2, 5, nx, half)), np.zeros((2, 6, nx, half))
     line_factors(planes, 0.1 * planes, contact, NEAR, np.float64(1.0), bands, sides)
     found, work = np.zeros((nx, ny)) if start is None else start.copy(), np.zeros((6, nx, half))
-    solve_lines(bands, sides, rhs, steps, start is not None, symmetric, False, work, found)
+    started = start is not None
+    solve_lines(bands, sides, rhs, steps, started, symmetric, periodic, work, found)
     return found
 
 
@@ -128,6 +129,22 @@ def test_half_of_a_symmetric_field_is_solved_as_the_whole(planes):
     _, half = np.split(wanted, [SHAPE[1] - 2], axis=1)
     assert found[:, 1:] == pytest.approx(half, abs=1e-9)
     np.testing.assert_array_equal(found[:, 0], found[:, 2])
+
+
+@pytest.mark.parametrize('contact', CONTACTS.values(), ids=CONTACTS)
+def test_lines_of_a_period_reach_across_its_sides(planes, contact):
+    """The rows hold with the copies on both sides, whatever stood there before."""
+    rhs, start = np.random.default_rng(12).normal(size=(2, *SHAPE))
+    start[[0, -1]] = 0
+    for begin in (None, start):
+        found = solved_lines(planes, contact, rhs, 120, begin, periodic=True)
+        assert inner(rows(planes, contact, found)) == pytest.approx(inner(rhs), abs=1e-9)
+        np.testing.assert_array_equal(found[:, 0], found[:, -2])
+        np.testing.assert_array_equal(found[:, -1], found[:, 1])
+    other = start.copy()
+    other[:, [0, -1]] = 7.0
+    few = [solved_lines(planes, contact, rhs, 2, begin, periodic=True) for begin in (start, other)]
+    np.testing.assert_array_equal(*few)
 
 
 @pytest.mark.parametrize('across', [7, 8])
