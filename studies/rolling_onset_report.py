@@ -88,7 +88,10 @@ def picture(rows: Sequence[RampRow]) -> 'Figure':
     films.text(0.02, 1.15 * LIMIT, 'limit of the zone', transform=films.get_yaxis_transform())
     films.axvspan(0.6, 1.2, color=GREY, alpha=0.2, label='published onsets')
     films.set(
-        xscale='log', yscale='log', xlabel='smooth central film over Rq [-]', ylabel='RCS [-]'
+        xscale='log',
+        yscale='log',
+        xlabel='smooth central film over Rq [-]',
+        ylabel='RCS, 1e-5 and less at the foot [-]',
     )
     films.xaxis.set_major_formatter('{x:g}')
     films.xaxis.set_minor_formatter('{x:g}')
@@ -106,6 +109,7 @@ def _draw_onsets(axes: 'object', found: dict[str, RampRow]) -> None:
     axes.set_yticks(places, names)
     axes.set(xscale='log', xlabel='onset speed over that of the base [-]')
     axes.xaxis.set_major_formatter('{x:g}')
+    axes.set_xticks([0.3, 0.5, 0.7, 1.0, 1.5], minor=False)
     axes.xaxis.set_minor_formatter('')
     axes.grid(axis='x', alpha=0.4)
 
