@@ -12,6 +12,7 @@ once for all of them. Simulated time is read in the same order: a message arrive
 """
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+import contextlib
 import dataclasses
 import functools
 import operator
@@ -109,6 +110,7 @@ class Intake(Waitable):
         self._simulated = 0  # the last `/clock` [ns]
         self._places: list[int] = []  # of the subscriptions in the wait set
         self._changed: list[EventHandler] = []  # that tell of publishers come or gone
+        self._waited_for = contextlib.ExitStack()
         readers: dict[str, list[Reader]] = {}
         for axis in axes:
             for source in axis.inputs:
@@ -143,6 +145,19 @@ class Intake(Waitable):
             ),
         )
         return Topic(readers=readers, loss=loss, subscription=subscription)
+
+    def __enter__(self) -> None:
+        """Keep what the executor waits for, also when it is closed meanwhile."""
+        with contextlib.ExitStack() as stack:
+            for topic in self._all:
+                stack.enter_context(topic.subscription.handle)
+            for handler in self._matches:
+                stack.enter_context(handler)
+            self._waited_for = stack.pop_all()
+
+    def __exit__(self, *raised: object) -> None:
+        """Let go of what the executor has waited for."""
+        self._waited_for.close()
 
     @property
     def _matches(self) -> list[EventHandler]:
@@ -188,10 +203,11 @@ class Intake(Waitable):
 
     def close(self) -> None:
         """Unsubscribe."""
+        closed = self._all
+        self.topics, self._clock = {}, None  # first, lest an executor begin to wait for them
         self._node.remove_waitable(self)
-        for topic in self._all:
+        for topic in closed:
             self._node.destroy_subscription(topic.subscription)
-        self.topics, self._clock = {}, None
 
     def publishers(self, axis: str) -> dict[Source, int]:
         """Return how many publishers each input of an axis is matched with."""

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """All that waits is taken at once, in the order of arrival, and what was lost is counted."""
 
+import threading
 import time
 import types
 
@@ -153,6 +154,40 @@ def test_a_closed_intake_takes_nothing(bench):
     bench.drain_events()
     assert bench.taken == []
     assert bench.intake.publishers('x') == {}
+
+
+def test_what_is_waited_for_lives_until_the_wait_is_over(bench):
+    """As the executor waits: an intake that is closed meanwhile is destroyed only then."""
+    handles = [topic.subscription.handle for topic in bench.intake.topics.values()]
+    with bench.intake:
+        bench.intake.close()
+        assert all(handle.pointer for handle in handles)
+    assert not any(handle.pointer for handle in handles)
+
+
+def test_closed_and_opened_again_while_another_thread_waits(bench):
+    failures, over = [], threading.Event()
+
+    def spin():
+        try:
+            while not over.is_set():
+                bench.executor.spin_once(timeout_sec=0.05)
+        except Exception as error:
+            failures.append(error)
+
+    taken, end = [], time.monotonic() + DEADLINE
+    thread = threading.Thread(target=spin)
+    thread.start()
+    for value in range(20):
+        bench.intake.close()
+        bench.intake = Intake(bench.node, [bench.axis], lambda _, event: taken.append(event.value))
+        while value not in taken and not failures and time.monotonic() < end:
+            bench.publish('speed', value)
+            over.wait(0.001)
+    over.set()
+    thread.join()
+    assert failures == []
+    assert set(taken) == set(range(20))
 
 
 def test_of_equal_stamps_the_speed_is_last_and_all_else_stays_in_order():
