@@ -111,6 +111,7 @@ class Intake(Waitable):
         self._places: list[int] = []  # of the subscriptions in the wait set
         self._changed: list[EventHandler] = []  # that tell of publishers come or gone
         self._waited_for = contextlib.ExitStack()
+        self._stayed = False  # for all of STAY, the last time
         readers: dict[str, list[Reader]] = {}
         for axis in axes:
             for source in axis.inputs:
@@ -191,8 +192,16 @@ class Intake(Waitable):
                 handler.callback(status)
 
     async def execute(self, taken_data: None) -> None:
-        """Take what waits, and look again while more comes: cheaper than to be woken for each."""
+        """
+        Take what waits, and look again while more comes: cheaper than to be woken for each.
+
+        Not twice in a row for all of STAY: the executor may come back before the others' turn.
+
+        """
         self.drain()
+        if self._stayed:
+            self._stayed = False
+            return
         pause = max(PAUSE, PAUSE_PER_TOPIC * len(self.topics))
         now = begin = came = time.monotonic()
         while now - came < QUIET and now - begin < STAY:
@@ -200,6 +209,7 @@ class Intake(Waitable):
             now = time.monotonic()
             if self.drain():
                 came = now
+        self._stayed = now - begin >= STAY
 
     def close(self) -> None:
         """Unsubscribe."""

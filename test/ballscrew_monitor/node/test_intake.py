@@ -9,9 +9,11 @@ import types
 from ballscrew_monitor.core.conversions import Scaling
 from ballscrew_monitor.core.inputs import InputSample, make_input, Source
 from ballscrew_monitor.cycle.domain import free_domain
-from ballscrew_monitor.node.intake import Intake, ordered
+from ballscrew_monitor.node import intake as intake_module
+from ballscrew_monitor.node.intake import Intake, ordered, PAUSE, QUIET, STAY
 import pytest
 import rclpy
+from rclpy.clock import Clock, ClockType
 from rclpy.executors import SingleThreadedExecutor
 from std_msgs.msg import Float64
 
@@ -26,6 +28,29 @@ def float_input(source, topic):
         field='data',
         scaling=Scaling(factor=1.0, shift=0.0),
     )
+
+
+class Watch:
+    """A clock for the intake that goes on by its pauses, in those in which it may."""
+
+    def __init__(self, monkeypatch, may_go_on=lambda: True):
+        self.now, self.may_go_on = 0.0, may_go_on
+        self.time_ns, self.end = time.time_ns, time.monotonic() + DEADLINE
+        monkeypatch.setattr(intake_module, 'time', self)
+
+    def monotonic(self):
+        return self.now
+
+    def sleep(self, pause):
+        assert time.monotonic() < self.end, 'the clock stands'
+        if self.may_go_on():
+            self.now += pause
+
+
+def turns(intake):
+    """Let the intake have a turn."""
+    with pytest.raises(StopIteration):
+        intake.execute(None).send(None)
 
 
 class Bench:
@@ -188,6 +213,73 @@ def test_closed_and_opened_again_while_another_thread_waits(bench):
     thread.join()
     assert failures == []
     assert set(taken) == set(range(20))
+
+
+def test_without_messages_a_turn_is_short_and_with_them_as_long_as_allowed(bench, monkeypatch):
+    watch, looks = Watch(monkeypatch), []
+    for comes, length in ((False, QUIET), (True, STAY)):
+        monkeypatch.setattr(bench.intake, 'drain', lambda comes=comes: looks.append(0) or comes)
+        begin = watch.now
+        turns(bench.intake)
+        assert watch.now - begin == pytest.approx(length, abs=1.01 * PAUSE)
+    assert len(looks) == pytest.approx((QUIET + STAY) / PAUSE, abs=4)
+
+
+def test_after_a_turn_of_full_length_the_next_one_is_a_single_look(bench, monkeypatch):
+    Watch(monkeypatch)
+    looks, counts = [], []
+    monkeypatch.setattr(bench.intake, 'drain', lambda: looks.append(0) or True)
+    for _ in range(4):
+        before = len(looks)
+        turns(bench.intake)
+        counts.append(len(looks) - before)
+    assert counts[0] > STAY / PAUSE / 2
+    assert counts == [counts[0], 1, counts[0], 1]
+
+
+def test_a_message_that_comes_within_a_turn_is_taken_within_it(bench, monkeypatch):
+    taken = []
+
+    def take(axis, event):
+        taken.append(event.value)
+        if len(taken) == 1:
+            bench.publish('speed', 2)
+
+    bench.intake.close()
+    bench.intake = Intake(bench.node, [bench.axis], take)
+    bench.until(lambda: bench.intake.publishers('x')[Source.SPEED] == 1)
+    bench.drain_events()
+    bench.publish('speed', 1)
+    Watch(monkeypatch, may_go_on=lambda: len(taken) != 1)
+    bench.until(lambda: taken)
+    assert taken == [1.0, 2.0]
+
+
+def test_messages_without_end_leave_the_others_their_turn(bench, monkeypatch):
+    """Each message taken brings forth the next one; the clock goes on only when one was taken."""
+    taken, seen, ticks = [], [], []
+
+    def take(axis, event):
+        taken.append(event.value)
+        bench.publish('speed', len(taken))
+
+    def has_come():
+        come = len(taken) > len(seen)
+        seen[:] = taken
+        return come
+
+    bench.intake.close()
+    bench.intake = Intake(bench.node, [bench.axis], take)
+    bench.until(lambda: bench.intake.publishers('x')[Source.SPEED] == 1)
+    bench.drain_events()
+    bench.publish('speed', 0)
+    watch = Watch(monkeypatch, has_come)
+    bench.until(lambda: taken)
+    assert watch.now >= STAY
+    steady = Clock(clock_type=ClockType.STEADY_TIME)
+    bench.node.create_timer(1e-3, lambda: ticks.append(len(taken)), clock=steady)
+    bench.until(lambda: len(ticks) == 3)
+    assert watch.now < 7 * (STAY + 2 * PAUSE)  # two turns before each tick at most
 
 
 def test_of_equal_stamps_the_speed_is_last_and_all_else_stays_in_order():
