@@ -21,7 +21,7 @@ from typing import Any
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.inputs import Input, InputSample, Refusal, Source
-from ballscrew_monitor.core.loss import LossCounter
+from ballscrew_monitor.core.loss import LossCounter, NO_NUMBER
 from ballscrew_monitor.node.axis import Axis
 from rclpy.callback_groups import CallbackGroup
 from rclpy.event_handler import EventHandler, SubscriptionEventCallbacks
@@ -70,11 +70,20 @@ class Topic:
     def arrival(self, message: Any, info: Mapping[str, Any]) -> Arrival:
         """Return a message with what the middleware says of it."""
         return Arrival(
-            info['received_timestamp'], message, info['publication_sequence_number'] or 0, self
+            info['received_timestamp'],
+            message,
+            info['publication_sequence_number'] or NO_NUMBER,
+            self,
         )
 
     def waiting(self) -> list[Arrival]:
-        """Return what waits in the queue of the subscription, which is then empty."""
+        """
+        Return what waits in the queue of the subscription, which is then empty.
+
+        When the publishers have changed it may be of those before and of those now, whose numbers
+        do not go together.
+
+        """
         found: list[Arrival] = []
         subscription = self.subscription
         with subscription.handle:
@@ -87,6 +96,7 @@ class Topic:
             count = subscription.get_publisher_count()
             if count != self.loss.publishers:
                 self.loss.match(count)
+                return [dataclasses.replace(arrival, number=NO_NUMBER) for arrival in found]
         return found
 
 
@@ -186,7 +196,9 @@ class Intake(Waitable):
         )
 
     def take_data(self) -> None:
-        """Count the publishers anew, before their messages are counted."""
+        """Count the publishers anew, once what has come by then is taken."""
+        if self._changed:
+            self.drain()
         for handler in self._changed:
             if status := handler.take_data():
                 handler.callback(status)

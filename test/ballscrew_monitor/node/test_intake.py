@@ -2,15 +2,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """All that waits is taken at once, in the order of arrival, and what was lost is counted."""
 
+import contextlib
 import threading
 import time
 import types
 
 from ballscrew_monitor.core.conversions import Scaling
 from ballscrew_monitor.core.inputs import InputSample, make_input, Source
+from ballscrew_monitor.core.loss import LossCounter
 from ballscrew_monitor.cycle.domain import free_domain
 from ballscrew_monitor.node import intake as intake_module
-from ballscrew_monitor.node.intake import Intake, ordered, PAUSE, QUIET, STAY
+from ballscrew_monitor.node.intake import Intake, ordered, PAUSE, QUIET, STAY, Topic
 import pytest
 import rclpy
 from rclpy.clock import Clock, ClockType
@@ -160,6 +162,42 @@ def test_a_second_publisher_is_noticed_before_the_executor_tells_of_it(bench):
     while len(bench.taken) < 3 and time.monotonic() < end:
         bench.intake.drain()
     assert [event.lost for event in bench.taken] == [0, None, None]
+
+
+@pytest.mark.parametrize(('before', 'after'), [(2, 1), (1, 0), (0, 1), (1, 2)])
+def test_what_waits_while_the_publishers_change_has_no_number(before, after):
+    """The numbers of a publisher that left and of the one that stays show no loss."""
+    queue = []
+    handle = contextlib.nullcontext()
+    handle.take_message = lambda kind, raw: queue.pop(0) if queue else None
+    subscription = types.SimpleNamespace(
+        handle=handle, msg_type=Float64, raw=False, get_publisher_count=lambda: after
+    )
+    topic = Topic(readers=[], loss=LossCounter(), subscription=subscription)
+    topic.loss.match(before)
+
+    def losses(*numbers):
+        queue.extend(
+            (None, {'received_timestamp': 1, 'publication_sequence_number': number})
+            for number in numbers
+        )
+        return [topic.loss.take(arrival.number) for arrival in topic.waiting()]
+
+    assert losses() == []
+    assert topic.loss.publishers == before  # until there is a message to count
+    assert losses(3, 41) == [None, None]
+    assert losses(42, 44) == ([None, None] if after > 1 else [0, 1])
+
+
+def test_what_waits_is_taken_before_the_publishers_are_counted_anew(bench, monkeypatch):
+    done, loss = [], bench.intake.topics['/speed'].loss
+    match, drain = loss.match, bench.intake.drain
+    monkeypatch.setattr(bench.intake, 'drain', lambda: done.append('drain') or drain())
+    monkeypatch.setattr(loss, 'match', lambda count: done.append(count) or match(count))
+    second = bench.node.create_publisher(Float64, 'speed', 10)
+    bench.until(lambda: loss.publishers == 2)
+    assert second.topic_name == '/speed'
+    assert done[:2] == ['drain', 2]
 
 
 def test_a_look_tells_whether_anything_has_come(bench):
