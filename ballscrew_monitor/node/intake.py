@@ -41,7 +41,7 @@ CLOCK = '/clock'
 PAUSE = 2.5e-4  # [s] between two looks at the inputs while messages come, at least
 PAUSE_PER_TOPIC = 2.5e-5  # [s] the same for each topic, five times what a look at it takes
 QUIET = 1.5e-3  # [s] without a message after which the executor waits for the next one
-STAY = 0.02  # [s] for which the inputs are looked at before anything else has a turn
+STAY = 0.02  # [s] longest turn; what becomes ready in one may wait for the next one too
 MOST = 2 * INPUT_QOS.depth  # messages of one topic that are taken before anything else has a turn
 
 Reader = tuple[Axis, Input]
@@ -150,7 +150,8 @@ class Intake(Waitable):
             _never_called,
             INPUT_QOS,
             callback_group=self._apart,
-            # The others have nothing to tell: best effort and volatile suit every publisher.
+            # Best effort and volatile suit every publisher. One of another type would be told of
+            # by some middlewares only; in the diagnostics its input was never received.
             event_callbacks=SubscriptionEventCallbacks(
                 matched=functools.partial(_count, loss), use_default_callbacks=False
             ),
