@@ -8,7 +8,7 @@ The node wants the machine frame, in which the force on the nut counts.
 
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 import dataclasses
 import math
@@ -109,7 +109,7 @@ def ask(question: Question, *, wait: float, as_json: bool) -> int:
             return None
 
         try:
-            code = _Conversation(node, question, until).run(wait, as_json=as_json)
+            code = _Conversation(node, question, until, interrupted).run(wait, as_json=as_json)
         finally:
             executor.shutdown()
             node.destroy_node()
@@ -133,21 +133,26 @@ def _interrupts() -> Iterator[list[int]]:
 class _Conversation:
     """One goal, from finding the node to its result."""
 
-    def __init__(self, node: Node, question: Question, until: Callable[..., Any]) -> None:
-        self._node, self._question, self._until = node, question, until
+    def __init__(
+        self, node: Node, question: Question, until: Callable[..., Any], interrupted: Sequence[int]
+    ) -> None:
+        self._node, self._question = node, question
+        self._until, self._interrupted = until, interrupted
 
     def run(self, wait: float, *, as_json: bool) -> int:
         """Ask and print; return the exit code unless interrupted."""
         action = self._find(wait)
         if action is None:
-            return _complain(f'no node offers {ACTION_TYPE} within {wait:g} s: {_where()}')
+            return self._give_up(f'no node offers {ACTION_TYPE} within {wait:g} s: {_where()}')
         client = ActionClient(self._node, SolveOperatingPoint, action)
-        self._until(client.server_is_ready, wait)
+        silence = f'{action} does not answer within {wait:g} s'
+        if not self._until(client.server_is_ready, wait):
+            return self._give_up(silence)
         sent = client.send_goal_async(goal_of(self._question), feedback_callback=_show)
         handle = self._until(lambda: sent.done() and sent.result(), wait)
         if handle is None:
             self._take_back_late(sent)
-            return _complain(f'{action} does not answer within {wait:g} s')
+            return self._give_up(silence)
         if not handle.accepted:
             return _complain(REJECTED)
         answer = handle.get_result_async()
@@ -159,6 +164,10 @@ class _Conversation:
         if not answer.done():
             return _complain(f'{action} is gone, its node has ended')
         return _print(self._question.axis, answer.result().result, as_json=as_json)
+
+    def _give_up(self, sentence: str) -> int:
+        """Complain of a node that was waited for in vain; an interrupt needs no words."""
+        return INTERRUPTED if self._interrupted else _complain(sentence)
 
     def _find(self, wait: float) -> str | None:
         """Return the name of the action; raises InputError when several nodes offer it."""

@@ -12,6 +12,7 @@ once for all of them. Simulated time is read in the same order: a message arrive
 """
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+import contextlib
 import dataclasses
 import functools
 import operator
@@ -20,7 +21,7 @@ from typing import Any
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.inputs import Input, InputSample, Refusal, Source
-from ballscrew_monitor.core.loss import LossCounter
+from ballscrew_monitor.core.loss import LossCounter, NO_NUMBER
 from ballscrew_monitor.node.axis import Axis
 from rclpy.callback_groups import CallbackGroup
 from rclpy.event_handler import EventHandler, SubscriptionEventCallbacks
@@ -40,7 +41,7 @@ CLOCK = '/clock'
 PAUSE = 2.5e-4  # [s] between two looks at the inputs while messages come, at least
 PAUSE_PER_TOPIC = 2.5e-5  # [s] the same for each topic, five times what a look at it takes
 QUIET = 1.5e-3  # [s] without a message after which the executor waits for the next one
-STAY = 0.02  # [s] for which the inputs are looked at before anything else has a turn
+STAY = 0.02  # [s] longest turn; what becomes ready in one may wait for the next one too
 MOST = 2 * INPUT_QOS.depth  # messages of one topic that are taken before anything else has a turn
 
 Reader = tuple[Axis, Input]
@@ -69,11 +70,20 @@ class Topic:
     def arrival(self, message: Any, info: Mapping[str, Any]) -> Arrival:
         """Return a message with what the middleware says of it."""
         return Arrival(
-            info['received_timestamp'], message, info['publication_sequence_number'] or 0, self
+            info['received_timestamp'],
+            message,
+            info['publication_sequence_number'] or NO_NUMBER,
+            self,
         )
 
     def waiting(self) -> list[Arrival]:
-        """Return what waits in the queue of the subscription, which is then empty."""
+        """
+        Return what waits in the queue of the subscription, which is then empty.
+
+        When the publishers have changed it may be of those before and of those now, whose numbers
+        do not go together.
+
+        """
         found: list[Arrival] = []
         subscription = self.subscription
         with subscription.handle:
@@ -86,6 +96,7 @@ class Topic:
             count = subscription.get_publisher_count()
             if count != self.loss.publishers:
                 self.loss.match(count)
+                return [dataclasses.replace(arrival, number=NO_NUMBER) for arrival in found]
         return found
 
 
@@ -109,6 +120,8 @@ class Intake(Waitable):
         self._simulated = 0  # the last `/clock` [ns]
         self._places: list[int] = []  # of the subscriptions in the wait set
         self._changed: list[EventHandler] = []  # that tell of publishers come or gone
+        self._waited_for = contextlib.ExitStack()
+        self._stayed = False  # for all of STAY, the last time
         readers: dict[str, list[Reader]] = {}
         for axis in axes:
             for source in axis.inputs:
@@ -137,12 +150,26 @@ class Intake(Waitable):
             _never_called,
             INPUT_QOS,
             callback_group=self._apart,
-            # The others have nothing to tell: best effort and volatile suit every publisher.
+            # Best effort and volatile suit every publisher. One of another type would be told of
+            # by some middlewares only; in the diagnostics its input was never received.
             event_callbacks=SubscriptionEventCallbacks(
                 matched=functools.partial(_count, loss), use_default_callbacks=False
             ),
         )
         return Topic(readers=readers, loss=loss, subscription=subscription)
+
+    def __enter__(self) -> None:
+        """Keep what the executor waits for, also when it is closed meanwhile."""
+        with contextlib.ExitStack() as stack:
+            for topic in self._all:
+                stack.enter_context(topic.subscription.handle)
+            for handler in self._matches:
+                stack.enter_context(handler)
+            self._waited_for = stack.pop_all()
+
+    def __exit__(self, *raised: object) -> None:
+        """Let go of what the executor has waited for."""
+        self._waited_for.close()
 
     @property
     def _matches(self) -> list[EventHandler]:
@@ -170,14 +197,24 @@ class Intake(Waitable):
         )
 
     def take_data(self) -> None:
-        """Count the publishers anew, before their messages are counted."""
+        """Count the publishers anew, once what has come by then is taken."""
+        if self._changed:
+            self.drain()
         for handler in self._changed:
             if status := handler.take_data():
                 handler.callback(status)
 
     async def execute(self, taken_data: None) -> None:
-        """Take what waits, and look again while more comes: cheaper than to be woken for each."""
+        """
+        Take what waits, and look again while more comes: cheaper than to be woken for each.
+
+        Not twice in a row for all of STAY: the executor may come back before the others' turn.
+
+        """
         self.drain()
+        if self._stayed:
+            self._stayed = False
+            return
         pause = max(PAUSE, PAUSE_PER_TOPIC * len(self.topics))
         now = begin = came = time.monotonic()
         while now - came < QUIET and now - begin < STAY:
@@ -185,13 +222,15 @@ class Intake(Waitable):
             now = time.monotonic()
             if self.drain():
                 came = now
+        self._stayed = now - begin >= STAY
 
     def close(self) -> None:
         """Unsubscribe."""
+        closed = self._all
+        self.topics, self._clock = {}, None  # first, lest an executor begin to wait for them
         self._node.remove_waitable(self)
-        for topic in self._all:
+        for topic in closed:
             self._node.destroy_subscription(topic.subscription)
-        self.topics, self._clock = {}, None
 
     def publishers(self, axis: str) -> dict[Source, int]:
         """Return how many publishers each input of an axis is matched with."""

@@ -33,7 +33,6 @@ from std_srvs.srv import Trigger
 from surrogate.files import InputError
 
 SUCCESS, FAILURE = TransitionCallbackReturn.SUCCESS, TransitionCallbackReturn.FAILURE
-NEWS_INTERVAL = nanoseconds(0.1)  # [ns] shortest time between two diagnostics sent for a change
 POLL = 0.2  # [s] longest wait before a signal is noticed
 
 
@@ -64,7 +63,6 @@ class BallscrewMonitor(LifecycleNode):
         self._intake: Intake | None = None
         self._tick_timer: Any = None
         self._steady = Clock(clock_type=ClockType.STEADY_TIME)
-        self._news_time = 0
         self._store = ParameterStore(self, self._on_parameters)
         self._values = self._store.values
         self._pulse = Pulse(nanoseconds(self._values['tick_period']))
@@ -224,11 +222,8 @@ class BallscrewMonitor(LifecycleNode):
         if station.is_dwelling(state) and not self._solves.busy:
             self.get_logger().info(f'axis {station.name}: solving the point where it dwells')
             self._solves.solve(station, state.point)
-        if not station.has_news():
-            return
         now = self._steady.now().nanoseconds
-        if now - self._news_time >= NEWS_INTERVAL:  # else the next state or the timer sends it
-            self._news_time = now
+        if station.has_news(now):  # what comes too soon is sent with the next state or the timer
             station.say_news(now)
             self._publish_diagnostics([station.name])
 

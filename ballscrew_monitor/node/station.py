@@ -35,6 +35,7 @@ from surrogate.surface import Surface, SurfaceError, SurfacePoint
 
 STATE_QOS = QoSProfile(depth=10, reliability=QoSReliabilityPolicy.RELIABLE)
 LOG_INTERVAL = nanoseconds(1.0)  # [ns] shortest time between two lines about the inputs
+NEWS_INTERVAL = nanoseconds(0.1)  # [ns] shortest time between two diagnostics sent for a change
 LATCHED_QOS = QoSProfile(
     depth=1,
     reliability=QoSReliabilityPolicy.RELIABLE,
@@ -62,6 +63,7 @@ class Station:
         self._writer = StateWriter(axis.name, TIERS[axis.surface.tier])
         self._last: State | None = None
         self._said: tuple[diagnostics.StatusSummary, ...] = ()
+        self._said_at = -NEWS_INTERVAL
         self._logged: diagnostics.StatusSummary | None = None
         self._logged_at = -LOG_INTERVAL
         # rclpy looks at every event of every publisher in every round. What these would warn of,
@@ -207,14 +209,16 @@ class Station:
         fill_result(result, answer, TIERS[self.axis.surface.tier])
         return result
 
-    def has_news(self) -> bool:
-        """Tell whether the diagnostics of the last state differ from what was said."""
-        return self._last is not None and self._summaries(self._last) != self._said
+    def has_news(self, now: int) -> bool:
+        """Tell whether at `now` [ns] the last state changes what was said, if not just now."""
+        if self._last is None or now - self._said_at < NEWS_INTERVAL:
+            return False
+        return self._summaries(self._last) != self._said
 
     def say_news(self, now: int) -> None:
         """Take the last state for said at `now` [ns], and log a change of the inputs."""
         if self._last is not None:
-            self._said = self._summaries(self._last)
+            self._said, self._said_at = self._summaries(self._last), now
             self.log_inputs(now)
 
     def log_inputs(self, now: int) -> None:

@@ -11,7 +11,8 @@ import subprocess
 import sys
 from types import SimpleNamespace
 
-from ballscrew_monitor.clients.solve import _Conversation
+from ballscrew_monitor.clients import solve
+from ballscrew_monitor.clients.solve import _Conversation, Question
 from ballscrew_monitor.cycle.node_process import child_environment
 from ballscrew_monitor.node.solver_process import worker_environment
 import pytest
@@ -176,6 +177,29 @@ def test_a_goal_that_is_accepted_too_late_is_taken_back():
             cancelled.set_result('cancelled')
 
     node = SimpleNamespace(executor=SimpleNamespace(spin_once=spin_once))
-    _Conversation(node, None, None)._take_back_late(sent)
+    _Conversation(node, None, None, ())._take_back_late(sent)
     assert cancelled.done()
     assert len(calls) == 5
+
+
+@pytest.mark.parametrize(
+    ('interrupted', 'code', 'sentence'),
+    [([], 1, 'ballscrew: /m/solve does not answer within 2 s\n'), ([signal.SIGINT], 130, '')],
+)
+def test_a_server_that_is_never_ready_is_sent_no_goal(
+    monkeypatch, capsys, interrupted, code, sentence
+):
+    client = SimpleNamespace(server_is_ready=lambda: False)  # has no way to send
+    monkeypatch.setattr(solve, 'ActionClient', lambda *arguments: client)
+    monkeypatch.setattr(
+        solve, 'get_action_names_and_types', lambda node: [('/m/solve', [solve.ACTION_TYPE])]
+    )
+    talk = _Conversation(None, Question(axis='x'), lambda given, wait: given(), interrupted)
+    assert talk.run(2.0, as_json=False) == code
+    assert capsys.readouterr() == ('', sentence)
+
+
+def test_an_interrupt_before_a_node_is_found_needs_no_words(capsys):
+    talk = _Conversation(None, Question(axis='x'), lambda condition, wait: None, [signal.SIGTERM])
+    assert talk.run(2.0, as_json=False) == 130
+    assert capsys.readouterr() == ('', '')

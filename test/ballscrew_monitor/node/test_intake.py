@@ -2,15 +2,20 @@
 # SPDX-License-Identifier: Apache-2.0
 """All that waits is taken at once, in the order of arrival, and what was lost is counted."""
 
+import contextlib
+import threading
 import time
 import types
 
 from ballscrew_monitor.core.conversions import Scaling
 from ballscrew_monitor.core.inputs import InputSample, make_input, Source
+from ballscrew_monitor.core.loss import LossCounter
 from ballscrew_monitor.cycle.domain import free_domain
-from ballscrew_monitor.node.intake import Intake, ordered
+from ballscrew_monitor.node import intake as intake_module
+from ballscrew_monitor.node.intake import Intake, ordered, PAUSE, QUIET, STAY, Topic
 import pytest
 import rclpy
+from rclpy.clock import Clock, ClockType
 from rclpy.executors import SingleThreadedExecutor
 from std_msgs.msg import Float64
 
@@ -25,6 +30,29 @@ def float_input(source, topic):
         field='data',
         scaling=Scaling(factor=1.0, shift=0.0),
     )
+
+
+class Watch:
+    """A clock for the intake that goes on by its pauses, in those in which it may."""
+
+    def __init__(self, monkeypatch, may_go_on=lambda: True):
+        self.now, self.may_go_on = 0.0, may_go_on
+        self.time_ns, self.end = time.time_ns, time.monotonic() + DEADLINE
+        monkeypatch.setattr(intake_module, 'time', self)
+
+    def monotonic(self):
+        return self.now
+
+    def sleep(self, pause):
+        assert time.monotonic() < self.end, 'the clock stands'
+        if self.may_go_on():
+            self.now += pause
+
+
+def turns(intake):
+    """Let the intake have a turn."""
+    with pytest.raises(StopIteration):
+        intake.execute(None).send(None)
 
 
 class Bench:
@@ -136,6 +164,42 @@ def test_a_second_publisher_is_noticed_before_the_executor_tells_of_it(bench):
     assert [event.lost for event in bench.taken] == [0, None, None]
 
 
+@pytest.mark.parametrize(('before', 'after'), [(2, 1), (1, 0), (0, 1), (1, 2)])
+def test_what_waits_while_the_publishers_change_has_no_number(before, after):
+    """The numbers of a publisher that left and of the one that stays show no loss."""
+    queue = []
+    handle = contextlib.nullcontext()
+    handle.take_message = lambda kind, raw: queue.pop(0) if queue else None
+    subscription = types.SimpleNamespace(
+        handle=handle, msg_type=Float64, raw=False, get_publisher_count=lambda: after
+    )
+    topic = Topic(readers=[], loss=LossCounter(), subscription=subscription)
+    topic.loss.match(before)
+
+    def losses(*numbers):
+        queue.extend(
+            (None, {'received_timestamp': 1, 'publication_sequence_number': number})
+            for number in numbers
+        )
+        return [topic.loss.take(arrival.number) for arrival in topic.waiting()]
+
+    assert losses() == []
+    assert topic.loss.publishers == before  # until there is a message to count
+    assert losses(3, 41) == [None, None]
+    assert losses(42, 44) == ([None, None] if after > 1 else [0, 1])
+
+
+def test_what_waits_is_taken_before_the_publishers_are_counted_anew(bench, monkeypatch):
+    done, loss = [], bench.intake.topics['/speed'].loss
+    match, drain = loss.match, bench.intake.drain
+    monkeypatch.setattr(bench.intake, 'drain', lambda: done.append('drain') or drain())
+    monkeypatch.setattr(loss, 'match', lambda count: done.append(count) or match(count))
+    second = bench.node.create_publisher(Float64, 'speed', 10)
+    bench.until(lambda: loss.publishers == 2)
+    assert second.topic_name == '/speed'
+    assert done[:2] == ['drain', 2]
+
+
 def test_a_look_tells_whether_anything_has_come(bench):
     assert not bench.intake.drain()
     bench.publish('speed', 1)
@@ -153,6 +217,107 @@ def test_a_closed_intake_takes_nothing(bench):
     bench.drain_events()
     assert bench.taken == []
     assert bench.intake.publishers('x') == {}
+
+
+def test_what_is_waited_for_lives_until_the_wait_is_over(bench):
+    """As the executor waits: an intake that is closed meanwhile is destroyed only then."""
+    handles = [topic.subscription.handle for topic in bench.intake.topics.values()]
+    with bench.intake:
+        bench.intake.close()
+        assert all(handle.pointer for handle in handles)
+    assert not any(handle.pointer for handle in handles)
+
+
+def test_closed_and_opened_again_while_another_thread_waits(bench):
+    failures, over = [], threading.Event()
+
+    def spin():
+        try:
+            while not over.is_set():
+                bench.executor.spin_once(timeout_sec=0.05)
+        except Exception as error:
+            failures.append(error)
+
+    taken, end = [], time.monotonic() + DEADLINE
+    thread = threading.Thread(target=spin)
+    thread.start()
+    for value in range(20):
+        bench.intake.close()
+        bench.intake = Intake(bench.node, [bench.axis], lambda _, event: taken.append(event.value))
+        while value not in taken and not failures and time.monotonic() < end:
+            bench.publish('speed', value)
+            over.wait(0.001)
+    over.set()
+    thread.join()
+    assert failures == []
+    assert set(taken) == set(range(20))
+
+
+def test_without_messages_a_turn_is_short_and_with_them_as_long_as_allowed(bench, monkeypatch):
+    watch, looks = Watch(monkeypatch), []
+    for comes, length in ((False, QUIET), (True, STAY)):
+        monkeypatch.setattr(bench.intake, 'drain', lambda comes=comes: looks.append(0) or comes)
+        begin = watch.now
+        turns(bench.intake)
+        assert watch.now - begin == pytest.approx(length, abs=1.01 * PAUSE)
+    assert len(looks) == pytest.approx((QUIET + STAY) / PAUSE, abs=4)
+
+
+def test_after_a_turn_of_full_length_the_next_one_is_a_single_look(bench, monkeypatch):
+    Watch(monkeypatch)
+    looks, counts = [], []
+    monkeypatch.setattr(bench.intake, 'drain', lambda: looks.append(0) or True)
+    for _ in range(4):
+        before = len(looks)
+        turns(bench.intake)
+        counts.append(len(looks) - before)
+    assert counts[0] > STAY / PAUSE / 2
+    assert counts == [counts[0], 1, counts[0], 1]
+
+
+def test_a_message_that_comes_within_a_turn_is_taken_within_it(bench, monkeypatch):
+    taken = []
+
+    def take(axis, event):
+        taken.append(event.value)
+        if len(taken) == 1:
+            bench.publish('speed', 2)
+
+    bench.intake.close()
+    bench.intake = Intake(bench.node, [bench.axis], take)
+    bench.until(lambda: bench.intake.publishers('x')[Source.SPEED] == 1)
+    bench.drain_events()
+    bench.publish('speed', 1)
+    Watch(monkeypatch, may_go_on=lambda: len(taken) != 1)
+    bench.until(lambda: taken)
+    assert taken == [1.0, 2.0]
+
+
+def test_messages_without_end_leave_the_others_their_turn(bench, monkeypatch):
+    """Each message taken brings forth the next one; the clock goes on only when one was taken."""
+    taken, seen, ticks = [], [], []
+
+    def take(axis, event):
+        taken.append(event.value)
+        bench.publish('speed', len(taken))
+
+    def has_come():
+        come = len(taken) > len(seen)
+        seen[:] = taken
+        return come
+
+    bench.intake.close()
+    bench.intake = Intake(bench.node, [bench.axis], take)
+    bench.until(lambda: bench.intake.publishers('x')[Source.SPEED] == 1)
+    bench.drain_events()
+    bench.publish('speed', 0)
+    watch = Watch(monkeypatch, has_come)
+    bench.until(lambda: taken)
+    assert watch.now >= STAY
+    steady = Clock(clock_type=ClockType.STEADY_TIME)
+    bench.node.create_timer(1e-3, lambda: ticks.append(len(taken)), clock=steady)
+    bench.until(lambda: len(ticks) == 3)
+    assert watch.now < 7 * (STAY + 2 * PAUSE)  # two turns before each tick at most
 
 
 def test_of_equal_stamps_the_speed_is_last_and_all_else_stays_in_order():

@@ -5,10 +5,14 @@
 import itertools
 import math
 import signal
+from types import SimpleNamespace
 
+from ballscrew_monitor.core.conversions import nanoseconds
+from ballscrew_monitor.core.inputs import InputSample, Source
 from ballscrew_monitor.cycle.domain import free_domain
 from ballscrew_monitor.node import diagnostics
 from ballscrew_monitor.node.node import BallscrewMonitor
+from ballscrew_monitor.node.station import NEWS_INTERVAL
 from ballscrew_msgs.msg import BallScrewState, OperatingPoint, OutOfZone, PointResult, SurfaceInfo
 from ballscrew_msgs.srv import EvaluateOperatingPoint
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
@@ -353,6 +357,33 @@ def test_ticks_do_not_depend_on_the_system_clock(sim_time, kind):
         node = BallscrewMonitor(context=context, parameter_overrides=overrides)
         node.start()
         assert node._tick_timer.clock.clock_type is kind
+        node.finish()
+        node.destroy_node()
+        rclpy.shutdown(context=context)
+
+
+def test_axes_that_change_together_are_all_told_at_once(monkeypatch):
+    """The flood of one axis must not keep back what another one has to tell."""
+    with free_domain() as domain:
+        context = rclpy.Context()
+        rclpy.init(context=context, domain_id=domain)
+        overrides = [
+            Parameter('axes', value=['x', 'y']),
+            Parameter('diagnostics_period', value=60.0),
+        ]
+        node = BallscrewMonitor(context=context, parameter_overrides=overrides)
+        node.start()
+        told = []
+        monkeypatch.setattr(node, '_publish_diagnostics', lambda axes=None: told.append(axes))
+        steady = SimpleNamespace(nanoseconds=0)
+        monkeypatch.setattr(node, '_steady', SimpleNamespace(now=lambda: steady))
+        stamp, inputs = node.get_clock().now().nanoseconds, [Source.SPEED]
+        for steady.nanoseconds in (0, NEWS_INTERVAL - 1, NEWS_INTERVAL):
+            for name, source in itertools.product(('x', 'y'), inputs):
+                sample = InputSample(source=source, value=FAST, stamp=stamp)
+                node._on_event(node._stations[name].axis, sample)
+            stamp, inputs = stamp + nanoseconds(0.2), [Source.LOAD, Source.SPEED]
+        assert told == [['x'], ['y']] * 2
         node.finish()
         node.destroy_node()
         rclpy.shutdown(context=context)
