@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from surrogate.ehl import ContactLubricant
+from surrogate.ehl.kernels.fft import good_length
 from surrogate.ehl.moving import MarchSettings, ramp_contact, ramp_strip, SpeedRamp, strip_at
 from surrogate.formulas.geometry import hertz, screw_contact
 from surrogate.parameters import load_lubricant, load_screw
@@ -30,8 +31,6 @@ from surrogate.tasks.table import read_table, write_table
 
 WORK = 'studies/rolling_onset.py 1'
 """Solver and version of the kept results."""
-CELLS = sorted(3**n * 2**k for n in range(5) for k in range(2, 11))
-"""Numbers of columns that a strip may have."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -187,7 +186,7 @@ def march(variation: Variation) -> tuple[SpeedRamp, int, int]:
             ny,
         )
     width = variation.width * a
-    ny = next(cells for cells in CELLS if cells >= variation.across * width / shortest)
+    ny = good_length(math.ceil(variation.across * width / shortest))
     strip = strip_at(contact, variation.load, variation.place, width, ny)
     repeated = periodic_across(surface, width).surface
     return (

@@ -16,7 +16,7 @@ from typing import Any, Protocol
 
 from ballscrew_monitor.core.conversions import opposing_load
 from ballscrew_monitor.core.estimate import MachinePoint
-from surrogate.surface import Surface, SurfacePoint
+from surrogate.surface import HasOperatingPoint, Surface, SurfacePoint
 
 NAN = math.nan
 JUDGED = ('efficiency', 'rcs')
@@ -44,20 +44,8 @@ class SolvedAt:
     temperature: float
 
 
-class Solve(Protocol):
+class Solve(HasOperatingPoint, Protocol):
     """A full solve that has corrected a surface, or did so in an earlier run of the node."""
-
-    @property
-    def speed(self) -> float:
-        """Return the screw speed [rad/s]."""
-
-    @property
-    def opposing_load(self) -> float:
-        """Return the load that opposes the motion [N]."""
-
-    @property
-    def temperature(self) -> float:
-        """Return the oil temperature [K]."""
 
     @property
     def solved(self) -> dict[str, float]:

@@ -10,9 +10,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.ehl.moving import MovingSolution, StripContact
+from surrogate.contact.rolling_record import hertz_of
+from surrogate.ehl.moving import MovingSolution
 from surrogate.ehl.to_si import PUNCTURED
-from surrogate.formulas.geometry import hertz
 from surrogate.plotting.style import BLUE, draw_picture, GREY, MAP, new_figure, VERMILION
 from surrogate.units import MICRO, NANO
 
@@ -51,17 +51,8 @@ def figure_rolling(solution: MovingSolution) -> Figure:
     return figure
 
 
-def _semi_axes(solution: MovingSolution) -> tuple[float, float]:
-    """Return the semi-axes of the Hertz zone [m]; a strip has none across."""
-    contact = solution.contact
-    if isinstance(contact, StripContact):
-        return contact.semi_axis, np.inf
-    ellipse = hertz(contact, solution.condition.load)
-    return float(ellipse.semi_axis_x), float(ellipse.semi_axis_y)
-
-
 def _draw_film(axes: Axes, solution: MovingSolution) -> None:
-    a, b = _semi_axes(solution)
+    a, b, _ = hertz_of(solution)
     rows, columns = _within(solution.x_nodes, VIEW * a), _within(solution.y_nodes, VIEW * b)
     x, y = solution.x_nodes[rows], solution.y_nodes[columns]
     film, floor = solution.film[rows, columns], solution.settings.film_floor

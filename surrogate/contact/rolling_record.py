@@ -86,7 +86,7 @@ class RollingRecord(TypedDict):
 def rolling_record(case: ContactCase, solution: MovingSolution, surface: Raceway) -> RollingRecord:
     """Return the averages of a march in SI units, JSON types."""
     assert case.roughness is not None
-    settings, (semi_axis, pressure) = solution.settings, _hertz_of(solution)
+    settings, (semi_axis, _, pressure) = solution.settings, hertz_of(solution)
     roughness = _roughness_record(case.roughness, surface)
     strip = solution.contact if isinstance(solution.contact, StripContact) else None
     return {
@@ -136,13 +136,13 @@ def rolling_record(case: ContactCase, solution: MovingSolution, surface: Raceway
     }
 
 
-def _hertz_of(solution: MovingSolution) -> tuple[float, float]:
-    """Return the half length of the Hertz zone along the track [m] and its pressure [Pa]."""
+def hertz_of(solution: MovingSolution) -> tuple[float, float, float]:
+    """Return the semi-axes of the Hertz zone [m] and its pressure [Pa]; a strip has no end."""
     contact = solution.contact
     if isinstance(contact, StripContact):
-        return contact.semi_axis, contact.max_pressure
+        return contact.semi_axis, math.inf, contact.max_pressure
     ellipse = hertz(contact, solution.condition.load)
-    return float(ellipse.semi_axis_x), float(ellipse.max_pressure)
+    return float(ellipse.semi_axis_x), float(ellipse.semi_axis_y), float(ellipse.max_pressure)
 
 
 def _roughness_record(rough: CaseRoughness, surface: Raceway) -> RoughnessRecord:

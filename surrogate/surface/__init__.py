@@ -8,7 +8,7 @@ Needs numpy alone.
 """
 
 from surrogate.surface.aims import EFFICIENCY_LIMIT, LIGHT_LOAD, RCS_LIMIT
-from surrogate.surface.correction import Correction
+from surrogate.surface.correction import Correction, HasOperatingPoint
 from surrogate.surface.file import SurfaceError
 from surrogate.surface.lookup import Surface
 from surrogate.surface.point import FIELDS, solved_point, SurfacePoint, Validity
@@ -22,6 +22,7 @@ __all__ = [
     'FIELDS',
     'FILM_RATIO_LIMITS',
     'find_surface',
+    'HasOperatingPoint',
     'LIGHT_LOAD',
     'RCS_LIMIT',
     'Regime',

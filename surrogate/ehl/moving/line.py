@@ -17,6 +17,7 @@ from surrogate.ehl.case import ScaledCase
 from surrogate.ehl.grid import Grid, GridState, make_strip_grid
 from surrogate.ehl.half_space import deform
 from surrogate.ehl.interface import Condition, ContactLubricant, RoughHeights, Settings
+from surrogate.ehl.kernels.fft import good_length
 from surrogate.ehl.scales import scale_contact, ScaledContact
 from surrogate.ehl.search import Search
 from surrogate.files import InputError
@@ -56,12 +57,7 @@ class StripContact:
             value = getattr(self, name)
             if not 0 < value < math.inf:
                 raise InputError(f'strip: {name} is {value!r} {unit}, allowed is above 0')
-        rest = self.columns
-        while rest > 4 and rest % 2 == 0:
-            rest //= 2
-        while rest % 3 == 0:
-            rest //= 3
-        if rest not in (1, 4) or self.columns % 4:
+        if good_length(self.columns) != self.columns:
             raise InputError(
                 f'strip: columns is {self.columns!r}, allowed is 3^n * 2^k with k at least 2'
             )

@@ -45,10 +45,10 @@ class SmoothPath:
     def at(self, share: float) -> tuple[float, GridState]:
         """Return speed [m/s] and smooth contact at a share of the way [-]."""
         last = len(self.states) - 1
+        if last == 0:
+            return float(self.speeds[0]), self.states[0]
         place = min(max(share, 0.0), 1.0) * last
         first = min(int(place), last - 1)
-        if last == 0 or first < 0:
-            return float(self.speeds[0]), self.states[0]
         weight = place - first
         low, high = self.states[first], self.states[first + 1]
         return float(math.exp(np.interp(place, np.arange(last + 1), np.log(self.speeds)))), (
