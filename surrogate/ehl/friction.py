@@ -84,13 +84,18 @@ def viscosity_of(lubricant: ContactLubricant, pressure: ArrayLike) -> Array:
 
 
 def node_strengths(
-    solution: ContactSolution, *, asperity_friction: float = 0.1, film: Film = 'local'
+    solution: ContactSolution,
+    *,
+    asperity_friction: float = 0.1,
+    asperity_share: float | None = None,
+    film: Film = 'local',
 ) -> NodeStrengths:
     """
     Return the strengths of all nodes of a solved contact, arrays on the grid.
 
-    Boundary coefficient [-] of punctured nodes; `film` shears the local or the central film.
-    Raises InputError for options that make no sense.
+    Boundary coefficient [-] of punctured nodes; with an `asperity_share` [-], known from
+    elsewhere, every node has that share of boundary friction and shears the rest of its oil.
+    `film` shears the local or the central film. Raises InputError for options that make no sense.
 
     """
     _check_options(asperity_friction, film)
@@ -100,11 +105,12 @@ def node_strengths(
     dry = punctured_nodes(solution)
     wet = ~dry & (solution.film_pressure > 0) & (thickness > 0)
     viscosity = viscosity_of(solution.lubricant, solution.film_pressure)
+    touching = dry.astype(float) if asperity_share is None else np.full(x.shape, asperity_share)
     return NodeStrengths(
         x=x,
         y=y,
-        boundary=np.where(dry, asperity_friction * solution.pressure, 0.0) * area,
-        eyring=np.where(wet, stress * area, 0.0),
+        boundary=touching * asperity_friction * solution.pressure * area,
+        eyring=np.where(wet, (1 - touching) * stress * area, 0.0),
         rate=np.divide(viscosity, stress * thickness, out=np.zeros_like(x), where=wet),
     )
 
@@ -115,6 +121,7 @@ def contact_friction(
     slip_x: ArrayLike,
     slip_y: ArrayLike = 0.0,
     asperity_friction: float = 0.1,
+    asperity_share: float | None = None,
     film: Film = 'local',
     slip_floor: float = 0.0,
 ) -> ContactFriction:
@@ -122,14 +129,16 @@ def contact_friction(
     Integrate the friction of a contact with a slip field.
 
     Slip [m/s] of the surface along x and y, numbers or arrays on the grid; boundary coefficient
-    [-]; `film` shears the local or the central film; |slip| is sqrt(slip^2 + `slip_floor`^2) [m/s]
+    and share [-] as in `node_strengths`; `film` shears the local or the central film; |slip| is sqrt(slip^2 + `slip_floor`^2) [m/s]
     where a direction is needed. Raises InputError for slip that does not fit the grid.
 
     """
     vx, vy = _on_grid(solution, slip_x, 'slip_x'), _on_grid(solution, slip_y, 'slip_y')
     if not 0 <= slip_floor < np.inf:
         raise InputError(f'slip_floor is {slip_floor!r} m/s, allowed is 0 or more')
-    nodes = node_strengths(solution, asperity_friction=asperity_friction, film=film)
+    nodes = node_strengths(
+        solution, asperity_friction=asperity_friction, asperity_share=asperity_share, film=film
+    )
     speed = np.sqrt(vx**2 + vy**2 + slip_floor**2)
     sheared = nodes.sheared(speed)
     friction = nodes.boundary + sheared

@@ -196,13 +196,14 @@ def solved_traction(
     solution: ContactSolution,
     *,
     asperity_friction: float = 0.1,
+    asperity_share: float | None = None,
     slip_floor: float = 1e-4,
     neglected: float = 0.0,
 ) -> SolvedTraction:
     """
     Return the friction over a solved contact, as `contact_friction` integrates it.
 
-    Boundary coefficient [-] on punctured nodes, slip floor [m/s]; `neglected`, largest share of
+    Boundary coefficient and share [-] as in `node_strengths`, slip floor [m/s]; `neglected`, largest share of
     the friction [-] of the weak nodes that are left out. Raises InputError for a solution that did
     not converge.
 
@@ -210,7 +211,9 @@ def solved_traction(
     if not solution.converged:
         raise InputError(f'no traction without a solved contact: {solution.status.value}')
     _check_floor(slip_floor)
-    nodes = node_strengths(solution, asperity_friction=asperity_friction)
+    nodes = node_strengths(
+        solution, asperity_friction=asperity_friction, asperity_share=asperity_share
+    )
     # The weaker a node, the later it saturates: its share is largest at a slip above any.
     slip = LARGEST_SLIP * solution.condition.entrainment_speed
     used = _strongest(nodes.boundary + nodes.sheared(slip), neglected)

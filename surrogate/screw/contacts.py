@@ -1,10 +1,12 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Contacts of the screw in the full tier, each solved twice: smooth for the film ratio, and rough.
+Contacts of the screw in the full tier: smooth ones with the asperity contact of their raceway.
 
-The rough raceway is one draw of its surface, rescaled over a window that no load moves; waves that
-the grid is too coarse for raise the film floor.
+The raceway rolls, so that pressures and films are those of the smooth contact and the asperity law
+says what touches. For comparison a rough raceway may stand still: one draw of its waves, scaled by
+the standard, which the contact is solved with; waves that the grid is too coarse for raise the
+film floor.
 
 """
 
@@ -12,31 +14,31 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 import math
+from typing import Literal
 
+from surrogate.asperities.acting import stated_waves, Waves
+from surrogate.asperities.law import AsperityContact, AsperityLaw, shipped_law
 from surrogate.ehl import Condition, ContactLubricant, ContactSolution, Settings, solve_contact
 from surrogate.ehl.domain import MOST_NODES, nodes_on_waves
 from surrogate.ehl.watch import at
 from surrogate.files import InputError
-from surrogate.formulas.geometry import Contact, hertz, screw_contact, Side, SIDES
+from surrogate.formulas.geometry import Contact, screw_contact, Side, SIDES
 from surrogate.formulas.inlet_heating import heated_speed
 from surrogate.formulas.kinematics import no_slip_rates
-from surrogate.formulas.load_sharing import normal_force, UNLOADING_RATIO
 from surrogate.formulas.lubricant import lubricant_state
+from surrogate.formulas.starvation import starved_speed
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
-from surrogate.raceway.fractal import fractal_surface, FractalSurface
-from surrogate.raceway.patch import take_patch, Window
+from surrogate.raceway.ball import draw_stated
+from surrogate.raceway.fractal import FractalSurface
 from surrogate.raceway.short_waves import subgrid_floor, without_short_waves
 from surrogate.units import ZERO_CELSIUS
 
-Pair = tuple[ContactSolution, ContactSolution]
-"""The same contact smooth and rough."""
+Kinematics = Literal['rolling', 'standing', 'smooth']
 Start = tuple[ContactSolution | None, ContactSolution | None]
 ACROSS = 2.42
 """About the width of a rough domain over the semi-axis across (2.4 to 3.1) [-]."""
 GRID_WAVELENGTH = 16e-6
 """Shortest wavelength on the grid [m]; docs/theory/roughness.md."""
-WINDOW_SHARE = 0.05
-"""Least axial load whose Hertz rectangle is the window of the patch, over the rating [-]."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -44,24 +46,47 @@ class ScrewSettings:
     """
     How to solve a screw.
 
-    Settings of the smooth and of the rough contacts, but for the film floor, which is that of the
-    datasheet; draw of the roughness, None for smooth raceways; shortest wavelength on the grid
-    [m], shorter ones raise the floor, None to solve them all; nodes per such wave across the
-    track, up to `MOST_NODES`, if that is more than the rough settings have [-]; `same_places`
-    puts them at the same places of the raceway whatever the load; `inlet_heating` thins films by
-    shear heating of the inlet; contacts are solved again where friction changes their normal force
-    by more than `coupling_tolerance` [-].
+    What the roughness does: it rolls, it stands still, or there is none. `law` of asperity contact
+    where it rolls, None for the shipped one. Settings of the smooth and of the rough contacts, but
+    for the film floor, which is that of the oil. Of roughness that stands: its draw, shortest
+    wavelength on the grid [m], shorter ones raise the floor, None to solve them all; nodes per
+    such wave across the track, up to `MOST_NODES`, if that is more than the rough settings have
+    [-]. `inlet_heating` thins films by shear heating of the inlet; contacts are solved again where
+    friction changes their normal force by more than `coupling_tolerance` [-].
 
     """
 
+    kinematics: Kinematics = 'rolling'
+    law: AsperityLaw | None = None
     smooth: Settings = field(default_factory=Settings)
     rough: Settings = field(default_factory=lambda: Settings(nx=129, ny=257, error_estimate=False))
-    draw: int | None = 0
+    draw: int = 0
     grid_wavelength: float | None = GRID_WAVELENGTH
     nodes_per_wave: float = 6.0
-    same_places: bool = False
     inlet_heating: bool = False
     coupling_tolerance: float = 0.01
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class SolvedContact:
+    """
+    A ball on one raceway, solved.
+
+    The smooth contact; that whose pressures and films the ball feels, the smooth one unless the
+    roughness stands; what asperities do; their share of the friction of every node [-], None where
+    the solution itself says which nodes touch.
+
+    """
+
+    smooth: ContactSolution
+    pressed: ContactSolution
+    asperities: AsperityContact
+    friction_share: float | None = None
+
+    @property
+    def converged(self) -> bool:
+        """Whether both were solved."""
+        return self.smooth.converged and self.pressed.converged
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -70,8 +95,9 @@ class RollingContact:
     A ball on one raceway at one point: all that a solve needs but the normal force.
 
     Geometry; oil at its temperature; entrainment speed [m/s] by the normal force [N], lower where
-    a heated inlet thins the film; film floor of the datasheet [m], raceway on the grid (None when
-    smooth) and what its shorter waves lift the floor by [m]; how to solve.
+    a heated inlet thins the film; film floor of the oil [m]; waves of the roughness where it
+    rolls, else None; where it stands, raceway on the grid and what its shorter waves lift the floor
+    by [m]; how to solve.
 
     """
 
@@ -79,6 +105,7 @@ class RollingContact:
     oil: ContactLubricant
     entrainment: Callable[[float], float]
     film_floor: float
+    waves: Waves | None
     raceway: FractalSurface | None
     raised: float
     settings: ScrewSettings
@@ -94,7 +121,7 @@ def make_contacts(
         for side in SIDES
     ]
     return tuple(
-        _make_contact(screw, side, oil, speed, settings)
+        _make_contact(screw, side, oil, lubricant.film_floor, speed, settings)
         for side, speed in zip(SIDES, speeds, strict=True)
     )
 
@@ -103,17 +130,19 @@ def _make_contact(
     screw: Screw,
     side: Side,
     oil: ContactLubricant,
+    film_floor: float,
     entrainment: Callable[[float], float],
     settings: ScrewSettings,
 ) -> RollingContact:
-    raceway, raised = None, 0.0
-    if settings.draw is not None:
-        raceway, raised = _on_grid(screw, side, settings.draw, settings.grid_wavelength)
+    raceway, raised, rolls = None, 0.0, settings.kinematics == 'rolling'
+    if settings.kinematics == 'standing':
+        raceway, raised = _on_grid(screw, settings.draw, settings.grid_wavelength)
     return RollingContact(
         geometry=screw_contact(screw, side),
         oil=oil,
         entrainment=entrainment,
-        film_floor=screw.roughness.film_floor,
+        film_floor=film_floor,
+        waves=_waves(screw) if rolls else None,
         raceway=raceway,
         raised=raised,
         settings=settings,
@@ -124,7 +153,7 @@ def _entrainment(
     screw: Screw, lubricant: Lubricant, point: OperatingPoint, side: Side, *, heated: bool
 ) -> Callable[[float], float]:
     """Return the entrainment speed [m/s] as a function of the normal force [N]."""
-    speed = no_slip_rates(screw).entrainment * abs(point.speed)
+    speed = starved_speed(lubricant, no_slip_rates(screw).entrainment * abs(point.speed))
     if not heated:
         return lambda load: speed
     return lambda load: heated_speed(screw, lubricant, side, load, speed, point.temperature)
@@ -132,12 +161,12 @@ def _entrainment(
 
 def solve_sides(
     contacts: Sequence[RollingContact], loads: tuple[float, float], start: Sequence[Start] = ()
-) -> tuple[Pair, ...]:
+) -> tuple[SolvedContact, ...]:
     """
     Solve the contacts of a nut under their normal forces [N], with the screw and with the nut.
 
-    `start` holds both pairs of a neighbouring point; a smooth contact of this very point is taken
-    as it is. No pairs for a nut without load.
+    `start` holds smooth and pressed ones of a neighbouring point; a smooth contact of this very
+    point is taken as it is. None for a nut without load.
 
     """
     if not any(loads):
@@ -158,8 +187,8 @@ def smooth_film(smooth: ContactSolution) -> float:
     return smooth.central_film if math.isnan(extrapolated) else extrapolated
 
 
-def _solve_side(contact: RollingContact, load: float, start: Start) -> Pair:
-    """Return the smooth and the rough contact under a normal force [N], from a near pair."""
+def _solve_side(contact: RollingContact, load: float, start: Start) -> SolvedContact:
+    """Return a contact under a normal force [N], from a near one."""
     condition = Condition(load=load, entrainment_speed=contact.entrainment(load))
     case = contact.geometry, contact.oil, condition
     even, known = replace(contact.settings.smooth, film_floor=contact.film_floor), start[0]
@@ -167,25 +196,59 @@ def _solve_side(contact: RollingContact, load: float, start: Start) -> Pair:
         smooth = known
     else:
         smooth = solve_contact(*case, settings=even, start=known)
-    raceway = contact.raceway
-    if raceway is None or not smooth.converged:
-        return smooth, smooth
-    rough = _across(contact.settings, smooth.semi_axis_y, raceway.shortest_wavelength)
-    return smooth, solve_contact(
-        *case,
-        roughness=raceway.heights,
-        settings=replace(rough, film_floor=contact.film_floor + contact.raised),
-        start=start[1],
+    if contact.raceway is not None and smooth.converged:
+        return _standing(contact, smooth, start[1])
+    return _rolling(contact, smooth)
+
+
+def _rolling(contact: RollingContact, smooth: ContactSolution) -> SolvedContact:
+    """Return a smooth contact with what asperities do on a raceway that rolls through it."""
+    if contact.waves is None:
+        found = AsperityContact(smooth.rcs, smooth.asperity_share, 1.0)
+        return SolvedContact(smooth=smooth, pressed=smooth, asperities=found)
+    law = contact.settings.law or shipped_law()
+    found = law.contact(
+        contact.waves, contact.geometry, smooth.condition, contact.oil, contact.film_floor
+    )
+    return SolvedContact(
+        smooth=smooth, pressed=smooth, asperities=found, friction_share=found.asperity_share
     )
 
 
+def _standing(
+    contact: RollingContact, smooth: ContactSolution, start: ContactSolution | None
+) -> SolvedContact:
+    """Return a contact solved with its roughness, which stands still."""
+    assert contact.raceway is not None
+    wave = contact.raceway.shortest_wavelength
+    rough = _across(contact.settings, smooth.semi_axis_y, wave)
+    pressed = solve_contact(
+        contact.geometry,
+        contact.oil,
+        smooth.condition,
+        roughness=contact.raceway.heights,
+        settings=replace(rough, film_floor=contact.film_floor + contact.raised),
+        start=start,
+    )
+    found = AsperityContact(pressed.rcs, pressed.asperity_share, 1.0)
+    return SolvedContact(smooth=smooth, pressed=pressed, asperities=found)
+
+
 @lru_cache(maxsize=8)
-def _on_grid(
-    screw: Screw, side: Side, draw: int, cut: float | None
-) -> tuple[FractalSurface, float]:
-    """Return the raceway with waves down to `cut` [m] and what others lift the floor by [m]."""
-    surface = raceway_patch(screw, side, draw)
-    if cut is None or cut >= screw.roughness.sample_length:
+def _waves(screw: Screw) -> Waves:
+    return stated_waves(screw.roughness, screw.ball_roughness)
+
+
+@lru_cache(maxsize=8)
+def _on_grid(screw: Screw, draw: int, cut: float | None) -> tuple[FractalSurface | None, float]:
+    """
+    Return the raceway with waves down to `cut` [m] and what others lift the floor by [m].
+
+    None where raceway and ball are smooth.
+
+    """
+    surface = draw_stated(screw.roughness, screw.ball_roughness, draw)
+    if surface is None or cut is None:
         return surface, 0.0
     return without_short_waves(surface, cut), subgrid_floor(surface, cut)
 
@@ -221,33 +284,12 @@ def shortest_on_grid(screw: Screw, settings: ScrewSettings) -> float:
     """Return the shortest wavelength that rough contacts solve [m], infinite when smooth."""
     if settings.draw is None:
         return math.inf
-    surface, cut = fractal_surface(screw.roughness, settings.draw), settings.grid_wavelength
-    if cut is not None and cut < screw.roughness.sample_length:
-        surface = without_short_waves(surface, cut)
-    return surface.shortest_wavelength
+    surface, _ = _on_grid(screw, settings.draw, settings.grid_wavelength)
+    return math.inf if surface is None else surface.shortest_wavelength
 
 
 def _across(settings: ScrewSettings, semi_axis: float, wave: float) -> Settings:
     """Return the rough settings with the nodes across that a semi-axis and a wave [m] ask for."""
     rough, width = settings.rough, ACROSS * semi_axis
-    if settings.same_places:
-        return replace(rough, spacing=max(wave / settings.nodes_per_wave, width / MOST_NODES))
     wanted = nodes_on_waves(width, wave, settings.nodes_per_wave)
     return replace(rough, ny=max(rough.ny, wanted))
-
-
-def raceway_patch(screw: Screw, side: Side, draw: int) -> FractalSurface:
-    """
-    Return one draw of the raceway, rescaled once over a window that no load moves.
-
-    The window is the Hertz rectangle under the load that relieves the other nut, or under
-    `WINDOW_SHARE` of the static rating where that is larger.
-
-    """
-    force = max(UNLOADING_RATIO * screw.preload, WINDOW_SHARE * screw.static_rating)
-    ellipse = hertz(screw_contact(screw, side), float(normal_force(screw, force)))
-    window = Window(
-        length_x=2 * float(ellipse.semi_axis_x), length_y=2 * float(ellipse.semi_axis_y)
-    )
-    surface = fractal_surface(screw.roughness, draw)
-    return take_patch(surface, 'rescaled', window, screw.roughness.rms)

@@ -23,7 +23,7 @@ from surrogate.screw.ball_balance import balance_ball
 from surrogate.screw.ball_motion import Array, BallMotion, Flank, slip_field, slip_floor
 from surrogate.screw.ball_result import BallBalance, BallContact
 from surrogate.screw.ball_traction import solved_traction
-from surrogate.screw.contacts import Pair, RollingContact, smooth_film, solve_sides
+from surrogate.screw.contacts import RollingContact, smooth_film, solve_sides, SolvedContact
 
 CREEP = 1e-3
 """Screw speed of the limit of slow motion [rad/s]."""
@@ -36,21 +36,30 @@ NEGLECTED_FRICTION = 3e-4
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ScrewContact:
     """
-    One contact of one nut; solutions are None where it carries no load.
+    One contact of one nut; `solved` is None where it carries no load.
 
-    Smooth and rough solution, the part of the ball balance at this contact, the motion of the
-    ball, film ratio [-], mean traction against the slip over the normal force [-].
+    Solutions and asperity contact, the part of the ball balance at this contact, the motion of
+    the ball, film ratio [-], mean traction against the slip over the normal force [-].
 
     """
 
     nut: NutName
     side: Side
-    smooth: ContactSolution | None
-    rough: ContactSolution | None
+    solved: SolvedContact | None
     ball: BallContact
     motion: BallMotion | None
     film_ratio: float
     friction_coefficient: float = math.nan
+
+    @property
+    def smooth(self) -> ContactSolution | None:
+        """The smooth contact."""
+        return self.solved.smooth if self.solved else None
+
+    @property
+    def pressed(self) -> ContactSolution | None:
+        """The contact whose pressures and films the ball feels."""
+        return self.solved.pressed if self.solved else None
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -77,18 +86,18 @@ def solve_nut(
     point: OperatingPoint,
     carried: NutLoad,
     contacts: Sequence[RollingContact],
-    pairs: tuple[Pair, ...],
+    solved: tuple[SolvedContact, ...],
     *,
     tolerance: float,
 ) -> SolvedNut:
     """
-    Balance the ball of a nut between `pairs`, its `contacts` solved without friction.
+    Balance the ball of a nut between its `contacts`, `solved` without friction.
 
     Friction and inertia move the normal forces; where by more than the `tolerance` [-], contacts
     are solved again under the forces found, until they agree or `COUPLING_ROUNDS`.
 
     """
-    nut = make_nut(screw, point, carried, pairs)
+    nut = make_nut(screw, point, carried, solved)
     for _ in range(COUPLING_ROUNDS):
         if not load_change(nut) > tolerance:
             break
@@ -100,35 +109,35 @@ def solve_nut(
 def load_change(nut: SolvedNut) -> float:
     """Return the largest change of a normal force by friction over that solved [-], or NaN."""
     changes = [
-        abs(contact.ball.normal_force / contact.rough.condition.load - 1)
+        abs(contact.ball.normal_force / contact.pressed.condition.load - 1)
         for contact in nut.contacts
-        if contact.rough is not None
+        if contact.pressed is not None
     ]
     return max(changes, default=0.0)
 
 
 def make_nut(
-    screw: Screw, point: OperatingPoint, carried: NutLoad, pairs: tuple[Pair, ...]
+    screw: Screw, point: OperatingPoint, carried: NutLoad, solved: tuple[SolvedContact, ...]
 ) -> SolvedNut:
     """Balance the ball of a nut between its solved contacts."""
     name, force = carried.nut, carried.force
     if force == 0:
-        idle = tuple(_contact(screw, name, side, None, None, None) for side in SIDES)
+        idle = tuple(_contact(screw, name, side, None, None) for side in SIDES)
         return SolvedNut(force=force, contacts=idle, ball=None)
-    failure, ball = _failure(name, pairs), None
+    failure, ball = _failure(name, solved), None
     if not failure:
-        ball = balance_nut(screw, point, force, carried.flank, [rough for _, rough in pairs])
+        ball = balance_nut(screw, point, force, carried.flank, solved)
         failure = '' if ball.converged else f'{name} nut, ball: {ball.status.value}'
     contacts = tuple(
-        _contact(screw, name, side, *pair, ball) for side, pair in zip(SIDES, pairs, strict=True)
+        _contact(screw, name, side, one, ball) for side, one in zip(SIDES, solved, strict=True)
     )
     return SolvedNut(force=force, contacts=contacts, ball=ball, failure=failure)
 
 
-def _failure(name: NutName, pairs: tuple[Pair, ...]) -> str:
+def _failure(name: NutName, solved: tuple[SolvedContact, ...]) -> str:
     """Return the sentence of the first contact that did not converge, or nothing."""
-    for side, pair in zip(SIDES, pairs, strict=True):
-        for kind, found in zip(('smooth', 'rough'), pair, strict=True):
+    for side, one in zip(SIDES, solved, strict=True):
+        for kind, found in (('smooth', one.smooth), ('rough', one.pressed)):
             if not found.converged:
                 return f'{name} nut, {side}, {kind} contact: {found.status.value}'
     return ''
@@ -138,32 +147,40 @@ def _contact(
     screw: Screw,
     nut: NutName,
     side: Side,
-    smooth: ContactSolution | None,
-    rough: ContactSolution | None,
+    solved: SolvedContact | None,
     ball: BallBalance | None,
 ) -> ScrewContact:
     """Return one contact with its part of the balance."""
     part = BallContact() if ball is None else ball.screw if side == 'screw' else ball.nut
-    film = math.nan if smooth is None else smooth_film(smooth)
+    film = math.nan if solved is None else smooth_film(solved.smooth)
     motion = ball.motion if ball else None
     return ScrewContact(
         nut=nut,
         side=side,
-        smooth=smooth,
-        rough=rough,
+        solved=solved,
         ball=part,
         motion=motion,
-        film_ratio=film / screw.roughness.rms,
+        film_ratio=film_ratio(screw, film),
         friction_coefficient=(
-            friction_coefficient(screw, rough, side, motion)
-            if rough is not None and motion is not None
+            friction_coefficient(screw, solved, side, motion)
+            if solved is not None and motion is not None
             else math.nan
         ),
     )
 
 
+def film_ratio(screw: Screw, film: float) -> float:
+    """Return a film [m] over Rq of raceway and ball [-]; infinite where both are smooth."""
+    rough = screw.composite_rms
+    return film / rough if rough else math.copysign(math.inf, film)
+
+
 def balance_nut(
-    screw: Screw, point: OperatingPoint, force: float, flank: Flank, rough: list[ContactSolution]
+    screw: Screw,
+    point: OperatingPoint,
+    force: float,
+    flank: Flank,
+    solved: Sequence[SolvedContact],
 ) -> BallBalance:
     """Balance one ball of a nut that carries an axial `force` [N] between two solved contacts."""
     speed = abs(point.speed) or CREEP
@@ -171,11 +188,15 @@ def balance_nut(
     friction = screw.roughness.asperity_friction
     tractions = [
         solved_traction(
-            found, asperity_friction=friction, slip_floor=floor, neglected=NEGLECTED_FRICTION
+            one.pressed,
+            asperity_friction=friction,
+            asperity_share=one.friction_share,
+            slip_floor=floor,
+            neglected=NEGLECTED_FRICTION,
         )
-        for found in rough
+        for one in solved
     ]
-    rolling = [rolling_force(screw, found) for found in rough]
+    rolling = [rolling_force(screw, one) for one in solved]
     return balance_ball(
         screw,
         speed,
@@ -188,24 +209,26 @@ def balance_nut(
     )
 
 
-def rolling_force(screw: Screw, found: ContactSolution) -> float:
+def rolling_force(screw: Screw, solved: SolvedContact) -> float:
     """Return the force that resists rolling on each surface [N]: oil, inlet tail, hysteresis."""
+    found = solved.pressed
     elastic = hysteresis_force(
         screw.hysteresis_loss, found.condition.load, found.semi_axis_x, found.contact.radius_x
     )
-    return found.whole_rolling_force + elastic
+    return solved.asperities.loss_factor * found.whole_rolling_force + elastic
 
 
 def friction_coefficient(
-    screw: Screw, found: ContactSolution, side: Side, motion: BallMotion
+    screw: Screw, solved: SolvedContact, side: Side, motion: BallMotion
 ) -> float:
     """Return the mean traction against the slip over the load [-] at the motion of the ball."""
-    slip_x, slip_y = contact_slip(screw, found, side, motion)
+    slip_x, slip_y = contact_slip(screw, solved.pressed, side, motion)
     return contact_friction(
-        found,
+        solved.pressed,
         slip_x=slip_x,
         slip_y=slip_y,
         asperity_friction=screw.roughness.asperity_friction,
+        asperity_share=solved.friction_share,
         slip_floor=slip_floor(screw, motion.screw_speed),
     ).coefficient
 

@@ -12,7 +12,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 import math
 
-from surrogate.ehl import ContactSolution
 from surrogate.ehl.watch import at
 from surrogate.files import InputError
 from surrogate.formulas.geometry import SIDES
@@ -28,8 +27,17 @@ from surrogate.screw.contacts import (
     ScrewSettings,
     smooth_film,
     solve_sides,
+    SolvedContact,
 )
-from surrogate.screw.nut import load_change, make_nut, NutLoad, ScrewContact, solve_nut, SolvedNut
+from surrogate.screw.nut import (
+    film_ratio,
+    load_change,
+    make_nut,
+    NutLoad,
+    ScrewContact,
+    solve_nut,
+    SolvedNut,
+)
 
 TIER = 'full'
 SOLVED = (
@@ -76,38 +84,39 @@ class ScrewSolution:
     load_change: float = math.nan
 
     @property
-    def rough_contacts(self) -> tuple[ContactSolution, ...]:
-        """Rough solutions of the contacts that carry load."""
-        return tuple(one.rough for one in self.contacts if one.rough is not None)
+    def loaded_contacts(self) -> tuple[SolvedContact, ...]:
+        """Solved contacts, those that carry load."""
+        return tuple(one.solved for one in self.contacts if one.solved is not None)
 
     @property
     def worst_contact(self) -> int:
         """Place in `contacts` of the largest RCS, of equal ones that of the thinnest film."""
         pressed = [
-            (one.rough.rcs, -one.film_ratio, -place)
+            (one.solved.asperities.rcs, -one.film_ratio, -place)
             for place, one in enumerate(self.contacts)
-            if one.rough is not None and not math.isnan(one.rough.rcs)
+            if one.solved is not None and not math.isnan(one.solved.asperities.rcs)
         ]
         return -max(pressed)[2] if pressed else 0
 
     @property
     def minimum_film(self) -> float:
-        """Least rough film of all contacts [m]."""
-        return min(self._of_rough('minimum_film'), default=math.nan)
+        """Least film of all contacts [m], of the smooth ones unless roughness stands."""
+        return min(self._of_pressed('minimum_film'), default=math.nan)
 
     @property
     def max_pressure(self) -> float:
-        """Largest pressure of all contacts, that of asperities with it [Pa]."""
-        return max(self._of_rough('max_pressure'), default=math.nan)
+        """Largest pressure of all contacts [Pa], without asperities unless roughness stands."""
+        return max(self._of_pressed('max_pressure'), default=math.nan)
 
     @property
-    def film_over_floor(self) -> float:
-        """Least rough film over the floor that stands for asperities [-]."""
-        films = (one.minimum_film / one.settings.film_floor for one in self.rough_contacts)
-        return min(films, default=math.nan) if self.converged else math.nan
+    def rcs_deviation(self) -> float:
+        """Standard deviation between strips of the raceway of the largest RCS [-]."""
+        worst = self.contacts[self.worst_contact].solved if self.contacts else None
+        return worst.asperities.rcs_deviation if worst is not None else math.nan
 
-    def _of_rough(self, name: str) -> list[float]:
-        return [getattr(one, name) for one in self.rough_contacts] if self.converged else []
+    def _of_pressed(self, name: str) -> list[float]:
+        found = self.loaded_contacts if self.converged else ()
+        return [getattr(one.pressed, name) for one in found]
 
 
 def solve_screw(
@@ -129,7 +138,7 @@ def solve_screw(
     """
     settings = settings or ScrewSettings()
     nuts = _nut_loads(screw, point)
-    near = [(found.smooth, found.rough) for found in start.contacts] if start else []
+    near = [(found.smooth, found.pressed) for found in start.contacts] if start else []
     contacts: tuple[RollingContact, ...] = ()
     if any(nut.force for nut in nuts):
         contacts = make_contacts(screw, lubricant, point, settings)
@@ -162,9 +171,11 @@ def rebalance_screw(
     fluid = oil_at(lubricant, point.temperature)
     loaded, relieved = (
         tuple(
-            (contact.smooth, replace(contact.rough, lubricant=fluid))
+            replace(
+                contact.solved, pressed=replace(contact.solved.pressed, lubricant=fluid)
+            )
             for contact in contacts
-            if contact.smooth is not None and contact.rough is not None
+            if contact.solved is not None
         )
         for contacts in (found.contacts[:2], found.contacts[2:])
     )
@@ -176,7 +187,7 @@ def _check_same_load(screw: Screw, point: OperatingPoint, found: ScrewSolution) 
     """Raise InputError when the contacts of a solution belong to other normal forces."""
     wanted = [float(normal_force(screw, nut.force)) for nut in _nut_loads(screw, point)]
     unsolved = any(
-        force > 0 and contact.rough is None
+        force > 0 and contact.solved is None
         for place, contact in enumerate(found.contacts)
         for force in [wanted[place // len(SIDES)]]
     )
@@ -220,7 +231,7 @@ def _combine(screw: Screw, point: OperatingPoint, nuts: Sequence[SolvedNut]) -> 
     )
     if not found.converged:
         return found
-    films = _films(found)
+    films, touching = _films(found), [one.asperities for one in found.loaded_contacts]
     parasitic = screw.parasitic_torque + screw.parasitic_torque_rate * speed
     balls = [nut.ball for nut in nuts if nut.ball is not None]
     friction = screw.loaded_balls_per_nut * sum(ball.loss_torque for ball in balls) + parasitic
@@ -235,9 +246,9 @@ def _combine(screw: Screw, point: OperatingPoint, nuts: Sequence[SolvedNut]) -> 
         back_driving=is_back_driving(friction, load, screw.lead),
         load_change=max(load_change(nut) for nut in nuts),
         friction_coefficient=_mean_friction(found),
-        rcs=max((rough.rcs for rough in found.rough_contacts), default=0.0),
-        asperity_share=max((rough.asperity_share for rough in found.rough_contacts), default=0.0),
-        film_ratio=min(films) / screw.roughness.rms if films else math.nan,
+        rcs=max((one.rcs for one in touching), default=0.0),
+        asperity_share=max((one.asperity_share for one in touching), default=0.0),
+        film_ratio=film_ratio(screw, min(films)) if films else math.nan,
         central_film=min(films) if films else math.nan,
     )
 
@@ -250,7 +261,7 @@ def _films(found: ScrewSolution) -> list[float]:
 
 def _mean_friction(found: ScrewSolution) -> float:
     """Return the friction coefficient over all normal forces [-], NaN without any."""
-    pressed = [contact for contact in found.contacts if contact.rough is not None]
+    pressed = [contact for contact in found.contacts if contact.solved is not None]
     total = sum(contact.ball.normal_force for contact in pressed)
     friction = sum(contact.ball.normal_force * contact.friction_coefficient for contact in pressed)
     return friction / total if total else math.nan

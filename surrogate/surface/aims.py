@@ -8,7 +8,7 @@ LIGHT_LOAD = 0.25
 """Load below which no efficiency is judged, over the preload [-]."""
 EFFICIENCY_TOLERANCE = 0.003
 """Error of the efficiency that is aimed at [-]."""
-RCS_TOLERANCE, RCS_RELATIVE_TOLERANCE = 0.003, 0.05
+RCS_TOLERANCE, RCS_RELATIVE_TOLERANCE = 0.005, 0.1
 """Error of RCS that is aimed at [-]: absolute, and relative where that is more."""
 
 

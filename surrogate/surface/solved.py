@@ -13,8 +13,8 @@ class SolvedPoint:
 
     Friction torque [N m]; RCS and asperity share of the worst contact [-]; film ratio [-], central
     and minimum film [m] of the thinnest; friction coefficient over all normal forces [-]; largest
-    pressure [Pa]; worst contact, 0 to 3 as in a surface file, -1 if not known; least rough film
-    over its floor [-], NaN without rough contacts.
+    pressure [Pa]; worst contact, 0 to 3 as in a surface file, -1 if not known; standard deviation
+    of RCS between strips of the raceway [-], NaN if not known.
 
     """
 
@@ -29,4 +29,4 @@ class SolvedPoint:
     friction_coefficient: float = math.nan
     max_pressure: float = math.nan
     worst_contact: int = -1
-    film_over_floor: float = math.nan
+    rcs_deviation: float = math.nan

@@ -1,21 +1,19 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Error of a full-tier surface, measured at points that are no nodes, with the same draws."""
+"""Error of a full-tier surface, measured at points that are no nodes."""
 
 from bisect import bisect_right
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 import math
 
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.builder.full.columns import Columns, NEAR_ONSET
-from surrogate.builder.full.draws import mean_of_draws
-from surrogate.builder.full.settings import error_target, FullSettings, SolveChains
-from surrogate.builder.full.speed_nodes import NodeSample, Target
+from surrogate.builder.full.settings import FullSettings
 from surrogate.formulas.load_sharing import idle_load
 from surrogate.parameters import Screw
 from surrogate.surface import FIELDS, SolvedPoint, Surface, SurfacePoint, Validity
+from surrogate.surface.aims import EFFICIENCY_TOLERANCE, LIGHT_LOAD, rcs_tolerance
 from surrogate.surface.file import SurfaceData
 
 Array = NDArray[np.float64]
@@ -23,10 +21,14 @@ Ends = tuple[float, float]
 HeldOutPlace = tuple[float, float, float]
 """Speed [rad/s], load [N], temperature [K]."""
 
+NEAR_ONSET = (-1.25, 0.75)
+"""Speed coordinates between which contact sets in [-]."""
 NEAR_IDLE = 0.8
 """Part of the idle load from which on the relieved nut is near unloading [-]."""
 SPEEDS = (NEAR_ONSET, (NEAR_ONSET[1], math.inf), (-math.inf, NEAR_ONSET[0]))
 """Ends of the speed coordinates within which errors are alike [-]."""
+LEAST_IN_RATINGS = 0.01
+"""Stands for the preload of a screw without one, over the static rating [-]."""
 TRIES = 20
 """Loads and temperatures that are tried for a point of a stratum."""
 
@@ -34,7 +36,7 @@ TRIES = 20
 @dataclass(frozen=True, slots=True)
 class HeldOut:
     """
-    A solved point: where, its cell, what the lookup and what the mean of the draws says.
+    A solved point: where, its cell, what the lookup and what the solve says.
 
     `miss` is the larger error of efficiency and RCS over the allowed one [-].
 
@@ -44,53 +46,32 @@ class HeldOut:
     speed_coordinate: float
     cell: tuple[int, int, int]
     found: SurfacePoint
-    mean: SolvedPoint
+    solved: SolvedPoint
     miss: float
 
 
-def solve_held_out(
-    data: SurfaceData,
-    points: Sequence[HeldOutPlace],
-    columns: Columns,
-    settings: FullSettings,
-    run: SolveChains,
-) -> list[HeldOut]:
-    """
-    Solve `points` that are no nodes with the draws of a surface, and compare it with them.
-
-    Leaves out those at which fewer than half of the draws are solved, or the surface is masked.
-
-    """
-    draws = columns.ensemble
-    chains = {
-        f'{place} {draw}': columns.chain(abs(load), heat, draw, np.array([speed]))
-        for place, (speed, load, heat) in enumerate(points)
-        for draw in range(draws.at(load))
-    }
-    results = run('held-out points', chains)
-    surface, target = Surface(data), error_target(columns.screw, settings)
-    compared = []
-    for place, point in enumerate(points):
-        chains_there = [results.get(f'{place} {draw}') for draw in range(draws.at(point[1]))]
-        solved = [one.under(point[1])[0] if one else None for one in chains_there]
-        mean, found = mean_of_draws(solved, draws, point[1]), surface.lookup(*point)
-        if mean.converged and found.validity is Validity.VALID:
-            s = math.log(point[0] / surface.onset_speed(*point[1:]))
-            cell = _cell(data, (s, *point[1:]))
-            miss = judged(target, point[1], columns.screw.lead).worst(
-                _sample(found), _sample(mean)
-            )
-            compared.append(HeldOut(point, s, cell, found, mean, miss))
-    return compared
+def judged(
+    data: SurfaceData, surface: Surface, screw: Screw, point: HeldOutPlace, solved: SolvedPoint
+) -> HeldOut | None:
+    """Return a solved point beside its lookup; None where either has no answer."""
+    found = surface.lookup(*point)
+    if not (solved.converged and found.validity is Validity.VALID):
+        return None
+    s = math.log(point[0] / surface.onset_speed(*point[1:]))
+    return HeldOut(
+        point, s, _cell(data, (s, *point[1:])), found, solved, _miss(screw, point, found, solved)
+    )
 
 
-def judged(target: Target, load: float, lead: float) -> Target:
-    """Return the target at a load [N]: its efficiency is that load's, unless it is small."""
-    return replace(target, ideal_torque=max(target.ideal_torque, abs(load) * lead / (2 * math.pi)))
-
-
-def _sample(point: SurfacePoint | SolvedPoint) -> NodeSample:
-    return NodeSample(point.friction_torque, point.rcs)
+def _miss(screw: Screw, point: HeldOutPlace, found: SurfacePoint, solved: SolvedPoint) -> float:
+    """Return the larger error of efficiency and RCS over the allowed one [-]."""
+    least = LIGHT_LOAD * (screw.preload or LEAST_IN_RATINGS * screw.static_rating)
+    ideal = max(abs(point[1]), least) * screw.lead / (2 * math.pi)
+    torque, exact = ideal + found.friction_torque, ideal + solved.friction_torque
+    return max(
+        ideal * abs(1 / torque - 1 / exact) / EFFICIENCY_TOLERANCE,
+        abs(found.rcs - solved.rcs) / rcs_tolerance(solved.rcs),
+    )
 
 
 def cell_errors(
@@ -98,17 +79,15 @@ def cell_errors(
     solved: Sequence[HeldOut],
     screw: Screw,
     settings: FullSettings,
-    before: Sequence[HeldOut] = (),
 ) -> dict[str, Array]:
     """
     Return the errors per field and cell: |lookup - solve|.
 
-    A cell without a point of its own has the largest of its stratum, also of the points `before`
-    nodes were added where they lie: those say what to expect elsewhere. NaN where none was.
+    A cell without a point of its own has the largest of its stratum; NaN where none was.
 
     """
     bands = load_bands(screw, settings)
-    return {name: _errors(name, data, solved, [*solved, *before], bands) for name in FIELDS}
+    return {name: _errors(name, data, solved, bands) for name in FIELDS}
 
 
 def load_bands(screw: Screw, settings: FullSettings) -> list[Ends]:
@@ -174,7 +153,6 @@ def _errors(
     name: str,
     data: SurfaceData,
     solved: Sequence[HeldOut],
-    judging: Sequence[HeldOut],
     bands: Sequence[Ends],
 ) -> Array:
     """Return the errors of a field per cell, with unmeasured cells filled from their stratum."""
@@ -189,7 +167,7 @@ def _errors(
             part = np.ix_(_within(s, speeds), _within(np.abs(load), loads))
             alike = [
                 _wrong(one, name)
-                for one in judging
+                for one in solved
                 if _within(np.array(one.speed_coordinate), speeds)
                 and _within(np.array(abs(one.point[1])), loads)
             ]
@@ -199,7 +177,7 @@ def _errors(
 
 
 def _wrong(one: HeldOut, name: str) -> float:
-    return abs(float(getattr(one.found, name)) - float(getattr(one.mean, name)))
+    return abs(float(getattr(one.found, name)) - float(getattr(one.solved, name)))
 
 
 def _within(places: Array, ends: Ends) -> NDArray[np.bool_]:

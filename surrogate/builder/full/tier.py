@@ -3,7 +3,7 @@
 """The full tier as a tier of surfaces: build with workers and a store, and solve a point again."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 import platform
 import sys
@@ -13,20 +13,58 @@ from typing import Any
 import numba
 import numpy as np
 import scipy
-from surrogate.builder.full.build import build_full
-from surrogate.builder.full.chain import chain_inputs, solve_chain, solved_chain, WORK
-from surrogate.builder.full.columns import covering
-from surrogate.builder.full.draws import mean_of_draws, WeightedDraws
-from surrogate.builder.full.run import ChainRun
+from surrogate.asperities import marches
+from surrogate.asperities.law import law_from_json
+from surrogate.builder.full import chain
+from surrogate.builder.full.build import build_full, Results
+from surrogate.builder.full.chain import chain_inputs, solve_chain, solved_chain
+from surrogate.builder.full.nodes import covering
 from surrogate.builder.full.settings import FullSettings
 from surrogate.builder.tiers import screw_and_oil
 from surrogate.parameters import Lubricant, Screw
-from surrogate.screw.contacts import GRID_WAVELENGTH
+from surrogate.progress import Progress
 from surrogate.surface import SolvedPoint
 from surrogate.surface.file import SurfaceData
-from surrogate.tasks.pool import Pool
+from surrogate.tasks.pool import Pool, run_tasks, TaskOutcome
 from surrogate.tasks.store import TaskStore
 from surrogate.units import RPM, ZERO_CELSIUS
+
+WORK = f'{marches.WORK}, {chain.WORK}'
+TASKS = {'march': marches.solve_march, 'chain': solve_chain}
+
+
+@dataclass(slots=True)
+class TaskRun:
+    """
+    Solves tasks on a pool and keeps their results; call it as a builder's `run`.
+
+    Counts tasks, how many of them a store had kept, seconds of the workers [s] without those
+    kept, and failures with their sentences.
+
+    """
+
+    pool: Pool
+    store: TaskStore | None = None
+    tasks: int = 0
+    kept: int = 0
+    seconds: float = 0.0
+    failures: list[str] = field(default_factory=list)
+
+    def __call__(self, kind: str, tasks: Mapping[str, Mapping[str, Any]]) -> Results:
+        """Solve named tasks; None for one that failed."""
+        progress = Progress(len(tasks), f'{kind}es' if kind == 'march' else f'{kind}s')
+
+        def count(outcome: TaskOutcome) -> None:
+            progress.step(there=outcome.stored)
+            self.tasks += 1
+            self.kept += outcome.stored
+            self.seconds += 0.0 if outcome.stored else outcome.seconds
+            if outcome.result is None:
+                self.failures.append(f'{kind}, {outcome.name}: {outcome.sentence}')
+                print(self.failures[-1], file=sys.stderr)
+
+        done = run_tasks(self.pool, TASKS[kind], tasks, store=self.store, report=count)
+        return {name: outcome.result for name, outcome in done.items()}
 
 
 def build_full_surface(
@@ -35,14 +73,14 @@ def build_full_surface(
     """
     Build a surface on workers; results are kept beside `out`, an interrupted build goes on.
 
-    Says on stderr where the accuracy asked for was not reached and nodes have no number.
+    Says on stderr where the accuracy aimed at was not reached and nodes have no number.
 
     Raises InputError for ranges that make no sense, SurfaceError for a store that cannot be used.
 
     """
     began = time.perf_counter()
     with TaskStore(out, WORK) as store:
-        run = ChainRun(pool=pool, store=store)
+        run = TaskRun(pool=pool, store=store)
         data = build_full(screw, lubricant, settings, run)
     for sentence in shortfalls(data, settings):
         print(sentence, file=sys.stderr)
@@ -56,23 +94,22 @@ def shortfalls(data: SurfaceData, settings: FullSettings) -> Iterator[str]:
         yield 'accuracy is not known: no held-out point was solved'
     elif reached > 1:
         yield (
-            f'accuracy is {settings.accuracy:g}, reached is '
-            f'{reached * settings.accuracy:.2g} with {settings.speed_nodes} speed and '
-            f'{settings.load_nodes} load nodes at most; the file says where'
+            f'the largest error at held-out points is {reached:.2g} times the allowed one; the '
+            'file says where'
         )
     yield from _missing(data, settings.speed_range)
 
 
 def _missing(data: SurfaceData, speed_range: tuple[float, float]) -> Iterator[str]:
     """Yield a sentence if lookups read nodes that have no number."""
-    needed = covering(data.speed_coordinate, data.log_onset, speed_range, (3, 3))
+    needed = covering(data.speed_coordinate, data.log_onset, speed_range)
     place = np.nonzero(data.mask & needed)
     if place[0].size:
         speed = np.exp(data.speed_coordinate[place[0]] + data.log_onset[place[1:]])
         rpm, load = speed / RPM, data.load[place[1]]
         heat = data.temperature[place[2]] - ZERO_CELSIUS
         yield (
-            f'{rpm.size} of {needed.sum()} nodes are missing, too few of their draws were solved: '
+            f'{rpm.size} of {needed.sum()} nodes are missing, they were not solved: '
             f'{rpm.min():.3g} to {rpm.max():.3g} rev/min, {load.min():g} to {load.max():g} N, '
             f'{heat.min():.3g} to {heat.max():.3g} degC; lookups beside them are NaN'
         )
@@ -81,41 +118,21 @@ def _missing(data: SurfaceData, speed_range: tuple[float, float]) -> Iterator[st
 def solve_full(
     header: Mapping[str, Any], speed: float, load: float, temperature: float
 ) -> SolvedPoint:
-    """
-    Solve a point [rad/s, N, K] with the draws of a surface and return the means of its fields.
-
-    Not converged where more than half of the draws are not, as for a node.
-
-    """
+    """Solve a point [rad/s, N, K] with the law of a surface."""
     screw, lubricant = screw_and_oil(header['inputs'])
-    draws = drawn(header)
-    # Files of builders that had no such setting were solved with its default.
-    wavelength = header['settings'].get('grid_wavelength', GRID_WAVELENGTH)
-    chains = (
-        chain_inputs(screw, lubricant, abs(load), temperature, draw, [speed], wavelength)
-        for draw in range(draws.at(load))
-    )
-    points = [solved_chain(solve_chain(chain)).under(load)[0] for chain in chains]
-    return mean_of_draws(points, draws, load)
+    law = law_from_json(header['law'])
+    given = chain_inputs(screw, lubricant, law, abs(load), temperature, [speed])
+    return solved_chain(solve_chain(given)).under(load)[0]
 
 
-def drawn(header: Mapping[str, Any]) -> WeightedDraws:
-    """Return the draws of a surface; files of builders without weights say how many alone."""
-    kept = header.get('weighted_draws')
-    if kept is None:
-        return WeightedDraws(int(header['settings']['draws']))
-    return WeightedDraws(**{**kept, 'powers': tuple(kept['powers'])})
-
-
-def _provenance(run: ChainRun, seconds: float) -> dict[str, Any]:
+def _provenance(run: TaskRun, seconds: float) -> dict[str, Any]:
     return {
         'built': time.strftime('%Y-%m-%dT%H:%M:%SZ', time.gmtime()),
         'build_seconds': round(seconds, 3),
         'worker_seconds': round(run.seconds, 3),
-        'chains': run.chains,
-        'kept_chains': run.kept,
-        'solved_points': run.points,
-        'failed_chains': len(run.failures),
+        'tasks': run.tasks,
+        'kept_tasks': run.kept,
+        'failed_tasks': len(run.failures),
         'machine': platform.machine(),
         'python': platform.python_version(),
         'numpy': np.__version__,

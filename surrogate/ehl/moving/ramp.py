@@ -19,6 +19,7 @@ from surrogate.ehl.moving.interface import MarchSettings, MarchStatus
 from surrogate.ehl.moving.line import StripContact
 from surrogate.ehl.moving.march import check_transits, contact_march, strip_march
 from surrogate.ehl.moving.run import March
+from surrogate.ehl.moving.sums import Measure
 from surrogate.ehl.watch import at
 from surrogate.files import InputError
 from surrogate.formulas.geometry import Contact
@@ -34,9 +35,9 @@ class SpeedRamp:
     What a contact did while its speed changed.
 
     Entrainment speeds of the steps [m/s], central film of the smooth contact at each [m], share of
-    the load on punctured nodes and share that asperities carry, averages over the places [-];
-    steps of a transit; status, steps, those that did not converge, wall time [s]. A march that
-    ended early holds the steps that all places have.
+    the load on punctured nodes, share that asperities carry and rolling loss over that of the
+    smooth contact, averages over the places [-]; steps of a transit; status, steps, those that did
+    not converge, wall time [s]. A march that ended early holds the steps that all places have.
 
     """
 
@@ -45,19 +46,20 @@ class SpeedRamp:
     central_films: Array = field(default_factory=lambda: np.empty(0))
     rcs: Array = field(default_factory=lambda: np.empty(0))
     asperity_share: Array = field(default_factory=lambda: np.empty(0))
+    loss_factor: Array = field(default_factory=lambda: np.empty(0))
     transit: float = math.nan
     steps: int = 0
     steps_failed: int = 0
     wall_time: float = 0.0
 
-    def means(self, transits: float) -> tuple[Array, Array]:
-        """Return speeds [m/s] and RCS [-], each the mean over so many transits."""
+    def means(self, transits: float, name: str = 'rcs') -> tuple[Array, Array]:
+        """Return speeds [m/s] and RCS or another share [-], each the mean of so many transits."""
         count = max(1, round(self.speeds.size / (transits * self.transit)))
         parts = np.array_split(np.arange(self.speeds.size), count)
         logs = np.log(self.speeds)
         return (
             np.array([math.exp(logs[part].mean()) for part in parts]),
-            np.array([self.rcs[part].mean() for part in parts]),
+            np.array([getattr(self, name)[part].mean() for part in parts]),
         )
 
     def film_at(self, speed: float) -> float:
@@ -149,12 +151,14 @@ def _ramp(march: March, transits: float) -> SpeedRamp:
     shortest = min(map(len, march.places), default=0)
     steps = [place[:shortest] for place in march.places]
     speeds = np.array([one.speed for place in steps[:1] for one in place])
+    films, losses = _smooth_at(march, speeds)
     return SpeedRamp(
         status=march.status,
         speeds=speeds,
-        central_films=_films_at(march, speeds),
-        rcs=_over_places([[one.rcs for one in place] for place in steps]),
-        asperity_share=_over_places([[one.asperity_share for one in place] for place in steps]),
+        central_films=films,
+        rcs=_over_places(steps, 'rcs'),
+        asperity_share=_over_places(steps, 'asperity_share'),
+        loss_factor=_over_places(steps, 'rolling_loss') / losses,
         transit=2 / (march.settings.stride * march.grid.dx),
         steps=march.steps,
         steps_failed=march.failed,
@@ -162,14 +166,24 @@ def _ramp(march: March, transits: float) -> SpeedRamp:
     )
 
 
-def _films_at(march: March, speeds: Array) -> Array:
-    """Return the smooth central films [m] at some speeds [m/s] of the way."""
+def _smooth_at(march: March, speeds: Array) -> tuple[Array, Array]:
+    """Return central films [m] and rolling losses [N] of the smooth contact at some speeds."""
     if march.path is None or not speeds.size:
-        return np.empty(0)
-    order = np.argsort(march.path.speeds)
-    knots, films = np.log(march.path.speeds[order]), np.log(march.smooth_films()[order])
-    return np.asarray(np.exp(np.interp(np.log(speeds), knots, films)))
+        return np.empty(0), np.empty(0)
+    order, smooth = np.argsort(march.path.speeds), march.smooth_measures()
+    knots, films, losses = (
+        np.log(values)[order]
+        for values in (
+            march.path.speeds,
+            [one.centre_film for one in smooth],
+            [one.rolling_loss for one in smooth],
+        )
+    )
+    wanted = np.log(speeds)
+    return np.exp(np.interp(wanted, knots, films)), np.exp(np.interp(wanted, knots, losses))
 
 
-def _over_places(tracks: list[list[float]]) -> Array:
+def _over_places(places: Sequence[Sequence[Measure]], name: str) -> Array:
+    """Return the mean over the places of a number of each step, in its unit [any]."""
+    tracks = [[getattr(one, name) for one in place] for place in places]
     return np.asarray(np.mean(tracks, axis=0)) if tracks else np.empty(0)

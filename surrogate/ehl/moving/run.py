@@ -11,13 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 from surrogate.ehl.case import ScaledCase
 from surrogate.ehl.grid import Grid, GridState
-from surrogate.ehl.half_space import deform
 from surrogate.ehl.moving.feed import Feed
 from surrogate.ehl.moving.interface import MarchSettings, MarchStatus, MovingSolution
 from surrogate.ehl.moving.line import StripContact
 from surrogate.ehl.moving.step import Step, step_limits, Stepper
 from surrogate.ehl.moving.sums import average, Gauge, Measure
-from surrogate.ehl.to_si import central_film
 from surrogate.ehl.watch import at, tell
 from surrogate.formulas.geometry import Contact
 
@@ -135,13 +133,16 @@ class March:
         across = 0.0 if self.grid.periodic else number * float(y[-1] - y[0])
         return along * self.case.semi_axis_x, across * self.case.semi_axis_x
 
-    def _stepper(self) -> Stepper:
-        settings, case = self.settings, self.case
+    def _stepper(self, knot: int = 0) -> Stepper:
+        """Return a stepper at rest in one of the smooth contacts of the way."""
         assert self.path is not None
+        settings, speed = self.settings, float(self.path.speeds[knot])
+        condition = replace(self.case.condition, entrainment_speed=speed)
+        case = replace(self.case, condition=condition)
         return Stepper(
-            case=self.case,
+            case=case,
             grid=self.grid,
-            smooth=self.path.states[0],
+            smooth=self.path.states[knot],
             limits=step_limits(
                 settings.flux_tolerance, settings.load_tolerance, settings.gap_tolerance
             ),
@@ -200,7 +201,7 @@ class March:
 
     def _with_averages(self, bare: MovingSolution) -> MovingSolution:
         step_length = self.settings.stride * self.grid.dx
-        found, smooth = average(self.places, step_length), self.smooth()
+        found, smooth = average(self.places, step_length), self.smooth_measures()[0]
         assert self.last is not None
         state, case = self.last.outcome.state, self.case
         return replace(
@@ -220,16 +221,9 @@ class March:
             pressure=(state.film_pressure + state.asperity_pressure) * case.hertz_pressure,
         )
 
-    def smooth_films(self) -> Array:
-        """Return the central films of the smooth contacts along the way [m]."""
-        films = []
-        for state in self.path.states if self.path else ():
-            gap = np.empty(self.grid.shape)
-            deform(self.grid.space, state.film_pressure + state.asperity_pressure, gap)
-            gap += self.case.shape_heights(self.grid) + state.approach
-            films.append(central_film(self.grid, gap) * self.case.height_unit)
-        return np.array(films)
-
-    def smooth(self) -> Measure:
-        """Return the numbers of the smooth contact."""
-        return self.gauge.measure(self._stepper().step(np.zeros(self.grid.shape)))
+    def smooth_measures(self) -> list[Measure]:
+        """Return the numbers of the smooth contacts along the way."""
+        assert self.path is not None
+        still = np.zeros(self.grid.shape)
+        steps = (self._stepper(knot).step(still) for knot in range(len(self.path.states)))
+        return [self.gauge.measure(step) for step in steps]

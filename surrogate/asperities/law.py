@@ -1,0 +1,179 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+How contact grows as a rolling contact slows down, over the speed at which it begins.
+
+Strips that were marched at other pressures, temperatures and places of the raceway share one curve
+over the speed by that of the onset, and the onset comes at one film over the roughness that acts.
+
+"""
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from functools import lru_cache
+import json
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import PchipInterpolator
+from surrogate.asperities.acting import speed_at_ratio, Waves
+from surrogate.datasheet import DATA
+from surrogate.ehl import Condition, ContactLubricant
+from surrogate.formulas.geometry import Contact
+from surrogate.formulas.line import central_film_line, line_at
+
+Array = NDArray[np.float64]
+SHIPPED = DATA / 'asperity_law.json'
+ONSET_RCS = 0.01
+"""RCS at the onset [-]."""
+PLACES = 8
+"""Places across a contact at which it is looked up [-]."""
+NOTHING = 1e-7
+"""RCS that counts as none [-]."""
+FLOOR_POWER = 1 / 3
+"""Exponent of the film at the onset over the floor [-]; docs/theory/rolling_contact.md."""
+
+
+@dataclass(frozen=True, slots=True)
+class AsperityContact:
+    """
+    RCS, asperity share and rolling loss over that of a smooth contact [-] of one contact.
+
+    Standard deviation of RCS between strips of the raceway [-], NaN if not known.
+
+    """
+
+    rcs: float
+    asperity_share: float
+    loss_factor: float
+    rcs_deviation: float = math.nan
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class AsperityLaw:
+    """
+    Curves over the logarithm of the speed by that of the onset, and where the onset is.
+
+    `onset_ratio` is the smooth film, by formula, over the rms of all acting waves at the onset [-]
+    for the floor `film_floor` [m]. `log_speed` rises; RCS, asperity share and rolling loss over
+    that of a smooth contact there [-]. Standard deviation between marches of the logarithm of the
+    onset speed [-], how many marches, the shortest wave in them [m]; `source` says in words where
+    the law is from.
+
+    """
+
+    onset_ratio: float
+    film_floor: float
+    log_speed: tuple[float, ...]
+    rcs: tuple[float, ...]
+    asperity_share: tuple[float, ...]
+    loss_factor: tuple[float, ...]
+    deviation: float
+    marches: int
+    shortest_wave: float
+    source: str
+
+    def ratio(self, floor: float) -> float:
+        """
+        Return the film over the acting rms at the onset [-] for a floor [m].
+
+        It goes with the cube root of the floor, measured from 1 to 5 nm.
+
+        """
+        return self.onset_ratio * (floor / self.film_floor) ** FLOOR_POWER
+
+    def onset(
+        self, waves: Waves, contact: Contact, load: float, oil: ContactLubricant, floor: float
+    ) -> float:
+        """
+        Return the entrainment speed of the onset [m/s] in the middle of a contact.
+
+        Under a load [N], with a film floor [m]; 0 where the raceway is smooth.
+
+        """
+        ratio = np.array(self.ratio(floor))
+        return float(speed_at_ratio(waves, line_at(contact, load, 0.0), oil, ratio))
+
+    def contact(
+        self,
+        waves: Waves,
+        contact: Contact,
+        condition: Condition,
+        oil: ContactLubricant,
+        floor: float,
+    ) -> AsperityContact:
+        """
+        Return what asperities do in an elliptical contact under a condition, film floor [m].
+
+        Integrated over strips across the contact, each with its share of the load, which falls
+        with the square of the half length: Gauss-Legendre. A smooth film below the floor touches
+        everywhere, whatever the roughness.
+
+        """
+        points, weights = np.polynomial.legendre.leggauss(2 * PLACES)
+        place, share = points[PLACES:], 1.5 * weights[PLACES:] * (1 - points[PLACES:] ** 2)
+        strips = line_at(contact, condition.load, place)
+        onset = speed_at_ratio(waves, strips, oil, np.array(self.ratio(floor)))
+        film = central_film_line(
+            strips, condition.entrainment_speed, oil.viscosity, oil.pressure_viscosity
+        )
+        with np.errstate(divide='ignore', invalid='ignore'):
+            over = np.log(condition.entrainment_speed) - np.log(onset)
+        over = np.where(film < floor, -math.inf, over)
+        found = self.at(over)
+        apart = [share @ self.at(over + side * self.deviation)['rcs'] for side in (-0.5, 0.5)]
+        return AsperityContact(
+            **{name: float(share @ values) for name, values in found.items()},
+            rcs_deviation=float(apart[0] - apart[1]),
+        )
+
+    def at(self, log_speed: Array) -> dict[str, Array]:
+        """
+        Return the curves at logarithms of the speed over that of the onset [-].
+
+        Slower than known, RCS and share go to 1 with the speed; faster, RCS goes on as a power of
+        it, and none of it counts below `NOTHING`.
+
+        """
+        rcs, share = (self._share(log_speed, one) for one in (self.rcs, self.asperity_share))
+        return {
+            'rcs': rcs,
+            'asperity_share': np.minimum(rcs, share),
+            'loss_factor': np.interp(log_speed, self.log_speed, self.loss_factor),
+        }
+
+    def _share(self, log_speed: Array, known: tuple[float, ...]) -> Array:
+        """Return a share [-]: a cubic of its logarithm within, and what `at` says beyond."""
+        nodes, logs = np.array(self.log_speed), np.log(known)
+        first, last = nodes[0], nodes[-1]
+        inside = PchipInterpolator(nodes, logs)(np.clip(log_speed, first, last))
+        steep = (logs[-1] - logs[-2]) / (last - nodes[-2])
+        found = np.exp(inside + steep * np.maximum(log_speed - last, 0.0))
+        slow = 1 - (1 - known[0]) * np.exp(np.minimum(log_speed - first, 0.0))
+        found = np.where(log_speed < first, slow, found)
+        return np.asarray(np.where(found < NOTHING, 0.0, found))
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the law in plain JSON types."""
+        return {
+            name: list(value) if isinstance(value, tuple) else value
+            for name, value in asdict(self).items()
+        }
+
+
+def law_from_json(content: Mapping[str, Any]) -> AsperityLaw:
+    """Return the law that `to_json` wrote."""
+    return AsperityLaw(
+        **{
+            name: tuple(value) if isinstance(value, list) else value
+            for name, value in content.items()
+        }
+    )
+
+
+@lru_cache(maxsize=1)
+def shipped_law() -> AsperityLaw:
+    """Return the law of the nominal screw and oil, which stands in for that of others."""
+    return law_from_json(json.loads(SHIPPED.read_text(encoding='utf-8')))
