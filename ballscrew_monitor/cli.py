@@ -163,9 +163,6 @@ def _add_solve(parser: argparse.ArgumentParser) -> None:
         help='oil temperature [degC] (default that of the axis)',
     )
     parser.add_argument(
-        '--draws', type=int, default=0, metavar='K', help="roughness draws (default the node's)"
-    )
-    parser.add_argument(
         '--timeout',
         type=float,
         default=0.0,
@@ -262,7 +259,6 @@ def _solve(args: argparse.Namespace) -> int:
         speed=math.nan if args.speed_rpm is None else args.speed_rpm * RPM,
         load=math.nan if args.load is None else args.load,
         temperature=math.nan if args.temperature is None else args.temperature,
-        draws=args.draws,
         timeout=args.timeout,
         node=args.node,
     )

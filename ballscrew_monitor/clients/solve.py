@@ -52,8 +52,8 @@ class Question:
     What is to be solved.
 
     Speed [rad/s] and load [N] as `ballscrew point` has them, both NaN for the current point;
-    temperature [degC], NaN for that of the axis; draws and timeout [s], 0 for the defaults; full
-    name of the node, empty for the only one there is.
+    temperature [degC], NaN for that of the axis; timeout [s], 0 for the default; full name of the
+    node, empty for the only one there is.
 
     """
 
@@ -61,7 +61,6 @@ class Question:
     speed: float = math.nan
     load: float = math.nan
     temperature: float = math.nan
-    draws: int = 0
     timeout: float = 0.0
     node: str = ''
 
@@ -78,7 +77,6 @@ def goal_of(question: Question) -> Any:
     goal = SolveOperatingPoint.Goal(
         axis=question.axis,
         use_current=math.isnan(question.speed),
-        draws=question.draws,
         timeout=float(question.timeout),
     )
     # The load of the command opposes the motion when it has the sign of the speed.

@@ -4,7 +4,7 @@
 A full solve beside what the surface says of the same point: how far apart, and what follows.
 
 A result may correct a surface only where it is known better than the surface: its own standard
-error must not exceed the error that the surface states there, interpolation and draws together.
+error must not exceed the error that the surface states there, interpolation and law together.
 
 """
 
@@ -22,7 +22,7 @@ NAN = math.nan
 JUDGED = ('efficiency', 'rcs')
 """What the zone is judged by, and so what a surface is corrected for."""
 MODEL = 'full'
-TOLD = ('tier', 'inputs', 'settings', 'weighted_draws')
+TOLD = ('tier', 'inputs', 'law')
 """What the solver needs to know of a surface."""
 
 
@@ -74,7 +74,7 @@ def compare(full: SurfacePoint, surface: SurfacePoint | None) -> Comparison:
 
 
 def stated_error(surface: SurfacePoint, name: str) -> float:
-    """Return the error that a surface states [-]: interpolation, and draws where there are any."""
+    """Return the error that a surface states [-]: interpolation, and law where it is known."""
     error: float = getattr(surface, f'{name}_error')
     return error + known(getattr(surface, f'{name}_stderr'))
 
@@ -86,13 +86,11 @@ def objection(full: SurfacePoint, answer: SurfacePoint | None, surface: Surface)
     if answer is None:
         return 'the surface has no answer at this point'
     for name in JUDGED:
-        own, stated = getattr(full, f'{name}_stderr'), stated_error(answer, name)
-        if math.isnan(own):
-            return 'one draw of the roughness has no standard error, ask for two or more'
+        own, stated = known(getattr(full, f'{name}_stderr')), stated_error(answer, name)
         if own > stated:
             return (
                 f'the standard error of the result ({name} {own:.2g}) is above the error that '
-                f'the surface states there ({stated:.2g}), ask for more draws'
+                f'the surface states there ({stated:.2g})'
             )
     return ''
 
@@ -104,10 +102,10 @@ def corrected(surface: Surface, kept: Iterable[Solve]) -> Surface:
     return surface
 
 
-def request_of(surface: Surface, point: MachinePoint, draws: int) -> dict[str, Any]:
-    """Return what is asked of the solver: the surface, the point, the draws, 0 for its own."""
+def request_of(surface: Surface, point: MachinePoint) -> dict[str, Any]:
+    """Return what is asked of the solver: the surface and the point."""
     header = {name: surface.header[name] for name in TOLD if name in surface.header}
-    return {'header': header, 'point': dataclasses.asdict(solved_at(point)), 'draws': draws}
+    return {'header': header, 'point': dataclasses.asdict(solved_at(point))}
 
 
 def known(number: float) -> float:

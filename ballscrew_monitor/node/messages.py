@@ -244,6 +244,7 @@ def surface_info_message(
         error_p95=[float(error[1]) for error in errors.values()],
         default_temperature=celsius(default_temperature),
     )
+    message.limit_factor_low, message.limit_factor_high = surface.limit_band
     message.corrected_speed = [float(one.speed) for one in surface.corrections]
     message.corrected_load = [float(one.opposing_load) for one in surface.corrections]
     message.corrected_temperature = [

@@ -21,7 +21,6 @@ from ballscrew_msgs.action import SolveOperatingPoint
 from ballscrew_msgs.msg import PointResult
 from surrogate.surface import solved_point, Surface, SurfacePoint
 
-MOST_DRAWS = 64
 LONGEST_TIMEOUT = 3600.0  # [s]
 NAN = math.nan
 
@@ -54,8 +53,6 @@ class SolvableAxis(Protocol):
 
 def requested_point(request: Any, axis: SolvableAxis) -> MachinePoint | str:
     """Return the point that a goal asks for, or what is wrong with the goal."""
-    if request.draws > MOST_DRAWS:
-        return f'draws is {request.draws}, allowed is 1 to {MOST_DRAWS}, or 0 for the default'
     if not 0.0 <= request.timeout <= LONGEST_TIMEOUT:
         return f'timeout is {request.timeout:g} s, allowed is 0 to {LONGEST_TIMEOUT:g} s'
     if request.use_current:

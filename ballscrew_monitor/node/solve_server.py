@@ -104,7 +104,7 @@ class SolveServer:
 
     def solve(self, axis: SolvableAxis, point: MachinePoint) -> None:
         """Solve a point for the node itself, to correct the surface; the outcome is logged."""
-        self._begin(axis, point, 0, DEFAULT_TIMEOUT, None)
+        self._begin(axis, point, DEFAULT_TIMEOUT, None)
 
     def _on_goal(self, request: Any) -> GoalResponse:
         refusal = self._solver.refusal
@@ -124,17 +124,16 @@ class SolveServer:
             self._answer(handle, empty_result(str(point)), End.FAILED)
             return
         timeout = request.timeout or DEFAULT_TIMEOUT
-        self._begin(axis, point, request.draws, timeout, handle)
+        self._begin(axis, point, timeout, handle)
 
     def _begin(
         self,
         axis: SolvableAxis,
         point: MachinePoint,
-        draws: int,
         timeout: float,
         handle: ServerGoalHandle | None,
     ) -> None:
-        job = Job(request=request_of(axis.surface, point, draws), timeout=timeout)
+        job = Job(request=request_of(axis.surface, point), timeout=timeout)
         self._goals[job] = _Goal(axis=axis, point=point, job=job, handle=handle)
         self._solver.submit(job)
         if self._timer is None:

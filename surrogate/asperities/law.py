@@ -51,6 +51,10 @@ class AsperityContact:
     rcs_deviation: float = math.nan
 
 
+AT_REST = AsperityContact(1.0, 1.0, 1.0, 0.0)
+"""Asperities carry all of a load that does not move."""
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class AsperityLaw:
     """
@@ -112,6 +116,8 @@ class AsperityLaw:
         everywhere, whatever the roughness.
 
         """
+        if not condition.entrainment_speed:
+            return AT_REST
         points, weights = np.polynomial.legendre.leggauss(2 * PLACES)
         place, share = points[PLACES:], 1.5 * weights[PLACES:] * (1 - points[PLACES:] ** 2)
         strips = line_at(contact, condition.load, place)
@@ -119,7 +125,7 @@ class AsperityLaw:
         film = central_film_line(
             strips, condition.entrainment_speed, oil.viscosity, oil.pressure_viscosity
         )
-        with np.errstate(divide='ignore', invalid='ignore'):
+        with np.errstate(divide='ignore'):
             over = np.log(condition.entrainment_speed) - np.log(onset)
         over = np.where(film < floor, -math.inf, over)
         found = self.at(over)

@@ -18,6 +18,7 @@ from surrogate.asperities.acting import speed_at_ratio, stated_waves, Waves
 from surrogate.ehl import ContactLubricant
 from surrogate.ehl.kernels.fft import good_length
 from surrogate.ehl.moving import MarchSettings, ramp_strip, SpeedRamp, StripContact
+from surrogate.files import InputError
 from surrogate.formulas.geometry import screw_contact, Side
 from surrogate.formulas.line import Line, line_at
 from surrogate.formulas.load_sharing import normal_force
@@ -148,13 +149,20 @@ class StripInputs:
 def strip_inputs(
     screw: Screw, lubricant: Lubricant, run: StripRun, settings: LawSettings
 ) -> StripInputs:
-    """Return the inputs of a march of a screw and its oil."""
+    """
+    Return the inputs of a march of a screw and its oil.
+
+    Raises InputError for a raceway so fine that no contact is expected.
+
+    """
     contact = screw_contact(screw, run.side)
     # A share of the static rating stands in for the preload of a screw without one.
     force = float(normal_force(screw, screw.preload or 0.02 * screw.static_rating))
     middle = line_at(contact, force, 0.0)
     waves = stated_waves(screw.roughness, screw.ball_roughness)
-    shortest = shortest_marched(waves, settings.shortest * float(middle.semi_axis))
+    # The same waves on either side, so that all marches of a law are alike.
+    on_screw = line_at(screw_contact(screw, 'screw'), force, 0.0)
+    shortest = shortest_marched(waves, settings.shortest * float(on_screw.semi_axis))
     pressure = run.pressure * float(middle.max_pressure)
     width = settings.width * float(middle.semi_axis)
     strip = StripContact(
@@ -171,6 +179,11 @@ def strip_inputs(
     line = replace(middle, max_pressure=np.asarray(pressure))
     usual = USUAL_RATIO * (0.25 * float(middle.semi_axis) / shortest) ** RATIO_POWER
     onset = float(speed_at_ratio(waves.longer_than(shortest), line, oil, np.array(usual)))
+    if not onset:
+        raise InputError(
+            f'roughness: Rq {1e6 * screw.composite_rms:g} um is flattened before it touches, '
+            'allowed is 0 or so much that contact begins above the film floor'
+        )
     ends = (settings.faster * onset, settings.slower * onset)
     return StripInputs(
         strip=strip,

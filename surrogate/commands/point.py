@@ -13,7 +13,7 @@ from surrogate.files import InputError
 from surrogate.parameters import load_lubricant, load_screw, Lubricant, OperatingPoint, Screw
 from surrogate.units import RPM, ZERO_CELSIUS
 
-FULL_ONLY = ('draws', 'inlet_heating', 'plot')
+FULL_ONLY = ('kinematics', 'surface', 'inlet_heating', 'plot')
 """Options of the full tier alone."""
 
 
@@ -29,10 +29,17 @@ def add_point_command(subparsers: Any) -> None:
         help='model: published formulas, or four solved contacts and balanced balls (seconds)',
     )
     parser.add_argument(
-        '--draws',
-        type=int,
-        metavar='K',
-        help='full tier: mean and spread over K draws of the roughness (default one draw)',
+        '--kinematics',
+        choices=('rolling', 'standing', 'smooth'),
+        help='full tier: roughness that rolls with the raceway (default), or for comparison '
+        'stands still, or none',
+    )
+    parser.add_argument(
+        '--surface',
+        type=Path,
+        metavar='FILE',
+        help='full tier: surface of this screw whose marches say where contact begins (default '
+        'those of the nominal screw)',
     )
     parser.add_argument(
         '--inlet-heating', action='store_true', help='full tier: films thinned by inlet shear'
@@ -117,19 +124,29 @@ def _full(
 ) -> tuple[Any, dict[str, Any]]:
     """Return a point of the full tier and its record; only this loads the contact solver."""
     from surrogate.screw.contacts import ScrewSettings
-    from surrogate.screw.ensemble import solve_ensemble
-    from surrogate.screw.full_record import ensemble_record, solution_record
+    from surrogate.screw.full_record import solution_record
     from surrogate.screw.solve import solve_screw
 
-    started, settings = time.perf_counter(), ScrewSettings(inlet_heating=args.inlet_heating)
-    if args.draws is None:
-        first = solve_screw(screw, lubricant, point, settings=settings)
-        record = solution_record(screw, lubricant, point, first, settings)
-    else:
-        ensemble = solve_ensemble(screw, lubricant, point, args.draws, settings=settings)
-        first = ensemble.solutions[0]
-        record = ensemble_record(screw, lubricant, point, ensemble, settings)
-    return first, record | {'wall_s': time.perf_counter() - started}
+    started = time.perf_counter()
+    settings = ScrewSettings(
+        kinematics=args.kinematics or 'rolling',
+        law=_law(args.surface) if args.surface else None,
+        inlet_heating=args.inlet_heating,
+    )
+    found = solve_screw(screw, lubricant, point, settings=settings)
+    record = solution_record(screw, lubricant, point, found, settings)
+    return found, record | {'wall_s': time.perf_counter() - started}
+
+
+def _law(path: Path) -> Any:
+    """Return the law of asperity contact that a surface was built with."""
+    from surrogate.asperities.law import law_from_json
+    from surrogate.surface.file import read
+
+    header = read(path).header
+    if 'law' not in header:
+        raise InputError(f'--surface: {path} is of tier {header["tier"]}, allowed is full')
+    return law_from_json(header['law'])
 
 
 def _prepare(folder: Path) -> None:

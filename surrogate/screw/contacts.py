@@ -19,7 +19,7 @@ from typing import Literal
 from surrogate.asperities.acting import stated_waves, Waves
 from surrogate.asperities.law import AsperityContact, AsperityLaw, shipped_law
 from surrogate.ehl import Condition, ContactLubricant, ContactSolution, Settings, solve_contact
-from surrogate.ehl.domain import MOST_NODES, nodes_on_waves
+from surrogate.ehl.domain import nodes_on_waves
 from surrogate.ehl.watch import at
 from surrogate.files import InputError
 from surrogate.formulas.geometry import Contact, screw_contact, Side, SIDES
@@ -96,8 +96,8 @@ class RollingContact:
 
     Geometry; oil at its temperature; entrainment speed [m/s] by the normal force [N], lower where
     a heated inlet thins the film; film floor of the oil [m]; waves of the roughness where it
-    rolls, else None; where it stands, raceway on the grid and what its shorter waves lift the floor
-    by [m]; how to solve.
+    rolls, else None; where it stands, raceway on the grid and what its shorter waves lift the
+    floor by [m]; how to solve.
 
     """
 

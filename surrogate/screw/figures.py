@@ -38,7 +38,7 @@ def figure_point(screw: Screw, found: ScrewSolution, record: dict[str, Any]) -> 
     pressed = [
         contact
         for contact in found.contacts
-        if contact.rough is not None and contact.rough.converged
+        if contact.solved is not None and contact.solved.converged
     ]
     figure = new_figure(2.3 * max(len(pressed), 2) + 1.2, 7.4)
     figure.suptitle(_title(record))
@@ -59,19 +59,19 @@ def _title(record: dict[str, Any]) -> str:
 
 def _draw_columns(figure: Figure, screw: Screw, pressed: list[ScrewContact]) -> None:
     axes = np.atleast_2d(figure.subplots(2, len(pressed), squeeze=False))
-    solved = [contact.rough for contact in pressed if contact.rough is not None]
-    top = GIGA * max(rough.max_pressure for rough in solved)
-    bottom = NANO * min(float(rough.film.min()) for rough in solved)
+    solved = [contact.solved for contact in pressed if contact.solved is not None]
+    top = GIGA * max(one.pressed.max_pressure for one in solved)
+    bottom = NANO * min(float(one.pressed.film.min()) for one in solved)
     film = LogNorm(bottom, FILM_SPAN * bottom)
-    for column, (contact, rough) in enumerate(zip(pressed, solved, strict=True)):
-        upper, lower = axes[:, column]
+    for column, (contact, one) in enumerate(zip(pressed, solved, strict=True)):
+        (upper, lower), rough = axes[:, column], one.pressed
         pressure = _map(upper, rough, GIGA * rough.pressure, vmin=0, vmax=top)
         gap = _map(lower, rough, NANO * rough.film, norm=film)
         _mark_contact(lower, rough)
         _draw_slip(lower, screw, contact, rough)
         upper.set_title(
             f'{contact.nut} nut, ball on {contact.side}\n{contact.ball.normal_force:.1f} N, '
-            f'RCS {100 * rough.rcs:.2g} %'
+            f'RCS {100 * one.asperities.rcs:.2g} %'
         )
         lower.set_xlabel('along the track [µm]', fontsize=8)
     for row in (0, 1):

@@ -2,23 +2,21 @@
 # SPDX-License-Identifier: Apache-2.0
 """A point of the full tier as a record: plain numbers for JSON, beside the classical formulas."""
 
-from dataclasses import asdict
 import math
 import time
 from typing import Any
 
+from surrogate.asperities.law import shipped_law
 from surrogate.formulas.geometry import opposite_flank_approach, SIDES
 from surrogate.formulas.inlet_heating import heating_factor
 from surrogate.formulas.record import closed_form_record
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
-from surrogate.screw.contacts import ScrewSettings, shortest_on_grid
-from surrogate.screw.ensemble import EnsembleSolution
+from surrogate.raceway.ball import roughness_sentence
+from surrogate.screw.contacts import ScrewSettings, shortest_on_grid, smooth_film
 from surrogate.screw.nut import rolling_force, ScrewContact
 from surrogate.screw.solve import ScrewSolution, solve_screw, TIER
 from surrogate.surface import regime_of
 
-KEYS = {'friction_torque': 'friction_torque_Nm', 'driving_torque': 'driving_torque_Nm'}
-"""Keys of the record where they differ from the field."""
 LOAD_CHANGE = 0.01
 """Change of a normal force by friction and inertia that is warned about [-]."""
 FILM_ERROR = 0.1
@@ -46,46 +44,6 @@ def full_record(
     return record | {'wall_s': time.perf_counter() - started}
 
 
-def ensemble_record(
-    screw: Screw,
-    lubricant: Lubricant,
-    point: OperatingPoint,
-    ensemble: EnsembleSolution,
-    settings: ScrewSettings,
-) -> dict[str, Any]:
-    """
-    Return a point over draws of the roughness as plain numbers.
-
-    Means over the draws that converged in place of the numbers of one draw, their spreads under
-    `ensemble`; contacts are those of the first draw that converged, energy error and load change
-    the largest.
-
-    """
-    solved = [found for found in ensemble.solutions if found.converged]
-    failures = [found.status for found in ensemble.solutions if not found.converged]
-    shown = (solved or ensemble.solutions)[0]
-    record = solution_record(screw, lubricant, point, shown, settings)
-    worst = {
-        name: max((getattr(found, name) for found in solved), default=math.nan)
-        for name in ('energy_error', 'load_change')
-    }
-    means = {KEYS.get(name, name): spread.mean for name, spread in ensemble.spreads.items()}
-    return (
-        record
-        | means
-        | worst
-        | {
-            'status': failures[0] if failures else record['status'],
-            'converged': not failures,
-            'ensemble': {
-                'draws': len(ensemble.solutions),
-                'failed': ensemble.failed,
-                **{KEYS.get(name, name): asdict(part) for name, part in ensemble.spreads.items()},
-            },
-        }
-    )
-
-
 def solution_record(
     screw: Screw,
     lubricant: Lubricant,
@@ -102,7 +60,8 @@ def solution_record(
         'status': found.status,
         'converged': found.converged,
         'warnings': [
-            *_warnings(formulas['warnings'], found, shortest_on_grid(screw, settings)),
+            *_warnings(formulas['warnings'], found),
+            *_coarse(found, shortest_on_grid(screw, settings)),
             *_third_contacts(screw, contacts),
             *_uncertain_films(contacts),
         ],
@@ -115,7 +74,10 @@ def solution_record(
         'normal_force_loaded_N': found.normal_forces[0],
         'normal_force_relieved_N': found.normal_forces[1],
         'rcs': found.rcs,
+        'rcs_deviation': found.rcs_deviation,
         'asperity_share': found.asperity_share,
+        'asperity_law': law_sentence(settings),
+        'roughness': roughness_sentence(screw.roughness, screw.ball_roughness),
         'film_ratio': found.film_ratio,
         'regime': regime_of(found.film_ratio).word,
         'central_film_m': found.central_film,
@@ -133,28 +95,29 @@ def solution_record(
 
 def _contact_record(screw: Screw, found: ScrewSolution, contact: ScrewContact) -> dict[str, Any]:
     """Return one contact; NaN with a reason where it carries no load or was not solved."""
-    rough, ball = contact.rough, contact.ball
+    solved, ball = contact.solved, contact.ball
     head = {'nut': contact.nut, 'side': contact.side}
-    if rough is None:
+    if solved is None:
         return head | _unknown('no load on this nut, so no contact') | {'normal_force_N': 0.0}
+    pressed, asperities = solved.pressed, solved.asperities
     return head | {
         'reason': '' if found.converged else found.status,
         'normal_force_N': ball.normal_force,
         'contact_angle_rad': ball.angle,
-        'semi_axis_x_m': rough.semi_axis_x,
-        'semi_axis_y_m': rough.semi_axis_y,
-        'hertz_pressure_Pa': rough.hertz_pressure,
-        'max_pressure_Pa': rough.max_pressure,
-        'central_film_m': contact.film_ratio * screw.roughness.rms,
-        'film_error': contact.smooth.film_error if contact.smooth else math.nan,
-        'minimum_film_m': rough.minimum_film,
+        'semi_axis_x_m': pressed.semi_axis_x,
+        'semi_axis_y_m': pressed.semi_axis_y,
+        'hertz_pressure_Pa': pressed.hertz_pressure,
+        'max_pressure_Pa': pressed.max_pressure,
+        'central_film_m': smooth_film(solved.smooth),
+        'film_error': solved.smooth.film_error,
+        'minimum_film_m': pressed.minimum_film,
         'film_ratio': contact.film_ratio,
-        'rcs': rough.rcs,
-        'asperity_share': rough.asperity_share,
+        'rcs': asperities.rcs,
+        'asperity_share': asperities.asperity_share,
         'friction_coefficient': contact.friction_coefficient,
-        'rolling_force_N': rolling_force(screw, rough),
+        'rolling_force_N': rolling_force(screw, solved),
         'opposite_flank_approach_m': opposite_flank_approach(
-            screw, contact.side, ball.angle, rough.approach
+            screw, contact.side, ball.angle, pressed.approach
         ),
         'sliding_torque_Nm': screw.loaded_balls_per_nut * ball.slip_power / _speed(contact),
         'rolling_torque_Nm': screw.loaded_balls_per_nut * ball.rolling_power / _speed(contact),
@@ -188,7 +151,7 @@ def _speed(contact: ScrewContact) -> float:
     return contact.motion.screw_speed if contact.motion else math.nan
 
 
-def _warnings(rated: list[str], found: ScrewSolution, wave: float) -> list[str]:
+def _warnings(rated: list[str], found: ScrewSolution) -> list[str]:
     """Return the warnings about ratings, and those of the full model."""
     warnings = [text for text in rated if 'outside its range' not in text]
     if found.load_change > LOAD_CHANGE:
@@ -196,14 +159,32 @@ def _warnings(rated: list[str], found: ScrewSolution, wave: float) -> list[str]:
             f'balls: friction and inertia change a normal force by {100 * found.load_change:.2g} '
             '%, the contacts were solved before that'
         )
-    nodes = [_nodes_per_wave(contact, wave) for contact in found.contacts]
-    coarse = [node for node in nodes if node < FEWEST_NODES]
-    if coarse:
-        warnings.append(
-            f'roughness: {min(coarse):.2g} nodes per shortest wave across the track, asperity '
-            f'contact is resolved from {FEWEST_NODES:g}'
-        )
     return warnings
+
+
+def _coarse(found: ScrewSolution, wave: float) -> list[str]:
+    """Return a warning where roughness that stands has few nodes per shortest wave [m]."""
+    grids = (one.pressed.y for one in found.loaded_contacts)
+    least = min((wave / float(y[1] - y[0]) for y in grids), default=math.inf)
+    if least >= FEWEST_NODES:
+        return []
+    return [
+        f'roughness: {least:.2g} nodes per shortest wave across the track, asperity contact is '
+        f'resolved from {FEWEST_NODES:g}'
+    ]
+
+
+def law_sentence(settings: ScrewSettings) -> str:
+    """Say where the asperity contact of a point is from."""
+    if settings.kinematics != 'rolling':
+        return {'standing': 'roughness that stands still', 'smooth': 'no roughness'}[
+            settings.kinematics
+        ]
+    law = settings.law or shipped_law()
+    return (
+        f'roughness that rolls, by {law.marches} marches for {law.source}, waves down to '
+        f'{1e6 * law.shortest_wave:.2g} um'
+    )
 
 
 def _uncertain_films(contacts: list[dict[str, Any]]) -> list[str]:
@@ -241,8 +222,3 @@ def _heating_factor(
         for side in SIDES
     ]
     return min(factors, default=math.nan)
-
-
-def _nodes_per_wave(contact: ScrewContact, wave: float) -> float:
-    rough = contact.rough
-    return wave / float(rough.y[1] - rough.y[0]) if rough is not None else math.inf

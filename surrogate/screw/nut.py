@@ -144,11 +144,7 @@ def _failure(name: NutName, solved: tuple[SolvedContact, ...]) -> str:
 
 
 def _contact(
-    screw: Screw,
-    nut: NutName,
-    side: Side,
-    solved: SolvedContact | None,
-    ball: BallBalance | None,
+    screw: Screw, nut: NutName, side: Side, solved: SolvedContact | None, ball: BallBalance | None
 ) -> ScrewContact:
     """Return one contact with its part of the balance."""
     part = BallContact() if ball is None else ball.screw if side == 'screw' else ball.nut

@@ -171,9 +171,7 @@ def rebalance_screw(
     fluid = oil_at(lubricant, point.temperature)
     loaded, relieved = (
         tuple(
-            replace(
-                contact.solved, pressed=replace(contact.solved.pressed, lubricant=fluid)
-            )
+            replace(contact.solved, pressed=replace(contact.solved.pressed, lubricant=fluid))
             for contact in contacts
             if contact.solved is not None
         )

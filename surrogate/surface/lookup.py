@@ -106,6 +106,12 @@ class Surface:
         return str(self.header['inputs']['screw']['name'])
 
     @property
+    def limit_band(self) -> tuple[float, float]:
+        """Limit of RCS in speed over that in force, for the oil's thinnest and thickest film [-]."""
+        low, high = self.header.get('limit_band', (math.nan, math.nan))
+        return float(low), float(high)
+
+    @property
     def oil_name(self) -> str:
         """Name of the oil datasheet."""
         return str(self.header['inputs']['lubricant']['name'])

@@ -51,8 +51,8 @@ def info_record(path: Path, data: SurfaceData) -> dict[str, Any]:
             for name in FIELD_TEXTS
             if name in data.deviations or name in data.standard_errors
         },
-        'weighted_draws': data.header.get('weighted_draws'),
-        'certified_s': data.header.get('certified_s'),
+        'law': data.header.get('law'),
+        'limit_band': data.header.get('limit_band'),
         'accuracy_reached': data.header.get('reached'),
         'settings': dict(data.header['settings']),
         'provenance': dict(data.provenance),
@@ -122,29 +122,34 @@ def _head(record: Mapping[str, Any]) -> Iterator[str]:
 
 def _full_tier(record: Mapping[str, Any]) -> Iterator[str]:
     """Yield what a full-tier builder says of its result."""
-    weighted = record['weighted_draws']
-    if weighted is not None:
+    law = record['law']
+    if law is not None:
         yield (
-            f'  draws        {weighted["count"]}, {len(weighted["powers"])} near the idle load, '
-            'weighted so that their patches are scaled as those of many'
+            f'  contact      begins at a film of {law["onset_ratio"]:.3g} times the roughness that '
+            'acts, RCS 0.01'
         )
-    if record['certified_s'] is not None:
-        times = math.exp(record['certified_s'])
-        yield f'  certified    no draw is near contact from {times:.3g} times the onset speed on'
-    if record['accuracy_reached'] is not None:
-        asked = record['settings']['accuracy']
         yield (
-            f'  accuracy     {asked:g} was aimed at, the worst held-out point reaches '
-            f'{record["accuracy_reached"] * asked:.2g}'
+            f'               {law["marches"]} marches, waves down to '
+            f'{1e6 * law["shortest_wave"]:.2g} um, floor {1e9 * law["film_floor"]:g} nm; strips '
+            f'differ by {100 * law["deviation"]:.2g} % in speed'
+        )
+        low, high = record['limit_band']
+        yield (
+            f'               limit times {low:.2g} to {high:.2g} over the range of floors of the '
+            'oil'
+        )
+    if record['accuracy_reached'] is not None:
+        yield (
+            '  accuracy     the worst held-out point has '
+            f'{record["accuracy_reached"]:.2g} times the error that is aimed at'
         )
 
 
 def _draws(draws: Mapping[str, Any]) -> Iterator[str]:
     """Yield the table of what roughness draws leave uncertain, if there were any."""
     if not draws:
-        yield '  roughness draws: none'
         return
-    yield '  over roughness draws                     deviation: median, max    of the mean'
+    yield '  over strips of the raceway               deviation: median, max    of the mean'
     for name, spread in draws.items():
         yield (
             f'    {_label(name):36} '

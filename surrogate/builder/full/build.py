@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 from surrogate.asperities.build import build_law
 from surrogate.asperities.law import AsperityLaw, shipped_law
 from surrogate.builder.closed_form import check_ranges, surface_header
-from surrogate.builder.full.chain import chain_inputs, SolvedChain, solved_chain
+from surrogate.builder.full.chain import chain_inputs, solved_chain, SolvedChain
 from surrogate.builder.full.held_out import cell_errors, held_out_points, HeldOut, judged
-from surrogate.builder.full.nodes import Nodes, surface_nodes
+from surrogate.builder.full.nodes import Nodes, onset_speeds, surface_nodes
 from surrogate.builder.full.settings import FullSettings
 from surrogate.files import InputError
 from surrogate.parameters import Lubricant, Screw
@@ -107,7 +107,11 @@ def _surface(
         raise InputError('screw: no point of the surface converged, see the reasons above')
     deviation = fields.pop('rcs_deviation')
     header = surface_header(screw, lubricant, settings, nodes.breaks, TIER)
-    header |= {'format_version': format_version(True), 'law': law.to_json()}
+    header |= {
+        'format_version': format_version(True),
+        'law': law.to_json(),
+        'limit_band': limit_band(screw, lubricant, law),
+    }
     return SurfaceData(
         header=header,
         speed_coordinate=nodes.s,
@@ -121,6 +125,26 @@ def _surface(
         deviations={'rcs': deviation},
         standard_errors={'rcs': deviation / np.sqrt(law.marches)},
     )
+
+
+def limit_band(screw: Screw, lubricant: Lubricant, law: AsperityLaw) -> list[float]:
+    """
+    Return the onset speed over the stated one for the lowest and highest floor of the oil [-].
+
+    At the preload and the reference temperature.
+
+    """
+    place = np.array([0.0]), np.array([lubricant.reference_temperature])
+    floors = lubricant.film_floor_low, lubricant.film_floor, lubricant.film_floor_high
+    low, stated, high = (
+        float(onset_speeds(screw, replace(lubricant, **_floor(floor)), law, *place)[0, 0])
+        for floor in floors
+    )
+    return [low / stated, high / stated]
+
+
+def _floor(floor: float) -> dict[str, float]:
+    return dict.fromkeys(('film_floor', 'film_floor_low', 'film_floor_high'), floor)
 
 
 def _held_out(

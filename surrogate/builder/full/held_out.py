@@ -75,10 +75,7 @@ def _miss(screw: Screw, point: HeldOutPlace, found: SurfacePoint, solved: Solved
 
 
 def cell_errors(
-    data: SurfaceData,
-    solved: Sequence[HeldOut],
-    screw: Screw,
-    settings: FullSettings,
+    data: SurfaceData, solved: Sequence[HeldOut], screw: Screw, settings: FullSettings
 ) -> dict[str, Array]:
     """
     Return the errors per field and cell: |lookup - solve|.
@@ -150,10 +147,7 @@ def _cell(data: SurfaceData, place: Sequence[float]) -> tuple[int, int, int]:
 
 
 def _errors(
-    name: str,
-    data: SurfaceData,
-    solved: Sequence[HeldOut],
-    bands: Sequence[Ends],
+    name: str, data: SurfaceData, solved: Sequence[HeldOut], bands: Sequence[Ends]
 ) -> Array:
     """Return the errors of a field per cell, with unmeasured cells filled from their stratum."""
     axes = (data.speed_coordinate, data.load, data.temperature)

@@ -94,7 +94,7 @@ def onset_speeds(
     found = np.empty((len(load), len(temperature)))
     for (j, force), (k, oil) in itertools.product(enumerate(load), enumerate(oils)):
         loaded = float(normal_force(screw, nut_forces(force, screw.preload)[0]))
-        pressed = loaded or float(normal_force(screw, float(np.abs(load).max())))
+        pressed = loaded or float(normal_force(screw, 0.01 * screw.static_rating))
         found[j, k] = max(
             law.onset(waves, screw_contact(screw, side), pressed, oil, lubricant.film_floor)
             for side in SIDES
@@ -139,9 +139,7 @@ def temperature_nodes(lubricant: Lubricant, settings: FullSettings) -> Array:
     return np.asarray(nodes)
 
 
-def covering(
-    s: Array, log_onset: Array, speed_range: tuple[float, float]
-) -> NDArray[np.bool_]:
+def covering(s: Array, log_onset: Array, speed_range: tuple[float, float]) -> NDArray[np.bool_]:
     """
     Return the nodes [speed, load, temperature] that lookups in the speed range [rad/s] read.
 
