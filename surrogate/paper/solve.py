@@ -22,12 +22,13 @@ from surrogate.formulas.geometry import hertz, screw_contact
 from surrogate.formulas.kinematics import entrainment_speed_paper
 from surrogate.formulas.load_sharing import normal_force, nut_forces
 from surrogate.paper.cases import CASES, SMOOTH, StudyTask
+from surrogate.paper.raceway import published_patch
 from surrogate.paper.rows import ContactFields, empty_row, StudyRow
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.raceway.fractal import FractalSurface
 from surrogate.raceway.short_waves import subgrid_floor, without_short_waves
 from surrogate.screw.ball_motion import slip_floor
-from surrogate.screw.contacts import ACROSS, raceway_patch, ScrewSettings
+from surrogate.screw.contacts import ACROSS, ScrewSettings
 from surrogate.screw.nut import contact_slip, ScrewContact
 from surrogate.screw.solve import ScrewSolution, solve_screw
 from surrogate.units import RPM
@@ -105,14 +106,14 @@ def solve_patch(
         pressure_viscosity=lubricant.pressure_viscosity,
         eyring_stress=lubricant.eyring_stress,
     )
-    settings = Settings(film_floor=case.film_floor or screw.roughness.film_floor)
+    settings = Settings(film_floor=case.film_floor or lubricant.film_floor)
     if case.inlet is not None:
         domain = (-case.inlet, OUTLET, SIDE)
         settings = replace(settings, domain=domain, open_inlet=False)
     condition, surface = Condition(load=force, entrainment_speed=speed), None
     if task.draw == SMOOTH:
         return solve_contact(contact, oil, condition, settings=settings), None
-    surface = raceway_patch(screw, 'screw', task.draw)
+    surface = published_patch(screw, task.draw)
     raised = subgrid_floor(surface, SHORTEST_ON_GRID)
     surface = without_short_waves(surface, SHORTEST_ON_GRID)
     width = ACROSS * float(hertz(contact, force).semi_axis_y)

@@ -3,8 +3,8 @@
 """
 Contacts of the screw in the full tier, each solved twice: smooth for the film ratio, and rough.
 
-The rough raceway is one draw of its surface, rescaled over a window that no load moves; waves that
-the grid is too coarse for raise the film floor.
+The rough raceway is one draw of its waves, scaled by the standard; waves that the grid is too
+coarse for raise the film floor.
 
 """
 
@@ -17,14 +17,14 @@ from surrogate.ehl import Condition, ContactLubricant, ContactSolution, Settings
 from surrogate.ehl.domain import MOST_NODES, nodes_on_waves
 from surrogate.ehl.watch import at
 from surrogate.files import InputError
-from surrogate.formulas.geometry import Contact, hertz, screw_contact, Side, SIDES
+from surrogate.formulas.geometry import Contact, screw_contact, Side, SIDES
 from surrogate.formulas.inlet_heating import heated_speed
 from surrogate.formulas.kinematics import no_slip_rates
-from surrogate.formulas.load_sharing import normal_force, UNLOADING_RATIO
 from surrogate.formulas.lubricant import lubricant_state
+from surrogate.formulas.starvation import starved_speed
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
-from surrogate.raceway.fractal import fractal_surface, FractalSurface
-from surrogate.raceway.patch import take_patch, Window
+from surrogate.raceway.ball import draw_stated
+from surrogate.raceway.fractal import FractalSurface
 from surrogate.raceway.short_waves import subgrid_floor, without_short_waves
 from surrogate.units import ZERO_CELSIUS
 
@@ -35,8 +35,6 @@ ACROSS = 2.42
 """About the width of a rough domain over the semi-axis across (2.4 to 3.1) [-]."""
 GRID_WAVELENGTH = 16e-6
 """Shortest wavelength on the grid [m]; docs/theory/roughness.md."""
-WINDOW_SHARE = 0.05
-"""Least axial load whose Hertz rectangle is the window of the patch, over the rating [-]."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -45,7 +43,7 @@ class ScrewSettings:
     How to solve a screw.
 
     Settings of the smooth and of the rough contacts, but for the film floor, which is that of the
-    datasheet; draw of the roughness, None for smooth raceways; shortest wavelength on the grid
+    oil; draw of the roughness, None for smooth raceways; shortest wavelength on the grid
     [m], shorter ones raise the floor, None to solve them all; nodes per such wave across the
     track, up to `MOST_NODES`, if that is more than the rough settings have [-]; `same_places`
     puts them at the same places of the raceway whatever the load; `inlet_heating` thins films by
@@ -70,7 +68,7 @@ class RollingContact:
     A ball on one raceway at one point: all that a solve needs but the normal force.
 
     Geometry; oil at its temperature; entrainment speed [m/s] by the normal force [N], lower where
-    a heated inlet thins the film; film floor of the datasheet [m], raceway on the grid (None when
+    a heated inlet thins the film; film floor of the oil [m], raceway on the grid (None when
     smooth) and what its shorter waves lift the floor by [m]; how to solve.
 
     """
@@ -94,7 +92,7 @@ def make_contacts(
         for side in SIDES
     ]
     return tuple(
-        _make_contact(screw, side, oil, speed, settings)
+        _make_contact(screw, side, oil, lubricant.film_floor, speed, settings)
         for side, speed in zip(SIDES, speeds, strict=True)
     )
 
@@ -103,17 +101,18 @@ def _make_contact(
     screw: Screw,
     side: Side,
     oil: ContactLubricant,
+    film_floor: float,
     entrainment: Callable[[float], float],
     settings: ScrewSettings,
 ) -> RollingContact:
     raceway, raised = None, 0.0
     if settings.draw is not None:
-        raceway, raised = _on_grid(screw, side, settings.draw, settings.grid_wavelength)
+        raceway, raised = _on_grid(screw, settings.draw, settings.grid_wavelength)
     return RollingContact(
         geometry=screw_contact(screw, side),
         oil=oil,
         entrainment=entrainment,
-        film_floor=screw.roughness.film_floor,
+        film_floor=film_floor,
         raceway=raceway,
         raised=raised,
         settings=settings,
@@ -124,7 +123,7 @@ def _entrainment(
     screw: Screw, lubricant: Lubricant, point: OperatingPoint, side: Side, *, heated: bool
 ) -> Callable[[float], float]:
     """Return the entrainment speed [m/s] as a function of the normal force [N]."""
-    speed = no_slip_rates(screw).entrainment * abs(point.speed)
+    speed = starved_speed(lubricant, no_slip_rates(screw).entrainment * abs(point.speed))
     if not heated:
         return lambda load: speed
     return lambda load: heated_speed(screw, lubricant, side, load, speed, point.temperature)
@@ -180,12 +179,15 @@ def _solve_side(contact: RollingContact, load: float, start: Start) -> Pair:
 
 
 @lru_cache(maxsize=8)
-def _on_grid(
-    screw: Screw, side: Side, draw: int, cut: float | None
-) -> tuple[FractalSurface, float]:
-    """Return the raceway with waves down to `cut` [m] and what others lift the floor by [m]."""
-    surface = raceway_patch(screw, side, draw)
-    if cut is None or cut >= screw.roughness.sample_length:
+def _on_grid(screw: Screw, draw: int, cut: float | None) -> tuple[FractalSurface | None, float]:
+    """
+    Return the raceway with waves down to `cut` [m] and what others lift the floor by [m].
+
+    None where raceway and ball are smooth.
+
+    """
+    surface = draw_stated(screw.roughness, screw.ball_roughness, draw)
+    if surface is None or cut is None:
         return surface, 0.0
     return without_short_waves(surface, cut), subgrid_floor(surface, cut)
 
@@ -221,10 +223,8 @@ def shortest_on_grid(screw: Screw, settings: ScrewSettings) -> float:
     """Return the shortest wavelength that rough contacts solve [m], infinite when smooth."""
     if settings.draw is None:
         return math.inf
-    surface, cut = fractal_surface(screw.roughness, settings.draw), settings.grid_wavelength
-    if cut is not None and cut < screw.roughness.sample_length:
-        surface = without_short_waves(surface, cut)
-    return surface.shortest_wavelength
+    surface, _ = _on_grid(screw, settings.draw, settings.grid_wavelength)
+    return math.inf if surface is None else surface.shortest_wavelength
 
 
 def _across(settings: ScrewSettings, semi_axis: float, wave: float) -> Settings:
@@ -234,20 +234,3 @@ def _across(settings: ScrewSettings, semi_axis: float, wave: float) -> Settings:
         return replace(rough, spacing=max(wave / settings.nodes_per_wave, width / MOST_NODES))
     wanted = nodes_on_waves(width, wave, settings.nodes_per_wave)
     return replace(rough, ny=max(rough.ny, wanted))
-
-
-def raceway_patch(screw: Screw, side: Side, draw: int) -> FractalSurface:
-    """
-    Return one draw of the raceway, rescaled once over a window that no load moves.
-
-    The window is the Hertz rectangle under the load that relieves the other nut, or under
-    `WINDOW_SHARE` of the static rating where that is larger.
-
-    """
-    force = max(UNLOADING_RATIO * screw.preload, WINDOW_SHARE * screw.static_rating)
-    ellipse = hertz(screw_contact(screw, side), float(normal_force(screw, force)))
-    window = Window(
-        length_x=2 * float(ellipse.semi_axis_x), length_y=2 * float(ellipse.semi_axis_y)
-    )
-    surface = fractal_surface(screw.roughness, draw)
-    return take_patch(surface, 'rescaled', window, screw.roughness.rms)

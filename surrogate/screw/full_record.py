@@ -11,7 +11,7 @@ from surrogate.formulas.geometry import opposite_flank_approach, SIDES
 from surrogate.formulas.inlet_heating import heating_factor
 from surrogate.formulas.record import closed_form_record
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
-from surrogate.screw.contacts import ScrewSettings, shortest_on_grid
+from surrogate.screw.contacts import ScrewSettings, shortest_on_grid, smooth_film
 from surrogate.screw.ensemble import EnsembleSolution
 from surrogate.screw.nut import rolling_force, ScrewContact
 from surrogate.screw.solve import ScrewSolution, solve_screw, TIER
@@ -145,7 +145,7 @@ def _contact_record(screw: Screw, found: ScrewSolution, contact: ScrewContact) -
         'semi_axis_y_m': rough.semi_axis_y,
         'hertz_pressure_Pa': rough.hertz_pressure,
         'max_pressure_Pa': rough.max_pressure,
-        'central_film_m': contact.film_ratio * screw.roughness.rms,
+        'central_film_m': smooth_film(contact.smooth) if contact.smooth else math.nan,
         'film_error': contact.smooth.film_error if contact.smooth else math.nan,
         'minimum_film_m': rough.minimum_film,
         'film_ratio': contact.film_ratio,

@@ -15,6 +15,7 @@ import math
 import numpy as np
 from surrogate.ehl import ContactSolution
 from surrogate.ehl.friction import contact_friction
+from surrogate.formulas.film import film_ratio
 from surrogate.formulas.geometry import Side, SIDES
 from surrogate.formulas.load_sharing import NutName
 from surrogate.formulas.sliding import hysteresis_force
@@ -153,7 +154,7 @@ def _contact(
         rough=rough,
         ball=part,
         motion=motion,
-        film_ratio=film / screw.roughness.rms,
+        film_ratio=float(film_ratio(film, screw.composite_rms)),
         friction_coefficient=(
             friction_coefficient(screw, rough, side, motion)
             if rough is not None and motion is not None

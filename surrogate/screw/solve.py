@@ -15,6 +15,7 @@ import math
 from surrogate.ehl import ContactSolution
 from surrogate.ehl.watch import at
 from surrogate.files import InputError
+from surrogate.formulas.film import film_ratio
 from surrogate.formulas.geometry import SIDES
 from surrogate.formulas.kinematics import no_slip_rates
 from surrogate.formulas.load_sharing import IDLE_SHARE, normal_force, nut_forces
@@ -237,7 +238,7 @@ def _combine(screw: Screw, point: OperatingPoint, nuts: Sequence[SolvedNut]) -> 
         friction_coefficient=_mean_friction(found),
         rcs=max((rough.rcs for rough in found.rough_contacts), default=0.0),
         asperity_share=max((rough.asperity_share for rough in found.rough_contacts), default=0.0),
-        film_ratio=min(films) / screw.roughness.rms if films else math.nan,
+        film_ratio=float(film_ratio(min(films, default=math.nan), screw.composite_rms)),
         central_film=min(films) if films else math.nan,
     )
 

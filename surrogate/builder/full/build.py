@@ -15,7 +15,7 @@ from dataclasses import asdict, dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.builder.closed_form import check_ranges, surface_header
+from surrogate.builder.closed_form import check_ranges, check_rough, surface_header
 from surrogate.builder.full.columns import Columns, moved_records, Records
 from surrogate.builder.full.finer import nodes_for_misses, Room
 from surrogate.builder.full.held_out import (
@@ -157,6 +157,7 @@ def build_full(
     for a screw of which no point converges.
 
     """
+    check_rough(screw)
     check_ranges(settings, lubricant)
     profiles = Profiles(screw=screw, lubricant=lubricant, settings=settings, run=Once(run))
     heats = solved_temperatures(lubricant, settings.temperature_range)

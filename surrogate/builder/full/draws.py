@@ -14,15 +14,12 @@ Calibration by exponential weights (raking): Deville, Sarndal, J. Am. Stat. Asso
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 import math
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq
-from surrogate.formulas.load_sharing import idle_load
 from surrogate.parameters import Screw
-from surrogate.screw.contacts import raceway_patch
 from surrogate.surface import FIELDS, SolvedPoint
 
 Array = NDArray[np.float64]
@@ -31,8 +28,6 @@ POPULATION = 1000
 POWER = 6
 """Power of the factor [-]: RCS grows with the second where it is 0.5, the fourth at 0.1, the
 eighth at 0.01."""
-LEAST_DRAWS = 8
-"""Draws from which on they are weighted [-]."""
 VERGE = (0.875, 0.9375)
 """Parts of the idle load between which draws that are solved only near it gain weight [-]."""
 STEEPEST = 2.0
@@ -136,17 +131,8 @@ class WeightedDraws:
 
 
 def draws_of(screw: Screw, count: int) -> WeightedDraws:
-    """Return `count` draws of a screw, weighted if there are enough of them."""
-    if count < LEAST_DRAWS:
-        return WeightedDraws(count)
-    powers = _powers(screw, max(POPULATION, 2 * count))
-    return WeightedDraws(count, idle_load(screw), powers[: 2 * count], float(np.mean(powers)))
-
-
-@lru_cache(maxsize=8)
-def _powers(screw: Screw, count: int) -> tuple[float, ...]:
-    # The windows of both sides are alike: so are the factors, within 3 %.
-    return tuple(raceway_patch(screw, 'screw', draw).scale ** POWER for draw in range(count))
+    """Return `count` draws of a screw, plain: all have the height of the expectation."""
+    return WeightedDraws(count)
 
 
 def raked(off: Array) -> Array:
