@@ -12,7 +12,6 @@ fourth row.
 
 import argparse
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import replace
 import time
 
 import numpy as np
@@ -20,7 +19,7 @@ from surrogate.ehl import Condition, ContactLubricant, Settings, solve_contact
 from surrogate.formulas.geometry import hertz, screw_contact, SIDES
 from surrogate.parameters import load_lubricant, load_screw
 from surrogate.progress import Progress
-from surrogate.raceway.fractal import fractal_surface
+from surrogate.raceway.fractal import fractal_surface, PublishedRoughness
 from surrogate.raceway.patch import take_patch, Window
 
 LOADS = np.geomspace(10.0, 150.0, 16)
@@ -30,7 +29,7 @@ SETTINGS = Settings(nx=129, ny=257, error_estimate=False)
 
 def nominal_patch(contact):
     """Return one draw, rescaled over the Hertz rectangle of the largest load."""
-    roughness = replace(load_screw('nominal').roughness, shortest_wavelength=16e-6)
+    roughness = PublishedRoughness(shortest_wavelength=16e-6)
     ellipse = hertz(contact, LOADS[-1])
     window = Window(
         length_x=2 * float(ellipse.semi_axis_x), length_y=2 * float(ellipse.semi_axis_y)

@@ -16,9 +16,10 @@ import time
 from surrogate.ehl import Condition, search, solve_contact
 from surrogate.formulas.geometry import screw_contact
 from surrogate.formulas.load_sharing import normal_force
+from surrogate.paper.raceway import published_patch
 from surrogate.parameters import load_lubricant, load_screw
 from surrogate.raceway.short_waves import without_short_waves
-from surrogate.screw.contacts import GRID_WAVELENGTH, oil_at, raceway_patch, ScrewSettings
+from surrogate.screw.contacts import GRID_WAVELENGTH, oil_at, ScrewSettings
 
 SLOWEST, STEP, COUNT, STEPS = 0.002, 0.5, 14, 4
 """Speed [m/s], step of its logarithm, speeds, most steps of a start [-]."""
@@ -27,7 +28,7 @@ SLOWEST, STEP, COUNT, STEPS = 0.002, 0.5, 14, 4
 def timed(screw, speed, start=None):
     """Return a solution and its processor time [s]."""
     contact, began = screw_contact(screw, 'screw'), time.process_time()
-    patch = without_short_waves(raceway_patch(screw, 'screw', 3), GRID_WAVELENGTH)
+    patch = without_short_waves(published_patch(screw, 3), GRID_WAVELENGTH)
     found = solve_contact(
         contact,
         oil_at(load_lubricant('iso_vg_68'), 313.15),

@@ -18,7 +18,7 @@ from typing import Any
 from surrogate.ehl import Condition, ContactLubricant, ContactSolution, Settings, solve_contact
 from surrogate.formulas.geometry import hertz, screw_contact
 from surrogate.parameters import load_lubricant, load_screw
-from surrogate.raceway.fractal import fractal_surface
+from surrogate.raceway.fractal import fractal_surface, PublishedRoughness
 from surrogate.raceway.patch import take_patch, Window
 from surrogate.tasks.kept import run_kept
 from surrogate.tasks.table import read_table, write_table
@@ -118,10 +118,9 @@ def chain(variation: Variation, draw: int) -> Iterator[OnsetRow]:
         length_x=2 * variation.window * float(ellipse.semi_axis_x),
         length_y=2 * variation.window * float(ellipse.semi_axis_y),
     )
-    draft = fractal_surface(
-        replace(screw.roughness, shortest_wavelength=variation.shortest_um * 1e-6), draw
-    )
-    surface = take_patch(draft, variation.patch, window, screw.roughness.rms)
+    roughness = PublishedRoughness(shortest_wavelength=variation.shortest_um * 1e-6)
+    draft = fractal_surface(roughness, draw)
+    surface = take_patch(draft, variation.patch, window, roughness.rms)
     settings = Settings(
         nx=variation.nx,
         ny=variation.ny,

@@ -15,7 +15,7 @@ A result belongs to the solver that made it: remove the store after a change of 
 
 import argparse
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 from functools import lru_cache
 import hashlib
 import math
@@ -28,7 +28,7 @@ from surrogate.ehl import Condition, ContactLubricant, ContactSolution, Settings
 from surrogate.formulas.film import groups, minimum_film_hamrock_dowson_1977
 from surrogate.formulas.geometry import Contact, hertz, screw_contact
 from surrogate.parameters import load_lubricant, load_screw
-from surrogate.raceway.fractal import fractal_surface, FractalSurface
+from surrogate.raceway.fractal import fractal_surface, FractalSurface, PublishedRoughness
 from surrogate.raceway.patch import take_patch, Window
 from surrogate.tasks.kept import run_kept
 from surrogate.tasks.table import read_table, write_table
@@ -217,8 +217,7 @@ def heights(contact: Contact, case: ColdCase) -> Callable[[np.ndarray, np.ndarra
 @lru_cache(maxsize=DRAWS)
 def surface_of(draw: int) -> FractalSurface:
     """Return one draw of the nominal raceway with the waves of this study."""
-    roughness = load_screw('nominal').roughness
-    return fractal_surface(replace(roughness, shortest_wavelength=SHORTEST_WAVELENGTH), draw)
+    return fractal_surface(PublishedRoughness(shortest_wavelength=SHORTEST_WAVELENGTH), draw)
 
 
 def film_by_formula(case: ColdCase, contact: Contact, lubricant: ContactLubricant) -> float:

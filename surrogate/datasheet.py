@@ -12,7 +12,7 @@ from dataclasses import field, fields, MISSING, replace
 import math
 from pathlib import Path
 import re
-from typing import Any, TypeVar
+from typing import Any, ClassVar, TypeVar
 
 from surrogate.files import InputError
 import yaml
@@ -93,9 +93,16 @@ def _key(spec: Any) -> str:
 
 
 class Checked:
-    """Base of all datasheets: every declared quantity is finite and inside its range."""
+    """
+    Base of all datasheets: every declared quantity is finite and inside its range.
+
+    `RETIRED` are keys on file that are not read, `INSTEAD` what to write in their place.
+
+    """
 
     __slots__ = ()
+    RETIRED: ClassVar[tuple[str, ...]] = ()
+    INSTEAD: ClassVar[str] = ''
 
     def __post_init__(self) -> None:
         """Raise InputError for a number outside its declared range; None is absent."""
@@ -141,6 +148,7 @@ def read_sheet(cls: type[Sheet], path: Path) -> Sheet:
 def changed_sheet(sheet: Sheet, content: dict[str, Any], where: str) -> Sheet:
     """Return a sheet with some values changed, by their keys on file; raises InputError."""
     specs = {_key(spec): spec for spec in fields(sheet)}  # type: ignore[arg-type]
+    _check_retired(type(sheet), content, where)
     for key in content:
         if key not in specs:
             raise InputError(f'{where}: {_unknown_key(str(key), specs)}')
@@ -168,12 +176,25 @@ def _from_mapping(cls: type[Sheet], content: Any, where: str) -> Sheet:
             f'{where}: must be a mapping of keys to values, got {type(content).__name__}'
         )
     specs = {_key(spec): spec for spec in fields(cls)}  # type: ignore[arg-type]
+    _check_retired(cls, content, where)
     _check_keys(specs, content, where)
     values = {specs[key].name: _value(specs[key], raw, where) for key, raw in content.items()}
     try:
         return cls(**values)
     except InputError as error:
-        raise InputError(f'{where}: {error}') from None
+        # A block is named by both the place and the sentence.
+        name = f'{where.rpartition(": ")[2]}: '
+        raise InputError(f'{where}: {str(error).removeprefix(name)}') from None
+
+
+def _check_retired(cls: type, content: dict[Any, Any], where: str) -> None:
+    """Raise one InputError that names all retired keys and what to write instead."""
+    old = [key for key in content if key in getattr(cls, 'RETIRED', ())]
+    if old:
+        raise InputError(
+            f'{where}: {", ".join(old)} {"is" if len(old) == 1 else "are"} not read, '
+            f'allowed is instead {cls.INSTEAD}'  # type: ignore[attr-defined]
+        )
 
 
 def _check_keys(specs: dict[str, Any], content: dict[Any, Any], where: str) -> None:
@@ -191,9 +212,13 @@ def _check_keys(specs: dict[str, Any], content: dict[Any, Any], where: str) -> N
 
 def _unknown_key(key: str, specs: dict[str, Any]) -> str:
     """Tell a wrong unit suffix from an unknown name."""
-    for known, spec in specs.items():
-        if spec.metadata.get('unit') and (key == spec.name or key.startswith(f'{spec.name}_')):
-            return f'{key} has a wrong unit, the key is {known}'
+    meant = [
+        known
+        for known, spec in specs.items()
+        if spec.metadata.get('unit') and (key == spec.name or key.startswith(f'{spec.name}_'))
+    ]
+    if meant:
+        return f'{key} has a wrong unit, the key is {max(meant, key=len)}'
     return f'unknown key {key}, allowed are {", ".join(specs)}'
 
 

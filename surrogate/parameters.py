@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Screw, oil, roughness and operating point: checked, frozen, SI inside, unit-suffixed keys on file.
+Screw, oil and operating point: checked, frozen, SI inside, unit-suffixed keys on file.
 
 Temperatures are kelvin inside and degC on file.
 
@@ -12,9 +12,11 @@ import math
 
 from surrogate.datasheet import block, Checked, count, DATA, find_sheet, quantity, read_sheet, text
 from surrogate.files import InputError
+from surrogate.raceway.stated import BallRoughness, Roughness
 from surrogate.units import RPM, ZERO_CELSIUS
 
 __all__ = [
+    'BallRoughness',
     'DATA',
     'load_lubricant',
     'load_screw',
@@ -40,28 +42,6 @@ class Material(Checked):
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Roughness(Checked):
-    """
-    Raceway roughness and what asperities do; the ball is smooth.
-
-    Rq `rms` [m]; fractal dimension D [-] and fractal roughness G [m] of a Weierstrass-Mandelbrot
-    surface with sample length, shortest wavelength [m], scale ratio and ridges [-]; film floor [m]
-    below which a film counts as punctured; boundary friction coefficient [-].
-
-    """
-
-    rms: float = quantity('um', 1e-6, 0.001, 10.0)
-    fractal_dimension: float = quantity('', 1.0, 2.01, 2.99)
-    fractal_roughness: float = quantity('nm', 1e-9, 1e-6, 1e3)
-    sample_length: float = quantity('mm', 1e-3, 0.01, 100.0)
-    shortest_wavelength: float = quantity('um', 1e-6, 0.1, 1000.0)
-    scale_ratio: float = quantity('', 1.0, 1.01, 10.0)
-    ridges: int = count(1, 1000)
-    film_floor: float = quantity('nm', 1e-9, 0.1, 100.0)
-    asperity_friction: float = quantity('', 1.0, 0.0, 1.0)
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
 class Screw(Checked):
     """
     Preloaded double-nut ball screw with equal nuts.
@@ -71,7 +51,7 @@ class Screw(Checked):
     wipers, recirculation and ball-to-ball contact; `speed_limit` is D n [m rad/s] with D the pitch
     diameter; `hysteresis_loss` is the share of the elastic work of rolling that steel does not
     give back [-]; `flank_clearance` [m] between an unloaded ball and the flanks of its groove,
-    None where not known.
+    None where not known; without `ball_roughness` the balls are smooth.
 
     """
 
@@ -94,6 +74,7 @@ class Screw(Checked):
     raceway: Material = block(Material)
     ball: Material = block(Material)
     roughness: Roughness = block(Roughness)
+    ball_roughness: BallRoughness | None = block(BallRoughness, default=None)
 
     def __post_init__(self) -> None:
         """Check every range and that the balls fit on the pitch circle."""
@@ -109,6 +90,18 @@ class Screw(Checked):
                 f'screw: preload_N is {self.preload:g} N, allowed is up to static_rating_kN '
                 f'({self.static_rating * 1e-3:g} kN)'
             )
+        shape = self.roughness.fractal_dimension or self.roughness.rms_slope
+        if self.ball_roughness is not None and self.ball_roughness.height and not shape:
+            raise InputError(
+                'screw: ball_roughness is given without fractal_dimension or rms_slope_deg in '
+                'roughness, allowed is a raceway with one of them, which the balls share'
+            )
+
+    @property
+    def composite_rms(self) -> float:
+        """Rq of raceway and ball together [m], 0 when both are smooth."""
+        ball = self.ball_roughness.height if self.ball_roughness is not None else 0.0
+        return math.hypot(self.roughness.rms, ball)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -120,6 +113,10 @@ class Lubricant(Checked):
     [K]; kinematic viscosities [m2/s] at 40 and 100 degC give the temperature law; `density_slope`
     [kg/m3/K] is the loss of density per kelvin; temperatures [K] bound the datasheet; thermal
     conductivity [W/m/K], by default a usual one of mineral oils, serves inlet heating alone.
+
+    `film_floor` [m] is the film below which a node counts as punctured, by default the 3 nm of a
+    boundary film of an oil with anti-wear additives, with its lowest and highest likely value;
+    `film_factor` [-] is the share of the fully flooded film that starvation or grease leaves.
 
     """
 
@@ -136,6 +133,10 @@ class Lubricant(Checked):
     minimum_temperature: float = quantity('degC', 1.0, -60.0, 200.0, shift=ZERO_CELSIUS)
     maximum_temperature: float = quantity('degC', 1.0, -60.0, 250.0, shift=ZERO_CELSIUS)
     thermal_conductivity: float = quantity('W_m_K', 1.0, 0.01, 1.0, default=0.14)
+    film_floor: float = quantity('nm', 1e-9, 0.1, 100.0, default=3e-9)
+    film_floor_low: float = quantity('nm', 1e-9, 0.1, 100.0, default=1e-9)
+    film_floor_high: float = quantity('nm', 1e-9, 0.1, 100.0, default=5e-9)
+    film_factor: float = quantity('', 1.0, 0.05, 1.0, default=1.0)
 
     def __post_init__(self) -> None:
         """Check every range, that oil thins when warm, and that the range holds the reference."""
@@ -147,6 +148,7 @@ class Lubricant(Checked):
                 f'kinematic_viscosity_40_mm2_s ({self.kinematic_viscosity_40 * 1e6:g} mm2/s)'
             )
         self._check_viscosity()
+        self._check_film_floor()
         if not (
             self.minimum_temperature <= self.reference_temperature <= self.maximum_temperature
         ):
@@ -155,6 +157,15 @@ class Lubricant(Checked):
                 f'{self.reference_temperature - ZERO_CELSIUS:g} degC, allowed is '
                 f'{self.minimum_temperature - ZERO_CELSIUS:g} to '
                 f'{self.maximum_temperature - ZERO_CELSIUS:g} degC (the range of the sheet)'
+            )
+
+    def _check_film_floor(self) -> None:
+        slack = 1 + 1e-9  # the rounding of the conversion must not refuse the bound itself
+        if not self.film_floor_low / slack <= self.film_floor <= self.film_floor_high * slack:
+            raise InputError(
+                f'lubricant: film_floor_nm is {self.film_floor * 1e9:g} nm, allowed is '
+                f'{self.film_floor_low * 1e9:g} to {self.film_floor_high * 1e9:g} nm '
+                '(film_floor_low_nm to film_floor_high_nm of the sheet)'
             )
 
     def _check_viscosity(self) -> None:

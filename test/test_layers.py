@@ -39,8 +39,9 @@ FLOORS = ('core', 'node', 'clients', 'recordings', 'cycle')
 OFFLINE_FLOORS = (
     ('units', 'files', 'progress'),
     ('datasheet', 'plotting'),
+    ('raceway',),
     ('parameters', 'surface'),
-    ('datasheet_writer', 'formulas', 'raceway', 'tasks'),
+    ('datasheet_writer', 'formulas', 'tasks'),
     ('ehl',),
     ('contact', 'screw'),
     ('builder',),

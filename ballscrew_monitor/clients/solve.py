@@ -75,9 +75,7 @@ class Question:
 def goal_of(question: Question) -> Any:
     """Return the goal in the machine frame."""
     goal = SolveOperatingPoint.Goal(
-        axis=question.axis,
-        use_current=math.isnan(question.speed),
-        timeout=float(question.timeout),
+        axis=question.axis, use_current=math.isnan(question.speed), timeout=float(question.timeout)
     )
     # The load of the command opposes the motion when it has the sign of the speed.
     opposing = math.copysign(1.0, question.speed) * question.load

@@ -171,12 +171,10 @@ class AsperityLaw:
 
 def law_from_json(content: Mapping[str, Any]) -> AsperityLaw:
     """Return the law that `to_json` wrote."""
-    return AsperityLaw(
-        **{
-            name: tuple(value) if isinstance(value, list) else value
-            for name, value in content.items()
-        }
-    )
+    values: dict[str, Any] = {
+        name: tuple(value) if isinstance(value, list) else value for name, value in content.items()
+    }
+    return AsperityLaw(**values)
 
 
 @lru_cache(maxsize=1)

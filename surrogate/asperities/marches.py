@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 from surrogate.asperities.acting import speed_at_ratio, stated_waves, Waves
+from surrogate.asperities.law import ONSET_RCS
 from surrogate.ehl import ContactLubricant
 from surrogate.ehl.kernels.fft import good_length
 from surrogate.ehl.moving import MarchSettings, ramp_strip, SpeedRamp, StripContact
@@ -215,13 +216,13 @@ def solve_march(inputs: Mapping[str, Any]) -> dict[str, Any]:
     """
     given = inputs_from_json(inputs)
     raceway = _raceway(given)
-    speeds, ramp = given.speeds, SpeedRamp
+    speeds = given.speeds
     for _ in range(TRIES):
         ramp = _march(given, raceway, speeds)
         onset = ramp.onset() if ramp.speeds.size else math.nan
         if not math.isnan(onset) or not ramp.speeds.size:
             break
-        factor = 1 / MISSED if ramp.rcs.mean() < 0.01 else MISSED
+        factor = 1 / MISSED if ramp.rcs.mean() < ONSET_RCS else MISSED
         speeds = (factor * speeds[0], factor * speeds[1])
     return _result(ramp, onset)
 

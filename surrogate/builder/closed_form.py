@@ -83,6 +83,7 @@ def build_closed_form(
     Raises InputError for a range that is reversed, empty or leaves the oil's datasheet.
 
     """
+    check_rough(screw)
     check_ranges(settings, lubricant)
     started = time.perf_counter()
     load, breaks = load_nodes(screw, settings)
@@ -240,6 +241,15 @@ def _solve(
 
 def _unmeasured(axes: tuple[Array, ...]) -> dict[str, Array]:
     return {name: np.full([len(axis) - 1 for axis in axes], np.nan) for name in FIELDS}
+
+
+def check_rough(screw: Screw) -> None:
+    """Refuse a screw whose film ratio is infinite: InputError."""
+    if not screw.composite_rms:
+        raise InputError(
+            f'screw {screw.name}: rms_um of roughness is 0 um and the ball is smooth, allowed is '
+            'above 0 for a surface: its film ratio would be infinite'
+        )
 
 
 def check_ranges(settings: SurfaceSettings, lubricant: Lubricant) -> None:

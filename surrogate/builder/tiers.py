@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from surrogate.files import InputError
-from surrogate.parameters import Lubricant, Material, Roughness, Screw
+from surrogate.parameters import BallRoughness, Lubricant, Material, Roughness, Screw
 from surrogate.progress import OnProgress
 from surrogate.surface.file import SurfaceData
 from surrogate.surface.solved import SolvedPoint
@@ -55,6 +55,15 @@ TIERS = {
         spreads=True,
     ),
 }
+
+
+BLOCKS = {
+    'raceway': Material,
+    'ball': Material,
+    'roughness': Roughness,
+    'ball_roughness': BallRoughness,
+}
+"""Blocks of the datasheet of a screw."""
 
 
 def find_tier(name: str) -> Tier:
@@ -100,8 +109,9 @@ def solve_point(
 def screw_and_oil(inputs: Mapping[str, Any]) -> tuple[Screw, Lubricant]:
     """Rebuild the datasheets from the `inputs` of a header, so that a file needs no other."""
     screw, lubricant = (dict(inputs[kind]) for kind in ('screw', 'lubricant'))
-    for name, cls in (('raceway', Material), ('ball', Material), ('roughness', Roughness)):
-        screw[name] = cls(**screw[name])
+    for name, cls in BLOCKS.items():
+        if screw[name] is not None:
+            screw[name] = cls(**screw[name])
     return Screw(**screw), Lubricant(**lubricant)
 
 

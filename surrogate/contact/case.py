@@ -27,10 +27,10 @@ from surrogate.ehl import Condition, ContactLubricant
 from surrogate.ehl.interface import LARGEST_GRID, Law
 from surrogate.files import InputError
 from surrogate.formulas.geometry import Contact
-from surrogate.raceway.ball import BALL_RA
 from surrogate.raceway.fractal import Lay
 from surrogate.raceway.measured import Outside
 from surrogate.raceway.patch import Patch
+from surrogate.raceway.standards import BALL_RA
 
 CONSTANTS = (
     'fractal_dimension',
@@ -40,7 +40,7 @@ CONSTANTS = (
     'scale_ratio',
     'ridges',
 )
-"""Constants of a generated surface; what a case does not state is that of the nominal screw."""
+"""Constants of a generated surface; what a case does not state is as published."""
 GENERATED = ('seed', 'lay', 'position_x', 'position_y', 'grid_wavelength') + tuple(
     name for name in CONSTANTS if name != 'shortest_wavelength'
 )

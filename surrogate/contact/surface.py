@@ -10,15 +10,15 @@ import numpy as np
 from surrogate.contact.case import CaseRoughness, CONSTANTS, ContactCase
 from surrogate.files import InputError
 from surrogate.formulas.geometry import hertz
-from surrogate.parameters import load_screw
-from surrogate.raceway.ball import ball_rms, draw_pair
-from surrogate.raceway.fractal import fractal_surface, FractalSurface, shifted
+from surrogate.raceway.ball import ball_waves, draw_pair
+from surrogate.raceway.fractal import fractal_surface, FractalSurface, PublishedRoughness, shifted
 from surrogate.raceway.import_file import read_surface
 from surrogate.raceway.measured import MeasuredSurface
 from surrogate.raceway.patch import Raceway, take_patch, Window
 from surrogate.raceway.scaling import draw_raceway, scale_spectrum, ScaledSpectrum
 from surrogate.raceway.short_waves import wave_rms, without_short_waves
-from surrogate.raceway.spectrum import CUTOFF_SHORT, RoughnessSpectrum
+from surrogate.raceway.spectrum import RoughnessSpectrum
+from surrogate.raceway.standards import ball_rms, CUTOFF_SHORT
 from surrogate.units import MICRO, NANO
 
 
@@ -42,7 +42,7 @@ def case_surface(case: ContactCase) -> Raceway | None:
 
 def _generated(rough: CaseRoughness) -> FractalSurface:
     stated = {name: getattr(rough, name) for name in CONSTANTS if getattr(rough, name) is not None}
-    constants = replace(load_screw('nominal').roughness, **stated)
+    constants = PublishedRoughness(**stated)
     draw = fractal_surface(constants, rough.seed or 0, lay=rough.lay or 'isotropic')
     return _at_place(draw, rough)
 
@@ -93,24 +93,9 @@ def raceway_spectrum(rough: CaseRoughness) -> ScaledSpectrum:
 
 
 def ball_spectrum(rough: CaseRoughness, raceway: ScaledSpectrum) -> ScaledSpectrum | None:
-    """
-    Return the scaled waves of the ball, None where it is smooth.
-
-    They are isotropic, with the dimension of the raceway, between the same short cut-off and the
-    long one of the table: balls are measured by it.
-
-    """
+    """Return the scaled waves of the ball, None where it is smooth."""
     rms = ball_rms(rough.ball_grade) if rough.ball_grade else rough.ball_rms
-    if not rms:
-        return None
-    return scale_spectrum(
-        RoughnessSpectrum(
-            rms=rms,
-            cutoff_short=raceway.band.cutoff_short,
-            fractal_dimension=raceway.fractal_dimension,
-            **_generator(rough),
-        )
-    )
+    return ball_waves(rms, raceway, **_generator(rough)) if rms else None
 
 
 def _generator(rough: CaseRoughness) -> dict[str, Any]:

@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from surrogate.formulas.film import (
     asperity_share_aihara_1987,
     central_film_hamrock_dowson_1977,
+    film_ratio,
     Groups,
     groups,
     minimum_film_hamrock_dowson_1977,
@@ -27,6 +28,7 @@ from surrogate.formulas.kinematics import no_slip_rates
 from surrogate.formulas.load_sharing import normal_force, nut_forces, NutName
 from surrogate.formulas.lubricant import lubricant_state, LubricantState
 from surrogate.formulas.sliding import sliding_friction
+from surrogate.formulas.starvation import starved_speed
 from surrogate.parameters import Lubricant, Screw
 
 Array = NDArray[np.float64]
@@ -98,10 +100,11 @@ def solve(
         *(np.asarray(value, dtype=float) for value in (speed, load, temperature))
     )
     oil = lubricant_state(lubricant, temperature)
+    inlet_speed = starved_speed(lubricant, speed)
     forces = nut_forces(load, screw.preload)
     nuts: tuple[tuple[NutName, Array], ...] = (('loaded', forces[0]), ('relieved', forces[1]))
     contacts = tuple(
-        _solve_contact(screw, nut, side, normal_force(screw, force), oil, speed)
+        _solve_contact(screw, nut, side, normal_force(screw, force), oil, speed, inlet_speed)
         for nut, force in nuts
         for side in SIDES
     )
@@ -109,15 +112,21 @@ def solve(
 
 
 def _solve_contact(
-    screw: Screw, nut: NutName, side: Side, force: Array, oil: LubricantState, speed: Array
+    screw: Screw,
+    nut: NutName,
+    side: Side,
+    force: Array,
+    oil: LubricantState,
+    speed: Array,
+    inlet_speed: Array,
 ) -> ContactResult:
     contact, balls = screw_contact(screw, side), screw.loaded_balls_per_nut
     arm = no_slip_rates(screw).entrainment
     ellipse = hertz(contact, force)
     pressed = np.where(force > 0, force, np.nan)
-    g = groups(contact, pressed, arm * speed, oil.viscosity, oil.pressure_viscosity)
+    g = groups(contact, pressed, arm * inlet_speed, oil.viscosity, oil.pressure_viscosity)
     film = central_film_hamrock_dowson_1977(contact, g)
-    ratio = film / screw.roughness.rms
+    ratio = film_ratio(film, screw.composite_rms)
     share = np.where(force > 0, asperity_share_aihara_1987(ratio), 0.0)
     sliding = sliding_friction(screw, side, ellipse, np.nan_to_num(film), share, oil, speed)
     rolling = np.nan_to_num(rolling_force_biboulet_houpert_2010(contact, g))

@@ -141,6 +141,12 @@ def central_film_nijenbanning_1994(contact: Contact, g: Groups) -> Array:
     return np.asarray(film * contact.radius_x * np.sqrt(2 * g.speed))
 
 
+def film_ratio(film: ArrayLike, rms: float) -> Array:
+    """Return Lambda [-] of a film [m] over Rq `rms` [m], infinite where a film parts smooth."""
+    film = np.asarray(film, dtype=float)
+    return np.asarray(film / rms if rms else np.where(film > 0, np.inf, film))
+
+
 def asperity_share_aihara_1987(film_ratio: ArrayLike) -> Array:
     """
     Return the share of the load that asperities carry [-] at film ratio Lambda [-].

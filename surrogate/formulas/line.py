@@ -67,9 +67,7 @@ def central_film_line(
 
     """
     long = Contact(
-        radius_x=line.radius,
-        radius_y=LONG * line.radius,
-        reduced_modulus=line.reduced_modulus,
+        radius_x=line.radius, radius_y=LONG * line.radius, reduced_modulus=line.reduced_modulus
     )
     load = (line.max_pressure / float(hertz(long, 1.0).max_pressure)) ** 3
     return central_film_nijenbanning_1994(

@@ -18,6 +18,7 @@ from surrogate.formulas.film import (
 from surrogate.formulas.geometry import helix_angle, screw_contact
 from surrogate.formulas.load_sharing import nut_forces, UNLOADING_RATIO
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
+from surrogate.raceway.ball import roughness_sentence
 from surrogate.surface import regime_of
 from surrogate.units import RPM, ZERO_CELSIUS
 
@@ -56,6 +57,9 @@ def closed_form_record(
         'warnings': _warnings(screw, lubricant, point, result),
         'screw': screw.name,
         'oil': lubricant.name,
+        'roughness': roughness_sentence(screw.roughness, screw.ball_roughness),
+        'film_floor_m': lubricant.film_floor,
+        'film_factor': lubricant.film_factor,
         'speed_rad_s': point.speed,
         'load_N': point.load,
         'opposing_load_N': load,
@@ -234,6 +238,7 @@ def page(record: Mapping[str, Any]) -> str:
             f'catalogue drag {compared["catalogue_drag_torque_Nm"]:.3f} N m, Nijenbanning film '
             f'{1e9 * compared["central_film_nijenbanning_m"]:.1f} nm',
             *_spread_lines(record.get('ensemble')),
+            f'  roughness: {record["roughness"]}',
             f'  status: {record["status"]}',
             *(f'  warning: {text}' for text in record['warnings']),
         ]

@@ -29,12 +29,12 @@ from surrogate.paper.figures_contact import (
 from surrogate.paper.figures_map import figure_maps, figure_zone
 from surrogate.paper.figures_other import figure_alternatives
 from surrogate.paper.figures_screw import figure_stribeck, figure_torque, MeasuredTorque
+from surrogate.paper.raceway import published_patch
 from surrogate.paper.solve import SHORTEST_ON_GRID
 from surrogate.paper.study import SCREW, Study
 from surrogate.parameters import load_screw
 from surrogate.plotting.style import draw_picture
 from surrogate.raceway.short_waves import without_short_waves
-from surrogate.screw.contacts import raceway_patch
 
 SHOWN_LOADS = tuple(LOADS[i] for i in (0, 2, 4, 5))
 """Axial loads whose profiles are drawn [N]."""
@@ -96,5 +96,5 @@ def _drawn(study: Study, draw: int, points: list[tuple[float, float]]) -> list[D
 
 def _fractal(study: Study) -> Figure:
     screw = load_screw(SCREW)
-    raceway = without_short_waves(raceway_patch(screw, 'screw', 0), SHORTEST_ON_GRID)
+    raceway = without_short_waves(published_patch(screw, 0), SHORTEST_ON_GRID)
     return figure_fractal(_drawn(study, 0, [(SLOW, PRELOAD)])[0], raceway)

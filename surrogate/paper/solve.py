@@ -14,6 +14,7 @@ import time
 from typing import Any
 
 import numpy as np
+from surrogate.asperities.law import AsperityContact
 from surrogate.ehl import Condition, ContactLubricant, ContactSolution, Settings, solve_contact
 from surrogate.ehl.domain import nodes_on_waves
 from surrogate.ehl.friction import contact_friction, ContactFriction
@@ -22,12 +23,13 @@ from surrogate.formulas.geometry import hertz, screw_contact
 from surrogate.formulas.kinematics import entrainment_speed_paper
 from surrogate.formulas.load_sharing import normal_force, nut_forces
 from surrogate.paper.cases import CASES, SMOOTH, StudyTask
+from surrogate.paper.raceway import published_patch
 from surrogate.paper.rows import ContactFields, empty_row, StudyRow
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.raceway.fractal import FractalSurface
 from surrogate.raceway.short_waves import subgrid_floor, without_short_waves
 from surrogate.screw.ball_motion import slip_floor
-from surrogate.screw.contacts import ACROSS, raceway_patch, ScrewSettings
+from surrogate.screw.contacts import ACROSS, ScrewSettings
 from surrogate.screw.nut import contact_slip, ScrewContact
 from surrogate.screw.solve import ScrewSolution, solve_screw
 from surrogate.units import RPM
@@ -105,14 +107,14 @@ def solve_patch(
         pressure_viscosity=lubricant.pressure_viscosity,
         eyring_stress=lubricant.eyring_stress,
     )
-    settings = Settings(film_floor=case.film_floor or screw.roughness.film_floor)
+    settings = Settings(film_floor=case.film_floor or lubricant.film_floor)
     if case.inlet is not None:
         domain = (-case.inlet, OUTLET, SIDE)
         settings = replace(settings, domain=domain, open_inlet=False)
     condition, surface = Condition(load=force, entrainment_speed=speed), None
     if task.draw == SMOOTH:
         return solve_contact(contact, oil, condition, settings=settings), None
-    surface = raceway_patch(screw, 'screw', task.draw)
+    surface = published_patch(screw, task.draw)
     raised = subgrid_floor(surface, SHORTEST_ON_GRID)
     surface = without_short_waves(surface, SHORTEST_ON_GRID)
     width = ACROSS * float(hertz(contact, force).semi_axis_y)
@@ -169,7 +171,7 @@ def _screw(screw: Screw, lubricant: Lubricant, task: StudyTask, row: StudyRow) -
     point = OperatingPoint(
         speed=rad_per_second(task.rpm), load=task.load, temperature=lubricant.reference_temperature
     )
-    settings = ScrewSettings(draw=None if task.draw == SMOOTH else task.draw)
+    settings = ScrewSettings(kinematics='smooth' if task.draw == SMOOTH else 'rolling')
     found = solve_screw(screw, lubricant, point, settings=settings)
     row = replace(row, status='CONVERGED' if found.converged else found.status)
     if not found.converged:
@@ -188,12 +190,12 @@ def _screw(screw: Screw, lubricant: Lubricant, task: StudyTask, row: StudyRow) -
     return _with_friction(screw, found, row)
 
 
-def _rough(found: ScrewSolution, nut: str) -> list[ContactSolution]:
-    """Return the rough contacts of a nut that carry load."""
+def _rough(found: ScrewSolution, nut: str) -> list[AsperityContact]:
+    """Return what asperities do in the contacts of a nut that carry load."""
     return [
-        contact.rough
+        contact.solved.asperities
         for contact in found.contacts
-        if contact.rough is not None and nut == contact.nut
+        if contact.solved is not None and nut == contact.nut
     ]
 
 
@@ -227,14 +229,16 @@ def _with_friction(screw: Screw, found: ScrewSolution, row: StudyRow) -> StudyRo
 
 def _friction(screw: Screw, contact: ScrewContact, film: Any) -> ContactFriction:
     """Return the friction of a balanced contact, Eyring's law with the local or central film."""
-    assert contact.rough is not None
+    assert contact.solved is not None
     assert contact.motion is not None
-    slip_x, slip_y = contact_slip(screw, contact.rough, contact.side, contact.motion)
+    pressed = contact.solved.pressed
+    slip_x, slip_y = contact_slip(screw, pressed, contact.side, contact.motion)
     return contact_friction(
-        contact.rough,
+        pressed,
         slip_x=slip_x,
         slip_y=slip_y,
         asperity_friction=screw.roughness.asperity_friction,
+        asperity_share=contact.solved.friction_share,
         film=film,
         slip_floor=slip_floor(screw, contact.motion.screw_speed),
     )

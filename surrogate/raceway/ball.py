@@ -9,34 +9,68 @@ Without slip both surfaces move with the oil, so that the gap sees their plain s
 
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.files import InputError
 from surrogate.raceway.fractal import FractalSurface
-from surrogate.raceway.scaling import draw_raceway, ScaledSpectrum
-from surrogate.raceway.stylus import RA_OVER_RQ
+from surrogate.raceway.scaling import draw_raceway, scale_spectrum, ScaledSpectrum
+from surrogate.raceway.spectrum import RoughnessSpectrum
+from surrogate.raceway.stated import BallRoughness, Roughness, spectrum_of
 
 Array = NDArray[np.float64]
 
-BALL_RA = {
-    'G3': 0.010e-6,
-    'G5': 0.014e-6,
-    'G10': 0.020e-6,
-    'G16': 0.025e-6,
-    'G20': 0.032e-6,
-    'G24': 0.040e-6,
-    'G28': 0.050e-6,
-    'G40': 0.060e-6,
-    'G60': 0.080e-6,
-    'G100': 0.100e-6,
-    'G200': 0.150e-6,
-}
-"""Largest Ra of steel balls of a grade [m], ISO 3290-1:2014, measured by ISO 4288."""
+
+def ball_waves(
+    rms: float, raceway: ScaledSpectrum, *, scale_ratio: float = 1.5, ridges: int = 10
+) -> ScaledSpectrum:
+    """
+    Return the scaled waves of a ball with Rq `rms` [m], above 0.
+
+    They are isotropic, with the dimension of the raceway, between the same short cut-off and the
+    long one of the table: balls are measured by it. Scale ratio and ridges [-] of the generator.
+
+    """
+    return scale_spectrum(
+        RoughnessSpectrum(
+            rms=rms,
+            cutoff_short=raceway.band.cutoff_short,
+            fractal_dimension=raceway.fractal_dimension,
+            scale_ratio=scale_ratio,
+            ridges=ridges,
+        )
+    )
 
 
-def ball_rms(grade: str) -> float:
-    """Return the largest Rq [m] of a ball of that grade, its largest Ra over 0.8."""
-    if grade not in BALL_RA:
-        raise InputError(f'ball grade is {grade!r}, allowed is {", ".join(BALL_RA)}')
-    return BALL_RA[grade] / RA_OVER_RQ
+def ball_of(roughness: Roughness, ball: BallRoughness | None) -> ScaledSpectrum | None:
+    """Return the scaled waves of a ball beside a raceway of `roughness`, None where smooth."""
+    if ball is None or not ball.height:
+        return None
+    return ball_waves(
+        ball.height,
+        scale_spectrum(spectrum_of(roughness)),
+        scale_ratio=roughness.scale_ratio,
+        ridges=roughness.ridges,
+    )
+
+
+def draw_stated(
+    roughness: Roughness, ball: BallRoughness | None, seed: int
+) -> FractalSurface | None:
+    """Return one draw of raceway and ball as stated, None where both are smooth."""
+    raceway, rolling = scale_spectrum(spectrum_of(roughness)), ball_of(roughness, ball)
+    if not roughness.rms and rolling is None:
+        return None
+    return draw_raceway(raceway, seed) if rolling is None else draw_pair(raceway, rolling, seed)
+
+
+def roughness_sentence(roughness: Roughness, ball: BallRoughness | None) -> str:
+    """Say what the stated roughness stands for, and what of it is assumed."""
+    raceway, rolling = scale_spectrum(spectrum_of(roughness)), ball_of(roughness, ball)
+    state = {'run_in': 'run in', 'new': 'new'}[roughness.state]
+    words = f'raceway ({state}): {raceway.sentence}, {roughness.lay}'
+    if not roughness.rms:
+        words = 'raceway: smooth'
+    if ball is None:
+        return f'{words}; ball: smooth, not stated'
+    grade = f' ({ball.grade})' if ball.grade else ''
+    return f'{words}; ball{grade}: {rolling.sentence if rolling else "smooth"}'
 
 
 def draw_pair(raceway: ScaledSpectrum, ball: ScaledSpectrum, seed: int) -> FractalSurface:

@@ -16,8 +16,8 @@ from typing import get_args, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from surrogate.datasheet import Checked, count, quantity
 from surrogate.files import InputError
-from surrogate.parameters import Roughness
 from surrogate.raceway.patch import grid_axes, Patch, Plane, take_patch, Window
 from surrogate.raceway.strip import Strip
 
@@ -25,8 +25,30 @@ Array = NDArray[np.float64]
 Lay = Literal['isotropic', 'longitudinal', 'transverse']
 DrawnBy = Literal['seeds', 'positions']
 
+DIMENSIONS = (2.01, 2.99)
+"""Range of the fractal dimension [-]."""
 LAY_SPREAD = math.radians(20.0)
 """Range of wave directions of a surface with a lay [rad]."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class PublishedRoughness(Checked):
+    """
+    Constants of a generated surface, by default those published for the nominal screw.
+
+    Rq `rms` [m] to which a patch is rescaled; fractal dimension D [-], fractal roughness G [m],
+    sample length L and shortest wavelength Ls [m], scale ratio g and ridges M [-]. Published are
+    Rq, D and G; L is the length at which the sum has this Rq.
+
+    """
+
+    rms: float = quantity('um', 1e-6, 0.001, 10.0, default=0.12e-6)
+    fractal_dimension: float = quantity('', 1.0, *DIMENSIONS, default=2.68)
+    fractal_roughness: float = quantity('nm', 1e-9, 1e-6, 1e3, default=0.97e-9)
+    sample_length: float = quantity('mm', 1e-3, 0.01, 100.0, default=4e-3)
+    shortest_wavelength: float = quantity('um', 1e-6, 0.1, 1000.0, default=8e-6)
+    scale_ratio: float = quantity('', 1.0, 1.01, 10.0, default=1.5)
+    ridges: int = count(1, 1000, default=10)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -69,7 +91,9 @@ class FractalSurface:
         )
 
 
-def fractal_surface(roughness: Roughness, seed: int, *, lay: Lay = 'isotropic') -> FractalSurface:
+def fractal_surface(
+    roughness: PublishedRoughness, seed: int, *, lay: Lay = 'isotropic'
+) -> FractalSurface:
     """
     Return one draw of the Weierstrass-Mandelbrot surface, its phases [rad] from `seed`.
 
@@ -101,7 +125,7 @@ def wave_sum(
     )
 
 
-def wave_spectrum(roughness: Roughness) -> tuple[Array, Array]:
+def wave_spectrum(roughness: PublishedRoughness) -> tuple[Array, Array]:
     """Return wave numbers [rad/m] and the amplitude of one wave at each [m]."""
     g, length = roughness.scale_ratio, roughness.sample_length
     shortest = roughness.shortest_wavelength
@@ -139,7 +163,7 @@ def wave_directions(ridges: int, lay: Lay, fan: float = LAY_SPREAD) -> Array:
     return centre + fan * (np.arange(ridges) - 0.5 * (ridges - 1)) / max(ridges - 1, 1)
 
 
-def theoretical_rms(roughness: Roughness) -> float:
+def theoretical_rms(roughness: PublishedRoughness) -> float:
     """
     Return Rq of the fractal surface [m], the mean over draws.
 
@@ -160,7 +184,7 @@ def shifted(surface: FractalSurface, x: float, y: float) -> FractalSurface:
 
 
 def ensemble(
-    roughness: Roughness,
+    roughness: PublishedRoughness,
     count: int,
     kind: Patch,
     window: Window,
@@ -188,7 +212,7 @@ def ensemble(
 
 
 def _places(
-    roughness: Roughness, count: int, window: Window, seed: int
+    roughness: PublishedRoughness, count: int, window: Window, seed: int
 ) -> Iterator[tuple[float, float]]:
     free = roughness.sample_length - np.array([window.length_x, window.length_y])
     if np.any(free < 0):

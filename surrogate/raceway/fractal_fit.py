@@ -16,8 +16,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import minimize_scalar
 from surrogate.files import InputError
-from surrogate.parameters import Roughness
-from surrogate.raceway.fractal import Lay, wave_directions, wave_spectrum
+from surrogate.raceway.fractal import (
+    DIMENSIONS,
+    Lay,
+    PublishedRoughness,
+    wave_directions,
+    wave_spectrum,
+)
 
 Array = NDArray[np.float64]
 
@@ -25,8 +30,6 @@ LAGS = 24
 """Largest number of distances of a fit [-]."""
 SHORTEST_LAG, LONGEST_LAG, LONGEST_SHARE = 0.25, 25.0, 0.1
 """Distances of a fit: from and to in shortest waves [-], at most this share of the profile [-]."""
-DIMENSIONS = (2.01, 2.99)
-"""Range of the fractal dimension [-]."""
 GROUPS = 8
 """Largest number of groups of profiles of the error estimate [-]."""
 FEWEST_POINTS = 64
@@ -59,7 +62,11 @@ def structure_function(heights: Array, lags: NDArray[np.int64]) -> Array:
 
 
 def expected_structure_function(
-    roughness: Roughness, distance: ArrayLike, *, lay: Lay = 'isotropic', across: bool = False
+    roughness: PublishedRoughness,
+    distance: ArrayLike,
+    *,
+    lay: Lay = 'isotropic',
+    across: bool = False,
 ) -> Array:
     """
     Return the structure function of the fractal surface [m2] at `distance` [m], mean over phases.
@@ -78,7 +85,7 @@ def expected_structure_function(
 def identify_fractal(
     profiles: ArrayLike,
     spacing: float,
-    roughness: Roughness,
+    roughness: PublishedRoughness,
     *,
     lay: Lay = 'isotropic',
     across: bool = False,

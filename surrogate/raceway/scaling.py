@@ -15,16 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 from surrogate.files import InputError
-from surrogate.raceway.fractal import FractalSurface, wave_orders, wave_sum
-from surrogate.raceway.fractal_fit import DIMENSIONS
+from surrogate.raceway.fractal import DIMENSIONS, FractalSurface, wave_orders, wave_sum
 from surrogate.raceway.spectrum import RoughnessSpectrum
-from surrogate.raceway.stylus import (
-    ProfileBand,
-    RA_OVER_RQ,
-    read_all_directions,
-    read_waves,
-    Reading,
-)
+from surrogate.raceway.standards import ProfileBand, RA_OVER_RQ
+from surrogate.raceway.stylus import read_all_directions, read_waves, Reading
 
 Array = NDArray[np.float64]
 
@@ -57,6 +51,8 @@ class ScaledSpectrum:
     @property
     def sentence(self) -> str:
         """Say what the roughness numbers stand for, and which of them nobody stated."""
+        if not self.rms:
+            return 'smooth'
         table = f' by the table for Ra = {RA_OVER_RQ:g} Rq, not stated,' * self.cutoff_by_table
         return (
             f'Rq {1e6 * self.rms:.3g} um between {1e6 * self.band.cutoff_short:g} um and '

@@ -15,14 +15,16 @@ from typing import get_args
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.files import InputError
-from surrogate.raceway.fractal import Lay, wave_directions
-from surrogate.raceway.fractal_fit import DIMENSIONS
-from surrogate.raceway.stylus import long_cutoff_iso_21920, ProfileBand, RA_OVER_RQ
+from surrogate.raceway.fractal import DIMENSIONS, Lay, wave_directions
+from surrogate.raceway.standards import (
+    CUTOFF_SHORT,
+    long_cutoff_iso_21920,
+    ProfileBand,
+    RA_OVER_RQ,
+)
 
 Array = NDArray[np.float64]
 
-CUTOFF_SHORT = 2.5e-6
-"""Short cut-off of long ones to 0.8 mm [m], ISO 3274."""
 LARGEST_SLOPE = math.radians(45.0)
 """Largest rms slope that is accepted [rad]."""
 

@@ -18,41 +18,18 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.ndimage import gaussian_filter1d
 from scipy.special import i0e, i1e
 from surrogate.files import InputError
+from surrogate.raceway.standards import ProfileBand
 
 Array = NDArray[np.float64]
 
 GAUSSIAN_ALPHA = math.sqrt(math.log(2) / math.pi)
 """Constant of the Gaussian profile filter, ISO 16610-21: half passes at the cut-off [-]."""
-RA_OVER_RQ = 0.8
-"""Ra over Rq [-] of heights with a normal distribution, sqrt(2/pi) rounded."""
-CUTOFFS = ((0.02e-6, 0.08e-3), (0.1e-6, 0.25e-3), (2e-6, 0.8e-3), (1e-5, 2.5e-3), (math.inf, 8e-3))
-"""Ra up to [m] and long cut-off [m] of a profile that is not periodic, ISO 4288, ISO 21920-3."""
 KERNEL = 4.0
 """Where the weights of a filter end, over their standard deviation [-]; 6e-5 lies beyond."""
 FINEST_CUTOFF = 4.0
 """Least cut-off over the spacing of a profile [-]: its sampled weights are then exact to 2e-5."""
 DERIVATIVE = np.array([-1.0, 9.0, -45.0, 0.0, 45.0, -9.0, 1.0]) / 60
 """Weights of the local slope at seven neighbours over their spacing, ISO 21920-2 [-]."""
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class ProfileBand:
-    """Cut-offs of a roughness profile, lambda_s [m], 0 for none, and lambda_c [m]."""
-
-    cutoff_short: float
-    cutoff_long: float
-
-    def __post_init__(self) -> None:
-        """Check that the band is not upside down."""
-        if not 0 <= self.cutoff_short < math.inf:
-            raise InputError(
-                f'roughness: short cut-off is {1e6 * self.cutoff_short:g} um, allowed is 0 or more'
-            )
-        if not self.cutoff_short < self.cutoff_long < math.inf:
-            raise InputError(
-                f'roughness: long cut-off is {1e6 * self.cutoff_long:g} um, allowed is more than '
-                f'the short one ({1e6 * self.cutoff_short:g} um)'
-            )
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -67,16 +44,6 @@ class Reading:
 
     height: Array
     slope: Array
-
-
-def long_cutoff_iso_21920(ra: float) -> float:
-    """
-    Return the long cut-off [m] for a profile of `ra` [m] that is not periodic.
-
-    ISO 4288:1996 table 1, the same in ISO 21920-3:2021; Ra at a limit belongs to the row below it.
-
-    """
-    return next(cutoff for limit, cutoff in CUTOFFS if ra <= limit * (1 + 1e-9))
 
 
 def gaussian_transmission(wave_number: ArrayLike, cutoff: float) -> Array:

@@ -203,9 +203,9 @@ def solved_traction(
     """
     Return the friction over a solved contact, as `contact_friction` integrates it.
 
-    Boundary coefficient and share [-] as in `node_strengths`, slip floor [m/s]; `neglected`, largest share of
-    the friction [-] of the weak nodes that are left out. Raises InputError for a solution that did
-    not converge.
+    Boundary coefficient and share [-] as in `node_strengths`, slip floor [m/s]; `neglected`,
+    largest share of the friction [-] of the weak nodes that are left out. Raises InputError for a
+    solution that did not converge.
 
     """
     if not solution.converged:

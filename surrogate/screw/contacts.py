@@ -282,7 +282,7 @@ def oil_at(lubricant: Lubricant, temperature: float) -> ContactLubricant:
 
 def shortest_on_grid(screw: Screw, settings: ScrewSettings) -> float:
     """Return the shortest wavelength that rough contacts solve [m], infinite when smooth."""
-    if settings.draw is None:
+    if settings.kinematics != 'standing':
         return math.inf
     surface, _ = _on_grid(screw, settings.draw, settings.grid_wavelength)
     return math.inf if surface is None else surface.shortest_wavelength

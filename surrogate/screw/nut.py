@@ -15,6 +15,7 @@ import math
 import numpy as np
 from surrogate.ehl import ContactSolution
 from surrogate.ehl.friction import contact_friction
+from surrogate.formulas.film import film_ratio
 from surrogate.formulas.geometry import Side, SIDES
 from surrogate.formulas.load_sharing import NutName
 from surrogate.formulas.sliding import hysteresis_force
@@ -156,19 +157,13 @@ def _contact(
         solved=solved,
         ball=part,
         motion=motion,
-        film_ratio=film_ratio(screw, film),
+        film_ratio=float(film_ratio(film, screw.composite_rms)),
         friction_coefficient=(
             friction_coefficient(screw, solved, side, motion)
             if solved is not None and motion is not None
             else math.nan
         ),
     )
-
-
-def film_ratio(screw: Screw, film: float) -> float:
-    """Return a film [m] over Rq of raceway and ball [-]; infinite where both are smooth."""
-    rough = screw.composite_rms
-    return film / rough if rough else math.copysign(math.inf, film)
 
 
 def balance_nut(

@@ -14,6 +14,7 @@ import math
 
 from surrogate.ehl.watch import at
 from surrogate.files import InputError
+from surrogate.formulas.film import film_ratio
 from surrogate.formulas.geometry import SIDES
 from surrogate.formulas.kinematics import no_slip_rates
 from surrogate.formulas.load_sharing import IDLE_SHARE, normal_force, nut_forces
@@ -29,15 +30,7 @@ from surrogate.screw.contacts import (
     solve_sides,
     SolvedContact,
 )
-from surrogate.screw.nut import (
-    film_ratio,
-    load_change,
-    make_nut,
-    NutLoad,
-    ScrewContact,
-    solve_nut,
-    SolvedNut,
-)
+from surrogate.screw.nut import load_change, make_nut, NutLoad, ScrewContact, solve_nut, SolvedNut
 
 TIER = 'full'
 SOLVED = (
@@ -246,7 +239,7 @@ def _combine(screw: Screw, point: OperatingPoint, nuts: Sequence[SolvedNut]) -> 
         friction_coefficient=_mean_friction(found),
         rcs=max((one.rcs for one in touching), default=0.0),
         asperity_share=max((one.asperity_share for one in touching), default=0.0),
-        film_ratio=film_ratio(screw, min(films)) if films else math.nan,
+        film_ratio=float(film_ratio(min(films, default=math.nan), screw.composite_rms)),
         central_film=min(films) if films else math.nan,
     )
 

@@ -4,7 +4,7 @@
 The surface file: one self-describing .npz with a JSON header, never a pickle.
 
 The hash covers the header without its provenance and every array in name order, little-endian, C
-order. A file that does not verify is refused with one sentence. Version 2 is version 1 with what
+order. A file that does not verify is refused with one sentence. Version 4 is version 3 with what
 an ensemble of roughness draws leaves uncertain; both are read.
 
 """
@@ -29,8 +29,10 @@ from surrogate.surface.point import FIELDS
 Array = NDArray[np.float64]
 
 FORMAT = 'ballscrew_surface'
-FORMAT_VERSION, ENSEMBLE_VERSION = 1, 2
+FORMAT_VERSION, ENSEMBLE_VERSION = 3, 4
 """Versions without and with arrays about an ensemble of draws."""
+OLD_VERSIONS = (1, 2)
+"""Versions whose inputs state a roughness of another model."""
 TIERS = ('closed_form', 'full')
 LARGEST_FILE = 256 * 2**20
 """Largest file that is read [byte]."""
@@ -161,12 +163,22 @@ def _read_arrays(
         raise SurfaceError(f'{path}: not a surface file (.npz with a header)') from None
     if not isinstance(header, dict) or header.get('format') != FORMAT:
         raise SurfaceError(f'{path}: not a surface file, its header is of another format')
-    if header.get('format_version') not in (FORMAT_VERSION, ENSEMBLE_VERSION):
+    _check_version(path, header.get('format_version'))
+    return header, arrays
+
+
+def _check_version(path: str | Path, version: Any) -> None:
+    if version in OLD_VERSIONS:
         raise SurfaceError(
-            f'{path}: surface format version {header.get("format_version")}, '
+            f'{path}: surface format version {version}, the roughness model has changed since: '
+            'build the surface again (ballscrew surface build --screw SCREW --oil OIL --tier TIER '
+            '--out FILE)'
+        )
+    if version not in (FORMAT_VERSION, ENSEMBLE_VERSION):
+        raise SurfaceError(
+            f'{path}: surface format version {version}, '
             f'this program reads versions {FORMAT_VERSION} and {ENSEMBLE_VERSION}'
         )
-    return header, arrays
 
 
 def _assemble(

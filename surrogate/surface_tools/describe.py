@@ -8,6 +8,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from surrogate.builder.tiers import screw_and_oil
+from surrogate.raceway.ball import roughness_sentence
 from surrogate.surface import Surface
 from surrogate.surface.file import SurfaceData
 from surrogate.surface_tools.fields import FIELD_TEXTS
@@ -17,6 +19,7 @@ from surrogate.units import RPM, ZERO_CELSIUS
 def info_record(path: Path, data: SurfaceData) -> dict[str, Any]:
     """Return what a surface file is and states, as plain numbers in SI, NaN where unknown."""
     surface = Surface(data)
+    screw, oil = screw_and_oil(data.header['inputs'])
     return {
         'file': str(path),
         'bytes': path.stat().st_size,
@@ -27,9 +30,10 @@ def info_record(path: Path, data: SurfaceData) -> dict[str, Any]:
         'oil': surface.oil_name,
         'preload_N': surface.preload,
         'lead_m': surface.lead,
-        'roughness_rms_m': data.header['inputs']['screw']
-        .get('roughness', {})
-        .get('rms', math.nan),
+        'roughness_rms_m': screw.composite_rms,
+        'roughness': roughness_sentence(screw.roughness, screw.ball_roughness),
+        'film_floor_m': oil.film_floor,
+        'film_factor': oil.film_factor,
         'speed_range_rad_s': list(surface.speed_range),
         'load_range_N': list(surface.load_range),
         'temperature_range_K': list(surface.temperature_range),
@@ -98,8 +102,9 @@ def _head(record: Mapping[str, Any]) -> Iterator[str]:
     yield f'  tier         {record["tier"]}, format version {record["format_version"]}'
     yield (
         f'  screw, oil   {record["screw"]}, {record["oil"]}; lead {1e3 * record["lead_m"]:g} mm, '
-        f'preload {record["preload_N"]:g} N, Rq {1e6 * record["roughness_rms_m"]:g} um'
+        f'preload {record["preload_N"]:g} N, film floor {1e9 * record["film_floor_m"]:g} nm'
     )
+    yield f'  roughness    {record["roughness"]}'
     yield f'  sha256       {record["sha256"]}'
     yield f'  size         {record["bytes"]} bytes'
     yield f'  speed        {low / RPM:.3g} to {high / RPM:.4g} rev/min'
@@ -125,8 +130,8 @@ def _full_tier(record: Mapping[str, Any]) -> Iterator[str]:
     law = record['law']
     if law is not None:
         yield (
-            f'  contact      begins at a film of {law["onset_ratio"]:.3g} times the roughness that '
-            'acts, RCS 0.01'
+            f'  contact      RCS 0.01 at a film of {law["onset_ratio"]:.3g} times the roughness '
+            'that acts'
         )
         yield (
             f'               {law["marches"]} marches, waves down to '

@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 from surrogate.datasheet_writer import write_sheet
 from surrogate.files import InputError
-from surrogate.parameters import load_lubricant, load_screw
+from surrogate.parameters import BallRoughness, load_lubricant, load_screw
 
 
 def test_every_number_comes_back(tmp_path, screw, oil):
@@ -22,6 +22,10 @@ def test_every_number_comes_back(tmp_path, screw, oil):
     assert path.read_text(encoding='utf-8').startswith('# a line of comment')
     assert max(map(len, path.read_text(encoding='utf-8').splitlines())) < 120
     assert 'flank_clearance' not in path.read_text(encoding='utf-8')
+    assert 'ball_roughness' not in path.read_text(encoding='utf-8')
+    rough = replace(odd, ball_roughness=BallRoughness(grade='G10'))
+    write_sheet(path, rough)
+    assert load_screw(str(path)).ball_roughness == rough.ball_roughness
     write_sheet(path, replace(odd, flank_clearance=3e-6))
     assert load_screw(str(path)).flank_clearance == pytest.approx(3e-6, rel=1e-11)
     write_sheet(tmp_path / 'deep' / 'oil.yaml', oil)

@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 import pytest
 from surrogate.files import InputError
 from surrogate.formulas.lubricant import lubricant_state
-from surrogate.parameters import DATA, load_lubricant, load_screw, OperatingPoint
+from surrogate.parameters import BallRoughness, DATA, load_lubricant, load_screw, OperatingPoint
+from surrogate.raceway.fractal import PublishedRoughness
 from surrogate.units import ZERO_CELSIUS
 
 SCREW = (DATA / 'screws' / 'nominal.yaml').read_text(encoding='utf-8')
@@ -30,8 +31,10 @@ PLACES = {
     'asperity_friction': ('screw.roughness', 'asperity_friction', 1),
     'roughness_rms': ('screw.roughness', 'rms', 1),
     'fractal_dimension': ('screw.roughness', 'fractal_dimension', 1),
-    'fractal_roughness': ('screw.roughness', 'fractal_roughness', 1),
-    'fractal_sample_length': ('screw.roughness', 'sample_length', 1),
+    'fractal_roughness': ('published', 'fractal_roughness', 1),
+    'fractal_sample_length': ('published', 'sample_length', 1),
+    'cutoff_long': ('screw.roughness', 'cutoff_long', 1),
+    'cutoff_short': ('screw.roughness', 'cutoff_short', 1),
     'central_film_at_502mm_s': None,
     'rcs_limit': None,
     'efficiency_limit': None,
@@ -39,8 +42,8 @@ PLACES = {
     'kinematic_viscosity_40C': ('oil', 'kinematic_viscosity_40', 1),
     'kinematic_viscosity_100C': ('oil', 'kinematic_viscosity_100', 1),
     'ball_density': ('screw.ball', 'density', 1),
-    'film_floor': ('screw.roughness', 'film_floor', 1),
-    'shortest_wavelength': ('screw.roughness', 'shortest_wavelength', 1),
+    'film_floor': ('oil', 'film_floor', 1),
+    'shortest_wavelength': ('published', 'shortest_wavelength', 1),
     'fractal_scale_ratio': ('screw.roughness', 'scale_ratio', 1),
     'fractal_ridges': ('screw.roughness', 'ridges', 1),
     'speed_limit_Dn': ('screw', 'speed_limit', math.pi / 30),
@@ -50,11 +53,12 @@ PLACES = {
 
 def test_nominal_datasheets_hold_every_quantity_of_the_table(table, screw, oil):
     """The datasheets and the table of the nominal screw say the same."""
+    owners = {'screw': screw, 'oil': oil, 'published': PublishedRoughness()}
     for row in table('nominal_screw.csv'):
         place = PLACES.get(row['quantity'], ('screw', row['quantity'], 1))
         if place is None:
             continue
-        owner: object = {'screw': screw, 'oil': oil}[place[0].split('.')[0]]
+        owner: object = owners[place[0].split('.')[0]]
         for part in place[0].split('.')[1:]:
             owner = getattr(owner, part)
         assert getattr(owner, place[1]) == pytest.approx(
@@ -81,6 +85,29 @@ MISTAKES = [
     ('lead_mm: 10.0', 'lead_mm: 10.0\nfriction: 0.1', 'unknown key friction, allowed are name'),
     ('lead_mm: 10.0', 'lead_m: 0.01', 'lead_m has a wrong unit, the key is lead_mm'),
     ('rms_um: 0.12', 'rms_nm: 120.0', 'roughness: rms_nm has a wrong unit, the key is rms_um'),
+    (
+        'rms_um: 0.12',
+        'rms_um: 0.12\n  rms_slope_rad: 0.03',
+        'roughness: rms_slope_rad has a wrong unit, the key is rms_slope_deg',
+    ),
+    ('  rms_um: 0.12', '  rms_um: -0.1', 'roughness: rms_um is -0.1, allowed is 0 to 10'),
+    ('cutoff_long_mm: 0.25', 'cutoff_long_mm: 0.002', 'screw.yaml: roughness: long cut-off is 2'),
+    ('  fractal_dimension: 2.68\n', '', 'neither fractal dimension nor rms slope is given'),
+    ('fractal_dimension: 2.68', 'rms_slope_deg: 30.0', 'rms slope is 30 deg, allowed is 0.553'),
+    (
+        'fractal_dimension: 2.68',
+        'fractal_dimension: 2.68\n  rms_slope_deg: 1.0',
+        'fractal dimension 2.68 has the rms slope 2.18 deg, stated is 1 deg',
+    ),
+    ('rms_um: 0.12', 'rms_um: 0.12\n  lay: longitudinal', 'roughness: fan angle is missing'),
+    ('rms_um: 0.12', 'rms_um: 0.12\n  state: old', "state is 'old', allowed is run_in or new"),
+    ('roughness:\n', 'ball_roughness: {}\nroughness:\n', 'neither rms_um nor grade is given'),
+    (
+        'roughness:\n',
+        'ball_roughness: {rms_um: 0.01, grade: G10}\nroughness:\n',
+        'ball_roughness: rms_um and grade are given, allowed is one of the two',
+    ),
+    ('roughness:\n', 'ball_roughness: {grade: G7}\nroughness:\n', "grade is 'G7', allowed is G3"),
     ('lead_mm: 10.0', 'lead_mm: 0.01', 'lead_mm is 0.01, allowed is 0.5 to 200'),
     ('lead_mm: 10.0', 'lead_mm: .nan', 'lead_mm is nan, allowed is 0.5 to 200'),
     ('lead_mm: 10.0', 'lead_mm: .inf', 'lead_mm is inf, allowed is 0.5 to 200'),
@@ -107,6 +134,69 @@ def test_a_mistake_in_a_datasheet_is_one_sentence(tmp_path: Path, old, new, sent
         load_screw(str(path))
     assert str(path) in str(caught.value)
     assert '\n' not in str(caught.value)
+
+
+OLD = (
+    'fractal_roughness_nm: 0.97',
+    'sample_length_mm: 4.0',
+    'shortest_wavelength_um: 8.0',
+    'film_floor_nm: 3.0',
+)
+
+
+@pytest.mark.parametrize('old', [OLD, OLD[1:3], *((one,) for one in OLD)])
+def test_keys_of_an_old_datasheet_are_named_with_what_to_write_instead(tmp_path: Path, old):
+    """One sentence: the file, every old key that it has, and the keys that took their place."""
+    path = tmp_path / 'screw.yaml'
+    lines = ''.join(f'  {line}\n' for line in old)
+    path.write_text(SCREW.replace('roughness:\n', f'roughness:\n{lines}', 1), encoding='utf-8')
+    names = ', '.join(line.split(':')[0] for line in old)
+    sentence = f'{path}: roughness: {names} {"is" if len(old) == 1 else "are"} not read'
+    with pytest.raises(InputError, match=re.escape(sentence)) as caught:
+        load_screw(str(path))
+    instead = str(caught.value).split('instead', 1)[1]
+    for key in ('cutoff_long_mm', 'cutoff_short_um', 'fractal_dimension', 'rms_slope_deg'):
+        assert key in instead
+    assert instead.endswith('film_floor_nm belongs to the lubricant')
+    assert '\n' not in str(caught.value)
+
+
+def test_a_rough_ball_beside_a_smooth_raceway_needs_a_dimension(screw):
+    """The ball shares that of the raceway, which a smooth one need not state."""
+    smooth = replace(screw.roughness, rms=0.0, fractal_dimension=None)
+    assert replace(screw, roughness=smooth).composite_rms == 0.0
+    ball = BallRoughness(grade='G10')
+    with pytest.raises(InputError, match='ball_roughness is given without fractal_dimension'):
+        replace(screw, roughness=smooth, ball_roughness=ball)
+    rough = replace(screw, roughness=replace(smooth, fractal_dimension=2.5), ball_roughness=ball)
+    assert rough.composite_rms == pytest.approx(0.025e-6)
+
+
+def test_heights_of_raceway_and_ball_add_as_squares(screw):
+    """Their phases are independent."""
+    rough = replace(screw, ball_roughness=BallRoughness(rms=0.05e-6))
+    assert rough.composite_rms == pytest.approx(0.13e-6)
+    assert screw.composite_rms == screw.roughness.rms
+
+
+@pytest.mark.parametrize('name', ['iso_vg_32', 'iso_vg_68', 'iso_vg_100'])
+def test_shipped_oils_state_their_boundary_film(name):
+    """3 nm between 1 and 5 nm, fully flooded."""
+    oil = load_lubricant(name)
+    floors = (oil.film_floor_low, oil.film_floor, oil.film_floor_high)
+    assert [1e9 * floor for floor in floors] == pytest.approx([1.0, 3.0, 5.0])
+    assert oil.film_factor == 1.0
+
+
+def test_the_film_floor_lies_between_its_bounds(oil):
+    """On a bound it is inside; beyond it is one sentence."""
+    assert replace(oil, film_floor=1e-9).film_floor == 1e-9
+    assert replace(oil, film_floor=5.0 * 1e-9).film_floor == 5.0 * 1e-9
+    for floor in (0.9e-9, 5.1e-9):
+        with pytest.raises(InputError, match=r'film_floor_nm is [\d.]+ nm, allowed is 1 to 5 nm'):
+            replace(oil, film_floor=floor)
+    with pytest.raises(InputError, match='film_factor is 0.01, allowed is 0.05 to 1'):
+        replace(oil, film_factor=0.01)
 
 
 @pytest.mark.parametrize('content', ['', '3', '[1, 2]', 'name', '\x00'])

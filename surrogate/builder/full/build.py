@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.asperities.build import build_law
-from surrogate.asperities.law import AsperityLaw, shipped_law
-from surrogate.builder.closed_form import check_ranges, surface_header
+from surrogate.asperities.law import AsperityLaw
+from surrogate.builder.closed_form import check_ranges, check_rough, surface_header
 from surrogate.builder.full.chain import chain_inputs, solved_chain, SolvedChain
 from surrogate.builder.full.held_out import cell_errors, held_out_points, HeldOut, judged
 from surrogate.builder.full.nodes import Nodes, onset_speeds, surface_nodes
@@ -43,8 +43,9 @@ def build_full(
     Raises InputError for ranges that make no sense, and for a screw of which no point converges.
 
     """
+    check_rough(screw)
     check_ranges(settings, lubricant)
-    law = surface_law(screw, lubricant, run)
+    law = build_law(screw, lubricant, lambda tasks: run('march', tasks))
     nodes = surface_nodes(screw, lubricant, law, settings)
     columns = _columns(screw, lubricant, law, nodes, run)
     data = _surface(screw, lubricant, settings, law, nodes, columns)
@@ -52,13 +53,6 @@ def build_full(
     errors = cell_errors(data, held_out, screw, settings)
     reached = max((one.miss for one in held_out), default=None)
     return replace(data, errors=errors, header={**data.header, 'reached': reached})
-
-
-def surface_law(screw: Screw, lubricant: Lubricant, run: Run) -> AsperityLaw:
-    """Return the marched law of a screw and its oil; raceways without roughness need none."""
-    if not screw.composite_rms:
-        return shipped_law()
-    return build_law(screw, lubricant, lambda tasks: run('march', tasks))
 
 
 def _columns(
@@ -119,7 +113,7 @@ def _surface(
         temperature=nodes.temperature,
         log_onset=nodes.log_onset,
         fields=fields,
-        errors={name: np.full([n - 1 for n in mask.shape], np.nan) for name in FIELDS},
+        errors=dict.fromkeys(FIELDS, np.full(np.subtract(mask.shape, 1), np.nan)),
         worst_contact=worst,
         mask=mask,
         deviations={'rcs': deviation},
@@ -137,14 +131,14 @@ def limit_band(screw: Screw, lubricant: Lubricant, law: AsperityLaw) -> list[flo
     place = np.array([0.0]), np.array([lubricant.reference_temperature])
     floors = lubricant.film_floor_low, lubricant.film_floor, lubricant.film_floor_high
     low, stated, high = (
-        float(onset_speeds(screw, replace(lubricant, **_floor(floor)), law, *place)[0, 0])
+        float(onset_speeds(screw, _with_floor(lubricant, floor), law, *place)[0, 0])
         for floor in floors
     )
     return [low / stated, high / stated]
 
 
-def _floor(floor: float) -> dict[str, float]:
-    return dict.fromkeys(('film_floor', 'film_floor_low', 'film_floor_high'), floor)
+def _with_floor(lubricant: Lubricant, floor: float) -> Lubricant:
+    return replace(lubricant, film_floor=floor, film_floor_low=floor, film_floor_high=floor)
 
 
 def _held_out(

@@ -11,7 +11,7 @@ import pytest
 from surrogate.cli import add_commands
 from surrogate.files import InputError
 from surrogate.surface import shipped_surface, SurfaceError
-from surrogate.surface.file import read, write
+from surrogate.surface.file import ENSEMBLE_VERSION, read, write
 from surrogate.tasks.store import store_path, TaskStore
 
 CLOSED_FORM = shipped_surface(tier='closed_form')
@@ -183,7 +183,7 @@ def test_info_tells_what_draws_leave_uncertain(tmp_path: Path, capsys):
     data = read(CLOSED_FORM)
     spread = np.linspace(0.0, 0.02, data.mask.size).reshape(data.mask.shape)
     path = tmp_path / 'drawn.npz'
-    header = {**data.header, 'format_version': 2}
+    header = {**data.header, 'format_version': ENSEMBLE_VERSION}
     write(path, replace(data, header=header, deviations={'rcs': spread}))
     assert run('surface', 'info', path) == 0
     text = capsys.readouterr().out

@@ -9,8 +9,8 @@ import pytest
 from surrogate.contact.case import load_case
 from surrogate.contact.solve import case_settings, solve_case
 from surrogate.contact.surface import case_surface
-from surrogate.parameters import DATA, load_screw
-from surrogate.raceway.fractal import fractal_surface
+from surrogate.parameters import DATA
+from surrogate.raceway.fractal import fractal_surface, PublishedRoughness
 from surrogate.raceway.patch import take_patch, Window
 import yaml
 
@@ -35,10 +35,10 @@ def test_what_a_case_states_reaches_the_solver(tmp_path):
     assert case_settings(load(tmp_path), None).meniscus_length > 0
 
 
-def test_a_generated_surface_is_that_of_the_nominal_screw(tmp_path):
-    """What the case does not state comes from the nominal datasheet; the window from Hertz."""
+def test_a_generated_surface_is_the_published_one(tmp_path):
+    """What the case does not state is as published; the window comes from Hertz."""
     case = load(tmp_path, roughness={'rms_um': 0.12, 'seed': 7})
-    nominal = load_screw('nominal').roughness
+    nominal = PublishedRoughness()
     window = Window(length_x=2 * 40.646e-6, length_y=2 * 360.0e-6)
     expected = take_patch(fractal_surface(nominal, 7), 'rescaled', window, nominal.rms)
     found = case_surface(case)

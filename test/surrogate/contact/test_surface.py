@@ -10,13 +10,13 @@ import pytest
 from surrogate.contact.case import CaseRoughness, load_case
 from surrogate.contact.surface import case_surface, composite_rms, level_surface, roughness_words
 from surrogate.files import InputError
-from surrogate.parameters import DATA, load_screw
-from surrogate.raceway.ball import ball_rms
-from surrogate.raceway.fractal import fractal_surface, shifted
+from surrogate.parameters import DATA
+from surrogate.raceway.fractal import fractal_surface, PublishedRoughness, shifted
 from surrogate.raceway.patch import take_patch, Window
 from surrogate.raceway.scaling import draw_raceway, scale_spectrum
 from surrogate.raceway.short_waves import wave_rms
 from surrogate.raceway.spectrum import RoughnessSpectrum
+from surrogate.raceway.standards import ball_rms
 import yaml
 
 NOMINAL = DATA / 'cases' / 'nominal_smooth.yaml'
@@ -51,8 +51,7 @@ def test_keys_of_a_generated_surface(tmp_path):
             'fractal_roughness_nm': 0.01,
         },
     )
-    constants = replace(
-        load_screw('nominal').roughness,
+    constants = PublishedRoughness(
         fractal_dimension=2.5,
         ridges=4,
         scale_ratio=1.4,

@@ -8,10 +8,11 @@ import math
 import numpy as np
 import pytest
 from surrogate.files import InputError
-from surrogate.raceway.ball import BALL_RA, ball_rms, draw_pair, summed
+from surrogate.raceway.ball import draw_pair, summed
 from surrogate.raceway.scaling import draw_raceway, scale_spectrum
 from surrogate.raceway.short_waves import wave_rms
 from surrogate.raceway.spectrum import RoughnessSpectrum
+from surrogate.raceway.standards import BALL_RA, ball_rms
 
 RACEWAY = scale_spectrum(RoughnessSpectrum(rms=0.12e-6, fractal_dimension=2.5))
 BALL = scale_spectrum(RoughnessSpectrum(rms=ball_rms('G10'), fractal_dimension=2.5))

@@ -11,12 +11,17 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 from surrogate.files import InputError
-from surrogate.parameters import load_screw
-from surrogate.raceway.fractal import ensemble, fractal_surface, shifted, theoretical_rms
+from surrogate.raceway.fractal import (
+    ensemble,
+    fractal_surface,
+    PublishedRoughness,
+    shifted,
+    theoretical_rms,
+)
 from surrogate.raceway.fractal_fit import structure_function
 from surrogate.raceway.patch import take_patch, Window
 
-NOMINAL = load_screw('nominal').roughness
+NOMINAL = PublishedRoughness()
 COARSE = replace(NOMINAL, shortest_wavelength=64e-6)
 SHORT = replace(NOMINAL, sample_length=1e-5, shortest_wavelength=2e-5)
 HERTZ = Window(length_x=0.2e-3, length_y=1.6e-3)

@@ -8,15 +8,14 @@ import math
 import numpy as np
 import pytest
 from surrogate.files import InputError
-from surrogate.parameters import load_screw
-from surrogate.raceway.fractal import fractal_surface, theoretical_rms
+from surrogate.raceway.fractal import fractal_surface, PublishedRoughness, theoretical_rms
 from surrogate.raceway.fractal_fit import (
     expected_structure_function,
     identify_fractal,
     structure_function,
 )
 
-NOMINAL = load_screw('nominal').roughness
+NOMINAL = PublishedRoughness()
 SPACING = 2e-6
 ALONG = np.arange(0, 4e-3, SPACING)
 TRACES = np.linspace(0, 4e-3, 64)

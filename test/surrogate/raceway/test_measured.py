@@ -9,12 +9,11 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 from surrogate.files import InputError
-from surrogate.parameters import load_screw
-from surrogate.raceway.fractal import fractal_surface
+from surrogate.raceway.fractal import fractal_surface, PublishedRoughness
 from surrogate.raceway.measured import measured_surface
 from surrogate.raceway.patch import take_patch, Window
 
-NOMINAL = load_screw('nominal').roughness
+NOMINAL = PublishedRoughness()
 STEP = 2e-6
 X, Y = np.arange(-100, 101) * STEP, np.arange(-60, 61) * 2 * STEP
 FRACTAL = fractal_surface(replace(NOMINAL, shortest_wavelength=16e-6), 4)

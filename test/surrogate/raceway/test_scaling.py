@@ -10,14 +10,13 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 from surrogate.files import InputError
-from surrogate.parameters import load_screw
-from surrogate.raceway.fractal import wave_spectrum
+from surrogate.raceway.fractal import PublishedRoughness, wave_spectrum
 from surrogate.raceway.fractal_fit import identify_fractal
 from surrogate.raceway.scaling import draw_raceway, scale_spectrum, with_shorter_waves
 from surrogate.raceway.spectrum import RoughnessSpectrum
 from surrogate.raceway.stylus import filtered_profile, profile_rms, profile_rms_slope, read_waves
 
-NOMINAL = load_screw('nominal').roughness
+NOMINAL = PublishedRoughness()
 SPECTRUM = RoughnessSpectrum(rms=0.12e-6, cutoff_long=0.25e-3, fractal_dimension=2.68)
 SMALL = replace(SPECTRUM, cutoff_long=0.08e-3, fractal_dimension=2.4)
 FAN = math.radians(20)

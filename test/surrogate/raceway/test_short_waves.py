@@ -3,7 +3,6 @@
 """Waves that are too short for a grid, and the floor that stands for them."""
 
 import csv
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,11 +11,11 @@ from surrogate.ehl import Condition, ContactLubricant, Settings, solve_contact
 from surrogate.files import InputError
 from surrogate.formulas.geometry import hertz, screw_contact
 from surrogate.parameters import load_lubricant, load_screw
-from surrogate.raceway.fractal import fractal_surface, theoretical_rms
+from surrogate.raceway.fractal import fractal_surface, PublishedRoughness, theoretical_rms
 from surrogate.raceway.patch import take_patch, Window
 from surrogate.raceway.short_waves import STANDING, subgrid_floor, wave_rms, without_short_waves
 
-ROUGHNESS = replace(load_screw('nominal').roughness, shortest_wavelength=13e-6)
+ROUGHNESS = PublishedRoughness(shortest_wavelength=13e-6)
 ROOT = Path(__file__).parents[3]
 AXIS = np.linspace(-1e-4, 1e-4, 201)
 
@@ -74,10 +73,10 @@ def test_floor_gives_the_mean_rcs_of_resolved_waves():
     window = Window(
         length_x=2 * float(ellipse.semi_axis_x), length_y=2 * float(ellipse.semi_axis_y)
     )
-    roughness = replace(screw.roughness, shortest_wavelength=9e-6)
+    roughness = PublishedRoughness(shortest_wavelength=9e-6)
     for draw in known:
         whole = take_patch(fractal_surface(roughness, draw), 'rescaled', window, roughness.rms)
-        floor = screw.roughness.film_floor + subgrid_floor(whole, 20e-6)
+        floor = oil.film_floor + subgrid_floor(whole, 20e-6)
         solution = solve_contact(
             contact,
             ContactLubricant(viscosity=oil.viscosity, pressure_viscosity=oil.pressure_viscosity),

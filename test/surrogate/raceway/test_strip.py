@@ -4,8 +4,7 @@
 
 import numpy as np
 import pytest
-from surrogate.parameters import load_screw
-from surrogate.raceway.fractal import fractal_surface, shifted
+from surrogate.raceway.fractal import fractal_surface, PublishedRoughness, shifted
 from surrogate.raceway.patch import take_patch, Window
 from surrogate.raceway.scaling import draw_raceway, scale_spectrum
 from surrogate.raceway.spectrum import RoughnessSpectrum
@@ -17,9 +16,7 @@ Y = np.linspace(-4e-4, 4e-4, 33)
 def test_blocks_are_the_heights_of_the_surface():
     """Put together they are the whole, also of a patch with its plane and scale."""
     window = Window(length_x=1e-4, length_y=8e-4)
-    patch = take_patch(
-        fractal_surface(load_screw('nominal').roughness, 1), 'rescaled', window, 1e-7
-    )
+    patch = take_patch(fractal_surface(PublishedRoughness(), 1), 'rescaled', window, 1e-7)
     x = np.linspace(-1e-4, 3e-4, 50)
     for surface in (RACEWAY, patch):
         strip = surface.strip(Y)

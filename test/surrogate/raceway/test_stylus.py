@@ -9,14 +9,13 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 from surrogate.files import InputError
+from surrogate.raceway.standards import long_cutoff_iso_21920, ProfileBand
 from surrogate.raceway.stylus import (
     band_transmission,
     filtered_profile,
     gaussian_transmission,
-    long_cutoff_iso_21920,
     profile_rms,
     profile_rms_slope,
-    ProfileBand,
     read_all_directions,
     read_waves,
 )

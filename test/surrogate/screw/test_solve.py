@@ -5,13 +5,20 @@
 from dataclasses import replace
 import math
 
+import numpy as np
 import pytest
 from surrogate.ehl import Settings
 from surrogate.files import InputError
 from surrogate.formulas import closed_form
 from surrogate.identify.model import thickened
-from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
-from surrogate.screw.contacts import raceway_patch, ScrewSettings
+from surrogate.parameters import BallRoughness, load_lubricant, load_screw, OperatingPoint
+from surrogate.raceway.ball import draw_stated
+from surrogate.screw.contacts import (
+    GRID_WAVELENGTH,
+    make_contacts,
+    ScrewSettings,
+    shortest_on_grid,
+)
 from surrogate.screw.solve import rebalance_screw, solve_screw
 
 SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
@@ -113,12 +120,37 @@ def test_a_nut_about_to_unload_is_idle_and_named():
     assert found.energy_error < 1e-8
 
 
-def test_patch_does_not_jump_where_the_preload_vanishes():
-    """The window never shrinks to nothing."""
-    scales = [
-        raceway_patch(replace(SCREW, preload=preload), 'screw', 0).scale for preload in (0.0, 1.0)
-    ]
-    assert scales[0] == scales[1]
+def test_the_raceway_belongs_to_the_draw():
+    """The same for every side and load; another draw is another place."""
+    first, again, other = (draw_stated(SCREW.roughness, None, draw) for draw in (3, 3, 4))
+    x, y = np.linspace(-4e-5, 4e-5, 9), np.linspace(-3e-4, 3e-4, 9)
+    assert np.array_equal(first.heights(x, y), again.heights(x, y))
+    assert not np.allclose(first.heights(x, y), other.heights(x, y))
+    point = OperatingPoint(speed=1.0, load=0.0, temperature=313.15)
+    sides = make_contacts(SCREW, OIL, point, ScrewSettings(draw=3))
+    assert sides[0].raceway is sides[1].raceway
+    assert sides[0].raceway.shortest_wavelength > GRID_WAVELENGTH
+    assert {side.film_floor for side in sides} == {OIL.film_floor}
+
+
+def test_smooth_raceway_and_ball_have_no_draw():
+    """Rq 0 is the smooth contact, whatever the draw; a rough ball alone is not."""
+    bare = replace(SCREW, roughness=replace(SCREW.roughness, rms=0.0))
+    point = OperatingPoint(speed=1.0, load=0.0, temperature=313.15)
+    assert make_contacts(bare, OIL, point, ScrewSettings())[0].raceway is None
+    assert shortest_on_grid(bare, ScrewSettings()) == math.inf
+    rough = replace(bare, ball_roughness=BallRoughness(grade='G10'))
+    assert make_contacts(rough, OIL, point, ScrewSettings())[0].raceway is not None
+
+
+def test_a_starved_contact_is_taken_at_a_slower_entrainment():
+    """The speed whose flooded film is the stated share."""
+    point = OperatingPoint(speed=10.0, load=0.0, temperature=313.15)
+    full, half = (
+        make_contacts(SCREW, replace(OIL, film_factor=factor), point, ScrewSettings())[0]
+        for factor in (1.0, 0.5)
+    )
+    assert half.entrainment(20.0) == pytest.approx(0.5 ** (1 / 0.67) * full.entrainment(20.0))
 
 
 def test_rest_is_dry_and_loses_most():
@@ -153,20 +185,13 @@ def test_a_contact_that_fails_is_named_and_leaves_no_number():
     assert math.isnan(found.efficiency)
 
 
-def test_the_patch_belongs_to_the_draw_not_to_the_load():
-    """One surface per draw and side, with all waves of the datasheet."""
-    first, again, other = (raceway_patch(SCREW, 'screw', draw) for draw in (3, 3, 4))
-    assert first.scale == again.scale != other.scale
-    assert first.shortest_wavelength == pytest.approx(9.13e-6, rel=1e-3)
-
-
-def test_waves_off_the_grid_raise_the_floor_of_the_datasheet():
-    """The floor on the grid is that of the screw and a share of the lost waves."""
+def test_waves_off_the_grid_raise_the_floor_of_the_oil():
+    """The floor on the grid is that of the oil and a share of the lost waves."""
     found = at(60, 500.0, ROUGH)
     floors = {contact.rough.settings.film_floor for contact in found.contacts}
-    assert all(1e-10 < floor - SCREW.roughness.film_floor < 3e-9 for floor in floors)
+    assert all(1e-10 < floor - OIL.film_floor < 3e-9 for floor in floors)
     whole = at(60, 500.0, replace(ROUGH, grid_wavelength=None))
-    assert whole.contacts[0].rough.settings.film_floor == SCREW.roughness.film_floor
+    assert whole.contacts[0].rough.settings.film_floor == OIL.film_floor
 
 
 def test_balls_are_balanced_anew_on_solved_contacts():

@@ -11,7 +11,14 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 from surrogate.surface import shipped_surface
-from surrogate.surface.file import ENSEMBLE_VERSION, read, SurfaceData, SurfaceError, write
+from surrogate.surface.file import (
+    ENSEMBLE_VERSION,
+    FORMAT_VERSION,
+    read,
+    SurfaceData,
+    SurfaceError,
+    write,
+)
 
 CLOSED_FORM = shipped_surface(tier='closed_form')
 SHIPPED = CLOSED_FORM.read_bytes()
@@ -86,9 +93,21 @@ def test_an_unknown_version_is_told_before_anything_else(tmp_path: Path):
     path = tmp_path / 'new.npz'
     rewrite(path, format_version=ENSEMBLE_VERSION + 1)
     with pytest.raises(
-        SurfaceError, match='surface format version 3, this program reads versions 1 and 2'
+        SurfaceError, match='surface format version 5, this program reads versions 3 and 4'
     ):
         read(path)
+
+
+@pytest.mark.parametrize('version', [1, 2])
+def test_a_surface_of_another_roughness_model_must_be_built_again(tmp_path: Path, version):
+    """The sentence says why the file is refused and how to build it."""
+    path = tmp_path / 'old.npz'
+    rewrite(path, format_version=version)
+    sentence = f'old.npz: surface format version {version}, the roughness model has changed'
+    with pytest.raises(SurfaceError, match=sentence) as caught:
+        read(path)
+    assert 'ballscrew surface build --screw SCREW' in str(caught.value)
+    assert '\n' not in str(caught.value)
 
 
 @pytest.mark.parametrize(
@@ -219,8 +238,8 @@ def test_what_draws_leave_uncertain_is_written_read_and_hashed(tmp_path: Path, s
 
 
 def test_without_draws_a_file_is_as_it_was(surface_data):
-    """The hash of a version 1 file has not changed with version 2."""
-    assert surface_data.header['format_version'] == 1
+    """The hash of a file without draws is that of its own version."""
+    assert surface_data.header['format_version'] == FORMAT_VERSION
     assert read(CLOSED_FORM).deviations == {}
 
 

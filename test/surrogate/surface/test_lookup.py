@@ -36,8 +36,8 @@ def surface(surface_data: SurfaceData) -> Surface:
 
 
 def floor_of(surface: Surface) -> float:
-    """Return the film floor of the screw [m]."""
-    return float(surface.header['inputs']['screw']['roughness']['film_floor'])
+    """Return the film floor of the oil [m]."""
+    return float(surface.header['inputs']['lubricant']['film_floor'])
 
 
 def node_speed(data: SurfaceData, i: int, j: int, k: int) -> float:

@@ -14,14 +14,14 @@ import pytest
 from surrogate.cli import add_commands
 from surrogate.files import InputError
 from surrogate.surface import FIELDS, shipped_surface
-from surrogate.surface.file import read, write
+from surrogate.surface.file import ENSEMBLE_VERSION, read, write
 from surrogate.surface_tools.fields import FIELD_TEXTS
 
 DATA = read(shipped_surface(tier='closed_form'))
 SPREAD = np.linspace(0.0, 0.1, DATA.mask.size).reshape(DATA.mask.shape)
 DRAWN = replace(
     DATA,
-    header={**DATA.header, 'format_version': 2},
+    header={**DATA.header, 'format_version': ENSEMBLE_VERSION},
     deviations={'friction_torque': SPREAD},
     standard_errors={'rcs': 0.5 * SPREAD},
 )

@@ -11,7 +11,7 @@ import pytest
 from surrogate.cli import add_commands
 from surrogate.files import InputError
 from surrogate.surface import shipped_surface, Surface
-from surrogate.surface.file import read
+from surrogate.surface.file import ENSEMBLE_VERSION, read
 
 figures = pytest.importorskip('surrogate.surface_tools.figures')
 DATA = read(shipped_surface(tier='closed_form'))
@@ -75,7 +75,7 @@ def test_panels_and_axes():
 
 def test_draws_add_two_panels():
     """What the roughness draws leave uncertain is shown when it is known."""
-    header = {**DATA.header, 'format_version': 2}
+    header = {**DATA.header, 'format_version': ENSEMBLE_VERSION}
     drawn = replace(DATA, header=header, deviations={'rcs': 0.1 * DATA.fields['rcs']})
     assert titles(figures.figure_surface(Surface(drawn), 313.15))[6:] == [
         'Efficiency over draws',

@@ -14,7 +14,7 @@ import pytest
 from surrogate.cli import add_commands
 from surrogate.files import InputError, to_json
 from surrogate.surface import shipped_surface, Surface
-from surrogate.surface.file import read, write
+from surrogate.surface.file import ENSEMBLE_VERSION, read, write
 from surrogate.surface_tools.fields import FIELD_TEXTS
 
 SHIPPED = Surface.load(shipped_surface())
@@ -87,7 +87,10 @@ def test_draws_are_told(tmp_path, capsys):
     data = read(CLOSED_FORM)
     spread = np.full(data.mask.shape, 0.01)
     parts = {'deviations': {'rcs': spread}, 'standard_errors': {'rcs': 0.5 * spread}}
-    write(tmp_path / 'a.npz', replace(data, header={**data.header, 'format_version': 2}, **parts))
+    write(
+        tmp_path / 'a.npz',
+        replace(data, header={**data.header, 'format_version': ENSEMBLE_VERSION}, **parts),
+    )
     found = query(capsys, tmp_path / 'a.npz', '--speed-rpm', 600, '--load-N', 1000)
     assert found['rcs_std'] == pytest.approx(0.01)
     assert found['rcs_stderr'] == pytest.approx(0.005)

@@ -146,7 +146,7 @@ def test_record_of_a_point():
     assert solved_chain({'opposing': [asdict(record)], 'assisting': []}).under(1.0) == (record,)
     ratios = [contact.film_ratio for contact in found.contacts]
     assert record.worst_contact == ratios.index(min(ratios))
-    floor = SCREW.roughness.film_floor
+    floor = OIL.film_floor
     assert record.film_over_floor == pytest.approx(record.minimum_film / floor)
     free = solve_screw(
         replace(SCREW, preload=0.0), OIL, replace(point, load=0.0), settings=settings

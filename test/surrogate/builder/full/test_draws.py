@@ -12,18 +12,14 @@ import pytest
 from surrogate.builder.full.draws import (
     deviation,
     draws_of,
-    LEAST_DRAWS,
     mean_of_draws,
     POPULATION,
-    POWER,
     raked,
     STEEPEST,
     weighted_mean,
     WeightedDraws,
 )
-from surrogate.formulas.load_sharing import idle_load
 from surrogate.parameters import load_screw
-from surrogate.screw.contacts import raceway_patch
 from surrogate.surface import SolvedPoint
 
 POWERS = (14.0, 31.0, 23.0, 20.0, 29.0, 24.0, 26.0, 28.0, 19.0, 17.0)
@@ -121,19 +117,9 @@ def test_draws_of_the_verge_gain_weight_without_a_step():
     assert weights[0, :5] == pytest.approx(raked(np.array(POWERS[:5]) - 24.0))
 
 
-def test_factors_are_those_of_the_raceway():
-    """The first of a thousand draws; fewer than eight are not weighted."""
-    screw = load_screw('nominal')
-    assert draws_of(screw, LEAST_DRAWS - 1) == WeightedDraws(LEAST_DRAWS - 1)
-    draws = draws_of(screw, LEAST_DRAWS)
-    assert draws.powers[3] == raceway_patch(screw, 'screw', 3).scale ** POWER
-    assert (draws.count, draws.most) == (LEAST_DRAWS, 2 * LEAST_DRAWS)
-    assert draws.idle == idle_load(screw)
-    nut = [raceway_patch(screw, 'nut', draw).scale ** POWER for draw in range(2 * LEAST_DRAWS)]
-    assert nut == pytest.approx(draws.powers, rel=0.03 * POWER)
-    assert draws_of(screw, 16).mean == draws.mean
-    single = draws_of(replace(screw, preload=0.0), LEAST_DRAWS)
-    assert single.at(0.5 * draws.idle) == LEAST_DRAWS
+def test_draws_of_one_height_are_plain():
+    """No draw is scaled by itself, so that none stands for others."""
+    assert draws_of(load_screw('nominal'), 16) == WeightedDraws(16)
 
 
 def test_records_of_draws_have_one_mean():

@@ -1,0 +1,104 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Roughness of raceway and ball as a datasheet states it, by the standard.
+
+What the waves need beyond the sheet is checked when it is read, so that a sheet that cannot be
+solved is refused with its file.
+
+"""
+
+from dataclasses import dataclass
+import math
+from typing import ClassVar, Literal
+
+from surrogate.datasheet import Checked, choice, count, quantity
+from surrogate.files import InputError
+from surrogate.raceway.fractal import DIMENSIONS, Lay
+from surrogate.raceway.spectrum import RoughnessSpectrum
+from surrogate.raceway.standards import BALL_RA, ball_rms, CUTOFF_SHORT
+
+RunIn = Literal['run_in', 'new']
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Roughness(Checked):
+    """
+    Raceway roughness by the standard, and what asperities do.
+
+    Rq `rms` [m] of a profile traced across the lay, 0 for smooth, between a short and a long
+    cut-off [m], the long one by the table for Ra = 0.8 Rq where it is None; fractal dimension [-]
+    or rms slope Rdq [rad] of that profile; lay with the angle [rad] over which its ridges fan;
+    `state` says whether the profile was traced on a new raceway or after running in and changes
+    no number; ratio of neighbouring wavelengths and ridges of the generator [-]; boundary
+    friction coefficient [-].
+
+    """
+
+    RETIRED: ClassVar[tuple[str, ...]] = (
+        'fractal_roughness_nm',
+        'sample_length_mm',
+        'shortest_wavelength_um',
+        'film_floor_nm',
+    )
+    INSTEAD: ClassVar[str] = (
+        'cutoff_long_mm, cutoff_short_um, and fractal_dimension or rms_slope_deg, by which Rq is '
+        'that of a profile; film_floor_nm belongs to the lubricant'
+    )
+
+    rms: float = quantity('um', 1e-6, 0.0, 10.0)
+    cutoff_long: float | None = quantity('mm', 1e-3, 0.001, 100.0, default=None)
+    cutoff_short: float = quantity('um', 1e-6, 0.1, 1000.0, default=CUTOFF_SHORT)
+    fractal_dimension: float | None = quantity('', 1.0, *DIMENSIONS, default=None)
+    rms_slope: float | None = quantity('deg', math.pi / 180, 0.001, 45.0, default=None)
+    lay: Lay = choice('isotropic', 'longitudinal', 'transverse', default='isotropic')
+    fan_angle: float | None = quantity('deg', math.pi / 180, 0.0, 90.0, default=None)
+    state: RunIn = choice('run_in', 'new', default='run_in')
+    scale_ratio: float = quantity('', 1.0, 1.01, 10.0, default=1.5)
+    ridges: int = count(1, 1000, default=10)
+    asperity_friction: float = quantity('', 1.0, 0.0, 1.0)
+
+    def __post_init__(self) -> None:
+        """Check every range, and that waves with these numbers exist."""
+        Checked.__post_init__(self)
+        spectrum = spectrum_of(self)
+        if self.rms_slope is not None:
+            # Only a stated slope is worth the time that scipy takes to load.
+            from surrogate.raceway.scaling import scale_spectrum
+
+            scale_spectrum(spectrum)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class BallRoughness(Checked):
+    """Roughness of the balls: Rq `rms` [m], or the grade of ISO 3290 whose largest Rq it is."""
+
+    rms: float | None = quantity('um', 1e-6, 0.0, 10.0, default=None)
+    grade: str | None = choice(*BALL_RA, default=None)
+
+    def __post_init__(self) -> None:
+        """Check the range, and that one of the two is given."""
+        Checked.__post_init__(self)
+        if (self.rms is None) == (self.grade is None):
+            given = 'neither rms_um nor grade is' if self.rms is None else 'rms_um and grade are'
+            raise InputError(f'ball_roughness: {given} given, allowed is one of the two')
+
+    @property
+    def height(self) -> float:
+        """Rq [m], stated or by the grade."""
+        return ball_rms(self.grade) if self.grade is not None else self.rms or 0.0
+
+
+def spectrum_of(roughness: Roughness) -> RoughnessSpectrum:
+    """Return what a datasheet says of the raceway; raises InputError where it contradicts."""
+    return RoughnessSpectrum(
+        rms=roughness.rms,
+        cutoff_long=roughness.cutoff_long,
+        cutoff_short=roughness.cutoff_short,
+        fractal_dimension=roughness.fractal_dimension,
+        rms_slope=roughness.rms_slope,
+        lay=roughness.lay,
+        fan_angle=roughness.fan_angle,
+        scale_ratio=roughness.scale_ratio,
+        ridges=roughness.ridges,
+    )

@@ -1,0 +1,94 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Roughness as a datasheet states it: its spectrum, its ball and the sentence of results."""
+
+from dataclasses import replace
+import math
+
+import numpy as np
+import pytest
+from surrogate.parameters import load_screw
+from surrogate.raceway.ball import ball_of, draw_pair, draw_stated, roughness_sentence
+from surrogate.raceway.scaling import draw_raceway, scale_spectrum
+from surrogate.raceway.short_waves import wave_rms
+from surrogate.raceway.spectrum import RoughnessSpectrum
+from surrogate.raceway.stated import BallRoughness, Roughness, spectrum_of
+
+STATED = load_screw('nominal').roughness
+SMOOTH = Roughness(rms=0.0, asperity_friction=0.1)
+BALL = BallRoughness(grade='G10')
+X, Y = np.linspace(-1e-4, 1e-4, 20), np.linspace(-4e-4, 4e-4, 15)
+
+
+def test_every_number_of_a_sheet_reaches_the_spectrum():
+    """Each under its own name; those of the generator too."""
+    sheet = Roughness(
+        rms=0.2e-6,
+        cutoff_long=0.8e-3,
+        cutoff_short=8e-6,
+        rms_slope=math.radians(1.0),
+        lay='longitudinal',
+        fan_angle=math.radians(20.0),
+        scale_ratio=1.4,
+        ridges=7,
+        asperity_friction=0.12,
+    )
+    assert spectrum_of(sheet) == RoughnessSpectrum(
+        rms=0.2e-6,
+        cutoff_long=0.8e-3,
+        cutoff_short=8e-6,
+        rms_slope=math.radians(1.0),
+        lay='longitudinal',
+        fan_angle=math.radians(20.0),
+        scale_ratio=1.4,
+        ridges=7,
+    )
+    nominal = scale_spectrum(spectrum_of(STATED))
+    assert (nominal.rms, nominal.fractal_dimension) == (0.12e-6, 2.68)
+    assert nominal.band.cutoff_long == pytest.approx(0.25e-3)
+    assert not nominal.cutoff_by_table
+
+
+def test_the_state_is_said_and_changes_no_number():
+    """Run in by default."""
+    new = replace(STATED, state='new')
+    assert spectrum_of(new) == spectrum_of(STATED)
+    assert roughness_sentence(STATED, None).startswith('raceway (run in): Rq 0.12 um between')
+    assert roughness_sentence(new, None).startswith('raceway (new): Rq 0.12 um between')
+
+
+def test_what_nobody_stated_is_said():
+    """The long cut-off of the table, and a smooth ball."""
+    raceway, _, ball = roughness_sentence(STATED, BALL).partition('; ')
+    assert 'not stated' not in raceway
+    assert ball.startswith('ball (G10): Rq 0.025 um')
+    assert 'by the table for Ra = 0.8 Rq, not stated' in ball
+    by_table = roughness_sentence(replace(STATED, cutoff_long=None), None)
+    assert '0.25 mm by the table for Ra = 0.8 Rq, not stated,' in by_table
+    assert by_table.endswith('ball: smooth, not stated')
+    assert roughness_sentence(SMOOTH, BallRoughness(rms=0.0)) == 'raceway: smooth; ball: smooth'
+
+
+def test_a_draw_is_that_of_raceway_and_ball():
+    """Phases of their own; none of either where both are smooth."""
+    raceway, ball = scale_spectrum(spectrum_of(STATED)), ball_of(STATED, BALL)
+    for stated, expected in (
+        (None, draw_raceway(raceway, 5)),
+        (BALL, draw_pair(raceway, ball, 5)),
+    ):
+        found = draw_stated(STATED, stated, 5)
+        np.testing.assert_array_equal(found.heights(X, Y), expected.heights(X, Y))
+    assert ball_of(STATED, BallRoughness(rms=0.0)) is None
+    assert draw_stated(SMOOTH, None, 5) is draw_stated(SMOOTH, BallRoughness(rms=0.0), 5) is None
+    alone = draw_stated(replace(SMOOTH, fractal_dimension=2.68), BALL, 5)
+    assert wave_rms(alone) == pytest.approx(wave_rms(draw_raceway(ball, 5)))
+
+
+def test_the_ball_shares_dimension_and_generator_of_the_raceway():
+    """Its long cut-off is that of the table, by which balls are measured."""
+    ball = ball_of(replace(STATED, ridges=4, scale_ratio=1.3), BALL)
+    assert ball.fractal_dimension == 2.68
+    assert ball.direction.size == 4
+    assert ball.wave_number[1] / ball.wave_number[0] == pytest.approx(1.3)
+    assert ball.band.cutoff_long == pytest.approx(0.08e-3)
+    assert ball.rms == pytest.approx(0.025e-6)
