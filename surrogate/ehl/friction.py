@@ -130,7 +130,8 @@ def contact_friction(
 
     Slip [m/s] of the surface along x and y, numbers or arrays on the grid; boundary coefficient
     and share [-] as in `node_strengths`; `film` shears the local or the central film; |slip| is
-    sqrt(slip^2 + `slip_floor`^2) [m/s] where a direction is needed. Raises InputError for slip that does not fit the grid.
+    sqrt(slip^2 + `slip_floor`^2) [m/s] where a direction is needed. Raises InputError for slip
+    that does not fit the grid.
 
     """
     vx, vy = _on_grid(solution, slip_x, 'slip_x'), _on_grid(solution, slip_y, 'slip_y')
