@@ -3,8 +3,8 @@
 """
 Solve the nominal screw in the full tier over speed; time it, and draw its torque and RCS.
 
-Run `python studies/screw.py [--load N] [--out DIR]`: ISO VG 68 at 40 degC, one draw of the
-roughness with waves down to 20.6 um. Prints friction torque and its parts, the torque of smooth
+Run `python studies/screw.py [--load N] [--out DIR]`: ISO VG 68 at 40 degC, roughness that rolls by
+the shipped law. Prints friction torque and its parts, the torque of smooth
 raceways, film ratio, RCS, the energy error, the difference of normal forces between contacts and
 balance, and processor time of each point: from cold, from the solution at a speed 10 % lower, and
 that of the balance of one ball in it.
@@ -39,7 +39,7 @@ def solve_all(load):
     )
     for rpm in SPEEDS:
         point = OperatingPoint(speed=rpm * RPM, load=load, temperature=313.15)
-        smooth = solve_screw(screw, oil, point, settings=ScrewSettings(draw=None))
+        smooth = solve_screw(screw, oil, point, settings=ScrewSettings(kinematics='smooth'))
         cold, found = timed(lambda point=point: solve_screw(screw, oil, point))
         near = solve_screw(screw, oil, replace(point, speed=0.9 * point.speed))
         warm, _ = timed(lambda point=point, near=near: solve_screw(screw, oil, point, start=near))
@@ -65,9 +65,9 @@ def timed(work):
 
 def balance_one(screw, point, found):
     """Balance a ball of the loaded nut once more."""
-    rough = [contact.rough for contact in found.contacts[:2]]
+    solved = [contact.solved for contact in found.contacts[:2]]
     force = float(nut_forces(point.opposing_load, screw.preload)[0])
-    return balance_nut(screw, point, force, 1, rough)
+    return balance_nut(screw, point, force, 1, solved)
 
 
 def parts(screw, found):
