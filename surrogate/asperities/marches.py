@@ -134,12 +134,12 @@ class StripInputs:
 
     @property
     def waves(self) -> Waves:
-        """The waves that are on the grid."""
+        """Return the waves that are on the grid."""
         return stated_waves(self.roughness, self.ball_roughness).longer_than(self.shortest)
 
     @property
     def line(self) -> Line:
-        """The strip as a line contact."""
+        """Return the strip as a line contact."""
         return Line(
             radius=self.strip.radius,
             reduced_modulus=self.strip.reduced_modulus,
