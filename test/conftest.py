@@ -30,8 +30,6 @@ SLOW = (
     'ballscrew_monitor/test_cli.py',
     'launch',
     'scripts',
-    'studies/test_surface.py',
-    'studies/test_surface_nodes.py',
     'surrogate/asperities/test_marches.py',
     'surrogate/builder',
     'surrogate/commands',

@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import expit, logit
 from surrogate.asperities.acting import film_over_acting, speed_at_ratio
 from surrogate.asperities.law import AsperityLaw, NOTHING, ONSET_RCS
 from surrogate.asperities.marches import (
@@ -156,10 +157,10 @@ def _over_pressure(marches: Sequence[Marched], pressure: float) -> tuple[float, 
 
 
 def _falling(curves: Sequence[Array]) -> Array:
-    """Return the parabola through the logarithm of the mean of shares over `NODES` [-]."""
+    """Return the parabola through the logit of the mean of shares over `NODES` [-]."""
     inside, mean, weight = _mean(curves)
-    fit = np.polyfit(NODES[inside], np.log(np.maximum(mean, NOTHING)), 2, w=weight)
-    return np.asarray(np.exp(np.minimum.accumulate(np.polyval(fit, NODES))))
+    fit = np.polyfit(NODES[inside], logit(np.clip(mean, NOTHING, 1 - NOTHING)), 2, w=weight)
+    return np.asarray(expit(np.minimum.accumulate(np.polyval(fit, NODES))))
 
 
 def _line(curves: Sequence[Array]) -> Array:

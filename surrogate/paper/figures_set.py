@@ -6,12 +6,13 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from matplotlib.figure import Figure
+from surrogate.asperities.law import shipped_law
 from surrogate.paper.cases import (
     LOADS,
     MARK_RPM,
     PRELOAD,
     ROUGH_LOADS,
-    ROUGH_SPEEDS,
+    SHOWN_SPEEDS,
     SLOW,
     SMOOTH,
     SMOOTH_SPEEDS,
@@ -19,7 +20,6 @@ from surrogate.paper.cases import (
 )
 from surrogate.paper.figures_contact import (
     Drawn,
-    figure_asperities,
     figure_fractal,
     figure_rough_load,
     figure_rough_speed,
@@ -27,8 +27,8 @@ from surrogate.paper.figures_contact import (
     figure_smooth_speed,
 )
 from surrogate.paper.figures_map import figure_maps, figure_zone
-from surrogate.paper.figures_other import figure_alternatives
 from surrogate.paper.figures_screw import figure_stribeck, figure_torque, MeasuredTorque
+from surrogate.paper.figures_trends import figure_trends
 from surrogate.paper.raceway import published_patch
 from surrogate.paper.solve import SHORTEST_ON_GRID
 from surrogate.paper.study import SCREW, Study
@@ -70,19 +70,18 @@ def _pictures(
         },
         '9': {
             '09_rough_speed': lambda: figure_rough_speed(
-                _drawn(study, 0, [(rpm, PRELOAD) for rpm in ROUGH_SPEEDS])
+                _drawn(study, 0, [(rpm, PRELOAD) for rpm in SHOWN_SPEEDS])
             )
         },
         '10': {
             '10_rough_load': lambda: figure_rough_load(
                 _drawn(study, 0, [(SLOW, load) for load in ROUGH_LOADS])
-            ),
-            '10_asperities': lambda: figure_asperities(every),
+            )
         },
         '11': {'11_stribeck': lambda: figure_stribeck(every)},
         '12': {'12_maps': lambda: figure_maps(screw, every)},
-        '13': {'13_zone': lambda: figure_zone(screw, every)},
-        'alternatives': {'alternatives': lambda: figure_alternatives(screw, every)},
+        '13': {'13_zone': lambda: figure_zone(screw, shipped_law(), every)},
+        'trends': {'trends': lambda: figure_trends(screw, every)},
     }
     return pictures[figure]
 
