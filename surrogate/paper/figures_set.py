@@ -53,7 +53,7 @@ def _pictures(
     study: Study, figure: str, measured: MeasuredTorque | None
 ) -> dict[str, Callable[[], Figure]]:
     """Return the pictures of one figure of the study by file name."""
-    rows, screw = study.rows, load_screw(SCREW)
+    rows, screw, law = study.rows, load_screw(SCREW), shipped_law()
     every = list(rows.values())
     pictures: dict[str, dict[str, Callable[[], Figure]]] = {
         '4': {'04_surface': lambda: _fractal(study)},
@@ -78,9 +78,9 @@ def _pictures(
                 _drawn(study, 0, [(SLOW, load) for load in ROUGH_LOADS])
             )
         },
-        '11': {'11_stribeck': lambda: figure_stribeck(every)},
+        '11': {'11_stribeck': lambda: figure_stribeck(law, every)},
         '12': {'12_maps': lambda: figure_maps(screw, every)},
-        '13': {'13_zone': lambda: figure_zone(screw, shipped_law(), every)},
+        '13': {'13_zone': lambda: figure_zone(screw, law, every)},
         'trends': {'trends': lambda: figure_trends(screw, every)},
     }
     return pictures[figure]
