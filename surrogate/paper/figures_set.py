@@ -21,8 +21,7 @@ from surrogate.paper.cases import (
 from surrogate.paper.figures_contact import (
     Drawn,
     figure_fractal,
-    figure_rough_load,
-    figure_rough_speed,
+    figure_rough,
     figure_smooth_load,
     figure_smooth_speed,
 )
@@ -69,12 +68,12 @@ def _pictures(
             )
         },
         '9': {
-            '09_rough_speed': lambda: figure_rough_speed(
+            '09_rough_speed': lambda: figure_rough(
                 _drawn(study, 0, [(rpm, PRELOAD) for rpm in SHOWN_SPEEDS])
             )
         },
         '10': {
-            '10_rough_load': lambda: figure_rough_load(
+            '10_rough_load': lambda: figure_rough(
                 _drawn(study, 0, [(SLOW, load) for load in ROUGH_LOADS])
             )
         },
