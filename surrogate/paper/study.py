@@ -36,7 +36,7 @@ from surrogate.tasks.store import store_path, TaskStore
 
 SCREW, OIL = 'nominal', 'iso_vg_68'
 """Datasheets of the published screw."""
-WORK = 'surrogate.paper.study 3'
+WORK = 'surrogate.paper.study 2'
 """Solver and version of the kept results."""
 Report = Callable[[int, int, float, StudyTask], None]
 """Told after each solve: tasks done, tasks in all, share of the work done [-], the task."""
