@@ -101,7 +101,7 @@ CYCLE = (
     Phase(name='rapid', duration=1.6, speed=-2000.0),
     Phase(name='at work', duration=0.8),
     Phase(name='deep cut', duration=2.8, speed=900.0, cut=2750.0, tooth=17.0),
-    Phase(name='deep cut, creeping', duration=3.8, speed=8.0, cut=2850.0, tooth=13.0),
+    Phase(name='deep cut, creeping', duration=3.8, speed=100.0, cut=2850.0, tooth=13.0),
     Phase(name='dwell', duration=3.75),
     *_reversals(5),
     Phase(name='at work', duration=0.8),
