@@ -43,6 +43,7 @@ OFFLINE_FLOORS = (
     ('parameters', 'surface'),
     ('datasheet_writer', 'formulas', 'tasks'),
     ('ehl',),
+    ('asperities',),
     ('contact', 'screw'),
     ('builder',),
     ('surface_tools', 'identify', 'paper', 'on_demand'),

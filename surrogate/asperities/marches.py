@@ -58,7 +58,7 @@ class LawSettings:
     shortest: float = 0.22
     along: float = 6.0
     across: float = 5.0
-    transits: float = 16.0
+    transits: float = 32.0
     faster: float = 2.6
     slower: float = 0.26
     width: float = 2.0
@@ -134,12 +134,12 @@ class StripInputs:
 
     @property
     def waves(self) -> Waves:
-        """The waves that are on the grid."""
+        """Return the waves that are on the grid."""
         return stated_waves(self.roughness, self.ball_roughness).longer_than(self.shortest)
 
     @property
     def line(self) -> Line:
-        """The strip as a line contact."""
+        """Return the strip as a line contact."""
         return Line(
             radius=self.strip.radius,
             reduced_modulus=self.strip.reduced_modulus,

@@ -54,12 +54,12 @@ class ScrewContact:
 
     @property
     def smooth(self) -> ContactSolution | None:
-        """The smooth contact."""
+        """Return the smooth contact."""
         return self.solved.smooth if self.solved else None
 
     @property
     def pressed(self) -> ContactSolution | None:
-        """The contact whose pressures and films the ball feels."""
+        """Return the contact whose pressures and films the ball feels."""
         return self.solved.pressed if self.solved else None
 
 

@@ -103,7 +103,7 @@ class ScrewSolution:
 
     @property
     def rcs_deviation(self) -> float:
-        """Standard deviation between strips of the raceway of the largest RCS [-]."""
+        """Return the standard deviation of the largest RCS between strips of the raceway [-]."""
         worst = self.contacts[self.worst_contact].solved if self.contacts else None
         return worst.asperities.rcs_deviation if worst is not None else math.nan
 

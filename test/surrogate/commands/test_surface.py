@@ -164,8 +164,9 @@ def test_info_is_a_page_a_person_reads(capsys):
     assert run('surface', 'info', 'closed_form') == 0
     text = capsys.readouterr().out
     for part in (
-        'nominal, iso_vg_68; lead 10 mm, preload 990 N, Rq 0.12 um',
-        'tier         closed_form, format version 1',
+        'nominal, iso_vg_68; lead 10 mm, preload 990 N, Rq 0.12 um, film floor 3 nm',
+        'raceway (run in): Rq 0.12 um between 2.5 um and 0.25 mm',
+        'tier         closed_form, format version 3',
         'kinks at     -2800, 0, 2800 N',
         'temperature  10 to 80 degC, nodes at 10, ',
         'nodes        40 x 27 x 9, 0 without a number',

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Speed ramps: the onset of made-up columns, and a march down and up against standing speeds."""
 
+from dataclasses import replace
 import math
 
 import numpy as np
@@ -59,12 +60,31 @@ def test_an_onset_that_is_not_on_the_ramp_is_nan(level):
 
 
 def test_means_keep_the_sum():
-    """Every step counts once."""
-    ramp = column(lambda u: u)
+    """Every step counts once, whatever it is the mean of."""
+    ramp = replace(column(lambda u: u), loss_factor=1 + np.geomspace(0.1, 0.001, 400))
     speeds, means = ramp.means(4.0)
     assert means.size == 10
     assert means.mean() == pytest.approx(ramp.rcs.mean())
     assert speeds[0] > speeds[-1]
+    again, factors = ramp.means(4.0, 'loss_factor')
+    assert np.array_equal(again, speeds)
+    assert factors == pytest.approx(1 + means)
+
+
+def test_a_flat_strip_loses_what_a_smooth_one_does():
+    """The loss factor is 1 all along but for the lag, which turns with the sense; no contact."""
+    known = {'transits': 4.0, 'settings': SETTINGS}
+    down, up = (
+        ramp_strip(STRIP, OIL, speeds, lambda x, y: 0 * x * y, **known)
+        for speeds in ((0.1, 0.08), (0.08, 0.1))
+    )
+    assert down.loss_factor.size == down.speeds.size > 100
+    for ramp in (down, up):
+        assert ramp.loss_factor == pytest.approx(1.0, abs=0.03)
+        assert ramp.rcs.max() == 0.0
+    assert down.loss_factor.mean() > 1 > up.loss_factor.mean()
+    both = 0.5 * (down.loss_factor.mean() + up.loss_factor.mean())
+    assert both == pytest.approx(1.0, abs=0.005)
 
 
 def test_down_and_up_enclose_the_standing_speed():
