@@ -6,17 +6,18 @@ Offline half: from datasheets to a lookup surface of ball-screw efficiency and a
 The chain of the full tier, in the order the data flows; the closed-form tier goes from formulas to
 builder at once::
 
-    parameters -> raceway, formulas -> ehl -> screw -> builder -> surface
+    parameters -> raceway, formulas -> ehl -> asperities -> screw -> builder -> surface
 
 =============  ====================================================================
 folder         what it holds
 =============  ====================================================================
 formulas       closed-form tier, a published law a function, author and year in it
 raceway        rough surfaces: fractal, measured, identified
-ehl            one contact, smooth, mixed or dry; kernels: compiled, arrays alone
+ehl            one contact, smooth, mixed, dry or rolling; kernels: arrays alone
+asperities     what touches as roughness rolls: marches of strips, the law of a screw
 contact        a contact as a file: case, record, pictures
 screw          one point of the full tier: contacts, balance of the balls, torque
-builder        datasheet to surface: tiers, sweeps; full: draws, nodes, errors
+builder        datasheet to surface: tiers, sweeps; full: law, nodes, errors
 surface        all that the node loads: lookup and file, numpy alone
 on_demand      a full solve for the running node, by a process of its own
 surface_tools  what people do with a surface file: check, query, compare, draw

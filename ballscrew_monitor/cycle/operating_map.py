@@ -37,13 +37,19 @@ BOX = {'boxstyle': 'round,pad=0.15', 'facecolor': 'white', 'edgecolor': 'none', 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Field:
-    """Surface on a grid: speed [rev/min] and opposing load [N]; NaN where it says nothing."""
+    """
+    Surface on a grid: speed [rev/min] and opposing load [N]; NaN where it says nothing.
+
+    Limit of RCS in speed over that here, with thin and thick boundary films [-].
+
+    """
 
     speed: Array
     load: Array
     efficiency: Array
     rcs: Array
     film_ratio: Array
+    band: tuple[float, float]
 
 
 def sample(surface: Surface, trace: Trace, temperature: float) -> Field:
@@ -66,7 +72,7 @@ def sample(surface: Surface, trace: Trace, temperature: float) -> Field:
         )
         for name in ('efficiency', 'rcs', 'film_ratio')
     }
-    return Field(speed=speed / RPM, load=load, **columns)
+    return Field(speed=speed / RPM, load=load, band=surface.limit_band, **columns)
 
 
 def draw_map(axes: Axes, trace: Trace, surface: Surface) -> tuple[float, bool]:
@@ -162,6 +168,17 @@ def _draw_lines(axes: Axes, field: Field, limits: LimitsInForce, degrees: float)
         zorder=3,
     )
     _name_line(axes, field, border.allsegs[0], f'{degrees:.0f} °C', PURPLE, BELOW_TOP)
+    for factor in filter(math.isfinite, field.band):
+        axes.contour(
+            factor * field.speed,
+            field.load,
+            field.rcs,
+            levels=[limits.rcs],
+            colors=PURPLE,
+            linewidths=0.9,
+            linestyles='dashdot',
+            zorder=2,
+        )
     ratios = axes.contour(
         field.speed,
         field.load,
@@ -219,7 +236,7 @@ def _label(axes: Axes, field: Field) -> None:
     axes.set_ylabel('axial load [N]\nassists the motion  |  opposes the motion')
 
 
-def legend_entries(limits: LimitsInForce, mean: float, *, others: bool) -> list[Any]:
+def legend_entries(limits: LimitsInForce, mean: float, *, others: bool, banded: bool) -> list[Any]:
     """Return what the lines of the map mean."""
     entries: list[Any] = [
         Patch(facecolor=OPTIMAL_FILL, edgecolor='none', label=f'optimal zone at {mean:.0f} °C'),
@@ -246,6 +263,17 @@ def legend_entries(limits: LimitsInForce, mean: float, *, others: bool) -> list[
                 linestyle='dashed',
                 label='the same, coldest and warmest oil',
             ),
+        )
+    if banded:
+        entries.append(
+            Line2D(
+                [],
+                [],
+                color=PURPLE,
+                linewidth=0.9,
+                linestyle='dashdot',
+                label='the same, thinnest and thickest boundary film',
+            )
         )
     entries.append(
         Line2D(

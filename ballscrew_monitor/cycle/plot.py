@@ -50,7 +50,8 @@ def figure_cycle(trace: Trace, summary: Summary, surface: Surface) -> Figure:
     axes = upper.subplots()
     mean, others = draw_map(axes, trace, surface)
     _draw_path(axes, trace, summary)
-    _finish_map(axes, trace, mean, others=others)
+    banded = math.isfinite(surface.limit_band[0])
+    _finish_map(axes, trace, mean, others=others, banded=banded)
     axes.set_title(
         f'Ball screw axis {trace.axis}: cycle on the operating map\n'
         f'screw {surface.screw_name}, oil {surface.oil_name}, '
@@ -103,7 +104,7 @@ def _mark_event(
     )
 
 
-def _finish_map(axes: Axes, trace: Trace, mean: float, *, others: bool) -> None:
+def _finish_map(axes: Axes, trace: Trace, mean: float, *, others: bool, banded: bool) -> None:
     moving = np.abs(trace.speed) >= trace.limits.standstill
     dots = [
         Line2D(
@@ -120,7 +121,7 @@ def _finish_map(axes: Axes, trace: Trace, mean: float, *, others: bool) -> None:
     ]
     dots.append(Line2D([], [], marker='$1$', linestyle='', color='black', label='warning number'))
     axes.legend(
-        handles=dots + legend_entries(trace.limits, mean, others=others),
+        handles=dots + legend_entries(trace.limits, mean, others=others, banded=banded),
         fontsize=8,
         loc='upper center',
         bbox_to_anchor=(0.5, -0.11),

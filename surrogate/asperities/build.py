@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import isotonic_regression
+from scipy.special import expit, logit
 from surrogate.asperities.acting import film_over_acting, speed_at_ratio
 from surrogate.asperities.law import AsperityLaw, NOTHING, ONSET_RCS
 from surrogate.asperities.marches import (
@@ -35,6 +35,9 @@ SolveMarches = Callable[[Marches], Mapping[str, Mapping[str, Any] | None]]
 """Solves named marches of plain JSON; None for one that failed."""
 NODES = np.linspace(-1.2, 0.75, 14)
 """Logarithms of the speed over that of the onset at which a law is tabulated [-]."""
+APART = 0.2
+"""Least span of the logarithm of the pressure over which a power is fitted [-]."""
+SHARES = ('rcs', 'asperity_share')
 TWINS = 2
 """First marches of a law that are made again with all waves [-]."""
 
@@ -50,6 +53,11 @@ class Marched:
     def onset(self) -> float:
         """Entrainment speed of the onset [m/s]."""
         return float(self.found['onset'])
+
+    @property
+    def pressure(self) -> float:
+        """Hertz pressure of the strip [Pa]."""
+        return self.given.strip.max_pressure
 
     @property
     def ratio(self) -> float:
@@ -107,44 +115,64 @@ def fit_law(
     """
     Return the law of marches by the name of their run; `source` names screw and oil.
 
-    The mean ratio of the coarse marches times what all waves make of the same places. Where the
-    shortest marched wave is not the shortest of the roughness, the ratio goes on as between the
-    two; without fine marches it is that of the coarse ones.
+    The ratio is that of the coarse marches, a power of the pressure, times what all waves make of
+    the same places; without fine marches it is that of the coarse ones.
 
     """
-    ratio = math.exp(np.mean([math.log(one.ratio) for one in coarse.values()]))
-    missed = [math.log(one.onset / one.expected(ratio)) for one in coarse.values()]
+    first = next(iter(coarse.values()))
+    power, ratio = _over_pressure(list(coarse.values()), first.pressure)
+    missed = [
+        math.log(one.onset / one.expected(ratio * (one.pressure / first.pressure) ** power))
+        for one in coarse.values()
+    ]
     twins = [(coarse[name], one) for name, one in fine.items() if name in coarse]
     gain = float(np.mean([math.log(one.ratio / twin.ratio) for twin, one in twins] or [0.0]))
     every = [*coarse.values(), *fine.values()]
-    curves = {
-        name: _pooled([one.curve(name) for one in every], rising)
-        for name, rising in (('rcs', False), ('asperity_share', False), ('loss_factor', None))
-    }
-    curves['rcs'] *= ONSET_RCS / float(np.exp(np.interp(0.0, NODES, np.log(curves['rcs']))))
-    first = next(iter(coarse.values()))
+    curves = {name: _falling([one.curve(name) for one in every]) for name in SHARES}
+    curves['rcs'] *= ONSET_RCS / float(np.interp(0.0, NODES, curves['rcs']))
     shortest = min(one.given.shortest for one in every)
     return AsperityLaw(
         onset_ratio=ratio * math.exp(gain),
         film_floor=first.given.film_floor,
+        pressure=first.pressure,
+        pressure_power=power,
         log_speed=tuple(NODES.tolist()),
         **{name: tuple(values.tolist()) for name, values in curves.items()},
-        deviation=float(np.std(missed, ddof=1)) if len(missed) > 1 else math.nan,
+        loss_factor=tuple(_line([one.curve('loss_factor') for one in every]).tolist()),
+        deviation=float(np.std(missed, ddof=min(2, len(missed) - 1))),
         marches=len(every),
         shortest_wave=shortest,
         source=source,
     )
 
 
-def _pooled(curves: Sequence[Array], rising: bool | None) -> Array:
-    """Return the mean of curves over `NODES` [-], made monotone unless `rising` is None."""
+def _over_pressure(marches: Sequence[Marched], pressure: float) -> tuple[float, float]:
+    """Return the power of the ratio of marches over pressure and the ratio at one [Pa]."""
+    x = np.log([one.pressure / pressure for one in marches])
+    y = np.log([one.ratio for one in marches])
+    if np.ptp(x) < APART:
+        return 0.0, float(np.exp(y.mean()))
+    power, level = np.polyfit(x, y, 1)
+    return float(power), float(np.exp(level))
+
+
+def _falling(curves: Sequence[Array]) -> Array:
+    """Return the parabola through the logit of the mean of shares over `NODES` [-]."""
+    inside, mean, weight = _mean(curves)
+    fit = np.polyfit(NODES[inside], logit(np.clip(mean, NOTHING, 1 - NOTHING)), 2, w=weight)
+    return np.asarray(expit(np.minimum.accumulate(np.polyval(fit, NODES))))
+
+
+def _line(curves: Sequence[Array]) -> Array:
+    """Return the straight line through the mean of numbers over `NODES` [-]."""
+    inside, mean, weight = _mean(curves)
+    return np.asarray(np.polyval(np.polyfit(NODES[inside], mean, 1, w=weight), NODES))
+
+
+def _mean(curves: Sequence[Array]) -> tuple[NDArray[np.bool_], Array, Array]:
+    """Return which of `NODES` any curve reaches, the mean there [-], and its weight [-]."""
     known = np.array(curves)
     count = np.isfinite(known).sum(axis=0)
-    mean = np.nansum(known, axis=0) / np.maximum(count, 1)
     inside = count > 0
-    mean = np.interp(NODES, NODES[inside], mean[inside])
-    if rising is None:
-        return mean
-    fitted = isotonic_regression(mean, weights=np.maximum(count, 1), increasing=rising).x
-    # A cubic of the logarithm needs a curve that falls and ends above nothing.
-    return np.asarray(np.maximum(fitted, NOTHING) * np.exp(-1e-3 * np.arange(NODES.size)))
+    mean = np.nansum(known[:, inside], axis=0) / count[inside]
+    return inside, mean, np.sqrt(count[inside])

@@ -13,16 +13,19 @@ from dataclasses import asdict, dataclass
 from functools import lru_cache
 import json
 import math
+from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import PchipInterpolator
 from surrogate.asperities.acting import speed_at_ratio, Waves
 from surrogate.datasheet import DATA
 from surrogate.ehl import Condition, ContactLubricant
+from surrogate.files import InputError
 from surrogate.formulas.geometry import Contact
 from surrogate.formulas.line import central_film_line, line_at
+from surrogate.surface.file import read
 
 Array = NDArray[np.float64]
 SHIPPED = DATA / 'asperity_law.json'
@@ -61,15 +64,18 @@ class AsperityLaw:
     Curves over the logarithm of the speed by that of the onset, and where the onset is.
 
     `onset_ratio` is the smooth film, by formula, over the rms of all acting waves at the onset [-]
-    for the floor `film_floor` [m]. `log_speed` rises; RCS, asperity share and rolling loss over
-    that of a smooth contact there [-]. Standard deviation between marches of the logarithm of the
-    onset speed [-], how many marches, the shortest wave in them [m]; `source` says in words where
-    the law is from.
+    for the floor `film_floor` [m] and the Hertz pressure `pressure` [Pa]; it falls with that
+    pressure by the `pressure_power` [-], since pressure presses summits flat. `log_speed` rises;
+    RCS, asperity share and rolling loss over that of a smooth contact there [-]. Standard
+    deviation between marches of the logarithm of the onset speed [-], how many marches, the
+    shortest wave in them [m]; `source` says in words where the law is from.
 
     """
 
     onset_ratio: float
     film_floor: float
+    pressure: float
+    pressure_power: float
     log_speed: tuple[float, ...]
     rcs: tuple[float, ...]
     asperity_share: tuple[float, ...]
@@ -79,14 +85,15 @@ class AsperityLaw:
     shortest_wave: float
     source: str
 
-    def ratio(self, floor: float) -> float:
+    def ratio(self, floor: float, pressure: ArrayLike) -> Array:
         """
-        Return the film over the acting rms at the onset [-] for a floor [m].
+        Return the film over the acting rms at the onset [-] for a floor [m] and pressures [Pa].
 
         It goes with the cube root of the floor, measured from 1 to 5 nm.
 
         """
-        return self.onset_ratio * (floor / self.film_floor) ** FLOOR_POWER
+        at_floor = self.onset_ratio * (floor / self.film_floor) ** FLOOR_POWER
+        return np.asarray(at_floor * (np.asarray(pressure) / self.pressure) ** self.pressure_power)
 
     def onset(
         self, waves: Waves, contact: Contact, load: float, oil: ContactLubricant, floor: float
@@ -97,8 +104,9 @@ class AsperityLaw:
         Under a load [N], with a film floor [m]; 0 where the raceway is smooth.
 
         """
-        ratio = np.array(self.ratio(floor))
-        return float(speed_at_ratio(waves, line_at(contact, load, 0.0), oil, ratio))
+        line = line_at(contact, load, 0.0)
+        ratio = self.ratio(floor, line.max_pressure)
+        return float(speed_at_ratio(waves, line, oil, ratio))
 
     def contact(
         self,
@@ -121,7 +129,7 @@ class AsperityLaw:
         points, weights = np.polynomial.legendre.leggauss(2 * PLACES)
         place, share = points[PLACES:], 1.5 * weights[PLACES:] * (1 - points[PLACES:] ** 2)
         strips = line_at(contact, condition.load, place)
-        onset = speed_at_ratio(waves, strips, oil, np.array(self.ratio(floor)))
+        onset = speed_at_ratio(waves, strips, oil, self.ratio(floor, strips.max_pressure))
         film = central_film_line(
             strips, condition.entrainment_speed, oil.viscosity, oil.pressure_viscosity
         )
@@ -181,6 +189,14 @@ def law_from_json(content: Mapping[str, Any]) -> AsperityLaw:
         name: tuple(value) if isinstance(value, list) else value for name, value in content.items()
     }
     return AsperityLaw(**values)
+
+
+def law_of_surface(path: Path) -> AsperityLaw:
+    """Return the law that a full-tier surface was built with; InputError for another tier."""
+    header = read(path).header
+    if 'law' not in header:
+        raise InputError(f'{path}: a surface of tier {header["tier"]}, allowed is full')
+    return law_from_json(header['law'])
 
 
 @lru_cache(maxsize=1)

@@ -58,7 +58,7 @@ class LawSettings:
     shortest: float = 0.22
     along: float = 6.0
     across: float = 5.0
-    transits: float = 16.0
+    transits: float = 32.0
     faster: float = 2.6
     slower: float = 0.26
     width: float = 2.0

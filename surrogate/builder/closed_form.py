@@ -166,7 +166,7 @@ def onset_speed(
     screw: Screw, lubricant: Lubricant, load: Array, temperature: Array, rcs: float
 ) -> Array:
     """Return the speed [rad/s] at which the worst contact reaches `rcs`; arguments broadcast."""
-    target = film_ratio_at_share_aihara_1987(rcs)
+    target = film_ratio_at_share_aihara_1987(rcs) / closed_form.FILM_SCALE
     return speed_at_film_ratio(screw, lubricant, load, temperature, target)
 
 

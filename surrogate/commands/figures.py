@@ -30,8 +30,7 @@ def add_figures_command(subparsers: Any) -> None:
         type=int,
         default=DRAWS,
         metavar='N',
-        help='draws of the roughness of single contacts; the whole screw takes a third of them, '
-        'its map a sixth (default %(default)s)',
+        help='draws of the standing roughness of single contacts (default %(default)s)',
     )
     parser.add_argument(
         '--only', nargs='+', default=None, metavar='FIGURE', help=f'some of {", ".join(NEEDS)}'
@@ -54,8 +53,8 @@ def _figures(args: argparse.Namespace) -> int:
         from surrogate.paper import figures_set
     except ImportError:
         raise InputError('figures needs matplotlib: install the extra `plot`') from None
-    from surrogate.paper.mark import table
-    from surrogate.paper.marks import marks
+    from surrogate.asperities.law import shipped_law
+    from surrogate.paper.report import report, write_report
     from surrogate.paper.study import run_study
     from surrogate.parameters import load_screw
     from surrogate.tasks.workers import open_pool
@@ -74,7 +73,9 @@ def _figures(args: argparse.Namespace) -> int:
         print(f'ballscrew: {row.key} did not converge: {row.status}', file=sys.stderr)
     for path in figures_set.draw_figures(study, figures, measured):
         print(path, file=sys.stderr)
-    print(table(marks(load_screw('nominal'), study.rows)))
+    text = report(load_screw('nominal'), shipped_law(), study.rows)
+    print(write_report(args.out, text), file=sys.stderr)
+    print(text, end='')
     return 1 if failed else 0
 
 

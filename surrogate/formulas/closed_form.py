@@ -4,7 +4,8 @@
 Closed-form tier: the whole chain by published formulas, for one point or many at once.
 
 An instant first guess and a cross-check of the full model. Its asperity share is a fit to an
-average-flow model, which overstates contact, so it is labelled `closed_form` wherever it is shown.
+average-flow model, moved to the onset of the full model, so it is labelled `closed_form` wherever
+it is shown.
 RCS and asperity share are the same number here. Ball inertia, the tilt of the contact lines and
 elastic hysteresis are left to the full model.
 
@@ -33,6 +34,9 @@ from surrogate.parameters import Lubricant, Screw
 
 Array = NDArray[np.float64]
 TIER = 'closed_form'
+FILM_SCALE = 1.9
+"""Film ratio that the fit of asperity shares is read at over that of the screw [-], by which RCS
+passes 0.01 where solved contacts under a rolling raceway do."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -127,7 +131,7 @@ def _solve_contact(
     g = groups(contact, pressed, arm * inlet_speed, oil.viscosity, oil.pressure_viscosity)
     film = central_film_hamrock_dowson_1977(contact, g)
     ratio = film_ratio(film, screw.composite_rms)
-    share = np.where(force > 0, asperity_share_aihara_1987(ratio), 0.0)
+    share = np.where(force > 0, asperity_share_aihara_1987(FILM_SCALE * ratio), 0.0)
     sliding = sliding_friction(screw, side, ellipse, np.nan_to_num(film), share, oil, speed)
     rolling = np.nan_to_num(rolling_force_biboulet_houpert_2010(contact, g))
     return ContactResult(

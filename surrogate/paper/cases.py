@@ -3,9 +3,9 @@
 """
 What the comparison with the published study solves: tasks, by the figure that needs them.
 
-A task is one solve: a contact of the loaded or the relieved nut, smooth or with one draw of the
-roughness, the whole screw in the full tier, or the screw by published formulas. A case names the
-assumptions that differ from ours. Speeds are those of the screw; contacts take the study's own
+A task is one solve: a contact, smooth or with one draw of the study's roughness, which stands
+still; the whole screw in the full tier, whose roughness rolls, or stands still for comparison; or
+the screw by published formulas. Speeds are those of the screw; contacts take the study's own
 entrainment, w r_m / 2.
 
 """
@@ -23,30 +23,21 @@ SMOOTH = -1
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Assumptions:
-    """
-    Assumptions of a contact; None leaves ours.
-
-    Nut, closed inlet in half-widths of the contact [-], viscosity [Pa s], film floor [m].
-
-    """
+    """Nut of a contact, closed inlet in half-widths [-] and viscosity [Pa s]; None leaves ours."""
 
     nut: Literal['loaded', 'relieved'] = 'loaded'
     inlet: float | None = None
     viscosity: float | None = None
-    film_floor: float | None = None
 
 
-OURS, RELIEVED, SHORT, THIN, HIGH = 'ours', 'relieved nut', 'short inlet', 'thin oil', 'high floor'
+OURS, RELIEVED, SHORT, STANDING = 'ours', 'relieved nut', 'short inlet', 'standing'
 CASES = {
     OURS: Assumptions(),
     RELIEVED: Assumptions(nut='relieved'),
     # With so little inlet the viscosity is what makes the published film of 153 nm.
     SHORT: Assumptions(inlet=1.5, viscosity=0.113),
-    # ISO VG 68 at 80 degC.
-    THIN: Assumptions(viscosity=0.0144),
-    HIGH: Assumptions(film_floor=10e-9),
 }
-"""Cases by name; `THIN` is the oil of the nominal screw at 80 degC."""
+"""Cases of a contact by name; the roughness of a screw rolls unless its case is `STANDING`."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -73,14 +64,17 @@ class StudyTask:
         return name.replace(' ', '-')
 
     @property
+    def rolls(self) -> bool:
+        """Whether the asperity law decides what touches."""
+        return self.kind == 'screw' and self.case == OURS
+
+    @property
     def cost(self) -> float:
         """Rough share of the time [-], for the time left."""
         if self.kind == 'formulas':
             return 0.01
-        if self.draw == SMOOTH:
-            return 0.2
-        slow = 1.0 + 20.0 / (self.rpm + 5.0)
-        return slow * (2.5 if self.kind == 'screw' else 1.0) * (1.0 + self.load / 2500.0)
+        stands = self.draw != SMOOTH
+        return (1.0 if stands else 0.2) * (2.5 if self.kind == 'screw' else 1.0)
 
 
 PRELOAD = 0.0
@@ -91,26 +85,28 @@ SMOOTH_SPEEDS = (50.0, 200.0, 600.0, 1000.0)
 LOADS = (0.0, 500.0, 1000.0, 1500.0, 2000.0, 2400.0)
 RELIEVED_LOADS = LOADS[:-1]
 """Less the largest: there the ball of the relieved nut hardly deforms."""
-ROUGH_SPEEDS = (5.0, 20.0, 600.0)
+SHOWN_SPEEDS = (5.0, 20.0, 600.0)
+ROUGH_SPEEDS = (5.0, 10.0, 15.0, 20.0, 40.0)
 ROUGH_LOADS = (0.0, 1000.0, 2000.0)
-SLOW, ONSET, CLEAR = 5.0, 12.0, 40.0
-"""Screw speeds well inside, at the edge and outside of asperity contact [rev/min]."""
-STRIBECK_SPEEDS = (2.0, 5.0, 8.0, 12.0, 16.0, 25.0, 50.0, 100.0, 200.0, 600.0, 1000.0)
-MAP_SPEEDS = (5.0, 10.0, 15.0, 25.0, 80.0, 300.0, 1000.0)
+SLOW, ONSET = 5.0, 10.0
+"""Screw speeds inside and near the edge of asperity contact that stands still [rev/min]."""
+SPEEDS = (2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 300.0, 400.0, 500.0, 600.0, 1000.0)
+"""Speeds of the whole screw [rev/min]."""
 MAP_LOADS = (50.0, 150.0, 400.0, 1000.0, 1700.0, 2400.0)
-OTHER_SPEEDS = (12.0, 25.0, 50.0, 100.0)
 EFFICIENCY_LOAD = 1000.0
 """Axial load at which efficiencies are compared over speed [N], about the preload."""
+ROLLING_RPM = 200.0
+"""Speed inside asperity contact that rolls [rev/min]."""
 
 
 def _fractal(draws: int) -> Iterator[StudyTask]:
     yield StudyTask(kind='contact', rpm=SLOW, load=PRELOAD, draw=0, fields='map')
 
 
-def _stribeck(draws: int) -> Iterator[StudyTask]:
-    for draw in range(screw_draws(draws)):
-        for rpm in STRIBECK_SPEEDS:
-            yield StudyTask(kind='screw', rpm=rpm, load=PRELOAD, draw=draw)
+def _speeds(draws: int) -> Iterator[StudyTask]:
+    for rpm in SPEEDS:
+        yield StudyTask(kind='screw', rpm=rpm, load=PRELOAD)
+        yield StudyTask(kind='screw', rpm=rpm, load=PRELOAD, draw=0, case=STANDING)
 
 
 def _smooth_speed(draws: int) -> Iterator[StudyTask]:
@@ -126,7 +122,7 @@ def _smooth_load(draws: int) -> Iterator[StudyTask]:
 
 
 def _rough_speed(draws: int) -> Iterator[StudyTask]:
-    for rpm in ROUGH_SPEEDS:
+    for rpm in SHOWN_SPEEDS:
         yield StudyTask(kind='contact', rpm=rpm, load=PRELOAD, draw=0, fields='line')
 
 
@@ -137,66 +133,51 @@ def _rough_load(draws: int) -> Iterator[StudyTask]:
         for load in ROUGH_LOADS:
             for rpm in (SLOW, ONSET, MARK_RPM):
                 yield StudyTask(kind='contact', rpm=rpm, load=load, draw=draw)
-        yield StudyTask(kind='contact', rpm=CLEAR, load=PRELOAD, draw=draw)
         for load in ROUGH_LOADS[1:]:
-            yield StudyTask(kind='contact', rpm=ONSET, load=load, draw=draw, case=RELIEVED)
+            yield StudyTask(kind='contact', rpm=SLOW, load=load, draw=draw, case=RELIEVED)
 
 
-def _film_speed(draws: int) -> Iterator[StudyTask]:
-    yield from _stribeck(draws)
-    for rpm in STRIBECK_SPEEDS:
-        yield StudyTask(kind='contact', rpm=rpm, load=PRELOAD)
+def _stribeck(draws: int) -> Iterator[StudyTask]:
+    yield from _speeds(draws)
+    for draw in range(draws):
+        for rpm in ROUGH_SPEEDS:
+            yield StudyTask(kind='contact', rpm=rpm, load=PRELOAD, draw=draw)
 
 
 def _maps(draws: int) -> Iterator[StudyTask]:
-    for draw in range(map_draws(draws)):
-        for load in MAP_LOADS:
-            for rpm in MAP_SPEEDS:
-                yield StudyTask(kind='screw', rpm=rpm, load=load, draw=draw)
+    for load in MAP_LOADS:
+        for rpm in SPEEDS:
+            yield StudyTask(kind='screw', rpm=rpm, load=load)
 
 
-def _alternatives(draws: int) -> Iterator[StudyTask]:
-    yield from _maps(draws)
-    yield from _smooth_load(draws)
-    yield from _rough_load(draws)
-    yield from _stribeck(draws)
+def _trends(draws: int) -> Iterator[StudyTask]:
+    for some in (_maps, _smooth_load, _rough_load, _stribeck):
+        yield from some(draws)
+    standing = [(rpm, EFFICIENCY_LOAD) for rpm in SPEEDS]
+    standing += [(MARK_RPM, load) for load in MAP_LOADS]
+    for rpm, load in standing:
+        yield StudyTask(kind='screw', rpm=rpm, load=load, draw=0, case=STANDING)
     for load in LOADS:
         yield StudyTask(kind='contact', rpm=MARK_RPM, load=load, case=SHORT)
         yield StudyTask(kind='formulas', rpm=MARK_RPM, load=load)
-        yield StudyTask(kind='formulas', rpm=SLOW, load=load)
-    for rpm in sorted({*STRIBECK_SPEEDS, *MAP_SPEEDS}):
+    for rpm in SPEEDS:
         yield StudyTask(kind='formulas', rpm=rpm, load=PRELOAD)
         yield StudyTask(kind='formulas', rpm=rpm, load=EFFICIENCY_LOAD)
-    yield StudyTask(kind='contact', rpm=MARK_RPM, load=PRELOAD, case=THIN)
-    for draw in range(screw_draws(draws)):
-        for rpm in OTHER_SPEEDS:
-            yield StudyTask(kind='contact', rpm=rpm, load=PRELOAD, draw=draw, case=THIN)
-            yield StudyTask(kind='contact', rpm=rpm, load=PRELOAD, draw=draw, case=HIGH)
 
 
 NEEDS = {
     '4': _fractal,
-    '6b': _stribeck,
+    '6b': _speeds,
     '7': _smooth_speed,
     '8': _smooth_load,
     '9': _rough_speed,
     '10': _rough_load,
-    '11': _film_speed,
+    '11': _stribeck,
     '12': _maps,
     '13': _maps,
-    'alternatives': _alternatives,
+    'trends': _trends,
 }
 """What each figure solves, given the draws of the contacts; keys are the study's numbers."""
-
-
-def screw_draws(draws: int) -> int:
-    """Return the draws of the whole screw, which is dear: a third of those of the contacts."""
-    return max(1, draws // 3)
-
-
-def map_draws(draws: int) -> int:
-    """Return the draws of each point of the map: a sixth of those of the contacts."""
-    return max(1, draws // 6)
 
 
 def tasks(figures: tuple[str, ...], draws: int) -> list[StudyTask]:

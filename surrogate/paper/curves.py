@@ -3,7 +3,7 @@
 """What the rows of the comparison say over speed, load and draws: means, changes, crossings."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass
 import math
 from typing import Any, Literal
 
@@ -134,27 +134,14 @@ def constant_friction_efficiency(screw: Screw, load: float) -> float:
     return load * screw.lead / (2 * math.pi * driving)
 
 
-def mapped(rows: Iterable[StudyRow]) -> list[StudyRow]:
-    """Return the rows of the whole screw under load, one per point: means over the draws."""
-    groups: dict[tuple[float, float], list[StudyRow]] = {}
-    for row in pick(rows, kind='screw'):
-        if row.load > 0:
-            groups.setdefault((row.load, row.rpm), []).append(row)
-    numbers = [spec.name for spec in fields(StudyRow) if isinstance(spec.default, float)]
-    return [
-        _mean_row(group, numbers) for _, group in sorted(groups.items(), key=lambda one: one[0])
-    ]
-
-
-def _mean_row(rows: list[StudyRow], numbers: list[str]) -> StudyRow:
-    means: dict[str, Any] = {
-        name: float(np.mean([getattr(row, name) for row in rows])) for name in numbers
-    }
-    return replace(rows[0], **means)
+def mapped(rows: Iterable[StudyRow], **wanted: Any) -> list[StudyRow]:
+    """Return the rows of the whole screw under load, by load and speed."""
+    found = [row for row in pick(rows, kind='screw', **wanted) if row.load > 0]
+    return sorted(found, key=lambda row: (row.load, row.rpm))
 
 
 def grid(rows: Iterable[StudyRow], name: str) -> tuple[Array, Array, Array]:
-    """Return speeds [rev/min], loads [N] and a column of the map; NaN where no draw was solved."""
+    """Return speeds [rev/min], loads [N] and a column of the map; NaN where none was solved."""
     found = {(row.load, row.rpm): getattr(row, name) for row in mapped(rows)}
     loads, speeds = (sorted({key[i] for key in found}) for i in (0, 1))
     values = [[found.get((load, rpm), math.nan) for rpm in speeds] for load in loads]

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """What all pictures of the comparison with the published study share: captions and axes."""
 
-from collections.abc import Sequence
 from functools import cache
 import textwrap
 from typing import Any
@@ -73,7 +72,7 @@ def finish(axes: Axes, letter: str = '', title: str = '', legend: Any = 'best') 
 def draw_curve(
     axes: Axes, x: Array, found: Curve, factor: float, *, floor: float = 0.0, **style: Any
 ) -> None:
-    """Draw means times a factor, with the standard deviation over draws as a band."""
+    """Draw means times a factor, with the standard deviation as a band."""
     mean = np.maximum(factor * found.mean, floor)
     axes.plot(x, mean, **style)
     if np.isfinite(found.deviation).any():
@@ -88,12 +87,6 @@ def draw_curve(
         )
 
 
-def limit(axes: Axes, value: float, label: str, *, vertical: bool = False) -> None:
+def limit(axes: Axes, value: float, label: str) -> None:
     """Mark a limit or a published number."""
-    draw = axes.axvline if vertical else axes.axhline
-    draw(value, color=PURPLE, linestyle='--', linewidth=1.0, label=label)
-
-
-def many(values: Sequence[Any], unit: str) -> str:
-    """Return values and a unit as text."""
-    return f'{", ".join(f"{value:g}" for value in values)} {unit}'
+    axes.axhline(value, color=PURPLE, linestyle='--', linewidth=1.0, label=label)

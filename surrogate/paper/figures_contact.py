@@ -9,10 +9,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Ellipse
 import numpy as np
-from surrogate.paper.cases import MARK_RPM, ONSET, RELIEVED, SLOW
-from surrogate.paper.curves import curve, pick
-from surrogate.paper.figures import captioned_figure, finish, limit, many, shades, STYLES
-from surrogate.paper.mark import counted, REPORTED_FILM
+from surrogate.paper.cases import MARK_RPM, RELIEVED
+from surrogate.paper.curves import curve
+from surrogate.paper.figures import captioned_figure, finish, shades, STYLES
+from surrogate.paper.marks import REPORTED_FILM
 from surrogate.paper.rows import Array, ContactFields, StudyRow
 from surrogate.plotting.style import BLUE, GREY, VERMILION
 from surrogate.raceway.fractal import FractalSurface
@@ -31,7 +31,7 @@ def figure_fractal(drawn: Drawn, raceway: FractalSurface) -> Figure:
     figure = captioned_figure(
         6.6,
         f'Draw {row.draw} of the raceway, D 2.68, G 0.97 nm, Rq 0.12 µm over the Hertz rectangle '
-        'at unloading, waves down to 20.6 µm; contact of ball and screw (dashed) at '
+        'at unloading, waves down to 20.6 µm, standing still; contact at the screw (dashed) at '
         f'{row.rpm:g} rev/min, preload only ({row.normal_force:.1f} N), ISO VG 68 at 40 °C. RCS '
         f'{row.rcs:.2f}: the share of the load on punctured nodes; asperities carry '
         f'{row.asperity_share:.2f}. The cut is the centre line.',
@@ -177,41 +177,21 @@ def _middle(found: ContactFields) -> int:
     return int(np.argmin(np.abs(found.y)))
 
 
-def figure_rough_speed(drawn: Sequence[Drawn]) -> Figure:
-    """Return pressure and film of the rough contact at several speeds (9)."""
-    titles = [
-        f'{row.rpm:g} rev/min, {1e3 * row.entrainment_speed:.1f} mm/s\nRCS {row.rcs:.2g}'
-        for row, _ in drawn
-    ]
-    return _rough_figure(
-        drawn,
-        titles,
-        'Rough contact of ball and screw, draw 0, preload only (27.6 N), ISO VG 68 at 40 °C, '
-        'centre line. Dotted: the film floor of 4.1 nm; a node there counts as punctured.',
+def figure_rough(drawn: Sequence[Drawn]) -> Figure:
+    """Return pressure and film of the rough contact at several speeds (9) or loads (10)."""
+    caption = (
+        f'Rough contact of ball and screw in the loaded nut, draw {drawn[0][0].draw}, standing '
+        'still, ISO VG 68 at 40 °C, centre line. Dotted: the film floor; a node there counts as '
+        'punctured.'
     )
-
-
-def figure_rough_load(drawn: Sequence[Drawn]) -> Figure:
-    """Return pressure and film of the rough contact at several loads (10)."""
-    titles = [
-        f'{row.load:g} N on the screw\n{row.normal_force:.0f} N per ball, RCS {row.rcs:.2g}'
-        for row, _ in drawn
-    ]
-    rpm = drawn[0][0].rpm
-    return _rough_figure(
-        drawn,
-        titles,
-        f'Rough contact of ball and screw in the loaded nut, draw 0, {rpm:g} rev/min, ISO VG 68 '
-        'at 40 °C, centre line. Dotted: the film floor of 4.1 nm; a node there counts as '
-        'punctured.',
-    )
-
-
-def _rough_figure(drawn: Sequence[Drawn], titles: Sequence[str], caption: str) -> Figure:
     figure = captioned_figure(4.9, caption)
     panels = figure.subplots(2, len(drawn), sharex='col', squeeze=False)
     top = 1.1 * GIGA * max(float(_total(found).max()) for _, found in drawn)
-    for column, ((row, found), title) in enumerate(zip(drawn, titles, strict=True)):
+    for column, (row, found) in enumerate(drawn):
+        title = (
+            f'{row.rpm:g} rev/min, {row.load:g} N on the screw\n'
+            f'{row.normal_force:.0f} N per ball, RCS {row.rcs:.2g}'
+        )
         upper, lower = panels[:, column]
         _draw_split(upper, found)
         upper.set_ylim(0, top)
@@ -219,8 +199,9 @@ def _rough_figure(drawn: Sequence[Drawn], titles: Sequence[str], caption: str) -
         film = NANO * found.film[:, _middle(found)]
         inside = np.abs(found.x) < found.semi_axis_x
         lower.plot(MICRO * found.x, film, color=BLUE, linewidth=1.2)
-        floor = {'color': VERMILION, 'linestyle': ':', 'linewidth': 1.2}
-        lower.axhline(NANO * row.minimum_film if row.rcs else 4.1, **floor)
+        if row.rcs:
+            floor = {'color': VERMILION, 'linestyle': ':', 'linewidth': 1.2}
+            lower.axhline(NANO * row.minimum_film, **floor)
         lower.set(xlabel='x [µm]', ylim=(0, 2.0 * np.percentile(film[inside], 90)))
         finish(lower)
     panels[0, 0].set_ylabel('pressure [GPa]')
@@ -230,37 +211,3 @@ def _rough_figure(drawn: Sequence[Drawn], titles: Sequence[str], caption: str) -
 
 def _total(found: ContactFields) -> Array:
     return found.film_pressure + found.asperity_pressure
-
-
-def figure_asperities(rows: Sequence[StudyRow]) -> Figure:
-    """Return RCS and the place of the asperity load over the axial load (10, ensemble)."""
-    wanted: dict[str, Any] = {'kind': 'contact', 'rough': True}
-    draws = len({row.draw for row in pick(rows, rpm=SLOW, **wanted)})
-    figure = captioned_figure(
-        3.6,
-        'Rough contact of ball and screw in the loaded nut, mean of '
-        f'{counted(draws)} and standard deviation, {many((SLOW, ONSET), "rev/min")}. (b) Mean '
-        'distance of the asperity load from the centre over the semi-axes; an even load has '
-        "0.667, Hertz's 0.589.",
-    )
-    left, right = figure.subplots(1, 2)
-    for rpm, colour, style in ((SLOW, BLUE, 'o-'), (ONSET, VERMILION, 's--')):
-        label = f'{rpm:g} rev/min'
-        rcs = curve(rows, 'load', 'rcs', rpm=rpm, **wanted)
-        _bars(left, rcs.at, rcs.mean, rcs.deviation, style, colour, label)
-    distance = curve(rows, 'load', 'asperity_distance', rpm=SLOW, **wanted)
-    _bars(right, distance.at, distance.mean, distance.deviation, 'o-', BLUE, f'{SLOW:g} rev/min')
-    limit(left, 0.01, 'limit 0.01')
-    left.set(yscale='log', ylabel='RCS [-]', xlabel='axial load [N]', ylim=(1e-3, 6))
-    right.set(ylabel='distance of the asperity load [-]', xlabel='axial load [N]')
-    right.axhline(0.589, color=GREY, linestyle=':', label="Hertz's load")
-    finish(left, 'a', legend='upper right')
-    finish(right, 'b')
-    return figure
-
-
-def _bars(
-    axes: Axes, x: Array, y: Array, spread: Array, style: str, colour: str, label: str
-) -> None:
-    bars = np.nan_to_num(spread)
-    axes.errorbar(x, y, yerr=bars, fmt=style, color=colour, capsize=3, markersize=4, label=label)

@@ -8,22 +8,25 @@ Torque is interpolated between the nodes, and efficiency follows from it.
 """
 
 from collections.abc import Sequence
+import math
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 import numpy as np
 from scipy.interpolate import PchipInterpolator
+from surrogate.asperities.law import AsperityLaw
 from surrogate.formulas.record import CONSTANT_FRICTION
 from surrogate.formulas.torque import efficiency
-from surrogate.paper.curves import constant_friction_efficiency, grid, NO_CONTACT, pick
+from surrogate.paper.curves import constant_friction_efficiency, grid, NO_CONTACT
 from surrogate.paper.figures import captioned_figure, entrainment, finish, shades, STYLES
-from surrogate.paper.mark import counted
 from surrogate.paper.rows import Array, StudyRow
 from surrogate.parameters import Screw
 from surrogate.plotting.style import BLUE, GREY, PURPLE, VERMILION
 from surrogate.surface.aims import EFFICIENCY_LIMIT, RCS_LIMIT
 
+SHOWN = (5.0, 50.0, 200.0, 1000.0)
+"""Speeds at which efficiency is drawn over load [rev/min]."""
 FINE = 161
 """Points of a map along a side [-]."""
 RCS_COLOUR, ETA_COLOUR = VERMILION, BLUE
@@ -66,8 +69,8 @@ def figure_maps(screw: Screw, rows: Sequence[StudyRow]) -> Figure:
     """Return maps of RCS and efficiency, and efficiency beside constant friction (12)."""
     figure = captioned_figure(
         6.9,
-        f'Nominal screw, ISO VG 68 at 40 °C, full tier, mean of {_draws(rows)}, the nodes (dots) '
-        'solved, torque interpolated between them and efficiency derived from it. RCS is that '
+        'Nominal screw, ISO VG 68 at 40 °C, rolling roughness, the nodes (dots) solved, torque '
+        'interpolated between them and efficiency derived from it. RCS is that '
         f'of the worst of four contacts; below {NO_CONTACT:g} it is none. (c) Friction '
         f'coefficient {CONSTANT_FRICTION:g} for constant friction, an assumption.',
     )
@@ -101,12 +104,6 @@ def figure_maps(screw: Screw, rows: Sequence[StudyRow]) -> Figure:
     return figure
 
 
-def _draws(rows: Sequence[StudyRow]) -> str:
-    """Return how many draws the points of the map have at least."""
-    points = [(row.load, row.rpm) for row in pick(rows, kind='screw') if row.load > 0]
-    return counted(min(points.count(point) for point in points))
-
-
 def _line(axes: Axes, speed: Array, load: Array, field: Array, value: float, colour: str) -> None:
     axes.contour(entrainment(speed), load, field, [value], colors=[colour], linewidths=2.0)
 
@@ -124,7 +121,7 @@ def _map_axes(axes: Axes, rows: Sequence[StudyRow]) -> None:
 def _draw_loads(axes: Axes, screw: Screw, rows: Sequence[StudyRow]) -> None:
     """Draw efficiency over load at some speeds, and that of constant friction."""
     speeds, loads, torque = grid(rows, 'friction_torque')
-    chosen = [i for i, rpm in enumerate(speeds) if rpm in (5.0, 25.0, 300.0, 1000.0)]
+    chosen = [i for i, rpm in enumerate(speeds) if rpm in SHOWN]
     for i, colour, style in zip(chosen, shades(len(chosen)), STYLES, strict=False):
         eta = [
             efficiency(float(friction), float(load), screw.lead)
@@ -141,14 +138,13 @@ def _draw_loads(axes: Axes, screw: Screw, rows: Sequence[StudyRow]) -> None:
     finish(axes, 'c', 'efficiency over load', legend='lower right')
 
 
-def figure_zone(screw: Screw, rows: Sequence[StudyRow]) -> Figure:
+def figure_zone(screw: Screw, law: AsperityLaw, rows: Sequence[StudyRow]) -> Figure:
     """Return the optimal zone in the plane of speed and load (13)."""
     figure = captioned_figure(
         4.6,
         f'Optimal zone (shaded): RCS below {RCS_LIMIT:g} and efficiency {EFFICIENCY_LIMIT:g} or '
-        f'more. Nominal screw, ISO VG 68 at 40 °C, full tier, mean of {_draws(rows)}, dots: '
-        'solved points. The slow edge moves by a factor of about 1.3 with draw, grid and short '
-        'waves and by 3 to 4 with the film floor (docs/theory/roughness.md).',
+        'more. Nominal screw, ISO VG 68 at 40 °C, rolling roughness, dots: solved points. Red '
+        'dotted: RCS where the law is off by its standard deviation.',
     )
     axes = figure.subplots()
     speed, load, rcs, eta = fine_map(screw, rows)
@@ -166,6 +162,11 @@ def figure_zone(screw: Screw, rows: Sequence[StudyRow]) -> Figure:
             colors=[colour],
             linestyles=[style],
             linewidths=1.8,
+        )
+    for sign in (-1, 1):
+        shifted = math.exp(sign * law.deviation) * entrainment(speed)
+        axes.contour(
+            shifted, load, rcs, [RCS_LIMIT], colors=[RCS_COLOUR], linestyles='dotted', linewidths=1
         )
     others = axes.contour(
         entrainment(speed), load, eta, [0.7, 0.9, 0.95, 0.98], colors=[GREY], linewidths=0.7

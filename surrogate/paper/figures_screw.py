@@ -4,13 +4,15 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+import math
 from typing import Any
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 import numpy as np
-from surrogate.paper.cases import PRELOAD
-from surrogate.paper.curves import Curve, curve, lowest, NO_CONTACT
+from surrogate.asperities.law import AsperityLaw
+from surrogate.paper.cases import STANDING
+from surrogate.paper.curves import Curve, lowest, NO_CONTACT
 from surrogate.paper.figures import (
     captioned_figure,
     draw_curve,
@@ -19,14 +21,13 @@ from surrogate.paper.figures import (
     limit,
     speed_axis,
 )
-from surrogate.paper.mark import counted, REPORTED_FILM
-from surrogate.paper.marks_screw import apparent_friction
+from surrogate.paper.marks import REPORTED_FILM
 from surrogate.paper.rows import Array, StudyRow
-from surrogate.plotting.style import BLUE, GREEN, PURPLE, VERMILION
+from surrogate.paper.trends import apparent_friction, contact_speeds, screw_speeds
+from surrogate.plotting.style import BLUE, GREEN, GREY, PURPLE, VERMILION
 from surrogate.surface.aims import RCS_LIMIT
 from surrogate.units import MILLI, NANO
 
-SCREW: dict[str, Any] = {'kind': 'screw', 'load': PRELOAD}
 ROUGHNESS = 120.0
 """Rq of the published screw [nm]."""
 MARK_SPEED = 502.65
@@ -44,32 +45,25 @@ class MeasuredTorque:
 
 def figure_torque(rows: Sequence[StudyRow], measured: MeasuredTorque | None = None) -> Figure:
     """Return the friction torque over entrainment speed, with measurements if given (6b)."""
-    torque = curve(rows, 'rpm', 'friction_torque', **SCREW)
+    torque = screw_speeds(rows, 'friction_torque')
     turn, least = lowest(torque)
     figure = captioned_figure(
         3.9,
-        f'Friction torque of the nominal screw, preload only, ISO VG 68 at 40 °C, mean of '
-        f'{counted(torque.draws)}; bands: standard deviation. Contacts of balls and raceways '
-        'only: wipers, recirculation and ball-to-ball contact are not in it. Least: '
-        f'{MILLI * least:.1f} mN m at {turn:g} rev/min.',
+        'Friction torque of the nominal screw, preload only, ISO VG 68 at 40 °C. Contacts of '
+        'balls and raceways only: wipers, recirculation and ball-to-ball contact are not in it. '
+        f'Least where the roughness rolls: {MILLI * least:.1f} mN m at {turn:g} rev/min. Grey: '
+        'one draw of the same roughness, standing still.',
     )
     axes = figure.subplots()
     parts: tuple[tuple[str, str, str, str], ...] = (
-        ('friction_torque', 'friction torque', 'black', 'o-'),
+        ('friction_torque', 'friction torque, rolling roughness', 'black', 'o-'),
         ('sliding_torque', 'sliding', VERMILION, 's--'),
-        ('rolling_torque', 'rolling', BLUE, '^-.'),
+        ('rolling_torque', 'rolling losses', BLUE, '^-.'),
     )
     for name, label, colour, style in parts:
-        _draw(axes, curve(rows, 'rpm', name, **SCREW), MILLI, style, colour, label)
-    axes.plot(
-        entrainment(turn),
-        MILLI * least,
-        'o',
-        markersize=9,
-        mfc='none',
-        mec='black',
-        label='least torque',
-    )
+        _draw(axes, screw_speeds(rows, name), MILLI, style, colour, label)
+    standing = screw_speeds(rows, 'friction_torque', STANDING)
+    _draw(axes, standing, MILLI, 'v:', GREY, 'friction torque, standing roughness')
     if measured is not None:
         axes.errorbar(
             entrainment(measured.rpm),
@@ -105,48 +99,54 @@ def _draw(
     )
 
 
-def figure_stribeck(rows: Sequence[StudyRow]) -> Figure:
+def figure_stribeck(law: AsperityLaw, rows: Sequence[StudyRow]) -> Figure:
     """Return Stribeck curve, load shares and film over entrainment speed (11)."""
-    friction = curve(rows, 'rpm', 'friction_coefficient', **SCREW)
     figure = captioned_figure(
         8.2,
-        'Nominal screw, preload only, ISO VG 68 at 40 °C, mean of '
-        f'{counted(friction.draws)}; bands: standard deviation. (a) Mean traction against the '
-        'slip over the normal force, its parts, and the coefficient that would make the rolling '
-        'losses, too. (b) Worst contact; zero is drawn at the lower edge. (c) Central film of '
-        'the smooth contact at the screw, least film of the rough contacts, whose floor is '
-        '4.1 nm.',
+        'Nominal screw, preload only, ISO VG 68 at 40 °C; grey: roughness that stands still. (a) '
+        'Mean traction against the slip over the normal force, its parts, and the coefficient '
+        'that would make the rolling losses, too. (b) Worst contact; zero is drawn at the lower '
+        "edge; bands: standard deviation, of the law's onset or of the contact's draws. (c) "
+        'Central film of the smooth contacts.',
     )
     first, second, third = figure.subplots(3, 1, sharex=True)
-    _draw(first, friction, 1.0, 'o-', 'black', 'friction coefficient')
-    parts = (('asperity_coefficient', VERMILION, 's--'), ('film_coefficient', BLUE, '^-.'))
-    for name, colour, style in parts:
-        label = f'{name.split("_")[0]} share'
-        _draw(first, curve(rows, 'rpm', name, **SCREW), 1.0, style, colour, label)
-    apparent = apparent_friction(list(rows))
-    _draw(first, apparent, 1.0, 'D:', PURPLE, 'all losses taken as sliding')
+    for name, label, colour, style in (
+        ('friction_coefficient', 'friction coefficient', 'black', 'o-'),
+        ('asperity_coefficient', 'asperity share', VERMILION, 's--'),
+        ('film_coefficient', 'film share', BLUE, '^-.'),
+    ):
+        _draw(first, screw_speeds(rows, name), 1.0, style, colour, label)
+    _draw(first, apparent_friction(rows), 1.0, 'D:', PURPLE, 'all losses taken as sliding')
+    standing = screw_speeds(rows, 'friction_coefficient', STANDING)
+    _draw(first, standing, 1.0, 'v:', GREY, 'friction coefficient, standing')
     first.set(ylabel='friction coefficient [-]', ylim=(0, 0.2))
-    shares = (
-        ('rcs', 'RCS', 'black', 'o-'),
-        ('asperity_share', 'asperity share', VERMILION, 's--'),
-    )
-    for name, label, colour, style in shares:
-        found = curve(rows, 'rpm', name, **SCREW)
-        _draw(second, found, 1.0, style, colour, label, floor=NO_CONTACT)
-    limit(second, RCS_LIMIT, f'limit {RCS_LIMIT:g}')
-    second.set(ylabel='share of the load [-]', yscale='log', ylim=(NO_CONTACT, 1.3))
-    _draw_films(third, rows)
+    _draw_shares(second, law, rows)
+    _draw(third, screw_speeds(rows, 'central_film'), NANO, 'o-', 'black', 'central film')
+    _mark_films(third)
     for axes, letter in zip((first, second, third), 'abc', strict=True):
         speed_axis(axes, label=axes is third, top=axes is first)
         finish(axes, letter)
     return figure
 
 
-def _draw_films(axes: Axes, rows: Sequence[StudyRow]) -> None:
-    smooth = curve(rows, 'rpm', 'central_film', kind='contact', load=PRELOAD, rough=False)
-    _draw(axes, smooth, NANO, 'o-', 'black', 'central film, smooth')
-    least = curve(rows, 'rpm', 'minimum_film', **SCREW)
-    _draw(axes, least, NANO, 's--', BLUE, 'least film, rough')
+def _draw_shares(axes: Axes, law: AsperityLaw, rows: Sequence[StudyRow]) -> None:
+    """Draw RCS where the roughness rolls, and where it stands still."""
+    rolling = screw_speeds(rows, 'rcs')
+    speed, spread = entrainment(rolling.at), math.exp(law.deviation)
+    share = np.maximum(rolling.mean, NO_CONTACT)
+    axes.fill_betweenx(share, speed / spread, speed * spread, color='0.85', linewidth=0)
+    for found, label, colour, style in (
+        (rolling, 'RCS, rolling roughness', 'black', 'o-'),
+        (screw_speeds(rows, 'rcs', STANDING), 'RCS, standing roughness', GREY, 'v:'),
+        (contact_speeds(rows), 'RCS, one contact, standing roughness of the study', GREEN, 's--'),
+    ):
+        _draw(axes, found, 1.0, style, colour, label, floor=NO_CONTACT)
+    limit(axes, RCS_LIMIT, f'limit {RCS_LIMIT:g}')
+    axes.set(ylabel='share of the load [-]', yscale='log', ylim=(NO_CONTACT, 1.3))
+
+
+def _mark_films(axes: Axes) -> None:
+    """Mark the published film, and film ratios of the published roughness."""
     axes.plot(
         MARK_SPEED,
         REPORTED_FILM,

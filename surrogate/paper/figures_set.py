@@ -6,12 +6,13 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from matplotlib.figure import Figure
+from surrogate.asperities.law import shipped_law
 from surrogate.paper.cases import (
     LOADS,
     MARK_RPM,
     PRELOAD,
     ROUGH_LOADS,
-    ROUGH_SPEEDS,
+    SHOWN_SPEEDS,
     SLOW,
     SMOOTH,
     SMOOTH_SPEEDS,
@@ -19,16 +20,14 @@ from surrogate.paper.cases import (
 )
 from surrogate.paper.figures_contact import (
     Drawn,
-    figure_asperities,
     figure_fractal,
-    figure_rough_load,
-    figure_rough_speed,
+    figure_rough,
     figure_smooth_load,
     figure_smooth_speed,
 )
 from surrogate.paper.figures_map import figure_maps, figure_zone
-from surrogate.paper.figures_other import figure_alternatives
 from surrogate.paper.figures_screw import figure_stribeck, figure_torque, MeasuredTorque
+from surrogate.paper.figures_trends import figure_trends
 from surrogate.paper.raceway import published_patch
 from surrogate.paper.solve import SHORTEST_ON_GRID
 from surrogate.paper.study import SCREW, Study
@@ -53,7 +52,7 @@ def _pictures(
     study: Study, figure: str, measured: MeasuredTorque | None
 ) -> dict[str, Callable[[], Figure]]:
     """Return the pictures of one figure of the study by file name."""
-    rows, screw = study.rows, load_screw(SCREW)
+    rows, screw, law = study.rows, load_screw(SCREW), shipped_law()
     every = list(rows.values())
     pictures: dict[str, dict[str, Callable[[], Figure]]] = {
         '4': {'04_surface': lambda: _fractal(study)},
@@ -69,20 +68,19 @@ def _pictures(
             )
         },
         '9': {
-            '09_rough_speed': lambda: figure_rough_speed(
-                _drawn(study, 0, [(rpm, PRELOAD) for rpm in ROUGH_SPEEDS])
+            '09_rough_speed': lambda: figure_rough(
+                _drawn(study, 0, [(rpm, PRELOAD) for rpm in SHOWN_SPEEDS])
             )
         },
         '10': {
-            '10_rough_load': lambda: figure_rough_load(
+            '10_rough_load': lambda: figure_rough(
                 _drawn(study, 0, [(SLOW, load) for load in ROUGH_LOADS])
-            ),
-            '10_asperities': lambda: figure_asperities(every),
+            )
         },
-        '11': {'11_stribeck': lambda: figure_stribeck(every)},
+        '11': {'11_stribeck': lambda: figure_stribeck(law, every)},
         '12': {'12_maps': lambda: figure_maps(screw, every)},
-        '13': {'13_zone': lambda: figure_zone(screw, every)},
-        'alternatives': {'alternatives': lambda: figure_alternatives(screw, every)},
+        '13': {'13_zone': lambda: figure_zone(screw, law, every)},
+        'trends': {'trends': lambda: figure_trends(screw, every)},
     }
     return pictures[figure]
 

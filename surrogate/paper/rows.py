@@ -3,12 +3,12 @@
 """
 Rows of the comparison with the published study: numbers in a CSV, fields of contacts beside it.
 
-A file holds rows of one set of datasheets: `inputs` is the beginning of their hash, and rows of
-others are not read.
+`inputs` of a row is the beginning of a hash of the datasheets, and of the asperity law where that
+decides what touches; rows of others are not read.
 
 """
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from dataclasses import asdict, dataclass
 import hashlib
 import math
@@ -17,6 +17,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from surrogate.asperities.law import AsperityLaw
 from surrogate.files import new_file
 from surrogate.paper.cases import OURS, SMOOTH, StudyTask
 from surrogate.parameters import Lubricant, Screw
@@ -25,7 +26,7 @@ from surrogate.tasks.table import read_table, write_table
 Array = NDArray[np.float64]
 TABLE, FIELDS = 'paper.csv', 'paper_fields'
 """Names of the table and of the folder of fields in the output folder."""
-VERSION = '1'
+VERSION = '2'
 """Of what a row means; other versions are not read."""
 
 
@@ -36,12 +37,12 @@ class StudyRow:
 
     Task: kind, case, screw speed [rev/min], axial load [N], draw. Contact or worst contact: normal
     force [N], entrainment speed [m/s], films at the centre, over the inner half of the ellipse and
-    the least [m], Hertz and largest pressure [Pa], RCS and asperity share [-], mean distance of
-    the asperity load from the centre over the semi-axes [-], punctured share of the ellipse [-].
-    Screw: RCS of loaded and relieved nut [-], friction torque and its sliding and rolling part,
-    the sliding part with the central film in Eyring's law, the torque of friction along the track
-    [N m], friction coefficient and its parts from film and asperities [-].
-    Processor time [s].
+    the least [m], largest pressure [Pa], RCS and asperity share [-], mean distance of
+    the asperity load from the centre over the semi-axes [-].
+    Screw: standard deviation of RCS by that of the law, RCS of loaded and relieved nut [-],
+    friction torque and its sliding and rolling part, the sliding part with the central film in
+    Eyring's law, the torque of friction along the track [N m], friction coefficient and its parts
+    from film and asperities [-]. Processor time [s].
 
     """
 
@@ -57,12 +58,11 @@ class StudyRow:
     central_film: float = math.nan
     mean_film: float = math.nan
     minimum_film: float = math.nan
-    hertz_pressure: float = math.nan
     max_pressure: float = math.nan
     rcs: float = math.nan
     asperity_share: float = math.nan
     asperity_distance: float = math.nan
-    punctured_share: float = math.nan
+    rcs_deviation: float = math.nan
     rcs_loaded: float = math.nan
     rcs_relieved: float = math.nan
     friction_torque: float = math.nan
@@ -110,16 +110,16 @@ class ContactFields:
     heights: Array
 
 
-def inputs_hash(screw: Screw, lubricant: Lubricant) -> str:
-    """Return the beginning of the hash of datasheets and of what a row means."""
-    text = repr((VERSION, asdict(screw), asdict(lubricant)))
+def inputs_hash(screw: Screw, lubricant: Lubricant, law: AsperityLaw | None = None) -> str:
+    """Return the beginning of the hash of datasheets, law and what a row means."""
+    text = repr((VERSION, asdict(screw), asdict(lubricant), law and asdict(law)))
     return hashlib.sha256(text.encode()).hexdigest()[:12]
 
 
-def read_rows(path: Path, inputs: str = '') -> dict[str, StudyRow]:
-    """Return the rows of a table by key, those of one set of inputs if it is given; InputError."""
+def read_rows(path: Path, inputs: Collection[str] = ()) -> dict[str, StudyRow]:
+    """Return the rows of a table by key, those of some inputs if they are given; InputError."""
     rows = read_table(path, StudyRow)
-    return {row.key: row for row in rows if inputs in ('', row.inputs)}
+    return {row.key: row for row in rows if not inputs or row.inputs in inputs}
 
 
 def write_rows(path: Path, rows: Iterable[StudyRow]) -> None:

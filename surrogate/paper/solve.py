@@ -22,7 +22,7 @@ from surrogate.formulas import closed_form
 from surrogate.formulas.geometry import hertz, screw_contact
 from surrogate.formulas.kinematics import entrainment_speed_paper
 from surrogate.formulas.load_sharing import normal_force, nut_forces
-from surrogate.paper.cases import CASES, SMOOTH, StudyTask
+from surrogate.paper.cases import CASES, SMOOTH, STANDING, StudyTask
 from surrogate.paper.raceway import published_patch
 from surrogate.paper.rows import ContactFields, empty_row, StudyRow
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
@@ -49,7 +49,7 @@ def solve_task(
 ) -> tuple[StudyRow, ContactFields | None]:
     """Solve one task; return its row and, for a contact that keeps them, its fields."""
     began = time.process_time()
-    speed = float(entrainment_speed_paper(screw, rad_per_second(task.rpm)))
+    speed = float(entrainment_speed_paper(screw, task.rpm * RPM))
     row = replace(empty_row(task, inputs), entrainment_speed=speed)
     kept = None
     if task.kind == 'contact':
@@ -61,11 +61,6 @@ def solve_task(
     return replace(row, seconds=time.process_time() - began), kept
 
 
-def rad_per_second(rpm: float) -> float:
-    """Return a speed [rad/s] from [rev/min]."""
-    return rpm * RPM
-
-
 def _contact(
     screw: Screw, lubricant: Lubricant, task: StudyTask, row: StudyRow
 ) -> tuple[StudyRow, ContactFields | None]:
@@ -75,19 +70,17 @@ def _contact(
     row = replace(row, status=solution.status.name, normal_force=force)
     if not solution.converged:
         return row, None
-    middle = float(np.mean(solution.film[inner_nodes(solution, INNER)]))
+    middle = float(np.mean(solution.film[solution.distance < INNER]))
     smooth = task.draw == SMOOTH and not math.isnan(solution.extrapolated_film)
     row = replace(
         row,
         central_film=solution.extrapolated_film if smooth else solution.central_film,
         mean_film=middle,
         minimum_film=solution.minimum_film,
-        hertz_pressure=solution.hertz_pressure,
         max_pressure=solution.max_pressure,
         rcs=solution.rcs,
         asperity_share=solution.asperity_share,
         asperity_distance=asperity_distance(solution),
-        punctured_share=float(np.sum(solution.contact_mask) / np.sum(inner_nodes(solution, 1.0))),
     )
     return row, _fields(solution, surface, task.fields) if task.fields else None
 
@@ -98,7 +91,8 @@ def solve_patch(
     """
     Solve the contact of a task under a normal `force` [N] at an entrainment `speed` [m/s].
 
-    Waves of the draw that are too short for the grid raise the film floor, as in the full tier.
+    Waves of the draw that are too short for the grid raise the film floor, as where the roughness
+    of a screw stands still.
 
     """
     case, contact = CASES[task.case], screw_contact(screw, 'screw')
@@ -107,7 +101,7 @@ def solve_patch(
         pressure_viscosity=lubricant.pressure_viscosity,
         eyring_stress=lubricant.eyring_stress,
     )
-    settings = Settings(film_floor=case.film_floor or lubricant.film_floor)
+    settings = Settings(film_floor=lubricant.film_floor)
     if case.inlet is not None:
         domain = (-case.inlet, OUTLET, SIDE)
         settings = replace(settings, domain=domain, open_inlet=False)
@@ -127,11 +121,6 @@ def solve_patch(
     )
     found = solve_contact(contact, oil, condition, roughness=surface.heights, settings=settings)
     return found, surface
-
-
-def inner_nodes(solution: ContactSolution, size: float) -> Any:
-    """Return the mask of nodes inside `size` [-] times the Hertz ellipse."""
-    return solution.distance < size
 
 
 def asperity_distance(solution: ContactSolution) -> float:
@@ -169,9 +158,9 @@ def _fields(solution: ContactSolution, surface: FractalSurface | None, kind: str
 def _screw(screw: Screw, lubricant: Lubricant, task: StudyTask, row: StudyRow) -> StudyRow:
     """Solve the whole screw in the full tier."""
     point = OperatingPoint(
-        speed=rad_per_second(task.rpm), load=task.load, temperature=lubricant.reference_temperature
+        speed=task.rpm * RPM, load=task.load, temperature=lubricant.reference_temperature
     )
-    settings = ScrewSettings(kinematics='smooth' if task.draw == SMOOTH else 'rolling')
+    settings = ScrewSettings(kinematics='standing' if task.case == STANDING else 'rolling')
     found = solve_screw(screw, lubricant, point, settings=settings)
     row = replace(row, status='CONVERGED' if found.converged else found.status)
     if not found.converged:
@@ -183,14 +172,15 @@ def _screw(screw: Screw, lubricant: Lubricant, task: StudyTask, row: StudyRow) -
         minimum_film=found.minimum_film,
         rcs=found.rcs,
         asperity_share=found.asperity_share,
-        rcs_loaded=max(one.rcs for one in _rough(found, 'loaded')),
-        rcs_relieved=max((one.rcs for one in _rough(found, 'relieved')), default=0.0),
+        rcs_deviation=found.rcs_deviation,
+        rcs_loaded=max(one.rcs for one in _touching(found, 'loaded')),
+        rcs_relieved=max((one.rcs for one in _touching(found, 'relieved')), default=0.0),
         friction_torque=found.friction_torque,
     )
     return _with_friction(screw, found, row)
 
 
-def _rough(found: ScrewSolution, nut: str) -> list[AsperityContact]:
+def _touching(found: ScrewSolution, nut: str) -> list[AsperityContact]:
     """Return what asperities do in the contacts of a nut that carry load."""
     return [
         contact.solved.asperities
@@ -205,7 +195,7 @@ def _with_friction(screw: Screw, found: ScrewSolution, row: StudyRow) -> StudyRo
     local = [_friction(screw, contact, 'local') for contact in pressed]
     central = [_friction(screw, contact, 'central') for contact in pressed]
     forces = np.array([contact.ball.normal_force for contact in pressed])
-    balls, speed = screw.loaded_balls_per_nut, rad_per_second(row.rpm)
+    balls, speed = screw.loaded_balls_per_nut, row.rpm * RPM
     film, asperity, mean = (
         float(np.sum(forces * [getattr(one, name) for one in local]) / forces.sum())
         for name in ('film_coefficient', 'asperity_coefficient', 'coefficient')
@@ -247,7 +237,7 @@ def _friction(screw: Screw, contact: ScrewContact, film: Any) -> ContactFriction
 def _formulas(screw: Screw, lubricant: Lubricant, task: StudyTask, row: StudyRow) -> StudyRow:
     """Take the screw by published formulas, asperities by a statistical share."""
     found = closed_form.solve(
-        screw, lubricant, rad_per_second(task.rpm), task.load, lubricant.reference_temperature
+        screw, lubricant, task.rpm * RPM, task.load, lubricant.reference_temperature
     )
     loaded = found.contacts[0]
     on_screw = [contact for contact in found.contacts if contact.side == 'screw']

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from surrogate.asperities.law import shipped_law
 from surrogate.files import InputError
 from surrogate.paper.cases import StudyTask
 from surrogate.paper.rows import (
@@ -35,7 +36,7 @@ from surrogate.tasks.store import store_path, TaskStore
 
 SCREW, OIL = 'nominal', 'iso_vg_68'
 """Datasheets of the published screw."""
-WORK = 'surrogate.paper.study 1'
+WORK = 'surrogate.paper.study 2'
 """Solver and version of the kept results."""
 Report = Callable[[int, int, float, StudyTask], None]
 """Told after each solve: tasks done, tasks in all, share of the work done [-], the task."""
@@ -43,7 +44,12 @@ Report = Callable[[int, int, float, StudyTask], None]
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Study:
-    """Rows of the asked tasks by key, in their order, and the folder that keeps the fields."""
+    """
+    Rows of the asked tasks by key, in their order, and the folder that keeps the fields.
+
+    `inputs` is that of the contacts, which have fields.
+
+    """
 
     rows: dict[str, StudyRow]
     folder: Path
@@ -63,20 +69,26 @@ def run_study(
     Raises InputError for a table without a store, which an earlier version left.
 
     """
-    inputs, table = inputs_hash(load_screw(SCREW), load_lubricant(OIL)), folder / TABLE
+    table, known = folder / TABLE, known_inputs()
     if table.exists() and not store_path(table).exists():
         raise InputError(
             f'{table}: rows without the kept results they come from, allowed is a folder of this '
             'version or an empty one'
         )
-    before = read_rows(table, inputs)
-    tasks = {task.key: asdict(task) | {'inputs': inputs} for task in wanted}
+    before = read_rows(table, known.values())
+    tasks = {task.key: asdict(task) | {'inputs': known[task.rolls]} for task in wanted}
     with TaskStore(table, WORK) as store:
         told = _Told(wanted, report)
         found = run_tasks(pool, solve_plain, tasks, store=store, report=told)
-    rows = {task.key: _take(folder, inputs, task, found[task.key]) for task in wanted}
+    rows = {task.key: _take(folder, known[task.rolls], task, found[task.key]) for task in wanted}
     write_rows(table, (before | rows).values())
-    return Study(rows=rows, folder=folder, inputs=inputs)
+    return Study(rows=rows, folder=folder, inputs=known[False])
+
+
+def known_inputs() -> dict[bool, str]:
+    """Return `inputs` of the rows that the asperity law decides, and of those it does not."""
+    screw, oil = load_screw(SCREW), load_lubricant(OIL)
+    return {True: inputs_hash(screw, oil, shipped_law()), False: inputs_hash(screw, oil)}
 
 
 def solve_plain(inputs: Mapping[str, Any]) -> dict[str, Any]:

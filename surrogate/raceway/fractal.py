@@ -38,7 +38,7 @@ class PublishedRoughness(Checked):
 
     Rq `rms` [m] to which a patch is rescaled; fractal dimension D [-], fractal roughness G [m],
     sample length L and shortest wavelength Ls [m], scale ratio g and ridges M [-]. Published are
-    Rq, D and G; L is the length at which the sum has this Rq.
+    Rq, D and G; L is the length at which the sum has this Rq; Ls, g and M are assumed.
 
     """
 

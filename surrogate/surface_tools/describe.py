@@ -102,7 +102,8 @@ def _head(record: Mapping[str, Any]) -> Iterator[str]:
     yield f'  tier         {record["tier"]}, format version {record["format_version"]}'
     yield (
         f'  screw, oil   {record["screw"]}, {record["oil"]}; lead {1e3 * record["lead_m"]:g} mm, '
-        f'preload {record["preload_N"]:g} N, film floor {1e9 * record["film_floor_m"]:g} nm'
+        f'preload {record["preload_N"]:g} N, Rq {1e6 * record["roughness_rms_m"]:g} um, '
+        f'film floor {1e9 * record["film_floor_m"]:g} nm'
     )
     yield f'  roughness    {record["roughness"]}'
     yield f'  sha256       {record["sha256"]}'

@@ -5,6 +5,7 @@
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
+import math
 from pathlib import Path
 from typing import Any
 
@@ -43,12 +44,19 @@ LIGHT, UNKNOWN = '#d9d9d9', '#bdbdbd'
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Slice:
-    """The surface at one temperature: speed [rev/min], load [N], fields [load, speed]."""
+    """
+    The surface at one temperature: speed [rev/min], load [N], fields [load, speed].
+
+    Load below which no efficiency is judged [N]; limit of RCS in speed over that of the fields for
+    the thinnest and thickest boundary film of the oil [-], NaN if not known.
+
+    """
 
     speed: Array
     load: Array
     fields: dict[str, Array]
     light: float
+    band: tuple[float, float]
 
 
 def cut(surface: Surface, temperature: float) -> Slice:
@@ -57,15 +65,7 @@ def cut(surface: Surface, temperature: float) -> Slice:
     speed = np.clip(np.geomspace(slow, fast, GRID[0]), slow, fast)
     load = np.linspace(*surface.load_range, GRID[1])
     points = [surface.lookup(w, f, temperature) for f in load.tolist() for w in speed.tolist()]
-    names = (
-        'efficiency',
-        'rcs',
-        'film_ratio',
-        'efficiency_error',
-        'rcs_error',
-        'efficiency_std',
-        'rcs_std',
-    )
+    names = ('efficiency', 'rcs', 'film_ratio', 'efficiency_error', 'rcs_error', 'rcs_std')
     shape = (len(load), len(speed))
     valid = np.reshape([found.validity is Validity.VALID for found in points], shape)
     fields = {
@@ -73,7 +73,7 @@ def cut(surface: Surface, temperature: float) -> Slice:
         for name in names
     }
     light = LIGHT_LOAD * surface.preload
-    return Slice(speed=speed / RPM, load=load, fields=fields, light=light)
+    return Slice(speed=speed / RPM, load=load, fields=fields, light=light, band=surface.limit_band)
 
 
 def draw_surface(folder: Path, surface: Surface, temperatures: Sequence[float]) -> Iterator[Path]:
@@ -84,7 +84,7 @@ def draw_surface(folder: Path, surface: Surface, temperatures: Sequence[float]) 
 
 
 def figure_surface(surface: Surface, temperature: float) -> Figure:
-    """Return what the surface says at a temperature [K]; with draws, also how far they scatter."""
+    """Return what the surface says at a temperature [K], and how far strips of it differ."""
     part = cut(surface, temperature)
     panels: list[Callable[[Figure, Axes, Slice], None]] = [
         _draw_efficiency,
@@ -95,7 +95,7 @@ def figure_surface(surface: Surface, temperature: float) -> Figure:
         _draw_error,
     ]
     if np.isfinite(part.fields['rcs_std']).any():
-        panels += [_draw_efficiency_spread, _draw_rcs_spread]
+        panels[3:4] = [_draw_rcs_spread]
     rows = len(panels) // 2
     figure = new_figure(7.2, 0.7 + 2.9 * rows)
     figure.suptitle(
@@ -137,6 +137,16 @@ def _limit(axes: Axes, part: Slice, values: Array, levels: list[float]) -> None:
             axes.clabel(lines, fmt='%g', fontsize=7)
 
 
+def _limit_band(axes: Axes, part: Slice, rcs: Array) -> None:
+    """Draw where the limit of RCS lies with a thinner and a thicker boundary film."""
+    if not np.nanmin(rcs) < RCS_LIMIT < np.nanmax(rcs):
+        return
+    for factor in part.band:
+        if math.isfinite(factor):
+            speed = factor * part.speed
+            axes.contour(speed, part.load, rcs, levels=[RCS_LIMIT], linestyles='dashed', **LIMIT)
+
+
 def _draw_efficiency(figure: Figure, axes: Axes, part: Slice) -> None:
     values, title = part.fields['efficiency'], f'Efficiency, line: {EFFICIENCY_LIMIT}'
     _map(figure, axes, part, values, title, '[-]', vmin=EFFICIENCY_SHOWN, vmax=1.0)
@@ -146,8 +156,10 @@ def _draw_efficiency(figure: Figure, axes: Axes, part: Slice) -> None:
 def _draw_rcs(figure: Figure, axes: Axes, part: Slice) -> None:
     values = part.fields['rcs']
     norm = LogNorm(1e-4, 1.0)
-    _map(figure, axes, part, np.maximum(values, 1e-4), f'RCS, line: {RCS_LIMIT}', '[-]', norm=norm)
+    title = f'RCS, line: {RCS_LIMIT}' + ', dashed: its band' * math.isfinite(part.band[0])
+    _map(figure, axes, part, np.maximum(values, 1e-4), title, '[-]', norm=norm)
     _limit(axes, part, values, [RCS_LIMIT])
+    _limit_band(axes, part, values)
 
 
 def _draw_film_ratio(figure: Figure, axes: Axes, part: Slice) -> None:
@@ -239,12 +251,6 @@ def _log_map(
     _map(figure, axes, part, np.maximum(values, 1e-3 * top), title, label, norm=norm)
 
 
-def _draw_efficiency_spread(figure: Figure, axes: Axes, part: Slice) -> None:
-    light = np.abs(part.load)[:, None] < part.light
-    values = np.where(light, np.nan, part.fields['efficiency_std'])
-    _log_map(figure, axes, part, values, 'Efficiency over draws', 'standard deviation [-]')
-
-
 def _draw_rcs_spread(figure: Figure, axes: Axes, part: Slice) -> None:
     values = part.fields['rcs_std']
-    _log_map(figure, axes, part, values, 'RCS over draws', 'standard deviation [-]')
+    _log_map(figure, axes, part, values, 'RCS over strips', 'standard deviation [-]')

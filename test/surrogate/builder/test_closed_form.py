@@ -21,6 +21,15 @@ from surrogate.surface import FIELDS, Surface, Validity
 SMALL = {'speed_nodes': 16, 'load_cells': 3, 'unloaded_cells': 1, 'temperature_nodes': 3}
 
 
+def test_smooth_surfaces_have_no_map(screw, oil):
+    """Without any roughness the film ratio, a field of the map, has no end."""
+    smooth = replace(screw, roughness=replace(screw.roughness, rms=0.0))
+    with pytest.raises(InputError, match='screw nominal: rms_um of roughness is 0 um and the bal'):
+        build_closed_form(smooth, oil, default_settings(smooth))
+    found = closed_form.solve(smooth, oil, 10.0, 0.0, 313.15)
+    assert (float(found.film_ratio), float(found.rcs)) == (math.inf, 0.0)
+
+
 def test_break_nodes_are_nodes(screw):
     """Zero load and the unloading load, both signs, are nodes and breaks."""
     load, breaks = load_nodes(screw, default_settings(screw))

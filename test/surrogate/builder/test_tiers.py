@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The table of tiers: what is named can be loaded and does what the table says."""
 
+from dataclasses import asdict, replace
+import json
 import subprocess
 import sys
 
@@ -16,6 +18,7 @@ from surrogate.builder.tiers import (
 )
 from surrogate.files import InputError
 from surrogate.formulas import closed_form
+from surrogate.parameters import BallRoughness
 from surrogate.surface import FIELDS
 from surrogate.surface import file as surface_file
 
@@ -34,6 +37,9 @@ def test_an_unknown_tier_lists_the_known_ones():
 def test_a_header_gives_back_its_datasheets(surface_data, screw, oil):
     """The file alone is enough to solve again."""
     assert screw_and_oil(surface_data.header['inputs']) == (screw, oil)
+    rough = replace(screw, ball_roughness=BallRoughness(grade='G10'))
+    inputs = json.loads(json.dumps({'screw': asdict(rough), 'lubricant': asdict(oil)}))
+    assert screw_and_oil(inputs) == (rough, oil)
 
 
 def test_a_point_is_solved_as_the_surface_was(surface_data, screw, oil):
@@ -60,8 +66,6 @@ def test_a_builder_that_spreads_its_solves_gets_pool_and_file(monkeypatch, screw
     module = type(sys)('spreading')
     module.build = lambda *sheets, **options: seen.update(options)
     monkeypatch.setitem(sys.modules, 'spreading', module)
-    from dataclasses import replace
-
     tier = replace(TIERS['closed_form'], build='spreading:build', spreads=True)
     monkeypatch.setitem(TIERS, 'closed_form', tier)
     build_surface('closed_form', screw, oil, None, pool='workers', out=tmp_path)

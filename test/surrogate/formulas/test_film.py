@@ -10,6 +10,7 @@ from surrogate.formulas.film import (
     asperity_share_aihara_1987,
     central_film_hamrock_dowson_1977,
     central_film_nijenbanning_1994,
+    film_ratio,
     film_ratio_at_share_aihara_1987,
     Groups,
     groups,
@@ -19,6 +20,13 @@ from surrogate.formulas.film import (
     rolling_force_biboulet_houpert_2010,
 )
 from surrogate.formulas.geometry import Contact
+
+
+def test_film_ratio_of_smooth_surfaces_has_no_end():
+    """Infinite above a film, 0 without one, unknown where the film is."""
+    film = np.array([1e-7, 0.0, np.nan])
+    np.testing.assert_array_equal(film_ratio(film, 0.0), [np.inf, 0.0, np.nan])
+    np.testing.assert_allclose(film_ratio(film, 1e-7), [1.0, 0.0, np.nan])
 
 
 def dimensional(row):
