@@ -73,14 +73,11 @@ def test_panels_and_axes():
     assert figure.axes[0].get_xscale() == 'log'
 
 
-def test_draws_add_two_panels():
-    """What the roughness draws leave uncertain is shown when it is known."""
+def test_strips_that_differ_add_a_panel():
+    """The scatter of RCS between strips of the raceway is shown when it is known."""
     header = {**DATA.header, 'format_version': ENSEMBLE_VERSION}
     drawn = replace(DATA, header=header, deviations={'rcs': 0.1 * DATA.fields['rcs']})
-    assert titles(figures.figure_surface(Surface(drawn), 313.15))[6:] == [
-        'Efficiency over draws',
-        'RCS over draws',
-    ]
+    assert titles(figures.figure_surface(Surface(drawn), 313.15))[6:] == ['RCS over strips']
 
 
 def test_a_surface_without_answers_is_drawn():
