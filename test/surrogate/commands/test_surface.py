@@ -162,7 +162,6 @@ def test_info_is_a_page_a_person_reads(capsys):
         'temperature  10 to 80 degC, nodes at 10, ',
         'nodes        40 x 27 x 9, 0 without a number',
         'friction_torque [N m]                        0.00233',
-        'roughness draws: none',
         'numpy        ',
     ):
         assert part in text

@@ -73,11 +73,13 @@ def test_panels_and_axes():
     assert figure.axes[0].get_xscale() == 'log'
 
 
-def test_strips_that_differ_add_a_panel():
-    """The scatter of RCS between strips of the raceway is shown when it is known."""
+def test_strips_that_differ_have_a_panel():
+    """The scatter of RCS between them takes the place of the regime when it is known."""
     header = {**DATA.header, 'format_version': ENSEMBLE_VERSION}
     drawn = replace(DATA, header=header, deviations={'rcs': 0.1 * DATA.fields['rcs']})
-    assert titles(figures.figure_surface(Surface(drawn), 313.15))[6:] == ['RCS over strips']
+    found = titles(figures.figure_surface(Surface(drawn), 313.15))
+    assert (len(found), found[3]) == (6, 'RCS over strips')
+    assert 'Regime by Lambda' not in found
 
 
 def test_a_surface_without_answers_is_drawn():
