@@ -138,8 +138,14 @@ class AsperityLaw:
         over = np.where(film < floor, -math.inf, over)
         found = self.at(over)
         apart = [share @ self.at(over + side * self.deviation)['rcs'] for side in (-0.5, 0.5)]
+        # The weights add up to 1 but for rounding.
+        rcs, touching = (
+            min(float(share @ found[name]), 1.0) for name in ('rcs', 'asperity_share')
+        )
         return AsperityContact(
-            **{name: float(share @ values) for name, values in found.items()},
+            rcs=rcs,
+            asperity_share=touching,
+            loss_factor=float(share @ found['loss_factor']),
             rcs_deviation=float(apart[0] - apart[1]),
         )
 

@@ -73,7 +73,8 @@ def test_contact_never_grows_with_the_speed(x, step):
 def test_contacts_touch_less_the_faster_they_roll(speed, faster):
     """The integral over the strips as each strip."""
     slow, fast = contact_at(speed), contact_at(faster * speed)
-    assert 0 <= fast.rcs <= slow.rcs + 1e-12 <= 1 + 2e-12
+    assert 0 <= fast.rcs <= slow.rcs + 1e-12
+    assert slow.rcs <= 1
     assert slow.asperity_share <= slow.rcs + 1e-12
     assert slow.rcs_deviation >= 0
     assert 1.1 - 1e-12 <= slow.loss_factor <= 1.5 + 1e-12
