@@ -444,13 +444,11 @@ class NodeProcess:
 
 @pytest.fixture(scope='session')
 def quick_surface(tmp_path_factory):
-    """Return the shipped surface as if it had two plain draws, and wide stated errors."""
+    """Return the shipped surface with wide stated errors."""
     data = surface_file.read(shipped_surface())
-    header = {name: value for name, value in data.header.items() if name != 'weighted_draws'}
-    header['settings'] |= {'draws': 2, 'grid_wavelength': 30e-6}
     errors = {name: np.full_like(values, 0.5) for name, values in data.errors.items()}
     path = tmp_path_factory.mktemp('surface') / 'quick.npz'
-    surface_file.write(path, dataclasses.replace(data, header=header, errors=errors))
+    surface_file.write(path, dataclasses.replace(data, errors=errors))
     return path
 
 
