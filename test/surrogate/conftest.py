@@ -68,7 +68,7 @@ def march_stand_in(inputs: Mapping[str, Any]) -> dict[str, Any]:
     given = inputs_from_json(inputs)
     onset = float(speed_at_ratio(given.waves, given.line, given.oil, np.array(ONSET_RATIO)))
     x = np.linspace(-1.5, 1.0, 40)
-    rcs = ONSET_RCS * np.exp(-STEEPNESS * x)
+    rcs = ONSET_RCS / (ONSET_RCS + (1 - ONSET_RCS) * np.exp(STEEPNESS * x))
     return {
         'onset': onset,
         'speed': (onset * np.exp(x)).tolist(),
