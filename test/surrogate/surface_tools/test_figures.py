@@ -73,13 +73,14 @@ def test_panels_and_axes():
     assert figure.axes[0].get_xscale() == 'log'
 
 
-def test_strips_that_differ_have_a_panel():
-    """The scatter of RCS between them takes the place of the regime when it is known."""
-    header = {**DATA.header, 'format_version': ENSEMBLE_VERSION}
+def test_what_strips_differ_by_is_shown_when_it_is_known():
+    """In place of the regime, which the lines of the film ratio tell; the limit gets its band."""
+    header = {**DATA.header, 'format_version': ENSEMBLE_VERSION, 'limit_band': [0.5, 1.4]}
     drawn = replace(DATA, header=header, deviations={'rcs': 0.1 * DATA.fields['rcs']})
-    found = titles(figures.figure_surface(Surface(drawn), 313.15))
-    assert (len(found), found[3]) == (6, 'RCS over strips')
-    assert 'Regime by Lambda' not in found
+    shown = titles(figures.figure_surface(Surface(drawn), 313.15))
+    assert 'RCS over strips' in shown
+    assert 'Regime by Lambda' not in shown
+    assert 'RCS, line: 0.01, dashed: its band' in shown
 
 
 def test_a_surface_without_answers_is_drawn():
