@@ -33,7 +33,7 @@ from surrogate.screw.contacts import ScrewSettings
 from surrogate.screw.solve import rebalance_screw, ScrewSolution, solve_screw, TIER
 from surrogate.units import RPM
 
-NODES_PER_DECADE, FEWEST_NODES, MOST_SPEEDS = 5, 5, 10
+NODES_PER_DECADE, FEWEST_NODES, MOST_SPEEDS = 10, 5, 10
 """Nodes of viscosity times speed; up to so many measured speeds are solved as they are."""
 APART = 1.05
 """Least ratio of neighbouring speeds that are nodes themselves [-]."""
@@ -130,7 +130,7 @@ def _solve_table(
     for number, node in enumerate(nodes):
         found = _solve(bare(screw), oil, node, load, settings, found)
         shares[number] = found.asperity_share
-        torque[number] = _rebalanced(screw, oil, node, load, found, factors, frictions)
+        torque[number] = _rebalanced(screw, oil, node, load, found, factors, frictions, settings)
         progress(number + 1, len(nodes))
     return _Table(nodes=nodes, factors=factors, frictions=frictions, torque=torque, shares=shares)
 
@@ -201,13 +201,15 @@ def _rebalanced(
     found: ScrewSolution,
     factors: Array,
     frictions: Array,
+    settings: ScrewSettings | None,
 ) -> Array:
     """Return the friction torque [N m] for every viscosity and friction coefficient."""
     table = np.empty((len(factors), len(frictions)))
     for row, factor in enumerate(factors):
         thick, point = thickened(oil, factor), _point(oil, node / factor, load)
         for column, friction in enumerate(frictions):
-            balanced = rebalance_screw(bare(screw, float(friction)), thick, point, found)
+            rough = bare(screw, float(friction))
+            balanced = rebalance_screw(rough, thick, point, found, settings=settings)
             table[row, column] = _converged(balanced, node).friction_torque
     return table
 

@@ -206,13 +206,28 @@ def _rolling(contact: RollingContact, smooth: ContactSolution) -> SolvedContact:
     if contact.waves is None:
         found = AsperityContact(smooth.rcs, smooth.asperity_share, 1.0)
         return SolvedContact(smooth=smooth, pressed=smooth, asperities=found)
-    law = contact.settings.law or shipped_law()
-    found = law.contact(
-        contact.waves, contact.geometry, smooth.condition, contact.oil, contact.film_floor
-    )
+    found = _law(contact, smooth.condition)
     return SolvedContact(
         smooth=smooth, pressed=smooth, asperities=found, friction_share=found.asperity_share
     )
+
+
+def with_oil_of(contact: RollingContact, solved: SolvedContact) -> SolvedContact:
+    """Return a solved contact with the oil, and with the speed and asperities, of another one."""
+    pressed = replace(solved.pressed, lubricant=contact.oil)
+    if solved.friction_share is None:
+        return replace(solved, pressed=pressed)
+    load = solved.smooth.condition.load
+    condition = Condition(load=load, entrainment_speed=contact.entrainment(load))
+    found = _law(contact, condition)
+    return replace(solved, pressed=pressed, asperities=found, friction_share=found.asperity_share)
+
+
+def _law(contact: RollingContact, condition: Condition) -> AsperityContact:
+    """Return what asperities do by the law of the settings."""
+    assert contact.waves is not None
+    law = contact.settings.law or shipped_law()
+    return law.contact(contact.waves, contact.geometry, condition, contact.oil, contact.film_floor)
 
 
 def _standing(

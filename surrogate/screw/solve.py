@@ -23,12 +23,12 @@ from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.screw.ball_motion import Flank
 from surrogate.screw.contacts import (
     make_contacts,
-    oil_at,
     RollingContact,
     ScrewSettings,
     smooth_film,
     solve_sides,
     SolvedContact,
+    with_oil_of,
 )
 from surrogate.screw.nut import load_change, make_nut, NutLoad, ScrewContact, solve_nut, SolvedNut
 
@@ -152,22 +152,28 @@ def solve_screw(
 
 
 def rebalance_screw(
-    screw: Screw, lubricant: Lubricant, point: OperatingPoint, found: ScrewSolution
+    screw: Screw,
+    lubricant: Lubricant,
+    point: OperatingPoint,
+    found: ScrewSolution,
+    *,
+    settings: ScrewSettings | None = None,
 ) -> ScrewSolution:
     """
     Balance the balls anew on the contacts of `found`: faster than a solve by far.
 
     For another asperity friction or parasitic torque, which no contact knows of, this is what a
     solve gives. Another oil or speed must keep the product of viscosity and speed, which pressure
-    and film follow, nearly. Raises InputError for another load than that solved.
+    and film follow, nearly; asperities follow the law of the `settings`. Raises InputError for
+    another load than that solved.
 
     """
     _check_same_load(screw, point, found)
-    fluid = oil_at(lubricant, point.temperature)
+    sides = make_contacts(screw, lubricant, point, settings or ScrewSettings())
     loaded, relieved = (
         tuple(
-            replace(contact.solved, pressed=replace(contact.solved.pressed, lubricant=fluid))
-            for contact in contacts
+            with_oil_of(side, contact.solved)
+            for side, contact in zip(sides, contacts, strict=True)
             if contact.solved is not None
         )
         for contacts in (found.contacts[:2], found.contacts[2:])

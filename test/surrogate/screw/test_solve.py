@@ -338,11 +338,11 @@ def test_balls_are_balanced_anew_on_solved_contacts(rpm, settings):
     """The same point gives the same; another friction what a fresh solve gives."""
     found = at(rpm, 500.0, settings)
     point = OperatingPoint(speed=rpm * math.pi / 30, load=500.0, temperature=WARM)
-    again = rebalance_screw(SCREW, OIL, point, found)
+    again = rebalance_screw(SCREW, OIL, point, found, settings=settings)
     assert again.friction_torque == found.friction_torque
     assert again.rcs == found.rcs
     rough = replace(SCREW, roughness=replace(SCREW.roughness, asperity_friction=0.15))
-    balanced = rebalance_screw(rough, OIL, point, found)
+    balanced = rebalance_screw(rough, OIL, point, found, settings=settings)
     fresh = at(rpm, 500.0, settings, screw=rough)
     assert balanced.friction_torque == pytest.approx(fresh.friction_torque, rel=1e-9)
     assert balanced.energy_error < 1e-8
