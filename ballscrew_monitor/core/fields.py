@@ -113,6 +113,19 @@ def compile_field(path: str, message_type: MessageClass) -> FieldReader:
     return _chain([*steps, ord] if kind == 'octet' else steps)  # that is bytes in Python
 
 
+def number_fields(message_type: MessageClass) -> tuple[str, ...]:
+    """Return the paths of the plain numbers of a message, without those of its header."""
+    found: list[str] = []
+    for name, field_type in message_type.get_fields_and_field_types().items():
+        if field_type in _NUMBERS:
+            found.append(name)
+        elif '/' in field_type and field_type != 'std_msgs/Header':
+            nested = _resolve(field_type)
+            if not isinstance(nested, str):
+                found += [f'{name}.{path}' for path in number_fields(nested)]
+    return tuple(found)
+
+
 def _name_and_key(path: str, segment: str) -> tuple[str, str | None]:
     """Return the name of a segment, and the index or joint between its brackets if any."""
     match = _SEGMENT.fullmatch(segment)

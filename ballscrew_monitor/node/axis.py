@@ -130,7 +130,7 @@ def settings_of(name: str, values: Mapping[str, Any], preload: float) -> Monitor
         timeouts={
             source: nanoseconds(values[f'{name}.{source.name.lower()}.timeout'])
             for source in Source
-            if _is_configured(name, values, source)
+            if is_configured(name, values, source)
         },
         default_temperature=kelvin(values[f'{name}.temperature.default']),
         publish_period=nanoseconds(values[f'{name}.publish_period']),
@@ -153,7 +153,8 @@ def _limits_of(name: str, values: Mapping[str, Any], preload: float) -> Limits:
     )
 
 
-def _is_configured(name: str, values: Mapping[str, Any], source: Source) -> bool:
+def is_configured(name: str, values: Mapping[str, Any], source: Source) -> bool:
+    """Tell whether the axis `name` has an input; some may be left out."""
     return source not in OPTIONAL or bool(values[f'{name}.{source.name.lower()}.topic'])
 
 
@@ -162,7 +163,7 @@ def _inputs_of(name: str, values: Mapping[str, Any], lead: float) -> tuple[Input
     return tuple(
         _input_of(name, values, source, lead)
         for source in Source
-        if _is_configured(name, values, source)
+        if is_configured(name, values, source)
     )
 
 
@@ -173,7 +174,7 @@ def _input_of(
     if not values[f'{prefix}.topic']:
         raise InputError(f'parameter {prefix}.topic is empty, it must name a topic')
     topic, field = values[f'{prefix}.topic'], values[f'{prefix}.field']
-    kind, scaling = values[f'{prefix}.type'], _scaling_of(name, values, source, lead)
+    kind, scaling = values[f'{prefix}.type'], scaling_of(name, values, source, lead)
     try:
         if not kind:
             check_path(field)
@@ -183,7 +184,8 @@ def _input_of(
         raise InputError(f'parameters {prefix}: {error}') from None
 
 
-def _scaling_of(name: str, values: Mapping[str, Any], source: Source, lead: float) -> Scaling:
+def scaling_of(name: str, values: Mapping[str, Any], source: Source, lead: float) -> Scaling:
+    """Return the line to SI units of an input of the axis `name`; lead of the screw [m]."""
     prefix = f'{name}.{source.name.lower()}'
     unit, hand = values[f'{prefix}.unit'], values[f'{name}.handedness']
     scale, offset = values[f'{prefix}.scale'], values[f'{prefix}.offset']
