@@ -4,8 +4,8 @@
 Generate the bag of a nominal machine cycle: 60 s of one milling machine axis.
 
 A table of 200 kg on the nominal screw (lead 10 mm), from cold to warm oil: homing, rapids, a
-creep feed, a facing cut with climb return, light finishing, a deep cut near the unloading load
-that ends creeping, a dwell, warm-up by rapid reversals, the creep feed again and fast cuts. A
+slow feed, a facing cut with climb return, light finishing, a deep cut near the unloading load
+that ends creeping, a dwell, warm-up by rapid reversals, the slow feed again and fast cuts. A
 warm-up takes the better part of an hour; here the oil heats up within the cycle. The bytes are
 the same every time.
 
@@ -78,19 +78,19 @@ def _reversals(number: int) -> tuple[Phase, ...]:
 
 CYCLE = (
     Phase(name='drives on', duration=1.7),
-    Phase(name='homing', duration=2.0, speed=-60.0),
-    Phase(name='homing', duration=1.3, speed=25.0),
-    Phase(name='homing', duration=1.7, speed=-15.0),
+    Phase(name='homing', duration=2.0, speed=-500.0),
+    Phase(name='homing', duration=1.3, speed=450.0),
+    Phase(name='homing', duration=1.7, speed=-400.0),
     Phase(name='at home', duration=0.8),
     Phase(name='rapid', duration=1.6, speed=2000.0),
     Phase(name='at work', duration=0.3),
     Phase(name='rapid', duration=1.6, speed=-2000.0),
     Phase(name='at work', duration=0.4),
-    Phase(name='creep feed', duration=3.0, speed=16.0, cut=1500.0, tooth=11.0),
+    Phase(name='slow feed', duration=3.0, speed=-450.0, cut=1500.0, tooth=11.0),
     Phase(name='at work', duration=0.3),
-    Phase(name='facing', duration=2.4, speed=700.0, cut=1150.0, tooth=27.0),
+    Phase(name='facing', duration=2.4, speed=900.0, cut=1150.0, tooth=27.0),
     Phase(name='reversal', duration=0.3),
-    Phase(name='climb return', duration=2.4, speed=-700.0, cut=-1250.0, tooth=27.0),
+    Phase(name='climb return', duration=2.4, speed=-900.0, cut=-1250.0, tooth=27.0),
     Phase(name='reversal', duration=0.3),
     Phase(name='finishing', duration=1.9, speed=1800.0, cut=330.0, tooth=41.0),
     Phase(name='reversal', duration=0.3),
@@ -100,12 +100,12 @@ CYCLE = (
     Phase(name='at work', duration=0.3),
     Phase(name='rapid', duration=1.6, speed=-2000.0),
     Phase(name='at work', duration=0.8),
-    Phase(name='deep cut', duration=2.8, speed=700.0, cut=2750.0, tooth=17.0),
-    Phase(name='deep cut, creeping', duration=3.8, speed=8.0, cut=2850.0, tooth=13.0),
+    Phase(name='deep cut', duration=2.8, speed=900.0, cut=2750.0, tooth=17.0),
+    Phase(name='deep cut, creeping', duration=3.8, speed=100.0, cut=2850.0, tooth=13.0),
     Phase(name='dwell', duration=3.75),
     *_reversals(5),
     Phase(name='at work', duration=0.8),
-    Phase(name='creep feed, warm', duration=3.8, speed=16.0, cut=1500.0, tooth=11.0),
+    Phase(name='slow feed, warm', duration=3.8, speed=-450.0, cut=1500.0, tooth=11.0),
     Phase(name='reversal', duration=0.4),
     Phase(name='climb return, fast', duration=1.7, speed=-2050.0, cut=-1700.0, tooth=37.0),
     Phase(name='reversal', duration=0.3),

@@ -23,7 +23,7 @@ from surrogate.ehl.moving import MarchSettings, ramp_contact, ramp_strip, SpeedR
 from surrogate.formulas.geometry import hertz, screw_contact
 from surrogate.parameters import load_lubricant, load_screw
 from surrogate.raceway.periodic import periodic_across
-from surrogate.raceway.scaling import draw_raceway, scale_spectrum
+from surrogate.raceway.scaling import draw_raceway, scale_spectrum, with_shorter_waves
 from surrogate.raceway.short_waves import without_short_waves
 from surrogate.raceway.spectrum import RoughnessSpectrum
 from surrogate.tasks.kept import run_kept
@@ -67,18 +67,29 @@ class Variation:
 
 
 BASE = Variation(name='base')
+COARSE = replace(BASE, along=5.0, across=4.0, transits=10.0)
 STUDY = (
     BASE,
     replace(BASE, name='wave 22 um', shortest_um=21.0, first=0.15, last=0.015),
     replace(BASE, name='wave 15 um', shortest_um=14.0, first=0.2, last=0.02),
     replace(BASE, name='wave 6.5 um', shortest_um=6.0, first=0.4, last=0.05),
     replace(BASE, name='wave 4.3 um', shortest_um=4.0, first=0.5, last=0.1, transits=10.0),
-    replace(BASE, name='wave 2.9 um', shortest_um=2.6, first=0.5, last=0.16, transits=6.0),
+    replace(BASE, name='wave 2.9 um', shortest_um=2.6, first=0.6, last=0.24, transits=6.0),
+    replace(COARSE, name='wave 6.5 um, half the nodes', shortest_um=6.0, first=0.4, last=0.1),
+    replace(COARSE, name='wave 2.9 um, half the nodes', shortest_um=2.6, first=0.8, last=0.2),
+    replace(
+        COARSE,
+        name='wave 1.9 um, half the nodes',
+        shortest_um=1.8,
+        first=0.9,
+        last=0.35,
+        transits=4.0,
+    ),
     replace(BASE, name='floor 1 nm', floor_nm=1.0),
     replace(BASE, name='floor 2 nm', floor_nm=2.0),
     replace(BASE, name='floor 5 nm', floor_nm=5.0),
     replace(BASE, name='floor 10 nm', floor_nm=10.0, first=0.6, last=0.06),
-    replace(BASE, name='half the nodes', along=5.0, across=4.0),
+    replace(COARSE, name='half the nodes', transits=16.0),
     replace(BASE, name='12 x 9 nodes a wave', along=12.0, across=9.0),
     replace(BASE, name='16 nodes along, step of 2', along=16.0, stride=2),
     replace(BASE, name='step of 2', stride=2),
@@ -90,7 +101,7 @@ STUDY = (
     replace(BASE, name='twice the width', width=4.0),
     replace(BASE, name='place 0.5', place=0.5),
     replace(BASE, name='place 0.8', place=0.8),
-    replace(BASE, name='whole contact', place=None),
+    replace(COARSE, name='whole contact', place=None, first=0.2, last=0.06, transits=4.0),
     replace(BASE, name='100 N', load=100.0),
     replace(BASE, name='5 N', load=5.0),
     replace(BASE, name='Eyring stress 5 MPa', eyring_MPa=5.0),
@@ -157,9 +168,11 @@ def march(variation: Variation) -> tuple[SpeedRamp, int, int]:
         cutoff_long=variation.cutoff_long_mm * 1e-3,
         fractal_dimension=variation.dimension,
     )
-    surface = without_short_waves(
-        draw_raceway(scale_spectrum(spectrum), variation.seed), variation.shortest_um * 1e-6
-    )
+    cut = variation.shortest_um * 1e-6
+    if cut < spectrum.cutoff_short:
+        # Waves that no stylus has measured, to show what depends on them.
+        spectrum = with_shorter_waves(spectrum, cut)
+    surface = without_short_waves(draw_raceway(scale_spectrum(spectrum), variation.seed), cut)
     ellipse = hertz(contact, variation.load)
     a = float(ellipse.semi_axis_x)
     shortest = surface.shortest_wavelength

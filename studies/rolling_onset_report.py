@@ -16,7 +16,16 @@ import sys
 from typing import TYPE_CHECKING
 
 from rolling_onset import RampRow, STUDY
-from surrogate.plotting.style import BLUE, draw_picture, GREY, new_figure, ORANGE, VERMILION
+from surrogate.plotting.style import (
+    BLUE,
+    draw_picture,
+    GREEN,
+    GREY,
+    new_figure,
+    ORANGE,
+    PURPLE,
+    VERMILION,
+)
 from surrogate.tasks.table import read_table
 
 if TYPE_CHECKING:
@@ -28,6 +37,8 @@ WAVES = (
     ('wave 15 um', '15 um', ORANGE),
     ('base', '9.8 um', BLUE),
     ('wave 6.5 um', '6.5 um', VERMILION),
+    ('wave 4.3 um', '4.3 um', GREEN),
+    ('wave 2.9 um, half the nodes', '2.9 um', PURPLE),
 )
 
 
@@ -109,7 +120,7 @@ def _draw_onsets(axes: 'object', found: dict[str, RampRow]) -> None:
     axes.set_yticks(places, names)
     axes.set(xscale='log', xlabel='onset speed over that of the base [-]')
     axes.xaxis.set_major_formatter('{x:g}')
-    axes.set_xticks([0.3, 0.5, 0.7, 1.0, 1.5], minor=False)
+    axes.set_xticks([0.3, 0.5, 0.7, 1.0, 1.5, 2.0, 3.0], minor=False)
     axes.xaxis.set_minor_formatter('')
     axes.grid(axis='x', alpha=0.4)
 

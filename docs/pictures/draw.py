@@ -18,13 +18,13 @@ METAL, OIL, PUNCTURED, INK = '#9aa5b1', '#f2cf7a', '#d55e00', '#222222'
 OFFLINE, ONLINE, FILE = '#dbe9f6', '#dff1e6', '#fbe3cf'
 STATES = (
     (2.8, 'fast: hydrodynamic', 'Λ = 4, RCS = 0\nthe film carries the whole load'),
-    (0.95, 'slower: mixed by Λ', 'Λ = 1.2, RCS = 0\nno asperity touches: no warning'),
-    (0.16, 'slow or hot: punctured', 'Λ = 0.07, RCS = 0.1\na tenth of the load at punctures'),
+    (0.95, 'slower: mixed by Λ', 'Λ = 2, RCS = 0\nno asperity touches: no warning'),
+    (0.16, 'slow or hot: punctured', 'Λ < 1, RCS = 0.1\na tenth of the load at punctures'),
 )
 OFFLINE_ROOMS = (
     ('parameters', 'datasheets'),
     ('formulas   raceway', 'laws, rough surfaces'),
-    ('ehl', 'one contact'),
+    ('ehl   asperities', 'one contact'),
     ('screw', 'balls, torque'),
     ('builder', 'nodes, errors'),
 )

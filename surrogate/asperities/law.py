@@ -13,6 +13,7 @@ from dataclasses import asdict, dataclass
 from functools import lru_cache
 import json
 import math
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -21,8 +22,10 @@ from scipy.interpolate import PchipInterpolator
 from surrogate.asperities.acting import speed_at_ratio, Waves
 from surrogate.datasheet import DATA
 from surrogate.ehl import Condition, ContactLubricant
+from surrogate.files import InputError
 from surrogate.formulas.geometry import Contact
 from surrogate.formulas.line import central_film_line, line_at
+from surrogate.surface.file import read
 
 Array = NDArray[np.float64]
 SHIPPED = DATA / 'asperity_law.json'
@@ -135,8 +138,14 @@ class AsperityLaw:
         over = np.where(film < floor, -math.inf, over)
         found = self.at(over)
         apart = [share @ self.at(over + side * self.deviation)['rcs'] for side in (-0.5, 0.5)]
+        # The weights add up to 1 but for rounding.
+        rcs, touching = (
+            min(float(share @ found[name]), 1.0) for name in ('rcs', 'asperity_share')
+        )
         return AsperityContact(
-            **{name: float(share @ values) for name, values in found.items()},
+            rcs=rcs,
+            asperity_share=touching,
+            loss_factor=float(share @ found['loss_factor']),
             rcs_deviation=float(apart[0] - apart[1]),
         )
 
@@ -180,6 +189,14 @@ def law_from_json(content: Mapping[str, Any]) -> AsperityLaw:
         name: tuple(value) if isinstance(value, list) else value for name, value in content.items()
     }
     return AsperityLaw(**values)
+
+
+def law_of_surface(path: Path) -> AsperityLaw:
+    """Return the law that a full-tier surface was built with; InputError for another tier."""
+    header = read(path).header
+    if 'law' not in header:
+        raise InputError(f'{path}: a surface of tier {header["tier"]}, allowed is full')
+    return law_from_json(header['law'])
 
 
 @lru_cache(maxsize=1)

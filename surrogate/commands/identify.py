@@ -62,6 +62,13 @@ def add_identify_command(subparsers: Any, read_bag: BagReader | None = None) -> 
         help='model of the contacts, that of whoever uses the result (default %(default)s)',
     )
     parser.add_argument(
+        '--surface',
+        type=Path,
+        metavar='FILE',
+        help='full tier: surface of this screw whose marches say where contact begins (default '
+        'those of the nominal screw)',
+    )
+    parser.add_argument(
         '--loss',
         choices=('linear', 'soft_l1'),
         default='linear',
@@ -108,7 +115,7 @@ def _identify(args: argparse.Namespace) -> int:
     screw, lubricant = load_screw(args.screw), load_lubricant(args.oil)
     run = _run(args, screw, lubricant)
     fitted = tuple(FITTED[name] for name in dict.fromkeys(args.fit))
-    contacts = _contacts(args.tier, screw, lubricant, run, fitted)
+    contacts = _contacts(args, screw, lubricant, run, fitted)
     found = identify(screw, run, contacts, fitted, loss=args.loss)
     record = identification_record(screw, run, contacts, found)
     show(record, page, json=args.json)
@@ -181,15 +188,25 @@ def _refuse(args: argparse.Namespace, names: tuple[str, ...], kind: str) -> None
 
 
 def _contacts(
-    tier: str, screw: Screw, lubricant: Lubricant, run: Any, fitted: tuple[str, ...]
+    args: argparse.Namespace, screw: Screw, lubricant: Lubricant, run: Any, fitted: tuple[str, ...]
 ) -> Any:
     """Return the contacts of the run; only the full tier loads the solver."""
-    if tier == 'full':
+    if args.tier == 'full':
+        from surrogate.asperities.law import law_of_surface
         from surrogate.identify.table import solved_model
+        from surrogate.screw import ScrewSettings
 
+        law = law_of_surface(args.surface) if args.surface else None
         return solved_model(
-            screw, lubricant, run, fitted, progress=Progress(0, 'speeds solved').show
+            screw,
+            lubricant,
+            run,
+            fitted,
+            settings=ScrewSettings(law=law),
+            progress=Progress(0, 'speeds solved').show,
         )
+    if args.surface:
+        raise InputError('--surface needs --tier full')
     from surrogate.identify.model import closed_form_model
 
     return closed_form_model(screw, lubricant, run)

@@ -123,6 +123,7 @@ def _full(
     args: argparse.Namespace, screw: Screw, lubricant: Lubricant, point: OperatingPoint
 ) -> tuple[Any, dict[str, Any]]:
     """Return a point of the full tier and its record; only this loads the contact solver."""
+    from surrogate.asperities.law import law_of_surface
     from surrogate.screw.contacts import ScrewSettings
     from surrogate.screw.full_record import solution_record
     from surrogate.screw.solve import solve_screw
@@ -130,23 +131,12 @@ def _full(
     started = time.perf_counter()
     settings = ScrewSettings(
         kinematics=args.kinematics or 'rolling',
-        law=_law(args.surface) if args.surface else None,
+        law=law_of_surface(args.surface) if args.surface else None,
         inlet_heating=args.inlet_heating,
     )
     found = solve_screw(screw, lubricant, point, settings=settings)
     record = solution_record(screw, lubricant, point, found, settings)
     return found, record | {'wall_s': time.perf_counter() - started}
-
-
-def _law(path: Path) -> Any:
-    """Return the law of asperity contact that a surface was built with."""
-    from surrogate.asperities.law import law_from_json
-    from surrogate.surface.file import read
-
-    header = read(path).header
-    if 'law' not in header:
-        raise InputError(f'--surface: {path} is of tier {header["tier"]}, allowed is full')
-    return law_from_json(header['law'])
 
 
 def _prepare(folder: Path) -> None:

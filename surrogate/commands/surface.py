@@ -22,13 +22,6 @@ from surrogate.surface import find_surface
 from surrogate.surface.file import read, write
 from surrogate.units import RPM, ZERO_CELSIUS
 
-FULL_ONLY = {
-    'accuracy': ('accuracy', 1),
-    'draws': ('draws', 1),
-    'wavelength_um': ('grid_wavelength', 1e-6),
-}
-"""Options of the full tier alone: the setting each is for, and its unit in SI."""
-
 
 def add_surface_command(subparsers: Any) -> None:
     """Add `surface` with all that it does; each sets `handler`, which takes the arguments."""
@@ -56,25 +49,6 @@ def _add_build(parser: argparse.ArgumentParser) -> None:
             metavar=('LOW', 'HIGH'),
             help=f'{name} range [{unit}]',
         )
-    parser.add_argument(
-        '--accuracy',
-        type=float,
-        metavar='A',
-        help='full tier: errors aimed at, over 0.003 in efficiency and RCS (default 1)',
-    )
-    parser.add_argument(
-        '--draws',
-        type=int,
-        metavar='K',
-        help='full tier: draws of the roughness that are averaged (default 16)',
-    )
-    parser.add_argument(
-        '--wavelength-um',
-        type=float,
-        metavar='L',
-        help='full tier: shortest wave of the roughness that is solved [um]; shorter ones '
-        'raise the film floor (default 16)',
-    )
     parser.add_argument('--out', type=Path, help='file to write (default SCREW_OIL.npz)')
     add_workers(parser)
     parser.set_defaults(handler=_build)
@@ -104,11 +78,6 @@ def _build(args: argparse.Namespace) -> int:
     if args.temperature_range:
         low, high = _range('--temperature-range', 'degC', args.temperature_range)
         ranges['temperature_range'] = (low + ZERO_CELSIUS, high + ZERO_CELSIUS)
-    for name, (setting, unit) in FULL_ONLY.items():
-        if getattr(args, name) is not None:
-            if args.tier != 'full':
-                raise InputError(f'--{name.replace("_", "-")} needs --tier full')
-            ranges[setting] = getattr(args, name) * unit
     out = args.out or Path(f'{screw.name}_{lubricant.name}.npz')
     settings = default_settings(args.tier, screw, ranges)
     progress = Progress(0, 'slices').show if sys.stderr.isatty() else lambda done, total: None

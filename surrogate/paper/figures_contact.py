@@ -177,41 +177,21 @@ def _middle(found: ContactFields) -> int:
     return int(np.argmin(np.abs(found.y)))
 
 
-def figure_rough_speed(drawn: Sequence[Drawn]) -> Figure:
-    """Return pressure and film of the rough contact at several speeds (9)."""
-    titles = [
-        f'{row.rpm:g} rev/min, {1e3 * row.entrainment_speed:.1f} mm/s\nRCS {row.rcs:.2g}'
-        for row, _ in drawn
-    ]
-    return _rough_figure(
-        drawn,
-        titles,
-        'Rough contact of ball and screw, draw 0, standing still, preload only (27.6 N), ISO VG '
-        '68 at 40 °C, centre line. Dotted: the film floor; a node there counts as punctured.',
+def figure_rough(drawn: Sequence[Drawn]) -> Figure:
+    """Return pressure and film of the rough contact at several speeds (9) or loads (10)."""
+    caption = (
+        f'Rough contact of ball and screw in the loaded nut, draw {drawn[0][0].draw}, standing '
+        'still, ISO VG 68 at 40 °C, centre line. Dotted: the film floor; a node there counts as '
+        'punctured.'
     )
-
-
-def figure_rough_load(drawn: Sequence[Drawn]) -> Figure:
-    """Return pressure and film of the rough contact at several loads (10)."""
-    titles = [
-        f'{row.load:g} N on the screw\n{row.normal_force:.0f} N per ball, RCS {row.rcs:.2g}'
-        for row, _ in drawn
-    ]
-    rpm = drawn[0][0].rpm
-    return _rough_figure(
-        drawn,
-        titles,
-        f'Rough contact of ball and screw in the loaded nut, draw 0, standing still, {rpm:g} '
-        'rev/min, ISO VG 68 at 40 °C, centre line. Dotted: the film floor; a node there counts as '
-        'punctured.',
-    )
-
-
-def _rough_figure(drawn: Sequence[Drawn], titles: Sequence[str], caption: str) -> Figure:
     figure = captioned_figure(4.9, caption)
     panels = figure.subplots(2, len(drawn), sharex='col', squeeze=False)
     top = 1.1 * GIGA * max(float(_total(found).max()) for _, found in drawn)
-    for column, ((row, found), title) in enumerate(zip(drawn, titles, strict=True)):
+    for column, (row, found) in enumerate(drawn):
+        title = (
+            f'{row.rpm:g} rev/min, {row.load:g} N on the screw\n'
+            f'{row.normal_force:.0f} N per ball, RCS {row.rcs:.2g}'
+        )
         upper, lower = panels[:, column]
         _draw_split(upper, found)
         upper.set_ylim(0, top)

@@ -3,12 +3,14 @@
 """Pictures of the screw over speed beside the study: torque (6b), Stribeck, film (11)."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+import math
 from typing import Any
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 import numpy as np
+from surrogate.asperities.law import AsperityLaw
 from surrogate.paper.cases import STANDING
 from surrogate.paper.curves import Curve, lowest, NO_CONTACT
 from surrogate.paper.figures import (
@@ -97,14 +99,14 @@ def _draw(
     )
 
 
-def figure_stribeck(rows: Sequence[StudyRow]) -> Figure:
+def figure_stribeck(law: AsperityLaw, rows: Sequence[StudyRow]) -> Figure:
     """Return Stribeck curve, load shares and film over entrainment speed (11)."""
     figure = captioned_figure(
         8.2,
         'Nominal screw, preload only, ISO VG 68 at 40 °C; grey: roughness that stands still. (a) '
         'Mean traction against the slip over the normal force, its parts, and the coefficient '
         'that would make the rolling losses, too. (b) Worst contact; zero is drawn at the lower '
-        "edge; bands: standard deviation, of the asperity law or of the contact's draws. (c) "
+        "edge; bands: standard deviation, of the law's onset or of the contact's draws. (c) "
         'Central film of the smooth contacts.',
     )
     first, second, third = figure.subplots(3, 1, sharex=True)
@@ -118,7 +120,7 @@ def figure_stribeck(rows: Sequence[StudyRow]) -> Figure:
     standing = screw_speeds(rows, 'friction_coefficient', STANDING)
     _draw(first, standing, 1.0, 'v:', GREY, 'friction coefficient, standing')
     first.set(ylabel='friction coefficient [-]', ylim=(0, 0.2))
-    _draw_shares(second, rows)
+    _draw_shares(second, law, rows)
     _draw(third, screw_speeds(rows, 'central_film'), NANO, 'o-', 'black', 'central film')
     _mark_films(third)
     for axes, letter in zip((first, second, third), 'abc', strict=True):
@@ -127,11 +129,12 @@ def figure_stribeck(rows: Sequence[StudyRow]) -> Figure:
     return figure
 
 
-def _draw_shares(axes: Axes, rows: Sequence[StudyRow]) -> None:
+def _draw_shares(axes: Axes, law: AsperityLaw, rows: Sequence[StudyRow]) -> None:
     """Draw RCS where the roughness rolls, and where it stands still."""
-    rolling = replace(
-        screw_speeds(rows, 'rcs'), deviation=screw_speeds(rows, 'rcs_deviation').mean
-    )
+    rolling = screw_speeds(rows, 'rcs')
+    speed, spread = entrainment(rolling.at), math.exp(law.deviation)
+    share = np.maximum(rolling.mean, NO_CONTACT)
+    axes.fill_betweenx(share, speed / spread, speed * spread, color='0.85', linewidth=0)
     for found, label, colour, style in (
         (rolling, 'RCS, rolling roughness', 'black', 'o-'),
         (screw_speeds(rows, 'rcs', STANDING), 'RCS, standing roughness', GREY, 'v:'),

@@ -21,8 +21,7 @@ from surrogate.paper.cases import (
 from surrogate.paper.figures_contact import (
     Drawn,
     figure_fractal,
-    figure_rough_load,
-    figure_rough_speed,
+    figure_rough,
     figure_smooth_load,
     figure_smooth_speed,
 )
@@ -53,7 +52,7 @@ def _pictures(
     study: Study, figure: str, measured: MeasuredTorque | None
 ) -> dict[str, Callable[[], Figure]]:
     """Return the pictures of one figure of the study by file name."""
-    rows, screw = study.rows, load_screw(SCREW)
+    rows, screw, law = study.rows, load_screw(SCREW), shipped_law()
     every = list(rows.values())
     pictures: dict[str, dict[str, Callable[[], Figure]]] = {
         '4': {'04_surface': lambda: _fractal(study)},
@@ -69,18 +68,18 @@ def _pictures(
             )
         },
         '9': {
-            '09_rough_speed': lambda: figure_rough_speed(
+            '09_rough_speed': lambda: figure_rough(
                 _drawn(study, 0, [(rpm, PRELOAD) for rpm in SHOWN_SPEEDS])
             )
         },
         '10': {
-            '10_rough_load': lambda: figure_rough_load(
+            '10_rough_load': lambda: figure_rough(
                 _drawn(study, 0, [(SLOW, load) for load in ROUGH_LOADS])
             )
         },
-        '11': {'11_stribeck': lambda: figure_stribeck(every)},
+        '11': {'11_stribeck': lambda: figure_stribeck(law, every)},
         '12': {'12_maps': lambda: figure_maps(screw, every)},
-        '13': {'13_zone': lambda: figure_zone(screw, shipped_law(), every)},
+        '13': {'13_zone': lambda: figure_zone(screw, law, every)},
         'trends': {'trends': lambda: figure_trends(screw, every)},
     }
     return pictures[figure]

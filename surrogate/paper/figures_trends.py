@@ -48,7 +48,7 @@ def figure_trends(screw: Screw, rows: Sequence[StudyRow]) -> Figure:
         'Reported: efficiency and film rise with speed and load, RCS falls with speed, rises with '
         f'load. (a) Screw under {EFFICIENCY_LOAD:g} N. (b) Central film at 502.65 mm/s, loaded '
         'nut. (c) Preload only; zero is drawn at the lower edge. (d) Over that of the least load. '
-        'Statistical: Aihara share of the film ratio, closed forms.',
+        'Statistical: share by the film ratio, closed forms.',
     )
     panels = figure.subplots(2, 2)
     _draw_losses(panels[0, 0], screw, rows)

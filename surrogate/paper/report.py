@@ -11,8 +11,9 @@ from surrogate.paper.marks import marks, table
 from surrogate.paper.rows import StudyRow
 from surrogate.paper.trends import ERRORS, SAME, summary, trend_table, trends
 from surrogate.parameters import Screw
+from surrogate.screw.contacts import ScrewSettings
+from surrogate.screw.full_record import law_sentence
 from surrogate.surface.aims import EFFICIENCY_TOLERANCE
-from surrogate.units import MICRO, NANO
 
 REPORT = 'paper.md'
 """Name of the report in the output folder."""
@@ -26,7 +27,8 @@ def report(screw: Screw, law: AsperityLaw, rows: Mapping[str, StudyRow]) -> str:
         '# Numbers beside the published study',
         'Written by `ballscrew figures`; docs/theory/published_study.md says what they mean. '
         f'{len(rows)} solves, {seconds:.0f} s of processor time.',
-        f'Rolling roughness: {law_words(law)}',
+        f'Rolling: {law_sentence(ScrewSettings(law=law))}; the speed at which contact ends has a '
+        f'standard deviation of {100 * law.deviation:.0f} % between them.',
         '## Trends',
         'Standing roughness is, in single contacts, that of the study, and in the screw one draw '
         'of its own Rq by the standard. Agrees: the course over all places is the reported one; '
@@ -38,15 +40,6 @@ def report(screw: Screw, law: AsperityLaw, rows: Mapping[str, StudyRow]) -> str:
         table(marks(screw, rows)),
     )
     return '\n\n'.join(parts) + '\n'
-
-
-def law_words(law: AsperityLaw) -> str:
-    """Say where the asperity law is from."""
-    return (
-        f'asperity law of {law.marches} marches for {law.source}, waves down to '
-        f'{MICRO * law.shortest_wave:.2g} um, film floor {NANO * law.film_floor:g} nm; its onset '
-        f'speed has a standard deviation of {100 * law.deviation:.0f} % between marches.'
-    )
 
 
 def write_report(folder: Path, text: str) -> Path:

@@ -225,7 +225,7 @@ def _end(screw: Screw, film: Curve, rcs: Curve, note: str) -> Reading | None:
         return None
     ratio = float(np.interp(speed, film.at, film.mean)) / screw.roughness.rms
     inside = DETERMINISTIC[0] <= ratio <= DETERMINISTIC[1]
-    said = f'{speed:.3g} rev/min, film ratio {ratio:.2g}{note}'
+    said = f'{speed:.3g} rev/min, film ratio {ratio:.3g}{note}'
     return Reading(said=said, agrees='yes' if inside else 'no')
 
 

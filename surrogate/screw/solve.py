@@ -39,6 +39,8 @@ SOLVED = (
     'Solved: four contacts and the balls of both nuts.',
 )
 """Status by the number of nuts that carry load."""
+FLOATING_SHARE = 0.02
+"""Share of the load of the other nut below which balls that find no balance count as idle [-]."""
 SAME_FORCE = 1e-3
 """Normal forces that differ by less, over the larger, count as the same [-]."""
 
@@ -146,7 +148,7 @@ def solve_screw(
         with at(nut=place + 1):
             tolerance = settings.coupling_tolerance
             solved.append(solve_nut(screw, point, nut, contacts, pair, tolerance=tolerance))
-    return _combine(screw, point, solved)
+    return _combine(screw, point, _without_floating(screw, point, nuts, solved))
 
 
 def rebalance_screw(
@@ -170,8 +172,20 @@ def rebalance_screw(
         )
         for contacts in (found.contacts[:2], found.contacts[2:])
     )
-    pairs = zip(_nut_loads(screw, point), (loaded, relieved), strict=True)
-    return _combine(screw, point, [make_nut(screw, point, *given) for given in pairs])
+    nuts = _nut_loads(screw, point)
+    pairs = zip(nuts, (loaded, relieved), strict=True)
+    solved = [make_nut(screw, point, *given) for given in pairs]
+    return _combine(screw, point, _without_floating(screw, point, nuts, solved))
+
+
+def _without_floating(
+    screw: Screw, point: OperatingPoint, nuts: tuple[NutLoad, NutLoad], solved: Sequence[SolvedNut]
+) -> list[SolvedNut]:
+    """Return the nuts; relieved balls that float on their oil and find no balance are idle."""
+    loaded, relieved = nuts
+    if solved[1].failure and relieved.force < FLOATING_SHARE * loaded.force:
+        return [solved[0], make_nut(screw, point, replace(relieved, force=0.0), ())]
+    return list(solved)
 
 
 def _check_same_load(screw: Screw, point: OperatingPoint, found: ScrewSolution) -> None:

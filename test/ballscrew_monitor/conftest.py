@@ -94,6 +94,7 @@ class ConstantSurface:
     oil_name = 'water'
     preload = 1000.0
     lead = 0.01
+    limit_band = (0.75, 1.5)
     speed_range = (0.1, 100.0)
     load_range = (-4000.0, 4000.0)
     temperature_range = (283.15, 353.15)
@@ -444,13 +445,11 @@ class NodeProcess:
 
 @pytest.fixture(scope='session')
 def quick_surface(tmp_path_factory):
-    """Return the shipped surface as if it had two plain draws, and wide stated errors."""
+    """Return the shipped surface with wide stated errors."""
     data = surface_file.read(shipped_surface())
-    header = {name: value for name, value in data.header.items() if name != 'weighted_draws'}
-    header['settings'] |= {'draws': 2, 'grid_wavelength': 30e-6}
     errors = {name: np.full_like(values, 0.5) for name, values in data.errors.items()}
     path = tmp_path_factory.mktemp('surface') / 'quick.npz'
-    surface_file.write(path, dataclasses.replace(data, header=header, errors=errors))
+    surface_file.write(path, dataclasses.replace(data, errors=errors))
     return path
 
 

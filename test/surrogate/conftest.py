@@ -11,8 +11,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from surrogate.asperities.acting import speed_at_ratio
+from surrogate.asperities.law import law_from_json, ONSET_RCS
+from surrogate.asperities.marches import inputs_from_json
 from surrogate.builder.closed_form import build_closed_form, default_settings
-from surrogate.builder.full.chain import solved_chain
+from surrogate.builder.full.nodes import onset_speeds
 from surrogate.builder.tiers import screw_and_oil
 from surrogate.formulas import closed_form
 from surrogate.parameters import load_lubricant, load_screw, Lubricant, Screw
@@ -53,55 +56,68 @@ def surface_data(screw: Screw, oil: Lubricant) -> SurfaceData:
 
 @pytest.fixture(scope='session')
 def stand_in() -> SimpleNamespace:
-    """Return `solve` and `run` of a fast model in place of solved contacts."""
-    return SimpleNamespace(solve=solve_stand_in, run=run_stand_in)
+    """Return `march`, `chain` and `run` of a fast model in place of marches and contacts."""
+    return SimpleNamespace(march=march_stand_in, chain=chain_stand_in, run=run_stand_in)
 
 
-ONSET_RATIO, STEEPNESS = 0.03, 4.0
+ONSET_RATIO, STEEPNESS = 1.2, 3.0
 
 
-def solve_stand_in(inputs: Mapping[str, Any]) -> dict[str, Any]:
-    """
-    Return what `solve_chain` returns, fast: formulas and a logistic share of contact.
-
-    Smooth in all inputs, with draws that scatter.
-
-    """
-    drawn = np.random.default_rng(inputs['draw'])
-    scale, shift = np.exp(drawn.normal(0.0, 0.1, size=2))
+def march_stand_in(inputs: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what `solve_march` returns, with an onset at one ratio and RCS as a power."""
+    given = inputs_from_json(inputs)
+    onset = float(speed_at_ratio(given.waves, given.line, given.oil, np.array(ONSET_RATIO)))
+    x = np.linspace(-1.5, 1.0, 40)
+    rcs = ONSET_RCS / (ONSET_RCS + (1 - ONSET_RCS) * np.exp(STEEPNESS * x))
     return {
-        sense: [stand_in_record(inputs, speed, sign, scale, shift) for speed in inputs['speeds']]
+        'onset': onset,
+        'speed': (onset * np.exp(x)).tolist(),
+        'rcs': rcs.tolist(),
+        'asperity_share': (0.8 * rcs).tolist(),
+        'loss_factor': (1.3 - 0.1 * x).tolist(),
+    }
+
+
+def chain_stand_in(inputs: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what `solve_chain` returns: formulas, and contact by the law at the onset speed."""
+    screw, lubricant = screw_and_oil(inputs)
+    law, load, heat = law_from_json(inputs['law']), inputs['load'], inputs['temperature']
+    place = np.array([load]), np.array([heat])
+    onset = float(onset_speeds(screw, lubricant, law, *place)[0, 0])
+    speeds = np.array(inputs['speeds'])
+    touching = law.at(np.log(speeds / onset))
+    return {
+        sense: [
+            stand_in_point(formula, float(rcs), float(share))
+            for speed, rcs, share in zip(
+                speeds, touching['rcs'], touching['asperity_share'], strict=True
+            )
+            for formula in [closed_form.solve(screw, lubricant, float(speed), sign * load, heat)]
+        ]
         for sense, sign in (('opposing', 1.0), ('assisting', -1.0))
     }
 
 
-def stand_in_record(
-    inputs: Mapping[str, Any], speed: float, sign: float, scale: float, shift: float
-) -> dict[str, Any]:
-    screw, lubricant = screw_and_oil(inputs)
-    found = closed_form.solve(
-        screw, lubricant, speed, sign * inputs['load'], inputs['temperature']
-    )
-    ratio = float(found.film_ratio)
-    if not math.isfinite(ratio):
+def stand_in_point(formula: Any, rcs: float, share: float) -> dict[str, Any]:
+    if not math.isfinite(formula.film_ratio):
         return {'converged': False, 'status': 'no load'}
-    rcs = max(0.0, 1 / (1 + (shift * ratio / ONSET_RATIO) ** STEEPNESS) - 0.003)
     return {
-        'friction_torque': 0.5 * scale * float(found.friction_torque) + 0.06 * rcs,
+        'friction_torque': 0.5 * float(formula.friction_torque) + 0.06 * rcs,
         'rcs': rcs,
-        'asperity_share': 0.7 * rcs,
-        'film_ratio': ratio,
-        'central_film': float(found.central_film),
-        'minimum_film': float(found.minimum_film),
-        'friction_coefficient': 0.02 * scale,
-        'max_pressure': float(found.max_pressure),
-        'worst_contact': int(inputs['draw'] % 2),
-        'film_over_floor': max(1.0, ratio / 0.1),
+        'asperity_share': share,
+        'film_ratio': float(formula.film_ratio),
+        'central_film': float(formula.central_film),
+        'minimum_film': float(formula.minimum_film),
+        'friction_coefficient': 0.02,
+        'max_pressure': float(formula.max_pressure),
+        'worst_contact': int(formula.worst_contact),
+        'rcs_deviation': 0.3 * rcs,
         'converged': True,
         'status': '',
     }
 
 
-def run_stand_in(purpose: str, chains: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
-    """Solve chains in this process."""
-    return {name: solved_chain(solve_stand_in(inputs)) for name, inputs in chains.items()}
+def run_stand_in(kind: str, tasks: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
+    """Solve marches or chains in this process."""
+    solve = {'march': march_stand_in, 'chain': chain_stand_in}[kind]
+    return {name: solve(inputs) for name, inputs in tasks.items()}

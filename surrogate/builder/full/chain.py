@@ -103,7 +103,8 @@ def _turned(
     if not all(one.converged for one in found.loaded_contacts):
         return found
     against = replace(point, load=-point.load)
-    if found.load_change <= settings.coupling_tolerance:
+    # Balls that float on one side may hold on the other: an idle nut is solved anew.
+    if all(found.normal_forces) and found.load_change <= settings.coupling_tolerance:
         balanced = rebalance_screw(screw, lubricant, against, found)
         if balanced.load_change <= settings.coupling_tolerance:
             return balanced

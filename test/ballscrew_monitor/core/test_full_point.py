@@ -68,7 +68,7 @@ def test_without_an_answer_of_the_surface_nothing_is_known():
     assert not found.within_stated_error
 
 
-def test_the_stated_error_is_that_of_interpolation_and_of_draws():
+def test_the_stated_error_is_that_of_interpolation_and_of_the_law():
     assert stated_error(answer(), 'rcs') == 2.0**-9
     assert stated_error(answer(rcs_stderr=2.0**-9), 'rcs') == 2.0**-8
 
@@ -79,7 +79,7 @@ def test_the_stated_error_is_that_of_interpolation_and_of_draws():
         (full(), answer(), SURFACE, ''),
         (full(rcs_stderr=2.0**-9), answer(), SURFACE, ''),
         (full(rcs_stderr=2.0**-8), answer(), SURFACE, 'rcs 0.0039) is above'),
-        (full(rcs_stderr=math.nan), answer(), SURFACE, 'one draw'),
+        (full(rcs_stderr=math.nan), answer(), SURFACE, ''),
         (full(), None, SURFACE, 'no answer'),
         (full(), answer(), CLOSED_FORM, 'closed-form tier is not corrected'),
         (full(), answer(rcs_error=math.nan), SURFACE, ''),
@@ -104,8 +104,9 @@ def test_corrections_are_made_again_on_a_surface_of_the_same_content(core):
 
 
 def test_a_request_holds_the_inputs_of_the_surface_and_no_names_to_look_up(core):
-    request = request_of(SURFACE, core.point(speed=-10.0, axial_load=500.0), 3)
+    request = request_of(SURFACE, core.point(speed=-10.0, axial_load=500.0))
     assert request['header']['inputs'] == SURFACE.header['inputs']
     assert request['header']['tier'] == 'full'
     assert request['point'] == {'speed': 10.0, 'opposing_load': 500.0, 'temperature': 313.15}
-    assert request['draws'] == 3
+    assert request['header']['law'] == SURFACE.header['law']
+    assert 'law' not in request_of(CLOSED_FORM, core.point())['header']

@@ -138,6 +138,7 @@ def test_a_surface_as_a_message(core):
         [1e-3],
     )
     assert message.default_temperature == pytest.approx(40.0)
+    assert (message.limit_factor_low, message.limit_factor_high) == (0.75, 1.5)
 
 
 @pytest.mark.parametrize(

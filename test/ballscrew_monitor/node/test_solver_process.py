@@ -13,7 +13,7 @@ from ballscrew_monitor.node.solver_process import SolverProcess, worker_environm
 import pytest
 
 DEADLINE = 60.0  # [s]
-BAD_REQUEST = {'solve': {'point': {}, 'draws': 1}}
+BAD_REQUEST = {'solve': {'point': {}}}
 
 
 @pytest.fixture(name='process')

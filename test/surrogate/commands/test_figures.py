@@ -24,11 +24,12 @@ def test_one_figure(tmp_path, capsys):
     assert run('figures', '--out', str(tmp_path), '--only', '7') == 0
     said = capsys.readouterr()
     assert '| central film, smooth, 502.65 mm/s, preload only | 152.4 nm | 153 nm' in said.out
+    assert said.out == (tmp_path / 'paper.md').read_text(encoding='utf-8')
     assert said.err.count(' solves, ') == 4
     assert str(tmp_path / 'paper_07_smooth_speed.png') in said.err
     names = {path.name for path in tmp_path.iterdir()}
     picture = 'paper_07_smooth_speed.png'
-    assert names == {'paper.csv', 'paper.csv.store', 'paper_fields', picture}
+    assert names == {'paper.csv', 'paper.csv.store', 'paper.md', 'paper_fields', picture}
     assert run('figures', '--out', str(tmp_path), '--only', '7') == 0
     assert ' solves, ' not in capsys.readouterr().err
 

@@ -166,3 +166,15 @@ def test_barus_viscosity(nominal):
     """eta0 exp(alpha p)."""
     oil = replace(nominal[1], law='barus_incompressible')
     assert float(viscosity_of(oil, 1e9)) == pytest.approx(0.06 * np.exp(20.0))
+
+
+def test_a_share_from_elsewhere_is_boundary_friction_everywhere(solved):
+    """Coefficient mu_a of that share, that of the film of the rest: the ends and between."""
+    known = {'slip_x': 0.01, 'asperity_friction': 0.12}
+    film = contact_friction(solved, **known, asperity_share=0.0)
+    assert film.coefficient == pytest.approx(contact_friction(solved, **known).coefficient)
+    for share in (0.3, 1.0):
+        mixed = contact_friction(solved, **known, asperity_share=share)
+        assert mixed.asperity_coefficient == pytest.approx(0.12 * share, rel=1e-6)
+        assert mixed.film_coefficient == pytest.approx((1 - share) * film.coefficient)
+        assert mixed.force_x == pytest.approx(-27.6 * mixed.coefficient, rel=1e-9)

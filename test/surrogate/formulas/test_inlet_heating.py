@@ -42,7 +42,7 @@ def test_slope_of_viscosity_is_that_of_the_law():
 def test_heated_films_are_thinner_by_the_factor_and_it_is_off_by_default():
     """At 1000 rev/min the smooth film falls by the factor, within 0.3 %."""
     small = Settings(nx=129, ny=65, error_estimate=False)
-    cold = ScrewSettings(smooth=small, draw=None)
+    cold = ScrewSettings(smooth=small, kinematics='smooth')
     assert not cold.inlet_heating
     point = OperatingPoint(speed=1000 * math.pi / 30, load=0.0, temperature=WARM)
     plain = solve_screw(SCREW, OIL, point, settings=cold)

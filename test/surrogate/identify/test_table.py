@@ -21,7 +21,7 @@ from surrogate.screw.solve import solve_screw
 SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
 WARM = 313.15
 RPM = math.pi / 30
-SMOOTH = ScrewSettings(smooth=Settings(nx=65, ny=65, error_estimate=False), draw=None)
+SMOOTH = ScrewSettings(smooth=Settings(nx=65, ny=65, error_estimate=False), kinematics='smooth')
 BOTH = ('viscosity_factor', 'asperity_friction')
 
 

@@ -6,21 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from surrogate.paper.cases import (
-    EFFICIENCY_LOAD,
-    MAP_LOADS,
-    MAP_SPEEDS,
-    NEEDS,
-    PRELOAD,
-    SMOOTH,
-    STRIBECK_SPEEDS,
-    StudyTask,
-    tasks,
-)
-from surrogate.paper.mark import table
-from surrogate.paper.marks import marks
+from surrogate.asperities.law import shipped_law
+from surrogate.paper.cases import MAP_LOADS, NEEDS, PRELOAD, SMOOTH, SPEEDS, StudyTask, tasks
+from surrogate.paper.marks import marks, table
+from surrogate.paper.report import report
 from surrogate.paper.rows import ContactFields, fields_path, StudyRow, write_fields
 from surrogate.paper.study import Study
+from surrogate.paper.trends import trends
 from surrogate.parameters import load_screw
 
 figures = pytest.importorskip('surrogate.paper.figures_set')
@@ -49,7 +41,7 @@ def made_up(task: StudyTask) -> StudyRow:
         central_film=1e-8 * task.rpm**0.5 * (1 + 0.01 * task.draw),
         mean_film=1.1e-8 * task.rpm**0.5 * (1 + 0.01 * task.draw),
         minimum_film=4e-9,
-        rcs=slow if task.rpm < 40 and task.draw != SMOOTH else 0.0,
+        rcs=slow if task.kind == 'screw' or task.draw != SMOOTH else 0.0,
         asperity_share=0.7 * slow if task.rpm < 40 else 0.0,
         asperity_distance=0.6,
         rcs_loaded=slow,
@@ -62,6 +54,7 @@ def made_up(task: StudyTask) -> StudyRow:
         friction_coefficient=0.02 + 0.08 * slow,
         film_coefficient=0.02 * (1 - slow),
         asperity_coefficient=0.1 * slow,
+        seconds=1.0,
     )
 
 
@@ -96,7 +89,7 @@ def hump(x, y):
 
 
 def test_all_pictures_are_written(study):
-    """One PNG per figure, two for the load on the rough contact; nothing else is left."""
+    """One PNG per figure; nothing else is left."""
     paths = list(figures.draw_figures(study, tuple(NEEDS)))
     assert [path.name for path in paths] == [
         'paper_04_surface.png',
@@ -105,11 +98,10 @@ def test_all_pictures_are_written(study):
         'paper_08_smooth_load.png',
         'paper_09_rough_speed.png',
         'paper_10_rough_load.png',
-        'paper_10_asperities.png',
         'paper_11_stribeck.png',
         'paper_12_maps.png',
         'paper_13_zone.png',
-        'paper_alternatives.png',
+        'paper_trends.png',
     ]
     for path in paths:
         assert path.read_bytes().startswith(b'\x89PNG')
@@ -133,16 +125,16 @@ def test_axes_say_quantity_and_unit(study, name):
         assert len(figure.get_supxlabel()) > 60
 
 
-def test_torque_with_its_least_and_measurements(study):
-    """The marked least is that of the mean; measurements stand at their speed and torque."""
+def test_torque_with_measurements(study):
+    """Of rolling and standing roughness; measurements stand at their speed and torque."""
     measured = screws.MeasuredTorque(
         rpm=np.array([100.0]), torque=np.array([0.05]), deviation=np.array([0.01])
     )
     axes = screws.figure_torque(list(study.rows.values()), measured).axes[0]
     lines = {line.get_label(): line for line in axes.get_lines()}
-    torque = lines['friction torque']
-    np.testing.assert_allclose(torque.get_xdata(), entrainment(STRIBECK_SPEEDS))
-    assert lines['least torque'].get_ydata()[0] == pytest.approx(min(torque.get_ydata()))
+    for name in ('rolling', 'standing'):
+        torque = lines[f'friction torque, {name} roughness']
+        np.testing.assert_allclose(torque.get_xdata(), entrainment(SPEEDS))
     bars = axes.containers[0].lines[0]
     assert bars.get_xdata()[0] == pytest.approx(83.776, abs=1e-3)
     assert bars.get_ydata()[0] == pytest.approx(50.0)
@@ -150,7 +142,7 @@ def test_torque_with_its_least_and_measurements(study):
 
 def test_stribeck_marks_the_limit_and_the_published_film(study):
     """RCS 0.01; 153 nm at 502.65 mm/s."""
-    figure = screws.figure_stribeck(list(study.rows.values()))
+    figure = screws.figure_stribeck(shipped_law(), list(study.rows.values()))
     labels = [label for axes in figure.axes for label in axes.get_legend_handles_labels()[1]]
     assert 'limit 0.01' in labels
     assert 'reported, rough: 153 nm at 502.65 mm/s' in labels
@@ -169,19 +161,21 @@ def test_measurements_are_read_and_refused():
 def test_maps_meet_their_nodes(study):
     """Between the nodes lies a map that returns them; efficiency rises with load."""
     speed, load, rcs, eta = maps.fine_map(SCREW, list(study.rows.values()))
-    corner = study.rows[StudyTask(kind='screw', rpm=MAP_SPEEDS[0], load=MAP_LOADS[-1], draw=0).key]
+    corner = study.rows[
+        StudyTask(kind='screw', rpm=SPEEDS[0], load=MAP_LOADS[-1], draw=SMOOTH).key
+    ]
     assert rcs[-1, 0] == pytest.approx(corner.rcs)
     ideal = corner.load * SCREW.lead / (2 * np.pi)
     assert eta[-1, 0] == pytest.approx(ideal / (ideal + corner.friction_torque))
     assert (np.diff(eta, axis=0) > 0).all()
-    assert (speed[-1], load[0]) == (pytest.approx(MAP_SPEEDS[-1]), pytest.approx(MAP_LOADS[0]))
+    assert (speed[-1], load[0]) == (pytest.approx(SPEEDS[-1]), pytest.approx(MAP_LOADS[0]))
 
 
 def test_a_point_that_failed_leaves_a_gap(study):
     """Its profile is left out, and the map bridges it between its neighbours."""
     failed = [
         StudyTask(kind='contact', rpm=600.0, load=PRELOAD).key,
-        StudyTask(kind='screw', rpm=MAP_SPEEDS[3], load=MAP_LOADS[0], draw=0).key,
+        StudyTask(kind='screw', rpm=SPEEDS[3], load=MAP_LOADS[0]).key,
     ]
     rows = study.rows | {key: replace(study.rows[key], status='STALLED') for key in failed}
     gap = replace(study, rows=rows)
@@ -196,30 +190,22 @@ def test_zone_and_maps_need_no_row_beyond_the_map(study):
     """They draw from the map alone."""
     only = [row for row in study.rows.values() if row.load > 0 and row.kind == 'screw']
     assert maps.figure_maps(SCREW, only).axes
-    assert maps.figure_zone(SCREW, only).axes
+    assert maps.figure_zone(SCREW, shipped_law(), only).axes
 
 
-def test_marks_leave_out_what_the_rows_cannot_tell(study):
-    """Without rows no number; of some rows only theirs; none that is not finite."""
+def test_report_leaves_out_what_the_rows_cannot_tell(study):
+    """Without rows neither number nor trend; of some rows only theirs; none is not finite."""
     assert marks(SCREW, {}) == []
+    assert trends(SCREW, shipped_law(), []) == []
     names = [mark.name for mark in marks(SCREW, study.rows)]
-    assert len(names) == len(set(names)) > 30
-    torque = {key: row for key, row in study.rows.items() if row.load == PRELOAD}
-    torque = {key: row for key, row in torque.items() if row.kind == 'screw'}
-    few = marks(SCREW, torque)
-    assert 5 < len(few) < 25
-    assert table(few).count('\n') == len(few) + 1
-
-
-def test_marks_follow_the_rows(study):
-    """Less torque, more efficiency: the numbers are computed."""
-    lighter = {
-        key: replace(row, friction_torque=0.5 * row.friction_torque)
-        for key, row in study.rows.items()
+    assert len(names) == len(set(names)) > 12
+    torque = {
+        key: row for key, row in study.rows.items() if row.load == PRELOAD and row.kind == 'screw'
     }
-    name = f'best efficiency, {EFFICIENCY_LOAD:g} N'
-    values = [
-        next(mark.value for mark in marks(SCREW, rows) if mark.name == name)
-        for rows in (study.rows, lighter)
-    ]
-    assert values[1] > values[0] + 0.003
+    few = marks(SCREW, torque)
+    assert 1 < len(few) < 6
+    assert table(few).count('\n') == len(few) + 1
+    text = report(SCREW, shipped_law(), torque)
+    assert 'nan' not in text
+    assert '| friction torque' in text
+    assert '| film over load' not in text

@@ -7,8 +7,9 @@ import math
 
 import numpy as np
 import pytest
+from surrogate.asperities.law import shipped_law
 from surrogate.files import InputError
-from surrogate.paper.cases import NEEDS, SHORT, SMOOTH, StudyTask, tasks
+from surrogate.paper.cases import NEEDS, SHORT, SMOOTH, STANDING, StudyTask, tasks
 from surrogate.paper.curves import (
     constant_friction_efficiency,
     crossing,
@@ -38,11 +39,13 @@ def test_every_task_is_asked_once():
 
 
 def test_more_draws_are_more_tasks_of_rough_contacts():
-    """The whole screw takes a third, at least one."""
-    few, many = (tasks(('6b',), draws) for draws in (2, 6))
-    assert len(many) == 2 * len(few)
-    assert {task.draw for task in few} == {0}
-    assert len(tasks(('12',), 12)) == 2 * len(tasks(('12',), 11)) == 84
+    """Of the study's roughness; the whole screw rolls and has none, but for one that stands."""
+    few, many = (tasks(('trends',), draws) for draws in (2, 6))
+    more = {task.key for task in many} - {task.key for task in few}
+    assert len(more) == len(many) - len(few) > 4
+    assert {task.kind for task in many if task.key in more} == {'contact'}
+    assert {task.draw for task in many if task.kind == 'screw' and task.rolls} == {SMOOTH}
+    assert {task.draw for task in many if task.kind == 'screw' and not task.rolls} == {0}
 
 
 @pytest.mark.parametrize(
@@ -59,7 +62,7 @@ def test_rows_come_back_as_they_were_written(tmp_path):
     """NaN, negative draws and names with blanks included; rows of other inputs are left."""
     rows = [BASE, replace(BASE, draw=SMOOTH, case=SHORT, load=500.0), replace(BASE, inputs='b')]
     write_rows(tmp_path / 'paper.csv', rows)
-    found = read_rows(tmp_path / 'paper.csv', 'a')
+    found = read_rows(tmp_path / 'paper.csv', {'a'})
     assert list(found) == [BASE.key, rows[1].key]
     first = found[BASE.key]
     assert (first.rcs, first.draw, first.status) == (0.1, 0, 'CONVERGED')
@@ -76,7 +79,10 @@ def test_a_broken_table_is_refused(tmp_path):
 
 
 def test_another_screw_is_another_study():
-    """The hash covers both datasheets."""
+    """The hash covers both datasheets, and the law where it is given."""
+    law = shipped_law()
+    hashes = {inputs_hash(SCREW, OIL, one) for one in (None, law, replace(law, onset_ratio=9.0))}
+    assert len(hashes) == 3
     changed = replace(OIL, viscosity=1.01 * OIL.viscosity)
     assert inputs_hash(SCREW, OIL) == inputs_hash(SCREW, OIL)
     assert inputs_hash(SCREW, OIL) != inputs_hash(SCREW, changed)
@@ -154,18 +160,18 @@ def test_constant_friction_is_that_of_the_table(table):
 
 
 def test_the_map_is_a_grid():
-    """Loads by speeds, means over draws, NaN for what did not converge."""
+    """Loads by speeds, of the rolling screw; NaN for what did not converge."""
     rows = [
         replace(BASE, kind='screw', load=load, rpm=rpm, rcs=load * rpm)
         for load in (50.0, 100.0)
         for rpm in (5.0, 10.0)
     ]
     rows[1] = replace(rows[1], status='nut: stalled')
-    rows.append(replace(rows[3], draw=1, rcs=1200.0))
+    rows.append(replace(rows[3], case=STANDING, rcs=1200.0))
     speeds, loads, values = grid(rows, 'rcs')
     np.testing.assert_array_equal(speeds, [5.0, 10.0])
     np.testing.assert_array_equal(loads, [50.0, 100.0])
-    np.testing.assert_array_equal(values, [[250.0, math.nan], [500.0, 1100.0]])
+    np.testing.assert_array_equal(values, [[250.0, math.nan], [500.0, 1000.0]])
 
 
 def test_key_names_the_task():

@@ -194,6 +194,15 @@ def test_solved_contact_sums_as_its_friction(solved):
     np.testing.assert_allclose(half.values, 0.5 * wrench.values, rtol=1e-12)
 
 
+def test_a_share_from_elsewhere_bears_boundary_friction(solved):
+    """The places sum to mu_a times that share of the load, and shear the rest of the oil."""
+    smooth = solved_traction(solved, asperity_share=0.0)
+    law = solved_traction(solved, asperity_friction=0.12, asperity_share=0.25)
+    boundary, eyring, _ = law.strengths(27.6)
+    assert boundary.sum() == pytest.approx(0.25 * 0.12 * 27.6, rel=1e-6)
+    assert eyring.sum() == pytest.approx(0.75 * smooth.strengths(27.6)[1].sum(), rel=1e-9)
+
+
 def test_inputs_that_make_no_sense_are_refused(solved, screw):
     """A contact without solution, a negative coefficient, no floor."""
     with pytest.raises(InputError, match='without a solved contact'):

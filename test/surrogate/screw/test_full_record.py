@@ -11,21 +11,24 @@ import re
 import pytest
 from surrogate.ehl import Settings
 from surrogate.ehl.friction import contact_friction
-from surrogate.files import InputError, to_json
+from surrogate.files import to_json
 from surrogate.formulas.record import closed_form_record, page
 from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
 from surrogate.screw import figures as figures_point
 from surrogate.screw.ball_motion import slip_floor
 from surrogate.screw.contacts import ScrewSettings
-from surrogate.screw.ensemble import solve_ensemble
-from surrogate.screw.full_record import ensemble_record, full_record, solution_record
+from surrogate.screw.full_record import full_record, law_sentence, solution_record
 from surrogate.screw.nut import contact_slip
 from surrogate.screw.solve import solve_screw
 
 SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
 SMALL = Settings(nx=65, ny=65, error_estimate=False)
-SETTINGS = ScrewSettings(
-    smooth=SMALL, rough=Settings(nx=65, ny=129, error_estimate=False), nodes_per_wave=3.0
+SETTINGS = ScrewSettings(smooth=SMALL)
+STANDING = ScrewSettings(
+    kinematics='standing',
+    smooth=SMALL,
+    rough=Settings(nx=65, ny=129, error_estimate=False),
+    nodes_per_wave=3.0,
 )
 
 
@@ -67,26 +70,43 @@ def test_friction_coefficient_lies_between_film_and_boundary():
     assert 0 < moving['friction_coefficient'] < 0.5 * rest['friction_coefficient']
 
 
-def test_friction_is_integrated_with_the_slip_of_the_balance():
+@pytest.mark.parametrize('settings', [SETTINGS, STANDING], ids=['rolling', 'standing'])
+def test_friction_is_integrated_with_the_slip_of_the_balance(settings):
     """On screw and nut alike, the power over the slip field is that which the ball loses."""
     point = OperatingPoint(speed=60 * math.pi / 30, load=800.0, temperature=313.15)
-    for contact in solve_screw(SCREW, OIL, point, settings=SETTINGS).contacts:
-        slip_x, slip_y = contact_slip(SCREW, contact.rough, contact.side, contact.motion)
+    for contact in solve_screw(SCREW, OIL, point, settings=settings).contacts:
+        slip_x, slip_y = contact_slip(SCREW, contact.pressed, contact.side, contact.motion)
         found = contact_friction(
-            contact.rough,
+            contact.pressed,
             slip_x=slip_x,
             slip_y=slip_y,
             asperity_friction=SCREW.roughness.asperity_friction,
+            asperity_share=contact.solved.friction_share,
             slip_floor=slip_floor(SCREW, contact.motion.screw_speed),
         )
         assert found.power == pytest.approx(contact.ball.slip_power, rel=2e-3)
 
 
+def test_the_record_says_where_contact_is_from():
+    """By the law with its marches, or what stands for it; the scatter of RCS where it rolls."""
+    assert re.search(r'rolls, by \d+ marches for .*, waves down to', law_sentence(SETTINGS))
+    assert law_sentence(STANDING) == 'roughness that stands still'
+    assert law_sentence(replace(SETTINGS, kinematics='smooth')) == 'no roughness'
+    _, rolling = record(60, 800.0)
+    assert rolling['asperity_law'] == law_sentence(SETTINGS)
+    assert rolling['rcs_deviation'] > 0
+    point, standing = record(60, 800.0, STANDING)
+    assert math.isnan(standing['rcs_deviation'])
+    formulas = closed_form_record(SCREW, OIL, point)
+    for name in ('asperity_law', 'rcs_deviation'):
+        assert name not in formulas
+
+
 def test_coarse_waves_and_moved_forces_are_warned_about():
     """A grid of three nodes per wave, and a nut near unloading at high speed."""
-    _, found = record(60, 800.0)
+    _, found = record(60, 800.0, STANDING)
     assert any('nodes per shortest wave' in text for text in found['warnings'])
-    once = ScrewSettings(smooth=SMALL, draw=None, coupling_tolerance=math.inf)
+    once = ScrewSettings(smooth=SMALL, kinematics='smooth', coupling_tolerance=math.inf)
     _, found = record(3000, 2600.0, once)
     assert found['load_change'] > 0.02
     assert any(text.startswith('balls: friction') for text in found['warnings'])
@@ -101,7 +121,7 @@ def test_idle_nut_and_failure_give_a_reason():
     _, idle = record(600, 3.0 * SCREW.preload)
     assert [bool(c['reason']) for c in idle['contacts']] == [False, False, True, True]
     assert idle['normal_force_relieved_N'] == 0.0
-    failed = ScrewSettings(smooth=Settings(newton_limit=1), draw=None)
+    failed = ScrewSettings(smooth=Settings(newton_limit=1), kinematics='smooth')
     _, none = record(600, 500.0, failed)
     assert 'smooth contact' in none['status']
     assert none['converged'] is False
@@ -126,7 +146,7 @@ def test_a_third_contact_is_reported_when_it_appears():
 def test_hysteresis_adds_its_couple_to_the_torque():
     """Friction torque grows by 4 F us/w per ball and nut and the record holds the force."""
     point = OperatingPoint(speed=20 * math.pi, load=0.0, temperature=313.15)
-    smooth = ScrewSettings(smooth=SMALL, draw=None)
+    smooth = ScrewSettings(smooth=SMALL, kinematics='smooth')
     plain = full_record(SCREW, OIL, point, smooth)
     lossy = full_record(replace(SCREW, hysteresis_loss=0.01), OIL, point, smooth)
     added = [
@@ -137,27 +157,6 @@ def test_hysteresis_adds_its_couple_to_the_torque():
     power = 2 * SCREW.loaded_balls_per_nut * plain['entrainment_speed_m_s'] * sum(added)
     rise = lossy['friction_torque_Nm'] - plain['friction_torque_Nm']
     assert rise == pytest.approx(power / point.speed, rel=0.02)
-
-
-def test_an_ensemble_is_its_means_and_their_spread():
-    """Top numbers are means over the draws, the spread beside them; a failed draw is counted."""
-    point = OperatingPoint(speed=0.8, load=800.0, temperature=313.15)
-    ensemble = solve_ensemble(SCREW, OIL, point, 2, settings=SETTINGS)
-    found = ensemble_record(SCREW, OIL, point, ensemble, SETTINGS)
-    shares = [one.rcs for one in ensemble.solutions]
-    assert found['rcs'] == pytest.approx(sum(shares) / 2)
-    assert found['ensemble']['rcs']['deviation'] == pytest.approx(
-        abs(shares[0] - shares[1]) / math.sqrt(2)
-    )
-    assert found['ensemble']['friction_torque_Nm']['mean'] == found['friction_torque_Nm']
-    assert found['ensemble']['draws'] == 2
-    assert 'mean of 2 draws' in page(found)
-    broken = replace(ensemble.solutions[1], converged=False, status='broken')
-    partly = replace(ensemble, solutions=(ensemble.solutions[0], broken), failed=1)
-    found = ensemble_record(SCREW, OIL, point, partly, SETTINGS)
-    assert found['converged'] is False
-    assert found['status'] == 'broken'
-    assert found['ensemble']['failed'] == 1
 
 
 def test_picture_has_a_column_per_pressed_contact(tmp_path):
@@ -178,7 +177,7 @@ def test_picture_has_a_column_per_pressed_contact(tmp_path):
 def test_a_failed_point_is_drawn_without_its_contacts(tmp_path):
     """No column for a contact without a solution; the record is not lost."""
     point = OperatingPoint(speed=60.0, load=500.0, temperature=313.15)
-    failed = ScrewSettings(smooth=Settings(newton_limit=1), draw=None)
+    failed = ScrewSettings(smooth=Settings(newton_limit=1), kinematics='smooth')
     found = solve_screw(SCREW, OIL, point, settings=failed)
     assert not found.converged
     record = solution_record(SCREW, OIL, point, found, failed)
@@ -187,7 +186,7 @@ def test_a_failed_point_is_drawn_without_its_contacts(tmp_path):
 
 def test_films_of_hardly_pressed_contacts_are_warned_about():
     """Near unloading at high speed the relieved nut floats; each contact tells its error."""
-    settings = ScrewSettings(draw=None)
+    settings = ScrewSettings(kinematics='smooth')
     point = OperatingPoint(speed=200.0, load=2520.0, temperature=313.15)
     found = full_record(SCREW, OIL, point, settings)
     assert found['contacts'][0]['film_error'] < 0.01
@@ -202,19 +201,6 @@ def test_normal_forces_are_those_of_the_solve():
     assert found['contacts'][2]['normal_force_N'] == 0.0
 
 
-def test_an_ensemble_shows_a_draw_that_converged():
-    """When the first draw fails, films and contacts are those of the next one."""
-    point = OperatingPoint(speed=60.0, load=800.0, temperature=313.15)
-    ensemble = solve_ensemble(SCREW, OIL, point, 2, settings=SETTINGS)
-    broken = replace(ensemble.solutions[0], converged=False, status='broken')
-    partly = replace(ensemble, solutions=(broken, ensemble.solutions[1]), failed=1)
-    found = ensemble_record(SCREW, OIL, point, partly, SETTINGS)
-    assert found['status'] == 'broken'
-    assert found['film_ratio'] == ensemble.solutions[1].film_ratio
-    with pytest.raises(InputError, match='smooth raceways have no draws'):
-        solve_ensemble(SCREW, OIL, point, 2, settings=ScrewSettings(draw=None))
-
-
 def test_the_page_lists_every_key():
     """The guide has the keys of both tiers, with a star on those of the full one alone."""
     page = Path(__file__).parents[3] / 'docs' / 'guide' / 'operating_point.md'
@@ -222,9 +208,8 @@ def test_the_page_lists_every_key():
     (own,) = (line for line in table.splitlines() if line.startswith('| `contacts`'))
     point, found = record(60, 800.0)
     formulas = closed_form_record(SCREW, OIL, point)
-    heads = {'draws', 'failed', 'mean', 'deviation', 'error', 'ensemble', 'reason'}
     for lines, full, closed, others in (
-        (table.replace(own, '`contacts`'), found, formulas, heads),
+        (table.replace(own, '`contacts`'), found, formulas, {'reason'}),
         (own, found['contacts'][0], formulas['contacts'][0], {'contacts'}),
     ):
         listed = {key: bool(star) for key, star in re.findall(r'`(\w+)`(\*?)', lines)}

@@ -7,26 +7,54 @@ import math
 
 import numpy as np
 import pytest
+from surrogate.asperities.law import AsperityLaw, shipped_law
 from surrogate.ehl import Settings
 from surrogate.files import InputError
 from surrogate.formulas import closed_form
+from surrogate.formulas.geometry import SIDES
+from surrogate.formulas.inlet_heating import SPEED_EXPONENT
 from surrogate.identify.model import thickened
 from surrogate.parameters import BallRoughness, load_lubricant, load_screw, OperatingPoint
 from surrogate.raceway.ball import draw_stated
+from surrogate.screw.ball_balance import balance_ball
+from surrogate.screw.ball_motion import slip_floor
+from surrogate.screw.ball_traction import coulomb_traction
 from surrogate.screw.contacts import (
     GRID_WAVELENGTH,
     make_contacts,
     ScrewSettings,
     shortest_on_grid,
 )
+from surrogate.screw.nut import CREEP, rolling_force
 from surrogate.screw.solve import rebalance_screw, solve_screw
 
 SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
 SMALL = Settings(nx=65, ny=65, error_estimate=False)
-SMOOTH = ScrewSettings(smooth=SMALL, draw=None)
-ROUGH = ScrewSettings(
-    smooth=SMALL, rough=Settings(nx=65, ny=129, error_estimate=False), nodes_per_wave=3.0
+SMOOTH = ScrewSettings(smooth=SMALL, kinematics='smooth')
+STANDING = ScrewSettings(
+    kinematics='standing',
+    smooth=SMALL,
+    rough=Settings(nx=65, ny=129, error_estimate=False),
+    nodes_per_wave=3.0,
 )
+LAW = AsperityLaw(
+    onset_ratio=1.2,
+    film_floor=OIL.film_floor,
+    pressure=0.9e9,
+    pressure_power=-0.4,
+    log_speed=(-1.0, 0.0, 0.5),
+    rcs=(0.3, 0.01, 0.0001),
+    asperity_share=(0.25, 0.008, 0.0001),
+    loss_factor=(1.6, 1.3, 1.2),
+    deviation=0.1,
+    marches=8,
+    shortest_wave=3e-6,
+    source='made up',
+)
+ROLLING = ScrewSettings(smooth=SMALL, law=LAW)
+KINEMATICS = {'rolling': ROLLING, 'standing': STANDING, 'smooth': SMOOTH}
+MIXED = 120
+"""Speed at which some of the load is on asperities under the law [rev/min]."""
 WARM = 313.15
 
 
@@ -63,24 +91,24 @@ def test_nuts_with_one_load_share_their_contacts():
     """Without axial load both nuts have the same two contacts, each with its own ball."""
     found = at(600, 0.0)
     first, second, third, fourth = found.contacts
-    assert first.rough is third.rough
-    assert second.rough is fourth.rough
+    assert first.pressed is third.pressed
+    assert second.pressed is fourth.pressed
     assert first.ball != third.ball
     other = at(600, 1.0)
-    assert other.contacts[0].rough is not other.contacts[2].rough
+    assert other.contacts[0].pressed is not other.contacts[2].pressed
 
 
 def test_a_warm_start_saves_work_and_changes_nothing():
     """From a point 20 % slower, rough: the same numbers, fewer Newton iterations."""
-    near = at(20, 400.0, ROUGH)
+    near = at(20, 400.0, STANDING)
     point = OperatingPoint(speed=24 * math.pi / 30, load=400.0, temperature=WARM)
-    warm = solve_screw(SCREW, OIL, point, settings=ROUGH, start=near)
-    cold = at(24, 400.0, ROUGH)
+    warm = solve_screw(SCREW, OIL, point, settings=STANDING, start=near)
+    cold = at(24, 400.0, STANDING)
     assert warm.converged, warm.status
     assert warm.friction_torque == pytest.approx(cold.friction_torque, rel=1e-4)
     assert warm.rcs == pytest.approx(cold.rcs, rel=1e-3)
     steps = [
-        sum(contact.rough.newton_iterations for contact in found.contacts)
+        sum(contact.pressed.newton_iterations for contact in found.contacts)
         for found in (warm, cold)
     ]
     assert steps[0] < 0.6 * steps[1]
@@ -127,7 +155,7 @@ def test_the_raceway_belongs_to_the_draw():
     assert np.array_equal(first.heights(x, y), again.heights(x, y))
     assert not np.allclose(first.heights(x, y), other.heights(x, y))
     point = OperatingPoint(speed=1.0, load=0.0, temperature=313.15)
-    sides = make_contacts(SCREW, OIL, point, ScrewSettings(draw=3))
+    sides = make_contacts(SCREW, OIL, point, replace(STANDING, draw=3))
     assert sides[0].raceway is sides[1].raceway
     assert sides[0].raceway.shortest_wavelength > GRID_WAVELENGTH
     assert {side.film_floor for side in sides} == {OIL.film_floor}
@@ -137,10 +165,12 @@ def test_smooth_raceway_and_ball_have_no_draw():
     """Rq 0 is the smooth contact, whatever the draw; a rough ball alone is not."""
     bare = replace(SCREW, roughness=replace(SCREW.roughness, rms=0.0))
     point = OperatingPoint(speed=1.0, load=0.0, temperature=313.15)
-    assert make_contacts(bare, OIL, point, ScrewSettings())[0].raceway is None
-    assert shortest_on_grid(bare, ScrewSettings()) == math.inf
+    assert make_contacts(bare, OIL, point, STANDING)[0].raceway is None
+    assert shortest_on_grid(bare, STANDING) == math.inf
     rough = replace(bare, ball_roughness=BallRoughness(grade='G10'))
-    assert make_contacts(rough, OIL, point, ScrewSettings())[0].raceway is not None
+    assert make_contacts(rough, OIL, point, STANDING)[0].raceway is not None
+    assert at(5, 500.0, ROLLING, bare).rcs == 0.0
+    assert at(5, 500.0, ROLLING, rough).rcs > 0.0
 
 
 def test_a_starved_contact_is_taken_at_a_slower_entrainment():
@@ -153,17 +183,126 @@ def test_a_starved_contact_is_taken_at_a_slower_entrainment():
     assert half.entrainment(20.0) == pytest.approx(0.5 ** (1 / 0.67) * full.entrainment(20.0))
 
 
-def test_rest_is_dry_and_loses_most():
-    """At speed zero all load is on asperities, and friction is above that of the film."""
-    rest, moving = at(0, 500.0, ROUGH), at(600, 500.0, ROUGH)
+@pytest.mark.parametrize('settings', KINEMATICS.values(), ids=KINEMATICS)
+def test_rest_is_dry_and_loses_most(settings):
+    """At speed zero all load is on asperities, whose friction is the boundary one."""
+    rest, fast = at(0, 500.0, settings), at(2000, 500.0, settings)
     assert rest.converged, rest.status
     assert rest.rcs == pytest.approx(1.0, abs=1e-3)
     assert rest.film_ratio == 0.0
     assert rest.energy_error < 1e-8
-    slow = at(5, 500.0, ROUGH)
-    assert 0 < slow.rcs < 1
-    assert moving.rcs == 0.0
-    assert slow.film_ratio < moving.film_ratio
+    assert rest.friction_coefficient == pytest.approx(SCREW.roughness.asperity_friction, rel=0.02)
+    assert fast.rcs == 0.0
+    assert fast.friction_coefficient < 0.5 * rest.friction_coefficient
+    assert fast.film_ratio > 1
+
+
+@pytest.mark.parametrize('settings', KINEMATICS.values(), ids=KINEMATICS)
+@pytest.mark.parametrize('load', [800.0, -800.0])
+def test_energy_holds_whatever_the_roughness_does(settings, load):
+    """Torque from loads and from lost power, some of the load on asperities."""
+    found = at(10 if settings is STANDING else MIXED, load, settings)
+    assert found.converged, found.status
+    assert (found.rcs > 0) == (settings is not SMOOTH)
+    assert found.energy_error < 1e-8
+    assert found.back_driving == (load < 0)
+
+
+def test_all_load_on_asperities_is_coulomb_friction():
+    """
+    At rest the torque is that of balls balanced between contacts of that coefficient.
+
+    One nut pushes against the motion, the other with it.
+
+    """
+    rest, floor = at(0, 0.0, ROLLING), slip_floor(SCREW, CREEP)
+    first, second = (
+        coulomb_traction(SCREW, side, SCREW.roughness.asperity_friction, slip_floor=floor)
+        for side in SIDES
+    )
+    balls = [
+        balance_ball(
+            SCREW,
+            CREEP,
+            screw_traction=first,
+            nut_traction=second,
+            axial_force=SCREW.preload / SCREW.loaded_balls_per_nut,
+            flank=flank,
+        )
+        for flank in (1, -1)
+    ]
+    whole = SCREW.loaded_balls_per_nut * sum(ball.loss_torque for ball in balls)
+    assert rest.friction_torque == pytest.approx(whole, rel=0.02)
+
+
+def test_rolling_roughness_is_the_smooth_contact_with_the_law():
+    """Pressures and film are smooth; share and RCS those of the law, the worst one counts."""
+    found, smooth = at(MIXED, 500.0, ROLLING), at(MIXED, 500.0)
+    point = OperatingPoint(speed=MIXED * math.pi / 30, load=500.0, temperature=WARM)
+    waves = make_contacts(SCREW, OIL, point, ROLLING)[0].waves
+    for contact in found.contacts:
+        solved = contact.solved
+        assert solved.pressed is solved.smooth
+        law = LAW.contact(
+            waves,
+            solved.smooth.contact,
+            solved.smooth.condition,
+            solved.smooth.lubricant,
+            OIL.film_floor,
+        )
+        assert solved.asperities == law
+        assert solved.friction_share == law.asperity_share
+    assert 0.001 < found.rcs < 1
+    assert found.rcs == max(contact.solved.asperities.rcs for contact in found.contacts)
+    assert found.rcs_deviation > 0
+    assert found.central_film == smooth.central_film
+    assert found.max_pressure == pytest.approx(smooth.max_pressure, rel=1e-3)
+    assert smooth.rcs == 0.0
+    assert found.friction_torque > smooth.friction_torque
+
+
+def test_the_shipped_law_stands_in_where_none_is_given():
+    """The default is roughness that rolls."""
+    assert ScrewSettings().kinematics == 'rolling'
+    default = at(MIXED, 500.0, ScrewSettings(smooth=SMALL))
+    given = at(MIXED, 500.0, replace(ROLLING, law=shipped_law()))
+    assert default.rcs == given.rcs
+    assert default.friction_torque == given.friction_torque
+
+
+def test_rolling_loss_is_that_of_the_smooth_film_times_its_factor():
+    """The oil alone: hysteresis is not multiplied. Torque grows with it."""
+    twice = replace(LAW, loss_factor=(2.0, 2.0, 2.0))
+    once = replace(LAW, loss_factor=(1.0, 1.0, 1.0))
+    one, two = (at(600, 0.0, replace(ROLLING, law=law)) for law in (once, twice))
+    lossy = replace(SCREW, hysteresis_loss=0.01)
+    for first, second in zip(one.contacts, two.contacts, strict=True):
+        plain = rolling_force(SCREW, first.solved)
+        assert plain == pytest.approx(first.pressed.whole_rolling_force, rel=1e-9)
+        assert rolling_force(SCREW, second.solved) == pytest.approx(2 * plain, rel=1e-6)
+        elastic = rolling_force(lossy, first.solved) - plain
+        again = rolling_force(lossy, second.solved) - rolling_force(SCREW, second.solved)
+        assert again == pytest.approx(elastic, rel=1e-6)
+    added = two.friction_torque - one.friction_torque
+    rolling = sum(contact.ball.rolling_power for contact in one.contacts)
+    whole = SCREW.loaded_balls_per_nut * rolling / (600 * math.pi / 30)
+    assert added == pytest.approx(whole, rel=0.05)
+
+
+def test_a_starved_film_touches_more():
+    """The film of a flooded contact so much slower, about half; more contact at one speed."""
+    point = OperatingPoint(speed=MIXED * math.pi / 30, load=500.0, temperature=WARM)
+    full, half = (
+        solve_screw(SCREW, replace(OIL, film_factor=factor), point, settings=ROLLING)
+        for factor in (1.0, 0.5)
+    )
+    slower = replace(point, speed=0.5 ** (1 / SPEED_EXPONENT) * point.speed)
+    flooded = solve_screw(SCREW, OIL, slower, settings=ROLLING)
+    assert half.central_film == pytest.approx(flooded.central_film, rel=1e-6)
+    assert half.rcs == pytest.approx(flooded.rcs, rel=1e-6)
+    assert half.central_film == pytest.approx(0.5 * full.central_film, rel=0.1)
+    assert half.rcs > full.rcs > 0
+    assert half.entrainment_speed == full.entrainment_speed
 
 
 def test_parasitic_torque_is_added_and_never_hidden_in_friction():
@@ -177,7 +316,7 @@ def test_parasitic_torque_is_added_and_never_hidden_in_friction():
 
 def test_a_contact_that_fails_is_named_and_leaves_no_number():
     """The status says which; everything else is NaN."""
-    settings = ScrewSettings(smooth=Settings(newton_limit=1), draw=None)
+    settings = ScrewSettings(smooth=Settings(newton_limit=1), kinematics='smooth')
     found = at(600, 500.0, settings)
     assert not found.converged
     assert found.status.startswith('loaded nut, screw, smooth contact: ')
@@ -187,23 +326,24 @@ def test_a_contact_that_fails_is_named_and_leaves_no_number():
 
 def test_waves_off_the_grid_raise_the_floor_of_the_oil():
     """The floor on the grid is that of the oil and a share of the lost waves."""
-    found = at(60, 500.0, ROUGH)
-    floors = {contact.rough.settings.film_floor for contact in found.contacts}
+    found = at(60, 500.0, STANDING)
+    floors = {contact.pressed.settings.film_floor for contact in found.contacts}
     assert all(1e-10 < floor - OIL.film_floor < 3e-9 for floor in floors)
-    whole = at(60, 500.0, replace(ROUGH, grid_wavelength=None))
-    assert whole.contacts[0].rough.settings.film_floor == OIL.film_floor
+    whole = at(60, 500.0, replace(STANDING, grid_wavelength=None))
+    assert whole.contacts[0].pressed.settings.film_floor == OIL.film_floor
 
 
-def test_balls_are_balanced_anew_on_solved_contacts():
+@pytest.mark.parametrize(('rpm', 'settings'), [(5, STANDING), (60, ROLLING)])
+def test_balls_are_balanced_anew_on_solved_contacts(rpm, settings):
     """The same point gives the same; another friction what a fresh solve gives."""
-    found = at(5, 500.0, ROUGH)
-    point = OperatingPoint(speed=5 * math.pi / 30, load=500.0, temperature=WARM)
+    found = at(rpm, 500.0, settings)
+    point = OperatingPoint(speed=rpm * math.pi / 30, load=500.0, temperature=WARM)
     again = rebalance_screw(SCREW, OIL, point, found)
     assert again.friction_torque == found.friction_torque
     assert again.rcs == found.rcs
     rough = replace(SCREW, roughness=replace(SCREW.roughness, asperity_friction=0.15))
     balanced = rebalance_screw(rough, OIL, point, found)
-    fresh = at(5, 500.0, ROUGH, screw=rough)
+    fresh = at(rpm, 500.0, settings, screw=rough)
     assert balanced.friction_torque == pytest.approx(fresh.friction_torque, rel=1e-9)
     assert balanced.energy_error < 1e-8
     assert balanced.friction_torque > 1.2 * found.friction_torque
@@ -226,7 +366,7 @@ def test_a_balance_needs_solved_contacts():
     point = OperatingPoint(speed=600 * math.pi / 30, load=3.0 * SCREW.preload, temperature=WARM)
     again = rebalance_screw(SCREW, OIL, point, idle)
     assert again.friction_torque == idle.friction_torque
-    settings = ScrewSettings(smooth=Settings(newton_limit=1), draw=None)
+    settings = ScrewSettings(smooth=Settings(newton_limit=1), kinematics='smooth')
     failed = at(600, 3.0 * SCREW.preload, settings)
     again = rebalance_screw(SCREW, OIL, point, failed)
     assert not again.converged

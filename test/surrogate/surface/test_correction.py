@@ -7,6 +7,7 @@ from types import SimpleNamespace
 
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+import numpy as np
 import pytest
 from surrogate.parameters import OperatingPoint
 from surrogate.surface import FIELDS, shipped_surface, Surface, SurfaceError, Validity
@@ -192,12 +193,20 @@ def test_a_cell_holds_the_newest_correction():
     assert both.lookup(*first) == alone.lookup(*first)
 
 
-@pytest.mark.parametrize('beside', [0.0, 0.004, -0.004])
+def amid(kelvin):
+    """Return the speed amid two nodes near 62.8 rad/s at 1234 N and a temperature [K]."""
+    s, onset = AXES['full'][0], FULL.onset_speed(1234.0, kelvin)
+    cell = int(np.searchsorted(s, math.log(62.8 / onset)))
+    return onset * math.exp(0.5 * float(s[cell - 1] + s[cell]))
+
+
+@pytest.mark.parametrize('beside', [0.0, 0.001, -0.001])
 def test_a_point_on_a_node_of_temperature_corrects_both_sides(beside):
     """The default temperature is one: no step there, no slope, and the solve at the point."""
     heats = AXES['full'][2]
     node, width = float(heats[3]), float(heats[4] - heats[3])
-    where = (62.8, 1234.0, node + beside * width)
+    speed = amid(node)
+    where = (speed, 1234.0, node + beside * width)
     solved = SimpleNamespace(friction_torque=1.1 * FULL.lookup(*where).friction_torque)
     made = FULL.with_correction(at(where), solved)
     assert len(made.corrections) == 1
@@ -206,23 +215,24 @@ def test_a_point_on_a_node_of_temperature_corrects_both_sides(beside):
     assert found.friction_torque == pytest.approx(solved.friction_torque, rel=1e-4)
     for step in (1e-3, 1e-6):
         pulls = [
-            made.lookup(62.8, 1234.0, node + sign * step).friction_torque
-            / FULL.lookup(62.8, 1234.0, node + sign * step).friction_torque
+            made.lookup(speed, 1234.0, node + sign * step).friction_torque
+            / FULL.lookup(speed, 1234.0, node + sign * step).friction_torque
             for sign in (-1.0, 1.0)
         ]
         assert pulls == pytest.approx([1.1, 1.1], abs=1e-6 if beside == 0.0 else 5e-5)
-    far = (62.8, 1234.0, node + 0.6 * width)
+    far = (speed, 1234.0, node + 0.6 * width)
     assert str(made.lookup(*far)) == str(FULL.lookup(*far))
 
 
 def test_a_newer_solve_beside_a_node_replaces_both_sides_of_the_older():
     """Else a step would be left on the face between them."""
     node = float(AXES['full'][2][3])
-    older = FULL.with_correction(at((62.8, 1234.0, node)), SimpleNamespace(rcs=0.2))
-    newer = older.with_correction(at((62.8, 1234.0, node + 2.0)), SimpleNamespace(rcs=0.3))
-    alone = FULL.with_correction(at((62.8, 1234.0, node + 2.0)), SimpleNamespace(rcs=0.3))
+    speed = amid(node)
+    older = FULL.with_correction(at((speed, 1234.0, node)), SimpleNamespace(rcs=0.2))
+    newer = older.with_correction(at((speed, 1234.0, node + 2.0)), SimpleNamespace(rcs=0.3))
+    alone = FULL.with_correction(at((speed, 1234.0, node + 2.0)), SimpleNamespace(rcs=0.3))
     assert newer.sha256 == alone.sha256
-    below = (62.8, 1234.0, node - 0.1)
+    below = (speed, 1234.0, node - 0.1)
     assert str(newer.lookup(*below)) == str(FULL.lookup(*below))
 
 

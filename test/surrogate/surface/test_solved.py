@@ -12,7 +12,7 @@ def test_fields_are_those_of_a_surface():
     """In their order, with what tells how far they hold."""
     names = [field.name for field in fields(SolvedPoint)]
     assert tuple(name for name in names if name in FIELDS) == FIELDS
-    assert set(names) - set(FIELDS) == {'converged', 'status', 'worst_contact', 'film_over_floor'}
+    assert set(names) - set(FIELDS) == {'converged', 'status', 'worst_contact', 'rcs_deviation'}
     assert all(hasattr(SurfacePoint, name) for name in (*FIELDS, 'worst_contact'))
 
 

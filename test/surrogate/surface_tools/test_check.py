@@ -98,14 +98,14 @@ def test_errors_that_the_file_does_not_state_are_said():
 
 
 def test_what_a_cell_states_is_accepted_and_said(monkeypatch):
-    """RCS off by 0.006: missed everywhere, accepted where the file states a third of that."""
+    """RCS off by 0.01: missed everywhere, accepted where the file states a third of that."""
 
     def shifted(*args):
         solved = build.solve_closed_form(*args)
-        return replace(solved, rcs=solved.rcs + 0.006 * (solved.rcs < 0.04))
+        return replace(solved, rcs=solved.rcs + 0.01 * (solved.rcs < 0.04))
 
     with_solver(monkeypatch, shifted)
-    for stated, passes in ((0.0021, True), (0.0015, False)):
+    for stated, passes in ((0.0035, True), (0.0025, False)):
         errors = DATA.errors | {'rcs': np.full_like(DATA.errors['rcs'], stated)}
         header = {**DATA.header, 'tier': 'full'}
         result = check_surface(replace(DATA, header=header, errors=errors), 30, 1, always)

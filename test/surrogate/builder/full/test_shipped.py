@@ -8,6 +8,7 @@ import math
 
 import numpy as np
 import pytest
+from surrogate.asperities.law import law_from_json
 from surrogate.builder.full.chain import chain_inputs, solve_chain
 from surrogate.surface import find_surface, Surface, Validity
 from surrogate.surface.file import read
@@ -25,7 +26,7 @@ def test_file_is_of_the_datasheets_and_small(screw, oil):
 
 
 def test_every_point_has_an_answer_with_its_uncertainty():
-    """No masked cell in the ranges, to their corners; deviations over draws everywhere."""
+    """No masked cell in the ranges, to their corners; the scatter between strips everywhere."""
     ends = (np.log(SURFACE.speed_range), SURFACE.load_range, SURFACE.temperature_range)
     corners = itertools.product((1e-9, 1 - 1e-9), repeat=3)
     inside = np.random.default_rng(3).random((2000, 3)).tolist()
@@ -35,7 +36,7 @@ def test_every_point_has_an_answer_with_its_uncertainty():
         assert found.validity is Validity.VALID
         assert 0 <= found.rcs <= 1
         assert found.friction_torque > 0
-        assert found.friction_torque_std > 0
+        assert 0 <= found.rcs_std <= 1
 
 
 def test_contact_ends_and_stays_away():
@@ -44,30 +45,34 @@ def test_contact_ends_and_stays_away():
     points = [SURFACE.lookup(float(w), 500.0, 313.15) for w in speeds]
     shares = np.array([point.rcs for point in points])
     assert (np.diff(shares) <= 1e-12).all()
-    assert shares[0] > 0.95
-    assert shares[-1] == 0.0
-    least = speeds[int(np.argmin([point.friction_torque for point in points]))]
-    assert 5 < least * 30 / math.pi < 40
+    assert shares[0] > 0.9
+    assert shares[-1] < 1e-4
+    torques = [point.friction_torque for point in points]
+    assert 0 < int(np.argmin(torques)) < len(torques) - 1
+
+
+def test_the_limit_is_known_within_the_floors_of_the_oil():
+    """A speed below and one above."""
+    low, high = SURFACE.limit_band
+    assert 0.3 < low < 1 < high < 3
 
 
 def test_rcs_falls_with_speed_at_every_node():
-    """Also beside the idle load, where nodes are completed."""
+    """Also beside the idle load."""
     shares = np.where(DATA.mask, np.nan, DATA.fields['rcs'])
     assert not (np.diff(shares, axis=0) > 0).any()
 
 
-def test_a_node_is_what_the_solver_gives(screw, oil):
-    """At 40 degC and preload, contact ended: films exactly, torque of two draws by the scatter."""
+@pytest.mark.parametrize('s', [-1.0, 1.5])
+def test_a_node_is_what_the_solver_gives(screw, oil, s):
+    """At 40 degC and preload, on either side of the onset."""
     k = int(np.argmin(np.abs(DATA.temperature - oil.reference_temperature)))
     j = int(np.argmin(np.abs(DATA.load)))
-    i = int(np.searchsorted(DATA.speed_coordinate, 1.5))
+    i = int(np.searchsorted(DATA.speed_coordinate, s))
     speed = math.exp(DATA.speed_coordinate[i] + DATA.log_onset[j, k])
     load, heat = float(DATA.load[j]), float(DATA.temperature[k])
-    node = {name: values[i, j, k] for name, values in DATA.fields.items()}
-    for draw in (0, 1):
-        record = solve_chain(chain_inputs(screw, oil, load, heat, draw, [speed]))['opposing'][0]
-        for name in ('film_ratio', 'central_film'):
-            assert record[name] == pytest.approx(node[name], rel=1e-4)
-        deviation = DATA.deviations['friction_torque'][i, j, k]
-        assert abs(record['friction_torque'] - node['friction_torque']) < 4 * deviation
-        assert record['rcs'] == node['rcs'] == 0.0
+    law = law_from_json(DATA.header['law'])
+    found = solve_chain(chain_inputs(screw, oil, law, load, heat, [speed]))['opposing'][0]
+    for name in ('film_ratio', 'central_film', 'friction_torque', 'rcs'):
+        node = DATA.fields[name][i, j, k]
+        assert found[name] == pytest.approx(node, rel=1e-3, abs=1e-9)
