@@ -139,7 +139,8 @@ def _limit(axes: Axes, part: Slice, values: Array, levels: list[float]) -> None:
 
 def _limit_band(axes: Axes, part: Slice, rcs: Array) -> None:
     """Draw where the limit of RCS lies with a thinner and a thicker boundary film."""
-    if not np.nanmin(rcs) < RCS_LIMIT < np.nanmax(rcs):
+    known = rcs[np.isfinite(rcs)]
+    if not (known.size and known.min() < RCS_LIMIT < known.max()):
         return
     for factor in part.band:
         if math.isfinite(factor):

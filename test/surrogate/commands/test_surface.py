@@ -66,15 +66,6 @@ def test_check_of_a_shipped_tier_is_of_twenty_points(capsys):
     assert '20 of 20 points' in out
 
 
-@pytest.mark.parametrize('option', ['--accuracy', '--draws', '--wavelength-um'])
-def test_options_of_the_full_tier_are_refused_by_formulas(tmp_path: Path, option):
-    """By the name that was typed; nothing is written."""
-    out = tmp_path / 'map.npz'
-    with pytest.raises(InputError, match=f'{option} needs --tier full'):
-        run('surface', 'build', '--out', out, option, '8')
-    assert not out.exists()
-
-
 def test_check_tells_how_far_off_the_limit_of_the_zone_is(capsys):
     """In per cent of the speed, at as many points as asked for."""
     words = ('surface', 'check', 'closed_form', '--points', '2', '--limit-points')
@@ -170,8 +161,7 @@ def test_info_is_a_page_a_person_reads(capsys):
         'kinks at     -2800, 0, 2800 N',
         'temperature  10 to 80 degC, nodes at 10, ',
         'nodes        40 x 27 x 9, 0 without a number',
-        'friction_torque [N m]                        0.00263',
-        'roughness draws: none',
+        'friction_torque [N m]                        0.00233',
         'numpy        ',
     ):
         assert part in text

@@ -81,22 +81,12 @@ def test_the_film_does_not_fall_with_the_speed(speed):
     assert float(central_film_line(LINE, speed, 0.12, 2e-8)) > slow
 
 
-ABOVE = pytest.mark.xfail(strict=True, reason='the formula rises to a fifth above the solve')
-
-
 @pytest.mark.parametrize(
     ('pressure', 'speed'),
-    [
-        (0.6e9, 0.03),
-        (0.6e9, 0.3),
-        (0.9e9, 0.03),
-        (0.9e9, 0.1),
-        pytest.param(0.9e9, 0.3, marks=ABOVE),
-        pytest.param(1.3e9, 0.3, marks=ABOVE),
-    ],
+    [(0.6e9, 0.03), (0.6e9, 0.3), (0.9e9, 0.03), (0.9e9, 0.1), (0.9e9, 0.3), (1.3e9, 0.3)],
 )
 def test_the_film_is_that_of_a_smooth_strip(pressure, speed):
-    """Within 15 % of a solved line contact, but not where pressure and speed are high."""
+    """5 to 20 % above a solved line contact, most where pressure and speed are high."""
     strip = StripContact(
         radius=2.5e-3, reduced_modulus=226.4e9, max_pressure=pressure, width=30e-6, columns=4
     )
@@ -107,4 +97,4 @@ def test_the_film_is_that_of_a_smooth_strip(pressure, speed):
     )
     line = replace(LINE, max_pressure=np.array(pressure))
     formula = float(central_film_line(line, speed, 0.06, 2e-8))
-    assert formula == pytest.approx(solved.central_film, rel=0.15)
+    assert 1.0 < formula / solved.central_film < 1.21

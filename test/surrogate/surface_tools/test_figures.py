@@ -73,14 +73,14 @@ def test_panels_and_axes():
     assert figure.axes[0].get_xscale() == 'log'
 
 
-def test_draws_add_two_panels():
-    """What the roughness draws leave uncertain is shown when it is known."""
-    header = {**DATA.header, 'format_version': ENSEMBLE_VERSION}
+def test_what_strips_differ_by_is_shown_when_it_is_known():
+    """In place of the regime, which the lines of the film ratio tell; the limit gets its band."""
+    header = {**DATA.header, 'format_version': ENSEMBLE_VERSION, 'limit_band': [0.5, 1.4]}
     drawn = replace(DATA, header=header, deviations={'rcs': 0.1 * DATA.fields['rcs']})
-    assert titles(figures.figure_surface(Surface(drawn), 313.15))[6:] == [
-        'Efficiency over draws',
-        'RCS over draws',
-    ]
+    shown = titles(figures.figure_surface(Surface(drawn), 313.15))
+    assert 'RCS over strips' in shown
+    assert 'Regime by Lambda' not in shown
+    assert 'RCS, line: 0.01, dashed: its band' in shown
 
 
 def test_a_surface_without_answers_is_drawn():
