@@ -133,11 +133,17 @@ def _of_input(facts: InputFacts, around: Surroundings, seconds: float) -> list[s
     if reason:
         found.append(f'{facts.parameter}: {reason}{_instead(facts, around)}')
     if facts.problem and not (reason and facts.link.publishers):
-        numbers = f', numbers are {", ".join(facts.numbers)}' if facts.numbers else ''
-        found.append(f'{facts.parameter}: {facts.problem}: set {facts.parameter}.field{numbers}')
+        found.append(f'{facts.parameter}: {facts.problem}: {_readable(facts)}')
     if facts.heard is not None:
         found += [*_of_health(facts, facts.heard, seconds), *_of_unit(facts, facts.heard)]
     return found
+
+
+def _readable(facts: InputFacts) -> str:
+    """Return what to write instead of a field that cannot be read."""
+    if not facts.numbers:
+        return f'set {facts.parameter}.type, or {facts.parameter}.field'
+    return f'set {facts.parameter}.field, numbers are {", ".join(facts.numbers)}'
 
 
 def _instead(facts: InputFacts, around: Surroundings) -> str:

@@ -114,11 +114,14 @@ def compile_field(path: str, message_type: MessageClass) -> FieldReader:
 
 
 def number_fields(message_type: MessageClass) -> tuple[str, ...]:
-    """Return the paths of the plain numbers of a message, without those of its header."""
+    """Return paths of the numbers of a message, of an array the first, none of its header."""
     found: list[str] = []
     for name, field_type in message_type.get_fields_and_field_types().items():
+        array = _ARRAY.fullmatch(field_type)
         if field_type in _NUMBERS:
             found.append(name)
+        elif array and (array['sequence'] or array['array']) in _NUMBERS:
+            found.append(f'{name}[0]')
         elif '/' in field_type and field_type != 'std_msgs/Header':
             nested = _resolve(field_type)
             if not isinstance(nested, str):

@@ -132,6 +132,10 @@ def test_a_field_that_cannot_be_read_lists_the_numbers_that_can():
     assert findings(around(), [broken], 3.0) == [
         'x.speed: field is no number: set x.speed.field, numbers are data'
     ]
+    broken = facts(heard=None, problem='type is not installed')
+    assert findings(around(), [broken], 3.0) == [
+        'x.speed: type is not installed: set x.speed.type, or x.speed.field'
+    ]
     other = Link(topic='/t', type_name=JOINTS, publishers=(Publisher(type_name=FLOAT),))
     (said,) = findings(around(), [facts(link=other, heard=None, problem='no number')], 3.0)
     assert 'expected is' in said  # of the right type the field may be well

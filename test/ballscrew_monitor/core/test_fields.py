@@ -6,6 +6,7 @@ from ballscrew_monitor.core.fields import (
     check_path,
     compile_field,
     message_class,
+    number_fields,
     OtherJoints,
     TooShort,
 )
@@ -76,6 +77,14 @@ def test_other_joints_and_a_short_array_are_told_apart():
     assert read(joints('x_axis')) == TooShort('velocity', 'x_axis', 0)
     short = compile_field('position[3]', JointState)(joints('x_axis'))
     assert short == TooShort('position', '3', 0)
+
+
+def test_the_numbers_of_a_message_are_paths_that_lead_to_one():
+    assert number_fields(JointState) == ('position[0]', 'velocity[0]', 'effort[0]')
+    assert number_fields(Float64) == ('data',)
+    for kind in (WrenchStamped, JointState, Imu, Float64MultiArray):
+        for path in number_fields(kind):
+            compile_field(path, kind)
 
 
 def test_the_form_of_a_path_is_checked_without_a_type():
