@@ -85,6 +85,11 @@ def _parser() -> argparse.ArgumentParser:
     _add_solve(
         subparsers.add_parser('solve', help='ask the running node for a full solve of a point')
     )
+    _add_doctor(
+        subparsers.add_parser(
+            'doctor', help='compare the running ROS graph with a parameter file, and say the cure'
+        )
+    )
     _add_play(subparsers.add_parser('play', help='play a bag over DDS, with /clock'))
     add_commands(subparsers, _read_bag)
     return parser
@@ -138,6 +143,25 @@ def _add_play(parser: argparse.ArgumentParser) -> None:
         help='longest wait for a subscriber of every topic (default 10)',
     )
     parser.set_defaults(handler=_play)
+
+
+def _add_doctor(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        '--params',
+        type=Path,
+        default=PARAMS,
+        metavar='FILE',
+        help=f'parameters of the node (default {PARAMS_TEXT})',
+    )
+    parser.add_argument(
+        '--seconds',
+        type=float,
+        default=3.0,
+        metavar='T',
+        help='how long to listen (default 3); longer for slow topics',
+    )
+    parser.add_argument('--json', action='store_true', help='print JSON')
+    parser.set_defaults(handler=_doctor)
 
 
 def _add_solve(parser: argparse.ArgumentParser) -> None:
@@ -263,6 +287,12 @@ def _solve(args: argparse.Namespace) -> int:
         node=args.node,
     )
     return ask(question, wait=args.wait, as_json=args.json)
+
+
+def _doctor(args: argparse.Namespace) -> int:
+    from ballscrew_monitor.clients.doctor import doctor
+
+    return doctor(args.params, seconds=args.seconds, as_json=args.json)
 
 
 def _play(args: argparse.Namespace) -> int:

@@ -88,6 +88,7 @@ ROSDEP = {
 # Tests of a whole folder instead of one of its files, by what they hold it against.
 THEMES = {
     'ballscrew_monitor/node/test_clocks.py',
+    'ballscrew_monitor/node/test_cures.py',
     'ballscrew_monitor/node/test_loss.py',
     'ballscrew_monitor/node/test_solve.py',
     'ballscrew_monitor/test_shared_memory.py',

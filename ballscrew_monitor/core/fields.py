@@ -4,14 +4,14 @@
 Any numeric field of any message, by name.
 
 A field path names attributes, with an index for an array: `data`, `wrench.force.x`, `position[0]`,
-or the name of a joint, `velocity[x_axis]`, looked up in the `name` field beside the array. A path
-is checked against the message type when it is compiled.
+or the name of a joint, `velocity[x_axis]`, looked up in the `name` field beside the array. Its
+form is checked without a type, the rest when it is compiled for one.
 
 """
 
 from collections.abc import Callable
+import dataclasses
 import importlib
-import math
 import re
 from typing import Any, Protocol
 
@@ -26,8 +26,36 @@ _NUMBERS = frozenset(
     + [f'{sign}int{bits}' for sign in ('', 'u') for bits in (8, 16, 32, 64)]
 )
 
+_INDEX = re.compile(r'[+-]?\d+')
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class OtherJoints:
+    """What a message names instead of the joint that is asked of its `array`."""
+
+    array: str
+    joint: str
+    names: tuple[str, ...]
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class TooShort:
+    """An `array` of `length` elements, which has no element `key`."""
+
+    array: str
+    key: str
+    length: int
+
+
 ReadStep = Callable[[Any], Any]
-FieldReader = Callable[[object], float | None]
+FieldReader = Callable[[object], float | OtherJoints | TooShort]
+
+
+class _Absent(Exception):
+    """The message does not hold what a step asks for."""
+
+    def __init__(self, found: OtherJoints | TooShort) -> None:
+        self.found = found
 
 
 class RosMessage(Protocol):
@@ -59,12 +87,18 @@ def stamp_of(message: Any) -> int:
     return int(stamp.sec) * SECOND + int(stamp.nanosec)
 
 
+def check_path(path: str) -> None:
+    """Raise InputError unless `path` has the form of a field path."""
+    for segment in _DOT.split(path):
+        _name_and_key(path, segment)
+
+
 def compile_field(path: str, message_type: MessageClass) -> FieldReader:
     """
     Return the function that reads the field `path` of a message of class `message_type`.
 
-    It returns None when the message does not hold the named joint, and NaN when the array is too
-    short. Raises InputError when the path does not lead to a number.
+    It returns what a message holds instead where there is no such joint or element. Raises
+    InputError when the path does not lead to a number.
 
     """
     steps: list[ReadStep] = []
@@ -76,16 +110,42 @@ def compile_field(path: str, message_type: MessageClass) -> FieldReader:
         steps += new_steps
     if not isinstance(kind, str) or kind not in _NUMBERS:
         raise InputError(f'field {path!r} of {_name(message_type)} is {_name(kind)}, not a number')
-    return _chain([*steps, _item(0)] if kind == 'octet' else steps)  # that is bytes in Python
+    return _chain([*steps, ord] if kind == 'octet' else steps)  # that is bytes in Python
+
+
+def number_fields(message_type: MessageClass) -> tuple[str, ...]:
+    """Return paths of the numbers of a message, of an array the first, none of its header."""
+    found: list[str] = []
+    for name, field_type in message_type.get_fields_and_field_types().items():
+        array = _ARRAY.fullmatch(field_type)
+        if field_type in _NUMBERS:
+            found.append(name)
+        elif array and (array['sequence'] or array['array']) in _NUMBERS:
+            found.append(f'{name}[0]')
+        elif '/' in field_type and field_type != 'std_msgs/Header':
+            nested = _resolve(field_type)
+            if not isinstance(nested, str):
+                found += [f'{name}.{path}' for path in number_fields(nested)]
+    return tuple(found)
+
+
+def _name_and_key(path: str, segment: str) -> tuple[str, str | None]:
+    """Return the name of a segment, and the index or joint between its brackets if any."""
+    match = _SEGMENT.fullmatch(segment)
+    if match is None:
+        raise InputError(f'field {path!r}: {segment!r} is not a name or name[index]')
+    name, key = match.groups()
+    if key is not None and _INDEX.fullmatch(key) and not key.isdecimal():
+        raise InputError(
+            f'field {path!r}: the index {key} has a sign, allowed is 0 or more, or a joint'
+        )
+    return name, key
 
 
 def _compile_segment(
     path: str, segment: str, kind: MessageClass
 ) -> tuple[list[ReadStep], MessageClass | str]:
-    match = _SEGMENT.fullmatch(segment)
-    if match is None:
-        raise InputError(f'field {path!r}: {segment!r} is not a name or name[index]')
-    name, key = match.groups()
+    name, key = _name_and_key(path, segment)
     fields = kind.get_fields_and_field_types()
     if name not in fields:
         raise InputError(
@@ -98,7 +158,7 @@ def _compile_segment(
         raise InputError(f'field {path!r}: {name!r} of {_name(kind)} is {fields[name]}, no array')
     element = _resolve(array['sequence'] or array['array'])
     if key.isdecimal():
-        return [_attribute(name), _item(int(key))], element
+        return [_item(name, int(key))], element
     if fields.get('name') != 'sequence<string>':
         raise InputError(f'field {path!r}: {_name(kind)} has no list of names to find {key!r} in')
     return [_named_item(name, key)], element
@@ -120,31 +180,40 @@ def _attribute(name: str) -> ReadStep:
     return lambda message: getattr(message, name)
 
 
-def _item(index: int) -> ReadStep:
-    return lambda array: array[index]
+def _item(name: str, index: int) -> ReadStep:
+    def step(message: Any) -> Any:
+        array = getattr(message, name)
+        try:
+            return array[index]
+        except IndexError:
+            raise _Absent(TooShort(name, str(index), len(array))) from None
+
+    return step
 
 
 def _named_item(name: str, key: str) -> ReadStep:
     def step(message: Any) -> Any:
+        array = getattr(message, name)
         try:
             index = message.name.index(key)
         except ValueError:
-            return None
-        return getattr(message, name)[index]
+            raise _Absent(OtherJoints(name, key, tuple(message.name))) from None
+        try:
+            return array[index]
+        except IndexError:
+            raise _Absent(TooShort(name, key, len(array))) from None
 
     return step
 
 
 def _chain(steps: list[ReadStep]) -> FieldReader:
-    def read(message: object) -> float | None:
+    def read(message: object) -> float | OtherJoints | TooShort:
         value: Any = message
         try:
             for step in steps:
                 value = step(value)
-                if value is None:
-                    return None
-        except IndexError:
-            return math.nan
+        except _Absent as absent:
+            return absent.found
         return float(value)
 
     return read

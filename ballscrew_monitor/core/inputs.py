@@ -1,8 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""From messages to samples in the machine frame, and the health of each input."""
+"""From messages to samples in the machine frame, or why a message gives none."""
 
-import collections
 import dataclasses
 import enum
 import math
@@ -14,13 +13,12 @@ from ballscrew_monitor.core.fields import (
     FieldReader,
     message_class,
     MessageClass,
+    OtherJoints,
     stamp_of,
+    TooShort,
 )
 
-RATE_SAMPLES = 20  # samples over which the rate is averaged
-SLOW_GAPS = 2  # gaps above the timeout in a row from which on the input is slow, not interrupted
 UNSTATED = -1
-LOSS_SHOWN = 10 * SECOND  # [ns] for which a loss is warned of
 YEAR = (
     31_536_000 * SECOND
 )  # [ns] stamps that far from the clock are those of another kind of clock
@@ -43,17 +41,6 @@ class StampSource(enum.IntEnum):
     RECEIVE = 2
 
 
-class InputState(enum.IntEnum):
-    """State of an input; the numbers of InputHealth.STATE_."""
-
-    UNKNOWN = 0
-    OK = 1
-    STALE = 2
-    MISSING = 3
-    BAD = 4
-    NOT_CONFIGURED = 5
-
-
 class Why(enum.IntEnum):
     """Why a message gave no sample."""
 
@@ -61,6 +48,7 @@ class Why(enum.IntEnum):
     NOT_A_NUMBER = 1
     FUTURE = 2
     OTHER_CLOCK = 3  # stamps of the wall clock, far ahead of simulated time
+    TOO_SHORT = 4  # the array of the field is empty, or ends before the element
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -89,11 +77,17 @@ class InputSample:
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Refusal:
-    """A message that gave no sample, and as `text` why and what mends it; see `InputSample`."""
+    """
+    A message that gave no sample, and as `text` why and what mends it; see `InputSample`.
+
+    `joints` are those that a message about other joints names.
+
+    """
 
     source: Source
     why: Why
     text: str = ''
+    joints: OtherJoints | None = None
     arrival: int = 0
     lost: int | None = 0
 
@@ -121,15 +115,19 @@ class Input:
 
         """
         value = self.read_field(message)
-        if value is None:
-            return self._refuse(Why.OTHER_JOINTS, '', now, lost)
+        if isinstance(value, OtherJoints):
+            return Refusal(
+                source=self.source, why=Why.OTHER_JOINTS, joints=value, arrival=now, lost=lost
+            )
+        if isinstance(value, TooShort):
+            return self._refuse(Why.TOO_SHORT, _short_text(value), now, lost)
         stamp = stamp_of(message) if self.stamped else 0
         if now and stamp - now > max_future:
             why = Why.OTHER_CLOCK if stamp - now > YEAR else Why.FUTURE
             return self._refuse(why, _future_text(stamp - now, max_future), now, lost)
         si_value = self.scaling(value)
         if not math.isfinite(si_value):
-            text = f'the field holds {value}, it must be a finite number'
+            text = f'the field holds {value}, it must be a finite number: mend the source'
             return self._refuse(Why.NOT_A_NUMBER, text, now, lost)
         return InputSample(
             source=self.source,
@@ -143,6 +141,26 @@ class Input:
 
     def _refuse(self, why: Why, text: str, now: int, lost: int | None) -> Refusal:
         return Refusal(source=self.source, why=why, text=text, arrival=now, lost=lost)
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class OpenInput:
+    """A configured input whose message type is that of the publisher on its topic."""
+
+    source: Source
+    topic: str
+    field: str
+    scaling: Scaling
+
+    def close(self, type_name: str) -> Input:
+        """Return the input for messages of a type; raises InputError when it cannot work."""
+        return make_input(
+            self.source,
+            topic=self.topic,
+            type_name=type_name,
+            field=self.field,
+            scaling=self.scaling,
+        )
 
 
 def make_input(
@@ -162,6 +180,12 @@ def make_input(
     )
 
 
+def _short_text(found: TooShort) -> str:
+    """Return why an array gives no number, and the cure."""
+    holds = f'has {found.length} elements and no [{found.key}]' if found.length else 'is empty'
+    return f'{found.array} {holds} in its messages: let the source fill it, or read another field'
+
+
 def _future_text(ahead: int, allowed: int) -> str:
     """Return why a stamp so far ahead of the clock [ns] is refused, and the cure."""
     if ahead > YEAR:
@@ -173,157 +197,3 @@ def _future_text(ahead: int, allowed: int) -> str:
         f'the stamp is {seconds(ahead):.3g} s ahead of the clock, allowed is max_future, '
         f'{seconds(allowed):.3g} s: set the clocks of both machines alike, or raise max_future'
     )
-
-
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Health:
-    """
-    State of one input at one instant.
-
-    age since the arrival [s], rate [Hz] and lag [s], by how much the stamps lie behind the arrival
-    at least, are NaN while unknown; an input is `lagging` from a stated lag on; a `slow` one is
-    stale between its samples. `lost` messages never arrived, None: not known; `losing` since not
-    long ago. `refusal` is why the last message was refused, while it is the last.
-
-    """
-
-    source: Source
-    state: InputState
-    stamp_source: StampSource
-    age: float
-    rate: float
-    received: int
-    dropped: int
-    slow: bool = False
-    lag: float = math.nan
-    lagging: bool = False
-    lost: int | None = 0
-    losing: bool = False
-    why: Why | None = None
-    refusal: str = ''
-
-
-class Tracker:
-    """The last sample of one input, and what is needed to say how well it does."""
-
-    def __init__(
-        self, source: Source, *, configured: bool, timeout: int, max_lag: int = YEAR
-    ) -> None:
-        """Begin without a sample; `timeout` and `max_lag` [ns]."""
-        self.source = source
-        self.configured = configured
-        self.timeout = timeout
-        self.max_lag = max_lag
-        self.received = 0
-        self.dropped = 0
-        self._lost, self._lost_known, self._lost_last = 0, True, -LOSS_SHOWN
-        self.refusal: Refusal | None = None  # why the last message was refused, if it was
-        self.last: InputSample | None = None
-        self._stamps: collections.deque[int] = collections.deque(maxlen=RATE_SAMPLES)
-        self._lags: collections.deque[int] = collections.deque(maxlen=RATE_SAMPLES)
-        self._long_gaps = 0  # in a row
-
-    def accept(self, sample: InputSample) -> None:
-        """Take a good sample."""
-        self.received += 1
-        self.refusal = None
-        gap = 0 if self.last is None else sample.stamp - self.last.stamp
-        self._long_gaps = self._long_gaps + 1 if gap > self.timeout else 0
-        self.last = sample
-        self._stamps.append(sample.stamp)
-        if sample.stamp_source is StampSource.HEADER and sample.arrival:
-            self._lags.append(sample.arrival - sample.stamp)
-
-    def drop(self) -> None:
-        """Count a message that is left out, with no harm to the input."""
-        self.received += 1
-        self.dropped += 1
-
-    def refuse(self, refusal: Refusal) -> None:
-        """Count a bad message; the input stays bad until the next good one."""
-        self.drop()
-        self.refusal = refusal
-
-    def lose(self, count: int | None, arrival: int) -> None:
-        """Count messages that never arrived before one at `arrival` [ns]; None: not known."""
-        self._lost_known = count is not None
-        if count:
-            self._lost += count
-            self._lost_last = arrival
-
-    def forget(self) -> None:
-        """Forget the samples, not the counts: they belong to another time line."""
-        self.last = None
-        self.refusal = None
-        self._stamps.clear()
-        self._lags.clear()
-        self._long_gaps = 0
-
-    def is_ahead(self, stamp: int) -> bool:
-        """Tell whether the last sample is newer than `stamp` [ns]."""
-        return self.last is not None and self.last.stamp > stamp
-
-    @property
-    def slow(self) -> bool:
-        """Tell whether the input comes less often than its timeout asks for."""
-        return self._long_gaps >= SLOW_GAPS
-
-    @property
-    def slow_period(self) -> int:
-        """Return the last period [ns] of a slow input, 0 for any other."""
-        return self._stamps[-1] - self._stamps[-2] if self.slow else 0
-
-    @property
-    def lag(self) -> float:
-        """Return by how much stamps lie behind arrivals [s], the least of the last; NaN: none."""
-        return seconds(min(self._lags)) if self._lags else math.nan
-
-    @property
-    def lagging(self) -> bool:
-        """Tell whether stamps lie too far behind arrivals."""
-        return self.lag > seconds(self.max_lag)
-
-    def rebase(self, now: int) -> None:
-        """Let what arrived later than `now` [ns] have arrived now: the clock was set back."""
-        if self.last is not None and self.last.arrival > now:
-            self.last = dataclasses.replace(self.last, arrival=now)
-
-    def state(self, now: int) -> InputState:
-        """
-        Return the state at `now` [ns] of the clock that arrivals are timed by.
-
-        A sample that arrived exactly the timeout ago is still good.
-
-        """
-        if not self.configured:
-            return InputState.NOT_CONFIGURED
-        if self.refusal is not None:
-            return InputState.BAD
-        if self.last is None:
-            return InputState.MISSING
-        return InputState.OK if now - self.last.arrival <= self.timeout else InputState.STALE
-
-    def health(self, now: int) -> Health:
-        """Return the health at `now` [ns]."""
-        last, lag, refusal = self.last, self.lag, self.refusal
-        return Health(
-            source=self.source,
-            state=self.state(now),
-            rate=self._rate(),
-            stamp_source=StampSource.UNKNOWN if last is None else last.stamp_source,
-            age=math.nan if last is None else max(0.0, seconds(now - last.arrival)),
-            received=self.received,
-            dropped=self.dropped,
-            slow=self.slow,
-            lag=lag,
-            lagging=self.lagging,
-            lost=self._lost if self._lost_known else None,
-            losing=0 <= now - self._lost_last < LOSS_SHOWN,
-            why=None if refusal is None else refusal.why,
-            refusal='' if refusal is None else refusal.text,
-        )
-
-    def _rate(self) -> float:
-        if len(self._stamps) < 2 or self._stamps[-1] <= self._stamps[0]:
-            return math.nan
-        return (len(self._stamps) - 1) / seconds(self._stamps[-1] - self._stamps[0])

@@ -22,7 +22,8 @@ from ballscrew_monitor.core.estimate import (
     PointSource,
     PointValidity,
 )
-from ballscrew_monitor.core.inputs import InputSample, InputState, Refusal, Source, Tracker, Why
+from ballscrew_monitor.core.health import InputState, Tracker
+from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, Why
 from ballscrew_monitor.core.judgement import Hold, hold, is_judged, judge, Level, Verdict, Zone
 from ballscrew_monitor.core.state import Event, MonitorSettings, State
 from ballscrew_monitor.core.tally import Account, moment, WindowTally
@@ -70,7 +71,7 @@ class Monitor:
         tracker.lose(event.lost, event.arrival)
         if isinstance(event, Refusal):
             if event.why is Why.OTHER_JOINTS:
-                tracker.drop()
+                tracker.drop(event.joints)
             else:
                 tracker.refuse(event)
             return None

@@ -8,7 +8,8 @@ import math
 
 from ballscrew_monitor.core.advice import Advice, Advisor
 from ballscrew_monitor.core.estimate import MachinePoint, PointEstimate
-from ballscrew_monitor.core.inputs import Health, Source, YEAR
+from ballscrew_monitor.core.health import Health
+from ballscrew_monitor.core.inputs import Source, YEAR
 from ballscrew_monitor.core.judgement import Code, Finding, Level, Limits, Severity, Verdict
 from ballscrew_monitor.core.tally import Totals, WindowStatistics
 

@@ -10,7 +10,7 @@ from typing import Any
 
 from ballscrew_monitor.node import parameters
 from ballscrew_monitor.node.axis import Axis, build_axis
-from ballscrew_monitor.node.topics import input_topics
+from ballscrew_monitor.node.topics import input_topics, with_types
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.replay import speed_messages
 from surrogate.files import InputError
@@ -48,9 +48,9 @@ def plan(bag: Path, params: Path, out: Path, rate: float) -> Plan:
         raise ModuleNotFoundError('no picture without matplotlib', name='matplotlib')
     if not 0.0 < rate <= 1000.0:
         raise InputError(f'rate is {rate:g}, allowed is above 0 to 1000')
-    values = parameters.read_file(params)
-    axes = [build_axis(name, values) for name in values['axes']]
     opened = Bag(bag)
+    values = with_types(parameters.read_file(params), opened.types)
+    axes = [build_axis(name, values) for name in values['axes']]
     if any(file.resolve() == (out / f'{RECORDING}.mcap').resolve() for file in opened.files):
         raise InputError(
             f'bag {bag} would be overwritten by the recording in {out}, '

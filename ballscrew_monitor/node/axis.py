@@ -15,7 +15,8 @@ from ballscrew_monitor.core.conversions import (
     temperature_scaling,
     torque_scaling,
 )
-from ballscrew_monitor.core.inputs import Input, make_input, Source
+from ballscrew_monitor.core.fields import check_path
+from ballscrew_monitor.core.inputs import Input, make_input, OpenInput, Source
 from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.core.monitor import Monitor
 from ballscrew_monitor.core.state import MonitorSettings
@@ -27,12 +28,19 @@ OPTIONAL = (Source.TEMPERATURE, Source.TORQUE)
 
 @dataclasses.dataclass(kw_only=True, slots=True)
 class Axis:
-    """One axis at work."""
+    """One axis at work; `open_inputs` wait for the message type of their publisher."""
 
     name: str
     surface: Surface
     inputs: tuple[Input, ...]
+    open_inputs: tuple[OpenInput, ...]
     monitor: Monitor
+
+    @property
+    def topics(self) -> dict[Source, str]:
+        """Return the topic of each input as it is configured."""
+        configured: list[Input | OpenInput] = [*self.inputs, *self.open_inputs]
+        return {one.source: one.topic for one in configured}
 
     @property
     def max_future(self) -> int:
@@ -53,30 +61,44 @@ class Axis:
 def build_axis(name: str, values: Mapping[str, Any]) -> Axis:
     """Return the axis `name` made of parameter `values` by full name; raises InputError."""
     surface = load_surface(name, values)
+    inputs = _inputs_of(name, values, surface.lead)
     return Axis(
         name=name,
         surface=surface,
-        inputs=_inputs_of(name, values, surface.lead),
+        inputs=tuple(one for one in inputs if isinstance(one, Input)),
+        open_inputs=tuple(one for one in inputs if isinstance(one, OpenInput)),
         monitor=Monitor(surface, settings_of(name, values, surface.preload)),
     )
 
 
-def check_topics(axes: Iterable[Axis], resolve: Callable[[str], str]) -> None:
-    """Raise InputError for a name that `resolve` refuses, and for a topic of two types."""
+def check_topics(axes: Iterable[Axis], resolve: Callable[[str], str]) -> set[str]:
+    """
+    Return the full names of the topics.
+
+    Raises InputError for a name that `resolve` refuses, and for a topic of two types.
+
+    """
     types: dict[str, str] = {}
+    names = set()
     for axis in axes:
-        for source in axis.inputs:
-            try:
-                topic = resolve(source.topic)
-            except RuntimeError:
+        for source, topic in axis.topics.items():
+            names.add(_resolved(axis.name, source, topic, resolve))
+        for one in axis.inputs:
+            name = resolve(one.topic)
+            if types.setdefault(name, one.type_name) != one.type_name:
                 raise InputError(
-                    f'parameter {axis.name}.{source.source.name.lower()}.topic '
-                    f'is {source.topic!r}, no topic name'
-                ) from None
-            if types.setdefault(topic, source.type_name) != source.type_name:
-                raise InputError(
-                    f'topic {topic} is configured as {types[topic]} and as {source.type_name}'
+                    f'topic {name} is configured as {types[name]} and as {one.type_name}'
                 )
+    return names
+
+
+def _resolved(axis: str, source: Source, topic: str, resolve: Callable[[str], str]) -> str:
+    try:
+        return resolve(topic)
+    except RuntimeError:
+        raise InputError(
+            f'parameter {axis}.{source.name.lower()}.topic is {topic!r}, no topic name'
+        ) from None
 
 
 def load_surface(name: str, values: Mapping[str, Any]) -> Surface:
@@ -108,7 +130,7 @@ def settings_of(name: str, values: Mapping[str, Any], preload: float) -> Monitor
         timeouts={
             source: nanoseconds(values[f'{name}.{source.name.lower()}.timeout'])
             for source in Source
-            if _is_configured(name, values, source)
+            if is_configured(name, values, source)
         },
         default_temperature=kelvin(values[f'{name}.temperature.default']),
         publish_period=nanoseconds(values[f'{name}.publish_period']),
@@ -131,36 +153,39 @@ def _limits_of(name: str, values: Mapping[str, Any], preload: float) -> Limits:
     )
 
 
-def _is_configured(name: str, values: Mapping[str, Any], source: Source) -> bool:
+def is_configured(name: str, values: Mapping[str, Any], source: Source) -> bool:
+    """Tell whether the axis `name` has an input; some may be left out."""
     return source not in OPTIONAL or bool(values[f'{name}.{source.name.lower()}.topic'])
 
 
-def _inputs_of(name: str, values: Mapping[str, Any], lead: float) -> tuple[Input, ...]:
+def _inputs_of(name: str, values: Mapping[str, Any], lead: float) -> tuple[Input | OpenInput, ...]:
     """Return the inputs in the order in which equal stamps are taken."""
     return tuple(
         _input_of(name, values, source, lead)
         for source in Source
-        if _is_configured(name, values, source)
+        if is_configured(name, values, source)
     )
 
 
-def _input_of(name: str, values: Mapping[str, Any], source: Source, lead: float) -> Input:
+def _input_of(
+    name: str, values: Mapping[str, Any], source: Source, lead: float
+) -> Input | OpenInput:
     prefix = f'{name}.{source.name.lower()}'
     if not values[f'{prefix}.topic']:
         raise InputError(f'parameter {prefix}.topic is empty, it must name a topic')
+    topic, field = values[f'{prefix}.topic'], values[f'{prefix}.field']
+    kind, scaling = values[f'{prefix}.type'], scaling_of(name, values, source, lead)
     try:
-        return make_input(
-            source,
-            topic=values[f'{prefix}.topic'],
-            type_name=values[f'{prefix}.type'],
-            field=values[f'{prefix}.field'],
-            scaling=_scaling_of(name, values, source, lead),
-        )
+        if not kind:
+            check_path(field)
+            return OpenInput(source=source, topic=topic, field=field, scaling=scaling)
+        return make_input(source, topic=topic, type_name=kind, field=field, scaling=scaling)
     except InputError as error:
         raise InputError(f'parameters {prefix}: {error}') from None
 
 
-def _scaling_of(name: str, values: Mapping[str, Any], source: Source, lead: float) -> Scaling:
+def scaling_of(name: str, values: Mapping[str, Any], source: Source, lead: float) -> Scaling:
+    """Return the line to SI units of an input of the axis `name`; lead of the screw [m]."""
     prefix = f'{name}.{source.name.lower()}'
     unit, hand = values[f'{prefix}.unit'], values[f'{name}.handedness']
     scale, offset = values[f'{prefix}.scale'], values[f'{prefix}.offset']

@@ -4,18 +4,22 @@
 From states to diagnostic_msgs: three statuses for each axis.
 
 A status begins as an ERROR that says that nothing was set, and every case that is not known to be
-good stays above OK. Messages hold no numbers, so that a new message is a change worth publishing;
-numbers are values, with the unit in brackets.
+good stays above OK. Messages hold no measured numbers, so that a new message is a change worth
+publishing; numbers are values, with the unit in brackets.
 
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 import math
 
+from ballscrew_monitor.core import reasons
 from ballscrew_monitor.core.conversions import celsius, seconds
 from ballscrew_monitor.core.estimate import PointValidity
-from ballscrew_monitor.core.inputs import Health, InputState, Source, Why, YEAR
+from ballscrew_monitor.core.health import Health
+from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.core.judgement import Code, Gate, Level
+from ballscrew_monitor.core.links import Link
+from ballscrew_monitor.core.reasons import Standing
 from ballscrew_monitor.core.state import Event, State
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 from surrogate.surface import Surface
@@ -49,39 +53,7 @@ _CAUSES = {
     Code.RCS_HIGH: 'asperities carry too much',
     Code.EFFICIENCY_LOW: 'too much power is lost',
 }
-_INPUT_WORDS = {
-    InputState.STALE: 'is stale',
-    InputState.MISSING: 'was never received',
-    InputState.BAD: 'is not usable',
-    InputState.UNKNOWN: 'is unknown',
-}
-# Numbers are among the values: the text changes with the fault alone.
-_REFUSED = {
-    Why.NOT_A_NUMBER: 'it is not a finite number',
-    Why.FUTURE: 'its stamps lie ahead of the clock, set the clocks alike or raise max_future',
-    Why.OTHER_CLOCK: 'its stamps are of the wall clock and the node runs on simulated time, '
-    'stamp with /clock or unset use_sim_time',
-}
-_TROUBLES: tuple[tuple[Callable[[Health], bool], str], ...] = (
-    (
-        lambda health: health.losing,
-        'messages are lost on the way: lower their rate, raise publish_period, or give the node '
-        'fewer axes or more of the processor',
-    ),
-    (
-        lambda health: health.lag > seconds(YEAR),
-        'stamps are of simulated time and the node runs on the wall clock: set use_sim_time',
-    ),
-    (
-        lambda health: health.lagging,
-        'stamps lag behind their arrival: set the clocks alike, or raise max_lag',
-    ),
-    (lambda health: health.slow, 'slower than the timeout'),
-    (
-        lambda health: health.lost is None,
-        'loss is unknown: let the topic have one publisher that numbers its messages',
-    ),
-)
+_LEVELS = {Standing.GOOD: OK, Standing.DEGRADED: WARN, Standing.LOST: STALE}
 
 
 def blank(node: str, axis: str) -> list[DiagnosticStatus]:
@@ -107,13 +79,13 @@ def statuses(
     event: Event,
     surface: Surface,
     *,
-    publishers: Mapping[Source, int] | None,
+    links: Mapping[Source, Link] | None,
     clock_stands: bool = False,
 ) -> list[DiagnosticStatus]:
     """
     Return the three statuses of a configured axis, `state` its last one if there is one.
 
-    `publishers` says how many publishers each input is matched with; None: the node is inactive.
+    `links` says how each input is connected; None: the node is inactive.
     While the clock stands no state tells that an input is dead, so nothing but a warning is held.
 
     """
@@ -125,17 +97,17 @@ def statuses(
     made[2].values = _values(_surface_values(surface))
     made[1].values = _values(
         [
-            (f'{source.name.capitalize()} publishers [-]', count)
-            for source, count in (publishers or {}).items()
+            (f'{source.name.capitalize()} publishers [-]', link.matched)
+            for source, link in (links or {}).items()
         ]
     )
-    if state is None or publishers is None:
+    if state is None or links is None:
         for status in made[:2]:
             status.level, status.message = STALE, CLOCK_STANDS if clock_stands else NOTHING_YET
-            if publishers is None:
+            if links is None:
                 status.message = INACTIVE
         return made
-    for status, (level, message) in zip(made, summaries(state, event)):
+    for status, (level, message) in zip(made, summaries(state, event, links)):
         status.level, status.message = level, message
     if clock_stands:
         for status in made[1:2] if state.level is Level.WARN else made[:2]:
@@ -145,9 +117,11 @@ def statuses(
     return made
 
 
-def summaries(state: State, event: Event) -> tuple[StatusSummary, StatusSummary]:
+def summaries(
+    state: State, event: Event, links: Mapping[Source, Link]
+) -> tuple[StatusSummary, StatusSummary]:
     """Return level and message of Lubrication and Inputs; only a change of them is news."""
-    return _lubrication(state, event), _inputs(state.inputs)
+    return _lubrication(state, event), _inputs(state, links)
 
 
 def _lubrication(state: State, event: Event) -> StatusSummary:
@@ -165,23 +139,9 @@ def _lubrication(state: State, event: Event) -> StatusSummary:
     return WARN, f'{"standstill, " if still else ""}not judged for long enough yet'
 
 
-def _inputs(inputs: tuple[Health, ...]) -> StatusSummary:
-    """Return one sentence for each fault, with what mends it; the worst kind of fault alone."""
-    faults = [_fault(health) for health in inputs if health.state in _INPUT_WORDS]
-    if faults:
-        return STALE, ', '.join(faults)
-    for happens, text in _TROUBLES:
-        names = [health.source.name.lower() for health in inputs if happens(health)]
-        if names:
-            return WARN, f'{" and ".join(names)} {text}'
-    return OK, 'all inputs arrive'
-
-
-def _fault(health: Health) -> str:
-    words = _INPUT_WORDS[health.state]
-    if health.state is InputState.BAD and health.why in _REFUSED:
-        words += f': {_REFUSED[health.why]}'
-    return f'{health.source.name.lower()} {words}'
+def _inputs(state: State, links: Mapping[Source, Link]) -> StatusSummary:
+    standing, text = reasons.summary(state.axis, state.inputs, links)
+    return _LEVELS[standing], text
 
 
 def _lubrication_values(state: State) -> list[tuple[str, object]]:

@@ -11,101 +11,32 @@ once for all of them. Simulated time is read in the same order: a message arrive
 
 """
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 import contextlib
-import dataclasses
-import functools
 import operator
 import time
 from typing import Any
 
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.core.inputs import Input, InputSample, Refusal, Source
-from ballscrew_monitor.core.loss import LossCounter, NO_NUMBER
+from ballscrew_monitor.core.inputs import Input, InputSample, OpenInput, Refusal, Source
+from ballscrew_monitor.core.links import Link
 from ballscrew_monitor.node.axis import Axis
-from rclpy.callback_groups import CallbackGroup
-from rclpy.event_handler import EventHandler, SubscriptionEventCallbacks
+from ballscrew_monitor.node.qos import publishers_on
+from ballscrew_monitor.node.topic import Apart, Arrival, link_of, open_topic, Topic
+from rclpy.event_handler import EventHandler
 from rclpy.node import Node
-from rclpy.qos import QoSDurabilityPolicy, QoSHistoryPolicy, QoSProfile, QoSReliabilityPolicy
-from rclpy.subscription import Subscription
 from rclpy.waitable import NumberOfEntities, Waitable
 from rosgraph_msgs.msg import Clock
+from surrogate.files import InputError
 
-INPUT_QOS = QoSProfile(
-    history=QoSHistoryPolicy.KEEP_LAST,
-    depth=200,
-    reliability=QoSReliabilityPolicy.BEST_EFFORT,
-    durability=QoSDurabilityPolicy.VOLATILE,
-)
 CLOCK = '/clock'
 PAUSE = 2.5e-4  # [s] between two looks at the inputs while messages come, at least
 PAUSE_PER_TOPIC = 2.5e-5  # [s] the same for each topic, five times what a look at it takes
 QUIET = 1.5e-3  # [s] without a message after which the executor waits for the next one
 STAY = 0.02  # [s] longest turn; what becomes ready in one may wait for the next one too
-MOST = 2 * INPUT_QOS.depth  # messages of one topic that are taken before anything else has a turn
 
-Reader = tuple[Axis, Input]
 AxisEvent = tuple[Axis, InputSample | Refusal]
 Take = Callable[[Axis, InputSample | Refusal], None]
-
-
-@dataclasses.dataclass(frozen=True, slots=True)
-class Arrival:
-    """A message, its arrival on the clock of this machine [ns], and the topic that it is of."""
-
-    received: int
-    message: Any
-    number: int
-    topic: 'Topic'
-
-
-@dataclasses.dataclass(kw_only=True, slots=True)
-class Topic:
-    """A subscription, who reads its messages, and what was lost of them."""
-
-    readers: Sequence[Reader]
-    loss: LossCounter
-    subscription: Subscription
-
-    def arrival(self, message: Any, info: Mapping[str, Any]) -> Arrival:
-        """Return a message with what the middleware says of it."""
-        return Arrival(
-            info['received_timestamp'],
-            message,
-            info['publication_sequence_number'] or NO_NUMBER,
-            self,
-        )
-
-    def waiting(self) -> list[Arrival]:
-        """
-        Return what waits in the queue of the subscription, which is then empty.
-
-        When the publishers have changed it may be of those before and of those now, whose numbers
-        do not go together.
-
-        """
-        found: list[Arrival] = []
-        subscription = self.subscription
-        with subscription.handle:
-            while len(found) < MOST:
-                taken = subscription.handle.take_message(subscription.msg_type, subscription.raw)
-                if taken is None:
-                    break
-                found.append(self.arrival(*taken))
-        if found:  # the event that tells of it may not have had its turn
-            count = subscription.get_publisher_count()
-            if count != self.loss.publishers:
-                self.loss.match(count)
-                return [dataclasses.replace(arrival, number=NO_NUMBER) for arrival in found]
-        return found
-
-
-class Apart(CallbackGroup):
-    """Keeps the executor from waiting for its members one by one."""
-
-    def can_execute(self, entity: Any) -> bool:
-        """Return False: what happens to a member is seen by the intake."""
-        return False
 
 
 class Intake(Waitable):
@@ -119,44 +50,55 @@ class Intake(Waitable):
         self._apart = Apart()
         self._simulated = 0  # the last `/clock` [ns]
         self._places: list[int] = []  # of the subscriptions in the wait set
+        self._open: list[tuple[Axis, OpenInput]] = []
+        self._problems: dict[tuple[str, Source], str] = {}  # of open inputs
         self._changed: list[EventHandler] = []  # that tell of publishers come or gone
         self._waited_for = contextlib.ExitStack()
         self._stayed = False  # for all of STAY, the last time
-        readers: dict[str, list[Reader]] = {}
+        self.topics: dict[str, Topic] = {}
         for axis in axes:
             for source in axis.inputs:
-                readers.setdefault(node.resolve_topic_name(source.topic), []).append(
-                    (axis, source)
-                )
-        self.topics = {name: self._subscribe(name, those) for name, those in readers.items()}
+                self._read(axis, source)
+            self._open += [(axis, one) for one in axis.open_inputs]
         self._clock: Topic | None = None
         if node.get_parameter('use_sim_time').value:
-            self._clock = self._subscribe_to(CLOCK, Clock, [])
+            self._clock = open_topic(node, CLOCK, Clock, self._apart, overridable=False)
         node.add_waitable(self)
+        self.discover()
 
     @property
     def _all(self) -> list[Topic]:
         clock = [] if self._clock is None else [self._clock]
         return [*clock, *self.topics.values()]
 
-    def _subscribe(self, name: str, readers: list[Reader]) -> Topic:
-        return self._subscribe_to(name, readers[0][1].message_type, readers)
+    def _read(self, axis: Axis, source: Input) -> None:
+        """Subscribe to the topic of an input, unless another input has done so."""
+        name = self._node.resolve_topic_name(source.topic)
+        if name not in self.topics:
+            self.topics[name] = open_topic(self._node, name, source.message_type, self._apart)
+        self.topics[name].readers.append((axis, source))
 
-    def _subscribe_to(self, name: str, kind: Any, readers: list[Reader]) -> Topic:
-        loss = LossCounter()
-        subscription = self._node.create_subscription(
-            kind,
-            name,
-            _never_called,
-            INPUT_QOS,
-            callback_group=self._apart,
-            # Best effort and volatile suit every publisher. One of another type would be told of
-            # by some middlewares only; in the diagnostics its input was never received.
-            event_callbacks=SubscriptionEventCallbacks(
-                matched=functools.partial(_count, loss), use_default_callbacks=False
-            ),
-        )
-        return Topic(readers=readers, loss=loss, subscription=subscription)
+    def discover(self) -> None:
+        """Begin to read each open input whose topic has publishers of one type by now."""
+        for axis, one in list(self._open):
+            name = self._node.resolve_topic_name(one.topic)
+            known = self.topics.get(name)
+            types = {publisher.type_name for publisher in publishers_on(self._node, name)}
+            if known is not None:
+                types = {known.readers[0][1].type_name}
+            if len(types) == 1:
+                self._close(axis, one, types.pop())
+
+    def _close(self, axis: Axis, one: OpenInput, type_name: str) -> None:
+        """Read an open input as messages of a type, or note why that does not work."""
+        self._problems.pop((axis.name, one.source), None)
+        try:
+            closed = one.close(type_name)
+        except InputError as error:
+            self._problems[axis.name, one.source] = str(error)
+            return
+        self._open.remove((axis, one))
+        self._read(axis, closed)
 
     def __enter__(self) -> None:
         """Keep what the executor waits for, also when it is closed meanwhile."""
@@ -232,14 +174,16 @@ class Intake(Waitable):
         for topic in closed:
             self._node.destroy_subscription(topic.subscription)
 
-    def publishers(self, axis: str) -> dict[Source, int]:
-        """Return how many publishers each input of an axis is matched with."""
-        return {
-            source.source: topic.subscription.get_publisher_count()
-            for topic in self.topics.values()
-            for reader, source in topic.readers
-            if reader.name == axis
-        }
+    def links(self, axis: Axis) -> dict[Source, Link]:
+        """Return how each input of an axis is connected."""
+        opened = {one.source for reader, one in self._open if reader is axis}
+        found = {}
+        for source, topic in axis.topics.items():
+            name = self._node.resolve_topic_name(topic)
+            read = None if source in opened else self.topics.get(name)
+            problem = self._problems.get((axis.name, source), '') if source in opened else ''
+            found[source] = link_of(self._node, name, read, problem=problem)
+        return found
 
     def drain(self) -> bool:
         """Hand over all that waits, oldest first; return whether that was anything."""
@@ -259,15 +203,6 @@ class Intake(Waitable):
         for axis, event in ordered(events):
             self._take(axis, event)
         return True
-
-
-def _count(loss: LossCounter, event: Any) -> None:
-    """Note how many publishers a topic has now."""
-    loss.match(event.current_count)
-
-
-def _never_called(message: Any) -> None:
-    """Stand where rclpy wants a callback; the intake takes the messages itself."""
 
 
 def _events(arrival: Arrival, now: int) -> list[AxisEvent]:

@@ -11,7 +11,8 @@ anything else as garbage when their checks are off.
 import math
 from typing import Any
 
-from ballscrew_monitor.core import inputs, judgement, tally
+from ballscrew_monitor.core import health as input_health
+from ballscrew_monitor.core import judgement, tally
 from ballscrew_monitor.core.advice import Advice
 from ballscrew_monitor.core.conversions import (
     celsius,
@@ -138,7 +139,7 @@ def fill_window(message: WindowStatistics, window: tally.WindowStatistics) -> No
         setattr(message, f'{name}_max', float(extremes.high))
 
 
-def fill_health(message: InputHealth, health: inputs.Health) -> None:
+def fill_health(message: InputHealth, health: input_health.Health) -> None:
     """Fill in the health of one input."""
     message.name = health.source.name.lower()
     message.state = int(health.state)

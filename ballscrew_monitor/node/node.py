@@ -18,6 +18,7 @@ from ballscrew_monitor.node.axis import Axis, build_axis, check_topics, reload_s
 from ballscrew_monitor.node.correction_store import CorrectionStore, state_directory
 from ballscrew_monitor.node.intake import Intake
 from ballscrew_monitor.node.parameter_store import ParameterStore
+from ballscrew_monitor.node.qos import check_overrides
 from ballscrew_monitor.node.solve_server import MOST_SOLVES, SolveServer
 from ballscrew_monitor.node.solver_process import SolverProcess
 from ballscrew_monitor.node.station import STATE_QOS, Station
@@ -100,7 +101,8 @@ class BallscrewMonitor(LifecycleNode):
         """Load the surfaces, compile the inputs; on failure stay unconfigured, with a reason."""
         try:
             axes = [build_axis(name, self._values) for name in self._values['axes']]
-            check_topics(axes, self.resolve_topic_name)
+            topics = check_topics(axes, self.resolve_topic_name)
+            check_overrides(self._store.given, topics)
         except InputError as error:
             self._reason = f'not configured: {error}'
             self.get_logger().error(self._reason)
@@ -210,6 +212,7 @@ class BallscrewMonitor(LifecycleNode):
         grid = self._pulse.tick(self.get_clock().now().nanoseconds)
         if grid is None or self._intake is None:
             return
+        self._intake.discover()
         self._intake.drain()
         for station in self._stations.values():
             self._publish(station, station.axis.monitor.tick(grid))
@@ -243,8 +246,9 @@ class BallscrewMonitor(LifecycleNode):
         made = []
         for name in axes:
             if name in self._stations:
-                publishers = self._intake.publishers(name) if self._intake else None
-                made += self._stations[name].statuses(publishers=publishers, stood=stood)
+                station = self._stations[name]
+                links = self._intake.links(station.axis) if self._intake else None
+                made += station.statuses(links=links, stood=stood)
             else:
                 made += diagnostics.failed(self.get_name(), name, self._reason)
         return made

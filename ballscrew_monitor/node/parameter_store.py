@@ -18,7 +18,7 @@ class ParameterStore:
     The values of all parameters as plain Python, by full name.
 
     While `locked`, only what may change at any time does; `on_change` is called with the first
-    parts of the names that have changed.
+    parts of the names that have changed. `given` is what the node was started with.
 
     """
 
@@ -29,11 +29,11 @@ class ParameterStore:
         self._on_change = on_change
         # Private to rclpy; without it rclpy refuses bad values itself, in its own words.
         given = getattr(node, '_parameter_overrides', {})
-        self._given = {name: _plain(parameter.value) for name, parameter in given.items()}
+        self.given = {name: _plain(parameter.value) for name, parameter in given.items()}
         self._declare(node, {row.name: row for row in NODE_ROWS})
         self._rows = parameters.table(self.values['axes'])
         self._declare(node, self._rows)
-        for name in self._given:  # a slip of the pen must not pass for the default
+        for name in self.given:  # a slip of the pen must not pass for the default
             if name not in self._rows and not parameters.is_of_ros(name):
                 raise InputError(f'parameter {name} is unknown')
         node.add_on_set_parameters_callback(self._check)
@@ -43,8 +43,8 @@ class ParameterStore:
         for name, row in rows.items():
             if name in self.values:
                 continue
-            if name in self._given:
-                row.check(name, self._given[name])
+            if name in self.given:
+                row.check(name, self.given[name])
             default = parameters.default_of(name, row)
             declared = node.declare_parameter(name, default, row.descriptor())
             self.values[name] = _plain(declared.value)

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Every parameter of the node, declared once: its default, what is allowed, and a sentence."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 import dataclasses
 import enum
 import math
@@ -16,6 +16,7 @@ from ballscrew_monitor.core.conversions import (
     TEMPERATURE_UNITS,
     TORQUE_UNITS,
 )
+from ballscrew_monitor.core.fields import check_path
 from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
 from surrogate.files import InputError
 from surrogate.surface import EFFICIENCY_LIMIT, LIGHT_LOAD, RCS_LIMIT
@@ -39,7 +40,12 @@ class Change(enum.Enum):
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class ParameterRow:
-    """One parameter: numbers lie from `low` to `high`, texts are one of `choices` if there are."""
+    """
+    One parameter: numbers lie from `low` to `high`, texts are one of `choices` if there are.
+
+    A `rule` raises InputError for a text that has not the form it must have.
+
+    """
 
     name: str
     default: Value
@@ -49,6 +55,7 @@ class ParameterRow:
     high: float = math.inf
     choices: tuple[str, ...] = ()
     nonzero: bool = False
+    rule: Callable[[Any], None] | None = None
     change: Change = Change.UNCONFIGURED
 
     @property
@@ -76,6 +83,11 @@ class ParameterRow:
             raise InputError(
                 f'parameter {name} is {value!r}{unit}, allowed is {self.allowed}{unit}'
             )
+        try:
+            if self.rule is not None:
+                self.rule(value)
+        except InputError as error:
+            raise InputError(f'parameter {name}: {error}') from None
 
     def descriptor(self) -> ParameterDescriptor:
         """Return the descriptor that ROS tools show and that rclpy enforces."""
@@ -145,10 +157,15 @@ def _input_rows(
 ) -> tuple[ParameterRow, ...]:
     return (
         ParameterRow(name=f'{name}.topic', default=topic, text=f'Topic of the {what}.'),
-        ParameterRow(name=f'{name}.type', default=type_name, text='Its message type.'),
+        ParameterRow(
+            name=f'{name}.type',
+            default=type_name,
+            text='Its message type; empty: that of the publisher on the topic.',
+        ),
         ParameterRow(
             name=f'{name}.field',
             default=field,
+            rule=check_path,
             text='Field to read, such as wrench.force.x, position[0] or velocity[joint_name].',
         ),
         ParameterRow(

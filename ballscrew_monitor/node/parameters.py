@@ -88,7 +88,28 @@ def read_file(path: str | pathlib.Path, node: str = NODE_NAME) -> dict[str, Any]
     return defaults(axes) | given
 
 
+def read_ros_parameters(path: str | pathlib.Path, node: str = NODE_NAME) -> dict[str, Any]:
+    """
+    Return what the file at `path` says of the parameters of any ROS node, such as `use_sim_time`.
+
+    Raises InputError when the file cannot be read, or says nothing to the node at all.
+
+    """
+    try:
+        given = _addressed(_sections(path), node)
+        if not given:
+            raise InputError(f'it says nothing to the node, begin it with /**/{node}:')
+    except InputError as error:
+        raise InputError(f'{path}: {error}') from None
+    return {name: value for name, value in given.items() if is_of_ros(name)}
+
+
 def _given(sections: Mapping[str, Any], node: str) -> dict[str, Any]:
+    given = _addressed(sections, node)
+    return {name: value for name, value in given.items() if not is_of_ros(name)}
+
+
+def _addressed(sections: Mapping[str, Any], node: str) -> dict[str, Any]:
     given: dict[str, Any] = {}
     for key, section in sections.items():
         if key.lstrip('/') in ('**', node, f'**/{node}'):
@@ -98,7 +119,7 @@ def _given(sections: Mapping[str, Any], node: str) -> dict[str, Any]:
                     f'{key} holds no parameters, they must stand below ros__parameters'
                 )
             given |= _flatten(values)
-    return {name: value for name, value in given.items() if not is_of_ros(name)}
+    return given
 
 
 def _sections(path: str | pathlib.Path) -> dict[str, Any]:

@@ -12,6 +12,7 @@ from ballscrew_monitor.core.estimate import estimate, MachinePoint
 from ballscrew_monitor.core.full_point import corrected, objection, solved_at
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.core.judgement import Level
+from ballscrew_monitor.core.links import Link
 from ballscrew_monitor.core.state import State
 from ballscrew_monitor.node import diagnostics
 from ballscrew_monitor.node.axis import Axis
@@ -62,6 +63,7 @@ class Station:
         self._node = node
         self._writer = StateWriter(axis.name, TIERS[axis.surface.tier])
         self._last: State | None = None
+        self._links: Mapping[Source, Link] = {}
         self._said: tuple[diagnostics.StatusSummary, ...] = ()
         self._said_at = -NEWS_INTERVAL
         self._logged: diagnostics.StatusSummary | None = None
@@ -234,26 +236,27 @@ class Station:
             self._node.get_logger().warning(f'axis {self.axis.name}: {text}')
 
     def statuses(
-        self, *, publishers: Mapping[Source, int] | None, stood: int
+        self, *, links: Mapping[Source, Link] | None, stood: int
     ) -> list[DiagnosticStatus]:
         """
         Return the diagnostics of the axis after the clock has stood for `stood` [ns].
 
-        `publishers` says how many each input is matched with; None: the node is inactive.
+        `links` says how each input is connected; None: the node is inactive.
 
         """
+        self._links = links or {}
         return diagnostics.statuses(
             self._node.get_name(),
             self.axis.name,
             self._last,
             self.axis.monitor.event,
             self.axis.surface,
-            publishers=publishers,
+            links=links,
             clock_stands=stood > self.axis.monitor.settings.timeouts[Source.SPEED],
         )
 
     def _summaries(self, state: State) -> tuple[diagnostics.StatusSummary, ...]:
-        return diagnostics.summaries(state, self.axis.monitor.event)
+        return diagnostics.summaries(state, self.axis.monitor.event, self._links)
 
     def _log_event(self) -> None:
         event, name = self.axis.monitor.event, self.axis.name

@@ -24,6 +24,16 @@ def input_topics(values: Mapping[str, Any]) -> dict[str, str]:
     return found
 
 
+def with_types(values: Mapping[str, Any], types: Mapping[str, str]) -> dict[str, Any]:
+    """Return the parameters with each empty message type filled in from `types` by topic."""
+    filled = dict(values)
+    for name, topic in values.items():
+        prefix, _, leaf = name.rpartition('.')
+        if leaf == 'topic' and topic and not values[f'{prefix}.type']:
+            filled[f'{prefix}.type'] = types.get(absolute(topic), '')
+    return filled
+
+
 def output(axis: str, name: str) -> str:
     """Return the full name of an output of the node, such as `state`."""
     return absolute(f'{NODE_NAME}/{axis}/{name}')

@@ -78,12 +78,17 @@ class Bag:
         """Return the time from the first to the last message [s]."""
         return (self.end_time - self.start_time) * 1e-9
 
+    @property
+    def types(self) -> dict[str, str]:
+        """Return the message type of each topic."""
+        return {name: info.type_name for name, info in self.topics.items()}
+
     def require(self, topics: Mapping[str, str]) -> None:
         """Raise InputError unless the bag holds messages of all `topics`, given with type."""
         for name, type_name in topics.items():
             if name not in self.topics:
                 raise InputError(
-                    f'bag {self.path}: topic {name} ({type_name}) is missing, the '
+                    f'bag {self.path}: topic {name} ({type_name or "any type"}) is missing, the '
                     f'bag holds {", ".join(sorted(self.topics))}'
                 )
             found = self.topics[name]

@@ -22,7 +22,7 @@ from ballscrew_monitor.core.conversions import (
     temperature_scaling,
     torque_scaling,
 )
-from ballscrew_monitor.core.inputs import Input, InputSample, make_input, Source
+from ballscrew_monitor.core.inputs import Input, InputSample, make_input, Source, Why
 from ballscrew_monitor.node.topics import absolute
 from ballscrew_monitor.recordings.bag import Bag
 import numpy as np
@@ -133,7 +133,7 @@ def _read(bag: Bag, channels: Mapping[Source, Channel]) -> tuple[dict[Source, Se
             if isinstance(read, InputSample):
                 samples[one.source].append((read.stamp - bag.start_time, read.value))
             else:
-                refused += one.read_field(decoded) is not None
+                refused += read.why is not Why.OTHER_JOINTS
     for source, found in samples.items():
         if not found:
             raise InputError(

@@ -15,11 +15,12 @@ import itertools
 from typing import Any, NamedTuple
 
 from ballscrew_monitor.core.conversions import nanoseconds
+from ballscrew_monitor.core.fields import OtherJoints
 from ballscrew_monitor.core.inputs import Input, InputSample, Refusal, Source
 from ballscrew_monitor.core.state import State
 from ballscrew_monitor.node.axis import Axis, build_axis
 from ballscrew_monitor.node.messages import out_of_zone_message, StateWriter, TIERS
-from ballscrew_monitor.node.topics import absolute, input_topics
+from ballscrew_monitor.node.topics import absolute, input_topics, with_types
 from ballscrew_monitor.recordings.bag import Bag, Message
 from ballscrew_msgs.msg import BallScrewState, OutOfZone
 from rclpy.serialization import deserialize_message
@@ -51,7 +52,7 @@ def speed_messages(bag: Bag, axes: Sequence[Axis]) -> dict[str, int]:
         for name, source in speed.items():
             if message.topic == absolute(source.topic):
                 value = source.read_field(_decode(message, source.message_type))
-                counts[name] += value is not None
+                counts[name] += not isinstance(value, OtherJoints)
     for name, count in counts.items():
         if not count:
             raise InputError(
@@ -68,6 +69,7 @@ def replay(bag: Bag, values: Mapping[str, Any]) -> Iterator[Judged]:
     Raises InputError for bad parameters and for a bag without the topics that they name.
 
     """
+    values = with_types(values, bag.types)
     bag.require(input_topics(values))
     axes = [build_axis(name, values) for name in values['axes']]
     return itertools.chain.from_iterable(_run(bag, axes, nanoseconds(values['tick_period'])))

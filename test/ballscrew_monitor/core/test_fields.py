@@ -2,9 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Field paths and message types by name."""
 
-import math
-
-from ballscrew_monitor.core.fields import compile_field, message_class
+from ballscrew_monitor.core.fields import (
+    check_path,
+    compile_field,
+    message_class,
+    number_fields,
+    OtherJoints,
+    TooShort,
+)
 from geometry_msgs.msg import WrenchStamped
 import pytest
 from sensor_msgs.msg import Imu, JointState
@@ -66,11 +71,27 @@ def test_joints_are_found_by_name_wherever_they_stand():
     assert read(joints('y_axis', 'x_axis', velocity=[1.0, 2.0])) == 2.0
 
 
-def test_other_joints_are_no_value_and_a_short_array_is_not_a_number():
+def test_other_joints_and_a_short_array_are_told_apart():
     read = compile_field('velocity[x_axis]', JointState)
-    assert read(joints('y_axis', velocity=[1.0])) is None
-    assert math.isnan(read(joints('x_axis')))
-    assert math.isnan(compile_field('position[3]', JointState)(joints('x_axis')))
+    assert read(joints('y_axis', velocity=[1.0])) == OtherJoints('velocity', 'x_axis', ('y_axis',))
+    assert read(joints('x_axis')) == TooShort('velocity', 'x_axis', 0)
+    short = compile_field('position[3]', JointState)(joints('x_axis'))
+    assert short == TooShort('position', '3', 0)
+
+
+def test_the_numbers_of_a_message_are_paths_that_lead_to_one():
+    assert number_fields(JointState) == ('position[0]', 'velocity[0]', 'effort[0]')
+    assert number_fields(Float64) == ('data',)
+    for kind in (WrenchStamped, JointState, Imu, Float64MultiArray):
+        for path in number_fields(kind):
+            compile_field(path, kind)
+
+
+def test_the_form_of_a_path_is_checked_without_a_type():
+    check_path('velocity[robot.x].y')
+    for bad in ('velocity[-1]', 'wrench..x', 'velocity['):
+        with pytest.raises(InputError, match='field '):
+            check_path(bad)
 
 
 @pytest.mark.parametrize(
@@ -91,6 +112,8 @@ def test_other_joints_are_no_value_and_a_short_array_is_not_a_number():
         ('', Float64, "'' is not a name"),
         ('data[0]', Float64, "'data' of Float64 is double, no array"),
         ('data[x]', Float64MultiArray, 'has no list of names'),
+        ('velocity[-1]', JointState, 'the index -1 has a sign, allowed is 0 or more, or a joint'),
+        ('data[+1]', Float64MultiArray, 'the index .1 has a sign'),
     ],
 )
 def test_paths_that_lead_nowhere_are_refused(path, kind, match):

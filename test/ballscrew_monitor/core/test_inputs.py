@@ -1,19 +1,18 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Field paths, stamps, refusals and the health of an input."""
+"""Field paths, stamps and refusals."""
 
 import math
 
 from ballscrew_monitor.core.conversions import Scaling, SECOND
+from ballscrew_monitor.core.fields import OtherJoints
 from ballscrew_monitor.core.inputs import (
     InputSample,
-    InputState,
-    LOSS_SHOWN,
     make_input,
+    OpenInput,
     Refusal,
     Source,
     StampSource,
-    Tracker,
     Why,
     YEAR,
 )
@@ -21,6 +20,7 @@ from ballscrew_msgs.msg import InputHealth
 import pytest
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
+from surrogate.files import InputError
 
 NOW = 100 * SECOND
 
@@ -97,13 +97,33 @@ def test_a_clock_that_has_not_started_refuses_no_stamp_and_times_nothing():
 def test_what_is_not_a_number_is_refused(bad):
     refusal = speed_input().read(joints('x_axis', velocity=[bad]), now=NOW, max_future=0)
     assert (refusal.source, refusal.why) == (Source.SPEED, Why.NOT_A_NUMBER)
-    assert refusal.text == f'the field holds {bad}, it must be a finite number'
+    assert refusal.text == f'the field holds {bad}, it must be a finite number: mend the source'
+
+
+@pytest.mark.parametrize(
+    ('field', 'velocity', 'text'),
+    [
+        ('velocity[x_axis]', [], 'velocity is empty in its messages: let the source fill it'),
+        ('velocity[1]', [3.0], 'velocity has 1 elements and no [1] in its messages'),
+    ],
+)
+def test_an_array_that_ends_too_soon_is_refused(field, velocity, text):
+    message = joints('x_axis', velocity=velocity)
+    refusal = speed_input(field=field).read(message, now=NOW, max_future=0)
+    assert (refusal.why, refusal.arrival) == (Why.TOO_SHORT, NOW)
+    assert refusal.text.startswith(text)
 
 
 def test_a_message_about_other_joints_is_refused_as_such():
     message = joints('y_axis', velocity=[1.0])
     refusal = speed_input().read(message, now=NOW, max_future=0, lost=3)
-    assert refusal == Refusal(source=Source.SPEED, why=Why.OTHER_JOINTS, arrival=NOW, lost=3)
+    assert refusal == Refusal(
+        source=Source.SPEED,
+        why=Why.OTHER_JOINTS,
+        joints=OtherJoints('velocity', 'x_axis', ('y_axis',)),
+        arrival=NOW,
+        lost=3,
+    )
 
 
 def test_the_value_is_scaled():
@@ -111,124 +131,16 @@ def test_the_value_is_scaled():
     assert speed.read(joints('x_axis', velocity=[3.0]), now=NOW, max_future=0).value == 7.0
 
 
-def tracker(**changes):
-    return Tracker(Source.LOAD, **({'configured': True, 'timeout': 10} | changes))
+def test_an_open_input_is_closed_by_a_type():
+    opened = OpenInput(
+        source=Source.SPEED, topic='speed', field='data', scaling=Scaling(factor=2.0, shift=0.0)
+    )
+    closed = opened.close('std_msgs/msg/Float64')
+    assert closed.read(Float64(data=3.0), now=NOW, max_future=0).value == 6.0
+    with pytest.raises(InputError, match='JointState has no field .data.'):
+        opened.close('sensor_msgs/msg/JointState')
 
 
-def sample(stamp, **changes):
-    return InputSample(source=Source.LOAD, value=1.0, stamp=stamp, **changes)
-
-
-def refusal(why=Why.NOT_A_NUMBER):
-    return Refusal(source=Source.LOAD, why=why, text='because')
-
-
-def test_a_sample_exactly_as_old_as_the_timeout_is_good():
-    load = tracker()
-    load.accept(sample(100))
-    assert load.state(110) is InputState.OK
-    assert load.state(111) is InputState.STALE
-    assert load.health(111).age == 11e-9
-
-
-def test_a_sample_newer_than_the_judged_instant_has_no_negative_age():
-    load = tracker()
-    load.accept(sample(100))
-    assert load.health(90).age == 0.0
-
-
-def test_an_input_begins_missing_and_goes_bad_until_the_next_good_sample():
-    load = tracker()
-    assert load.state(0) is InputState.MISSING
-    assert math.isnan(load.health(0).age)
-    load.refuse(refusal())
-    assert load.state(0) is InputState.BAD
-    assert (load.health(0).why, load.health(0).refusal) == (Why.NOT_A_NUMBER, 'because')
-    load.accept(sample(1))
-    assert load.state(1) is InputState.OK
-    assert (load.received, load.dropped) == (2, 1)
-
-
-def test_messages_about_other_joints_are_counted_but_do_no_harm():
-    load = tracker()
-    load.accept(sample(1))
-    load.drop()
-    assert load.state(1) is InputState.OK
-    assert (load.received, load.dropped) == (2, 1)
-
-
-def test_an_input_without_a_topic_says_so():
-    assert tracker(configured=False).state(0) is InputState.NOT_CONFIGURED
-
-
-def test_rate_is_the_mean_over_the_last_samples():
-    load = tracker()
-    assert math.isnan(load.health(0).rate)
-    for i in range(100):
-        load.accept(sample(i * SECOND // 50))
-    assert load.health(2 * SECOND).rate == 50.0
-    load.forget()
-    assert math.isnan(load.health(0).rate)
-
-
-@pytest.mark.parametrize(
-    ('enumeration', 'prefix'), [(InputState, 'STATE_'), (StampSource, 'STAMP_')]
-)
-def test_enumerations_have_the_numbers_of_the_messages(enumeration, prefix):
-    for member in enumeration:
-        assert getattr(InputHealth, f'{prefix}{member.name}') == member
-
-
-def test_how_fresh_an_input_is_counts_from_its_arrival():
-    load = tracker()
-    load.accept(sample(100, arrival=700))
-    assert load.state(710) is InputState.OK
-    assert load.state(711) is InputState.STALE
-    assert load.health(711).age == 11e-9
-
-
-def test_the_lag_is_the_least_of_the_last_samples():
-    load = tracker(max_lag=600)
-    assert math.isnan(load.lag)
-    for stamp, arrival in ((100, 900), (200, 800), (300, 1200)):
-        load.accept(sample(stamp, arrival=arrival))
-    assert load.lag == 600e-9
-    assert not load.lagging
-    load = tracker(max_lag=599)
-    load.accept(sample(200, arrival=800))
-    assert load.health(800).lagging
-
-
-def test_stamps_of_reception_have_no_lag():
-    load = tracker(max_lag=1)
-    load.accept(sample(100, arrival=100, stamp_source=StampSource.RECEIVE))
-    assert math.isnan(load.health(100).lag)
-    assert not load.lagging
-
-
-def test_what_arrived_in_the_future_of_a_clock_that_was_set_back_has_arrived_now():
-    load = tracker()
-    load.accept(sample(1000))
-    load.rebase(500)
-    assert load.state(510) is InputState.OK
-    assert load.state(511) is InputState.STALE
-
-
-def test_losses_add_up_and_are_shown_for_a_while():
-    load = tracker()
-    load.lose(0, SECOND)
-    assert (load.health(SECOND).lost, load.health(SECOND).losing) == (0, False)
-    load.lose(3, 2 * SECOND)
-    load.lose(4, 3 * SECOND)
-    assert load.health(3 * SECOND).lost == 7
-    assert load.health(3 * SECOND + LOSS_SHOWN - 1).losing
-    assert not load.health(3 * SECOND + LOSS_SHOWN).losing
-
-
-def test_a_loss_that_cannot_be_known_is_unknown_and_keeps_what_was_counted():
-    load = tracker()
-    load.lose(3, SECOND)
-    load.lose(None, SECOND)
-    assert load.health(SECOND).lost is None
-    load.lose(0, SECOND)
-    assert load.health(SECOND).lost == 3
+def test_stamp_sources_have_the_numbers_of_the_messages():
+    for member in StampSource:
+        assert getattr(InputHealth, f'STAMP_{member.name}') == member

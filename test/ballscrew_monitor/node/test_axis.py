@@ -7,7 +7,7 @@ import math
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.node import parameters
-from ballscrew_monitor.node.axis import build_axis, settings_of
+from ballscrew_monitor.node.axis import build_axis, check_topics, settings_of
 import pytest
 from std_msgs.msg import Float64
 from surrogate.files import InputError
@@ -43,6 +43,14 @@ def test_a_topic_makes_an_input():
     assert axis.monitor.settings.timeouts[Source.TEMPERATURE] == 30 * SECOND
 
 
+def test_an_empty_type_leaves_the_input_open():
+    axis = build(speed__type='')
+    assert [source.source for source in axis.inputs] == [Source.LOAD]
+    assert [source.source for source in axis.open_inputs] == [Source.SPEED]
+    assert axis.topics == {Source.LOAD: 'axial_load', Source.SPEED: 'joint_states'}
+    assert check_topics([axis], lambda topic: f'/{topic}') == {'/axial_load', '/joint_states'}
+
+
 @pytest.mark.parametrize(
     ('unit', 'value', 'expected'), [('rad/s', 3.0, -3.0), ('mm/s', 10.0, 2.0 * math.pi)]
 )
@@ -62,6 +70,7 @@ def test_units_and_handedness_reach_the_input(unit, value, expected):
     [
         ({'speed__topic': ''}, 'parameter x.speed.topic is empty'),
         ({'speed__field': 'velocity'}, "parameters x.speed: field 'velocity' .* not a number"),
+        ({'speed__type': '', 'speed__field': 'velocity['}, 'parameters x.speed: .* is not a name'),
         ({'load__type': 'a/b'}, "parameters x.load: message type 'a/b'"),
         ({'surface': '/no/such/file.npz'}, 'axis x: .*/no/such/file.npz'),
         ({'screw': 'other'}, "axis x: .*'other'"),

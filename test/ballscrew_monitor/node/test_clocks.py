@@ -149,7 +149,7 @@ def test_a_lead_beyond_what_is_allowed_is_refused_and_clears_nothing(node):
     source.clock = lambda: node.now() + LAG
     source.until(lambda: heard.faults(), 'the refusal')
     source.until(lambda: heard.states[-1].inputs[0].dropped > 100, 'more of it')
-    assert heard.faults() == [f'speed {AHEAD}, load {AHEAD}']
+    assert heard.faults() == [f'speed {AHEAD}; load {AHEAD}']
     assert heard.level == WARN
     for health in heard.states[-1].inputs[:2]:
         assert health.state == InputHealth.STATE_BAD
@@ -238,7 +238,7 @@ def test_stamps_of_the_wall_clock_on_simulated_time(node):
     )
     source.until(lambda: WALL in ''.join(heard.sentences()), 'the sentence')
     assert [one for one in heard.faults() if one != diagnostics.CLOCK_STANDS] == [
-        f'speed {WALL}, load {WALL}'
+        f'speed {WALL}; load {WALL}'
     ]
     assert heard.states[-1].inputs[0].refusal == (
         'the stamps are of the wall clock and the node runs on simulated time: '

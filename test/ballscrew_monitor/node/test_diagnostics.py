@@ -6,6 +6,7 @@ import dataclasses
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, Why
+from ballscrew_monitor.core.links import Link
 from ballscrew_monitor.core.state import Event
 from ballscrew_monitor.node import diagnostics
 from ballscrew_monitor.node.diagnostics import ERROR, OK, STALE, WARN
@@ -13,13 +14,17 @@ import pytest
 
 START = 1000 * SECOND
 WALL = 1_800_000_000 * SECOND
+LINKS = {
+    Source.SPEED: Link(topic='/s', type_name='a/msg/B', matched=1),
+    Source.LOAD: Link(topic='/l', type_name='a/msg/B'),
+}
 
 
 def sample(source, value, stamp=START):
     return InputSample(source=source, value=value, stamp=stamp)
 
 
-def after(core, *events, surface=None, clock_stands=False, settings=None, **limits):
+def after(core, *events, surface=None, clock_stands=False, settings=None, links=None, **limits):
     """Return the statuses after some events, by their part, and the monitor."""
     delays = {'raise_delay': 0, 'clear_delay': 0}
     limits, state = core.limits(**(delays | limits)), None
@@ -32,7 +37,7 @@ def after(core, *events, surface=None, clock_stands=False, settings=None, **limi
         state,
         monitor.event,
         monitor.surface,
-        publishers={Source.SPEED: 1, Source.LOAD: 0},
+        links=links or LINKS,
         clock_stands=clock_stands,
     )
     return {status.name.rpartition(' ')[2]: status for status in made}
@@ -101,7 +106,9 @@ def test_a_warning_names_its_cause_and_stands_while_inputs_are_lost(core):
 
 
 def test_inputs_name_what_is_wrong(core):
-    assert after(core, SPEED)['Inputs'].message == 'load was never received'
+    assert after(core, SPEED)['Inputs'].message == (
+        'load was never received: no publisher yet on /l: start it, or set x.load.topic'
+    )
     bad = after(core, LOAD, Refusal(source=Source.LOAD, why=Why.FUTURE), SPEED)['Inputs']
     assert (bad.level, bad.message) == (
         STALE,
@@ -111,7 +118,9 @@ def test_inputs_name_what_is_wrong(core):
     wall = after(core, LOAD, Refusal(source=Source.LOAD, why=Why.OTHER_CLOCK), SPEED)['Inputs']
     assert wall.message.endswith('stamp with /clock or unset use_sim_time')
     late = sample(Source.SPEED, 10.0, START + 10 * SECOND)
-    assert after(core, LOAD, late)['Inputs'].message == 'load is stale'
+    assert after(core, LOAD, late)['Inputs'].message == (
+        'load is stale: the publisher on /l is gone'
+    )
 
 
 def test_while_the_clock_stands_nothing_is_well_and_a_warning_stays(core):
@@ -134,7 +143,11 @@ def test_an_input_slower_than_its_timeout_is_told(core):
     status = after(core, *pairs[:4])['Inputs']
     assert (status.level, status.message) == (OK, 'all inputs arrive')
     status = after(core, *pairs)['Inputs']
-    assert (status.level, status.message) == (WARN, 'speed and load slower than the timeout')
+    assert (status.level, status.message) == (
+        WARN,
+        'speed comes less often than its timeout allows: set x.speed.timeout to 2.0 or more; '
+        'load comes less often than its timeout allows: set x.load.timeout to 2.0 or more',
+    )
 
 
 @pytest.mark.parametrize(
@@ -169,14 +182,11 @@ def test_a_trouble_of_an_input_has_one_sentence_with_its_cure(core, changes, mes
 
 
 @pytest.mark.parametrize(
-    ('publishers', 'message'),
-    [
-        ({Source.SPEED: 1}, 'nothing has been judged yet'),
-        (None, 'the node is inactive, nothing is judged'),
-    ],
+    ('links', 'message'),
+    [(LINKS, 'nothing has been judged yet'), (None, 'the node is inactive, nothing is judged')],
 )
-def test_without_a_state_there_is_no_news(core, publishers, message):
-    made = diagnostics.statuses('n', 'x', None, Event(), core.surface(), publishers=publishers)
+def test_without_a_state_there_is_no_news(core, links, message):
+    made = diagnostics.statuses('n', 'x', None, Event(), core.surface(), links=links)
     assert [(status.level, status.message) for status in made[:2]] == [(STALE, message)] * 2
     assert made[2].level == OK
 
@@ -194,7 +204,7 @@ def test_values_carry_their_unit(core):
     assert values['Opposing load max [N]'] == '4000'
 
 
-def test_messages_hold_no_numbers(core):
+def test_messages_hold_no_measured_numbers(core):
     for events in ([LOAD, SPEED], [SPEED], [LOAD, sample(Source.SPEED, 1e3)]):
         for status in after(core, *events).values():
             assert not any(character.isdigit() for character in status.message)

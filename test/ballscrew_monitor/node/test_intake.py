@@ -2,21 +2,20 @@
 # SPDX-License-Identifier: Apache-2.0
 """All that waits is taken at once, in the order of arrival, and what was lost is counted."""
 
-import contextlib
 import threading
 import time
 import types
 
 from ballscrew_monitor.core.conversions import Scaling
-from ballscrew_monitor.core.inputs import InputSample, make_input, Source
-from ballscrew_monitor.core.loss import LossCounter
+from ballscrew_monitor.core.inputs import InputSample, make_input, OpenInput, Source
 from ballscrew_monitor.cycle.domain import free_domain
 from ballscrew_monitor.node import intake as intake_module
-from ballscrew_monitor.node.intake import Intake, ordered, PAUSE, QUIET, STAY, Topic
+from ballscrew_monitor.node.intake import Intake, ordered, PAUSE, QUIET, STAY
 import pytest
 import rclpy
 from rclpy.clock import Clock, ClockType
 from rclpy.executors import SingleThreadedExecutor
+from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
 
 DEADLINE = 60.0  # [s]
@@ -65,14 +64,21 @@ class Bench:
         self.executor = SingleThreadedExecutor(context=self.context)
         self.executor.add_node(self.node)
         inputs = (float_input(Source.LOAD, 'load'), float_input(Source.SPEED, 'speed'))
-        self.axis = types.SimpleNamespace(name='x', inputs=inputs, max_future=0)
+        topics = {one.source: one.topic for one in inputs}
+        self.axis = types.SimpleNamespace(
+            name='x', inputs=inputs, open_inputs=(), topics=topics, max_future=0
+        )
         self.taken = []
         self.intake = Intake(self.node, [self.axis], lambda axis, event: self.taken.append(event))
         self.publishers = {
             name: self.node.create_publisher(Float64, name, 300) for name in ('load', 'speed')
         }
-        self.until(lambda: self.intake.publishers('x') == {Source.LOAD: 1, Source.SPEED: 1})
+        self.until(lambda: self.matched() == {Source.LOAD: 1, Source.SPEED: 1})
         self.drain_events()
+
+    def matched(self):
+        """Return how many publishers each input is matched with."""
+        return {source: link.matched for source, link in self.intake.links(self.axis).items()}
 
     def until(self, condition):
         end = time.monotonic() + DEADLINE
@@ -142,7 +148,7 @@ def test_with_a_second_publisher_loss_is_not_known(bench):
     bench.until(lambda: bench.taken)
     assert bench.taken[-1].lost == 0
     second = bench.node.create_publisher(Float64, 'speed', 10)
-    bench.until(lambda: bench.intake.publishers('x')[Source.SPEED] == 2)
+    bench.until(lambda: bench.matched()[Source.SPEED] == 2)
     bench.drain_events()
     bench.publish('speed', 2)
     second.publish(Float64(data=3.0))
@@ -155,38 +161,13 @@ def test_a_second_publisher_is_noticed_before_the_executor_tells_of_it(bench):
     bench.until(lambda: bench.taken)
     second = bench.node.create_publisher(Float64, 'speed', 10)
     end = time.monotonic() + DEADLINE
-    while bench.intake.publishers('x')[Source.SPEED] < 2 and time.monotonic() < end:
+    while bench.matched()[Source.SPEED] < 2 and time.monotonic() < end:
         pass
     second.publish(Float64(data=2.0))
     bench.publish('speed', 3)
     while len(bench.taken) < 3 and time.monotonic() < end:
         bench.intake.drain()
     assert [event.lost for event in bench.taken] == [0, None, None]
-
-
-@pytest.mark.parametrize(('before', 'after'), [(2, 1), (1, 0), (0, 1), (1, 2)])
-def test_what_waits_while_the_publishers_change_has_no_number(before, after):
-    """The numbers of a publisher that left and of the one that stays show no loss."""
-    queue = []
-    handle = contextlib.nullcontext()
-    handle.take_message = lambda kind, raw: queue.pop(0) if queue else None
-    subscription = types.SimpleNamespace(
-        handle=handle, msg_type=Float64, raw=False, get_publisher_count=lambda: after
-    )
-    topic = Topic(readers=[], loss=LossCounter(), subscription=subscription)
-    topic.loss.match(before)
-
-    def losses(*numbers):
-        queue.extend(
-            (None, {'received_timestamp': 1, 'publication_sequence_number': number})
-            for number in numbers
-        )
-        return [topic.loss.take(arrival.number) for arrival in topic.waiting()]
-
-    assert losses() == []
-    assert topic.loss.publishers == before  # until there is a message to count
-    assert losses(3, 41) == [None, None]
-    assert losses(42, 44) == ([None, None] if after > 1 else [0, 1])
 
 
 def test_what_waits_is_taken_before_the_publishers_are_counted_anew(bench, monkeypatch):
@@ -216,7 +197,7 @@ def test_a_closed_intake_takes_nothing(bench):
     bench.intake.drain()
     bench.drain_events()
     assert bench.taken == []
-    assert bench.intake.publishers('x') == {}
+    assert bench.intake.topics == {}
 
 
 def test_what_is_waited_for_lives_until_the_wait_is_over(bench):
@@ -285,7 +266,7 @@ def test_a_message_that_comes_within_a_turn_is_taken_within_it(bench, monkeypatc
 
     bench.intake.close()
     bench.intake = Intake(bench.node, [bench.axis], take)
-    bench.until(lambda: bench.intake.publishers('x')[Source.SPEED] == 1)
+    bench.until(lambda: bench.matched()[Source.SPEED] == 1)
     bench.drain_events()
     bench.publish('speed', 1)
     Watch(monkeypatch, may_go_on=lambda: len(taken) != 1)
@@ -308,7 +289,7 @@ def test_messages_without_end_leave_the_others_their_turn(bench, monkeypatch):
 
     bench.intake.close()
     bench.intake = Intake(bench.node, [bench.axis], take)
-    bench.until(lambda: bench.intake.publishers('x')[Source.SPEED] == 1)
+    bench.until(lambda: bench.matched()[Source.SPEED] == 1)
     bench.drain_events()
     bench.publish('speed', 0)
     watch = Watch(monkeypatch, has_come)
@@ -338,3 +319,71 @@ def test_of_equal_stamps_the_speed_is_last_and_all_else_stays_in_order():
         (load, 1),
         (speed, 1),
     ]
+
+
+def open_bench(bench, *fields):
+    """Let the intake begin anew with open inputs on the topic `late`, of these fields."""
+    sources = (Source.SPEED, Source.TORQUE)
+    scaling = Scaling(factor=1.0, shift=0.0)
+    opened = tuple(
+        OpenInput(source=source, topic='late', field=field, scaling=scaling)
+        for source, field in zip(sources, fields, strict=False)
+    )
+    bench.intake.close()
+    bench.axis.inputs, bench.axis.open_inputs = (), opened
+    bench.axis.topics = {one.source: one.topic for one in opened}
+    bench.intake = Intake(bench.node, [bench.axis], lambda axis, event: bench.taken.append(event))
+
+
+def discovered(bench, condition):
+    bench.until(lambda: bench.intake.discover() or condition())
+
+
+def test_an_open_input_takes_the_type_of_its_publisher(bench):
+    open_bench(bench, 'data', 'data')
+    link = bench.intake.links(bench.axis)[Source.SPEED]
+    assert (link.topic, link.type_name, link.publishers) == ('/late', '', ())
+    bench.intake.discover()
+    assert bench.intake.topics == {}
+    late = bench.node.create_publisher(Float64, 'late', 10)
+    discovered(bench, lambda: bench.intake.topics and set(bench.matched().values()) == {1})
+    assert list(bench.intake.topics) == ['/late']
+    late.publish(Float64(data=5.0))
+    bench.until(lambda: len(bench.taken) == 2)
+    assert {(event.source, event.value) for event in bench.taken} == {
+        (Source.SPEED, 5.0),
+        (Source.TORQUE, 5.0),
+    }
+
+
+def test_an_open_input_whose_field_is_not_in_the_type_says_so_and_waits_on(bench):
+    open_bench(bench, 'velocity[x]')
+    late = bench.node.create_publisher(Float64, 'late', 10)
+    problem = "field 'velocity[x]': Float64 has no field 'velocity', it has data"
+    discovered(bench, lambda: bench.intake.links(bench.axis)[Source.SPEED].problem == problem)
+    bench.node.destroy_publisher(late)
+    joints = bench.node.create_publisher(JointState, 'late', 10)
+    discovered(bench, lambda: bench.matched() == {Source.SPEED: 1})
+    joints.publish(JointState(name=['x'], velocity=[3.0]))
+    bench.until(lambda: bench.taken)
+    assert bench.taken[0].value == 3.0
+
+
+def test_of_two_types_on_a_topic_an_open_input_takes_none(bench):
+    open_bench(bench, 'data')
+    bench.node.create_publisher(Float64, 'late', 10)
+    context = rclpy.Context()  # one process may not give a topic two types
+    rclpy.init(context=context, domain_id=bench.context.get_domain_id())
+    other = rclpy.create_node('other', context=context, enable_rosout=False)
+    other.create_publisher(JointState, 'late', 10)
+
+    def types():
+        link = bench.intake.links(bench.axis)[Source.SPEED]
+        return {publisher.type_name for publisher in link.publishers}
+
+    bench.until(lambda: len(types()) == 2)
+    bench.intake.discover()
+    assert bench.intake.topics == {}
+    other.destroy_node()
+    rclpy.shutdown(context=context)
+    discovered(bench, lambda: bench.matched() == {Source.SPEED: 1})

@@ -49,6 +49,7 @@ def test_every_parameter_is_described(name):
         ('x.speed.timeout', 0.0, 'allowed is 0.001 to 3600 s'),
         ('x.speed.scale', 0.0, 'allowed is -1e.12 to 1e.12, not 0'),
         ('x.speed.unit', 'rpm', "is 'rpm', allowed is one of rad/s, rev/min"),
+        ('x.speed.field', 'velocity[-1]', 'x.speed.field: field .velocity.-1..: the index -1'),
         ('x.handedness', 'Right', 'allowed is one of right, left'),
         ('autostart', 1, 'it must be true or false'),
         ('axes', 'x', 'it must be a list of texts'),

@@ -5,7 +5,7 @@
 from pathlib import Path
 
 from ballscrew_monitor.node.parameters import read_file
-from ballscrew_monitor.node.topics import absolute, input_topics, output
+from ballscrew_monitor.node.topics import absolute, input_topics, output, with_types
 
 CONFIG = Path(__file__).resolve().parents[3] / 'config' / 'nominal_cycle.yaml'
 
@@ -16,6 +16,21 @@ def test_the_inputs_are_those_of_the_parameters():
         '/axial_load': 'geometry_msgs/msg/WrenchStamped',
         '/oil_temperature': 'sensor_msgs/msg/Temperature',
     }
+
+
+def test_empty_types_are_filled_in_by_topic():
+    values = {
+        'axes': ['x'],
+        'x.speed.topic': 'speed',
+        'x.speed.type': '',
+        'x.load.topic': '/load',
+        'x.load.type': 'a/msg/B',
+        'x.torque.topic': '',
+        'x.torque.type': '',
+    }
+    filled = with_types(values, {'/speed': 'c/msg/D', '/load': 'e/msg/F'})
+    assert filled == values | {'x.speed.type': 'c/msg/D'}
+    assert with_types(values, {})['x.speed.type'] == ''
 
 
 def test_names_are_full():

@@ -6,7 +6,7 @@ import itertools
 from pathlib import Path
 
 from ballscrew_monitor.core.fields import stamp_of
-from ballscrew_monitor.core.inputs import InputState
+from ballscrew_monitor.core.health import InputState
 from ballscrew_monitor.node import parameters
 from ballscrew_monitor.node.axis import build_axis
 from ballscrew_monitor.recordings.bag import Bag
@@ -169,6 +169,14 @@ def test_messages_of_other_joints_are_not_counted(tmp_path):
         (BEGIN + 1, speed_message(BEGIN + 1, 1.0, joint='y_axis')),
     )
     assert speed_messages(bag, [build_axis('x', values)]) == {'x': 1}
+
+
+def test_an_empty_type_is_that_of_the_bag(tmp_path):
+    messages = [(BEGIN, load_message(BEGIN, 1.0)), (BEGIN + 1, speed_message(BEGIN + 1, 1.0))]
+    bag = write(tmp_path, *messages)
+    assert judged(bag, **{'x.speed.type': '', 'x.load.type': ''}) == judged(bag)
+    with pytest.raises(InputError, match='topic /nope .any type. is missing'):
+        judged(bag, **{'x.speed.type': '', 'x.speed.topic': 'nope'})
 
 
 def test_a_bag_that_says_nothing_of_an_axis_is_refused(tmp_path):

@@ -1,0 +1,102 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""How an input is connected, as the ROS graph shows it, and why nothing comes over the link."""
+
+import dataclasses
+
+BEST_EFFORT, RELIABLE = 'best_effort', 'reliable'
+VOLATILE, TRANSIENT_LOCAL = 'volatile', 'transient_local'
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Publisher:
+    """A publisher on a topic, with its QoS in the words of a `qos_overrides` parameter."""
+
+    type_name: str
+    reliability: str = BEST_EFFORT
+    durability: str = VOLATILE
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Link:
+    """
+    How an input is connected: what it asks for, and which publishers there are.
+
+    An empty `type_name` asks for that of the publisher; `problem` is why that does not serve.
+    While publishers are `matched` the others need not be known.
+
+    """
+
+    topic: str
+    type_name: str
+    matched: int = 0
+    publishers: tuple[Publisher, ...] = ()
+    reliability: str = BEST_EFFORT
+    durability: str = VOLATILE
+    problem: str = ''
+
+
+def link_reason(link: Link, parameter: str, *, seen: bool = False) -> str:
+    """
+    Return why nothing comes over the link of the input `parameter` and what mends it.
+
+    Empty when the link is well. An input that was `seen` has lost its publisher, any other has
+    none yet.
+
+    """
+    if link.problem:
+        return f'{link.problem}: set {parameter}.field, or {parameter}.type'
+    if link.matched:
+        return ''
+    if not link.publishers:
+        return f'the publisher on {link.topic} is gone' if seen else _nobody(link, parameter)
+    return _type_reason(link, parameter) or _qos_reason(link)
+
+
+def _nobody(link: Link, parameter: str) -> str:
+    return f'no publisher yet on {link.topic}: start it, or set {parameter}.topic'
+
+
+def types_of(link: Link) -> list[str]:
+    """Return the message types that are published on the topic."""
+    return sorted({publisher.type_name for publisher in link.publishers})
+
+
+def _type_reason(link: Link, parameter: str) -> str:
+    """Return why no publisher has the type that is asked for; empty if one has."""
+    types = types_of(link)
+    if link.type_name in types or (not link.type_name and len(types) == 1):
+        return ''
+    carried = f'{link.topic} carries {" and ".join(types)}'
+    if not link.type_name:
+        return f'{carried}: set {parameter}.type to one of them'
+    return f'{carried}, expected is {link.type_name}: set {parameter}.type to {types[0]}'
+
+
+def _qos_reason(link: Link) -> str:
+    """Return what no publisher of the type offers of the QoS that is asked for."""
+    unfit = [
+        _unfit(link, publisher)
+        for publisher in link.publishers
+        if publisher.type_name == link.type_name
+    ]
+    if not unfit or not all(unfit):
+        return ''
+    policy, asked, offered = unfit[0][0]
+    return (
+        f'QoS does not fit on {link.topic}, offered is {offered} and asked for is {asked}: '
+        f'set qos_overrides.{link.topic}.subscription.{policy} to {offered}'
+    )
+
+
+def _unfit(link: Link, publisher: Publisher) -> list[tuple[str, str, str]]:
+    """Return each policy in which the link asks for more than is offered, and both values."""
+    pairs = (
+        ('reliability', link.reliability, publisher.reliability, (RELIABLE, BEST_EFFORT)),
+        ('durability', link.durability, publisher.durability, (TRANSIENT_LOCAL, VOLATILE)),
+    )
+    return [
+        (policy, asked, offered)
+        for policy, asked, offered, unfit in pairs
+        if (asked, offered) == unfit
+    ]

@@ -1,0 +1,88 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""QoS of the inputs, what `qos_overrides` may change of it, and what publishers offer."""
+
+from collections.abc import Collection, Mapping
+from typing import Any
+
+from ballscrew_monitor.core.links import Publisher
+from rclpy.node import Node
+from rclpy.qos import (
+    QoSDurabilityPolicy,
+    QoSHistoryPolicy,
+    QoSPolicyKind,
+    QoSProfile,
+    QoSReliabilityPolicy,
+)
+from rclpy.qos_overriding_options import QoSOverridingOptions
+from surrogate.files import InputError
+
+DEPTH, MOST_DEPTH = 200, 100_000
+POLICIES = {
+    'history': ('keep_last', 'keep_all'),
+    'depth': (),
+    'reliability': ('best_effort', 'reliable'),
+    'durability': ('volatile', 'transient_local'),
+}
+"""What may be overridden, and the values of it that are words."""
+OF_ROS = frozenset({'/clock', '/parameter_events', '/rosout'})
+PREFIX = 'qos_overrides'
+
+
+def input_qos() -> QoSProfile:
+    """Return the QoS of an input, which suits every publisher; rclpy writes overrides into it."""
+    return QoSProfile(
+        history=QoSHistoryPolicy.KEEP_LAST,
+        depth=DEPTH,
+        reliability=QoSReliabilityPolicy.BEST_EFFORT,
+        durability=QoSDurabilityPolicy.VOLATILE,
+    )
+
+
+def overriding_options() -> QoSOverridingOptions:
+    """Return what rclpy declares as parameters of a subscription."""
+    return QoSOverridingOptions([QoSPolicyKind[name.upper()] for name in POLICIES])
+
+
+def check_overrides(given: Mapping[str, Any], topics: Collection[str]) -> None:
+    """Raise InputError for an override that is of no input on the full names `topics`, or bad."""
+    for name, value in given.items():
+        prefix, _, rest = name.partition('.')
+        topic, _, rest = rest.partition('.')
+        if prefix != PREFIX or topic in OF_ROS:
+            continue
+        entity, _, policy = rest.partition('.')
+        if topic not in topics or entity != 'subscription' or policy not in POLICIES:
+            raise InputError(
+                f'parameter {name} is of no input, allowed is {PREFIX}.TOPIC.subscription.POLICY '
+                f'with TOPIC of {", ".join(sorted(topics))} and POLICY of {", ".join(POLICIES)}'
+            )
+        _check_value(name, value, POLICIES[policy])
+
+
+def _check_value(name: str, value: Any, words: tuple[str, ...]) -> None:
+    if words:
+        good, allowed = value in words, f'one of {", ".join(words)}'
+    else:
+        good = type(value) is int and 1 <= value <= MOST_DEPTH
+        allowed = f'a whole number, 1 to {MOST_DEPTH}'
+    if not good:
+        raise InputError(f'parameter {name} is {value!r}, allowed is {allowed}')
+
+
+def overridden(given: Mapping[str, Any], topic: str, policy: str) -> str:
+    """Return the word that is asked for in a `policy` of the input on `topic`."""
+    default = POLICIES[policy][0]
+    return str(given.get(f'{PREFIX}.{topic}.subscription.{policy}', default))
+
+
+def publishers_on(node: Node, topic: str) -> tuple[Publisher, ...]:
+    """Return the publishers on the full name `topic` that the ROS graph shows."""
+    return tuple(
+        Publisher(
+            type_name=info.topic_type,
+            reliability=info.qos_profile.reliability.name.lower(),
+            durability=info.qos_profile.durability.name.lower(),
+        )
+        for info in node.get_publishers_info_by_topic(topic)
+    )

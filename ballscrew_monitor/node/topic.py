@@ -1,0 +1,128 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""A topic that is read: its subscription, what waits in it, and what was lost of it."""
+
+from collections.abc import Mapping
+import dataclasses
+import functools
+from typing import Any
+
+from ballscrew_monitor.core.inputs import Input
+from ballscrew_monitor.core.links import Link
+from ballscrew_monitor.core.loss import LossCounter, NO_NUMBER
+from ballscrew_monitor.node.axis import Axis
+from ballscrew_monitor.node.qos import DEPTH, input_qos, overriding_options, publishers_on
+from rclpy.callback_groups import CallbackGroup
+from rclpy.event_handler import SubscriptionEventCallbacks
+from rclpy.node import Node
+from rclpy.subscription import Subscription
+
+MOST = 2 * DEPTH  # messages of one topic that are taken before anything else has a turn
+
+Reader = tuple[Axis, Input]
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Arrival:
+    """A message, its arrival on the clock of this machine [ns], and the topic that it is of."""
+
+    received: int
+    message: Any
+    number: int
+    topic: 'Topic'
+
+
+@dataclasses.dataclass(kw_only=True, slots=True)
+class Topic:
+    """A subscription, who reads its messages, and what was lost of them."""
+
+    readers: list[Reader]
+    loss: LossCounter
+    subscription: Subscription
+
+    def arrival(self, message: Any, info: Mapping[str, Any]) -> Arrival:
+        """Return a message with what the middleware says of it."""
+        return Arrival(
+            info['received_timestamp'],
+            message,
+            info['publication_sequence_number'] or NO_NUMBER,
+            self,
+        )
+
+    def waiting(self) -> list[Arrival]:
+        """
+        Return what waits in the queue of the subscription, which is then empty.
+
+        When the publishers have changed it may be of those before and of those now, whose numbers
+        do not go together.
+
+        """
+        found: list[Arrival] = []
+        subscription = self.subscription
+        with subscription.handle:
+            while len(found) < MOST:
+                taken = subscription.handle.take_message(subscription.msg_type, subscription.raw)
+                if taken is None:
+                    break
+                found.append(self.arrival(*taken))
+        if found:  # the event that tells of it may not have had its turn
+            count = subscription.get_publisher_count()
+            if count != self.loss.publishers:
+                self.loss.match(count)
+                return [dataclasses.replace(arrival, number=NO_NUMBER) for arrival in found]
+        return found
+
+
+class Apart(CallbackGroup):
+    """Keeps the executor from waiting for its members one by one."""
+
+    def can_execute(self, entity: Any) -> bool:
+        """Return False: what happens to a member is seen by the intake."""
+        return False
+
+
+def open_topic(
+    node: Node, name: str, kind: Any, group: CallbackGroup, *, overridable: bool = True
+) -> Topic:
+    """Subscribe to messages of a `kind`; where `overridable`, parameters may change the QoS."""
+    loss = LossCounter()
+    subscription = node.create_subscription(
+        kind,
+        name,
+        _never_called,
+        input_qos(),
+        callback_group=group,
+        # One of another type would be told of by some middlewares only: the graph tells of it.
+        event_callbacks=SubscriptionEventCallbacks(
+            matched=functools.partial(_count, loss), use_default_callbacks=False
+        ),
+        qos_overriding_options=overriding_options() if overridable else None,
+    )
+    return Topic(readers=[], loss=loss, subscription=subscription)
+
+
+def link_of(node: Node, name: str, topic: Topic | None, *, problem: str = '') -> Link:
+    """Return how the topic of a full name is connected; None: its type is not known yet."""
+    if topic is None:
+        return Link(
+            topic=name, type_name='', publishers=publishers_on(node, name), problem=problem
+        )
+    matched = topic.subscription.get_publisher_count()
+    qos = topic.subscription.qos_profile
+    return Link(
+        topic=name,
+        type_name=topic.readers[0][1].type_name,
+        matched=matched,
+        publishers=() if matched else publishers_on(node, name),
+        reliability=qos.reliability.name.lower(),
+        durability=qos.durability.name.lower(),
+    )
+
+
+def _count(loss: LossCounter, event: Any) -> None:
+    """Note how many publishers a topic has now."""
+    loss.match(event.current_count)
+
+
+def _never_called(message: Any) -> None:
+    """Stand where rclpy wants a callback; the intake takes the messages itself."""

@@ -1,0 +1,208 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Parameter files that are wrong, against a machine over the real middleware."""
+
+import json
+import threading
+
+from ballscrew_monitor import cli
+from ballscrew_monitor.clients.doctor import doctor
+from ballscrew_monitor.cycle.domain import free_domain
+from geometry_msgs.msg import WrenchStamped
+import pytest
+import rclpy
+from rclpy.qos import QoSProfile, QoSReliabilityPolicy
+from sensor_msgs.msg import JointState, Temperature
+from std_msgs.msg import Float64
+from surrogate.files import InputError
+
+SECONDS = 1.5  # [s] of listening, in which the slow topic speaks twice
+AHEAD = 3600  # [s]
+EVERY = 70  # turns of 10 ms between two messages of the slow topic
+BEST_EFFORT = QoSProfile(depth=10, reliability=QoSReliabilityPolicy.BEST_EFFORT)
+GOOD = {
+    'surface': "'closed_form'",
+    'speed': '{timeout: 30.0}',
+    'load': '{timeout: 30.0}',
+    'temperature': "{topic: 'oil_temperature'}",
+    'max_lag': '30.0',
+}
+WRONG = {
+    'topic': (
+        {'load': "{topic: 'axial_laod', timeout: 30.0}"},
+        'x.load: no publisher yet on /axial_laod: start it, or set x.load.topic to /axial_load',
+    ),
+    'type': (
+        {'speed': "{type: 'std_msgs/msg/Float64', field: 'data', timeout: 30.0}"},
+        'x.speed: /joint_states carries sensor_msgs/msg/JointState, expected is '
+        'std_msgs/msg/Float64: set x.speed.type to sensor_msgs/msg/JointState',
+    ),
+    'field': (
+        {'load': "{field: 'wrench.force', timeout: 30.0}"},
+        "field 'wrench.force' of WrenchStamped is Vector3, not a number: set x.load.field, "
+        'numbers are wrench.force.x, wrench.force.y',
+    ),
+    'joint': (
+        {'speed': "{field: 'velocity[xaxis]', timeout: 30.0}"},
+        'the messages name arm, x_axis and no joint xaxis, set x.speed.field to '
+        'velocity[x_axis] or another of them',
+    ),
+    'speed_unit': (
+        {'speed': "{topic: 'spindle', type: '', field: 'data', timeout: 30.0}"},
+        'x.speed: 1500 rad/s is far outside the surface',
+    ),
+    'load_unit': ({'load': "{unit: 'kN', timeout: 30.0}"}, 'set x.load.unit to N'),
+    'temperature_unit': (
+        {'temperature': "{topic: 'oil_temperature', unit: 'K'}"},
+        'set x.temperature.unit to degC',
+    ),
+    'timeout': (
+        {'load': "{topic: 'slow_load', timeout: 0.1}"},
+        'x.load: it comes less often than its timeout allows: set x.load.timeout to ',
+    ),
+    'qos': (
+        {},
+        'QoS does not fit on /joint_states, offered is best_effort and asked for is reliable: '
+        'set qos_overrides./joint_states.subscription.reliability to best_effort',
+    ),
+    'position_only': (
+        {'speed': "{topic: 'positions', timeout: 30.0}"},
+        'x.speed: speed is not usable: velocity is empty in its messages: let the source fill it',
+    ),
+    'clock_ahead': (
+        {'load': "{topic: 'future_load', timeout: 30.0}"},
+        'x.load: load is not usable: its stamps lie ahead of the clock, set the clocks alike',
+    ),
+    'simulated': ({}, 'use_sim_time is true and nobody publishes /clock'),
+    'override': ({}, 'parameter qos_overrides./joint.subscription.depth is of no input'),
+    'surface': ({'surface': "'/no/such.npz'"}, 'axis x: '),
+}
+EXTRA = {
+    'qos': "    qos_overrides: {/joint_states: {subscription: {reliability: 'reliable'}}}\n",
+    'simulated': '    use_sim_time: true\n',
+    'override': '    qos_overrides: {/joint: {subscription: {depth: 5}}}\n',
+}
+
+
+class Machine:
+    """Topics of a machine, some of them as they should not be, until it is stopped."""
+
+    def __init__(self, domain):
+        self.context = rclpy.Context()
+        rclpy.init(context=self.context, domain_id=domain)
+        self.node = rclpy.create_node('machine', context=self.context, enable_rosout=False)
+        self.stopped = threading.Event()
+        make = self.node.create_publisher
+        self.joints = make(JointState, 'joint_states', BEST_EFFORT)
+        self.positions = make(JointState, 'positions', 10)
+        self.spindle = make(Float64, 'spindle', 10)
+        self.oil = make(Temperature, 'oil_temperature', 10)
+        self.loads = {
+            name: make(WrenchStamped, f'{name}_load', 10) for name in ('axial', 'slow', 'future')
+        }
+        self.thread = threading.Thread(target=self.run)
+        self.thread.start()
+
+    def run(self):
+        turn = 0
+        while not self.stopped.wait(0.01):
+            self.joints.publish(
+                self.stamped(JointState(name=['arm', 'x_axis'], velocity=[0.0, 100.0]))
+            )
+            self.positions.publish(self.stamped(JointState(name=['x_axis'], position=[1.0])))
+            self.spindle.publish(Float64(data=1500.0))
+            self.oil.publish(self.stamped(Temperature(temperature=40.0)))
+            self.loads['axial'].publish(self.load())
+            self.loads['future'].publish(self.load(AHEAD))
+            if turn % EVERY == 0:
+                self.loads['slow'].publish(self.load())
+            turn += 1
+
+    def stamped(self, message, ahead=0):
+        message.header.stamp = self.node.get_clock().now().to_msg()
+        message.header.stamp.sec += ahead
+        return message
+
+    def load(self, ahead=0):
+        message = self.stamped(WrenchStamped(), ahead)
+        message.wrench.force.x = -1000.0
+        return message
+
+    def close(self):
+        self.stopped.set()
+        self.thread.join()
+        self.node.destroy_node()
+        rclpy.shutdown(context=self.context)
+
+
+@pytest.fixture(scope='module', name='domain')
+def make_domain():
+    with free_domain() as domain:
+        machine = Machine(domain)
+        yield domain
+        machine.close()
+
+
+def write(folder, changes, extra=''):
+    """Write a parameter file whose axis x differs from a good one."""
+    lines = [f'      {name}: {value}\n' for name, value in (GOOD | changes).items()]
+    path = folder / 'params.yaml'
+    text = '/**/ballscrew_monitor:\n  ros__parameters:\n' + extra + '    x:\n' + ''.join(lines)
+    path.write_text(text, encoding='utf-8')
+    return path
+
+
+def test_a_good_file_has_no_finding(domain, tmp_path, monkeypatch, capsys):
+    monkeypatch.setenv('ROS_DOMAIN_ID', str(domain))
+    assert doctor(write(tmp_path, {}), seconds=SECONDS) == 0
+    out = capsys.readouterr().out
+    assert out.startswith(f'ROS domain {domain}, discovery range LOCALHOST: nodes 1, ')
+    assert 'x.load: /axial_load (geometry_msgs/msg/WrenchStamped): ' in out
+    assert out.endswith(', 40 to 40 degC\nfindings: none\n')
+
+
+@pytest.mark.parametrize('name', WRONG)
+def test_a_wrong_file_has_its_sentence(name, domain, tmp_path, monkeypatch, capsys):
+    changes, sentence = WRONG[name]
+    monkeypatch.setenv('ROS_DOMAIN_ID', str(domain))
+    path = write(tmp_path, changes, EXTRA.get(name, ''))
+    assert cli.main(['doctor', '--params', str(path), '--seconds', str(SECONDS), '--json']) == 1
+    found = json.loads(capsys.readouterr().out)['findings']
+    assert [text for text in found if sentence in text]
+    assert len(found) == 1
+
+
+@pytest.mark.parametrize(
+    ('text', 'sentence'),
+    [
+        ('x: {speed: {field: "velocity[-1]"}}', 'the index -1 has a sign'),
+        ('x: {speed: {timeout: 1}}', 'is 1, it must be a number with a decimal point'),
+        ('x: {sped: {timeout: 1.0}}', 'parameter x.sped.timeout is unknown'),
+        ('x: {speed: {topic: "a b"}}', "parameter x.speed.topic is '/a b', no topic name"),
+    ],
+)
+def test_a_file_that_the_node_refuses_is_bad_input(text, sentence, domain, tmp_path, monkeypatch):
+    monkeypatch.setenv('ROS_DOMAIN_ID', str(domain))
+    path = tmp_path / 'params.yaml'
+    path.write_text(f'/**:\n  ros__parameters:\n    {text}\n', encoding='utf-8')
+    with pytest.raises(InputError, match='.*') as caught:
+        doctor(path, seconds=0.1)
+    assert sentence in str(caught.value)
+
+
+def test_a_file_for_another_node_is_bad_input(tmp_path):
+    path = tmp_path / 'params.yaml'
+    path.write_text('monitor:\n  ros__parameters:\n    axes: [x]\n', encoding='utf-8')
+    with pytest.raises(InputError, match='says nothing to the node, begin it with'):
+        doctor(path, seconds=1.0)
+
+
+def test_a_time_that_is_none_is_bad_input(tmp_path):
+    with pytest.raises(InputError, match='--seconds is 0 s, allowed is 0.1 to 3600 s'):
+        doctor(write(tmp_path, {}), seconds=0.0)
+
+
+def test_a_domain_that_is_no_number_is_bad_input(tmp_path, monkeypatch):
+    monkeypatch.setenv('ROS_DOMAIN_ID', 'here')
+    with pytest.raises(InputError, match='ROS cannot start: .*ROS_DOMAIN_ID'):
+        doctor(write(tmp_path, {}), seconds=1.0)

@@ -1,0 +1,191 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Inputs that do not work, over the real middleware: diagnostics and log name what mends them."""
+
+import math
+
+from ballscrew_monitor.node import diagnostics
+from diagnostic_msgs.msg import DiagnosticArray
+from geometry_msgs.msg import WrenchStamped
+from rcl_interfaces.srv import GetParameters
+from rclpy.qos import QoSProfile, QoSReliabilityPolicy
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Float64
+
+LONG = {'x__speed__timeout': 60.0, 'x__load__timeout': 60.0}
+SECOND = 10**9  # [ns]
+PERIOD = 4 * SECOND // 10  # [ns]
+NO_LOAD = 'load was never received: no publisher yet on /axial_load: start it, or set x.load.topic'
+NOT_A_NUMBER = (
+    'speed is not usable: it is not a finite number, mend its source or read another field'
+)
+JOINTS = 'sensor_msgs/msg/JointState'
+
+
+class Source:
+    """One publisher, and what the node says of its inputs."""
+
+    def __init__(self, node, kind=JointState, topic='joint_states', qos=10):
+        self.node = node
+        self.told = node.listen(DiagnosticArray, '/diagnostics')
+        self.publisher = node.node.create_publisher(kind, topic, qos)
+
+    def joints(self, name='x_axis', *velocity, ahead=0):
+        """Return a message of now, or of `ahead` [ns] from now."""
+        message = JointState(name=[name], position=[0.0], velocity=list(velocity))
+        stamp = message.header.stamp
+        stamp.sec, stamp.nanosec = divmod(self.node.now() + ahead, SECOND)
+        return message
+
+    def says(self):
+        """Return the faults that the node names now."""
+        found = [
+            status.message
+            for array in self.told
+            for status in array.status
+            if status.name == 'ballscrew_monitor: x: Inputs'
+        ]
+        return found[-1].split('; ') if found else []
+
+    def until_told(self, text, make=lambda: None):
+        """Publish what `make` gives until the node says a text, which then is in its log too."""
+
+        def told():
+            message = make()
+            if message is not None:
+                self.publisher.publish(message)
+            return text in self.says() and text in self.node.output.read_text()
+
+        self.node.until(told, text)
+
+
+def test_joints_position_only_numbers_and_stamps(node):
+    node.start(**LONG)
+    source = Source(node)
+    source.until_told(
+        'speed has no sample: the messages name arm, x_joint and no joint x_axis, '
+        'set x.speed.field to velocity[x_joint] or another of them',
+        lambda: JointState(name=['arm', 'x_joint'], velocity=[1.0, 2.0]),
+    )
+    source.until_told(
+        'speed is not usable: velocity is empty in its messages: let the source fill it, '
+        'or read another field',
+        lambda: source.joints('x_axis'),
+    )
+    source.until_told(NOT_A_NUMBER, lambda: source.joints('x_axis', math.nan))
+    source.until_told(
+        'speed is not usable: its stamps lie ahead of the clock, set the clocks alike or raise '
+        'max_future',
+        lambda: source.joints('x_axis', 1.0, ahead=3600 * SECOND),
+    )
+    assert NO_LOAD in source.says()
+    node.until(
+        lambda: (
+            source.publisher.publish(source.joints('x_axis', 100.0)) or source.says() == [NO_LOAD]
+        ),
+        'the speed to be well',
+    )
+
+
+def test_no_publisher_another_type_and_a_publisher_that_is_gone(node):
+    node.start(x__load__timeout=1.0)
+    source = Source(node, kind=Float64)
+    source.until_told(
+        'speed was never received: /joint_states carries std_msgs/msg/Float64, expected is '
+        f'{JOINTS}: set x.speed.type to std_msgs/msg/Float64'
+    )
+    source.until_told(NO_LOAD)
+    load = Source(node, kind=WrenchStamped, topic='axial_load')
+    load.until_told('load was never received: the publisher on /axial_load has sent nothing yet')
+    node.until(
+        lambda: (
+            load.publisher.publish(WrenchStamped())
+            or not any(text.startswith('load') for text in load.says())
+        ),
+        'the load to arrive',
+    )
+    node.node.destroy_publisher(load.publisher)
+    source.until_told('load is stale: the publisher on /axial_load is gone')
+
+
+def test_a_timeout_shorter_than_the_period_is_told_with_one_that_would_do(node):
+    node.start(x__speed__timeout=0.05, x__max_future=3600.0)
+    source = Source(node)
+    begin, sent = node.now(), []
+
+    def publish():
+        due = begin + len(sent) * PERIOD
+        if node.now() < due:
+            return None
+        sent.append(due)
+        message = JointState(name=['x_axis'], velocity=[100.0])
+        message.header.stamp.sec, message.header.stamp.nanosec = divmod(due, SECOND)
+        return message
+
+    cure = 'set x.speed.timeout to 1.0 or more'
+
+    def told():
+        message = publish()
+        if message is not None:
+            source.publisher.publish(message)
+        return any(cure in text for text in source.says())
+
+    node.until(told, cure)
+
+
+def test_qos_that_does_not_fit_is_told_and_overrides_are_parameters(node):
+    name = 'qos_overrides./joint_states.subscription'
+    node.start('-p', f'{name}.reliability:=reliable', '-p', f'{name}.depth:=7')
+    qos = QoSProfile(depth=10, reliability=QoSReliabilityPolicy.BEST_EFFORT)
+    source = Source(node, qos=qos)
+    source.until_told(
+        'speed was never received: QoS does not fit on /joint_states, offered is best_effort and '
+        f'asked for is reliable: set {name}.reliability to best_effort'
+    )
+    names = [f'{name}.{policy}' for policy in ('reliability', 'depth', 'history', 'durability')]
+    values = node.call(GetParameters, 'get_parameters', names=names).values
+    assert [value.string_value or value.integer_value for value in values] == [
+        'reliable',
+        7,
+        'keep_last',
+        'volatile',
+    ]
+    (info,) = node.node.get_subscriptions_info_by_topic('/joint_states')
+    assert info.qos_profile.reliability == QoSReliabilityPolicy.RELIABLE
+
+
+def test_an_empty_type_is_that_of_the_publisher_that_comes(node):
+    node.start('-p', "x.speed.type:=''", x__speed__field='data')
+    told = Source(node, kind=WrenchStamped, topic='axial_load')
+    told.until_told(
+        'speed was never received: no publisher yet on /joint_states: start it, or set '
+        'x.speed.topic'
+    )
+    states, source = node.states(), Source(node, kind=Float64)
+
+    def judged():
+        told.publisher.publish(WrenchStamped())
+        source.publisher.publish(Float64(data=100.0))
+        return states and states[-1].judged
+
+    node.until(judged, 'a judged sample')
+    assert states[-1].point.speed == 100.0
+
+
+def test_a_negative_index_ends_the_start_in_one_sentence(node):
+    node.start('-p', 'x.speed.field:=velocity[-1]')
+    assert node.process.wait(60.0) == 2
+    assert node.output.read_text() == (
+        "ballscrew_monitor: parameter x.speed.field: field 'velocity[-1]': the index -1 has a "
+        'sign, allowed is 0 or more, or a joint\n'
+    )
+
+
+def test_an_override_of_no_input_is_not_configured(node):
+    node.start('-p', 'qos_overrides./joint_state.subscription.depth:=7')
+    told = node.listen(DiagnosticArray, '/diagnostics')
+    said = node.until(lambda: told and told[-1].status[0], 'the diagnostics')
+    assert said.level == diagnostics.ERROR
+    assert said.message.startswith(
+        'not configured: parameter qos_overrides./joint_state.subscription.depth is of no input, '
+    )

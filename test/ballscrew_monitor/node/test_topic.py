@@ -1,0 +1,36 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""A topic: what waits in its queue while publishers come and go."""
+
+import contextlib
+import types
+
+from ballscrew_monitor.core.loss import LossCounter
+from ballscrew_monitor.node.topic import Topic
+import pytest
+from std_msgs.msg import Float64
+
+
+@pytest.mark.parametrize(('before', 'after'), [(2, 1), (1, 0), (0, 1), (1, 2)])
+def test_what_waits_while_the_publishers_change_has_no_number(before, after):
+    """The numbers of a publisher that left and of the one that stays show no loss."""
+    queue = []
+    handle = contextlib.nullcontext()
+    handle.take_message = lambda kind, raw: queue.pop(0) if queue else None
+    subscription = types.SimpleNamespace(
+        handle=handle, msg_type=Float64, raw=False, get_publisher_count=lambda: after
+    )
+    topic = Topic(readers=[], loss=LossCounter(), subscription=subscription)
+    topic.loss.match(before)
+
+    def losses(*numbers):
+        queue.extend(
+            (None, {'received_timestamp': 1, 'publication_sequence_number': number})
+            for number in numbers
+        )
+        return [topic.loss.take(arrival.number) for arrival in topic.waiting()]
+
+    assert losses() == []
+    assert topic.loss.publishers == before  # until there is a message to count
+    assert losses(3, 41) == [None, None]
+    assert losses(42, 44) == ([None, None] if after > 1 else [0, 1])
