@@ -261,7 +261,7 @@ def legend_entries(limits: LimitsInForce, mean: float, *, others: bool, banded: 
                 color=PURPLE,
                 linewidth=1.2,
                 linestyle='dashed',
-                label='the same, coldest and warmest oil',
+                label='RCS limit, coldest and warmest oil',
             ),
         )
     if banded:
@@ -272,7 +272,7 @@ def legend_entries(limits: LimitsInForce, mean: float, *, others: bool, banded: 
                 color=PURPLE,
                 linewidth=0.9,
                 linestyle='dashdot',
-                label='the same, thinnest and thickest boundary film',
+                label='RCS limit, thinnest and thickest boundary film',
             )
         )
     entries.append(

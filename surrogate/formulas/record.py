@@ -25,14 +25,9 @@ from surrogate.units import RPM, ZERO_CELSIUS
 CONSTANT_FRICTION = 0.005
 """Effective friction coefficient of the constant-friction comparator [-]."""
 FORMULAS = ('central_film_hamrock_dowson_1977', rolling_force_biboulet_houpert_2010.__name__)
-SPREAD_ROWS = (
-    ('efficiency', 'efficiency', 1.0, ''),
-    ('friction torque', 'friction_torque_Nm', 1.0, 'N m'),
-    ('RCS', 'rcs', 100.0, '%'),
-    ('friction coefficient', 'friction_coefficient', 1.0, ''),
+STATUS = (
+    'closed form: published formulas, asperity contact a fit moved to the onset of the full tier'
 )
-"""Label, key, factor and unit of what a page says about the spread over draws."""
-STATUS = 'closed form: published formulas, an estimate that overstates asperity contact'
 
 
 def closed_form_record(
@@ -182,18 +177,9 @@ def _all_groups(contacts: tuple[closed_form.ContactResult, ...]) -> Groups:
     )
 
 
-def _spread_lines(ensemble: Mapping[str, Any] | None) -> list[str]:
-    """Return what draws of the roughness leave uncertain, as lines of a page."""
-    if ensemble is None:
-        return []
-    rows = [
-        f'  {label:20} {factor * part["mean"]:9.4g} +- {factor * part["error"]:.2g} {unit}'
-        f', one draw {factor * part["deviation"]:.2g}'
-        for label, key, factor, unit in SPREAD_ROWS
-        for part in [ensemble[key]]
-    ]
-    count = ensemble['draws'] - ensemble['failed']
-    return [f'  mean of {count} draws of the roughness with its standard error:', *rows, '']
+def _deviation(deviation: float) -> str:
+    """Return the words about what strips of a raceway differ by [-], none where not known."""
+    return '' if math.isnan(deviation) else f', strips differ by {100 * deviation:.2g} %'
 
 
 def page(record: Mapping[str, Any]) -> str:
@@ -210,7 +196,8 @@ def page(record: Mapping[str, Any]) -> str:
         (
             'RCS',
             f'{100 * record["rcs"]:.2f} %'
-            + (' (estimate)' if record['tier'] == closed_form.TIER else ''),
+            + (' (estimate)' if record['tier'] == closed_form.TIER else '')
+            + _deviation(record.get('rcs_deviation', math.nan)),
         ),
         ('central film', f'{1e9 * record["central_film_m"]:.1f} nm'),
         ('friction coefficient', f'{record["friction_coefficient"]:.4f}'),
@@ -237,8 +224,8 @@ def page(record: Mapping[str, Any]) -> str:
             f'  compare: constant friction {compared["constant_friction_efficiency"]:.3f}, '
             f'catalogue drag {compared["catalogue_drag_torque_Nm"]:.3f} N m, Nijenbanning film '
             f'{1e9 * compared["central_film_nijenbanning_m"]:.1f} nm',
-            *_spread_lines(record.get('ensemble')),
             f'  roughness: {record["roughness"]}',
+            *(f'  contact: {record[name]}' for name in ('asperity_law',) if name in record),
             f'  status: {record["status"]}',
             *(f'  warning: {text}' for text in record['warnings']),
         ]

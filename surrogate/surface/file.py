@@ -5,7 +5,7 @@ The surface file: one self-describing .npz with a JSON header, never a pickle.
 
 The hash covers the header without its provenance and every array in name order, little-endian, C
 order. A file that does not verify is refused with one sentence. Version 4 is version 3 with what
-an ensemble of roughness draws leaves uncertain; both are read.
+strips of the raceway differ by; both are read.
 
 """
 
@@ -30,7 +30,7 @@ Array = NDArray[np.float64]
 
 FORMAT = 'ballscrew_surface'
 FORMAT_VERSION, ENSEMBLE_VERSION = 3, 4
-"""Versions without and with arrays about an ensemble of draws."""
+"""Versions without and with arrays about what strips of the raceway differ by."""
 OLD_VERSIONS = (1, 2)
 """Versions whose inputs state a roughness of another model."""
 TIERS = ('closed_form', 'full')
@@ -65,8 +65,8 @@ class SurfaceData:
     SI; `worst_contact` 0 to 3 counts loaded nut on screw, on nut, relieved nut on screw, on nut;
     `mask` marks unconverged nodes; `errors` hold the measured interpolation error of each field
     per cell. `deviations` and `standard_errors`, of any of the fields in its unit, hold the
-    standard deviation over roughness draws and the standard error of the mean on the nodes, NaN
-    where too few draws are known; without draws there are none. `header` has the keys format,
+    standard deviation between strips of the raceway and the standard error of the mean on the
+    nodes, NaN where not known; a tier without strips has none. `header` has the keys format,
     format_version, tier, inputs, settings, load_breaks; `provenance` is not hashed.
 
     """
@@ -95,7 +95,7 @@ class SurfaceData:
 
 
 def format_version(ensemble: bool) -> int:
-    """Return the version that a header must state, with or without an ensemble of draws."""
+    """Return the version that a header must state, with or without spreads."""
     return ENSEMBLE_VERSION if ensemble else FORMAT_VERSION
 
 

@@ -296,7 +296,7 @@ class Surface:
         return SurfacePoint(validity=validity, opposing_load=opposing_load, lead=self._lead)
 
     def _spread(self, fast: Place, load: Place, heat: Place) -> list[float]:
-        """Return what the draws leave uncertain, linear between the nodes: never below zero."""
+        """Return what strips differ by, linear between the nodes: never below zero."""
         assert self._spreads is not None
         i, j, k = fast[0], load[0], heat[0]
         x, y, z = i + 2, j + 2, k + 2

@@ -48,9 +48,9 @@ class SurfacePoint:
 
     Opposing load [N] and lead [m] belong to the question; `values` are in the order of `FIELDS`,
     `errors` the measured interpolation errors of the cell, of `MEASURED` in their units.
-    `spreads` over roughness draws are the standard deviations of the values and then the standard
-    errors of their means, NaN without draws. `corrected`: a full solve near this point has pulled
-    the numbers.
+    `spreads` between strips are the standard deviations of the values and then the standard
+    errors of their means, NaN where not known. `corrected`: a full solve near this point has
+    pulled the numbers.
 
     """
 
@@ -125,40 +125,40 @@ class SurfacePoint:
 
     @property
     def rcs_std(self) -> float:
-        """Return the standard deviation of RCS over roughness draws [-]; NaN without draws."""
+        """Return the standard deviation of RCS between strips of the raceway [-], or NaN."""
         return self.spreads[INDEX['rcs']]
 
     @property
     def rcs_stderr(self) -> float:
-        """Return the standard error of the mean RCS [-]; NaN without draws."""
+        """Return the standard error of the mean RCS [-], or NaN."""
         return self.spreads[len(FIELDS) + INDEX['rcs']]
 
     @property
     def friction_torque_std(self) -> float:
-        """Return the standard deviation of the torque over draws [N m]; NaN without draws."""
+        """Return the standard deviation of the torque between strips [N m], or NaN."""
         return self.spreads[INDEX['friction_torque']]
 
     @property
     def friction_torque_stderr(self) -> float:
-        """Return the standard error of the mean torque [N m]; NaN without draws."""
+        """Return the standard error of the mean torque [N m], or NaN."""
         return self.spreads[len(FIELDS) + INDEX['friction_torque']]
 
     @property
     def efficiency_std(self) -> float:
-        """Return the standard deviation of efficiency over draws [-]; NaN without draws."""
+        """Return the standard deviation of efficiency between strips [-], or NaN."""
         return self.spreads[INDEX['friction_torque']] * self._efficiency_slope()
 
     @property
     def efficiency_stderr(self) -> float:
-        """Return the standard error of the mean efficiency [-]; NaN without draws."""
+        """Return the standard error of the mean efficiency [-], or NaN."""
         return self.spreads[len(FIELDS) + INDEX['friction_torque']] * self._efficiency_slope()
 
     def std(self, name: str) -> float:
-        """Return the standard deviation over draws of one of `FIELDS`, in its unit."""
+        """Return the standard deviation between strips of one of `FIELDS`, in its unit."""
         return self.spreads[INDEX[name]]
 
     def stderr(self, name: str) -> float:
-        """Return the standard error of the mean over draws of one of `FIELDS`, in its unit."""
+        """Return the standard error of the mean of one of `FIELDS`, in its unit."""
         return self.spreads[len(FIELDS) + INDEX[name]]
 
     @property
@@ -201,7 +201,7 @@ def solved_point(
     """
     Return a solved point in the form of one that was looked up: no interpolation, so no error.
 
-    Means, deviations and standard errors over draws of `FIELDS` [SI], NaN where unknown; opposing
+    Means, deviations and standard errors of `FIELDS` [SI], NaN where unknown; opposing
     load [N], lead [m]; the contact by its number on file.
 
     """

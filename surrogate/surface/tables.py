@@ -19,7 +19,7 @@ def transform(name: str, values: Array) -> Array:
 
 
 def spread_table(data: SurfaceData) -> Array | None:
-    """Return deviations and standard errors of all fields at the nodes; None without draws."""
+    """Return deviations and standard errors of all fields at the nodes; None without spreads."""
     groups = (data.deviations, data.standard_errors)
     if not any(groups):
         return None

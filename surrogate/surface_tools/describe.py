@@ -47,7 +47,7 @@ def info_record(path: Path, data: SurfaceData) -> dict[str, Any]:
             name: {'max': worst, 'p95': usual}
             for name, (worst, usual) in sorted(surface.errors.items())
         },
-        'draws': {
+        'spreads': {
             name: {
                 'std': _summary(data, 'deviations', name),
                 'stderr': _summary(data, 'standard_errors', name),
@@ -84,7 +84,7 @@ def info_page(record: Mapping[str, Any]) -> str:
                 f'    {_label(name):44} {error["max"]:<10.3g}  {error["p95"]:.3g}'
                 for name, error in record['errors'].items()
             ),
-            *_draws(record['draws']),
+            *_spreads(record['spreads']),
             '  provenance (not hashed)',
             *(f'    {name:12} {value}' for name, value in record['provenance'].items()),
         ]
@@ -151,12 +151,12 @@ def _full_tier(record: Mapping[str, Any]) -> Iterator[str]:
         )
 
 
-def _draws(draws: Mapping[str, Any]) -> Iterator[str]:
-    """Yield the table of what roughness draws leave uncertain, if there were any."""
-    if not draws:
+def _spreads(spreads: Mapping[str, Any]) -> Iterator[str]:
+    """Yield the table of what strips of the raceway differ by, if that is known."""
+    if not spreads:
         return
     yield '  over strips of the raceway               deviation: median, max    of the mean'
-    for name, spread in draws.items():
+    for name, spread in spreads.items():
         yield (
             f'    {_label(name):36} '
             + '  '.join(

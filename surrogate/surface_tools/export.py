@@ -94,8 +94,12 @@ def _node_fields(data: SurfaceData) -> Variables:
     }
     kinds = (
         ('', data.fields, ''),
-        ('std_', data.deviations, ', standard deviation over roughness draws'),
-        ('stderr_', data.standard_errors, ', standard error of the mean over roughness draws'),
+        ('std_', data.deviations, ', standard deviation between strips of the raceway'),
+        (
+            'stderr_',
+            data.standard_errors,
+            ', standard error of the mean over strips of the raceway',
+        ),
     )
     for prefix, group, more in kinds:
         for name, values in group.items():

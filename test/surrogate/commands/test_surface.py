@@ -181,9 +181,9 @@ def test_info_tells_what_draws_leave_uncertain(tmp_path: Path, capsys):
     assert 'deviation: median, max    of the mean' in text
     assert 'rcs [-]                              0.01        0.02        nan         nan' in text
     assert run('surface', 'info', path, '--json') == 0
-    draws = json.loads(capsys.readouterr().out)['draws']
-    assert draws['rcs']['std'] == pytest.approx({'median': 0.01, 'max': 0.02})
-    assert draws['rcs']['stderr'] == {'median': None, 'max': None}
+    spreads = json.loads(capsys.readouterr().out)['spreads']
+    assert spreads['rcs']['std'] == pytest.approx({'median': 0.01, 'max': 0.02})
+    assert spreads['rcs']['stderr'] == {'median': None, 'max': None}
 
 
 def test_clean_removes_kept_results(tmp_path: Path, capsys):
