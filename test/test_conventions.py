@@ -89,6 +89,7 @@ ROSDEP = {
 THEMES = {
     'ballscrew_monitor/node/test_clocks.py',
     'ballscrew_monitor/node/test_cures.py',
+    'ballscrew_monitor/node/test_dump.py',
     'ballscrew_monitor/node/test_loss.py',
     'ballscrew_monitor/node/test_solve.py',
     'ballscrew_monitor/test_shared_memory.py',
