@@ -189,7 +189,8 @@ def _without_floating(
 ) -> list[SolvedNut]:
     """Return the nuts; relieved balls that float on their oil and find no balance are idle."""
     loaded, relieved = nuts
-    if solved[1].failure and relieved.force < FLOATING_SHARE * loaded.force:
+    floating = solved[1].ball is not None and not solved[1].ball.converged
+    if floating and relieved.force < FLOATING_SHARE * loaded.force:
         return [solved[0], make_nut(screw, point, replace(relieved, force=0.0), ())]
     return list(solved)
 
