@@ -106,6 +106,8 @@ def build_law(screw: Screw, lubricant: Lubricant, solve: SolveMarches) -> Asperi
     runs = strip_runs(screw, lubricant)
     fine = _given(screw, lubricant, runs[:TWINS], FINE)
     coarse = _given(screw, lubricant, runs, COARSE)
+    if not coarse:
+        strip_inputs(screw, lubricant, runs[0], COARSE)  # raises what it says of the roughness
     tasks = {f'{ALL_WAVES}, {name}': inputs_to_json(one) for name, one in fine.items()}
     tasks |= {f'{STRIP}, {name}': inputs_to_json(one) for name, one in coarse.items()}
     results = solve(tasks)
