@@ -10,7 +10,6 @@ publishing; numbers are values, with the unit in brackets.
 """
 
 from collections.abc import Mapping
-import math
 
 from ballscrew_monitor.core import reasons
 from ballscrew_monitor.core.conversions import celsius, seconds
@@ -146,7 +145,6 @@ def _inputs(state: State, links: Mapping[Source, Link]) -> StatusSummary:
 
 def _lubrication_values(state: State) -> list[tuple[str, object]]:
     point, result, totals = state.point, state.estimate, state.totals
-    film_ratio = math.nan if result.numbers is None else result.numbers.film_ratio
     return [
         ('Level', state.level.name),
         ('Zone', state.verdict.zone.name),
@@ -162,7 +160,7 @@ def _lubrication_values(state: State) -> list[tuple[str, object]]:
         ('Efficiency limit [-]', state.limits.efficiency),
         ('RCS [-]', result.rcs),
         ('RCS limit [-]', state.limits.rcs),
-        ('Film ratio [-]', film_ratio),
+        ('Film ratio [-]', result.film_ratio),
         ('Judged [-]', state.judged),
         ('Running time [s]', seconds(totals.running_time)),
         ('Time outside [s]', seconds(totals.outside_time)),

@@ -363,4 +363,9 @@ AXIS_ROWS = (
         text='Period of the state topic, besides each change of the level; '
         '0: a state for every judged speed sample.',
     ),
+    ParameterRow(
+        name='plain_topics',
+        default=False,
+        text='Publish efficiency, RCS, film ratio, regime and warning as topics of std_msgs too.',
+    ),
 )
