@@ -179,6 +179,7 @@ def _input_values(inputs: tuple[Health, ...]) -> list[tuple[str, object]]:
             (f'{name} received [-]', health.received),
             (f'{name} dropped [-]', health.dropped),
             (f'{name} lost [-]', 'unknown' if health.lost is None else health.lost),
+            (f'{name} implausible [-]', health.implausible),
             (f'{name} stamps', health.stamp_source.name),
             (f'{name} lag [s]', health.lag),
             (f'{name} refused', health.refusal),

@@ -150,6 +150,23 @@ def test_an_input_slower_than_its_timeout_is_told(core):
     )
 
 
+def test_a_glitch_is_told_for_ten_seconds_and_counted(core):
+    def told(after_glitch):
+        stamp = START + after_glitch
+        good = [sample(Source.LOAD, -1000.0, stamp), sample(Source.SPEED, 10.0, stamp)]
+        glitch = sample(Source.SPEED, 1e12)
+        return after(core, LOAD, glitch, *good, settings={'plausible': {Source.SPEED: 300.0}})
+
+    cure = 'mend the source, its unit or scale, or raise limits.plausible_speed or '
+    status = told(10 * SECOND - 1)['Inputs']
+    assert (status.level, status.message) == (
+        WARN,
+        f'speed samples beyond the plausible range were refused: {cure}limits.plausible_load',
+    )
+    assert ('Speed implausible [-]', '1') in [(pair.key, pair.value) for pair in status.values]
+    assert told(10 * SECOND)['Inputs'].level == OK
+
+
 @pytest.mark.parametrize(
     ('changes', 'message'),
     [
