@@ -254,7 +254,7 @@ class Station:
         """
         self._links = links or {}
         return diagnostics.statuses(
-            self._node.get_name(),
+            self._node.get_fully_qualified_name(),
             self.axis.name,
             self._last,
             self.axis.monitor.event,

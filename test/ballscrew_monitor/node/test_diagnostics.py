@@ -60,6 +60,20 @@ def test_names():
     ]
 
 
+def test_names_and_hardware_of_two_machines_and_two_axes_differ(core):
+    made = [
+        status
+        for node in ('/mill/monitor', '/lathe/monitor')
+        for axis in ('x', 'y')
+        for status in diagnostics.statuses(node, axis, None, Event(), core.surface(), links=None)
+    ]
+    assert len({status.name for status in made}) == 12
+    assert made[0].name == 'mill/monitor: x: Lubrication'
+    assert made[0].hardware_id == 'mill/x: constant'
+    assert len({status.hardware_id for status in made}) == 4
+    assert diagnostics.failed('/mill/monitor', 'x', 'why')[0].name == made[0].name
+
+
 def test_a_failure_is_an_error_everywhere():
     assert {(status.level, status.message) for status in diagnostics.failed('n', 'x', 'why')} == {
         (ERROR, 'why')
@@ -70,14 +84,14 @@ def test_all_is_well(core):
     made = after(core, LOAD, SPEED)
     assert [status.level for status in made.values()] == [OK, OK, OK]
     assert made['Lubrication'].message == 'optimal'
-    assert {status.hardware_id for status in made.values()} == {'constant'}
+    assert {status.hardware_id for status in made.values()} == {'x: constant'}
 
 
 @pytest.mark.parametrize(
     ('events', 'level', 'message'),
     [
         ([SPEED], STALE, 'not judged: an input is missing'),
-        ([LOAD, STILL], WARN, 'standstill, not judged for long enough yet'),
+        ([LOAD, STILL], OK, 'standstill, not judged for long enough yet'),
         ([LOAD, SPEED, STILL], OK, 'standstill'),
         ([LOAD, SPEED, HEAVY, STILL], WARN, 'not judged: load outside the surface'),
         ([LOAD, sample(Source.SPEED, 1e3)], WARN, 'not judged: speed above the surface'),
