@@ -94,6 +94,11 @@ class PointEstimate:
     regime: Regime = Regime.UNKNOWN
     contact_state: ContactState = ContactState.UNKNOWN
 
+    @property
+    def film_ratio(self) -> float:
+        """Return the film ratio [-], NaN while it is not known."""
+        return NAN if self.numbers is None else self.numbers.film_ratio
+
 
 def contact_state_of(rcs: float, *, limit: float) -> ContactState:
     """

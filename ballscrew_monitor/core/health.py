@@ -14,6 +14,7 @@ from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, StampSou
 RATE_SAMPLES = 20  # samples over which the rate is averaged
 SLOW_GAPS = 2  # gaps above the timeout in a row from which on the input is slow, not interrupted
 LOSS_SHOWN = 10 * SECOND  # [ns] for which a loss is warned of
+GLITCH_SHOWN = 10 * SECOND  # [ns] for which an implausible sample is warned of
 MOST_OTHERS = 16  # kinds of messages about other joints that are told apart
 
 
@@ -36,7 +37,8 @@ class Health:
     age since the arrival [s], rate [Hz] and lag [s], by how much the stamps lie behind the arrival
     at least, are NaN while unknown; an input is `lagging` from a stated lag on; a `slow` one is
     stale between its samples, and a timeout of `longest_gap` [s] would do, NaN for any other.
-    `lost` messages never arrived, None: not known; `losing` since not long ago. `refusal` is why
+    `lost` messages never arrived, None: not known; `losing` since not long ago.
+    `implausible` samples were refused, `glitching` not long ago. `refusal` is why
     the last message was refused, while it is the last; `joints` are what messages about other
     joints have named since the last sample.
 
@@ -54,6 +56,8 @@ class Health:
     lagging: bool = False
     lost: int | None = 0
     losing: bool = False
+    implausible: int = 0
+    glitching: bool = False
     longest_gap: float = math.nan
     why: Why | None = None
     refusal: str = ''
@@ -74,6 +78,7 @@ class Tracker:
         self.received = 0
         self.dropped = 0
         self._lost, self._lost_known, self._lost_last = 0, True, -LOSS_SHOWN
+        self._implausible, self._implausible_last = 0, -GLITCH_SHOWN
         self.refusal: Refusal | None = None  # why the last message was refused, if it was
         self.last: InputSample | None = None
         self._stamps: collections.deque[int] = collections.deque(maxlen=RATE_SAMPLES)
@@ -106,6 +111,9 @@ class Tracker:
         """Count a bad message; the input stays bad until the next good one."""
         self.drop()
         self.refusal = refusal
+        if refusal.why is Why.IMPLAUSIBLE:
+            self._implausible += 1
+            self._implausible_last = refusal.arrival
 
     def lose(self, count: int | None, arrival: int) -> None:
         """Count messages that never arrived before one at `arrival` [ns]; None: not known."""
@@ -184,6 +192,8 @@ class Tracker:
             lagging=self.lagging,
             lost=self._lost if self._lost_known else None,
             losing=0 <= now - self._lost_last < LOSS_SHOWN,
+            implausible=self._implausible,
+            glitching=0 <= now - self._implausible_last < GLITCH_SHOWN,
             why=None if refusal is None else refusal.why,
             refusal='' if refusal is None else refusal.text,
             joints=self._joints(),

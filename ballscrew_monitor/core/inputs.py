@@ -33,6 +33,9 @@ class Source(enum.IntEnum):
     SPEED = 3
 
 
+_UNITS = {Source.SPEED: 'rad/s', Source.LOAD: 'N'}
+
+
 class StampSource(enum.IntEnum):
     """Where a stamp comes from; the numbers of InputHealth.STAMP_."""
 
@@ -49,6 +52,7 @@ class Why(enum.IntEnum):
     FUTURE = 2
     OTHER_CLOCK = 3  # stamps of the wall clock, far ahead of simulated time
     TOO_SHORT = 4  # the array of the field is empty, or ends before the element
+    IMPLAUSIBLE = 5  # beyond what the machine can do: a glitch, or another unit
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -178,6 +182,16 @@ def make_input(
         scaling=scaling,
         stamped=fields.get('header') == 'std_msgs/Header',
     )
+
+
+def implausible(sample: InputSample, most: float) -> Refusal:
+    """Return the refusal of a sample whose amount is above `most` [SI]."""
+    name, unit = sample.source.name.lower(), _UNITS[sample.source]
+    text = (
+        f'{name} {sample.value:.4g} {unit} is beyond the plausible {most:.4g} {unit}: mend the '
+        f'source, its unit or scale, or raise limits.plausible_{name}'
+    )
+    return Refusal(source=sample.source, why=Why.IMPLAUSIBLE, text=text, arrival=sample.arrival)
 
 
 def _short_text(found: TooShort) -> str:

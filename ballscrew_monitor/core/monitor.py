@@ -23,7 +23,7 @@ from ballscrew_monitor.core.estimate import (
     PointValidity,
 )
 from ballscrew_monitor.core.health import InputState, Tracker
-from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, Why
+from ballscrew_monitor.core.inputs import implausible, InputSample, Refusal, Source, Why
 from ballscrew_monitor.core.judgement import Hold, hold, is_judged, judge, Level, Verdict, Zone
 from ballscrew_monitor.core.state import Event, MonitorSettings, State
 from ballscrew_monitor.core.tally import Account, moment, WindowTally
@@ -75,8 +75,9 @@ class Monitor:
             else:
                 tracker.refuse(event)
             return None
-        if not math.isfinite(event.value):
-            tracker.refuse(Refusal(source=event.source, why=Why.NOT_A_NUMBER))
+        objection = self._objection(event)
+        if objection is not None:
+            tracker.refuse(objection)
             return None
         if tracker.last is not None and event.stamp < tracker.last.stamp:
             if tracker.last.stamp - event.stamp <= BACKWARD_JUMP:
@@ -140,6 +141,13 @@ class Monitor:
     def reset_totals(self) -> None:
         """Set the totals to zero."""
         self._account.reset()
+
+    def _objection(self, sample: InputSample) -> Refusal | None:
+        """Return why the value of a sample cannot be used, if it cannot."""
+        if not math.isfinite(sample.value):
+            return Refusal(source=sample.source, why=Why.NOT_A_NUMBER)
+        most = self.settings.plausible.get(sample.source, math.inf)
+        return implausible(sample, most) if abs(sample.value) > most else None
 
     def _judge_speed(self, sample: InputSample) -> State | None:
         stamp, point = sample.stamp, self._point(sample.arrival)

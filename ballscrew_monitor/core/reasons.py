@@ -23,13 +23,21 @@ SHOWN_JOINTS = 8  # names that a sentence lists
 ROUND = (1.0, 2.0, 5.0, 10.0)  # leading digits of a timeout that is proposed
 MOST_TIMEOUT = 3600.0  # [s] as the parameter allows it
 _FAULTS = (InputState.STALE, InputState.MISSING, InputState.BAD, InputState.UNKNOWN)
+_PLAUSIBLE = (
+    'mend the source, its unit or scale, or raise limits.plausible_speed or limits.plausible_load'
+)
 _REFUSED = {
     Why.NOT_A_NUMBER: 'it is not a finite number, mend its source or read another field',
     Why.FUTURE: 'its stamps lie ahead of the clock, set the clocks alike or raise max_future',
     Why.OTHER_CLOCK: 'its stamps are of the wall clock and the node runs on simulated time, '
     'stamp with /clock or unset use_sim_time',
+    Why.IMPLAUSIBLE: f'it is beyond the plausible range, {_PLAUSIBLE}',
 }
 _TROUBLES: tuple[tuple[Callable[[Health], bool], str], ...] = (
+    (
+        lambda health: health.glitching,
+        f'samples beyond the plausible range were refused: {_PLAUSIBLE}',
+    ),
     (
         lambda health: health.losing,
         'messages are lost on the way: lower their rate, raise publish_period, or give the node '

@@ -25,7 +25,7 @@ class MonitorSettings:
     `default_temperature` [K] is used without a temperature topic, `publish_period` [ns] thins out
     the states, 0 keeps all; a stamp may be `max_future` [ns] ahead of the clock, and that is less
     than `tick_period` [ns] ahead of the tick. Stamps more than `max_lag` [ns] behind their arrival
-    are warned of.
+    are warned of. Samples whose amount is above that in `plausible` [SI] are refused.
 
     """
 
@@ -37,6 +37,7 @@ class MonitorSettings:
     max_future: int = 0
     max_lag: int = YEAR
     tick_period: int = 0
+    plausible: Mapping[Source, float] = dataclasses.field(default_factory=dict)
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)

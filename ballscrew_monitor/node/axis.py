@@ -23,6 +23,7 @@ from ballscrew_monitor.core.state import MonitorSettings
 from surrogate.files import InputError
 from surrogate.surface import find_surface, Surface, SurfaceError
 
+PLAUSIBLE = 3.0  # times the largest of the surface: what lies beyond is a glitch
 OPTIONAL = (Source.TEMPERATURE, Source.TORQUE)
 
 
@@ -49,7 +50,7 @@ class Axis:
 
     def adapt(self, values: Mapping[str, Any]) -> None:
         """Take over the parameters that may change at any time."""
-        self.monitor.settings = settings_of(self.name, values, self.surface.preload)
+        self.monitor.settings = settings_of(self.name, values, self.surface)
 
     def use_surface(self, surface: Surface, values: Mapping[str, Any]) -> None:
         """Judge with another surface from now on."""
@@ -67,7 +68,7 @@ def build_axis(name: str, values: Mapping[str, Any]) -> Axis:
         surface=surface,
         inputs=tuple(one for one in inputs if isinstance(one, Input)),
         open_inputs=tuple(one for one in inputs if isinstance(one, OpenInput)),
-        monitor=Monitor(surface, settings_of(name, values, surface.preload)),
+        monitor=Monitor(surface, settings_of(name, values, surface)),
     )
 
 
@@ -122,11 +123,11 @@ def reload_surface(axis: Axis, values: Mapping[str, Any]) -> Surface:
     return surface
 
 
-def settings_of(name: str, values: Mapping[str, Any], preload: float) -> MonitorSettings:
-    """Return what the monitor is told; `preload` [N] is what the light load is a part of."""
+def settings_of(name: str, values: Mapping[str, Any], surface: Surface) -> MonitorSettings:
+    """Return what the monitor is told; some limits are in parts of those of the surface."""
     return MonitorSettings(
         axis=name,
-        limits=_limits_of(name, values, preload),
+        limits=_limits_of(name, values, surface.preload),
         timeouts={
             source: nanoseconds(values[f'{name}.{source.name.lower()}.timeout'])
             for source in Source
@@ -137,7 +138,20 @@ def settings_of(name: str, values: Mapping[str, Any], preload: float) -> Monitor
         max_future=nanoseconds(values[f'{name}.max_future']),
         max_lag=nanoseconds(values[f'{name}.max_lag']),
         tick_period=nanoseconds(values['tick_period']),
+        plausible=_plausible_of(name, values, surface),
     )
+
+
+def _plausible_of(name: str, values: Mapping[str, Any], surface: Surface) -> dict[Source, float]:
+    """Return the largest plausible speed [rad/s] and load [N], as stated or by the surface."""
+    largest = {
+        Source.SPEED: surface.speed_range[1],
+        Source.LOAD: max(map(abs, surface.load_range)),
+    }
+    return {
+        source: values[f'{name}.limits.plausible_{source.name.lower()}'] or PLAUSIBLE * most
+        for source, most in largest.items()
+    }
 
 
 def _limits_of(name: str, values: Mapping[str, Any], preload: float) -> Limits:

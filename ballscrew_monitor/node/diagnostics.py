@@ -10,7 +10,6 @@ publishing; numbers are values, with the unit in brackets.
 """
 
 from collections.abc import Mapping
-import math
 
 from ballscrew_monitor.core import reasons
 from ballscrew_monitor.core.conversions import celsius, seconds
@@ -56,20 +55,23 @@ _CAUSES = {
 _LEVELS = {Standing.GOOD: OK, Standing.DEGRADED: WARN, Standing.LOST: STALE}
 
 
+def failed(node: str, axis: str, reason: str) -> list[DiagnosticStatus]:
+    """Return the statuses of an axis that cannot work for `reason`; `node` is its full name."""
+    return [
+        DiagnosticStatus(name=f'{node.lstrip("/")}: {axis}: {part}', level=ERROR, message=reason)
+        for part in PARTS
+    ]
+
+
 def blank(node: str, axis: str) -> list[DiagnosticStatus]:
     """Return the statuses of an axis of which nothing is known."""
-    return [
-        DiagnosticStatus(name=f'{node}: {axis}: {part}', level=ERROR, message=NOT_SET)
-        for part in PARTS
-    ]
+    return failed(node, axis, NOT_SET)
 
 
-def failed(node: str, axis: str, reason: str) -> list[DiagnosticStatus]:
-    """Return the statuses of an axis that cannot work for `reason`."""
-    return [
-        DiagnosticStatus(name=f'{node}: {axis}: {part}', level=ERROR, message=reason)
-        for part in PARTS
-    ]
+def hardware_id(node: str, axis: str, screw: str) -> str:
+    """Return what tells the screws of all axes in all namespaces apart."""
+    namespace = node.lstrip('/').rpartition('/')[0]
+    return f'{namespace}/{axis}: {screw}'.lstrip('/')
 
 
 def statuses(
@@ -83,15 +85,16 @@ def statuses(
     clock_stands: bool = False,
 ) -> list[DiagnosticStatus]:
     """
-    Return the three statuses of a configured axis, `state` its last one if there is one.
+    Return the three statuses of a configured axis of the `node`, by full name.
 
-    `links` says how each input is connected; None: the node is inactive.
+    `state` is its last one, if there is one; `links` says how each input is connected, None: the
+    node is inactive.
     While the clock stands no state tells that an input is dead, so nothing but a warning is held.
 
     """
     made = blank(node, axis)
     for status in made:
-        status.hardware_id = surface.screw_name
+        status.hardware_id = hardware_id(node, axis, surface.screw_name)
     changed = ' and corrected' if surface.corrections else ''
     made[2].level, made[2].message = OK, f'{surface.tier} surface loaded{changed}'
     made[2].values = _values(_surface_values(surface))
@@ -136,7 +139,9 @@ def _lubrication(state: State, event: Event) -> StatusSummary:
         return WARN, _NOT_JUDGED[validity]
     if state.level is Level.OK:
         return OK, 'standstill' if still else 'optimal'
-    return WARN, f'{"standstill, " if still else ""}not judged for long enough yet'
+    if still:  # nothing is amiss with an axis that has been parked since it was switched on
+        return OK, 'standstill, not judged for long enough yet'
+    return WARN, 'not judged for long enough yet'
 
 
 def _inputs(state: State, links: Mapping[Source, Link]) -> StatusSummary:
@@ -146,7 +151,6 @@ def _inputs(state: State, links: Mapping[Source, Link]) -> StatusSummary:
 
 def _lubrication_values(state: State) -> list[tuple[str, object]]:
     point, result, totals = state.point, state.estimate, state.totals
-    film_ratio = math.nan if result.numbers is None else result.numbers.film_ratio
     return [
         ('Level', state.level.name),
         ('Zone', state.verdict.zone.name),
@@ -162,7 +166,7 @@ def _lubrication_values(state: State) -> list[tuple[str, object]]:
         ('Efficiency limit [-]', state.limits.efficiency),
         ('RCS [-]', result.rcs),
         ('RCS limit [-]', state.limits.rcs),
-        ('Film ratio [-]', film_ratio),
+        ('Film ratio [-]', result.film_ratio),
         ('Judged [-]', state.judged),
         ('Running time [s]', seconds(totals.running_time)),
         ('Time outside [s]', seconds(totals.outside_time)),
@@ -181,6 +185,7 @@ def _input_values(inputs: tuple[Health, ...]) -> list[tuple[str, object]]:
             (f'{name} received [-]', health.received),
             (f'{name} dropped [-]', health.dropped),
             (f'{name} lost [-]', 'unknown' if health.lost is None else health.lost),
+            (f'{name} implausible [-]', health.implausible),
             (f'{name} stamps', health.stamp_source.name),
             (f'{name} lag [s]', health.lag),
             (f'{name} refused', health.refusal),

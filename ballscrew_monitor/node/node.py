@@ -14,7 +14,7 @@ from ballscrew_monitor.core.inputs import InputSample, Refusal
 from ballscrew_monitor.core.pulse import Pulse
 from ballscrew_monitor.core.state import State
 from ballscrew_monitor.node import diagnostics, parameters
-from ballscrew_monitor.node.axis import Axis, build_axis, check_topics, reload_surface
+from ballscrew_monitor.node.axis import Axis, build_axis, check_topics
 from ballscrew_monitor.node.correction_store import CorrectionStore, state_directory
 from ballscrew_monitor.node.intake import Intake
 from ballscrew_monitor.node.parameter_store import ParameterStore
@@ -22,6 +22,7 @@ from ballscrew_monitor.node.qos import check_overrides
 from ballscrew_monitor.node.solve_server import MOST_SOLVES, SolveServer
 from ballscrew_monitor.node.solver_process import SolverProcess
 from ballscrew_monitor.node.station import STATE_QOS, Station
+from ballscrew_monitor.node.trigger_services import TriggerServices
 from ballscrew_msgs.srv import EvaluateOperatingPoint
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 import rclpy
@@ -30,7 +31,6 @@ from rclpy.exceptions import ParameterException
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
 from rclpy.signals import SignalHandlerOptions
-from std_srvs.srv import Trigger
 from surrogate.files import InputError
 
 SUCCESS, FAILURE = TransitionCallbackReturn.SUCCESS, TransitionCallbackReturn.FAILURE
@@ -77,9 +77,7 @@ class BallscrewMonitor(LifecycleNode):
             state_directory(self._values['state_dir'], self.get_fully_qualified_name())
         )
         self._solves = SolveServer(self, SolverProcess, self._find_station)
-        self.create_service(Trigger, '~/reload_surface', self._on_reload)
-        self.create_service(Trigger, '~/reset_totals', self._on_reset)
-        self.create_service(Trigger, '~/acknowledge', self._on_acknowledge)
+        TriggerServices(self, self._values, lambda: self._stations)
 
     def start(self) -> None:
         """Configure and activate, if the node is to do so itself."""
@@ -250,7 +248,7 @@ class BallscrewMonitor(LifecycleNode):
                 links = self._intake.links(station.axis) if self._intake else None
                 made += station.statuses(links=links, stood=stood)
             else:
-                made += diagnostics.failed(self.get_name(), name, self._reason)
+                made += diagnostics.failed(self.get_fully_qualified_name(), name, self._reason)
         return made
 
     def _on_evaluate(self, request: Any, response: Any) -> Any:
@@ -260,42 +258,6 @@ class BallscrewMonitor(LifecycleNode):
             response.message = self._unknown(request.axis)
         else:
             station.evaluate(request.points, response)
-        return response
-
-    def _on_reload(self, request: Any, response: Any) -> Any:
-        """Swap every surface for the file as it is now, if all of them verify."""
-        try:
-            surfaces = {
-                name: reload_surface(station.axis, self._values)
-                for name, station in self._stations.items()
-            }
-        except InputError as error:
-            response.message = f'kept the old surface: {error}'
-            self.get_logger().error(response.message)
-            return response
-        said = [station.reload(surfaces[name]) for name, station in self._stations.items()]
-        self._answer(response, 'reloaded the surface')
-        response.message = ', '.join(filter(None, (response.message, *said)))
-        return response
-
-    def _on_reset(self, request: Any, response: Any) -> Any:
-        """Set the totals of every axis to zero."""
-        for station in self._stations.values():
-            station.axis.monitor.reset_totals()
-        return self._answer(response, 'set the totals to zero')
-
-    def _on_acknowledge(self, request: Any, response: Any) -> Any:
-        """Set the level of every axis back to UNKNOWN and end its event."""
-        now = self.get_clock().now().nanoseconds
-        for station in self._stations.values():
-            if station.axis.monitor.acknowledge(now) is not None:
-                station.publish_event()
-        return self._answer(response, 'acknowledged')
-
-    def _answer(self, response: Any, what: str) -> Any:
-        response.success = bool(self._stations)
-        names = ', '.join(self._stations)
-        response.message = f'{what} of {names}' if names else 'the node is not configured'
         return response
 
 

@@ -352,6 +352,24 @@ AXIS_ROWS = (
         text='Part by which RCS and loss must be below their limits to clear the warning.',
     ),
     ParameterRow(
+        name='limits.plausible_speed',
+        default=0.0,
+        unit='rad/s',
+        low=0.0,
+        high=1e6,
+        change=Change.LIVE,
+        text='Screw speed above which a sample is refused; 0: three times that of the surface.',
+    ),
+    ParameterRow(
+        name='limits.plausible_load',
+        default=0.0,
+        unit='N',
+        low=0.0,
+        high=1e9,
+        change=Change.LIVE,
+        text='Axial load above which a sample is refused; 0: three times that of the surface.',
+    ),
+    ParameterRow(
         name='max_future',
         default=0.1,
         unit='s',
@@ -377,5 +395,10 @@ AXIS_ROWS = (
         change=Change.LIVE,
         text='Period of the state topic, besides each change of the level; '
         '0: a state for every judged speed sample.',
+    ),
+    ParameterRow(
+        name='plain_topics',
+        default=False,
+        text='Publish efficiency, RCS, film ratio, regime and warning as topics of std_msgs too.',
     ),
 )

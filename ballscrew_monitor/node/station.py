@@ -25,6 +25,7 @@ from ballscrew_monitor.node.messages import (
     surface_info_message,
     TIERS,
 )
+from ballscrew_monitor.node.plain_topics import PlainTopics
 from ballscrew_msgs.msg import BallScrewState, OperatingPoint, OutOfZone, PointResult, SurfaceInfo
 from ballscrew_msgs.srv import EvaluateOperatingPoint
 from diagnostic_msgs.msg import DiagnosticStatus
@@ -75,16 +76,23 @@ class Station:
         self._state = make(BallScrewState, f'~/{axis.name}/state', STATE_QOS)
         self._event = make(OutOfZone, f'~/{axis.name}/out_of_zone', LATCHED_QOS)
         self._info = make(SurfaceInfo, f'~/{axis.name}/surface_info', LATCHED_QOS)
+        self._plain = None
+        if values[f'{axis.name}.plain_topics']:
+            self._plain = PlainTopics(node, axis.name, make, STATE_QOS)
 
     def close(self) -> None:
         """Destroy the publishers."""
         for publisher in (self._state, self._event, self._info):
             self._node.destroy_lifecycle_publisher(publisher)
+        if self._plain is not None:
+            self._plain.close()
 
     def publish_state(self, state: State) -> None:
         """Publish a state, and the event that it begins or ends."""
         self._last = state
         self._state.publish(self._writer.write(state))
+        if self._plain is not None:
+            self._plain.publish(state)
         if state.event is not None:
             self.publish_event()
             self._log_event()
@@ -246,7 +254,7 @@ class Station:
         """
         self._links = links or {}
         return diagnostics.statuses(
-            self._node.get_name(),
+            self._node.get_fully_qualified_name(),
             self.axis.name,
             self._last,
             self.axis.monitor.event,

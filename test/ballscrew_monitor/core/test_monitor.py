@@ -116,6 +116,31 @@ def test_the_measured_torque_is_compared_and_never_judged(core):
     assert (after.measured_torque, after.torque_residual) == (-2.5, -0.5)
 
 
+@pytest.mark.parametrize('glitch', [1e12, -1e12, math.nextafter(300.0, math.inf)])
+def test_a_glitch_is_counted_and_never_reaches_the_totals(core, glitch):
+    clean, glitched = (core.monitor(plausible={Source.SPEED: 300.0}) for _ in range(2))
+    feed(clean, motion(10.0, count=5))
+    feed(glitched, [*motion(10.0, count=2), speed(glitch, START + 3 * STEP // 2)])
+    last = feed(glitched, motion(10.0, start=START + 2 * STEP, count=3))[-1]
+    assert last.totals == feed(clean, [speed(10.0, START + 4 * STEP)])[-1].totals
+    assert last.window.speed.high == 10.0
+    health = last.inputs[0]
+    assert (health.implausible, health.dropped, health.glitching) == (1, 1, True)
+    assert health.state is InputState.OK
+
+
+def test_the_plausible_limit_itself_is_plausible(core):
+    monitor = core.monitor(plausible={Source.SPEED: 300.0, Source.LOAD: 5e3})
+    state = feed(monitor, motion(-300.0, force=-5e3))[-1]
+    assert [health.dropped for health in state.inputs[:2]] == [0, 0]
+    later = feed(monitor, motion(10.0, start=START + STEP, force=5001.0))[-1]
+    assert later.estimate.validity is PointValidity.NO_INPUT
+    assert later.inputs[1].refusal == (
+        'load 5001 N is beyond the plausible 5000 N: mend the source, its unit or scale, '
+        'or raise limits.plausible_load'
+    )
+
+
 @pytest.mark.parametrize('bad', [math.nan, math.inf])
 def test_a_bad_speed_is_refused_and_counted(core, bad):
     monitor = core.monitor()

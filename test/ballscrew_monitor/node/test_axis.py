@@ -91,9 +91,20 @@ def test_live_parameters_are_taken_over():
     axis = build()
     values = parameters.defaults(['x']) | {'x.limits.rcs': 0.5, 'x.max_future': 2.0}
     axis.adapt(values)
-    assert axis.monitor.settings == settings_of('x', values, axis.surface.preload)
+    assert axis.monitor.settings == settings_of('x', values, axis.surface)
     assert axis.monitor.settings.limits.rcs == 0.5
     assert axis.max_future == 2 * SECOND
+
+
+def test_what_is_plausible_is_stated_or_three_times_the_surface():
+    axis = build()
+    fastest, load = axis.surface.speed_range[1], axis.surface.load_range[1]
+    assert axis.monitor.settings.plausible == {
+        Source.SPEED: 3.0 * fastest,
+        Source.LOAD: 3.0 * load,
+    }
+    stated = build(limits__plausible_speed=300.0, limits__plausible_load=5e3)
+    assert stated.monitor.settings.plausible == {Source.SPEED: 300.0, Source.LOAD: 5e3}
 
 
 def test_a_new_surface_is_used_at_once():

@@ -60,6 +60,20 @@ def test_names():
     ]
 
 
+def test_names_and_hardware_of_two_machines_and_two_axes_differ(core):
+    made = [
+        status
+        for node in ('/mill/monitor', '/lathe/monitor')
+        for axis in ('x', 'y')
+        for status in diagnostics.statuses(node, axis, None, Event(), core.surface(), links=None)
+    ]
+    assert len({status.name for status in made}) == 12
+    assert made[0].name == 'mill/monitor: x: Lubrication'
+    assert made[0].hardware_id == 'mill/x: constant'
+    assert len({status.hardware_id for status in made}) == 4
+    assert diagnostics.failed('/mill/monitor', 'x', 'why')[0].name == made[0].name
+
+
 def test_a_failure_is_an_error_everywhere():
     assert {(status.level, status.message) for status in diagnostics.failed('n', 'x', 'why')} == {
         (ERROR, 'why')
@@ -70,14 +84,14 @@ def test_all_is_well(core):
     made = after(core, LOAD, SPEED)
     assert [status.level for status in made.values()] == [OK, OK, OK]
     assert made['Lubrication'].message == 'optimal'
-    assert {status.hardware_id for status in made.values()} == {'constant'}
+    assert {status.hardware_id for status in made.values()} == {'x: constant'}
 
 
 @pytest.mark.parametrize(
     ('events', 'level', 'message'),
     [
         ([SPEED], STALE, 'not judged: an input is missing'),
-        ([LOAD, STILL], WARN, 'standstill, not judged for long enough yet'),
+        ([LOAD, STILL], OK, 'standstill, not judged for long enough yet'),
         ([LOAD, SPEED, STILL], OK, 'standstill'),
         ([LOAD, SPEED, HEAVY, STILL], WARN, 'not judged: load outside the surface'),
         ([LOAD, sample(Source.SPEED, 1e3)], WARN, 'not judged: speed above the surface'),
@@ -148,6 +162,23 @@ def test_an_input_slower_than_its_timeout_is_told(core):
         'speed comes less often than its timeout allows: set x.speed.timeout to 2.0 or more; '
         'load comes less often than its timeout allows: set x.load.timeout to 2.0 or more',
     )
+
+
+def test_a_glitch_is_told_for_ten_seconds_and_counted(core):
+    def told(after_glitch):
+        stamp = START + after_glitch
+        good = [sample(Source.LOAD, -1000.0, stamp), sample(Source.SPEED, 10.0, stamp)]
+        glitch = sample(Source.SPEED, 1e12)
+        return after(core, LOAD, glitch, *good, settings={'plausible': {Source.SPEED: 300.0}})
+
+    cure = 'mend the source, its unit or scale, or raise limits.plausible_speed or '
+    status = told(10 * SECOND - 1)['Inputs']
+    assert (status.level, status.message) == (
+        WARN,
+        f'speed samples beyond the plausible range were refused: {cure}limits.plausible_load',
+    )
+    assert ('Speed implausible [-]', '1') in [(pair.key, pair.value) for pair in status.values]
+    assert told(10 * SECOND)['Inputs'].level == OK
 
 
 @pytest.mark.parametrize(

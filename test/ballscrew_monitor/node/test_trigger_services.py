@@ -1,0 +1,78 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The services of one axis leave the other one alone; the node-wide ones act on all."""
+
+from ballscrew_msgs.msg import BallScrewState
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+import pytest
+from std_srvs.srv import Trigger
+from surrogate.surface import shipped_surface
+
+SLOW = 0.8  # [rad/s] outside the zone at 1 kN and 40 degC
+
+
+def warned(states):
+    """Tell whether the last judged state is a warning."""
+    return [state.level for state in states if state.judged][-1:] == [BallScrewState.LEVEL_WARN]
+
+
+@pytest.fixture
+def two(node, tmp_path):
+    """Start the node with two axes whose warnings stand; return it, and the file of x."""
+    surface = tmp_path / 'surface.npz'
+    surface.write_bytes(shipped_surface().read_bytes())
+    limits = {f'{axis}__limits__raise_delay': 0.0 for axis in 'xy'}
+    ahead = {f'{axis}__max_future': 3600.0 for axis in 'xy'}
+    node.start(
+        axes="['x','y']", y__speed__field='velocity[x_axis]', x__surface=surface, **limits, **ahead
+    )
+    node.heard = {axis: node.states(axis) for axis in 'xy'}
+    publish = node.machine()
+    for _ in range(3):
+        publish(SLOW)
+    node.until(lambda: all(map(warned, node.heard.values())), 'both warnings')
+    return node, publish, surface
+
+
+def last_after(node, publish):
+    """Return the last state of each axis after one more sample."""
+    done = {axis: heard[-1].judged for axis, heard in node.heard.items()}
+    publish(SLOW)
+    node.until(lambda: all(node.heard[axis][-1].judged > done[axis] for axis in done), 'states')
+    return {axis: heard[-1] for axis, heard in node.heard.items()}
+
+
+def test_an_axis_is_served_by_itself(two):
+    node, publish, surface = two
+    answers = [node.call(Trigger, f'x/{name}') for name in ('acknowledge', 'reset_totals')]
+    assert [answer.success for answer in answers] == [True, True]
+    assert [answer.message for answer in answers] == [
+        'acknowledged of x',
+        'set the totals to zero of x',
+    ]
+    state = last_after(node, publish)
+    assert (state['x'].event_id, state['y'].event_id) == (2, 1)
+    assert state['x'].totals.running_time < state['y'].totals.running_time
+    surface.write_bytes(b'no surface')
+    assert node.call(Trigger, 'y/reload_surface').message == 'reloaded the surface of y'
+    kept = node.call(Trigger, 'x/reload_surface')
+    assert not kept.success
+    assert kept.message.startswith('kept the old surface: axis x: ')
+    assert node.call(Trigger, 'acknowledge').message == 'acknowledged of x, y'
+
+
+def test_an_axis_parked_since_it_was_switched_on_is_well(node):
+    node.start(x__max_future=3600.0)
+    told = node.listen(DiagnosticArray, '/diagnostics')
+    publish = node.machine()
+
+    def parked():
+        publish(0.0)
+        return told and [
+            status
+            for status in told[-1].status
+            if status.message == 'standstill, not judged for long enough yet'
+        ]
+
+    status = node.until(parked, 'the standstill')[0]
+    assert (status.level, status.hardware_id) == (DiagnosticStatus.OK, 'x: nominal')
