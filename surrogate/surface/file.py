@@ -35,9 +35,10 @@ OLD_VERSIONS = (1, 2)
 """Versions whose inputs state a roughness of another model."""
 TIERS = ('closed_form', 'full')
 LARGEST_FILE = 256 * 2**20
-"""Largest file that is read [byte]."""
+"""Largest file that is read, and the most that it may come to when unpacked [byte]."""
 DAMAGE = (
     OSError,
+    MemoryError,
     ValueError,
     KeyError,
     TypeError,
@@ -133,6 +134,7 @@ def read(path: str | Path) -> SurfaceData:
 
 def from_bytes(path: str | Path, content: bytes) -> SurfaceData:
     """Verify the content of a file, called `path` in the sentence of a SurfaceError."""
+    _check_content(path, content)
     header, arrays = _read_arrays(path, content)
     stated, provenance = header.pop('sha256', ''), header.pop('provenance', {})
     try:
@@ -146,6 +148,17 @@ def from_bytes(path: str | Path, content: bytes) -> SurfaceData:
         )
     _check(path, data)
     return data
+
+
+def _check_content(path: str | Path, content: bytes) -> None:
+    """Refuse by its directory a small file that would fill the memory."""
+    try:
+        with zipfile.ZipFile(io.BytesIO(content)) as archive:
+            unpacked = sum(entry.file_size for entry in archive.infolist())
+    except DAMAGE:
+        return  # told when it is read
+    if unpacked > LARGEST_FILE:
+        raise SurfaceError(f'{path}: {unpacked} bytes when unpacked, allowed is {LARGEST_FILE}')
 
 
 def _read_arrays(

@@ -3,8 +3,10 @@
 """The surface file: whole or refused, with one sentence."""
 
 from dataclasses import replace
+import io
 import json
 from pathlib import Path
+import zipfile
 
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -14,6 +16,7 @@ from surrogate.surface import shipped_surface
 from surrogate.surface.file import (
     ENSEMBLE_VERSION,
     FORMAT_VERSION,
+    LARGEST_FILE,
     read,
     SurfaceData,
     SurfaceError,
@@ -181,6 +184,49 @@ def test_other_arrays_are_not_a_surface(tmp_path: Path):
     for path in (plain, bare, pickled):
         with pytest.raises(SurfaceError, match='not a surface file'):
             read(path)
+
+
+def stored(path: Path, *sizes: int) -> None:
+    """Write zeros, which take a thousandth of the room when packed."""
+    with zipfile.ZipFile(path, 'w', zipfile.ZIP_DEFLATED, compresslevel=1) as archive:
+        for number, size in enumerate(sizes):
+            with archive.open(f'field_{number}.npy', 'w') as entry:
+                for begin in range(0, size, 2**20):
+                    entry.write(bytes(min(2**20, size - begin)))
+
+
+def test_a_small_file_that_unpacks_to_much_is_refused_unread(tmp_path: Path, monkeypatch):
+    """By the sum over its arrays: each of them alone would do."""
+    path = tmp_path / 'bomb.npz'
+    half = LARGEST_FILE // 2
+    stored(path, half, half + 1)
+    assert path.stat().st_size < LARGEST_FILE / 100
+    with monkeypatch.context() as patch:
+        patch.setattr(np, 'load', None)
+        with pytest.raises(
+            SurfaceError, match=f': {2 * half + 1} bytes when unpacked, allowed is'
+        ):
+            read(path)
+
+
+def test_the_largest_content_is_not_refused_for_its_size(tmp_path: Path):
+    """Exactly at the limit it is read, and found to be no surface."""
+    path = tmp_path / 'large.npz'
+    stored(path, LARGEST_FILE)
+    with pytest.raises(SurfaceError, match='not a surface file'):
+        read(path)
+
+
+def test_an_array_that_states_more_than_there_is_memory_is_refused(tmp_path: Path):
+    """A few bytes with a head that speaks of 8 PB."""
+    path = tmp_path / 'empty.npz'
+    head = io.BytesIO()
+    large = {'descr': '<f8', 'fortran_order': False, 'shape': (10**15,)}
+    np.lib.format.write_array_header_1_0(head, large)
+    with zipfile.ZipFile(path, 'w') as archive:
+        archive.writestr('field_0.npy', head.getvalue())
+    with pytest.raises(SurfaceError, match='damaged or not a surface file'):
+        read(path)
 
 
 def test_a_missing_file_is_one_sentence(tmp_path: Path):
