@@ -196,6 +196,7 @@ class BallscrewMonitor(LifecycleNode):
     def _clear(self, reason: str) -> None:
         self._stop()
         for station in self._stations.values():
+            station.end_event(reason)
             station.close()
         self._stations = {}
         self._store.locked = False

@@ -29,8 +29,10 @@ from ballscrew_monitor.node.plain_topics import PlainTopics
 from ballscrew_msgs.msg import BallScrewState, OperatingPoint, OutOfZone, PointResult, SurfaceInfo
 from ballscrew_msgs.srv import EvaluateOperatingPoint
 from diagnostic_msgs.msg import DiagnosticStatus
+from rclpy.duration import Duration
 from rclpy.event_handler import PublisherEventCallbacks
 from rclpy.lifecycle import LifecycleNode
+from rclpy.publisher import Publisher
 from rclpy.qos import QoSDurabilityPolicy, QoSProfile, QoSReliabilityPolicy
 from surrogate.files import InputError
 from surrogate.surface import Surface, SurfaceError, SurfacePoint
@@ -38,6 +40,7 @@ from surrogate.surface import Surface, SurfaceError, SurfacePoint
 STATE_QOS = QoSProfile(depth=10, reliability=QoSReliabilityPolicy.RELIABLE)
 LOG_INTERVAL = nanoseconds(1.0)  # [ns] shortest time between two lines about the inputs
 NEWS_INTERVAL = nanoseconds(0.1)  # [ns] shortest time between two diagnostics sent for a change
+LAST_WORD = Duration(seconds=0.5)  # for subscribers to take the end of an event
 LATCHED_QOS = QoSProfile(
     depth=1,
     reliability=QoSReliabilityPolicy.RELIABLE,
@@ -100,6 +103,22 @@ class Station:
     def publish_event(self) -> None:
         """Publish the event that is active, or the last one."""
         self._event.publish(out_of_zone_message(self.axis.name, self.axis.monitor.event))
+
+    def end_event(self, reason: str) -> None:
+        """End the event that is active, if one is, because nothing is judged any more."""
+        event = self.axis.monitor.acknowledge(self._node.get_clock().now().nanoseconds)
+        if event is None:
+            return
+        message = out_of_zone_message(self.axis.name, event)
+        message.advice = (
+            f'ended by the node, not by the axis, nothing is judged any more: {reason}'
+        )
+        # Past the lifecycle: the publisher of an inactive node is mute.
+        Publisher.publish(self._event, message)
+        self._event.wait_for_all_acked(LAST_WORD)
+        self._node.get_logger().warning(
+            f'axis {self.axis.name}: event {event.number}: {message.advice}'
+        )
 
     def publish_info(self) -> None:
         """Publish what the surface and the limits are."""

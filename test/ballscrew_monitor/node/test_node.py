@@ -334,6 +334,19 @@ def test_the_small_services(node, tmp_path):
     assert states[-1].result.validity == PointResult.VALIDITY_VALID
 
 
+def test_a_glitch_is_refused_and_no_total_knows_of_it(node):
+    node.start(**AHEAD)
+    states = node.states()
+    publish = node.machine()
+    feed(node, publish, states, FAST, 2)
+    publish(1e12)
+    feed(node, publish, states, FAST, 2)
+    judged = [state for state in states if state.judged == 4][0]
+    assert judged.inputs[0].dropped == 1
+    assert judged.totals.running_time == pytest.approx(0.04)
+    assert judged.totals.revolutions == pytest.approx(0.04 * FAST / (2.0 * math.pi))
+
+
 def test_a_stamp_from_the_future_is_refused_and_counted(node):
     node.start()
     states = node.states()

@@ -1,0 +1,48 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""A node that judges no longer ends the event that is active, and says why."""
+
+from ballscrew_msgs.msg import OutOfZone
+import pytest
+from rclpy.qos import QoSDurabilityPolicy, QoSProfile
+
+LATCHED = QoSProfile(depth=10, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL)
+SLOW = 0.8  # [rad/s] outside the zone at 1 kN and 40 degC
+
+
+@pytest.fixture
+def outside(node):
+    """Start the node and leave the zone; return the node and what it says of events."""
+    node.start(x__max_future=3600.0, x__limits__raise_delay=0.0)
+    heard = node.listen(OutOfZone, f'{node.name}/x/out_of_zone', LATCHED)
+    publish = node.machine()
+    publish(SLOW)
+    node.until(lambda: heard and heard[-1].active, 'the event')
+    return node, heard
+
+
+def last_word(node, heard):
+    """Return the message that ends the event."""
+    node.until(lambda: not heard[-1].active, 'the end of the event')
+    assert (heard[-1].event_id, heard[-1].cause.text) == (1, heard[-2].cause.text)
+    return heard[-1].advice
+
+
+def test_on_cleanup(outside):
+    node, heard = outside
+    assert node.transition('deactivate')
+    assert node.transition('cleanup')
+    advice = last_word(node, heard)
+    assert advice == (
+        'ended by the node, not by the axis, nothing is judged any more: not configured'
+    )
+    assert advice in node.output.read_text()
+    assert node.transition('configure')
+    assert node.transition('activate')
+    node.until(lambda: heard[-1].event_id == 0, 'that there has been no event yet')
+
+
+def test_on_the_way_out(outside):
+    node, heard = outside
+    assert node.stop() == 0
+    assert last_word(node, heard).endswith('nothing is judged any more: shut down')
