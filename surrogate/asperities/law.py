@@ -89,7 +89,7 @@ class AsperityLaw:
 
     @property
     def error_share(self) -> float:
-        """Standard error of the onset speed over its deviation between marches [-]."""
+        """Return the standard error of the onset speed over its deviation between marches [-]."""
         return self.standard_error / self.deviation if self.deviation else 1.0
 
     def ratio(self, floor: float, pressure: ArrayLike) -> Array:
