@@ -71,7 +71,8 @@ setup(
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{NAME}']),
         (f'share/{NAME}', ['package.xml']),
-        (f'share/{NAME}/config', files('config/*.yaml')),
+        (f'share/{NAME}/config', files('config/*.*')),
+        (f'share/{NAME}/config/layouts', files('config/layouts/*.*')),
         (f'share/{NAME}/launch', files('launch/*.launch.py')),
     ],
     python_requires='>=3.11',

@@ -5,17 +5,21 @@ Start the monitor as a lifecycle node.
 
 With `autostart:=true` the node configures and activates itself; with `false` a lifecycle manager
 does so. `params_file` may be left out: every parameter has a default. An argument that is given
-goes before the parameter file, one that is not leaves it alone.
+goes before the parameter file, one that is not leaves it alone. A `params_file` that is not there
+is an error: the defaults must not pass for it.
 
 """
 
 # ruff takes `launch` for the folder of that name, and not for the package.
 # ruff: noqa: I001
+from pathlib import Path
+
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, OpaqueFunction
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import LifecycleNode
 from launch_ros.parameter_descriptions import ParameterValue
+from surrogate.files import InputError
 
 ARGUMENTS = (
     ('params_file', '', 'Parameter file; empty: the defaults.'),
@@ -26,9 +30,20 @@ ARGUMENTS = (
 )
 
 
+def find_file(context):
+    """Return the parameter file, empty if none is named; raises InputError if it is not there."""
+    file = LaunchConfiguration('params_file').perform(context)
+    if file and not Path(file).is_file():
+        raise InputError(
+            f'params_file is {file}, there is no such file seen from {Path.cwd()}: '
+            'give the path of a file, or leave params_file out for the defaults'
+        )
+    return file
+
+
 def make_node(context):
     """Return the node; a parameter file counts only if one is named."""
-    file = LaunchConfiguration('params_file').perform(context)
+    file = find_file(context)
     switches = {
         name: ParameterValue(LaunchConfiguration(name), value_type=bool)
         for name in ('use_sim_time', 'autostart')

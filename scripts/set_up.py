@@ -36,6 +36,7 @@ SOLVER_LOG = TREE / 'log' / 'solver.log'  # of what is at work at the same time
 INTERFACES = TREE / 'msg_defs'
 INSTALLED_INTERFACES = VENV / 'ballscrew_msgs.txt'
 PACKAGE = 'ballscrew_monitor'
+SHARED = ('config', 'launch')  # folders of which each file is installed
 BAG = TREE / 'bags' / 'nominal_cycle'
 BAG_GENERATOR = TREE / 'bags' / 'nominal_cycle.py'
 # Other modules that decide what the bag looks like.
@@ -192,8 +193,9 @@ def install_package() -> None:
     share = VENV / 'share'
     index = share / 'ament_index' / 'resource_index' / 'packages'
     link(index / PACKAGE, TREE / 'resource' / PACKAGE)
-    for name in ('package.xml', 'config', 'launch'):
-        link(share / PACKAGE / name, TREE / name)
+    link(share / PACKAGE / 'package.xml', TREE / 'package.xml')
+    for name in SHARED:
+        link_files(share / PACKAGE / name, TREE / name)
     # Launch tools look for executables here.
     for name in ('ballscrew', PACKAGE):
         link(VENV / 'lib' / PACKAGE / name, VENV / 'bin' / name)
@@ -204,6 +206,24 @@ def link(place: Path, target: Path) -> None:
     place.parent.mkdir(parents=True, exist_ok=True)
     place.unlink(missing_ok=True)
     place.symlink_to(os.path.relpath(target, place.parent))
+
+
+def link_files(place: Path, folder: Path) -> None:
+    """Make `place` a directory of links to the files of `folder`."""
+    # Launch tools walk the tree without following links to directories.
+    if place.is_symlink():
+        place.unlink()
+    elif place.exists():
+        shutil.rmtree(place)
+    for path in files_below(folder):
+        link(place / path.relative_to(folder), path)
+
+
+def files_below(folder: Path) -> list[Path]:
+    """Return the files of a folder and of those in it, without bytecode."""
+    return sorted(
+        path for path in folder.rglob('*') if path.is_file() and '__pycache__' not in path.parts
+    )
 
 
 def generate_bag() -> None:
@@ -226,6 +246,7 @@ def steps() -> list[Step]:
     interfaces = [path for path in INTERFACES.rglob('*') if path.is_file()]
     cmake = TREE / 'scripts' / 'relocate_ros_wheels.cmake'
     declared = [TREE / name for name in ('package.xml', 'setup.cfg', 'setup.py')]
+    shared = [str(path.relative_to(TREE)) for name in SHARED for path in files_below(TREE / name)]
     bag = [path for pattern in BAG_SOURCES for path in TREE.glob(pattern)]
     solver = [path for pattern in SOLVER_SOURCES for path in TREE.glob(pattern)]
     version = '.'.join(map(str, sys.version_info[:3]))
@@ -260,7 +281,7 @@ def steps() -> list[Step]:
             name='package',
             text=PACKAGE,
             work=install_package,
-            key=digest(environment, files=declared),
+            key=digest(environment, *shared, files=declared),
         ),
     ]
     if BAG_GENERATOR.exists():

@@ -89,9 +89,13 @@ ROSDEP = {
 THEMES = {
     'ballscrew_monitor/node/test_clocks.py',
     'ballscrew_monitor/node/test_cures.py',
+    'ballscrew_monitor/node/test_dump.py',
     'ballscrew_monitor/node/test_loss.py',
+    'ballscrew_monitor/node/test_policy.py',
     'ballscrew_monitor/node/test_solve.py',
     'ballscrew_monitor/test_shared_memory.py',
+    'config/test_deployment.py',
+    'config/test_parameter_files.py',
     'surrogate/builder/full/test_shipped.py',
     'surrogate/ehl/test_identities.py',
     'surrogate/ehl/test_mixed.py',

@@ -272,7 +272,7 @@ def main(args: list[str] | None = None) -> int:
         rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
         node = BallscrewMonitor()
     except (InputError, ParameterException, RuntimeError) as error:
-        print(f'{parameters.NODE_NAME}: {" ".join(str(error).split())}', file=sys.stderr)
+        print(f'{parameters.NODE_NAME}: {parameters.explain(error)}', file=sys.stderr)
         rclpy.try_shutdown()
         return 2
     executor = SingleThreadedExecutor()

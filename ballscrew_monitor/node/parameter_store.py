@@ -43,10 +43,9 @@ class ParameterStore:
         for name, row in rows.items():
             if name in self.values:
                 continue
-            if name in self.given:
-                row.check(name, self.given[name])
-            default = parameters.default_of(name, row)
-            declared = node.declare_parameter(name, default, row.descriptor())
+            value = row.read(self.given.get(name, parameters.default_of(name, row)))
+            row.check(name, value)
+            declared = node.declare_parameter(name, value, row.descriptor(), ignore_override=True)
             self.values[name] = _plain(declared.value)
 
     def _check(self, changed: list[Parameter]) -> SetParametersResult:

@@ -28,6 +28,8 @@ _TYPE_NAMES = {
     str: 'a text',
     list: 'a list of texts',
 }
+BARE_LETTERS = {'y': True, 'Y': True, 'n': False, 'N': False}
+BARE_WORDS = "ROS reads a bare y, n, yes, no, on or off as true or false: quote it, such as 'y'"
 
 
 class Change(enum.Enum):
@@ -67,14 +69,16 @@ class ParameterRow:
             return ''
         return f'{self.low:g} to {self.high:g}' + (', not 0' if self.nonzero else '')
 
+    def read(self, value: Any) -> Any:
+        """Return `value`, or the choice for which ROS reads it: `N` without quotes is false."""
+        if not isinstance(value, bool):
+            return value
+        return next((word for word in self.choices if BARE_LETTERS.get(word) is value), value)
+
     def check(self, name: str, value: Any) -> None:
         """Raise InputError unless `value` is allowed for the parameter `name`."""
-        if type(value) is not type(self.default) or (
-            isinstance(value, list) and not all(isinstance(text, str) for text in value)
-        ):
-            raise InputError(
-                f'parameter {name} is {value!r}, it must be {_TYPE_NAMES[type(self.default)]}'
-            )
+        value = self.read(value)
+        self._check_type(name, value)
         good = not self.choices or value in self.choices
         if isinstance(value, float):
             good = self.low <= value <= self.high and not (self.nonzero and value == 0.0)
@@ -88,6 +92,17 @@ class ParameterRow:
                 self.rule(value)
         except InputError as error:
             raise InputError(f'parameter {name}: {error}') from None
+
+    def _check_type(self, name: str, value: Any) -> None:
+        parts = value if isinstance(value, list) else [value]
+        texts = isinstance(self.default, (str, list))
+        if type(value) is type(self.default) and (
+            not isinstance(value, list) or all(isinstance(part, str) for part in parts)
+        ):
+            return
+        hint = f', {BARE_WORDS}' if texts and any(isinstance(part, bool) for part in parts) else ''
+        allowed = _TYPE_NAMES[type(self.default)]
+        raise InputError(f'parameter {name} is {value!r}, it must be {allowed}{hint}')
 
     def descriptor(self) -> ParameterDescriptor:
         """Return the descriptor that ROS tools show and that rclpy enforces."""

@@ -12,7 +12,13 @@ import pathlib
 import re
 from typing import Any
 
-from ballscrew_monitor.node.parameter_table import AXIS_ROWS, NODE_ROWS, ParameterRow
+from ballscrew_monitor.node.parameter_table import (
+    AXIS_ROWS,
+    BARE_LETTERS,
+    BARE_WORDS,
+    NODE_ROWS,
+    ParameterRow,
+)
 from surrogate.files import InputError
 
 NODE_NAME = 'ballscrew_monitor'
@@ -82,7 +88,9 @@ def read_file(path: str | pathlib.Path, node: str = NODE_NAME) -> dict[str, Any]
         given = _given(_sections(path), node)
         axes = given.get('axes', NODE_ROWS[0].default)
         NODE_ROWS[0].check('axes', axes)
-        check(table(axes), given)
+        rows = table(axes)
+        check(rows, given)
+        given = {name: rows[name].read(value) for name, value in given.items()}
     except InputError as error:
         raise InputError(f'{path}: {error}') from None
     return defaults(axes) | given
@@ -97,11 +105,16 @@ def read_ros_parameters(path: str | pathlib.Path, node: str = NODE_NAME) -> dict
     """
     try:
         given = _addressed(_sections(path), node)
-        if not given:
-            raise InputError(f'it says nothing to the node, begin it with /**/{node}:')
     except InputError as error:
         raise InputError(f'{path}: {error}') from None
     return {name: value for name, value in given.items() if is_of_ros(name)}
+
+
+def explain(error: Exception) -> str:
+    """Return an error of the start as one sentence; ROS does not say what to write instead."""
+    sentence = ' '.join(str(error).split())
+    mixed = "Value type 'bool' do not belong" in sentence
+    return f'{sentence}, {BARE_WORDS}' if mixed else sentence
 
 
 def _given(sections: Mapping[str, Any], node: str) -> dict[str, Any]:
@@ -119,6 +132,8 @@ def _addressed(sections: Mapping[str, Any], node: str) -> dict[str, Any]:
                     f'{key} holds no parameters, they must stand below ros__parameters'
                 )
             given |= _flatten(values)
+    if not given:
+        raise InputError(f'it says nothing to the node, begin it with /**/{node}:')
     return given
 
 
@@ -126,7 +141,11 @@ def _sections(path: str | pathlib.Path) -> dict[str, Any]:
     import yaml  # the node itself is handed its parameters by ROS
 
     try:
-        sections = yaml.safe_load(pathlib.Path(path).read_text())
+        loader = yaml.SafeLoader(pathlib.Path(path).read_text())
+        root = loader.get_single_node()
+        if root is not None:
+            _take_letters_as_ros(root)
+        sections = None if root is None else loader.construct_document(root)
     except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
         reason = ' '.join(str(error).split())
         raise InputError(f'the parameter file cannot be read: {reason}') from None
@@ -135,6 +154,23 @@ def _sections(path: str | pathlib.Path) -> dict[str, Any]:
     ):
         raise InputError('no ROS parameter file, it must be node names with ros__parameters below')
     return sections
+
+
+def _take_letters_as_ros(root: Any) -> None:
+    """Make a value that is a bare letter true or false, as ROS reads it; a key stays a text."""
+    waiting, seen = [root], set()
+    while waiting:
+        part = waiting.pop()
+        if id(part) in seen:  # an alias
+            continue
+        seen.add(id(part))
+        if part.id == 'mapping':
+            waiting += [value for _, value in part.value]
+        elif part.id == 'sequence':
+            waiting += part.value
+        elif not part.style and part.value in BARE_LETTERS:
+            part.tag = 'tag:yaml.org,2002:bool'
+            part.value = str(BARE_LETTERS[part.value])
 
 
 def _flatten(section: Mapping[str, Any], prefix: str = '') -> dict[str, Any]:

@@ -9,6 +9,7 @@ two of them marched again with all waves, on the same places of the raceway, mov
 """
 
 from collections.abc import Callable, Mapping, Sequence
+import contextlib
 from dataclasses import dataclass
 import math
 from typing import Any
@@ -22,10 +23,13 @@ from surrogate.asperities.marches import (
     COARSE,
     FINE,
     inputs_to_json,
+    LawSettings,
     strip_inputs,
     strip_runs,
     StripInputs,
+    StripRun,
 )
+from surrogate.ehl.moving import MarchStatus
 from surrogate.files import InputError
 from surrogate.parameters import Lubricant, Screw
 
@@ -35,6 +39,12 @@ SolveMarches = Callable[[Marches], Mapping[str, Mapping[str, Any] | None]]
 """Solves named marches of plain JSON; None for one that failed."""
 NODES = np.linspace(-1.2, 0.75, 14)
 """Logarithms of the speed over that of the onset at which a law is tabulated [-]."""
+FEWEST = 3
+"""Least marches of which a law is made [-]."""
+CONVERGED = (MarchStatus.CONVERGED.name, MarchStatus.SOME_STEPS.name)
+STRIP, ALL_WAVES = 'strip', 'all waves'
+NEAR = 1.05
+"""Factor on a speed over which a slope is taken [-]."""
 APART = 0.2
 """Least span of the logarithm of the pressure over which a power is fitted [-]."""
 SHARES = ('rcs', 'asperity_share')
@@ -65,6 +75,13 @@ class Marched:
         speed = np.array(self.onset)
         return float(film_over_acting(self.given.waves, self.given.line, speed, self.given.oil))
 
+    @property
+    def steepness(self) -> float:
+        """Exponent of the ratio in the speed at the onset [-]."""
+        speeds = self.onset * np.array([1 / NEAR, NEAR])
+        slow, fast = film_over_acting(self.given.waves, self.given.line, speeds, self.given.oil)
+        return float(math.log(fast / slow) / (2 * math.log(NEAR)))
+
     def expected(self, ratio: float) -> float:
         """Return the speed of the onset [m/s] that a ratio [-] gives this march."""
         wanted = np.array(ratio)
@@ -82,31 +99,50 @@ def build_law(screw: Screw, lubricant: Lubricant, solve: SolveMarches) -> Asperi
     """
     Return the law of a screw and oil from marches that `solve` makes.
 
-    Raises InputError where no march found an onset, as for smooth raceways.
+    Raises InputError where fewer than `FEWEST` marches found an onset, as where roughness is so
+    fine that it is flattened before it touches.
 
     """
     runs = strip_runs(screw, lubricant)
-    given = {
-        name: {run.name: strip_inputs(screw, lubricant, run, settings) for run in some}
-        for name, some, settings in (('all waves', runs[:TWINS], FINE), ('strip', runs, COARSE))
-    }
-    tasks = {
-        f'{kind}, {name}': inputs_to_json(one)
-        for kind, some in given.items()
-        for name, one in some.items()
-    }
-    results = solve(tasks)
-    fine, coarse = (
-        {
-            name: Marched(given=one, found=found)
-            for name, one in some.items()
-            if (found := results[f'{kind}, {name}']) and not math.isnan(found['onset'])
-        }
-        for kind, some in given.items()
-    )
+    fine = _given(screw, lubricant, runs[:TWINS], FINE)
+    coarse = _given(screw, lubricant, runs, COARSE)
     if not coarse:
-        raise InputError('asperity law: no march through the speeds around 0.01 of RCS succeeded')
-    return fit_law(coarse, fine, f'{screw.name}, {lubricant.name}')
+        strip_inputs(screw, lubricant, runs[0], COARSE)  # raises what it says of the roughness
+    tasks = {f'{ALL_WAVES}, {name}': inputs_to_json(one) for name, one in fine.items()}
+    tasks |= {f'{STRIP}, {name}': inputs_to_json(one) for name, one in coarse.items()}
+    results = solve(tasks)
+    marched = _marched(STRIP, coarse, results)
+    if len(marched) < FEWEST:
+        raise InputError(
+            f'asperity law: {len(marched)} of {len(runs)} marches went through the speeds around '
+            f'RCS {ONSET_RCS:g}, allowed is {FEWEST} or more'
+        )
+    all_waves = _marched(ALL_WAVES, fine, results)
+    return fit_law(marched, all_waves, f'{screw.name}, {lubricant.name}')
+
+
+def _given(
+    screw: Screw, lubricant: Lubricant, runs: Sequence[StripRun], settings: LawSettings
+) -> dict[str, StripInputs]:
+    """Return the inputs of those marches of which an onset is expected, by their names."""
+    given = {}
+    for run in runs:
+        with contextlib.suppress(InputError):
+            given[run.name] = strip_inputs(screw, lubricant, run, settings)
+    return given
+
+
+def _marched(
+    kind: str, given: Mapping[str, StripInputs], results: Mapping[str, Mapping[str, Any] | None]
+) -> dict[str, Marched]:
+    """Return the marches that converged and found an onset, by their names."""
+    return {
+        name: Marched(given=one, found=found)
+        for name, one in given.items()
+        if (found := results[f'{kind}, {name}'])
+        and found['status'] in CONVERGED
+        and not math.isnan(found['onset'])
+    }
 
 
 def fit_law(
@@ -122,24 +158,29 @@ def fit_law(
     first = next(iter(coarse.values()))
     power, ratio = _over_pressure(list(coarse.values()), first.pressure)
     missed = [
-        math.log(one.onset / one.expected(ratio * (one.pressure / first.pressure) ** power))
+        math.log(one.onset / expected)
         for one in coarse.values()
+        if (expected := one.expected(ratio * (one.pressure / first.pressure) ** power))
     ]
+    deviation = float(np.std(missed, ddof=min(2, len(missed) - 1)))
     twins = [(coarse[name], one) for name, one in fine.items() if name in coarse]
-    gain = float(np.mean([math.log(one.ratio / twin.ratio) for twin, one in twins] or [0.0]))
+    gains = [math.log(one.ratio / twin.ratio) for twin, one in twins] or [0.0]
     every = [*coarse.values(), *fine.values()]
     curves = {name: _falling([one.curve(name) for one in every]) for name in SHARES}
     curves['rcs'] *= ONSET_RCS / float(np.interp(0.0, NODES, curves['rcs']))
     shortest = min(one.given.shortest for one in every)
     return AsperityLaw(
-        onset_ratio=ratio * math.exp(gain),
+        onset_ratio=ratio * math.exp(np.mean(gains)),
         film_floor=first.given.film_floor,
         pressure=first.pressure,
         pressure_power=power,
         log_speed=tuple(NODES.tolist()),
         **{name: tuple(values.tolist()) for name, values in curves.items()},
         loss_factor=tuple(_line([one.curve('loss_factor') for one in every]).tolist()),
-        deviation=float(np.std(missed, ddof=min(2, len(missed) - 1))),
+        deviation=deviation,
+        standard_error=math.hypot(
+            deviation / math.sqrt(len(missed)), _scatter(gains) / every[-1].steepness
+        ),
         marches=len(every),
         shortest_wave=shortest,
         source=source,
@@ -156,11 +197,25 @@ def _over_pressure(marches: Sequence[Marched], pressure: float) -> tuple[float, 
     return float(power), float(np.exp(level))
 
 
+def _scatter(gains: Sequence[float]) -> float:
+    """Return the standard error of the mean of some numbers [-], 0 for one."""
+    return float(np.std(gains, ddof=1)) / math.sqrt(len(gains)) if len(gains) > 1 else 0.0
+
+
 def _falling(curves: Sequence[Array]) -> Array:
-    """Return the parabola through the logit of the mean of shares over `NODES` [-]."""
+    """
+    Return the parabola through the logit of the mean of shares over `NODES` [-].
+
+    A straight line where the parabola does not fall everywhere; InputError where that does not.
+
+    """
     inside, mean, weight = _mean(curves)
-    fit = np.polyfit(NODES[inside], logit(np.clip(mean, NOTHING, 1 - NOTHING)), 2, w=weight)
-    return np.asarray(expit(np.minimum.accumulate(np.polyval(fit, NODES))))
+    wanted = logit(np.clip(mean, NOTHING, 1 - NOTHING))
+    for degree in (2, 1):
+        values = np.polyval(np.polyfit(NODES[inside], wanted, degree, w=weight), NODES)
+        if np.all(np.diff(values) < 0):
+            return np.asarray(expit(values))
+    raise InputError('asperity law: contact of the marches does not fall as the speed rises')
 
 
 def _line(curves: Sequence[Array]) -> Array:

@@ -36,7 +36,7 @@ PLACES = 8
 NOTHING = 1e-7
 """RCS that counts as none [-]."""
 FLOOR_POWER = 1 / 3
-"""Exponent of the film at the onset over the floor [-]; docs/theory/rolling_contact.md."""
+"""Exponent in the floor of the film over the acting rms at the onset [-]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,8 +67,9 @@ class AsperityLaw:
     for the floor `film_floor` [m] and the Hertz pressure `pressure` [Pa]; it falls with that
     pressure by the `pressure_power` [-], since pressure presses summits flat. `log_speed` rises;
     RCS, asperity share and rolling loss over that of a smooth contact there [-]. Standard
-    deviation between marches of the logarithm of the onset speed [-], how many marches, the
-    shortest wave in them [m]; `source` says in words where the law is from.
+    deviation between marches of the logarithm of the onset speed and standard error of that of
+    the law [-], how many marches, the shortest wave in them [m]; `source` says in words where the
+    law is from.
 
     """
 
@@ -81,9 +82,15 @@ class AsperityLaw:
     asperity_share: tuple[float, ...]
     loss_factor: tuple[float, ...]
     deviation: float
+    standard_error: float
     marches: int
     shortest_wave: float
     source: str
+
+    @property
+    def error_share(self) -> float:
+        """Standard error of the onset speed over its deviation between marches [-]."""
+        return self.standard_error / self.deviation if self.deviation else 1.0
 
     def ratio(self, floor: float, pressure: ArrayLike) -> Array:
         """
@@ -154,15 +161,21 @@ class AsperityLaw:
         Return the curves at logarithms of the speed over that of the onset [-].
 
         Slower than known, RCS and share go to 1 with the speed; faster, RCS goes on as a power of
-        it, and none of it counts below `NOTHING`.
+        it, and none of it counts below `NOTHING`; the loss goes to that of a smooth contact.
 
         """
         rcs, share = (self._share(log_speed, one) for one in (self.rcs, self.asperity_share))
         return {
             'rcs': rcs,
             'asperity_share': np.minimum(rcs, share),
-            'loss_factor': np.interp(log_speed, self.log_speed, self.loss_factor),
+            'loss_factor': self._loss(log_speed),
         }
+
+    def _loss(self, log_speed: Array) -> Array:
+        """Return the rolling loss over that of a smooth contact [-]."""
+        found = np.interp(log_speed, self.log_speed, self.loss_factor)
+        faster = np.maximum(log_speed - self.log_speed[-1], 0.0)
+        return np.asarray(1 + (found - 1) * np.exp(-faster))
 
     def _share(self, log_speed: Array, known: tuple[float, ...]) -> Array:
         """Return a share [-]: a cubic of its logarithm within, and what `at` says beyond."""

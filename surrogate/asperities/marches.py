@@ -67,7 +67,7 @@ class LawSettings:
 COARSE = LawSettings()
 """Marches that show how contact grows, at many pressures and temperatures."""
 FINE = LawSettings(shortest=0.06, along=5.0, across=4.0, transits=6.0, faster=1.8, slower=0.5)
-"""Marches with all waves, or as short ones as 370 nodes along have room for."""
+"""Marches with all waves, or as short ones as some 400 nodes along have room for."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -183,7 +183,7 @@ def strip_inputs(
     if not onset:
         raise InputError(
             f'roughness: Rq {1e6 * screw.composite_rms:g} um is flattened before it touches, '
-            'allowed is 0 or so much that contact begins above the film floor'
+            'allowed is so much that contact begins above the film floor'
         )
     ends = (settings.faster * onset, settings.slower * onset)
     return StripInputs(

@@ -81,7 +81,7 @@ def _answer(found: SolvedPoint, law: AsperityLaw) -> PointOnDemand:
     if not found.converged:
         return PointOnDemand(converged=False, status=found.status)
     nothing = dict.fromkeys(FIELDS, math.nan)
-    error = found.rcs_deviation / math.sqrt(law.marches)
+    error = found.rcs_deviation * law.error_share
     return PointOnDemand(
         converged=True,
         status=found.status,

@@ -40,7 +40,8 @@ SOLVED = (
 )
 """Status by the number of nuts that carry load."""
 FLOATING_SHARE = 0.02
-"""Share of the load of the other nut below which balls that find no balance count as idle [-]."""
+"""Share of the load of the other nut below which a nut that is not solved counts as idle [-]: its
+balls float on films thicker than their approach."""
 SAME_FORCE = 1e-3
 """Normal forces that differ by less, over the larger, count as the same [-]."""
 
@@ -187,7 +188,7 @@ def rebalance_screw(
 def _without_floating(
     screw: Screw, point: OperatingPoint, nuts: tuple[NutLoad, NutLoad], solved: Sequence[SolvedNut]
 ) -> list[SolvedNut]:
-    """Return the nuts; relieved balls that float on their oil and find no balance are idle."""
+    """Return the nuts; a relieved one whose balls float, and so are not solved, is idle."""
     loaded, relieved = nuts
     if solved[1].failure and relieved.force < FLOATING_SHARE * loaded.force:
         return [solved[0], make_nut(screw, point, replace(relieved, force=0.0), ())]

@@ -96,7 +96,11 @@ def query_page(record: dict[str, Any]) -> str:
 def _line(title: str, unit: str, record: dict[str, Any], key: str, name: str) -> str:
     """Return one number with its errors, as far as they are known."""
     texts = []
-    for kind, words in (('error', 'interpolation'), ('std', 'of one draw'), ('stderr', 'of mean')):
+    for kind, words in (
+        ('error', 'interpolation'),
+        ('std', 'between strips'),
+        ('stderr', 'of mean'),
+    ):
         found = 'efficiency_' + kind if name == 'efficiency' else derived_key(name, kind)
         value = record.get(found, math.nan)
         if math.isfinite(value):

@@ -15,6 +15,7 @@ import types
 from unittest import mock
 
 import pytest
+from surrogate.files import InputError
 
 FILE = pathlib.Path(__file__).resolve().parents[2] / 'launch' / 'ballscrew_monitor.launch.py'
 NAMES = (
@@ -58,18 +59,32 @@ def test_arguments_have_defaults_and_descriptions(launched):
         assert isinstance(facts['default_value'], str)
 
 
+@pytest.fixture
+def mine(tmp_path, monkeypatch):
+    """Return the name of a parameter file in the working directory."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / 'mine.yaml').write_text('')
+    return 'mine.yaml'
+
+
 @pytest.mark.parametrize(('file', 'files'), [('', []), ('mine.yaml', ['mine.yaml'])])
-def test_the_node_is_the_one_of_the_package(launched, file, files):
+def test_the_node_is_the_one_of_the_package(launched, mine, file, files):
     _, node = launched(params_file=file)
     assert {node[name] for name in ('package', 'executable', 'name')} == {'ballscrew_monitor'}
     assert node['parameters'] == files
 
 
 @pytest.mark.parametrize('name', ['use_sim_time', 'autostart'])
-def test_an_argument_overrides_the_file_only_if_it_is_given(launched, name):
+def test_an_argument_overrides_the_file_only_if_it_is_given(launched, mine, name):
     declared, _ = launched()
     assert declared[name]['default_value'] == ''
-    _, node = launched(params_file='mine.yaml', **{name: 'false'})
+    _, node = launched(params_file=mine, **{name: 'false'})
     file, switches = node['parameters']
-    assert file == 'mine.yaml'
+    assert file == mine
     assert list(switches) == [name]
+
+
+@pytest.mark.parametrize('name', ['yours.yaml', '.'])
+def test_a_parameter_file_that_is_not_there_is_an_error(launched, mine, name):
+    with pytest.raises(InputError, match=f'^params_file is {name}, there is no such file'):
+        launched(params_file=name)

@@ -5,16 +5,21 @@
 from collections.abc import Callable
 from functools import partial
 import importlib.util
+import os
 from pathlib import Path
+import runpy
 import sys
 import threading
 from types import ModuleType
+from typing import Any
 
 import pytest
 
 SCRIPT = Path(__file__).resolve().parents[2] / 'scripts' / 'set_up.py'
 
 DEADLINE = 60.0  # [s]
+
+PACKAGE = 'ballscrew_monitor'
 
 SetUp = Callable[..., list[str]]
 
@@ -29,6 +34,7 @@ def module(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
     monkeypatch.setitem(sys.modules, 'set_up', loaded)
     specification.loader.exec_module(loaded)
     monkeypatch.setattr(loaded, 'TREE', tmp_path)
+    monkeypatch.setattr(loaded, 'VENV', tmp_path / '.venv')
     monkeypatch.setattr(loaded, 'PYTHON', Path(sys.executable))
     monkeypatch.setattr(loaded, 'STAMPS', tmp_path / 'set_up.json')
     monkeypatch.setattr(loaded, 'LOG', tmp_path / 'log' / 'set_up.log')
@@ -181,3 +187,55 @@ def test_key_follows_names_and_contents(module: ModuleType, tmp_path: Path) -> N
     first.write_text('y')
     keys.append(module.digest('step', files=[first]))
     assert len(set(keys)) == 4
+
+
+def walked(share: Path) -> set[str]:
+    """Return the files below `share` as launch tools find them: no link to a directory counts."""
+    return {
+        str(Path(folder, name).relative_to(share))
+        for folder, _, names in os.walk(share, followlinks=False)
+        for name in names
+    }
+
+
+def test_installed_files_are_found_without_following_links(
+    module: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Also over an installation of links to directories, and after a file is gone."""
+    monkeypatch.setattr(module, 'run', lambda *command: None)
+    wanted = {'config/a.yaml', 'config/layouts/b.json', 'launch/c.launch.py', 'package.xml'}
+    for name in wanted:
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(name)
+    share = tmp_path / '.venv' / 'share' / PACKAGE
+    module.link(share / 'launch', tmp_path / 'launch')
+    module.install_package()
+    assert walked(share) == wanted
+    assert all((share / name).read_text() == name for name in wanted)
+    (tmp_path / 'config' / 'a.yaml').unlink()
+    module.install_package()
+    assert walked(share) == wanted - {'config/a.yaml'}
+    assert (tmp_path / 'launch' / 'c.launch.py').exists()
+
+
+def test_package_installs_each_shared_file(
+    module: ModuleType, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What setup.py lists is what the set-up links."""
+    tree = SCRIPT.parents[1]
+    asked: dict[str, Any] = {}
+    monkeypatch.chdir(tree)
+    monkeypatch.setattr('setuptools.setup', lambda **facts: asked.update(facts))
+    runpy.run_path('setup.py')
+    listed = {
+        f'{place}/{Path(name).name}'.removeprefix(f'share/{PACKAGE}/')
+        for place, names in asked['data_files']
+        for name in names
+        if place.startswith(f'share/{PACKAGE}/')
+    }
+    linked = {
+        str(path.relative_to(tree))
+        for name in module.SHARED
+        for path in module.files_below(tree / name)
+    }
+    assert listed == linked

@@ -70,6 +70,7 @@ def march_stand_in(inputs: Mapping[str, Any]) -> dict[str, Any]:
     x = np.linspace(-1.5, 1.0, 40)
     rcs = ONSET_RCS / (ONSET_RCS + (1 - ONSET_RCS) * np.exp(STEEPNESS * x))
     return {
+        'status': 'CONVERGED',
         'onset': onset,
         'speed': (onset * np.exp(x)).tolist(),
         'rcs': rcs.tolist(),

@@ -64,7 +64,7 @@ def _columns(
         load, speeds = float(nodes.load[j]), nodes.speeds(j, k).tolist()
         heat = float(nodes.temperature[k])
         # Loads of either sign share a chain unless their speeds differ.
-        name = f'{abs(load)!r} N, temperature {k}, {speeds[0]!r} rad/s'
+        name = f'{abs(load)!r} N, temperature {k}, {len(speeds)} from {speeds[0]!r} rad/s'
         chains[name] = chain_inputs(screw, lubricant, law, abs(load), heat, speeds)
         places[j, k] = name, load
     results = run('chain', chains)
@@ -117,7 +117,7 @@ def _surface(
         worst_contact=worst,
         mask=mask,
         deviations={'rcs': deviation},
-        standard_errors={'rcs': deviation / np.sqrt(law.marches)},
+        standard_errors={'rcs': deviation * law.error_share},
     )
 
 

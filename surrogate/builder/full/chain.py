@@ -19,8 +19,9 @@ from surrogate.screw.contacts import ScrewSettings
 from surrogate.screw.solve import rebalance_screw, ScrewSolution, solve_screw
 from surrogate.surface import FIELDS, SolvedPoint
 
-WORK = 'full tier 10'
-"""Solver and version of what a chain returns; part of the key under which it is kept."""
+WORK = 'full tier 11'
+"""Solver and version of what a chain returns, constants of the asperity law with it; part of the
+key under which it is kept."""
 
 
 @dataclass(frozen=True, slots=True)

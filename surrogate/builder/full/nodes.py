@@ -33,6 +33,8 @@ BESIDE = 1e-4
 """Distance of the nodes beside the idle load, over that load [-]."""
 ROUNDING = 1e-9
 """Error of a mapped speed [-]."""
+LIGHTEST = 0.003
+"""Least load of a screw without preload over the largest [-]."""
 SMOOTH_ONSET = 1e-3
 """Entrainment speed that stands for the onset of smooth raceways [m/s]."""
 
@@ -121,7 +123,11 @@ def _magnitudes(screw: Screw, settings: FullSettings) -> Array:
     """Return the magnitudes of the loads [N]: below the idle load, and above it."""
     most, idle = max(map(abs, settings.load_range)), idle_load(screw)
     below, above = (1 - BESIDE) * idle, (1 + BESIDE) * idle
-    if idle <= 0 or most <= above:
+    if idle <= 0:
+        # Without preload there is no contact at zero load: nodes crowd towards it.
+        cells = settings.load_cells + settings.unloaded_cells
+        return np.union1d(0.0, np.geomspace(LIGHTEST * most, most, cells))
+    if most <= above:
         return np.linspace(0.0, most, settings.load_cells + 1)
     shared = np.linspace(0.0, below, settings.load_cells + 1)
     halved = below - (shared[-1] - shared[-2]) * 0.5 ** np.arange(1, settings.idle_halvings + 1)

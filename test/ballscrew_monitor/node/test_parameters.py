@@ -53,7 +53,13 @@ def test_every_parameter_is_described(name):
         ('x.handedness', 'Right', 'allowed is one of right, left'),
         ('autostart', 1, 'it must be true or false'),
         ('axes', 'x', 'it must be a list of texts'),
-        ('axes', [1], 'it must be a list of texts'),
+        ('axes', [1], 'it must be a list of texts$'),
+        (
+            'axes',
+            [True],
+            r"axes is \[True\], it must be a list of texts, .* quote it, such as 'y'",
+        ),
+        ('x.screw', False, "it must be a text, ROS reads a bare .* quote it, such as 'y'"),
         ('x.no_such', 1.0, 'parameter x.no_such is unknown'),
     ],
 )
@@ -141,6 +147,15 @@ def test_later_sections_win_and_other_nodes_do_not_count(tmp_path):
         ('/**: {ros__parameters: }', 'holds no parameters, they must stand below'),
         ('/**: {ros__parameters: [1.0]}', 'holds no parameters'),
         ('ballscrew_monitor: {x: {oil: a}}', 'ballscrew_monitor holds no parameters'),
+        (
+            '/**: {ros__parameters: {axes: [x, y, z]}}',
+            "'x', True, 'z'., it must be a list .* quote it",
+        ),
+        (
+            '/**: {ros__parameters: {x: {screw: N}}}',
+            'x.screw is False, it must be a text, .* quote it',
+        ),
+        ('/cell/ballscrew_monitor: {ros__parameters: {x: {oil: a}}}', 'says nothing to the node'),
         ('1: {ros__parameters: {x: {oil: a}}}', 'no ROS parameter file'),
     ],
 )
@@ -154,3 +169,22 @@ def test_bad_files_are_refused_by_their_name(tmp_path, text, match):
 def test_a_missing_file_is_refused(tmp_path):
     with pytest.raises(InputError, match='cannot be read'):
         parameters.read_file(tmp_path / 'none.yaml')
+
+
+def test_quoted_letters_and_groups_of_one_letter_are_texts(tmp_path):
+    path = written(tmp_path, "/**: {ros__parameters: {axes: [x, 'y'], y: {oil: a}}}")
+    assert parameters.read_file(path)['y.oil'] == 'a'
+
+
+def test_the_newton_needs_no_quotes(tmp_path):
+    path = written(
+        tmp_path, '/**: {ros__parameters: {x: {load: {unit: N}, screw: &n "N", oil: *n}}}'
+    )
+    values = parameters.read_file(path)
+    assert (values['x.load.unit'], values['x.screw'], values['x.oil']) == ('N', 'N', 'N')
+
+
+def test_the_error_of_ros_for_mixed_types_is_told_with_its_cure():
+    mixed = RuntimeError("Sequence should be of same type.\n Value type 'bool' do not belong at 3")
+    assert parameters.explain(mixed).endswith("quote it, such as 'y'")
+    assert parameters.explain(RuntimeError('other\n thing')) == 'other thing'

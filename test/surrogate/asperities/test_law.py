@@ -32,6 +32,7 @@ LAW = AsperityLaw(
     asperity_share=(0.25, 0.07, 0.008, 0.0004),
     loss_factor=(1.5, 1.3, 1.2, 1.1),
     deviation=0.1,
+    standard_error=0.05,
     marches=8,
     shortest_wave=3e-6,
     source='made up',
@@ -45,12 +46,13 @@ def contact_at(speed, waves=ROUGH, law=LAW, floor=FLOOR):
 
 
 def test_the_curve_passes_its_nodes():
-    """RCS 0.01 at the onset; the loss factor stays at its ends."""
+    """RCS 0.01 at the onset; the loss stays at its slow end and goes to 1 at its fast one."""
     found = LAW.at(np.array(LAW.log_speed))
     for name in ('rcs', 'asperity_share', 'loss_factor'):
         assert found[name] == pytest.approx(getattr(LAW, name))
     assert float(LAW.at(np.array(0.0))['rcs']) == pytest.approx(ONSET_RCS)
-    assert LAW.at(np.array([-9.0, 9.0]))['loss_factor'].tolist() == [1.5, 1.1]
+    loss = LAW.at(np.array([-9.0, 1.5, math.inf]))['loss_factor']
+    assert loss == pytest.approx([1.5, 1 + 0.1 * math.exp(-1.0), 1.0])
 
 
 def test_beyond_the_curve_all_touches_or_nothing():
@@ -79,7 +81,7 @@ def test_contacts_touch_less_the_faster_they_roll(speed, faster):
     assert slow.rcs <= 1
     assert slow.asperity_share <= slow.rcs + 1e-12
     assert slow.rcs_deviation >= 0
-    assert 1.1 - 1e-12 <= slow.loss_factor <= 1.5 + 1e-12
+    assert 1 - 1e-12 <= slow.loss_factor <= 1.5 + 1e-12
 
 
 def test_rest_and_films_below_the_floor_touch_everywhere():
@@ -89,6 +91,7 @@ def test_rest_and_films_below_the_floor_touch_everywhere():
         assert contact_at(1e-6, waves).rcs == pytest.approx(1.0)
     none = contact_at(0.1, SMOOTH)
     assert (none.rcs, none.asperity_share, none.rcs_deviation) == (0.0, 0.0, 0.0)
+    assert none.loss_factor == pytest.approx(1.0)
     assert LAW.onset(SMOOTH, CONTACT, LOAD, OIL, FLOOR) == 0.0
     assert contact_at(100 * ONSET).rcs == 0.0
 

@@ -62,7 +62,7 @@ def test_a_surface_of_formulas_takes_the_shipped_law():
 def test_what_is_uncertain_is_the_rcs_between_strips(solved):
     found, _ = solved
     assert found.deviations['rcs'] > 0
-    error = found.deviations['rcs'] / math.sqrt(LAW.marches)
+    error = found.deviations['rcs'] * LAW.error_share
     assert found.standard_errors['rcs'] == pytest.approx(error)
     for name in set(FIELDS) - {'rcs'}:
         assert math.isnan(found.deviations[name])

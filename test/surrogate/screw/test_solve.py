@@ -47,6 +47,7 @@ LAW = AsperityLaw(
     asperity_share=(0.25, 0.008, 0.0001),
     loss_factor=(1.6, 1.3, 1.2),
     deviation=0.1,
+    standard_error=0.05,
     marches=8,
     shortest_wave=3e-6,
     source='made up',

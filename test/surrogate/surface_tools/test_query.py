@@ -96,7 +96,7 @@ def test_draws_are_told(tmp_path, capsys):
     assert found['rcs_stderr'] == pytest.approx(0.005)
     assert found['friction_torque_std_Nm'] is None
     assert run(tmp_path / 'a.npz', '--speed-rpm', 600, '--load-N', 1000) == 0
-    assert 'of one draw 0.01, of mean 0.005)' in capsys.readouterr().out
+    assert 'between strips 0.01, of mean 0.005)' in capsys.readouterr().out
 
 
 def test_a_table_for_a_table(tmp_path, capsys):

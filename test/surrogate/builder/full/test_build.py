@@ -62,7 +62,7 @@ def test_file_of_the_full_tier_is_read_back(data, tmp_path):
     point = surface.lookup(3.0, 500.0, 313.15)
     assert point.validity is Validity.VALID
     assert point.rcs_std == pytest.approx(0.3 * point.rcs, rel=0.05)
-    assert point.rcs_stderr == pytest.approx(point.rcs_std / math.sqrt(law.marches), rel=0.01)
+    assert point.rcs_stderr == pytest.approx(point.rcs_std * law.error_share, rel=0.01)
     assert math.isnan(point.friction_torque_std)
 
 
@@ -76,7 +76,7 @@ def test_nodes_are_what_solves_give(data, solve):
         for name in FIELDS:
             assert data.fields[name][i, j, k] == pytest.approx(getattr(found, name), rel=1e-6)
         assert data.deviations['rcs'][i, j, k] == pytest.approx(found.rcs_deviation, rel=1e-6)
-        error = found.rcs_deviation / math.sqrt(law.marches)
+        error = found.rcs_deviation * law.error_share
         assert data.standard_errors['rcs'][i, j, k] == pytest.approx(error, rel=1e-6)
     for name in FIELDS:
         assert np.isnan(data.fields[name][data.mask]).all()
@@ -200,7 +200,7 @@ def test_nothing_that_converges_is_one_sentence(screw, oil, stand_in):
 
     with pytest.raises(InputError, match='no point of the surface converged'):
         build_full(screw, oil, SETTINGS, no_chain)
-    with pytest.raises(InputError, match='asperity law: no march'):
+    with pytest.raises(InputError, match='asperity law: 0 of 8 marches'):
         build_full(screw, oil, SETTINGS, lambda kind, tasks: dict.fromkeys(tasks))
 
 

@@ -1,0 +1,69 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The systemd unit and the layouts name what is there."""
+
+import configparser
+import json
+from pathlib import Path
+import re
+import xml.etree.ElementTree as ElementTree
+
+from ballscrew_monitor.node import parameters
+from ballscrew_msgs.msg import BallScrewState
+from rosidl_parser.definition import BasicType, NamespacedType
+
+CONFIG = Path(__file__).resolve().parents[2] / 'config'
+STATE = '/ballscrew_monitor/x/state'
+
+
+def unit():
+    """Return the lines of the systemd unit that are no comments, by section."""
+    parser = configparser.ConfigParser(strict=False, interpolation=None, delimiters=['='])
+    parser.optionxform = str
+    parser.read(CONFIG / 'ballscrew_monitor.service')
+    return parser
+
+
+def test_the_unit_starts_the_executable_with_a_parameter_file():
+    service = unit()['Service']
+    program, *arguments = service['ExecStart'].split()
+    assert Path(program).name == parameters.NODE_NAME
+    assert arguments[:2] == ['--ros-args', '--params-file']
+    assert service['RestartPreventExitStatus'] == '2'
+    assert service['KillSignal'] == 'SIGINT'
+    assert unit()['Install']['WantedBy'] == 'multi-user.target'
+
+
+def is_a_number_of_the_state(path):
+    """Tell whether names, outermost first, lead to a number in a state."""
+    kind, message = None, BallScrewState()
+    for name in path:
+        kind = dict(zip(message.get_fields_and_field_types(), message.SLOT_TYPES)).get(name)
+        if isinstance(kind, NamespacedType):
+            message = getattr(message, name)
+    return isinstance(kind, BasicType)
+
+
+def drawn_by_foxglove():
+    """Return the paths that the layout of Foxglove draws, and check that each panel is placed."""
+    text = (CONFIG / 'layouts' / 'foxglove_axis_x.json').read_text()
+    layout = json.loads(text)
+    panels = layout['configById']
+    assert set(re.findall(r'"((?:\w+)!x\d*)"(?!:)', text)) == set(panels)
+    paths = [path['value'] for panel in panels.values() for path in panel.get('paths', [])]
+    return {tuple(path.removeprefix(f'{STATE}.').split('.')) for path in paths}
+
+
+def drawn_by_plotjuggler():
+    """Return the paths that the layout of PlotJuggler draws."""
+    tree = ElementTree.parse(CONFIG / 'layouts' / 'plotjuggler_axis_x.xml')
+    names = [curve.get('name') for curve in tree.iter('curve')]
+    return {tuple(name.removeprefix(f'{STATE}/').split('/')) for name in names}
+
+
+def test_layouts_draw_the_same_numbers_of_the_state():
+    drawn = drawn_by_foxglove()
+    assert drawn == drawn_by_plotjuggler()
+    assert {('result', 'efficiency'), ('result', 'rcs'), ('level',)} <= drawn
+    assert all(is_a_number_of_the_state(path) for path in drawn)
+    assert not is_a_number_of_the_state(('result', 'efficency'))
