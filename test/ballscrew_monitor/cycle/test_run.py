@@ -185,7 +185,7 @@ def test_samples_without_a_verdict_are_a_failure(short_bag, tmp_path, monkeypatc
     params = tmp_path / 'params.yaml'
     params.write_text(
         '/**/ballscrew_monitor:\n  ros__parameters:\n    x:\n'
-        '      load: {offset: 9.0e+5}\n      temperature: {topic: oil_temperature}\n'
+        '      load: {offset: 9.0e+3}\n      temperature: {topic: oil_temperature}\n'
     )
     assert run(plan(short_bag, params, tmp_path / 'out', 1.0)) == 1
     err = capsys.readouterr().err
