@@ -21,12 +21,14 @@ class Hearing:
         """Begin to listen on a clock; times [ns]."""
         self._source, self._clock, self._max_future = source, clock, max_future
         self._tracker = Tracker(source.source, configured=True, timeout=timeout, max_lag=max_lag)
+        self.messages = 0
         self._numbers: list[float] = []
         self._last: int | None = None  # [ns]
         self._longest_gap = 0  # [ns]
 
     def take(self, message: Any) -> None:
         """Take a message."""
+        self.messages += 1
         now = self._clock.now().nanoseconds
         event = self._source.read(message, now=now, max_future=self._max_future)
         if isinstance(event, InputSample):
