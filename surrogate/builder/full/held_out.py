@@ -21,11 +21,11 @@ Ends = tuple[float, float]
 HeldOutPlace = tuple[float, float, float]
 """Speed [rad/s], load [N], temperature [K]."""
 
-NEAR_ONSET = (-1.25, 0.75)
-"""Speed coordinates between which contact sets in [-]."""
+MUCH, NEAR_ONSET = (-1.25, -0.4), (-0.4, 0.75)
+"""Speed coordinates between which contact is much, and between which it sets in [-]."""
 NEAR_IDLE = 0.8
 """Part of the idle load from which on the relieved nut is near unloading [-]."""
-SPEEDS = (NEAR_ONSET, (NEAR_ONSET[1], math.inf), (-math.inf, NEAR_ONSET[0]))
+SPEEDS = (NEAR_ONSET, (NEAR_ONSET[1], math.inf), MUCH, (-math.inf, MUCH[0]))
 """Ends of the speed coordinates within which errors are alike [-]."""
 LEAST_IN_RATINGS = 0.01
 """Stands for the preload of a screw without one, over the static rating [-]."""

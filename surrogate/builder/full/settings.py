@@ -21,11 +21,11 @@ class FullSettings(SurfaceSettings):
     """
 
     speed_nodes: int = 22
-    load_cells: int = 4
+    load_cells: int = 6
     idle_halvings: int = 3
     unloaded_cells: int = 4
     temperature_nodes: int = 5
-    held_out: int = 18
+    held_out: int = 60
     seed: int = 1
 
     def __post_init__(self) -> None:

@@ -55,6 +55,7 @@ def test_loads_crowd_towards_the_idle_one(screw, settings):
         nodes, _ = signed_loads(screw, asked)
         return nodes[(nodes >= 0) & (nodes <= below * (1 + 1e-9))] / below
 
+    settings = replace(settings, load_cells=4)
     assert shared(replace(settings, idle_halvings=0)) == pytest.approx([0, 0.25, 0.5, 0.75, 1])
     crowded = np.array([0, 8, 16, 24, 28, 30, 31, 32]) / 32
     assert shared(settings) == pytest.approx(crowded)
