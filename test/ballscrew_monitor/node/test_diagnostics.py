@@ -3,7 +3,10 @@
 """What the diagnostics say, case by case."""
 
 import dataclasses
+from pathlib import Path
+import re
 
+from ballscrew_monitor.core import reasons
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, Why
 from ballscrew_monitor.core.links import Link
@@ -239,3 +242,30 @@ def test_messages_hold_no_measured_numbers(core):
     for events in ([LOAD, SPEED], [SPEED], [LOAD, sample(Source.SPEED, 1e3)]):
         for status in after(core, *events).values():
             assert not any(character.isdigit() for character in status.message)
+
+
+def first_words(text):
+    """Return what a message begins with, up to where its cure begins."""
+    return re.split('[:,]', text, maxsplit=1)[0].strip()
+
+
+SENTENCES = [
+    *diagnostics._NOT_JUDGED.values(),
+    *(f'outside the optimal zone: {cause}' for cause in diagnostics._CAUSES.values()),
+    diagnostics.NOTHING_YET,
+    diagnostics.INACTIVE,
+]
+BEGINNINGS = [
+    diagnostics.CLOCK_STANDS,
+    *reasons._REFUSED.values(),
+    *(text for _, text in reasons._TROUBLES if text),
+    reasons.slow_reason(1.0, 'x.speed'),
+]
+
+
+@pytest.mark.parametrize(
+    'words', [*SENTENCES, *sorted({first_words(text) for text in BEGINNINGS})]
+)
+def test_the_guide_says_what_to_do_about_each_message(words):
+    guide = (Path(__file__).parents[3] / 'docs' / 'guide' / 'node.md').read_text()
+    assert words in guide
