@@ -53,6 +53,7 @@ class Why(enum.IntEnum):
     OTHER_CLOCK = 3  # stamps of the wall clock, far ahead of simulated time
     TOO_SHORT = 4  # the array of the field is empty, or ends before the element
     IMPLAUSIBLE = 5  # beyond what the machine can do: a glitch, or another unit
+    HOLE = 6  # no speed follows from a position and one long before it
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)

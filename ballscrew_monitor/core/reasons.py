@@ -32,6 +32,7 @@ _REFUSED = {
     Why.OTHER_CLOCK: 'its stamps are of the wall clock and the node runs on simulated time, '
     'stamp with /clock or unset use_sim_time',
     Why.IMPLAUSIBLE: f'it is beyond the plausible range, {_PLAUSIBLE}',
+    Why.HOLE: 'its positions come less often than its timeout allows, raise speed.timeout',
 }
 _TROUBLES: tuple[tuple[Callable[[Health], bool], str], ...] = (
     (

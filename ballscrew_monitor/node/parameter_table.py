@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Every parameter of the node, declared once: its default, what is allowed, and a sentence."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable
 import dataclasses
 import enum
 import math
@@ -10,9 +10,9 @@ from typing import Any
 
 from ballscrew_monitor.core.conversions import (
     HANDS,
-    LINEAR_SPEED_UNITS,
     LOAD_UNITS,
-    ROTARY_SPEED_UNITS,
+    POSITION_UNITS,
+    SPEED_UNITS,
     TEMPERATURE_UNITS,
     TORQUE_UNITS,
 )
@@ -28,6 +28,7 @@ _TYPE_NAMES = {
     str: 'a text',
     list: 'a list of texts',
 }
+LOAD_SOURCES = ('topic', 'motor_torque')
 BARE_LETTERS = {'y': True, 'Y': True, 'n': False, 'N': False}
 BARE_WORDS = "ROS reads a bare y, n, yes, no, on or off as true or false: quote it, such as 'y'"
 
@@ -166,7 +167,7 @@ def _input_rows(
     topic: str,
     type_name: str,
     field: str,
-    units: Mapping[str, float],
+    units: Iterable[str],
     timeout: float,
     what: str,
 ) -> tuple[ParameterRow, ...]:
@@ -248,9 +249,25 @@ AXIS_ROWS = (
         topic='joint_states',
         type_name='sensor_msgs/msg/JointState',
         field='velocity[{axis}_axis]',
-        units=ROTARY_SPEED_UNITS | LINEAR_SPEED_UNITS,
+        units=(*SPEED_UNITS, *POSITION_UNITS),
         timeout=0.5,
         what='speed: of the screw in a rotary unit, of the nut in a linear',
+    ),
+    ParameterRow(
+        name='speed.window',
+        default=0.05,
+        unit='s',
+        low=1e-3,
+        high=10.0,
+        text='Time over which positions, in a unit without time, give a speed by least squares; '
+        'half of it is the delay.',
+    ),
+    ParameterRow(
+        name='speed.wrap',
+        default=0.0,
+        low=0.0,
+        high=1e12,
+        text='Position, in the unit above, at which it begins anew, such as 360.0; 0: never.',
     ),
     *_input_rows(
         'load',
@@ -260,6 +277,46 @@ AXIS_ROWS = (
         units=LOAD_UNITS,
         timeout=0.5,
         what='axial force on the nut, positive along the axis',
+    ),
+    ParameterRow(
+        name='load.source',
+        default=LOAD_SOURCES[0],
+        choices=LOAD_SOURCES,
+        text='Where the load comes from: its topic, or the motor torque by the surface.',
+    ),
+    ParameterRow(
+        name='load.parts_uncertainty',
+        default=0.2,
+        unit='-',
+        low=0.0,
+        high=1.0,
+        text='Uncertainty of inertia torque and drag over themselves, for a load from the torque.',
+    ),
+    ParameterRow(
+        name='load.largest_share',
+        default=0.5,
+        unit='-',
+        low=0.0,
+        high=1.0,
+        text='Share of inertia and drag in the motor torque above which no load is derived.',
+    ),
+    ParameterRow(
+        name='inertia',
+        default=0.0,
+        unit='kg m2',
+        low=0.0,
+        high=1e3,
+        text='Inertia of screw, coupling, rotor and slide, reflected to the screw; its torque is '
+        'taken off before a load is derived.',
+    ),
+    ParameterRow(
+        name='acceleration_window',
+        default=0.05,
+        unit='s',
+        low=1e-3,
+        high=10.0,
+        text='Time over which speeds give the acceleration for it by least squares; half of it is '
+        'the delay.',
     ),
     *_input_rows(
         'temperature',
@@ -286,7 +343,39 @@ AXIS_ROWS = (
         field='data',
         units=TORQUE_UNITS,
         timeout=0.5,
-        what='motor torque at the screw, only compared with the model; empty: none',
+        what='motor torque, compared with the model or the source of the load; empty: none',
+    ),
+    ParameterRow(
+        name='torque.constant',
+        default=0.0,
+        unit='N m/A',
+        low=0.0,
+        high=1e6,
+        text='Torque constant of the motor, for the unit A; 0: not stated.',
+    ),
+    ParameterRow(
+        name='torque.rated',
+        default=0.0,
+        unit='N m',
+        low=0.0,
+        high=1e6,
+        text='Rated torque of the motor, for the unit %; 0: not stated.',
+    ),
+    ParameterRow(
+        name='torque.gear_ratio',
+        default=1.0,
+        unit='-',
+        low=1e-3,
+        high=1e3,
+        text='Turns of the motor per turn of the screw; a gear without loss.',
+    ),
+    ParameterRow(
+        name='torque.uncertainty',
+        default=0.0,
+        low=0.0,
+        high=1e12,
+        text='Half width of the range of the true torque, in the unit above; a load derived from '
+        'the torque needs it; 0: not stated.',
     ),
     ParameterRow(
         name='limits.rcs',
