@@ -23,7 +23,7 @@ from surrogate.surface import Surface, Validity
 from surrogate.units import TURN
 
 NAN = math.nan
-TOLERANCE = 1e-9  # [N] of a root
+TOLERANCE = 1e-6  # [N] of the last step to a root, which converges faster than linearly
 MOST_STEPS = 60
 STANDSTILL = 'the screw stands still, friction may hold any part of the load'
 NO_ACCELERATION = 'the acceleration is not known yet, and with it the torque that inertia takes'
