@@ -35,7 +35,7 @@ class LoadDerivation:
     """
     How a load is derived from the torque.
 
-    `inertia` [kg m2] of all that is accelerated, reflected to the screw; `window` [ns] of the
+    `inertia` [kg m2] of what turns, at the screw; `window` [ns] of the
     acceleration; `torque_uncertainty` [N m] at the screw, a half width; `parts_uncertainty` [-]
     that of inertia torque and drag over themselves; `largest_share` [-] of inertia torque and drag
     in the measured torque up to which a load is derived.

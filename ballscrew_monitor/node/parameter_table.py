@@ -306,8 +306,8 @@ AXIS_ROWS = (
         unit='kg m2',
         low=0.0,
         high=1e3,
-        text='Inertia of screw, coupling, rotor and slide, reflected to the screw; its torque is '
-        'taken off before a load is derived.',
+        text='Inertia of screw, coupling and rotor, at the screw; its torque is taken off before '
+        'a load is derived.',
     ),
     ParameterRow(
         name='acceleration_window',

@@ -57,7 +57,7 @@ def test_a_motor_current_takes_the_place_of_the_load():
     assert inputs[Source.TORQUE].scaling(10.0) == pytest.approx(6.2)
     derivation = axis.monitor.settings.derivation
     assert derivation.torque_uncertainty == pytest.approx(0.15 * 0.62)
-    assert derivation.inertia == 0.0021
+    assert derivation.inertia == 0.0012
 
 
 def test_numbers_of_a_plc_carry_no_stamp():
