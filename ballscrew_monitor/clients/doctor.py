@@ -24,7 +24,7 @@ from ballscrew_monitor.core.inputs import Input, make_input, Source
 from ballscrew_monitor.core.links import Link, types_of
 from ballscrew_monitor.node import parameters
 from ballscrew_monitor.node.axis import derivation_of, is_configured, load_surface, scaling_of
-from ballscrew_monitor.node.parameter_table import ParameterRow
+from ballscrew_monitor.node.parameter_row import ParameterRow
 from ballscrew_monitor.node.qos import check_overrides, input_qos, overridden, publishers_on
 from ballscrew_monitor.node.topics import absolute
 import rclpy
