@@ -69,12 +69,14 @@ class Running:
     """
     How the screw runs, in the machine frame.
 
-    speed [rad/s], acceleration [rad/s2], motor_torque [N m], temperature [K].
+    speed [rad/s], acceleration and by how much it changes of late [rad/s2], motor_torque [N m],
+    temperature [K].
 
     """
 
     speed: float
     acceleration: float
+    acceleration_change: float
     motor_torque: float
     temperature: float
     direction: Direction
@@ -94,6 +96,8 @@ def derive_load(running: Running, surface: Surface, settings: LoadDerivation) ->
         )
     driving = machine_torque(running.motor_torque - taken, running.direction)
     margin = settings.torque_uncertainty + settings.parts_uncertainty * parts
+    if settings.inertia:
+        margin += settings.inertia * running.acceleration_change
     return _machine(_solve(surface, running, driving, margin), running.direction)
 
 

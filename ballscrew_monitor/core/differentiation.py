@@ -61,16 +61,35 @@ class SlopeFilter:
     @property
     def slope(self) -> float:
         """Return the slope [1/s], of the last two samples at least; NaN with fewer."""
-        samples = self._samples
-        if len(samples) < FEWEST:
-            return NAN
-        end, value = samples[-1]
-        # From the last sample: differences of large numbers keep their digits.
-        times = [seconds(stamp - end) for stamp, _ in samples]
-        middle = math.fsum(times) / len(times)
-        arms = [time - middle for time in times]
-        moment = math.fsum(arm * (other - value) for arm, (_, other) in zip(arms, samples))
-        return moment / math.fsum(arm * arm for arm in arms)
+        return _slope(list(self._samples))
+
+    @property
+    def change(self) -> float:
+        """
+        Return by how much the slope of the newest quarter of the window is another [1/s].
+
+        That quarter has two samples at least. What the slope leaves out shows here: its own
+        change within the window, and noise.
+
+        """
+        samples = list(self._samples)
+        begin = samples[-1][0] - self.window // 4 if samples else 0
+        newest = [sample for sample in samples if sample[0] >= begin]
+        newest = newest if len(newest) >= FEWEST else samples[-FEWEST:]
+        return abs(_slope(newest) - _slope(samples))
+
+
+def _slope(samples: list[tuple[int, float]]) -> float:
+    """Return the slope of the least-squares line [1/s]; NaN of less than two samples."""
+    if len(samples) < FEWEST:
+        return NAN
+    end, value = samples[-1]
+    # From the last sample: differences of large numbers keep their digits.
+    times = [seconds(stamp - end) for stamp, _ in samples]
+    middle = math.fsum(times) / len(times)
+    arms = [time - middle for time in times]
+    moment = math.fsum(arm * (other - value) for arm, (_, other) in zip(arms, samples))
+    return moment / math.fsum(arm * arm for arm in arms)
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)

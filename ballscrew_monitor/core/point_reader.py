@@ -59,6 +59,7 @@ class PointReader:
             running = Running(
                 speed=speed,
                 acceleration=NAN if self._speeds is None else self._speeds.slope,
+                acceleration_change=NAN if self._speeds is None else self._speeds.change,
                 motor_torque=torque,
                 temperature=temperature,
                 direction=self._direction,

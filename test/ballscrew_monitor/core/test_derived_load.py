@@ -44,11 +44,12 @@ def told(**changes):
     return LoadDerivation(**(values | changes))
 
 
-def at(speed, torque, *, acceleration=0.0, temperature=313.15):
+def at(speed, torque, *, acceleration=0.0, change=0.0, temperature=313.15):
     """Return how a screw runs in the direction of its speed."""
     return Running(
         speed=speed,
         acceleration=acceleration,
+        acceleration_change=change,
         motor_torque=torque,
         temperature=temperature,
         direction=direction_of(speed),
@@ -143,9 +144,10 @@ def test_the_half_width_is_the_sum_of_what_is_stated(straight):
     straight.numbers |= {'friction_torque_error': 0.0625, 'friction_torque_stderr': 0.03125}
     straight.parasitic = 0.25
     settings = told(torque_uncertainty=0.125, parts_uncertainty=0.5)
-    found = derive_load(at(10.0, 1.125 + INERTIA * 125.0, acceleration=125.0), straight, settings)
+    running = at(10.0, 1.125 + INERTIA * 125.0, acceleration=125.0, change=50.0)
+    found = derive_load(running, straight, settings)
     parts = 0.25 + INERTIA * 125.0
-    expected = (0.125 + 0.5 * parts + 0.0625 + 0.03125) * 1024.0
+    expected = (0.125 + 0.5 * parts + INERTIA * 50.0 + 0.0625 + 0.03125) * 1024.0
     assert found.uncertainty == pytest.approx(expected, rel=1e-9)
 
 

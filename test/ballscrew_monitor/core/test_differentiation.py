@@ -75,6 +75,37 @@ def test_the_response_of_few_samples_is_the_least_squares_line(count, omega):
     assert found == pytest.approx((response * wave[-1][1]).real, rel=1e-6, abs=1e-6 * omega)
 
 
+def changes(values, step=STEP):
+    """Return how the slope changes after each sample."""
+    made, found = SlopeFilter(window=WINDOW, max_gap=TIMEOUT), []
+    for i, value in enumerate(values):
+        made.take(START + i * step, value)
+        found.append(made.change)
+    return found
+
+
+def test_a_ramp_does_not_change():
+    found = changes([3.0 * i for i in range(100)])
+    assert math.isnan(found[0])
+    assert found[1:] == pytest.approx([0.0] * 99, abs=1e-9)
+
+
+def test_a_slope_that_sets_in_shows_until_the_window_knows_it():
+    sets_in = 60
+    values = [max(i - sets_in, 0) * STEP / SECOND for i in range(200)]
+    found = changes(values)
+    assert found[sets_in] == 0.0
+    after = sets_in + 13  # samples of a quarter of the window
+    slope = slopes([(START + i * STEP, value) for i, value in enumerate(values)])[after]
+    assert found[after] == pytest.approx(1.0 - slope, rel=1e-9)
+    assert found[-1] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_the_change_of_few_samples_is_that_of_the_last_two():
+    found = changes([0.0, 0.0, 0.0, 1.0], step=WINDOW // 3)[-1]
+    assert found == pytest.approx(60.0 - 0.3 * 60.0)
+
+
 def test_sources_slower_than_the_window_give_the_last_difference():
     assert slopes([(START, 0.0), (START + 2 * WINDOW, 1.0)])[-1] == pytest.approx(10.0)
 

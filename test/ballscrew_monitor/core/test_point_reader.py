@@ -165,6 +165,17 @@ def test_inertia_is_taken_off_while_the_axis_speeds_up(core):
     assert state.point.axial_load_uncertainty == pytest.approx(128.0 + 25.0)
 
 
+def test_a_ramp_that_sets_in_is_within_the_uncertainty(core):
+    """From the second sample on: of the first one the speeds know nothing yet."""
+    monitor = derived(core, inertia=INERTIA, torque_uncertainty=1e-6, largest_share=1e9)
+    for i in range(60):
+        speed = 10.0 + 2.0 * max(i - 20, 0)
+        torque = 1.125 + (200.0 * INERTIA if i >= 20 else 0.0)
+        state = run(monitor, speed, torque, START + i * STEP)
+        if i not in (0, 20):
+            assert abs(state.point.axial_load + 1024.0) <= state.point.axial_load_uncertainty
+
+
 def test_the_filter_of_the_acceleration_follows_a_new_time_line(core):
     monitor = derived(core, inertia=INERTIA)
     for i in range(5):
