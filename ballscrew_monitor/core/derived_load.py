@@ -180,15 +180,16 @@ def _reach(load: float, loads: Array, excess: Array, margin: float, per_newton: 
     Linear between the scanned loads; beyond their ends friction counts as constant.
 
     """
-    ends = [abs(float(one) - load) for one in loads[np.abs(excess) <= margin]]
+    places = [loads[np.abs(excess) <= margin]]
     for level in (-margin, margin):
         i = np.flatnonzero((excess[1:] > level) != (excess[:-1] > level))
         part = (level - excess[i]) / (excess[i + 1] - excess[i])
-        ends += [abs(float(one) - load) for one in loads[i] + part * (loads[i + 1] - loads[i])]
+        places.append(loads[i] + part * (loads[i + 1] - loads[i]))
+    reach = float(np.abs(np.concatenate(places) - load).max(initial=0.0))
     for end, left in ((loads[0], excess[0] + margin), (loads[-1], margin - excess[-1])):
         if left > 0.0:
-            ends.append(abs(float(end) - load) + float(left) / per_newton)
-    return max(ends)
+            reach = max(reach, abs(float(end) - load) + float(left) / per_newton)
+    return reach
 
 
 def _root(
