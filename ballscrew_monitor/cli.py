@@ -95,8 +95,7 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
-def _add_run(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument('--bag', type=Path, default=BAG, help=f'bag to play (default {BAG_TEXT})')
+def _add_params(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--params',
         type=Path,
@@ -104,6 +103,11 @@ def _add_run(parser: argparse.ArgumentParser) -> None:
         metavar='FILE',
         help=f'parameters of the node (default {PARAMS_TEXT})',
     )
+
+
+def _add_run(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument('--bag', type=Path, default=BAG, help=f'bag to play (default {BAG_TEXT})')
+    _add_params(parser)
     parser.add_argument(
         '--out',
         type=Path,
@@ -119,13 +123,7 @@ def _add_run(parser: argparse.ArgumentParser) -> None:
 
 def _add_replay(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('bag', type=Path, metavar='BAG', help='bag directory or MCAP file')
-    parser.add_argument(
-        '--params',
-        type=Path,
-        default=PARAMS,
-        metavar='FILE',
-        help=f'parameters of the node (default {PARAMS_TEXT})',
-    )
+    _add_params(parser)
     parser.add_argument('--json', action='store_true', help='print JSON')
     parser.set_defaults(handler=_replay)
 
@@ -146,13 +144,7 @@ def _add_play(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_doctor(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        '--params',
-        type=Path,
-        default=PARAMS,
-        metavar='FILE',
-        help=f'parameters of the node (default {PARAMS_TEXT})',
-    )
+    _add_params(parser)
     parser.add_argument(
         '--seconds',
         type=float,

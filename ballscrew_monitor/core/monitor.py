@@ -118,14 +118,18 @@ class Monitor:
         """
         Set the level back to UNKNOWN at `now` [ns]; return the event that this ends, if any.
 
-        What is still outside is raised again as a new event.
+        Stamps may run ahead of the clock, and events follow the stamps: it ends with the last one
+        at the earliest. What is still outside is raised again as a new event.
 
         """
-        self._hold = Hold(since=now)
+        last = self._inputs[Source.SPEED].last
+        stamp = now if last is None else max(now, last.stamp)
+        self._hold = Hold(since=stamp)
         self._pending = None
         if not self.event.active:
             return None
-        self.event = dataclasses.replace(self.event, active=False, stamp=now)
+        end = max(stamp, self.event.start)
+        self.event = dataclasses.replace(self.event, active=False, stamp=end)
         return self.event
 
     def current_point(self, now: int) -> MachinePoint | str:
