@@ -105,14 +105,22 @@ class BagWriter:
         )
         self._topics[topic.name] = topic
 
-    def write(self, topic: str, data: bytes, *, log_time: int, publish_time: int) -> None:
-        """Append a serialised message of an announced topic; times [ns]."""
+    def write(
+        self,
+        topic: str,
+        data: bytes,
+        *,
+        log_time: int,
+        publish_time: int,
+        sequence: int | None = None,
+    ) -> None:
+        """Append a serialised message of an announced topic, by default numbered; times [ns]."""
         self._writer.add_message(
             self._channels[topic],
             log_time=log_time,
             data=data,
             publish_time=publish_time,
-            sequence=self._counts[topic],
+            sequence=self._counts[topic] if sequence is None else sequence,
         )
         if not self._counts:
             self._first = self._last = log_time
@@ -141,6 +149,13 @@ class BagWriter:
         Path(f'{self.path}{ACTIVE}').replace(self.path)
         text = yaml.safe_dump({'rosbag2_bagfile_information': self._metadata()}, sort_keys=False)
         replace_file(self.path.with_name('metadata.yaml'), text.encode())
+
+    def abandon(self) -> None:
+        """Let go of a file that cannot be finished; what it holds stays as it is."""
+        try:
+            self._file.close()
+        except OSError:  # the same that made it impossible to finish
+            pass
 
     def _open(self, directory: Path) -> BinaryIO:
         try:
