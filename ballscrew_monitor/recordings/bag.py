@@ -47,6 +47,7 @@ class Message:
     data: bytes
     log_time: int
     publish_time: int
+    sequence: int = 0
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -106,9 +107,21 @@ class Bag:
                     f'bag {self.path}: topic {name} holds no message, at least one is needed'
                 )
 
-    def messages(self, topics: Collection[str] | None = None) -> Iterator[Message]:
-        """Yield messages of `topics` (None: all) by log time; raises InputError on damage."""
+    def messages(
+        self, topics: Collection[str] | None = None, *, as_written: bool = False
+    ) -> Iterator[Message]:
+        """
+        Yield messages of `topics` (None: all) by log time; raises InputError on damage.
+
+        Or `as_written`, file after file.
+
+        """
         wanted = list(self.topics if topics is None else topics)
+        if as_written:
+            for file in self.files:
+                with contextlib.ExitStack() as stack:
+                    yield from self._read(stack, file, wanted, as_written=True)
+            return
         with contextlib.ExitStack() as stack:
             streams = [self._read(stack, file, wanted) for file in self.files]
             yield from heapq.merge(*streams, key=lambda message: message.log_time)
@@ -119,16 +132,24 @@ class Bag:
             pass
 
     def _read(
-        self, stack: contextlib.ExitStack, file: Path, wanted: list[str]
+        self,
+        stack: contextlib.ExitStack,
+        file: Path,
+        wanted: list[str],
+        *,
+        as_written: bool = False,
     ) -> Iterator[Message]:
         with self._damage_is_input(file):
             reader = make_reader(stack.enter_context(file.open('rb')), validate_crcs=True)
-            for _, channel, message in reader.iter_messages(topics=wanted):
+            for _, channel, message in reader.iter_messages(
+                topics=wanted, log_time_order=not as_written
+            ):
                 yield Message(
                     topic=channel.topic,
                     data=message.data,
                     log_time=message.log_time,
                     publish_time=message.publish_time,
+                    sequence=message.sequence,
                 )
 
     def _read_summary(self, file: Path) -> tuple[int, int]:
