@@ -67,7 +67,7 @@ class OwnRecording:
 
     def steps(self) -> Iterator[Step]:
         """Yield every step; raises InputError for a recording that cannot be replayed here."""
-        for message in self._bag.messages(as_written=True):
+        for message in self._bag.as_written():
             entry = _entry(message) if message.topic == self._journal else None
             if entry is not None and entry['kind'] == 'lost':  # of a message in the burst
                 self._lost[entry['topic']] = entry['count']
