@@ -145,7 +145,7 @@ class McapStorage:
         channels: dict[int, Channel] = {}
         schemas: dict[int, Schema] = {}
         times: list[int] = []
-        for record in self._records():
+        for record in whole_records(self.file):
             if isinstance(record, Schema):
                 schemas[record.id] = record
             elif isinstance(record, Channel):
@@ -167,7 +167,7 @@ class McapStorage:
         channels = dict(self._channels)
         waiting: list[tuple[int, int, Message]] = []
         number = 0
-        for record in self._records():
+        for record in whole_records(self.file):
             if isinstance(record, Channel):
                 channels[record.id] = record
             channel = channels.get(record.channel_id) if isinstance(record, McapMessage) else None
@@ -183,11 +183,6 @@ class McapStorage:
         while waiting:
             yield heapq.heappop(waiting)[2]
 
-    def _records(self) -> Iterator[Any]:
-        """Yield the records that are whole, those of a chunk in its place."""
-        with self.file.open('rb') as stream, contextlib.suppress(*DAMAGE):
-            for record in StreamReader(stream, emit_chunks=True).records:
-                yield from _inside(record) if isinstance(record, Chunk) else [record]
 
 
 class SqliteStorage:
@@ -237,6 +232,13 @@ class SqliteStorage:
                 f'bag {self.file} is truncated or damaged, it must be a complete sqlite3 file of '
                 f'rosbag2 ({reason})'
             ) from None
+
+
+def whole_records(file: Path) -> Iterator[Any]:
+    """Yield the records of an MCAP file that are whole, those of a chunk in its place."""
+    with file.open('rb') as stream, contextlib.suppress(*DAMAGE):
+        for record in StreamReader(stream, emit_chunks=True).records:
+            yield from _inside(record) if isinstance(record, Chunk) else [record]
 
 
 def _message(channel: Channel, message: McapMessage) -> Message:
