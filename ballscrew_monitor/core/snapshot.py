@@ -16,15 +16,23 @@ import enum
 import math
 from typing import Any
 
-from ballscrew_monitor.core import advice, conversions, estimate, fields, health, inputs, judgement
+from ballscrew_monitor.core import (
+    advice,
+    conversions,
+    estimate,
+    fields,
+    health,
+    inputs,
+    judgement,
+    tally,
+)
 from ballscrew_monitor.core import state as states
-from ballscrew_monitor.core import tally
 from ballscrew_monitor.core.monitor import Monitor
 from surrogate.files import InputError
 from surrogate.surface import Regime, Surface
 
 GIVEN = ('settings', 'surface', '_surface_id')  # parts of a monitor that are not written
-ENUMS = {
+ENUMS: dict[str, type[enum.Enum]] = {
     kind.__name__: kind
     for kind in (
         conversions.Direction,
@@ -39,7 +47,7 @@ ENUMS = {
         Regime,
     )
 }
-CLASSES = {
+CLASSES: dict[str, type[Any]] = {
     kind.__name__: kind
     for kind in (
         advice.Advisor,
@@ -62,7 +70,7 @@ CLASSES = {
 
 
 def freeze_monitor(monitor: Monitor) -> dict[str, Any]:
-    """Return what a monitor remembers, as JSON takes it; raises TypeError for what is not listed."""
+    """Return what a monitor remembers, as JSON takes it; raises TypeError for other classes."""
     return {name: _freeze(part) for name, part in _parts(monitor).items() if name not in GIVEN}
 
 
@@ -79,7 +87,9 @@ def thaw_monitor(
     wanted = _parts(monitor).keys() - set(GIVEN)
     if frozen.keys() != wanted:
         odd = ', '.join(sorted(frozen.keys() ^ wanted))
-        raise InputError(f'the recording is of another version of the monitor, it differs in {odd}')
+        raise InputError(
+            f'the recording is of another version of the monitor, it differs in {odd}'
+        )
     try:
         for name, part in frozen.items():
             setattr(monitor, name, _thaw(part, surface))
@@ -144,7 +154,7 @@ def _thaw_object(value: Mapping[str, Any], surface: Surface) -> Any:
         return advice.Advisor(surface=surface, **parts)
     if dataclasses.is_dataclass(kind):
         return kind(**parts)
-    made = kind.__new__(kind)
+    made: Any = object.__new__(kind)
     for name, part in parts.items():
         setattr(made, name, part)
     return made

@@ -64,7 +64,7 @@ class FrameSender:
     """Sends frames into a pipe without ever waiting for it."""
 
     def __init__(self, pipe: int, *, most: int = MOST_BACKLOG) -> None:
-        """Send into the file descriptor `pipe`, keeping at most `most` [B] that it does not take."""
+        """Send into the descriptor `pipe`, keeping at most `most` [B] that it does not take."""
         os.set_blocking(pipe, False)
         self._pipe = pipe
         self._most = most

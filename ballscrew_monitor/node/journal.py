@@ -25,6 +25,7 @@ from rclpy.serialization import serialize_message
 from std_msgs.msg import String
 
 VERSION = 1
+LATCHED = ('OutOfZone', 'SurfaceInfo')
 STRING = 'std_msgs/msg/String'
 AXIS_PERIOD = nanoseconds(10.0)  # [ns] after which all is said of an axis again
 RESTART = nanoseconds(10.0)  # [ns] after which a lost process is started again
@@ -67,7 +68,7 @@ class Journal:
         self._process.flush()
 
     def _tell_loss(self, topic: str, lost: int | None, now: int) -> None:
-        """Say how many messages were lost before the next; that it is unknown, when that begins."""
+        """Say how many messages were lost before the next; that it is unknown, just once."""
         known = topic not in self._unknown_loss
         if lost == 0 and known or lost is None and not known:
             return
@@ -79,9 +80,12 @@ class Journal:
         if self._process is not None:
             self._note(now, {'kind': 'tick', 'stamp': grid})
 
-    def say(self, topic: str, type_name: str, offer: str, message: Any, now: int) -> None:
+    def say(self, topic: str, message: Any, now: int) -> None:
         """Take a message that the node publishes at `now` [ns] of its clock."""
         if self._process is not None:
+            kind = type(message)
+            type_name = f'{kind.__module__.split(".")[0]}/msg/{kind.__name__}'
+            offer = 'LATCHED' if kind.__name__ in LATCHED else 'RELIABLE'
             self._put(topic, type_name, offer, serialize_message(message), now, now, 0)
 
     def trigger(self, now: int) -> None:
@@ -122,7 +126,7 @@ class Journal:
         self._note(now, entry)
 
     def due(self, axes: Iterable[str], steady: int) -> list[str]:
-        """Return which axes are to be described again at `steady` [ns]: one, or all after a hole."""
+        """Return which axes are to be described again at `steady` [ns]: one; all after a hole."""
         if self._process is None:
             return []
         if self._process.lost and steady - self._started > RESTART:
@@ -131,7 +135,9 @@ class Journal:
             self._hole = False
             self._said.clear()
             self._note(0, {'kind': 'hole'})
-        late = [name for name in axes if steady - self._said.get(name, -AXIS_PERIOD) >= AXIS_PERIOD]
+        late = [
+            name for name in axes if steady - self._said.get(name, -AXIS_PERIOD) >= AXIS_PERIOD
+        ]
         chosen = late if not self._said else late[:1]
         self._said |= dict.fromkeys(chosen, steady)
         return chosen
@@ -143,7 +149,8 @@ class Journal:
             self._process = None
 
     def _restart(self, steady: int) -> None:
-        assert self._process is not None and self._start is not None
+        assert self._process is not None
+        assert self._start is not None
         self._process.close()
         self._process, self._started = self._start(), steady
         self._topics.clear()
@@ -151,7 +158,9 @@ class Journal:
 
     def _note(self, now: int, entry: Mapping[str, Any]) -> None:
         text = json.dumps(entry, allow_nan=False, separators=(',', ':'))
-        self._put(self._name, STRING, 'RELIABLE', serialize_message(String(data=text)), now, now, 0)
+        self._put(
+            self._name, STRING, 'RELIABLE', serialize_message(String(data=text)), now, now, 0
+        )
 
     def _put(
         self,

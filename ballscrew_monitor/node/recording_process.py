@@ -1,8 +1,9 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The process that writes the recording of a node: started, fed and asked how it does from here."""
+"""The process that writes the recording of a node: it is started, fed and asked from here."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+import functools
 import json
 import os
 from pathlib import Path
@@ -10,13 +11,46 @@ import subprocess
 import sys
 from typing import Any
 
+from ballscrew_monitor.node.correction_store import AUTO
 from ballscrew_monitor.node.frames import Frame, FrameSender
 from ballscrew_monitor.node.solver_process import worker_environment
+from surrogate.files import InputError
 
 MODULE = 'ballscrew_monitor.recordings.black_box'
 PIPE_SIZE = 2**20  # [B]
+MEGABYTE = 1e6
 LONGEST_LINE = 2**16  # [B]
 PATIENCE = 2.0  # [s] for the last frames to be taken
+
+
+def recording(
+    values: Mapping[str, Any], state: Path | None
+) -> Callable[[], 'RecordingProcess'] | None:
+    """
+    Return what starts the recording that the parameters `values` ask for, None: none is.
+
+    `state` is where the node keeps what outlives it. Raises InputError when there is no place.
+
+    """
+    if values['record'] == 'off':
+        return None
+    folder = Path(values['record_dir'])
+    if values['record_dir'] == AUTO:
+        if state is None:
+            raise InputError(
+                f'parameter record is {values["record"]!r} and there is no state_dir: set '
+                'record_dir to the directory of the recordings'
+            )
+        folder = state / 'recordings'
+    settings = {
+        'always': values['record'] == 'always',
+        'before': values['record_before'],
+        'after': values['record_after'],
+        'longest': values['record_longest'],
+        'largest': values['record_largest'] * MEGABYTE,
+        'total': values['record_total'] * MEGABYTE,
+    }
+    return functools.partial(RecordingProcess, folder, settings)
 
 
 class RecordingProcess:
@@ -33,7 +67,8 @@ class RecordingProcess:
             env=worker_environment(),
             start_new_session=True,
         )
-        assert self._process.stdin is not None and self._process.stdout is not None
+        assert self._process.stdin is not None
+        assert self._process.stdout is not None
         self._out = self._process.stdout.fileno()
         os.set_blocking(self._out, False)
         self._sender = FrameSender(self._process.stdin.fileno())
@@ -71,7 +106,8 @@ class RecordingProcess:
 
     def close(self) -> None:
         """Send what is left and let the process finish its recording."""
-        assert self._process.stdin is not None and self._process.stdout is not None
+        assert self._process.stdin is not None
+        assert self._process.stdout is not None
         pipe = self._process.stdin
         os.set_blocking(pipe.fileno(), True)
         self._sender.flush()

@@ -26,7 +26,6 @@ NAME = re.compile(r'\d{8}T\d{6}Z(?:_\d+)?')
 OURS = ('.mcap', f'.mcap{ACTIVE}', 'metadata.yaml')  # how files of a recording end
 MOST_RING = 64 * 2**20  # [B] of frames in memory
 RETRY = 10.0  # [s] after which writing is tried again
-MEGABYTE = 1e6
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -94,9 +93,7 @@ class Keeper:
 
     def _announce(self, frame: Frame) -> None:
         stated = json.loads(frame.body)
-        topic = Topic(
-            name=stated['name'], type_name=stated['type'], offer=Offer[stated['offer']]
-        )
+        topic = Topic(name=stated['name'], type_name=stated['type'], offer=Offer[stated['offer']])
         self._topics[frame.topic] = topic
         if self._writer is not None:
             self._writer.add_topic(topic)
@@ -174,7 +171,9 @@ class Keeper:
 
     def _make_room(self) -> None:
         """Remove the oldest recordings until all are below the limit with one more."""
-        sizes = {path: sum(file.stat().st_size for file in path.iterdir()) for path in self._kept()}
+        sizes = {
+            path: sum(file.stat().st_size for file in path.iterdir()) for path in self._kept()
+        }
         room = self._settings.total - self._settings.largest
         for path in sorted(sizes, key=lambda path: path.stat().st_mtime):
             if sum(sizes.values()) <= max(room, 0.0):

@@ -184,7 +184,6 @@ class McapStorage:
             yield heapq.heappop(waiting)[2]
 
 
-
 class SqliteStorage:
     """One sqlite3 file of rosbag2."""
 

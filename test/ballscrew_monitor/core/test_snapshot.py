@@ -81,7 +81,8 @@ def test_an_event_that_is_on_stays_on_with_its_number_and_totals(core):
         monitor.update(InputSample(source=Source.SPEED, value=10.0, stamp=START + i * STEP))
     again = through_json(monitor)
     assert again.level is Level.WARN
-    assert again.event.active and again.event.number == 1
+    assert again.event.active
+    assert again.event.number == 1
     assert again.current_point(START) == monitor.current_point(START)
 
 

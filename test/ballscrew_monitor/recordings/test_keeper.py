@@ -110,7 +110,8 @@ def test_the_oldest_recordings_make_room_and_nothing_else_does(tmp_path):
         for path in tmp_path.iterdir()
         if path.name.startswith('2023')
     ]
-    assert len(sizes) == 3 and sum(sizes) <= 8e4
+    assert len(sizes) == 3
+    assert sum(sizes) <= 8e4
     newest = max(path.name for path in tmp_path.iterdir() if path.name.startswith('2023'))
     assert seconds_in_last(tmp_path / newest) == 199
 

@@ -26,9 +26,7 @@ from surrogate.surface import FIELDS
 
 BEGIN = 1_700_000_000 * SECOND
 TOPICS = {'speed': '/mill/joint_states', 'load': '/mill/axial_load'}
-ALWAYS = KeepSettings(
-    always=True, before=60.0, after=10.0, longest=1e9, largest=1e9, total=1e12
-)
+ALWAYS = KeepSettings(always=True, before=60.0, after=10.0, longest=1e9, largest=1e9, total=1e12)
 
 
 class KeptFrames:
@@ -195,7 +193,8 @@ def test_changes_of_parameters_and_acknowledgements_are_followed(tmp_path):
     node.close()
     states, own = again(bag_in(tmp_path))
     assert masked(states) == masked(node.said)
-    assert own.proven and not own.refuted
+    assert own.proven
+    assert not own.refuted
 
 
 def test_a_recording_around_events_begins_where_an_axis_is_described(tmp_path):
@@ -205,7 +204,8 @@ def test_a_recording_around_events_begins_where_an_axis_is_described(tmp_path):
     node.close()
     for path in sorted(tmp_path.iterdir()):
         states, own = again(Bag(path))
-        assert states and not own.refuted
+        assert states
+        assert not own.refuted
         assert '\n'.join(masked(states)) in '\n'.join(masked(node.said))
 
 
@@ -253,7 +253,8 @@ def test_corrections_of_the_surface_are_taken_up(tmp_path):
     node.close()
     states, own = again(bag_in(tmp_path))
     assert masked(states) == masked(node.said)
-    assert own.proven and not own.refuted
+    assert own.proven
+    assert not own.refuted
 
 
 def test_a_replay_that_differs_is_refuted(tmp_path):

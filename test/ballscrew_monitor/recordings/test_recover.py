@@ -29,7 +29,9 @@ os.kill(os.getpid(), signal.SIGKILL)
 
 
 def numbers(path):
-    return [(one.log_time // 10**9, one.publish_time, one.sequence) for one in Bag(path).messages()]
+    return [
+        (one.log_time // 10**9, one.publish_time, one.sequence) for one in Bag(path).messages()
+    ]
 
 
 def test_a_writer_that_was_killed_loses_its_last_chunk_at_most(tmp_path):
