@@ -25,6 +25,7 @@ SLOW = (
     'ballscrew_monitor/node/test_loss.py',
     'ballscrew_monitor/node/test_node.py',
     'ballscrew_monitor/node/test_solve.py',
+    'ballscrew_monitor/recordings/test_black_box.py',
     'ballscrew_monitor/recordings/test_player.py',
     'ballscrew_monitor/recordings/test_recorder.py',
     'ballscrew_monitor/test_cli.py',

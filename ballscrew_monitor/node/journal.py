@@ -28,7 +28,7 @@ VERSION = 1
 LATCHED = ('OutOfZone', 'SurfaceInfo')
 STRING = 'std_msgs/msg/String'
 AXIS_PERIOD = nanoseconds(10.0)  # [ns] after which all is said of an axis again
-RESTART = nanoseconds(10.0)  # [ns] after which a lost process is started again
+RESTART = nanoseconds(2.0)  # [ns] after which a lost process is started again
 Heard = tuple[Arrival, int, int | None]
 """A message, its arrival [ns] on the clock of the node, and how many were lost before it."""
 
@@ -42,7 +42,7 @@ class Journal:
         self._name = name
         self._start = start
         self._process = None if start is None else start()
-        self._started = 0
+        self._lost_at: int | None = None  # the process, on the steady clock
         self._topics: dict[str, int] = {}
         self._unknown_loss: set[str] = set()  # topics whose loss was last said to be unknown
         self._burst = 0
@@ -129,8 +129,11 @@ class Journal:
         """Return which axes are to be described again at `steady` [ns]: one; all after a hole."""
         if self._process is None:
             return []
-        if self._process.lost and steady - self._started > RESTART:
-            self._restart(steady)
+        if self._process.lost:
+            self._lost_at = steady if self._lost_at is None else self._lost_at
+            if steady - self._lost_at < RESTART:
+                return []
+            self._restart()
         if self._hole and self._process.flush():
             self._hole = False
             self._said.clear()
@@ -148,11 +151,11 @@ class Journal:
             self._process.close()
             self._process = None
 
-    def _restart(self, steady: int) -> None:
+    def _restart(self) -> None:
         assert self._process is not None
         assert self._start is not None
         self._process.close()
-        self._process, self._started = self._start(), steady
+        self._process, self._lost_at = self._start(), None
         self._topics.clear()
         self._hole = True
 

@@ -210,7 +210,7 @@ class BallscrewMonitor(LifecycleNode):
         if self._journal.on:
             now = self.get_clock().now().nanoseconds
             self._journal.say(self.resolve_topic_name(topic), message, now)
-            if isinstance(message, OutOfZone):
+            if isinstance(message, OutOfZone) and message.event_id:
                 self._journal.trigger(now)
 
     def _stop(self) -> None:
@@ -285,6 +285,9 @@ class BallscrewMonitor(LifecycleNode):
                 made += station.statuses(links=links, stood=stood)
             else:
                 made += diagnostics.failed(self.get_fully_qualified_name(), name, self._reason)
+        if self._journal.on:
+            name = self.get_fully_qualified_name()
+            made.append(diagnostics.recording(name, self._journal.problem))
         return made
 
     def _on_evaluate(self, request: Any, response: Any) -> Any:
