@@ -125,7 +125,7 @@ def test_commands_of_the_guide_have_their_options(page: Path, capsys):
 
 @pytest.mark.parametrize('page', GUIDE, ids=name_of)
 def test_guide_is_short_and_without_history(page: Path):
-    """A page is read in one go, but for the table of parameters, and says what is, not what was."""
+    """A page, but for the table of parameters, is read in one go and says what is, not was."""
     text = page.read_text(encoding='utf-8').replace(markdown_table().strip(), '')
     assert len(text.splitlines()) < MOST_LINES
     assert len(text.split()) < MOST_WORDS
