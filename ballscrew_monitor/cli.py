@@ -91,6 +91,9 @@ def _parser() -> argparse.ArgumentParser:
         )
     )
     _add_play(subparsers.add_parser('play', help='play a bag over DDS, with /clock'))
+    _add_recover(
+        subparsers.add_parser('recover', help='mend a recording whose writer was killed')
+    )
     add_commands(subparsers, _read_bag)
     return parser
 
@@ -141,6 +144,13 @@ def _add_play(parser: argparse.ArgumentParser) -> None:
         help='longest wait for a subscriber of every topic (default 10)',
     )
     parser.set_defaults(handler=_play)
+
+
+def _add_recover(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        'file', type=Path, metavar='FILE', help='MCAP file, or the folder of an unfinished one'
+    )
+    parser.set_defaults(handler=_recover)
 
 
 def _add_doctor(parser: argparse.ArgumentParser) -> None:
@@ -285,6 +295,14 @@ def _doctor(args: argparse.Namespace) -> int:
     from ballscrew_monitor.clients.doctor import doctor
 
     return doctor(args.params, seconds=args.seconds, as_json=args.json)
+
+
+def _recover(args: argparse.Namespace) -> int:
+    from ballscrew_monitor.recordings.recover import recover
+
+    path, count, seconds = recover(args.file)
+    print(f'{path}: {count} messages of {seconds:.1f} s')
+    return 0
 
 
 def _play(args: argparse.Namespace) -> int:
