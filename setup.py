@@ -80,7 +80,8 @@ setup(
     extras_require={
         'wheels': ROS_WHEELS,
         'plot': ['matplotlib>=3.6'],
-        'bags': ['mcap>=1.1', 'zstandard>=0.20'],
+        'bags': ['mcap>=1.1', 'rosbags>=0.10', 'zstandard>=0.20'],
+        'report': ['polars>=1.0'],
         'areal': ['SurfaceTopography>=1.17'],
         'dask': ['distributed>=2024.1'],
         'netcdf': ['xarray>=2024.1'],
@@ -88,6 +89,7 @@ setup(
             'ContactMechanics>=1.8',
             'distributed>=2024.1',
             'hypothesis>=6.90',
+            'mcap-ros2-support>=0.5',
             'pytest>=7.4',
             'pytest-timeout>=2.2',
             'pytest-xdist>=3.5',

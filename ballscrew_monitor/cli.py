@@ -91,12 +91,12 @@ def _parser() -> argparse.ArgumentParser:
         )
     )
     _add_play(subparsers.add_parser('play', help='play a bag over DDS, with /clock'))
+    _add_recover(subparsers.add_parser('recover', help='mend a recording whose writer was killed'))
     add_commands(subparsers, _read_bag)
     return parser
 
 
-def _add_run(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument('--bag', type=Path, default=BAG, help=f'bag to play (default {BAG_TEXT})')
+def _add_params(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--params',
         type=Path,
@@ -104,6 +104,11 @@ def _add_run(parser: argparse.ArgumentParser) -> None:
         metavar='FILE',
         help=f'parameters of the node (default {PARAMS_TEXT})',
     )
+
+
+def _add_run(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument('--bag', type=Path, default=BAG, help=f'bag to play (default {BAG_TEXT})')
+    _add_params(parser)
     parser.add_argument(
         '--out',
         type=Path,
@@ -119,13 +124,7 @@ def _add_run(parser: argparse.ArgumentParser) -> None:
 
 def _add_replay(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('bag', type=Path, metavar='BAG', help='bag directory or MCAP file')
-    parser.add_argument(
-        '--params',
-        type=Path,
-        default=PARAMS,
-        metavar='FILE',
-        help=f'parameters of the node (default {PARAMS_TEXT})',
-    )
+    _add_params(parser)
     parser.add_argument('--json', action='store_true', help='print JSON')
     parser.set_defaults(handler=_replay)
 
@@ -145,14 +144,15 @@ def _add_play(parser: argparse.ArgumentParser) -> None:
     parser.set_defaults(handler=_play)
 
 
-def _add_doctor(parser: argparse.ArgumentParser) -> None:
+def _add_recover(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
-        '--params',
-        type=Path,
-        default=PARAMS,
-        metavar='FILE',
-        help=f'parameters of the node (default {PARAMS_TEXT})',
+        'file', type=Path, metavar='FILE', help='MCAP file, or the folder of an unfinished one'
     )
+    parser.set_defaults(handler=_recover)
+
+
+def _add_doctor(parser: argparse.ArgumentParser) -> None:
+    _add_params(parser)
     parser.add_argument(
         '--seconds',
         type=float,
@@ -293,6 +293,14 @@ def _doctor(args: argparse.Namespace) -> int:
     from ballscrew_monitor.clients.doctor import doctor
 
     return doctor(args.params, seconds=args.seconds, as_json=args.json)
+
+
+def _recover(args: argparse.Namespace) -> int:
+    from ballscrew_monitor.recordings.recover import recover
+
+    path, count, seconds = recover(args.file)
+    print(f'{path}: {count} messages of {seconds:.1f} s')
+    return 0
 
 
 def _play(args: argparse.Namespace) -> int:

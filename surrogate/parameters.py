@@ -12,6 +12,7 @@ import math
 
 from surrogate.datasheet import block, Checked, count, DATA, find_sheet, quantity, read_sheet, text
 from surrogate.files import InputError
+from surrogate.raceway.standards import long_cutoff_iso_21920, RA_OVER_RQ
 from surrogate.raceway.stated import BallRoughness, Roughness
 from surrogate.units import RPM, ZERO_CELSIUS
 
@@ -90,18 +91,36 @@ class Screw(Checked):
                 f'screw: preload_N is {self.preload:g} N, allowed is up to static_rating_kN '
                 f'({self.static_rating * 1e-3:g} kN)'
             )
-        shape = self.roughness.fractal_dimension or self.roughness.rms_slope
-        if self.ball_roughness is not None and self.ball_roughness.height and not shape:
+        if self._ball_rms:
+            self._check_balls()
+
+    def _check_balls(self) -> None:
+        """Check that what balls share with the raceway gives them waves."""
+        if not (self.roughness.fractal_dimension or self.roughness.rms_slope):
             raise InputError(
                 'screw: ball_roughness is given without fractal_dimension or rms_slope_deg in '
                 'roughness, allowed is a raceway with one of them, which the balls share'
             )
+        short, long = (
+            self.roughness.cutoff_short,
+            long_cutoff_iso_21920(RA_OVER_RQ * self._ball_rms),
+        )
+        if short >= long:
+            raise InputError(
+                f'screw: cutoff_short_um of roughness is {short * 1e6:g} um, allowed is less than '
+                f'the long cut-off of the balls, {long * 1e6:g} um by the table for their Rq of '
+                f'{self._ball_rms * 1e6:.3g} um'
+            )
+
+    @property
+    def _ball_rms(self) -> float:
+        """Rq of the balls [m], 0 when they are smooth."""
+        return self.ball_roughness.height if self.ball_roughness is not None else 0.0
 
     @property
     def composite_rms(self) -> float:
         """Rq of raceway and ball together [m], 0 when both are smooth."""
-        ball = self.ball_roughness.height if self.ball_roughness is not None else 0.0
-        return math.hypot(self.roughness.rms, ball)
+        return math.hypot(self.roughness.rms, self._ball_rms)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

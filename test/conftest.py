@@ -11,7 +11,7 @@ from hypothesis import HealthCheck, settings
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
-OPTIONAL = ('mcap', 'zstandard')  # no package of a machine with ROS 2
+OPTIONAL = ('apsw', 'mcap', 'polars', 'rosbags', 'zstandard')  # no package of a machine with ROS 2
 # Tests that solve contacts, talk over DDS, start processes, draw many pictures, repeat thousands
 # of fits or run linters over the whole tree: folders and files, and fixtures that make any test
 # such a one. All others are `fast`.
@@ -26,6 +26,7 @@ SLOW = (
     'ballscrew_monitor/node/test_motor_torque.py',
     'ballscrew_monitor/node/test_node.py',
     'ballscrew_monitor/node/test_solve.py',
+    'ballscrew_monitor/recordings/test_black_box.py',
     'ballscrew_monitor/recordings/test_player.py',
     'ballscrew_monitor/recordings/test_recorder.py',
     'ballscrew_monitor/test_cli.py',

@@ -102,8 +102,17 @@ THEMES = {
     'surrogate/ehl/test_mixed.py',
     'surrogate/ehl/test_tables.py',
 }
-# By the extras `bags`, `areal`, `dask` and `netcdf`.
-OPTIONAL = {'mcap', 'zstandard', 'SurfaceTopography', 'distributed', 'xarray'}
+# By the extras `bags`, `report`, `areal`, `dask` and `netcdf`.
+OPTIONAL = {
+    'SurfaceTopography',
+    'apsw',
+    'distributed',
+    'mcap',
+    'polars',
+    'rosbags',
+    'xarray',
+    'zstandard',
+}
 
 
 def name_of(path: Path) -> str:

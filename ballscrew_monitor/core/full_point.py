@@ -4,7 +4,8 @@
 A full solve beside what the surface says of the same point: how far apart, and what follows.
 
 A result may correct a surface only where it is known better than the surface: its own standard
-error must not exceed the error that the surface states there, interpolation and law together.
+error must not exceed the error that the surface states there, interpolation and law together. That
+of the RCS must be known, that of the efficiency never is.
 
 """
 
@@ -85,6 +86,8 @@ def objection(full: SurfacePoint, answer: SurfacePoint | None, surface: Surface)
         return f'a surface of the {surface.tier.replace("_", "-")} tier is not corrected'
     if answer is None:
         return 'the surface has no answer at this point'
+    if math.isnan(full.rcs_stderr):
+        return 'the standard error of the result (rcs) is not known'
     for name in JUDGED:
         own, stated = known(getattr(full, f'{name}_stderr')), stated_error(answer, name)
         if own > stated:

@@ -53,7 +53,8 @@ class Why(enum.IntEnum):
     OTHER_CLOCK = 3  # stamps of the wall clock, far ahead of simulated time
     TOO_SHORT = 4  # the array of the field is empty, or ends before the element
     IMPLAUSIBLE = 5  # beyond what the machine can do: a glitch, or another unit
-    HOLE = 6  # no speed follows from a position and one long before it
+    NOT_DECODED = 6  # truncated, or of another type; of recordings alone
+    HOLE = 7  # no speed follows from a position and one long before it
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -125,7 +126,7 @@ class Input:
                 source=self.source, why=Why.OTHER_JOINTS, joints=value, arrival=now, lost=lost
             )
         if isinstance(value, TooShort):
-            return self._refuse(Why.TOO_SHORT, _short_text(value), now, lost)
+            return self._refuse(Why.TOO_SHORT, short_text(value), now, lost)
         stamp = stamp_of(message) if self.stamped else 0
         if now and stamp - now > max_future:
             why = Why.OTHER_CLOCK if stamp - now > YEAR else Why.FUTURE
@@ -195,7 +196,7 @@ def implausible(sample: InputSample, most: float) -> Refusal:
     return Refusal(source=sample.source, why=Why.IMPLAUSIBLE, text=text, arrival=sample.arrival)
 
 
-def _short_text(found: TooShort) -> str:
+def short_text(found: TooShort) -> str:
     """Return why an array gives no number, and the cure."""
     holds = f'has {found.length} elements and no [{found.key}]' if found.length else 'is empty'
     return f'{found.array} {holds} in its messages: let the source fill it, or read another field'

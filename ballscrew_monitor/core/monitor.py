@@ -62,7 +62,7 @@ class Monitor:
             )
             for source in SHOWN
         }
-        self._reader = PointReader(self._inputs, settings)
+        self._reader = PointReader(settings)
         self._positions: SpeedFromPosition | None = None
         if settings.positions is not None:
             timeout = settings.timeouts[Source.SPEED]
@@ -130,14 +130,18 @@ class Monitor:
         """
         Set the level back to UNKNOWN at `now` [ns]; return the event that this ends, if any.
 
-        What is still outside is raised again as a new event.
+        Stamps may run ahead of the clock, and events follow the stamps: it ends with the last one
+        at the earliest. What is still outside is raised again as a new event.
 
         """
-        self._hold = Hold(since=now)
+        last = self._inputs[Source.SPEED].last
+        stamp = now if last is None else max(now, last.stamp)
+        self._hold = Hold(since=stamp)
         self._pending = None
         if not self.event.active:
             return None
-        self.event = dataclasses.replace(self.event, active=False, stamp=now)
+        end = max(stamp, self.event.start)
+        self.event = dataclasses.replace(self.event, active=False, stamp=end)
         return self.event
 
     def current_point(self, now: int) -> MachinePoint | str:
@@ -192,7 +196,7 @@ class Monitor:
         return estimate(point, self.surface, rcs_limit=self.settings.limits.rcs)
 
     def _point(self, now: int) -> MachinePoint:
-        return self._reader.point(now, self.settings, self.surface)
+        return self._reader.point(self._inputs, now, self.settings, self.surface)
 
     def _advance(
         self, stamp: int, now: int, point: MachinePoint, result: PointEstimate, verdict: Verdict

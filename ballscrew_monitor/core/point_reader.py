@@ -15,6 +15,7 @@ from ballscrew_monitor.core.state import MonitorSettings
 from surrogate.surface import Surface
 
 NAN = math.nan
+Inputs = Mapping[Source, Tracker]
 Reading = tuple[float, PointSource]  # a number and where it comes from
 LoadReading = tuple[float, PointSource, DerivedLoad | None]
 _FRESH = (PointSource.MEASURED, PointSource.DEFAULT)
@@ -23,14 +24,13 @@ _FRESH = (PointSource.MEASURED, PointSource.DEFAULT)
 class PointReader:
     """Reads the inputs; remembers the direction, the speeds of late, and the last derived load."""
 
-    def __init__(self, inputs: Mapping[Source, Tracker], settings: MonitorSettings) -> None:
+    def __init__(self, settings: MonitorSettings) -> None:
         """Begin without motion."""
-        self._inputs = inputs
         self._direction = Direction.UNKNOWN
         self._held_load = NAN
         self._speeds: SlopeFilter | None = None
         if settings.derivation is not None and settings.derivation.inertia:
-            timeout = inputs[Source.SPEED].timeout
+            timeout = settings.timeouts[Source.SPEED]
             self._speeds = SlopeFilter(window=settings.derivation.window, max_gap=timeout)
 
     def take_speed(self, sample: InputSample) -> None:
@@ -42,17 +42,19 @@ class PointReader:
         """Forget which way the screw turned: another time line has begun."""
         self._direction = Direction.UNKNOWN
 
-    def point(self, now: int, settings: MonitorSettings, surface: Surface) -> MachinePoint:
+    def point(
+        self, inputs: Inputs, now: int, settings: MonitorSettings, surface: Surface
+    ) -> MachinePoint:
         """Return the operating point of what has arrived by `now` [ns]."""
-        speed, speed_source = self._value(Source.SPEED, now)
-        temperature, temperature_source = self._value(Source.TEMPERATURE, now)
+        speed, speed_source = _value(inputs[Source.SPEED], now)
+        temperature, temperature_source = _value(inputs[Source.TEMPERATURE], now)
         if temperature_source is PointSource.DEFAULT:
             temperature = settings.default_temperature
-        torque, torque_source = self._value(Source.TORQUE, now)
+        torque, torque_source = _value(inputs[Source.TORQUE], now)
         moving = abs(speed) >= settings.limits.standstill_speed
         if moving and speed_source is PointSource.MEASURED:
             self._direction = direction_of(speed)
-        load, load_source = self._value(Source.LOAD, now)
+        load, load_source = _value(inputs[Source.LOAD], now)
         derived = None
         if settings.derivation is not None:
             fresh = {speed_source, temperature_source, torque_source}.issubset(_FRESH)
@@ -102,13 +104,13 @@ class PointReader:
         source = PointSource.DERIVED if known else PointSource.UNKNOWN
         return found.axial_load, source, found
 
-    def _value(self, source: Source, now: int) -> Reading:
-        """Return the last value and its standing; one that was followed by a bad one is held."""
-        tracker = self._inputs[source]
-        if not tracker.configured:
-            default = PointSource.DEFAULT if source is Source.TEMPERATURE else PointSource.UNKNOWN
-            return NAN, default
-        if tracker.last is None:
-            return NAN, PointSource.UNKNOWN
-        good = tracker.state(now) is InputState.OK
-        return tracker.last.value, PointSource.MEASURED if good else PointSource.HELD
+
+def _value(tracker: Tracker, now: int) -> Reading:
+    """Return the last value and its standing; one that was followed by a bad one is held."""
+    if not tracker.configured:
+        has_default = tracker.source is Source.TEMPERATURE
+        return NAN, PointSource.DEFAULT if has_default else PointSource.UNKNOWN
+    if tracker.last is None:
+        return NAN, PointSource.UNKNOWN
+    good = tracker.state(now) is InputState.OK
+    return tracker.last.value, PointSource.MEASURED if good else PointSource.HELD

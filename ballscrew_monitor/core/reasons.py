@@ -31,6 +31,7 @@ _REFUSED = {
     Why.FUTURE: 'its stamps lie ahead of the clock, set the clocks alike or raise max_future',
     Why.OTHER_CLOCK: 'its stamps are of the wall clock and the node runs on simulated time, '
     'stamp with /clock or unset use_sim_time',
+    Why.NOT_DECODED: 'its messages do not decode, record them with the type of their publisher',
     Why.IMPLAUSIBLE: f'it is beyond the plausible range, {_PLAUSIBLE}',
     Why.HOLE: 'its positions come less often than its timeout allows, raise speed.timeout',
 }

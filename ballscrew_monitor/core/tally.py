@@ -35,7 +35,7 @@ class WindowStatistics:
     film_ratio: Extremes
 
 
-class _Column:
+class Column:
     """Running extremes and sum of one quantity."""
 
     __slots__ = ('count', 'low', 'high', 'total')
@@ -73,8 +73,8 @@ class WindowTally:
         self._clear()
 
     def _clear(self) -> None:
-        self._speed, self._load = _Column(), _Column()
-        self._efficiency, self._rcs, self._film_ratio = _Column(), _Column(), _Column()
+        self._speed, self._load = Column(), Column()
+        self._efficiency, self._rcs, self._film_ratio = Column(), Column(), Column()
 
     def add(self, point: MachinePoint, estimate: PointEstimate, verdict: Verdict) -> None:
         """Add one sample, if it was judged."""

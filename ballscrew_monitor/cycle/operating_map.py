@@ -17,6 +17,7 @@ from typing import Any
 from ballscrew_monitor.core.conversions import kelvin
 from ballscrew_monitor.cycle.state_trace import LimitsInForce, Trace
 from matplotlib.axes import Axes
+from matplotlib.contour import QuadContourSet
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 import numpy as np
@@ -27,7 +28,7 @@ from surrogate.units import RPM
 
 Array = NDArray[np.float64]
 
-OPTIMAL_FILL = '#dff2ea'
+OPTIMAL_FILL, GREY = '#dff2ea', '#404040'
 EFFICIENCIES = (0.3, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.97)
 SPEEDS, LOADS = 120, 181  # points of the grid
 TICKS = [first * 10.0**power for power in range(-2, 6) for first in (1, 2, 5)]  # [rev/min]
@@ -89,7 +90,8 @@ def draw_map(axes: Axes, trace: Trace, surface: Surface) -> tuple[float, bool]:
         float(degrees) for degrees in (spread.min(), spread.max()) if abs(degrees - mean) > 2
     ]
     for degrees in others:
-        _draw_border(axes, sample(surface, trace, degrees), trace.limits, degrees)
+        other = sample(surface, trace, degrees)
+        _draw_border(axes, other, trace.limits, degrees, width=1.2, linestyles='dashed')
     _label(axes, field)
     return mean, bool(others)
 
@@ -138,73 +140,50 @@ def _draw_lines(axes: Axes, field: Field, limits: LimitsInForce, degrees: float)
     shown = np.where(
         np.abs(field.load)[:, None] < 0.2 * limits.light_load, math.nan, field.efficiency
     )
-    lines = axes.contour(
-        field.speed,
-        field.load,
-        shown,
-        levels=EFFICIENCIES,
-        colors=BLUE,
-        linewidths=0.6,
-        alpha=0.75,
-        zorder=2,
-    )
+    lines = _contour(axes, field, shown, EFFICIENCIES, BLUE, width=0.6, alpha=0.75)
     axes.clabel(lines, fmt=lambda value: f'{100 * value:.0f} %', fontsize=7)
-    axes.contour(
-        field.speed,
-        field.load,
-        shown,
-        levels=[limits.efficiency],
-        colors=BLUE,
-        linewidths=2.2,
-        zorder=3,
-    )
-    border = axes.contour(
-        field.speed,
-        field.load,
-        field.rcs,
-        levels=[limits.rcs],
-        colors=PURPLE,
-        linewidths=2.2,
-        zorder=3,
-    )
-    _name_line(axes, field, border.allsegs[0], f'{degrees:.0f} °C', PURPLE, BELOW_TOP)
+    _contour(axes, field, shown, [limits.efficiency], BLUE, width=2.2, zorder=3)
+    _draw_border(axes, field, limits, degrees, width=2.2)
     for factor in filter(math.isfinite, field.band):
-        axes.contour(
-            factor * field.speed,
-            field.load,
-            field.rcs,
-            levels=[limits.rcs],
-            colors=PURPLE,
-            linewidths=0.9,
-            linestyles='dashdot',
-            zorder=2,
-        )
-    ratios = axes.contour(
-        field.speed,
-        field.load,
-        field.film_ratio,
-        levels=FILM_RATIO_LIMITS,
-        colors='#404040',
-        linewidths=0.9,
-        linestyles='dotted',
-        zorder=2,
+        moved = dataclasses.replace(field, speed=factor * field.speed)
+        _contour(axes, moved, field.rcs, [limits.rcs], PURPLE, width=0.9, linestyles='dashdot')
+    ratios = _contour(
+        axes, field, field.film_ratio, FILM_RATIO_LIMITS, GREY, width=0.9, linestyles='dotted'
     )
     for level, paths in zip(FILM_RATIO_LIMITS, ratios.allsegs, strict=True):
-        _name_line(axes, field, paths, f'Λ = {level:.0f}', '#404040', TOP)
+        _name_line(axes, field, paths, f'Λ = {level:.0f}', GREY, TOP)
 
 
-def _draw_border(axes: Axes, field: Field, limits: LimitsInForce, degrees: float) -> None:
-    lines = axes.contour(
+def _draw_border(
+    axes: Axes, field: Field, limits: LimitsInForce, degrees: float, *, width: float, **more: Any
+) -> None:
+    """Draw the limit of RCS with the temperature that it holds at."""
+    lines = _contour(axes, field, field.rcs, [limits.rcs], PURPLE, width=width, zorder=3, **more)
+    _name_line(axes, field, lines.allsegs[0], f'{degrees:.0f} °C', PURPLE, BELOW_TOP)
+
+
+def _contour(
+    axes: Axes,
+    field: Field,
+    values: Array,
+    levels: Sequence[float],
+    colour: str,
+    *,
+    width: float,
+    zorder: float = 2,
+    **more: Any,
+) -> QuadContourSet:
+    """Draw lines of `values` on the grid of a field; `more` is what matplotlib takes."""
+    return axes.contour(
         field.speed,
         field.load,
-        field.rcs,
-        levels=[limits.rcs],
-        colors=PURPLE,
-        linewidths=1.2,
-        linestyles='dashed',
-        zorder=3,
+        values,
+        levels=levels,
+        colors=colour,
+        linewidths=width,
+        zorder=zorder,
+        **more,
     )
-    _name_line(axes, field, lines.allsegs[0], f'{degrees:.0f} °C', PURPLE, BELOW_TOP)
 
 
 def _name_line(
@@ -279,7 +258,7 @@ def legend_entries(limits: LimitsInForce, mean: float, *, others: bool, banded: 
         Line2D(
             [],
             [],
-            color='#404040',
+            color=GREY,
             linewidth=0.9,
             linestyle='dotted',
             label='film ratio Λ = ' + ' and '.join(f'{limit:g}' for limit in FILM_RATIO_LIMITS),

@@ -32,6 +32,7 @@ CLOCK_STANDS = (
 )
 NOT_DERIVED = 'not judged: the motor torque does not tell the load here'
 INACTIVE = 'the node is inactive, nothing is judged'
+RECORDED = 'what the node hears and says is recorded'
 PARTS = ('Lubrication', 'Inputs', 'Surface')
 StatusSummary = tuple[bytes, str]  # level and message of a status
 
@@ -67,6 +68,14 @@ def failed(node: str, axis: str, reason: str) -> list[DiagnosticStatus]:
 def blank(node: str, axis: str) -> list[DiagnosticStatus]:
     """Return the statuses of an axis of which nothing is known."""
     return failed(node, axis, NOT_SET)
+
+
+def recording(node: str, problem: str) -> DiagnosticStatus:
+    """Return the status of the recording of the `node`; `problem` is why there is none."""
+    status = DiagnosticStatus(name=f'{node.lstrip("/")}: Recording', level=OK, message=RECORDED)
+    if problem:
+        status.level, status.message = WARN, problem
+    return status
 
 
 def hardware_id(node: str, axis: str, screw: str) -> str:

@@ -21,6 +21,7 @@ from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.inputs import Input, InputSample, OpenInput, Refusal, Source
 from ballscrew_monitor.core.links import Link
 from ballscrew_monitor.node.axis import Axis
+from ballscrew_monitor.node.journal import Heard, Journal, SILENT
 from ballscrew_monitor.node.qos import publishers_on
 from ballscrew_monitor.node.topic import Apart, Arrival, link_of, open_topic, Topic
 from rclpy.event_handler import EventHandler
@@ -42,11 +43,14 @@ Take = Callable[[Axis, InputSample | Refusal], None]
 class Intake(Waitable):
     """The subscriptions of all axes; each sample and refusal is handed to `take`."""
 
-    def __init__(self, node: Node, axes: Iterable[Axis], take: Take) -> None:
-        """Subscribe once to each topic, however many inputs read it."""
+    def __init__(
+        self, node: Node, axes: Iterable[Axis], take: Take, journal: Journal = SILENT
+    ) -> None:
+        """Subscribe once to each topic, however many inputs read it; the journal hears all."""
         super().__init__(node.default_callback_group)
         self._node = node
         self._take = take
+        self._journal = journal
         self._apart = Apart()
         self._simulated = 0  # the last `/clock` [ns]
         self._places: list[int] = []  # of the subscriptions in the wait set
@@ -75,7 +79,8 @@ class Intake(Waitable):
         """Subscribe to the topic of an input, unless another input has done so."""
         name = self._node.resolve_topic_name(source.topic)
         if name not in self.topics:
-            self.topics[name] = open_topic(self._node, name, source.message_type, self._apart)
+            kind, raw = source.message_type, self._journal.on
+            self.topics[name] = open_topic(self._node, name, kind, self._apart, raw=raw)
         self.topics[name].readers.append((axis, source))
 
     def discover(self) -> None:
@@ -85,7 +90,7 @@ class Intake(Waitable):
             known = self.topics.get(name)
             types = {publisher.type_name for publisher in publishers_on(self._node, name)}
             if known is not None:
-                types = {known.readers[0][1].type_name}
+                types = {known.type_name}
             if len(types) == 1:
                 self._close(axis, one, types.pop())
 
@@ -192,22 +197,23 @@ class Intake(Waitable):
             return False
         arrivals.sort(key=operator.attrgetter('received'))
         now, wall = self._node.get_clock().now().nanoseconds, time.time_ns()
-        events: list[AxisEvent] = []
+        heard: list[Heard] = []
         for arrival in arrivals:
             if arrival.topic is self._clock:
                 shown = arrival.message.clock
                 self._simulated = shown.sec * SECOND + shown.nanosec
                 continue
             waited = max(wall - arrival.received, 0) if arrival.received else 0
-            events += _events(arrival, self._simulated or max(now - waited, 0))
-        for axis, event in ordered(events):
+            lost = arrival.topic.loss.take(arrival.number)
+            heard.append((arrival, self._simulated or max(now - waited, 0), lost))
+        self._journal.hear(heard)
+        for axis, event in ordered([event for one in heard for event in _events(*one)]):
             self._take(axis, event)
         return True
 
 
-def _events(arrival: Arrival, now: int) -> list[AxisEvent]:
+def _events(arrival: Arrival, now: int, lost: int | None) -> list[AxisEvent]:
     """Return what a message that arrived at `now` [ns] of the node's clock says of each axis."""
-    lost = arrival.topic.loss.take(arrival.number)
     return [
         (axis, source.read(arrival.message, now=now, max_future=axis.max_future, lost=lost))
         for axis, source in arrival.topic.readers

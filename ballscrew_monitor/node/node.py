@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The lifecycle node: declare, subscribe, call the monitor, publish. It decides nothing itself."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 import functools
 import signal
 import sys
@@ -17,12 +17,15 @@ from ballscrew_monitor.node import diagnostics, parameters
 from ballscrew_monitor.node.axis import Axis, build_axis, check_topics
 from ballscrew_monitor.node.correction_store import CorrectionStore, state_directory
 from ballscrew_monitor.node.intake import Intake
+from ballscrew_monitor.node.journal import Journal, SILENT
 from ballscrew_monitor.node.parameter_store import ParameterStore
 from ballscrew_monitor.node.qos import check_overrides
+from ballscrew_monitor.node.recording_process import recording, RecordingProcess
 from ballscrew_monitor.node.solve_server import MOST_SOLVES, SolveServer
 from ballscrew_monitor.node.solver_process import SolverProcess
 from ballscrew_monitor.node.station import STATE_QOS, Station
 from ballscrew_monitor.node.trigger_services import TriggerServices
+from ballscrew_msgs.msg import OutOfZone
 from ballscrew_msgs.srv import EvaluateOperatingPoint
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 import rclpy
@@ -66,6 +69,8 @@ class BallscrewMonitor(LifecycleNode):
         self._steady = Clock(clock_type=ClockType.STEADY_TIME)
         self._store = ParameterStore(self, self._on_parameters)
         self._values = self._store.values
+        self._journal = SILENT
+        self._recording: Callable[[], RecordingProcess] | None = None
         self._pulse = Pulse(nanoseconds(self._values['tick_period']))
         self._diagnostics = self.create_publisher(DiagnosticArray, '/diagnostics', STATE_QOS)
         # On the steady clock: it speaks while a simulated one stands.
@@ -73,11 +78,10 @@ class BallscrewMonitor(LifecycleNode):
             self._values['diagnostics_period'], self._publish_diagnostics, clock=self._steady
         )
         self.create_service(EvaluateOperatingPoint, '~/evaluate', self._on_evaluate)
-        self._corrections = CorrectionStore(
-            state_directory(self._values['state_dir'], self.get_fully_qualified_name())
-        )
+        self._folder = state_directory(self._values['state_dir'], self.get_fully_qualified_name())
+        self._corrections = CorrectionStore(self._folder)
         self._solves = SolveServer(self, SolverProcess, self._find_station)
-        TriggerServices(self, self._values, lambda: self._stations)
+        TriggerServices(self, self._values, lambda: self._stations, self._describe)
 
     def start(self) -> None:
         """Configure and activate, if the node is to do so itself."""
@@ -93,6 +97,7 @@ class BallscrewMonitor(LifecycleNode):
         for name in groups & self._stations.keys():
             self._stations[name].axis.adapt(self._values)
             self._stations[name].publish_info()
+            self._describe([name], 'parameters')
 
     @_reported
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
@@ -101,13 +106,17 @@ class BallscrewMonitor(LifecycleNode):
             axes = [build_axis(name, self._values) for name in self._values['axes']]
             topics = check_topics(axes, self.resolve_topic_name)
             check_overrides(self._store.given, topics)
+            self._recording = recording(self._values, self._folder)
         except InputError as error:
             self._reason = f'not configured: {error}'
             self.get_logger().error(self._reason)
             self._publish_diagnostics()
             return FAILURE
         self._stations = {
-            axis.name: Station(self, axis, self._values, self._corrections) for axis in axes
+            axis.name: Station(
+                self, axis, self._values, self._corrections, self._record, self._describe
+            )
+            for axis in axes
         }
         self._restore()
         self._store.locked = True
@@ -137,11 +146,13 @@ class BallscrewMonitor(LifecycleNode):
         """Subscribe and begin to judge."""
         result = super().on_activate(state)
         self._active = True
+        self._journal = Journal(self.resolve_topic_name('~/journal'), self._recording)
         for station in self._stations.values():
             station.publish_info()
             station.publish_event()
         axes = [station.axis for station in self._stations.values()]
-        self._intake = Intake(self, axes, self._on_event)
+        self._describe(self._stations, 'begin')
+        self._intake = Intake(self, axes, self._on_event, self._journal)
         self._tick_timer = self.create_timer(
             self._values['tick_period'], self._on_tick, clock=self._tick_clock()
         )
@@ -183,12 +194,33 @@ class BallscrewMonitor(LifecycleNode):
         self._clear('not configured: a transition failed unexpectedly')
         return SUCCESS
 
+    def _describe(self, axes: Iterable[str], because: str) -> None:
+        """Let a recording know all about some axes."""
+        now = self.get_clock().now().nanoseconds
+        for name in axes if self._journal.on else ():
+            axis = self._stations[name].axis
+            topics = {
+                source.name.lower(): self.resolve_topic_name(topic)
+                for source, topic in axis.topics.items()
+            }
+            self._journal.describe(axis, self._values, topics, because, now)
+
+    def _record(self, topic: str, message: Any) -> None:
+        """Let a recording show what the node publishes; a warning is an event of it."""
+        if self._journal.on:
+            now = self.get_clock().now().nanoseconds
+            self._journal.say(self.resolve_topic_name(topic), message, now)
+            if isinstance(message, OutOfZone) and message.event_id:
+                self._journal.trigger(now)
+
     def _stop(self) -> None:
         self._active = False
         self._solves.close('stopped, the node is no longer active')
         if self._intake is not None:
             self._intake.close()
             self._intake = None
+        self._journal.close()
+        self._journal = SILENT
         if self._tick_timer is not None:
             self.destroy_timer(self._tick_timer)
             self._tick_timer = None
@@ -213,8 +245,10 @@ class BallscrewMonitor(LifecycleNode):
             return
         self._intake.discover()
         self._intake.drain()
+        self._journal.tick(grid, self.get_clock().now().nanoseconds)
         for station in self._stations.values():
             self._publish(station, station.axis.monitor.tick(grid))
+        self._describe(self._journal.due(self._stations, self._steady.now().nanoseconds), 'time')
 
     def _publish(self, station: Station, state: State | None) -> None:
         """Publish a state, and diagnostics for what it changes, though these not in a flood."""
@@ -240,6 +274,7 @@ class BallscrewMonitor(LifecycleNode):
         )
         message.header.stamp = now.to_msg()
         self._diagnostics.publish(message)
+        self._record('/diagnostics', message)
 
     def _statuses(self, axes: Sequence[str], stood: int) -> list[DiagnosticStatus]:
         made = []
@@ -250,6 +285,9 @@ class BallscrewMonitor(LifecycleNode):
                 made += station.statuses(links=links, stood=stood)
             else:
                 made += diagnostics.failed(self.get_fully_qualified_name(), name, self._reason)
+        if self._journal.on:
+            name = self.get_fully_qualified_name()
+            made.append(diagnostics.recording(name, self._journal.problem))
         return made
 
     def _on_evaluate(self, request: Any, response: Any) -> Any:

@@ -17,6 +17,61 @@ from ballscrew_monitor.node.parameter_row import Change, ParameterRow
 from surrogate.surface import EFFICIENCY_LIMIT, LIGHT_LOAD, RCS_LIMIT
 
 LOAD_SOURCES = ('topic', 'motor_torque')
+
+RECORD_ROWS = (
+    ParameterRow(
+        name='record',
+        default='off',
+        choices=('off', 'around_events', 'always'),
+        text='What the node records of itself: inputs, states, warnings and all a replay needs.',
+    ),
+    ParameterRow(
+        name='record_dir',
+        default='auto',
+        text='Directory of the recordings; auto: recordings in state_dir.',
+    ),
+    ParameterRow(
+        name='record_before',
+        default=60.0,
+        unit='s',
+        low=20.0,
+        high=3600.0,
+        text='How much of the time before an event is recorded around it.',
+    ),
+    ParameterRow(
+        name='record_after',
+        default=10.0,
+        unit='s',
+        low=1.0,
+        high=3600.0,
+        text='How much of the time after the begin or the end of an event is recorded.',
+    ),
+    ParameterRow(
+        name='record_longest',
+        default=3600.0,
+        unit='s',
+        low=10.0,
+        high=86400.0,
+        text='Length after which a recording is finished and the next one begins.',
+    ),
+    ParameterRow(
+        name='record_largest',
+        default=256.0,
+        unit='MB',
+        low=1.0,
+        high=65536.0,
+        text='Size after which a recording is finished, before compression.',
+    ),
+    ParameterRow(
+        name='record_total',
+        default=2048.0,
+        unit='MB',
+        low=2.0,
+        high=1e6,
+        text='Size of all recordings; the oldest make room for new ones.',
+    ),
+)
+
 NODE_ROWS = (
     ParameterRow(
         name='axes',
@@ -55,6 +110,7 @@ NODE_ROWS = (
         change=Change.NEVER,
         text='Period of /diagnostics; a change is published at once.',
     ),
+    *RECORD_ROWS,
 )
 
 

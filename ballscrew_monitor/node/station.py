@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the node keeps of one axis: the axis, its publishers, and what it last said."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 import functools
 from typing import Any
 
@@ -52,18 +52,27 @@ class Station:
     """One axis and what the node needs to speak for it."""
 
     def __init__(
-        self, node: LifecycleNode, axis: Axis, values: Mapping[str, Any], store: CorrectionStore
+        self,
+        node: LifecycleNode,
+        axis: Axis,
+        values: Mapping[str, Any],
+        store: CorrectionStore,
+        record: Callable[[str, Any], None],
+        changed: Callable[[Iterable[str], str], None],
     ) -> None:
         """
         Make the publishers, which stay silent until the node is active.
 
         `values` are the parameters as they are at any time; corrections are kept in the `store`.
+        `record` is given each message with its topic, `changed` the axis and what has changed it.
 
         """
         self.axis = axis
         self.dwell = Dwell()
         self._values = values
         self._store = store
+        self._record = record
+        self._changed = changed
         self._node = node
         self._writer = StateWriter(axis.name, TIERS[axis.surface.tier])
         self._last: State | None = None
@@ -93,7 +102,9 @@ class Station:
     def publish_state(self, state: State) -> None:
         """Publish a state, and the event that it begins or ends."""
         self._last = state
-        self._state.publish(self._writer.write(state))
+        message = self._writer.write(state)
+        self._state.publish(message)
+        self._record(f'~/{self.name}/state', message)
         if self._plain is not None:
             self._plain.publish(state)
         if state.event is not None:
@@ -102,7 +113,9 @@ class Station:
 
     def publish_event(self) -> None:
         """Publish the event that is active, or the last one."""
-        self._event.publish(out_of_zone_message(self.axis.name, self.axis.monitor.event))
+        message = out_of_zone_message(self.axis.name, self.axis.monitor.event)
+        self._event.publish(message)
+        self._record(f'~/{self.name}/out_of_zone', message)
 
     def end_event(self, reason: str) -> None:
         """End the event that is active, if one is, because nothing is judged any more."""
@@ -131,6 +144,7 @@ class Station:
             default_temperature=settings.default_temperature,
         )
         self._info.publish(message)
+        self._record(f'~/{self.name}/surface_info', message)
 
     @property
     def name(self) -> str:
@@ -221,6 +235,7 @@ class Station:
         self.axis.use_surface(surface, self._values)
         self._writer.tier = TIERS[surface.tier]
         self.publish_info()
+        self._changed([self.name], 'surface')
 
     def evaluate(self, points: Sequence[OperatingPoint], response: Any) -> None:
         """Fill the response with what the surface says of the points, if they are not too many."""

@@ -15,6 +15,7 @@ from ballscrew_monitor.node.qos import DEPTH, input_qos, overriding_options, pub
 from rclpy.callback_groups import CallbackGroup
 from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.node import Node
+from rclpy.serialization import deserialize_message
 from rclpy.subscription import Subscription
 
 MOST = 2 * DEPTH  # messages of one topic that are taken before anything else has a turn
@@ -24,29 +25,44 @@ Reader = tuple[Axis, Input]
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class Arrival:
-    """A message, its arrival on the clock of this machine [ns], and the topic that it is of."""
+    """
+    A message, its arrival on the clock of this machine [ns], and the topic that it is of.
+
+    `data` is the message as it came over the wire, of a topic that is taken so.
+
+    """
 
     received: int
     message: Any
     number: int
     topic: 'Topic'
+    data: bytes = b''
 
 
 @dataclasses.dataclass(kw_only=True, slots=True)
 class Topic:
     """A subscription, who reads its messages, and what was lost of them."""
 
+    name: str
     readers: list[Reader]
     loss: LossCounter
     subscription: Subscription
 
-    def arrival(self, message: Any, info: Mapping[str, Any]) -> Arrival:
-        """Return a message with what the middleware says of it."""
+    @property
+    def type_name(self) -> str:
+        """Return the type of its messages."""
+        return self.readers[0][1].type_name
+
+    def arrival(self, taken: Any, info: Mapping[str, Any]) -> Arrival:
+        """Return what was taken with what the middleware says of it."""
+        data = taken if self.subscription.raw else b''
+        message = deserialize_message(data, self.subscription.msg_type) if data else taken
         return Arrival(
             info['received_timestamp'],
             message,
             info['publication_sequence_number'] or NO_NUMBER,
             self,
+            data,
         )
 
     def waiting(self) -> list[Arrival]:
@@ -82,9 +98,20 @@ class Apart(CallbackGroup):
 
 
 def open_topic(
-    node: Node, name: str, kind: Any, group: CallbackGroup, *, overridable: bool = True
+    node: Node,
+    name: str,
+    kind: Any,
+    group: CallbackGroup,
+    *,
+    overridable: bool = True,
+    raw: bool = False,
 ) -> Topic:
-    """Subscribe to messages of a `kind`; where `overridable`, parameters may change the QoS."""
+    """
+    Subscribe to messages of a `kind`; where `overridable`, parameters may change the QoS.
+
+    Messages that are taken `raw` keep the bytes that they came as, for a recording.
+
+    """
     loss = LossCounter()
     subscription = node.create_subscription(
         kind,
@@ -97,8 +124,9 @@ def open_topic(
             matched=functools.partial(_count, loss), use_default_callbacks=False
         ),
         qos_overriding_options=overriding_options() if overridable else None,
+        raw=raw,
     )
-    return Topic(readers=[], loss=loss, subscription=subscription)
+    return Topic(name=name, readers=[], loss=loss, subscription=subscription)
 
 
 def link_of(node: Node, name: str, topic: Topic | None, *, problem: str = '') -> Link:
@@ -111,7 +139,7 @@ def link_of(node: Node, name: str, topic: Topic | None, *, problem: str = '') ->
     qos = topic.subscription.qos_profile
     return Link(
         topic=name,
-        type_name=topic.readers[0][1].type_name,
+        type_name=topic.type_name,
         matched=matched,
         publishers=() if matched else publishers_on(node, name),
         reliability=qos.reliability.name.lower(),

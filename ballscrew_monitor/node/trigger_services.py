@@ -20,10 +20,20 @@ class TriggerServices:
     """Reload of the surface, reset of the totals, acknowledgement of the warning."""
 
     def __init__(
-        self, node: Node, values: Mapping[str, Any], find: Callable[[], Stations]
+        self,
+        node: Node,
+        values: Mapping[str, Any],
+        find: Callable[[], Stations],
+        changed: Callable[[Stations, str], None],
     ) -> None:
-        """Make the services; `find` returns the stations, none while the node is unconfigured."""
+        """
+        Make the services; `find` returns the stations, none while the node is unconfigured.
+
+        `changed` is told which stations a service has changed, and its name.
+
+        """
         self._node = node
+        self._changed = changed
         self._values = values
         self._find = find
         acts: dict[str, Act] = {
@@ -46,6 +56,7 @@ class TriggerServices:
             return response
         try:
             response.message = act(stations)
+            self._changed(stations, act.__name__.strip('_'))
             response.success = True
         except InputError as error:
             response.message = f'kept the old surface: {error}'

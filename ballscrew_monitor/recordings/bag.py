@@ -3,8 +3,9 @@
 """
 Reads a bag: serialised messages in the order in which they were recorded.
 
-A bag is a directory with one or more MCAP files, named by its `metadata.yaml` if there is one, or
-an MCAP file itself. Whatever is wrong with it is one sentence in an InputError.
+A bag is a directory with one or more MCAP or sqlite3 files, named by its `metadata.yaml` if there
+is one, or such a file itself. Files and messages may be compressed by zstd. Whatever is wrong
+with it is one sentence in an InputError.
 
 """
 
@@ -13,63 +14,62 @@ import contextlib
 import dataclasses
 import heapq
 from pathlib import Path
-import struct
-from typing import Any
+import shutil
+import tempfile
+import weakref
 
-from mcap.exceptions import McapError
-from mcap.reader import make_reader, McapReader
+from ballscrew_monitor.recordings.bag_files import kind_of, manifest, unpack, unpacked, ZSTD
+from ballscrew_monitor.recordings.storages import (
+    damage_is_input,
+    McapStorage,
+    Message,
+    SqliteStorage,
+    TopicInfo,
+)
+from mcap.reader import make_reader
 from surrogate.files import InputError
-import yaml
 from zstandard import ZstdError
 
-# What the reader is known to raise for a file that is not as it should be.
-DAMAGE = (
-    McapError,
-    ValueError,
-    KeyError,
-    IndexError,
-    TypeError,
-    AttributeError,
-    EOFError,
-    struct.error,
-    MemoryError,
-    OverflowError,
-    RuntimeError,
-    ZstdError,
-)
+OWN = 'ballscrew_monitor'
+"""Name of the metadata record of an MCAP file that holds what `Bag.metadata` gives."""
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Message:
-    """One serialised message; times [ns]."""
+@dataclasses.dataclass(kw_only=True, slots=True)
+class Refused:
+    """Messages of one topic that do not decode: how many, and a sentence about the first."""
 
-    topic: str
-    data: bytes
-    log_time: int
-    publish_time: int
-
-
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class TopicInfo:
-    """Type, encoding and number of messages of one topic."""
-
-    type_name: str
-    encoding: str
     count: int
+    sentence: str
 
 
 class Bag:
-    """An opened bag: its topics and its time span; the messages are read on demand."""
+    """
+    An opened bag: its topics and its time span; the messages are read on demand.
 
-    def __init__(self, path: str | Path) -> None:
-        """Open the bag at `path`; raises InputError when it is not readable to its end."""
+    `metadata` is what it says of itself, and `refused` counts by topic what did not decode.
+
+    """
+
+    def __init__(self, path: str | Path, *, salvage: bool = False) -> None:
+        """
+        Open the bag at `path`; raises InputError when it is not readable to its end.
+
+        With `salvage` what is whole of damaged files is read, and `notes` says how much that is.
+
+        """
         self.path = Path(path)
-        self.files = _mcap_files(self.path)
-        self.topics: dict[str, TopicInfo] = {}
-        spans = [self._read_summary(file) for file in self.files]
-        spans = [span for span in spans if span[1]]
+        self.refused: dict[str, Refused] = {}
+        self._salvage = salvage
+        self._missing: list[str] = []
+        found = manifest(self.path, salvage=salvage)
+        self._storages = [one for one in map(self._open, found.files) if one is not None]
+        self.files = [one.file for one in self._storages]
+        self.topics = self._all_topics()
+        spans = [one.span for one in self._storages if one.span[1]]
         if not self.topics or not spans:
-            raise InputError(f'bag {self.path} holds no message, at least one is needed')
+            what = '; '.join(self._missing) or 'at least one is needed'
+            raise InputError(f'bag {self.path} holds no message, {what}')
+        self.metadata = self._own_metadata() | found.custom
         self.start_time = min(span[0] for span in spans)
         self.end_time = max(span[1] for span in spans)
 
@@ -83,6 +83,27 @@ class Bag:
         """Return the message type of each topic."""
         return {name: info.type_name for name, info in self.topics.items()}
 
+    @property
+    def notes(self) -> list[str]:
+        """Return a sentence for each file and topic of which not all could be read so far."""
+        salvaged = [one.note for one in self._storages if one.note]
+        refused = [
+            one.sentence + (f'; {one.count} such messages were refused' if one.count > 1 else '')
+            for one in self.refused.values()
+        ]
+        return [*self._missing, *salvaged, *refused]
+
+    def refuse(self, message: Message, reason: str) -> str:
+        """Count a message that does not decode; return the sentence about it."""
+        at = (message.log_time - self.start_time) * 1e-9
+        sentence = (
+            f'bag {self.path}: the message of {message.topic} at {at:.3f} s does not decode as '
+            f'{self.topics[message.topic].type_name} ({len(message.data)} bytes, {reason})'
+        )
+        known = self.refused.setdefault(message.topic, Refused(count=0, sentence=sentence))
+        known.count += 1
+        return sentence
+
     def require(self, topics: Mapping[str, str]) -> None:
         """Raise InputError unless the bag holds messages of all `topics`, given with type."""
         for name, type_name in topics.items():
@@ -91,107 +112,99 @@ class Bag:
                     f'bag {self.path}: topic {name} ({type_name or "any type"}) is missing, the '
                     f'bag holds {", ".join(sorted(self.topics))}'
                 )
-            found = self.topics[name]
-            if found.type_name != type_name:
-                raise InputError(
-                    f'bag {self.path}: topic {name} is of type {found.type_name}, '
-                    f'it must be {type_name}'
-                )
-            if found.encoding != 'cdr':
-                raise InputError(
-                    f'bag {self.path}: topic {name} is encoded as {found.encoding}, it must be cdr'
-                )
-            if not found.count:
-                raise InputError(
-                    f'bag {self.path}: topic {name} holds no message, at least one is needed'
-                )
+            problem = _objection(self.topics[name], type_name)
+            if problem:
+                raise InputError(f'bag {self.path}: topic {name} {problem}')
+
+    def as_written(self) -> Iterator[Message]:
+        """Yield all messages in the order of the files; raises InputError on damage."""
+        for one in self._storages:
+            for message in one.messages(set(self.topics), as_written=True):
+                yield _whole(message) if message.data[:4] == ZSTD else message
 
     def messages(self, topics: Collection[str] | None = None) -> Iterator[Message]:
         """Yield messages of `topics` (None: all) by log time; raises InputError on damage."""
-        wanted = list(self.topics if topics is None else topics)
+        wanted = set(self.topics if topics is None else topics)
         with contextlib.ExitStack() as stack:
-            streams = [self._read(stack, file, wanted) for file in self.files]
-            yield from heapq.merge(*streams, key=lambda message: message.log_time)
+            streams = [
+                stack.enter_context(contextlib.closing(one.messages(wanted)))
+                for one in self._storages
+            ]
+            merged = heapq.merge(*streams, key=lambda message: message.log_time)
+            for message in merged:
+                yield _whole(message) if message.data[:4] == ZSTD else message
 
     def verify(self) -> None:
         """Read everything once; raises InputError when something is damaged."""
         for _ in self.messages():
             pass
 
-    def _read(
-        self, stack: contextlib.ExitStack, file: Path, wanted: list[str]
-    ) -> Iterator[Message]:
-        with self._damage_is_input(file):
-            reader = make_reader(stack.enter_context(file.open('rb')), validate_crcs=True)
-            for _, channel, message in reader.iter_messages(topics=wanted):
-                yield Message(
-                    topic=channel.topic,
-                    data=message.data,
-                    log_time=message.log_time,
-                    publish_time=message.publish_time,
-                )
-
-    def _read_summary(self, file: Path) -> tuple[int, int]:
-        """Add the topics of one file; return its first and last log time [ns], 0 if empty."""
-        with self._damage_is_input(file), file.open('rb') as stream:
-            reader = make_reader(stream, validate_crcs=True)
-            summary = _complete_summary(reader)
-            for number, channel in summary.channels.items():
-                known = self.topics.get(channel.topic)
-                self.topics[channel.topic] = TopicInfo(
-                    type_name=summary.schemas[channel.schema_id].name,
-                    encoding=channel.message_encoding,
-                    count=(known.count if known else 0)
-                    + summary.statistics.channel_message_counts.get(number, 0),
-                )
-            return summary.statistics.message_start_time, summary.statistics.message_end_time
-
-    @contextlib.contextmanager
-    def _damage_is_input(self, file: Path) -> Iterator[None]:
+    def _open(self, file: Path) -> McapStorage | SqliteStorage | None:
+        """Return an opened file; None for one that is lost, if that is allowed."""
         try:
-            yield
-        except InputError:
-            raise
-        except OSError as error:
-            raise InputError(f'bag {file} cannot be read: {error.strerror}') from None
-        except DAMAGE as error:
-            reason = ' '.join(str(error).split()) or type(error).__name__
-            raise InputError(
-                f'bag {file} is truncated or damaged, it must be a complete MCAP file ({reason})'
-            ) from None
+            return self._storage(file)
+        except InputError as error:
+            if not self._salvage or file == self.path:
+                raise
+            self._missing.append(f'{error}; it is left out')
+            return None
 
-
-def _complete_summary(reader: McapReader) -> Any:
-    summary = reader.get_summary()
-    if summary is None or summary.statistics is None:
-        raise McapError('it has no summary')
-    return summary
-
-
-def _mcap_files(path: Path) -> list[Path]:
-    if path.is_file():
-        return [path]
-    if not path.is_dir():
-        raise InputError(f'bag {path} does not exist, it must be a bag directory or an MCAP file')
-    metadata = path / 'metadata.yaml'
-    files = _named_files(metadata) if metadata.is_file() else sorted(path.glob('*.mcap'))
-    if not files:
-        unfinished = ', '.join(sorted(file.name for file in path.glob('*.mcap.active')))
-        hint = f', only the unfinished {unfinished}' if unfinished else ''
-        raise InputError(f'bag {path} holds no MCAP file{hint}')
-    for file in files:
+    def _storage(self, file: Path) -> McapStorage | SqliteStorage:
         if not file.is_file():
-            raise InputError(f'bag {path}: its metadata.yaml names {file.name}, which is missing')
-    return files
+            raise InputError(
+                f'bag {self.path}: its metadata.yaml names {file.name}, which is missing'
+            )
+        with damage_is_input(file):
+            kind = kind_of(file)
+            if kind == 'zstd':
+                file = unpack(file, self._scratch())
+                kind = kind_of(file)
+        if kind == 'rosbag1':
+            raise InputError(f'bag {file} is of ROS 1, it must be converted to rosbag2')
+        if kind == 'sqlite3':
+            return SqliteStorage(file)
+        return McapStorage(file, salvage=self._salvage)
+
+    def _scratch(self) -> Path:
+        """Return a new folder for an unpacked file, which goes with the bag."""
+        folder = tempfile.mkdtemp(prefix='ballscrew_bag_')
+        weakref.finalize(self, shutil.rmtree, folder, ignore_errors=True)
+        return Path(folder)
+
+    def _all_topics(self) -> dict[str, TopicInfo]:
+        topics: dict[str, TopicInfo] = {}
+        for one in self._storages:
+            for name, info in one.topics.items():
+                known = topics.get(name)
+                count = info.count + (known.count if known else 0)
+                topics[name] = dataclasses.replace(info, count=count)
+        return topics
+
+    def _own_metadata(self) -> dict[str, str]:
+        """Return the record of this program in the first MCAP file, if it is whole."""
+        found: dict[str, str] = {}
+        for one in self._storages[:1]:
+            if isinstance(one, McapStorage) and not one.note:
+                with damage_is_input(one.file), one.file.open('rb') as stream:
+                    for record in make_reader(stream).iter_metadata():
+                        found |= record.metadata if record.name == OWN else {}
+        return found
 
 
-def _named_files(metadata: Path) -> list[Path]:
+def _whole(message: Message) -> Message:
+    """Return a message that was packed alone; one that is damaged stays, and does not decode."""
     try:
-        content = yaml.safe_load(metadata.read_text())['rosbag2_bagfile_information']
-        kind, names = content['storage_identifier'], content['relative_file_paths']
-        if kind != 'mcap':
-            raise InputError(f'bag {metadata.parent} is stored as {kind}, it must be mcap')
-        return [metadata.parent / str(name) for name in names]
-    except (OSError, UnicodeDecodeError, yaml.YAMLError, KeyError, TypeError) as error:
-        reason = ' '.join(str(error).split())
-        raise InputError(f'{metadata} is not a rosbag2 metadata file: {reason}') from None
+        return dataclasses.replace(message, data=unpacked(message.data))
+    except ZstdError:
+        return message
+
+
+def _objection(found: TopicInfo, type_name: str) -> str:
+    """Return what is wrong with a topic that must be of a type, nothing if it is right."""
+    if not found.type_name:
+        return 'states no type: its schema is missing'
+    if found.type_name != type_name:
+        return f'is of type {found.type_name}, it must be {type_name}'
+    if found.encoding != 'cdr':
+        return f'is encoded as {found.encoding}, it must be cdr'
+    return '' if found.count else 'holds no message, at least one is needed'

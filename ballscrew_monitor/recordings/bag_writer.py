@@ -59,13 +59,24 @@ class Topic:
     offer: Offer
 
 
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Announced:
+    """What a bag says of a topic: its type with the text of it, hash and offered QoS."""
+
+    name: str
+    type_name: str
+    definition: bytes
+    type_hash: str
+    profiles: list[dict[str, Any]]
+
+
 class BagWriter:
     """One growing bag; use it as a context manager or call `close`."""
 
     def __init__(self, directory: Path, name: str, *, compress: bool = True) -> None:
         """Begin `directory/name.mcap.active`; raises InputError when that is impossible."""
         self.path = directory / f'{name}.mcap'
-        self._topics: dict[str, Topic] = {}
+        self._topics: dict[str, Announced] = {}
         self._channels: dict[str, int] = {}
         self._counts: Counter[str] = Counter()
         self._first = self._last = 0
@@ -88,31 +99,48 @@ class BagWriter:
 
     def add_topic(self, topic: Topic) -> None:
         """Announce a topic; raises InputError when its type is not installed."""
-        schema = self._writer.register_schema(
-            name=topic.type_name,
-            encoding='ros2msg',
-            data=message_definition(topic.type_name).encode(),
+        self.announce(
+            Announced(
+                name=topic.name,
+                type_name=topic.type_name,
+                definition=message_definition(topic.type_name).encode(),
+                type_hash=type_hash(topic.type_name),
+                profiles=[topic.offer.profile],
+            )
         )
-        profiles = yaml.safe_dump([topic.offer.profile], sort_keys=False)
+
+    def announce(self, topic: Announced) -> None:
+        """Announce a topic by all that is said of it, whether or not its type is installed."""
+        schema = self._writer.register_schema(
+            name=topic.type_name, encoding='ros2msg', data=topic.definition
+        )
         self._channels[topic.name] = self._writer.register_channel(
             topic=topic.name,
             message_encoding='cdr',
             schema_id=schema,
             metadata={
-                'offered_qos_profiles': profiles,
-                'topic_type_hash': type_hash(topic.type_name),
+                'offered_qos_profiles': yaml.safe_dump(topic.profiles, sort_keys=False),
+                'topic_type_hash': topic.type_hash,
             },
         )
         self._topics[topic.name] = topic
 
-    def write(self, topic: str, data: bytes, *, log_time: int, publish_time: int) -> None:
-        """Append a serialised message of an announced topic; times [ns]."""
+    def write(
+        self,
+        topic: str,
+        data: bytes,
+        *,
+        log_time: int,
+        publish_time: int,
+        sequence: int | None = None,
+    ) -> None:
+        """Append a serialised message of an announced topic, by default numbered; times [ns]."""
         self._writer.add_message(
             self._channels[topic],
             log_time=log_time,
             data=data,
             publish_time=publish_time,
-            sequence=self._counts[topic],
+            sequence=self._counts[topic] if sequence is None else sequence,
         )
         if not self._counts:
             self._first = self._last = log_time
@@ -142,6 +170,13 @@ class BagWriter:
         text = yaml.safe_dump({'rosbag2_bagfile_information': self._metadata()}, sort_keys=False)
         replace_file(self.path.with_name('metadata.yaml'), text.encode())
 
+    def abandon(self) -> None:
+        """Let go of a file that cannot be finished; what it holds stays as it is."""
+        try:
+            self._file.close()
+        except OSError:  # the same that made it impossible to finish
+            pass
+
     def _open(self, directory: Path) -> BinaryIO:
         try:
             directory.mkdir(parents=True, exist_ok=True)
@@ -165,8 +200,8 @@ class BagWriter:
                     'name': topic.name,
                     'type': topic.type_name,
                     'serialization_format': 'cdr',
-                    'offered_qos_profiles': [topic.offer.profile],
-                    'type_description_hash': type_hash(topic.type_name),
+                    'offered_qos_profiles': topic.profiles,
+                    'type_description_hash': topic.type_hash,
                 },
                 'message_count': self._counts[topic.name],
             }

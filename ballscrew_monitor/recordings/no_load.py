@@ -25,9 +25,9 @@ from ballscrew_monitor.core.conversions import (
 from ballscrew_monitor.core.inputs import Input, InputSample, make_input, Source, Why
 from ballscrew_monitor.node.topics import absolute
 from ballscrew_monitor.recordings.bag import Bag
+from ballscrew_monitor.recordings.decoding import decode, named_instead
 import numpy as np
 from numpy.typing import NDArray
-from rclpy.serialization import deserialize_message
 from surrogate.files import InputError
 
 Array = NDArray[np.float64]
@@ -127,8 +127,9 @@ def _read(bag: Bag, channels: Mapping[Source, Channel]) -> tuple[dict[Source, Se
     refused = 0
     for message in bag.messages({one.topic for one in inputs.values()}):
         readers = [one for one in inputs.values() if one.topic == message.topic]
-        decoded = deserialize_message(message.data, readers[0].message_type)
-        for one in readers:
+        decoded, _ = decode(bag, message, readers[0].message_type)
+        refused += decoded is None
+        for one in readers if decoded is not None else ():
             read = one.read(decoded, now=message.log_time, max_future=NO_FUTURE_LIMIT)
             if isinstance(read, InputSample):
                 samples[one.source].append((read.stamp - bag.start_time, read.value))
@@ -138,7 +139,7 @@ def _read(bag: Bag, channels: Mapping[Source, Channel]) -> tuple[dict[Source, Se
         if not found:
             raise InputError(
                 f'bag {bag.path}: no message of {inputs[source].topic} holds '
-                f'{channels[source].field}, at least one must'
+                f'{channels[source].field}, at least one must{named_instead(bag, inputs[source])}'
             )
     return {source: _series(found) for source, found in samples.items()}, refused
 

@@ -16,14 +16,14 @@ from typing import Any, NamedTuple
 
 from ballscrew_monitor.core.conversions import nanoseconds
 from ballscrew_monitor.core.fields import OtherJoints
-from ballscrew_monitor.core.inputs import Input, InputSample, Refusal, Source
+from ballscrew_monitor.core.inputs import Input, InputSample, Refusal, Source, Why
 from ballscrew_monitor.core.state import State
 from ballscrew_monitor.node.axis import Axis, build_axis
 from ballscrew_monitor.node.messages import out_of_zone_message, StateWriter, TIERS
 from ballscrew_monitor.node.topics import absolute, input_topics, with_types
-from ballscrew_monitor.recordings.bag import Bag, Message
+from ballscrew_monitor.recordings.bag import Bag
+from ballscrew_monitor.recordings.decoding import decode, named_instead
 from ballscrew_msgs.msg import BallScrewState, OutOfZone
-from rclpy.serialization import deserialize_message
 from surrogate.files import InputError
 
 REORDER = nanoseconds(1.0)  # [ns] log time over which samples are put into the order of stamps
@@ -51,13 +51,14 @@ def speed_messages(bag: Bag, axes: Sequence[Axis]) -> dict[str, int]:
     for message in bag.messages():
         for name, source in speed.items():
             if message.topic == absolute(source.topic):
-                value = source.read_field(_decode(message, source.message_type))
-                counts[name] += not isinstance(value, OtherJoints)
+                decoded, _ = decode(bag, message, source.message_type)
+                if decoded is not None:
+                    counts[name] += not isinstance(source.read_field(decoded), OtherJoints)
     for name, count in counts.items():
         if not count:
             raise InputError(
                 f'bag {bag.path}: no message of {absolute(speed[name].topic)} holds '
-                f'the speed of axis {name}, at least one must'
+                f'the speed of axis {name}, at least one must{named_instead(bag, speed[name])}'
             )
     return counts
 
@@ -111,9 +112,13 @@ def _read(bag: Bag, axes: list[Axis]) -> Iterator[_Entry]:
             readers.setdefault(absolute(source.topic), []).append((number, axis, source))
     numbers = itertools.count()
     for message in bag.messages(readers):
-        decoded = _decode(message, readers[message.topic][0][2].message_type)
+        decoded, why = decode(bag, message, readers[message.topic][0][2].message_type)
         for number, axis, source in readers[message.topic]:
-            event = source.read(decoded, now=message.log_time, max_future=axis.max_future)
+            event: InputSample | Refusal
+            if decoded is None:
+                event = _not_decoded(source.source, why, message.log_time)
+            else:
+                event = source.read(decoded, now=message.log_time, max_future=axis.max_future)
             stamp = event.stamp if isinstance(event, InputSample) else message.log_time
             yield _Entry(stamp, event.source, next(numbers), message.log_time, number, event)
 
@@ -136,8 +141,8 @@ def _with_ticks(entries: Iterator[_Entry], period: int) -> Iterator[_Entry]:
         yield entry
 
 
-def _decode(message: Message, message_type: Any) -> Any:
-    return deserialize_message(message.data, message_type)
+def _not_decoded(source: Source, text: str, arrival: int) -> Refusal:
+    return Refusal(source=source, why=Why.NOT_DECODED, text=text, arrival=arrival)
 
 
 def _ordered(entries: Iterator[_Entry]) -> Iterator[_Entry]:

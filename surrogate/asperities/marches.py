@@ -22,7 +22,7 @@ from surrogate.ehl.moving import MarchSettings, ramp_strip, SpeedRamp, StripCont
 from surrogate.files import InputError
 from surrogate.formulas.geometry import screw_contact, Side
 from surrogate.formulas.line import Line, line_at
-from surrogate.formulas.load_sharing import normal_force
+from surrogate.formulas.load_sharing import normal_force, working_preload
 from surrogate.formulas.lubricant import lubricant_state
 from surrogate.parameters import Lubricant, Screw
 from surrogate.raceway.ball import draw_stated
@@ -64,6 +64,8 @@ class LawSettings:
     width: float = 2.0
 
 
+MARCHED_IN_RATINGS = 0.02
+"""Stands for the preload of a screw without one, over the static rating [-]: firmly pressed."""
 COARSE = LawSettings()
 """Marches that show how contact grows, at many pressures and temperatures."""
 FINE = LawSettings(shortest=0.06, along=5.0, across=4.0, transits=6.0, faster=1.8, slower=0.5)
@@ -157,8 +159,7 @@ def strip_inputs(
 
     """
     contact = screw_contact(screw, run.side)
-    # A share of the static rating stands in for the preload of a screw without one.
-    force = float(normal_force(screw, screw.preload or 0.02 * screw.static_rating))
+    force = float(normal_force(screw, working_preload(screw, MARCHED_IN_RATINGS)))
     middle = line_at(contact, force, 0.0)
     waves = stated_waves(screw.roughness, screw.ball_roughness)
     # The same waves on either side, so that all marches of a law are alike.

@@ -22,7 +22,7 @@ from surrogate.builder.tiers import screw_and_oil
 from surrogate.files import InputError
 from surrogate.formulas import closed_form
 from surrogate.formulas.film import film_ratio_at_share_aihara_1987
-from surrogate.formulas.load_sharing import UNLOADING_RATIO
+from surrogate.formulas.load_sharing import UNLOADING_RATIO, working_preload
 from surrogate.parameters import Lubricant, Screw
 from surrogate.progress import OnProgress
 from surrogate.surface import FIELDS, SolvedPoint, Surface
@@ -154,7 +154,7 @@ def load_nodes(screw: Screw, settings: SurfaceSettings) -> tuple[Array, list[flo
 def temperature_nodes(screw: Screw, lubricant: Lubricant, settings: SurfaceSettings) -> Array:
     """Return temperatures [K] between which the onset speed grows by equal factors."""
     fine = np.linspace(*settings.temperature_range, 400)
-    loaded = np.asarray(screw.preload or 0.01 * screw.static_rating)
+    loaded = np.asarray(working_preload(screw))
     log_onset = np.log(onset_speed(screw, lubricant, loaded, fine, settings.onset_rcs))
     even = np.linspace(log_onset[0], log_onset[-1], settings.temperature_nodes)
     nodes = np.interp(even, log_onset, fine)

@@ -57,6 +57,14 @@ def line_at(contact: Contact, load: float, place: ArrayLike) -> Line:
     )
 
 
+def long_ellipse(line: Line) -> tuple[Contact, Array]:
+    """Return the ellipse that serves for a line in formulas, and its load [N] at that pressure."""
+    long = Contact(
+        radius_x=line.radius, radius_y=LONG * line.radius, reduced_modulus=line.reduced_modulus
+    )
+    return long, np.asarray((line.max_pressure / float(hertz(long, 1.0).max_pressure)) ** 3)
+
+
 def central_film_line(
     line: Line, speed: ArrayLike, viscosity: float, pressure_viscosity: float
 ) -> Array:
@@ -66,10 +74,7 @@ def central_film_line(
     The ellipse has the same Hertz pressure; viscosity [Pa s], coefficient [1/Pa].
 
     """
-    long = Contact(
-        radius_x=line.radius, radius_y=LONG * line.radius, reduced_modulus=line.reduced_modulus
-    )
-    load = (line.max_pressure / float(hertz(long, 1.0).max_pressure)) ** 3
+    long, load = long_ellipse(line)
     return central_film_nijenbanning_1994(
         long, groups(long, load, speed, viscosity, pressure_viscosity)
     )

@@ -18,6 +18,8 @@ UNLOADING_RATIO = 2.0**1.5
 """Axial load over preload at which the relieved nut carries nothing [-]."""
 IDLE_SHARE = 1e-3
 """Force of the relieved nut over that of the loaded one below which it counts as idle [-]."""
+LIGHT_IN_RATINGS = 0.01
+"""Stands for the preload of a screw without one, over the static rating [-]."""
 
 
 def nut_forces(load: ArrayLike, preload: float) -> tuple[Array, Array]:
@@ -45,6 +47,11 @@ def normal_force(screw: Screw, nut_force: ArrayLike) -> Array:
         screw.loaded_balls_per_nut * math.sin(screw.contact_angle) * math.cos(helix_angle(screw))
     )
     return np.asarray(nut_force) / share
+
+
+def working_preload(screw: Screw, in_ratings: float = LIGHT_IN_RATINGS) -> float:
+    """Return the preload [N]; without one, that share [-] of the static rating stands for it."""
+    return screw.preload or in_ratings * screw.static_rating
 
 
 def idle_load(screw: Screw) -> float:

@@ -29,6 +29,7 @@ from surrogate.paper.curves import (
 )
 from surrogate.paper.rows import StudyRow
 from surrogate.parameters import Screw
+from surrogate.surface.aims import RCS_LIMIT
 from surrogate.units import NANO
 
 REPORTED_FILM = 153.0
@@ -214,6 +215,7 @@ def _statistical(screw: Screw, rows: list[StudyRow]) -> list[Mark]:
     if len(speeds) < 2:
         return []
     eta = efficiencies(screw, speeds, 'sliding_torque')
+    touching = sum(row.rcs >= RCS_LIMIT for row in speeds)  # the slowest: the share falls
     name = f'efficiency, statistical share, without rolling losses, {EFFICIENCY_LOAD:g} N'
     return [
         Mark(
@@ -225,5 +227,8 @@ def _statistical(screw: Screw, rows: list[StudyRow]) -> list[Mark]:
             Mark(name=f'{name}, {speeds[i].rpm:g} rev/min', value=eta[i], reported=ETA_RISES)
             for i in (0, -1)
         ),
-        Mark(name=f'{name}, least step between speeds', value=float(np.diff(eta).min())),
+        Mark(
+            name=f'{name}, least step between speeds with a share of {RCS_LIMIT:g} or more',
+            value=float(np.diff(eta[:touching]).min(initial=math.inf)),
+        ),
     ]

@@ -9,7 +9,7 @@ material.
 
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 import math
 from typing import get_args, Literal
@@ -18,12 +18,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from surrogate.datasheet import Checked, count, quantity
 from surrogate.files import InputError
-from surrogate.raceway.patch import grid_axes, Patch, Plane, take_patch, Window
+from surrogate.raceway.patch import grid_axes, Patch, Plane
 from surrogate.raceway.strip import Strip
 
 Array = NDArray[np.float64]
 Lay = Literal['isotropic', 'longitudinal', 'transverse']
-DrawnBy = Literal['seeds', 'positions']
 
 DIMENSIONS = (2.01, 2.99)
 """Range of the fractal dimension [-]."""
@@ -181,44 +180,3 @@ def shifted(surface: FractalSurface, x: float, y: float) -> FractalSurface:
     offset, slope_x, slope_y = surface.plane
     offset += slope_x * x + slope_y * y - lift
     return replace(surface, phase=phase, plane=(offset, slope_x, slope_y))
-
-
-def ensemble(
-    roughness: PublishedRoughness,
-    count: int,
-    kind: Patch,
-    window: Window,
-    *,
-    by: DrawnBy = 'seeds',
-    seed: int = 0,
-    lay: Lay = 'isotropic',
-) -> Iterator[FractalSurface]:
-    """
-    Yield `count` patches of one kind, for the mean and the scatter of a result.
-
-    By `seeds`: draws seed, seed + 1, ... at the centre. By `positions`: places of the one draw
-    `seed`, random over its sample length less the window.
-
-    """
-    if by not in get_args(DrawnBy):
-        raise InputError(f'draws by {by!r}, allowed is seeds or positions')
-    if by == 'seeds':
-        draws = (fractal_surface(roughness, seed + one, lay=lay) for one in range(count))
-    else:
-        surface = fractal_surface(roughness, seed, lay=lay)
-        draws = (shifted(surface, *place) for place in _places(roughness, count, window, seed))
-    for draw in draws:
-        yield take_patch(draw, kind, window, roughness.rms)
-
-
-def _places(
-    roughness: PublishedRoughness, count: int, window: Window, seed: int
-) -> Iterator[tuple[float, float]]:
-    free = roughness.sample_length - np.array([window.length_x, window.length_y])
-    if np.any(free < 0):
-        raise InputError(
-            f'window: its longer side is {1e3 * max(window.length_x, window.length_y):g} mm, '
-            f'allowed is the sample length ({1e3 * roughness.sample_length:g} mm) at most'
-        )
-    for x, y in np.random.default_rng([seed, 1]).uniform(-0.5, 0.5, (count, 2)) * free:
-        yield float(x), float(y)

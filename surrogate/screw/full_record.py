@@ -10,6 +10,7 @@ from surrogate.asperities.law import shipped_law
 from surrogate.formulas.geometry import opposite_flank_approach, SIDES
 from surrogate.formulas.inlet_heating import heating_factor
 from surrogate.formulas.record import closed_form_record
+from surrogate.formulas.starvation import starved_speed
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.raceway.ball import roughness_sentence
 from surrogate.screw.contacts import ScrewSettings, shortest_on_grid, smooth_film
@@ -214,7 +215,8 @@ def _heating_factor(
     screw: Screw, lubricant: Lubricant, point: OperatingPoint, found: ScrewSolution
 ) -> float:
     """Return the least film factor of the inlet heating of both nuts [-], applied or not."""
-    speed = found.entrainment_speed
+    # The speed that a contact is taken at: a starved inlet has less to shear.
+    speed = starved_speed(lubricant, found.entrainment_speed)
     loads = [load for load in found.normal_forces if load > 0]
     factors = [
         heating_factor(screw, lubricant, side, load, speed, point.temperature)

@@ -27,6 +27,7 @@ from surrogate.files import canonical_json, replace_file
 from surrogate.surface.point import FIELDS
 
 Array = NDArray[np.float64]
+Arrays = dict[str, NDArray[Any]]
 
 FORMAT = 'ballscrew_surface'
 FORMAT_VERSION, ENSEMBLE_VERSION = 3, 4
@@ -68,7 +69,8 @@ class SurfaceData:
     per cell. `deviations` and `standard_errors`, of any of the fields in its unit, hold the
     standard deviation between strips of the raceway and the standard error of the mean on the
     nodes, NaN where not known; a tier without strips has none. `header` has the keys format,
-    format_version, tier, inputs, settings, load_breaks; `provenance` is not hashed.
+    format_version, tier, inputs, settings, load_breaks, and law in the full tier; `provenance` is
+    not hashed.
 
     """
 
@@ -161,9 +163,7 @@ def _check_content(path: str | Path, content: bytes) -> None:
         raise SurfaceError(f'{path}: {unpacked} bytes when unpacked, allowed is {LARGEST_FILE}')
 
 
-def _read_arrays(
-    path: str | Path, content: bytes
-) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
+def _read_arrays(path: str | Path, content: bytes) -> tuple[dict[str, Any], Arrays]:
     try:
         with np.load(io.BytesIO(content), allow_pickle=False) as archive:
             arrays = {name: archive[name] for name in archive.files}
@@ -194,9 +194,7 @@ def _check_version(path: str | Path, version: Any) -> None:
         )
 
 
-def _assemble(
-    header: dict[str, Any], provenance: Any, arrays: dict[str, NDArray[Any]]
-) -> SurfaceData:
+def _assemble(header: dict[str, Any], provenance: Any, arrays: Arrays) -> SurfaceData:
     def group(prefix: str) -> dict[str, Array]:
         return {
             name.removeprefix(prefix): array
@@ -266,13 +264,15 @@ def _has_sound_ensemble(data: SurfaceData) -> bool:
 def _has_sound_header(data: SurfaceData) -> bool:
     """Tell whether the lookup finds what it needs, and no more speeds than there are nodes."""
     screw, oil = (data.header['inputs'][kind] for kind in ('screw', 'lubricant'))
-    names = (screw['name'], oil['name'])
+    # Solves of a full-tier surface, and so its corrections, need the law that it was built with.
+    law = data.header['law'] if data.header['tier'] == 'full' else {}
     numbers = (screw['lead'], screw['preload'], oil['reference_temperature'])
     slowest, fastest = (math.log(speed) for speed in data.header['settings']['speed_range'])
     s, rounding = data.speed_coordinate, 1e-9
     return (
         data.header['tier'] in TIERS
-        and all(isinstance(name, str) for name in names)
+        and isinstance(law, Mapping)
+        and all(isinstance(one['name'], str) for one in (screw, oil))
         and all(math.isfinite(number) for number in numbers)
         and set(data.header['load_breaks']) <= set(data.load.tolist())
         and slowest < fastest
@@ -283,7 +283,7 @@ def _has_sound_header(data: SurfaceData) -> bool:
 
 def _arrays(data: SurfaceData) -> Iterator[tuple[str, NDArray[Any]]]:
     """Yield every array under its name on file, in name order."""
-    named: dict[str, NDArray[Any]] = {
+    named: Arrays = {
         'axis_speed_coordinate': data.speed_coordinate,
         'axis_load': data.load,
         'axis_temperature': data.temperature,

@@ -13,6 +13,7 @@ import pytest
 from surrogate.files import InputError
 from surrogate.formulas.lubricant import lubricant_state
 from surrogate.parameters import BallRoughness, DATA, load_lubricant, load_screw, OperatingPoint
+from surrogate.raceway.ball import ball_of
 from surrogate.raceway.fractal import PublishedRoughness
 from surrogate.units import ZERO_CELSIUS
 
@@ -170,6 +171,23 @@ def test_a_rough_ball_beside_a_smooth_raceway_needs_a_dimension(screw):
         replace(screw, roughness=smooth, ball_roughness=ball)
     rough = replace(screw, roughness=replace(smooth, fractal_dimension=2.5), ball_roughness=ball)
     assert rough.composite_rms == pytest.approx(0.025e-6)
+
+
+@pytest.mark.parametrize(('grade', 'long'), [('G10', 80e-6), ('G28', 250e-6)])
+def test_a_cut_off_that_leaves_the_balls_no_waves_is_refused(screw, grade, long):
+    """That of the raceway is theirs too, and lies below their own long one."""
+    ball = BallRoughness(grade=grade)
+    coarse = replace(screw.roughness, cutoff_long=0.8e-3, cutoff_short=long)
+    assert replace(screw, roughness=coarse).roughness.cutoff_short == long
+    sentence = f'cutoff_short_um of roughness is {long * 1e6:g} um, allowed is less than the long'
+    with pytest.raises(InputError, match=sentence):
+        replace(screw, roughness=coarse, ball_roughness=ball)
+    with pytest.raises(InputError, match='long cut-off'):
+        ball_of(coarse, ball)
+    finer = replace(coarse, cutoff_short=0.99 * long)
+    assert replace(screw, roughness=finer, ball_roughness=ball).composite_rms > screw.composite_rms
+    assert ball_of(finer, ball) is not None
+    assert replace(screw, roughness=coarse, ball_roughness=BallRoughness(rms=0.0))
 
 
 def test_heights_of_raceway_and_ball_add_as_squares(screw):

@@ -10,7 +10,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.builder.full.settings import FullSettings
-from surrogate.formulas.load_sharing import idle_load
+from surrogate.formulas.load_sharing import idle_load, working_preload
 from surrogate.parameters import Screw
 from surrogate.surface import FIELDS, SolvedPoint, Surface, SurfacePoint, Validity
 from surrogate.surface.aims import EFFICIENCY_TOLERANCE, LIGHT_LOAD, rcs_tolerance
@@ -27,8 +27,6 @@ NEAR_IDLE = 0.8
 """Part of the idle load from which on the relieved nut is near unloading [-]."""
 SPEEDS = (NEAR_ONSET, (NEAR_ONSET[1], math.inf), MUCH, (-math.inf, MUCH[0]))
 """Ends of the speed coordinates within which errors are alike [-]."""
-LEAST_IN_RATINGS = 0.01
-"""Stands for the preload of a screw without one, over the static rating [-]."""
 TRIES = 20
 """Loads and temperatures that are tried for a point of a stratum."""
 
@@ -65,7 +63,7 @@ def judged(
 
 def _miss(screw: Screw, point: HeldOutPlace, found: SurfacePoint, solved: SolvedPoint) -> float:
     """Return the larger error of efficiency and RCS over the allowed one [-]."""
-    least = LIGHT_LOAD * (screw.preload or LEAST_IN_RATINGS * screw.static_rating)
+    least = LIGHT_LOAD * working_preload(screw)
     ideal = max(abs(point[1]), least) * screw.lead / (2 * math.pi)
     torque, exact = ideal + found.friction_torque, ideal + solved.friction_torque
     return max(

@@ -22,7 +22,7 @@ from surrogate.builder.closed_form import speed_coordinates
 from surrogate.builder.full.settings import FullSettings
 from surrogate.formulas.geometry import screw_contact, SIDES
 from surrogate.formulas.kinematics import no_slip_rates
-from surrogate.formulas.load_sharing import idle_load, normal_force, nut_forces
+from surrogate.formulas.load_sharing import idle_load, normal_force, nut_forces, working_preload
 from surrogate.formulas.lubricant import lubricant_state
 from surrogate.formulas.starvation import starved_speed
 from surrogate.parameters import Lubricant, Screw
@@ -95,8 +95,8 @@ def onset_speeds(
     oils = [oil_at(lubricant, float(heat)) for heat in temperature]
     found = np.empty((len(load), len(temperature)))
     for (j, force), (k, oil) in itertools.product(enumerate(load), enumerate(oils)):
-        loaded = float(normal_force(screw, nut_forces(force, screw.preload)[0]))
-        pressed = loaded or float(normal_force(screw, 0.01 * screw.static_rating))
+        loaded = float(nut_forces(force, screw.preload)[0]) or working_preload(screw)
+        pressed = float(normal_force(screw, loaded))
         found[j, k] = max(
             law.onset(waves, screw_contact(screw, side), pressed, oil, lubricant.film_floor)
             for side in SIDES

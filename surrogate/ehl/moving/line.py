@@ -21,11 +21,10 @@ from surrogate.ehl.kernels.fft import good_length
 from surrogate.ehl.scales import scale_contact, ScaledContact
 from surrogate.ehl.search import Search
 from surrogate.files import InputError
-from surrogate.formulas.geometry import Contact, hertz
+from surrogate.formulas.geometry import Contact
+from surrogate.formulas.line import Line, line_at, long_ellipse
 
 Array = NDArray[np.float64]
-LONG = 20.0
-"""Radius ratio of the ellipse whose film formula serves for a line [-]."""
 NARROWEST, LONG_CELL = 4, 2.5
 """Columns of the strip on which the smooth contact is solved, and dy over dx there [-]."""
 
@@ -63,9 +62,18 @@ class StripContact:
             )
 
     @property
+    def line(self) -> Line:
+        """Return the line contact without its width."""
+        return Line(
+            radius=self.radius,
+            reduced_modulus=self.reduced_modulus,
+            max_pressure=np.asarray(self.max_pressure),
+        )
+
+    @property
     def semi_axis(self) -> float:
-        """Half width of the Hertz zone b = 4 R pH/E' [m]."""
-        return 4 * self.radius * self.max_pressure / self.reduced_modulus
+        """Half width of the Hertz zone [m]."""
+        return float(self.line.semi_axis)
 
     @property
     def load(self) -> float:
@@ -79,18 +87,16 @@ def strip_at(
     """
     Return the strip of an elliptical contact under a load [N] at `place` across, over b [-].
 
-    There the Hertz pressure and the half length along the track are those of the ellipse times
-    sqrt(1 - place^2); the radius is that of the line contact that has both.
+    It is that of the line contact there (see `line_at`).
 
     """
     if not -1 < place < 1:
         raise InputError(f'strip: place is {place!r}, allowed is between -1 and 1')
-    ellipse = hertz(contact, load)
-    pressure = float(ellipse.max_pressure)
+    line = line_at(contact, load, place)
     return StripContact(
-        radius=contact.reduced_modulus * float(ellipse.semi_axis_x) / (4 * pressure),
-        reduced_modulus=contact.reduced_modulus,
-        max_pressure=pressure * math.sqrt(1 - place**2),
+        radius=line.radius,
+        reduced_modulus=line.reduced_modulus,
+        max_pressure=float(line.max_pressure),
         width=width,
         columns=columns,
     )
@@ -122,9 +128,13 @@ class StripCase(ScaledCase):
 
     def film_estimate(self, speed: float) -> float:
         """Return the central film by the formula of a long ellipse of the same pressure [-]."""
-        long = replace(self.contact, radius_y=LONG * self.contact.radius_x)
-        load = (self.hertz_pressure / float(hertz(long, 1.0).max_pressure)) ** 3
-        condition = Condition(load=load, entrainment_speed=speed)
+        line = Line(
+            radius=self.contact.radius_x,
+            reduced_modulus=self.contact.reduced_modulus,
+            max_pressure=np.asarray(self.hertz_pressure),
+        )
+        long, load = long_ellipse(line)
+        condition = Condition(load=float(load), entrainment_speed=speed)
         ellipse = scale_contact(long, self.lubricant, condition, None)
         return ellipse.film_estimate(speed) * ellipse.height_unit / self.height_unit
 
@@ -147,11 +157,7 @@ def scale_strip(
     """Return a strip with the scales of its Hertz zone; entrainment speed [m/s]."""
     b = strip.semi_axis
     return ScaledContact(
-        contact=Contact(
-            radius_x=strip.radius,
-            radius_y=LONG * strip.radius,
-            reduced_modulus=strip.reduced_modulus,
-        ),
+        contact=long_ellipse(strip.line)[0],
         lubricant=lubricant,
         condition=Condition(load=strip.load, entrainment_speed=speed),
         roughness=raceway,

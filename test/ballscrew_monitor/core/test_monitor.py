@@ -302,6 +302,17 @@ def test_an_acknowledged_warning_comes_back_as_a_new_event(core):
     assert (monitor.event.number, monitor.event.active) == (2, True)
 
 
+def test_an_event_whose_stamps_run_ahead_of_the_clock_ends_after_it_began(core):
+    monitor = slow_is_bad(core)
+    samples = motion(10.0, count=51)
+    feed(monitor, samples)
+    ended = monitor.acknowledge(START - 10 * SECOND)
+    assert ended.start == START
+    assert ended.stamp == samples[-1].stamp
+    (state,) = feed(monitor, motion(40.0, start=samples[-1].stamp + STEP))
+    assert state.level_since <= state.stamp
+
+
 def test_states_are_thinned_to_a_grid_but_edges_are_not(core):
     monitor = slow_is_bad(core, publish_period=SECOND)
     states = feed(monitor, motion(40.0, start=START + STEP, count=299))

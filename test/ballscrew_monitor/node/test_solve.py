@@ -132,10 +132,17 @@ def test_a_solve_is_told_beside_the_surface(node):
     assert result.rcs_stderr == pytest.approx(own[1], rel=1e-4)
     assert math.isnan(result.efficiency_stderr)
     assert result.wall_time > 0.0
+
+
+def test_a_slow_solve_tells_what_it_is_at_and_how_far(node):
+    node.start()
+    goal = Solves(node).ask(**LONG)
+    assert goal.end()[0] == SUCCEEDED
     fractions = [step.fraction for step in goal.feedback]
     assert fractions == sorted(fractions)
-    # A solve may take less than the time between two steps; what it is at is told of longer ones.
-    assert 0.0 <= fractions[-1] < 1.0
+    assert fractions[0] < fractions[-1]
+    assert 0.0 < fractions[-1] <= 1.0
+    assert goal.at(SOLVING)
 
 
 def test_what_cannot_be_solved_is_one_sentence(node):

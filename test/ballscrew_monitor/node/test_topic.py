@@ -20,7 +20,7 @@ def test_what_waits_while_the_publishers_change_has_no_number(before, after):
     subscription = types.SimpleNamespace(
         handle=handle, msg_type=Float64, raw=False, get_publisher_count=lambda: after
     )
-    topic = Topic(readers=[], loss=LossCounter(), subscription=subscription)
+    topic = Topic(name='/a', readers=[], loss=LossCounter(), subscription=subscription)
     topic.loss.match(before)
 
     def losses(*numbers):

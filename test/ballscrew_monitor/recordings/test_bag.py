@@ -121,7 +121,15 @@ def test_damage_inside_is_found_when_it_is_read(copy, part):
     [
         ('][', 'is not a rosbag2 metadata file'),
         ('a: 1', 'is not a rosbag2 metadata file'),
-        ({'storage_identifier': 'sqlite3', 'relative_file_paths': []}, 'must be mcap'),
+        ({'storage_identifier': 'x', 'relative_file_paths': []}, 'must be mcap or sqlite3'),
+        (
+            {
+                'storage_identifier': 'mcap',
+                'relative_file_paths': ['a'],
+                'compression_format': 'lz4',
+            },
+            'must be zstd',
+        ),
         ({'storage_identifier': 'mcap', 'relative_file_paths': ['x.mcap']}, 'x.mcap, which is'),
         ({'storage_identifier': 'mcap', 'relative_file_paths': []}, 'holds no MCAP file'),
     ],

@@ -11,6 +11,7 @@ from ballscrew_monitor.node import parameters
 from ballscrew_monitor.node.axis import build_axis
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
+from ballscrew_monitor.recordings.decoding import silence
 from ballscrew_monitor.recordings.replay import LONGEST_HOLE, replay, speed_messages
 from geometry_msgs.msg import WrenchStamped
 import pytest
@@ -184,3 +185,47 @@ def test_a_bag_that_says_nothing_of_an_axis_is_refused(tmp_path):
     bag = write(tmp_path, (BEGIN, speed_message(BEGIN, 1.0, joint='y_axis')))
     with pytest.raises(InputError, match='no message of /joint_states holds the speed of axis x'):
         speed_messages(bag, [build_axis('x', values)])
+
+
+@pytest.mark.parametrize(
+    'damage',
+    [lambda data: b'', lambda data: data[:21], lambda data: data[:4] + b'\xff' * len(data)],
+    ids=['empty', 'truncated', 'garbage'],
+)
+def test_a_message_that_does_not_decode_is_refused_and_the_rest_judged(damage, tmp_path):
+    times = [BEGIN + 10_000_000 * number for number in range(5)]
+    bag = write(
+        tmp_path / 'whole',
+        *((time, load_message(time, -1000.0)) for time in times),
+        *((time, speed_message(time, 100.0)) for time in times),
+    )
+    speed = 'sensor_msgs/msg/JointState'
+    with BagWriter(tmp_path / 'bad', 'bag') as writer:
+        for name, kind in bag.types.items():
+            writer.add_topic(Topic(name=name, type_name=kind, offer=Offer.SENSOR))
+        for message in bag.messages():
+            bad = message.log_time in times[2:4] and message.topic == '/joint_states'
+            data = damage(message.data) if bad else message.data
+            writer.write(message.topic, data, log_time=message.log_time, publish_time=0)
+    bad = Bag(tmp_path / 'bad')
+    states = [state for state, _ in replay(bad, every_state())]
+    assert states[-1].judged == 3
+    assert states[-1].inputs[0].dropped == 2
+    assert bad.refused['/joint_states'].count == 2
+    text = bad.notes[0]
+    assert f'the message of /joint_states at 0.020 s does not decode as {speed}' in text
+    assert text.endswith('; 2 such messages were refused')
+    assert speed_messages(bad, [build_axis('x', every_state())]) == {'x': 3}
+
+
+def test_the_joints_that_are_there_are_named_instead_of_a_wrong_one(tmp_path):
+    bag = write(
+        tmp_path,
+        (BEGIN, load_message(BEGIN, -1000.0)),
+        (BEGIN, speed_message(BEGIN, 100.0, joint='b')),
+        (BEGIN + 1, speed_message(BEGIN, 100.0, joint='a')),
+    )
+    axis = build_axis('x', every_state())
+    with pytest.raises(InputError, match='they name a, b and no joint x_axis'):
+        speed_messages(bag, [axis])
+    assert 'name a, b and no joint x_axis, set x.speed.field to velocity[a]' in silence(bag, axis)

@@ -14,6 +14,7 @@ from surrogate.formulas.load_sharing import (
     normal_force,
     nut_forces,
     UNLOADING_RATIO,
+    working_preload,
 )
 
 
@@ -49,6 +50,14 @@ def test_zero_preload_is_legal():
     loaded, relieved = nut_forces([0.0, 100.0], 0.0)
     assert loaded.tolist() == [0.0, 100.0]
     assert relieved.tolist() == [0.0, 0.0]
+
+
+def test_a_share_of_the_rating_stands_for_no_preload(screw):
+    """One hundredth, or as asked; a preload stands for itself."""
+    free = replace(screw, preload=0.0)
+    assert working_preload(screw) == working_preload(screw, 0.02) == screw.preload
+    assert working_preload(free) == 0.01 * screw.static_rating
+    assert working_preload(free, 0.02) == 0.02 * screw.static_rating
 
 
 def test_normal_force_at_preload_is_the_published_one(screw):

@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Fractal surfaces: the published sum, one surface whatever the grid, patches, lays, ensembles."""
+"""Fractal surfaces: the published sum, one surface whatever the grid, patches, lays."""
 
 from dataclasses import replace
 import logging
@@ -11,13 +11,7 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 from surrogate.files import InputError
-from surrogate.raceway.fractal import (
-    ensemble,
-    fractal_surface,
-    PublishedRoughness,
-    shifted,
-    theoretical_rms,
-)
+from surrogate.raceway.fractal import fractal_surface, PublishedRoughness, shifted, theoretical_rms
 from surrogate.raceway.fractal_fit import structure_function
 from surrogate.raceway.patch import take_patch, Window
 
@@ -125,15 +119,14 @@ def test_the_factor_of_a_patch_is_logged(caplog):
 
 def test_cut_patches_scatter_by_draw():
     """Half of the nominal 0.12 um and less over a contact, by draw; a patch is never rescaled."""
-    patches = list(ensemble(NOMINAL, 24, 'cut', HERTZ))
+    draws = [fractal_surface(NOMINAL, seed) for seed in range(24)]
+    patches = [take_patch(draw, 'cut', HERTZ, NOMINAL.rms) for draw in draws]
     assert all(patch.scale == 1.0 for patch in patches)
     levelled = np.array([rms_over(patch, HERTZ, (51, 201)) for patch in patches])
     assert 0.045e-6 < levelled.min() < 0.065e-6
     assert 0.085e-6 < levelled.max() < 0.12e-6
     # With their slope left in, as a stylus without levelling sees them: 0.06 to 0.14 um.
-    tilted = np.array(
-        [rms_over(fractal_surface(NOMINAL, seed), HERTZ, (51, 201)) for seed in range(24)]
-    )
+    tilted = np.array([rms_over(draw, HERTZ, (51, 201)) for draw in draws])
     assert np.percentile(tilted, 10) == pytest.approx(0.06e-6, abs=0.01e-6)
     assert 0.1e-6 < tilted.max() < 0.16e-6
     assert np.all(levelled <= tilted * 1.001)
@@ -157,25 +150,6 @@ def test_a_shift_moves_the_place_to_the_centre(x, y, seed):
         assert moved.heights([1e-5], [2e-5])[0, 0] == pytest.approx(
             surface.heights([x + 1e-5], [y + 2e-5])[0, 0], rel=1e-6, abs=1e-14
         )
-
-
-def test_ensembles_by_seeds_and_by_positions():
-    """Members differ, are repeatable and have the rms; the first seed is the draw itself."""
-    for by in ('seeds', 'positions'):
-        one, other = (
-            [
-                patch.heights([0.0], [0.0])[0, 0]
-                for patch in ensemble(COARSE, 4, 'rescaled', HERTZ, by=by, seed=7)
-            ]
-            for _ in range(2)
-        )
-        assert one == other
-        assert len(set(one)) == 4
-    first = next(ensemble(COARSE, 1, 'rescaled', HERTZ, seed=7))
-    drawn = take_patch(fractal_surface(COARSE, 7), 'rescaled', HERTZ, COARSE.rms)
-    np.testing.assert_array_equal(first.phase, drawn.phase)
-    for patch in ensemble(NOMINAL, 3, 'rescaled', HERTZ, by='positions'):
-        assert rms_over(patch, HERTZ) == pytest.approx(NOMINAL.rms, rel=0.01)
 
 
 def test_a_lay_runs_along_its_direction():
@@ -222,16 +196,6 @@ def test_a_lay_keeps_the_rms():
             "patch is 'whole', allowed is rescaled or cut",
         ),
         (lambda: Window(length_x=0.0, length_y=1.0), 'length_x is 0 m, allowed is above 0'),
-        (
-            lambda: list(ensemble(NOMINAL, 1, 'cut', HERTZ, by='luck')),
-            "draws by 'luck', allowed is seeds or positions",
-        ),
-        (
-            lambda: list(
-                ensemble(NOMINAL, 1, 'cut', Window(length_x=1e-3, length_y=5e-3), by='positions')
-            ),
-            'its longer side is 5 mm, allowed is the sample length',
-        ),
     ],
 )
 def test_bad_input_is_one_sentence(act, sentence):

@@ -12,11 +12,12 @@ import pytest
 from surrogate.ehl import Settings
 from surrogate.ehl.friction import contact_friction
 from surrogate.files import to_json
+from surrogate.formulas.inlet_heating import SPEED_EXPONENT
 from surrogate.formulas.record import closed_form_record, page
 from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
 from surrogate.screw import figures as figures_point
 from surrogate.screw.ball_motion import slip_floor
-from surrogate.screw.contacts import ScrewSettings
+from surrogate.screw.contacts import make_contacts, ScrewSettings
 from surrogate.screw.full_record import full_record, law_sentence, solution_record
 from surrogate.screw.nut import contact_slip
 from surrogate.screw.solve import solve_screw
@@ -47,6 +48,26 @@ def test_record_has_the_keys_of_the_formulas_and_is_plain_json():
     assert found['tier'] == 'full'
     assert json.loads(json.dumps(to_json(found), allow_nan=False))
     assert '(estimate)' not in page(found)
+
+
+def test_the_heating_factor_is_that_by_which_a_starved_contact_is_slowed():
+    """What is reported without inlet heating is what the option would apply."""
+    starved = replace(OIL, film_factor=0.5)
+    settings = replace(SETTINGS, kinematics='smooth')
+    point = OperatingPoint(speed=1000 * math.pi / 30, load=800.0, temperature=313.15)
+    told = full_record(SCREW, starved, point, settings)
+    assert told['inlet_heating'] is False
+    loads = (told['normal_force_loaded_N'], told['normal_force_relieved_N'])
+    contacts = make_contacts(SCREW, starved, point, settings)
+    heated = make_contacts(SCREW, starved, point, replace(settings, inlet_heating=True))
+    slowed = min(
+        hot.entrainment(load) / cold.entrainment(load)
+        for cold, hot in zip(contacts, heated, strict=True)
+        for load in loads
+    )
+    assert told['inlet_heating_factor'] == pytest.approx(slowed**SPEED_EXPONENT, rel=1e-9)
+    flooded = full_record(SCREW, OIL, point, settings)['inlet_heating_factor']
+    assert flooded < told['inlet_heating_factor'] < 1.0
 
 
 def test_parts_of_the_contacts_add_up_to_the_torque():

@@ -200,7 +200,13 @@ def amid(kelvin):
     return onset * math.exp(0.5 * float(s[cell - 1] + s[cell]))
 
 
-@pytest.mark.parametrize('beside', [0.0, 0.001, -0.001])
+def pull(made, speed, kelvin):
+    """Return the torque of a corrected surface over that of the shipped one at 1234 N [-]."""
+    corrected, before = (one.lookup(speed, 1234.0, kelvin) for one in (made, FULL))
+    return corrected.friction_torque / before.friction_torque
+
+
+@pytest.mark.parametrize('beside', [0.0, 0.004, -0.004])
 def test_a_point_on_a_node_of_temperature_corrects_both_sides(beside):
     """The default temperature is one: no step there, no slope, and the solve at the point."""
     heats = AXES['full'][2]
@@ -213,13 +219,16 @@ def test_a_point_on_a_node_of_temperature_corrects_both_sides(beside):
     found = made.lookup(*where)
     assert found.corrected
     assert found.friction_torque == pytest.approx(solved.friction_torque, rel=1e-4)
-    for step in (1e-3, 1e-6):
-        pulls = [
-            made.lookup(speed, 1234.0, node + sign * step).friction_torque
-            / FULL.lookup(speed, 1234.0, node + sign * step).friction_torque
-            for sign in (-1.0, 1.0)
-        ]
-        assert pulls == pytest.approx([1.1, 1.1], abs=1e-6 if beside == 0.0 else 5e-5)
+    # The bump stands on the node, at the speed coordinate of the point: the coordinate of a speed
+    # moves with temperature, because the onset does.
+    coordinate = speed / FULL.onset_speed(*where[1:])
+    for step in (-1e-3, -1e-6, 1e-6, 1e-3):
+        heat = node + step
+        moved = coordinate * FULL.onset_speed(1234.0, heat)
+        assert pull(made, moved, heat) == pytest.approx(1.1, abs=1e-6)
+    below, here, above = (pull(made, speed, node + step) for step in (-1e-4, 0.0, 1e-4))
+    assert here == pytest.approx(1.1, abs=5e-4)
+    assert above - here == pytest.approx(here - below, abs=1e-8)
     far = (speed, 1234.0, node + 0.6 * width)
     assert str(made.lookup(*far)) == str(FULL.lookup(*far))
 

@@ -14,6 +14,7 @@ from surrogate.builder.full.held_out import (
     judged,
     load_bands,
     NEAR_ONSET,
+    SPEEDS,
 )
 from surrogate.builder.full.settings import default_full_settings
 from surrogate.formulas.load_sharing import idle_load
@@ -77,7 +78,7 @@ def test_points_reach_all_speeds_at_all_temperatures(coarse, screw, settings):
     """Also those that cold oil alone or hot oil alone has."""
     surface = Surface(coarse)
     points = held_out_points(surface, screw, settings)
-    assert len(points) > 0.9 * POINTS
+    assert len(points) == POINTS
     s = np.array([math.log(w / surface.onset_speed(load, heat)) for w, load, heat in points])
     speed, load, heat = np.array(points).T
     assert speed.min() >= settings.speed_range[0] * (1 - 1e-9)
@@ -86,8 +87,8 @@ def test_points_reach_all_speeds_at_all_temperatures(coarse, screw, settings):
         low, high = np.log(settings.speed_range)
         assert np.log(speed[cold]).max() > high - 1
         assert np.log(speed[cold]).min() < low + 1.5
-    near = (s >= NEAR_ONSET[0]) & (s <= NEAR_ONSET[1])
-    assert 0.2 < near.mean() < 0.45
+    shares = [((s >= low) & (s < high)).mean() for low, high in SPEEDS]
+    assert shares == [0.25] * 4
     assert load.min() < 0 < load.max()
     assert held_out_points(surface, screw, settings) == points
     assert held_out_points(surface, screw, replace(settings, seed=2)) != points

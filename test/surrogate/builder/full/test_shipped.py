@@ -12,10 +12,12 @@ from surrogate.asperities.law import law_from_json
 from surrogate.builder.full.chain import chain_inputs, solve_chain
 from surrogate.surface import find_surface, Surface, Validity
 from surrogate.surface.file import read
+from surrogate.surface_tools.limit import limit_speed
 
 PATH = find_surface('full')
 DATA, LARGEST = read(PATH), 2_000_000
 SURFACE = Surface(DATA)
+CLOSED_FORM = Surface.load(find_surface('closed_form'))
 
 
 def test_file_is_of_the_datasheets_and_small(screw, oil):
@@ -55,6 +57,17 @@ def test_the_limit_is_known_within_the_floors_of_the_oil():
     """A speed below and one above."""
     low, high = SURFACE.limit_band
     assert 0.3 < low < 1 < high < 3
+
+
+@pytest.mark.parametrize(
+    ('load', 'kelvin'),
+    [(0.0, 313.15), (0.0, 293.15), (1000.0, 333.15), (2000.0, 313.15), (-3900.0, 313.15)],
+)
+def test_contact_of_the_closed_form_begins_near_that_of_the_full_tier(load, kelvin):
+    """Within a factor of 2 in speed: nominal, cold, warm, where RCS is late, relieved nut idle."""
+    solved, formulas = (limit_speed(surface, load, kelvin) for surface in (SURFACE, CLOSED_FORM))
+    assert 0.5 < formulas / solved < 2.0
+    assert 0.8 < SURFACE.lookup(solved, load, kelvin).film_ratio < 1.5
 
 
 def test_rcs_falls_with_speed_at_every_node():

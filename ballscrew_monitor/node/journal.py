@@ -1,0 +1,211 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+What the node heard, did and said, in that order, for its recording.
+
+Messages go in as they came, with the arrival on the clock of the node as their log time and the
+number of the burst in which they were taken as their sequence. Beside them lies the topic
+`~/journal`, which is recorded and never published: JSON entries for all else that a judgement
+depends on. An `axis` entry holds everything about one axis, so a replay begins wherever there is
+one, and each of those that come with time alone proves the replay up to there.
+
+"""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+import json
+from typing import Any
+
+from ballscrew_monitor.core.conversions import nanoseconds
+from ballscrew_monitor.core.snapshot import freeze_monitor
+from ballscrew_monitor.node.axis import Axis
+from ballscrew_monitor.node.frames import Frame, FrameKind, MOST_SEQUENCE
+from ballscrew_monitor.node.recording_process import RecordingProcess
+from ballscrew_monitor.node.topic import Arrival
+from rclpy.serialization import serialize_message
+from std_msgs.msg import String
+
+VERSION = 1
+LATCHED = ('OutOfZone', 'SurfaceInfo')
+STRING = 'std_msgs/msg/String'
+AXIS_PERIOD = nanoseconds(10.0)  # [ns] after which all is said of an axis again
+RESTART = nanoseconds(2.0)  # [ns] after which a lost process is started again
+Heard = tuple[Arrival, int, int | None]
+"""A message, its arrival [ns] on the clock of the node, and how many were lost before it."""
+
+
+class Journal:
+    """Hands all on to the process that records; without one it costs nothing."""
+
+    def __init__(self, name: str, start: Callable[[], RecordingProcess] | None) -> None:
+        """Write entries to the topic `name`; `start` makes the process, None: nothing is kept."""
+        self.on = start is not None
+        self._name = name
+        self._start = start
+        self._process = None if start is None else start()
+        self._lost_at: int | None = None  # the process, on the steady clock
+        self._topics: dict[str, int] = {}
+        self._unknown_loss: set[str] = set()  # topics whose loss was last said to be unknown
+        self._burst = 0
+        self._hole = False  # frames were dropped: all must be said anew
+        self._said: dict[str, int] = {}  # when each axis was, on the steady clock
+
+    @property
+    def problem(self) -> str:
+        """Return why nothing is recorded, in a sentence, or nothing."""
+        if self._process is None:
+            return ''
+        return self._process.problem or ('the recording has a hole' if self._hole else '')
+
+    def hear(self, batch: Sequence[Heard]) -> None:
+        """Take messages that were taken in one burst."""
+        if self._process is None:
+            return
+        self._burst = (self._burst + 1) % MOST_SEQUENCE
+        for arrival, now, lost in batch:
+            name, kind = arrival.topic.name, arrival.topic.type_name
+            self._tell_loss(name, lost, now)
+            self._put(name, kind, 'SENSOR', arrival.data, now, arrival.received, self._burst)
+        self._process.flush()
+
+    def _tell_loss(self, topic: str, lost: int | None, now: int) -> None:
+        """Say how many messages were lost before the next; that it is unknown, just once."""
+        known = topic not in self._unknown_loss
+        if lost == 0 and known or lost is None and not known:
+            return
+        (self._unknown_loss.add if lost is None else self._unknown_loss.discard)(topic)
+        self._note(now, {'kind': 'lost', 'topic': topic, 'count': lost})
+
+    def tick(self, grid: int, now: int) -> None:
+        """Note a tick of all axes at `grid` [ns]."""
+        if self._process is not None:
+            self._note(now, {'kind': 'tick', 'stamp': grid})
+
+    def say(self, topic: str, message: Any, now: int) -> None:
+        """Take a message that the node publishes at `now` [ns] of its clock."""
+        if self._process is not None:
+            kind = type(message)
+            type_name = f'{kind.__module__.split(".")[0]}/msg/{kind.__name__}'
+            offer = 'LATCHED' if kind.__name__ in LATCHED else 'RELIABLE'
+            self._put(topic, type_name, offer, serialize_message(message), now, now, 0)
+
+    def trigger(self, now: int) -> None:
+        """Let a recording around events show what has just happened."""
+        if self._process is not None:
+            self._process.put(Frame(FrameKind.TRIGGER, log_time=now))
+
+    def describe(
+        self,
+        axis: Axis,
+        values: Mapping[str, Any],
+        topics: Mapping[str, str],
+        because: str,
+        now: int,
+    ) -> None:
+        """
+        Say all about an axis: its parameters, the full names of its topics, what it remembers.
+
+        `because` is what has changed it, `time` if nothing has.
+
+        """
+        if self._process is None:
+            return
+        entry = {
+            'kind': 'axis',
+            'version': VERSION,
+            'axis': axis.name,
+            'because': because,
+            'values': values_of(axis.name, values),
+            'topics': dict(topics),
+            'loss_unknown': sorted(self._unknown_loss),
+            'surface': {
+                'base_sha256': axis.surface.base_sha256,
+                'corrections': [correction_entry(one) for one in axis.surface.corrections],
+            },
+            'monitor': freeze_monitor(axis.monitor),
+        }
+        self._note(now, entry)
+
+    def due(self, axes: Iterable[str], steady: int) -> list[str]:
+        """Return which axes are to be described again at `steady` [ns]: one; all after a hole."""
+        if self._process is None:
+            return []
+        if self._process.lost:
+            self._lost_at = steady if self._lost_at is None else self._lost_at
+            if steady - self._lost_at < RESTART:
+                return []
+            self._restart()
+        if self._hole and self._process.flush():
+            self._hole = False
+            self._said.clear()
+            self._note(0, {'kind': 'hole'})
+        late = [
+            name for name in axes if steady - self._said.get(name, -AXIS_PERIOD) >= AXIS_PERIOD
+        ]
+        chosen = late if not self._said else late[:1]
+        self._said |= dict.fromkeys(chosen, steady)
+        return chosen
+
+    def close(self) -> None:
+        """Finish the recording."""
+        if self._process is not None:
+            self._process.close()
+            self._process = None
+
+    def _restart(self) -> None:
+        assert self._process is not None
+        assert self._start is not None
+        self._process.close()
+        self._process, self._lost_at = self._start(), None
+        self._topics.clear()
+        self._hole = True
+
+    def _note(self, now: int, entry: Mapping[str, Any]) -> None:
+        text = json.dumps(entry, allow_nan=False, separators=(',', ':'))
+        self._put(
+            self._name, STRING, 'RELIABLE', serialize_message(String(data=text)), now, now, 0
+        )
+
+    def _put(
+        self,
+        topic: str,
+        type_name: str,
+        offer: str,
+        data: bytes,
+        log_time: int,
+        publish_time: int,
+        sequence: int,
+    ) -> None:
+        assert self._process is not None
+        if self._hole:  # what comes after it means nothing before all is said anew
+            return
+        number = self._topics.get(topic)
+        if number is None:
+            number = self._topics[topic] = len(self._topics)
+            stated = json.dumps({'name': topic, 'type': type_name, 'offer': offer})
+            if not self._process.put(Frame(FrameKind.TOPIC, number, body=stated.encode())):
+                del self._topics[topic]
+                self._hole = True
+                return
+        frame = Frame(FrameKind.MESSAGE, number, log_time, publish_time, sequence, data)
+        if not self._process.put(frame):
+            self._hole = True
+
+
+SILENT = Journal('', None)
+"""Keeps nothing."""
+
+
+def values_of(axis: str, values: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the parameters that one axis is judged with."""
+    mine = {name: value for name, value in values.items() if name.startswith(f'{axis}.')}
+    return mine | {'axes': [axis], 'tick_period': values['tick_period']}
+
+
+def correction_entry(one: Any) -> dict[str, Any]:
+    """Return a full solve that corrects a surface, as JSON takes it."""
+    return {
+        'speed': one.speed,
+        'opposing_load': one.opposing_load,
+        'temperature': one.temperature,
+        'solved': dict(one.solved),
+    }

@@ -1,0 +1,125 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Which files a bag is made of, and what they are: by metadata.yaml and by their first bytes."""
+
+from collections.abc import Iterator
+import dataclasses
+from pathlib import Path, PurePath
+from typing import Any
+
+from surrogate.files import InputError
+import yaml
+from zstandard import ZstdDecompressor, ZstdError
+
+MAGIC = {
+    b'\x89MCAP': 'mcap',
+    b'SQLite format 3\0': 'sqlite3',
+    b'\x28\xb5\x2f\xfd': 'zstd',
+    b'#ROSBAG V': 'rosbag1',
+    b'PAR1': 'parquet',
+}
+"""Kinds of files by how they begin."""
+ZSTD = next(magic for magic, kind in MAGIC.items() if kind == 'zstd')
+ENDINGS = ('.mcap', '.db3', '.mcap.zstd', '.db3.zstd')
+ACTIVE = '.mcap.active'
+STORAGES = ('mcap', 'sqlite3')
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Manifest:
+    """Files of a bag in order, and the custom data of its metadata."""
+
+    files: tuple[Path, ...]
+    custom: dict[str, str]
+
+
+def kind_of(file: Path) -> str:
+    """Return what a file is by its first bytes: a word of `MAGIC`, or nothing."""
+    with file.open('rb') as stream:
+        head = stream.read(max(map(len, MAGIC)))
+    return next((kind for magic, kind in MAGIC.items() if head.startswith(magic)), '')
+
+
+def is_bag(path: Path) -> bool:
+    """Tell whether something is to be opened as a bag: a directory of one, or a file of it."""
+    if path.is_dir():
+        return (path / 'metadata.yaml').is_file() or any(_bag_files(path))
+    return path.name.endswith((*ENDINGS, ACTIVE)) or (
+        path.is_file() and kind_of(path) in (*STORAGES, 'zstd')
+    )
+
+
+def manifest(path: Path, *, salvage: bool) -> Manifest:
+    """Return the files of the bag at `path`; raises InputError when there is none."""
+    if path.is_file():
+        return Manifest(files=(path,), custom={})
+    if not path.is_dir():
+        raise InputError(f'bag {path} does not exist, it must be a bag directory or an MCAP file')
+    metadata = path / 'metadata.yaml'
+    found = _read_metadata(metadata) if metadata.is_file() else None
+    files = found.files if found else tuple(_bag_files(path))
+    unfinished = sorted(path.glob(f'*{ACTIVE}'))
+    if not files and salvage:
+        files = tuple(unfinished)
+    if not files:
+        names = ', '.join(file.name for file in unfinished)
+        hint = f', only the unfinished {names}' if names else ''
+        raise InputError(f'bag {path} holds no MCAP file and no sqlite3 file{hint}')
+    return Manifest(files=files, custom=found.custom if found else {})
+
+
+def unpack(file: Path, folder: Path) -> Path:
+    """Return the unpacked copy in `folder` of a zstd file; raises InputError on damage."""
+    target = folder / file.name.removesuffix('.zstd')
+    try:
+        with file.open('rb') as packed, target.open('wb') as unpacked:
+            ZstdDecompressor().copy_stream(packed, unpacked)
+    except ZstdError as error:
+        raise InputError(f'bag {file} is truncated or damaged ({error})') from None
+    return target
+
+
+def unpacked(data: bytes) -> bytes:
+    """Return the content of a message, which may be packed alone; raises ZstdError on damage."""
+    # No serialised message begins so: its first byte is zero.
+    return ZstdDecompressor().decompressobj().decompress(data) if data[:4] == ZSTD else data
+
+
+def _bag_files(path: Path) -> Iterator[Path]:
+    return iter(sorted(file for file in path.iterdir() if file.name.endswith(ENDINGS)))
+
+
+def _read_metadata(metadata: Path) -> Manifest:
+    try:
+        content = yaml.safe_load(metadata.read_text())['rosbag2_bagfile_information']
+        kind, names = content['storage_identifier'], content['relative_file_paths']
+        packing = content.get('compression_format') or 'zstd'
+        custom = content.get('custom_data') or {}
+    except (
+        OSError,
+        UnicodeDecodeError,
+        yaml.YAMLError,
+        KeyError,
+        TypeError,
+        AttributeError,
+    ) as error:
+        reason = ' '.join(str(error).split())
+        raise InputError(f'{metadata} is not a rosbag2 metadata file: {reason}') from None
+    bag = metadata.parent
+    if kind not in STORAGES:
+        raise InputError(f'bag {bag} is stored as {kind}, it must be {" or ".join(STORAGES)}')
+    if packing != 'zstd':
+        raise InputError(f'bag {bag} is compressed as {packing}, it must be zstd')
+    if not isinstance(names, list):
+        raise InputError(f'{metadata} is not a rosbag2 metadata file: it names no list of files')
+    return Manifest(files=tuple(_place(bag, name) for name in names), custom=_texts(custom))
+
+
+def _place(bag: Path, name: Any) -> Path:
+    """Return where a file is: old metadata name the folder of the bag, too."""
+    file = bag / str(name)
+    return file if file.is_file() else bag / PurePath(str(name)).name
+
+
+def _texts(custom: Any) -> dict[str, str]:
+    return {str(key): str(value) for key, value in custom.items()} if custom else {}

@@ -1,0 +1,78 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""From a serialised message to a message; one that does not decode is counted and named."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from ballscrew_monitor.core.fields import OtherJoints, TooShort
+from ballscrew_monitor.core.inputs import Input, short_text
+from ballscrew_monitor.core.reasons import joint_reason
+from ballscrew_monitor.node.axis import Axis
+from ballscrew_monitor.node.topics import absolute
+from ballscrew_monitor.recordings.bag import Bag, Message
+from rclpy.serialization import deserialize_message
+
+# What deserialising is known to raise; that of the middleware is a RuntimeError.
+UNDECODABLE = (RuntimeError, ValueError, MemoryError, OverflowError)
+SEEN = 100  # messages of a topic that tell what it holds
+
+
+def decode(bag: Bag, message: Message, message_type: Any) -> tuple[Any, str]:
+    """Return a decoded message, or None and why there is none; `bag` counts those."""
+    if not message.data:
+        return None, bag.refuse(message, 'it is empty')
+    try:
+        return deserialize_message(message.data, message_type), ''
+    except UNDECODABLE:
+        return None, bag.refuse(message, 'it is truncated, or of another type')
+
+
+def silence(bag: Bag, axis: Axis) -> str:
+    """Return why nothing of `axis` could be read of `bag`, as far as its messages tell."""
+    reasons = []
+    for one in axis.inputs:
+        absent = _absence(bag, one)
+        if isinstance(absent, OtherJoints):
+            reasons.append(joint_reason(absent, f'{axis.name}.{one.source.name.lower()}'))
+        elif absent is not None:
+            reasons.append(short_text(absent))
+    return '; '.join(reasons)
+
+
+def named_instead(bag: Bag, one: Input) -> str:
+    """Return which joints the messages of an input name instead of its own, if they do."""
+    absent = _absence(bag, one)
+    if not isinstance(absent, OtherJoints):
+        return ''
+    return f'; they name {", ".join(absent.names) or "no joints"} and no joint {absent.joint}'
+
+
+def _absence(bag: Bag, one: Input) -> OtherJoints | TooShort | None:
+    """Return what the first messages of the topic of an input hold, if not its field."""
+    readings = _readings(bag, absolute(one.topic), one)
+    if not readings or any(isinstance(value, float) for value in readings):
+        return None
+    return _joined(readings)
+
+
+def _readings(bag: Bag, topic: str, one: Input) -> list[Any]:
+    """Return what the field of an input gives of the first messages of its topic."""
+    readings = []
+    for message in bag.messages([topic]):
+        decoded, _ = decode(bag, message, one.message_type)
+        if decoded is not None:
+            readings.append(one.read_field(decoded))
+        if len(readings) == SEEN:
+            break
+    return readings
+
+
+def _joined(readings: Sequence[OtherJoints | TooShort]) -> OtherJoints | TooShort:
+    """Return one absence for all: the joints of all messages, or the first array."""
+    first = readings[0]
+    others = [one for one in readings if isinstance(one, OtherJoints)]
+    if not isinstance(first, OtherJoints):
+        return first
+    names = sorted({name for one in others for name in one.names})
+    return OtherJoints(first.array, first.joint, tuple(names))

@@ -1,0 +1,193 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+What of a stream of frames is kept on the disk, in which files, and for how long.
+
+Always: everything, in recordings of limited length. Around events: the last seconds before each
+trigger, from memory, and those after it. Either way the oldest recordings make room for new ones.
+Each recording is a bag of its own. Time is an argument.
+
+"""
+
+import collections
+from collections.abc import Iterator
+import dataclasses
+import datetime
+import json
+from pathlib import Path
+import re
+
+from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.node.frames import Frame, FrameKind
+from ballscrew_monitor.recordings.bag_writer import ACTIVE, BagWriter, Offer, Topic
+from surrogate.files import InputError
+
+NAME = re.compile(r'\d{8}T\d{6}Z(?:_\d+)?')
+OURS = ('.mcap', f'.mcap{ACTIVE}', 'metadata.yaml')  # how files of a recording end
+MOST_RING = 64 * 2**20  # [B] of frames in memory
+RETRY = 10.0  # [s] after which writing is tried again
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class KeepSettings:
+    """
+    What is kept: `always`, or else around triggers.
+
+    before, after and longest [s], the largest recording and all of them [B].
+
+    """
+
+    always: bool
+    before: float
+    after: float
+    longest: float
+    largest: float
+    total: float
+
+
+class Keeper:
+    """Keeps what is to be kept of the frames that it takes."""
+
+    def __init__(self, folder: Path, settings: KeepSettings) -> None:
+        """Keep recordings in `folder`."""
+        self._folder = folder
+        self._settings = settings
+        self._topics: dict[int, Topic] = {}
+        self._ring: collections.deque[tuple[float, Frame]] = collections.deque()
+        self._ring_size = 0
+        self._writer: BagWriter | None = None
+        self._opened = 0.0
+        self._size = 0
+        self._until = 0.0  # when a recording around an event is complete
+        self._retry = 0.0
+        self.problem = ''
+
+    def take(self, frame: Frame, now: float) -> None:
+        """Take a frame at `now` [s] of a clock that only runs on."""
+        if now < self._retry:
+            return
+        try:
+            self._take(frame, now)
+        except (OSError, InputError) as error:
+            text = error.strerror if isinstance(error, OSError) else error
+            self.problem = f'nothing is recorded in {self._folder}: {text}'
+            self._retry = now + RETRY
+            self._abandon()
+
+    def close(self) -> None:
+        """Finish the recording that grows."""
+        try:
+            self._finish()
+        except OSError as error:
+            self.problem = f'the last recording in {self._folder} is unfinished: {error.strerror}'
+
+    def _take(self, frame: Frame, now: float) -> None:
+        if frame.kind is FrameKind.TOPIC:
+            self._announce(frame)
+        elif frame.kind is FrameKind.TRIGGER:
+            self._trigger(frame, now)
+        elif self._settings.always:
+            self._write_always(frame, now)
+        else:
+            self._write_around(frame, now)
+
+    def _announce(self, frame: Frame) -> None:
+        stated = json.loads(frame.body)
+        topic = Topic(name=stated['name'], type_name=stated['type'], offer=Offer[stated['offer']])
+        self._topics[frame.topic] = topic
+        if self._writer is not None:
+            self._writer.add_topic(topic)
+
+    def _write_always(self, frame: Frame, now: float) -> None:
+        full = self._size >= self._settings.largest
+        if self._writer is not None and (full or now - self._opened >= self._settings.longest):
+            self._finish()
+        if self._writer is None:
+            self._open(frame.log_time, now)
+        self._write(frame)
+
+    def _write_around(self, frame: Frame, now: float) -> None:
+        if self._writer is not None:
+            self._write(frame)
+            if now >= self._until or self._size >= self._settings.largest:
+                self._finish()
+            return
+        self._ring.append((now, frame))
+        self._ring_size += len(frame.body)
+        while self._ring_size > MOST_RING or now - self._ring[0][0] > self._settings.before:
+            self._ring_size -= len(self._ring.popleft()[1].body)
+
+    def _trigger(self, frame: Frame, now: float) -> None:
+        if self._settings.always:
+            return
+        self._until = now + self._settings.after
+        if self._writer is None:
+            first = self._ring[0][1].log_time if self._ring else frame.log_time
+            self._open(first, now)
+            for _, kept in self._ring:
+                self._write(kept)
+            self._ring.clear()
+            self._ring_size = 0
+
+    def _open(self, log_time: int, now: float) -> None:
+        self._make_room()
+        directory = self._free_folder(log_time)
+        self._writer = BagWriter(directory, directory.name)
+        for topic in self._topics.values():
+            self._writer.add_topic(topic)
+        self._opened, self._size, self.problem = now, 0, ''
+
+    def _write(self, frame: Frame) -> None:
+        assert self._writer is not None
+        self._writer.write(
+            self._topics[frame.topic].name,
+            frame.body,
+            log_time=frame.log_time,
+            publish_time=frame.publish_time,
+            sequence=frame.sequence,
+        )
+        self._size += len(frame.body)
+
+    def _finish(self) -> None:
+        writer, self._writer = self._writer, None
+        if writer is not None:
+            writer.close()
+
+    def _abandon(self) -> None:
+        """Let go of a recording that cannot be written; what it holds stays to be recovered."""
+        writer, self._writer = self._writer, None
+        if writer is not None:
+            writer.abandon()
+
+    def _free_folder(self, log_time: int) -> Path:
+        """Return a folder named by the time [ns] of the first message, in UTC."""
+        moment = datetime.datetime.fromtimestamp(max(log_time, 0) // SECOND, datetime.UTC)
+        name = moment.strftime('%Y%m%dT%H%M%SZ')
+        number, path = 1, self._folder / name
+        while path.exists():
+            number += 1
+            path = self._folder / f'{name}_{number}'
+        return path
+
+    def _make_room(self) -> None:
+        """Remove the oldest recordings until all are below the limit with one more."""
+        sizes = {
+            path: sum(file.stat().st_size for file in path.iterdir()) for path in self._kept()
+        }
+        room = self._settings.total - self._settings.largest
+        for path in sorted(sizes, key=lambda path: path.stat().st_mtime):
+            if sum(sizes.values()) <= max(room, 0.0):
+                return
+            for file in path.iterdir():
+                if file.name.endswith(OURS):
+                    file.unlink()
+            if not any(path.iterdir()):
+                path.rmdir()
+            del sizes[path]
+
+    def _kept(self) -> Iterator[Path]:
+        if not self._folder.is_dir():
+            return
+        for path in self._folder.iterdir():
+            if path.is_dir() and NAME.fullmatch(path.name):
+                yield path

@@ -1,0 +1,274 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+The files that a bag is made of, MCAP or sqlite3: topics, time span and messages of each.
+
+A damaged MCAP file is refused, or salvaged when that is asked for: then what is whole is read, and
+`note` says how much it was.
+
+"""
+
+from collections import Counter
+from collections.abc import Collection, Generator, Iterable, Iterator
+import contextlib
+import dataclasses
+import heapq
+from pathlib import Path
+import struct
+from typing import Any
+
+from mcap.exceptions import McapError
+from mcap.reader import make_reader
+from mcap.records import Channel, Chunk, Schema
+from mcap.records import Message as McapMessage
+from mcap.stream_reader import breakup_chunk, StreamReader
+from surrogate.files import InputError
+from zstandard import ZstdError
+
+# What the reader is known to raise for a file that is not as it should be.
+DAMAGE = (
+    McapError,
+    ValueError,
+    KeyError,
+    IndexError,
+    TypeError,
+    AttributeError,
+    EOFError,
+    struct.error,
+    MemoryError,
+    OverflowError,
+    RuntimeError,
+    ZstdError,
+)
+REORDER = 1_000_000_000  # [ns] log time over which messages of different chunks may be mixed
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Message:
+    """One serialised message; times [ns]."""
+
+    topic: str
+    data: bytes
+    log_time: int
+    publish_time: int
+    sequence: int = 0
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class TopicInfo:
+    """Type, encoding and number of messages of one topic."""
+
+    type_name: str
+    encoding: str
+    count: int
+
+
+class McapStorage:
+    """One MCAP file; `salvage` takes what is whole of a damaged one."""
+
+    def __init__(self, file: Path, *, salvage: bool = False) -> None:
+        """Read the topics; raises InputError when nothing can be had of the file."""
+        self.file, self.salvage = file, salvage
+        self.topics: dict[str, TopicInfo] = {}
+        self.span = (0, 0)
+        self.note = ''
+        self._channels: dict[int, Channel] = {}  # a damaged chunk may have told of them
+        self._has_summary = True
+        try:
+            with damage_is_input(file):
+                self._read_summary()
+        except InputError:
+            if not salvage or not file.is_file():
+                raise
+            self._has_summary = False
+            self._read_whole()
+            if not self.topics:
+                raise
+
+    def messages(
+        self, wanted: Collection[str], *, as_written: bool = False
+    ) -> Generator[Message, None, None]:
+        """
+        Yield the messages of the topics `wanted` by log time; raises InputError on damage.
+
+        Those of the recording of a node are wanted `as_written`.
+
+        """
+        if not self._has_summary:
+            yield from self._whole(wanted, reorder=not as_written)
+            return
+        if as_written:
+            yield from self._indexed(wanted, reorder=False)
+            return
+        last = -1
+        try:
+            for message in self._indexed(wanted):
+                yield message
+                last = message.log_time
+        except InputError as error:
+            if not self.salvage:
+                raise
+            self.note = f'{error}; what is whole of it is used'
+            yield from (late for late in self._whole(wanted) if late.log_time > last)
+
+    def _indexed(self, wanted: Collection[str], *, reorder: bool = True) -> Iterator[Message]:
+        with damage_is_input(self.file), self.file.open('rb') as stream:
+            reader = make_reader(stream, validate_crcs=True)
+            for _, channel, message in reader.iter_messages(
+                topics=list(wanted), log_time_order=reorder
+            ):
+                yield _message(channel, message)
+
+    def _read_summary(self) -> None:
+        with self.file.open('rb') as stream:
+            summary = make_reader(stream, validate_crcs=True).get_summary()
+        if summary is None or summary.statistics is None:
+            raise McapError('it has no summary')
+        self._channels = summary.channels
+        counts = summary.statistics.channel_message_counts
+        for number, channel in summary.channels.items():
+            self._add_topic(channel, summary.schemas.get(channel.schema_id), counts.get(number, 0))
+        statistics = summary.statistics
+        self.span = (statistics.message_start_time, statistics.message_end_time)
+
+    def _add_topic(self, channel: Channel, schema: Schema | None, count: int) -> None:
+        known = self.topics.get(channel.topic)
+        self.topics[channel.topic] = TopicInfo(
+            type_name=schema.name if schema else '',
+            encoding=channel.message_encoding,
+            count=(known.count if known else 0) + count,
+        )
+
+    def _read_whole(self) -> None:
+        """Read all that is whole once, for topics, span and the note."""
+        counts: Counter[int] = Counter()
+        channels: dict[int, Channel] = {}
+        schemas: dict[int, Schema] = {}
+        times: list[int] = []
+        for record in whole_records(self.file):
+            if isinstance(record, Schema):
+                schemas[record.id] = record
+            elif isinstance(record, Channel):
+                channels[record.id] = record
+            elif isinstance(record, McapMessage):
+                counts[record.channel_id] += 1
+                times[:] = [min([*times, record.log_time]), max([*times, record.log_time])]
+        for number, channel in channels.items():
+            self._add_topic(channel, schemas.get(channel.schema_id), counts[number])
+        if times:
+            self.span = (times[0], times[1])
+            self.note = (
+                f'bag {self.file} is truncated or damaged: used are the {counts.total()} messages '
+                f'of {(times[1] - times[0]) * 1e-9:.1f} s that are whole'
+            )
+
+    def _whole(self, wanted: Collection[str], *, reorder: bool = True) -> Iterator[Message]:
+        """Yield the messages of whole chunks by log time, as far as chunks do not overlap more."""
+        channels = dict(self._channels)
+        waiting: list[tuple[int, int, Message]] = []
+        number = 0
+        for record in whole_records(self.file):
+            if isinstance(record, Channel):
+                channels[record.id] = record
+            channel = channels.get(record.channel_id) if isinstance(record, McapMessage) else None
+            if channel is None or channel.topic not in wanted:
+                continue
+            if not reorder:
+                yield _message(channel, record)
+                continue
+            number += 1
+            heapq.heappush(waiting, (record.log_time, number, _message(channel, record)))
+            while record.log_time - waiting[0][0] > REORDER:
+                yield heapq.heappop(waiting)[2]
+        while waiting:
+            yield heapq.heappop(waiting)[2]
+
+
+class SqliteStorage:
+    """One sqlite3 file of rosbag2."""
+
+    def __init__(self, file: Path) -> None:
+        """Read the topics; raises InputError when the file is not readable."""
+        self.file = file
+        self.note = ''
+        with self._opened() as reader:
+            self.topics = {
+                connection.topic: TopicInfo(
+                    type_name=connection.msgtype,
+                    encoding=connection.ext.serialization_format,
+                    count=connection.msgcount,
+                )
+                for connection in reader.connections
+            }
+            self.span = (reader.start_time, reader.end_time - 1) if reader.duration else (0, 0)
+
+    def messages(
+        self, wanted: Collection[str], *, as_written: bool = False
+    ) -> Generator[Message, None, None]:
+        """
+        Yield the messages of the topics `wanted` by log time; raises InputError on damage.
+
+        They were written in that order too.
+
+        """
+        with self._opened() as reader:
+            chosen = [one for one in reader.connections if one.topic in wanted]
+            # An empty choice means all to this reader.
+            for connection, time, data in reader.messages(chosen) if chosen else ():
+                yield Message(topic=connection.topic, data=data, log_time=time, publish_time=time)
+
+    @contextlib.contextmanager
+    def _opened(self) -> Iterator[Any]:
+        import apsw
+        from rosbags.rosbag2 import Reader, ReaderError
+
+        try:
+            with Reader(self.file) as reader:
+                yield reader
+        except (ReaderError, apsw.Error, OSError) as error:
+            reason = ' '.join(str(error).split())
+            raise InputError(
+                f'bag {self.file} is truncated or damaged, it must be a complete sqlite3 file of '
+                f'rosbag2 ({reason})'
+            ) from None
+
+
+def whole_records(file: Path) -> Iterator[Any]:
+    """Yield the records of an MCAP file that are whole, those of a chunk in its place."""
+    with file.open('rb') as stream, contextlib.suppress(*DAMAGE):
+        for record in StreamReader(stream, emit_chunks=True).records:
+            yield from _inside(record) if isinstance(record, Chunk) else [record]
+
+
+def _message(channel: Channel, message: McapMessage) -> Message:
+    return Message(
+        topic=channel.topic,
+        data=message.data,
+        log_time=message.log_time,
+        publish_time=message.publish_time,
+        sequence=message.sequence,
+    )
+
+
+def _inside(chunk: Chunk) -> Iterable[Any]:
+    """Return the records of a chunk, none of a damaged one."""
+    try:
+        return breakup_chunk(chunk, validate_crc=True)
+    except DAMAGE:
+        return ()
+
+
+@contextlib.contextmanager
+def damage_is_input(file: Path) -> Iterator[None]:
+    """Raise InputError for whatever an MCAP reader may raise for a file that is not whole."""
+    try:
+        yield
+    except InputError:
+        raise
+    except OSError as error:
+        raise InputError(f'bag {file} cannot be read: {error.strerror}') from None
+    except DAMAGE as error:
+        reason = ' '.join(str(error).split()) or type(error).__name__
+        raise InputError(
+            f'bag {file} is truncated or damaged, it must be a complete MCAP file ({reason})'
+        ) from None

@@ -1,0 +1,159 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What is kept, in which recordings, and what makes room."""
+
+import errno
+import json
+import os
+
+from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.node.frames import Frame, FrameKind
+from ballscrew_monitor.recordings.bag import Bag
+from ballscrew_monitor.recordings.keeper import Keeper, KeepSettings
+import pytest
+from rclpy.serialization import serialize_message
+from std_msgs.msg import Float64
+
+EPOCH = 1_700_000_000 * SECOND
+SETTINGS = {
+    'always': True,
+    'before': 5.0,
+    'after': 2.0,
+    'longest': 10.0,
+    'largest': 1e6,
+    'total': 1e9,
+}
+DATA = serialize_message(Float64(data=1.0))
+TOPIC = Frame(
+    FrameKind.TOPIC,
+    topic=3,
+    body=json.dumps({'name': '/a', 'type': 'std_msgs/msg/Float64', 'offer': 'SENSOR'}).encode(),
+)
+
+
+def keeper_in(folder, **changes):
+    return Keeper(folder, KeepSettings(**(SETTINGS | changes)))
+
+
+def message(second, body=DATA):
+    """Return a message that is taken at a second, one a second; its number is the second."""
+    time = EPOCH + second * SECOND
+    return Frame(FrameKind.MESSAGE, 3, time, time + 7, second, body)
+
+
+def feed(keeper, seconds, triggers=()):
+    """Give a message each second, and triggers just before those of some seconds."""
+    keeper.take(TOPIC, 0.0)
+    for second in seconds:
+        if second in triggers:
+            keeper.take(Frame(FrameKind.TRIGGER, log_time=EPOCH), float(second))
+        keeper.take(message(second), float(second))
+
+
+def seconds_in(folder):
+    """Return the seconds of the messages in each recording, by its name."""
+    return {
+        path.name: [(one.log_time - EPOCH) // SECOND for one in Bag(path).messages()]
+        for path in sorted(folder.iterdir())
+    }
+
+
+def test_always_is_everything_in_recordings_of_limited_length(tmp_path):
+    keeper = keeper_in(tmp_path)
+    feed(keeper, range(25))
+    keeper.close()
+    assert seconds_in(tmp_path) == {
+        '20231114T221320Z': [*range(10)],
+        '20231114T221330Z': [*range(10, 20)],
+        '20231114T221340Z': [*range(20, 25)],
+    }
+    one = next(Bag(tmp_path / '20231114T221320Z').messages())
+    assert (one.topic, one.data, one.publish_time - one.log_time) == ('/a', DATA, 7)
+    assert keeper.problem == ''
+
+
+def test_a_recording_that_is_large_enough_is_finished(tmp_path):
+    keeper = keeper_in(tmp_path, largest=4.0 * len(DATA))
+    feed(keeper, range(9))
+    keeper.close()
+    assert [len(found) for found in seconds_in(tmp_path).values()] == [4, 4, 1]
+
+
+def test_around_events_the_seconds_before_and_after_each_are_kept(tmp_path):
+    keeper = keeper_in(tmp_path, always=False)
+    feed(keeper, range(40), triggers=(8, 10, 30))
+    keeper.close()
+    assert [*seconds_in(tmp_path).values()] == [[*range(2, 13)], [*range(24, 33)]]
+
+
+def test_without_an_event_nothing_is_written(tmp_path):
+    keeper = keeper_in(tmp_path / 'none', always=False)
+    feed(keeper, range(40))
+    keeper.close()
+    assert not (tmp_path / 'none').exists()
+
+
+def test_the_oldest_recordings_make_room_and_nothing_else_does(tmp_path):
+    (tmp_path / 'mine').mkdir()
+    (tmp_path / 'mine' / 'notes.mcap').write_bytes(bytes(5000))
+    (tmp_path / '20200101T000000Z').mkdir()
+    (tmp_path / '20200101T000000Z' / 'mine.txt').write_text('kept')
+    keeper = keeper_in(tmp_path, largest=2e4, total=8e4)
+    keeper.take(TOPIC, 0.0)
+    for second in range(200):
+        keeper.take(message(second, os.urandom(2000)), 0.01 * second)
+    keeper.close()
+    assert (tmp_path / 'mine' / 'notes.mcap').exists()
+    assert (tmp_path / '20200101T000000Z' / 'mine.txt').exists()
+    sizes = [
+        sum(file.stat().st_size for file in path.iterdir())
+        for path in tmp_path.iterdir()
+        if path.name.startswith('2023')
+    ]
+    assert len(sizes) == 3
+    assert sum(sizes) <= 8e4
+    newest = max(path.name for path in tmp_path.iterdir() if path.name.startswith('2023'))
+    assert seconds_in_last(tmp_path / newest) == 199
+
+
+def seconds_in_last(path):
+    return [(one.log_time - EPOCH) // SECOND for one in Bag(path).messages()][-1]
+
+
+def test_two_recordings_of_one_second_have_two_names(tmp_path):
+    for _ in range(2):
+        keeper = keeper_in(tmp_path)
+        feed(keeper, [0])
+        keeper.close()
+    assert [*seconds_in(tmp_path)] == ['20231114T221320Z', '20231114T221320Z_2']
+
+
+def test_a_full_disk_is_told_and_tried_again(tmp_path, monkeypatch):
+    keeper = keeper_in(tmp_path)
+    feed(keeper, [0])
+
+    def full(*unused, **also):
+        raise OSError(errno.ENOSPC, 'No space left on device')
+
+    with monkeypatch.context() as context:
+        context.setattr(type(keeper._writer), 'write', full)
+        keeper.take(message(1), 1.0)
+        assert keeper.problem == f'nothing is recorded in {tmp_path}: No space left on device'
+    keeper.take(message(5), 5.0)
+    assert keeper.problem
+    keeper.take(message(12), 12.0)
+    assert keeper.problem == ''
+    keeper.close()
+    assert seconds_in_last(tmp_path / '20231114T221332Z') == 12
+
+
+@pytest.mark.parametrize('always', [True, False])
+def test_a_topic_that_comes_later_is_recorded_too(tmp_path, always):
+    keeper = keeper_in(tmp_path, always=always)
+    feed(keeper, range(3), triggers=(2,))
+    body = json.dumps({'name': '/b', 'type': 'std_msgs/msg/Float64', 'offer': 'LATCHED'})
+    keeper.take(Frame(FrameKind.TOPIC, topic=4, body=body.encode()), 3.0)
+    keeper.take(Frame(FrameKind.MESSAGE, 4, EPOCH + 3 * SECOND, 0, 0, DATA), 3.0)
+    keeper.close()
+    (path,) = tmp_path.iterdir()
+    assert [one.topic for one in Bag(path).messages()] == ['/a'] * 3 + ['/b']

@@ -1,0 +1,267 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""A recording of a node gives the states of the node again, bit for bit, wherever it begins."""
+
+import dataclasses
+import random
+import re
+import types
+
+from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.core.full_point import SolvedAt
+from ballscrew_monitor.node import parameters
+from ballscrew_monitor.node.axis import build_axis
+from ballscrew_monitor.node.intake import _events, ordered
+from ballscrew_monitor.node.journal import Journal
+from ballscrew_monitor.node.topic import Arrival
+from ballscrew_monitor.recordings.bag import Bag
+from ballscrew_monitor.recordings.keeper import Keeper, KeepSettings
+from ballscrew_monitor.recordings.own_recording import journal_of, OwnRecording
+from geometry_msgs.msg import WrenchStamped
+import pytest
+from rclpy.serialization import deserialize_message, serialize_message
+from sensor_msgs.msg import JointState
+from surrogate.files import InputError
+from surrogate.surface import FIELDS
+
+BEGIN = 1_700_000_000 * SECOND
+TOPICS = {'speed': '/mill/joint_states', 'load': '/mill/axial_load'}
+ALWAYS = KeepSettings(always=True, before=60.0, after=10.0, longest=1e9, largest=1e9, total=1e12)
+
+
+class KeptFrames:
+    """Stands for the process that records: it keeps the frames at once."""
+
+    problem, lost = '', False
+
+    def __init__(self, folder, settings=ALWAYS):
+        self.keeper = Keeper(folder, settings)
+        self.now = 0.0
+        self.room = True
+
+    def put(self, frame):
+        if self.room:
+            self.keeper.take(frame, self.now)
+        return self.room
+
+    def flush(self):
+        return self.room
+
+    def close(self):
+        self.keeper.close()
+
+
+class SmallNode:
+    """Does with two axes what the node does with messages and ticks, and says states."""
+
+    def __init__(self, folder, settings=ALWAYS, **changes):
+        self.values = parameters.defaults(['x', 'z']) | {
+            'x.publish_period': 0.0,
+            'z.publish_period': 0.25,
+            'z.limits.raise_delay': 0.0,
+            'x.limits.raise_delay': 0.0,
+            'x.limits.clear_delay': 0.1,
+            **changes,
+        }
+        self.axes = {name: build_axis(name, self.values) for name in ('x', 'z')}
+        self.process = KeptFrames(folder, settings)
+        self.journal = Journal('/mill/ballscrew_monitor/journal', lambda: self.process)
+        self.said = []
+        self.now = BEGIN
+        self.describe('begin')
+
+    def describe(self, because, names=('x', 'z')):
+        for name in names:
+            self.journal.describe(self.axes[name], self.values, TOPICS, because, self.now)
+
+    def hear(self, *messages, lost=0):
+        """Take a burst of pairs of an input and a message."""
+        batch = []
+        for source, message in messages:
+            readers = [
+                (axis, one)
+                for axis in self.axes.values()
+                for one in axis.inputs
+                if one.source.name.lower() == source
+            ]
+            data = serialize_message(message)
+            topic = types.SimpleNamespace(
+                name=TOPICS[source], readers=readers, type_name=readers[0][1].type_name
+            )
+            message = deserialize_message(data, type(message))
+            batch.append((Arrival(self.now + 5, message, 0, topic, data), self.now, lost))
+        self.journal.hear(batch)
+        for axis, event in ordered([event for one in batch for event in _events(*one)]):
+            self.publish(axis, axis.monitor.update(event))
+
+    def tick(self):
+        grid = self.now - self.now % (SECOND // 10)
+        self.journal.tick(grid, self.now)
+        for axis in self.axes.values():
+            self.publish(axis, axis.monitor.tick(grid))
+        self.process.now = (self.now - BEGIN) / SECOND
+        self.describe('time', self.journal.due(self.axes, self.now - BEGIN))
+
+    def publish(self, axis, state):
+        if state is not None:
+            self.said.append(repr(state))
+            if state.event is not None:
+                self.journal.trigger(self.now)
+
+    def close(self):
+        self.journal.close()
+
+
+def joints(stamp, x, z):
+    message = JointState(name=['x_axis', 'z_axis'], velocity=[float(x), float(z)])
+    message.header.stamp.sec, message.header.stamp.nanosec = divmod(stamp, SECOND)
+    return 'speed', message
+
+
+def force(stamp, value):
+    message = WrenchStamped()
+    message.wrench.force.x = float(value)
+    message.header.stamp.sec, message.header.stamp.nanosec = divmod(stamp, SECOND)
+    return 'load', message
+
+
+def live(node, *, seconds, seed=1, begin=BEGIN):
+    """Let a node hear a machine that works, stands, hurries and stutters; 50 messages a second."""
+    draw = random.Random(seed)
+    speeds = {'x': 60.0, 'z': 3.0}
+    for step in range(50 * seconds):
+        node.now = begin + step * SECOND // 50
+        if draw.random() < 0.02:
+            speeds = {axis: draw.choice([0.0, 3.0, -30.0, 90.0, 400.0]) for axis in speeds}
+        stamp = node.now - draw.choice([0, 0, 0, 3_000_000, SECOND // 2])
+        burst = [joints(stamp, *speeds.values()), force(stamp, draw.choice([-800, 900, 1e5]))]
+        draw.shuffle(burst)
+        if draw.random() < 0.95:
+            node.hear(*burst[: draw.choice([1, 2, 2])], lost=draw.choice([0] * 9 + [2, None]))
+        if step % 5 == 0:
+            node.tick()
+
+
+def again(bag):
+    """Return the states of a replay as text, and the recording."""
+    own, states = OwnRecording(bag), []
+    for step in own.steps():
+        if step.event is not None:
+            state = step.axis.monitor.update(step.event)
+        else:
+            state = None if step.tick is None else step.axis.monitor.tick(step.tick)
+        if state is not None:
+            states.append(repr(state))
+    return states, own
+
+
+def bag_in(folder):
+    (path,) = folder.iterdir()
+    return Bag(path)
+
+
+def masked(states):
+    """Return states without the addresses of the surfaces, which differ between two replays."""
+    return [re.sub('surface=<[^>]*>', '', state) for state in states]
+
+
+def test_every_state_comes_again_bit_for_bit_and_is_proven(tmp_path):
+    node = SmallNode(tmp_path)
+    live(node, seconds=35)
+    node.close()
+    bag = bag_in(tmp_path)
+    assert journal_of(bag) == '/mill/ballscrew_monitor/journal'
+    states, own = again(bag)
+    assert masked(states) == masked(node.said)
+    assert len(states) > 1000
+    assert sum('event=Event' in state for state in states) == 10
+    assert (own.proven, own.refuted) == (8, 0)
+
+
+def test_changes_of_parameters_and_acknowledgements_are_followed(tmp_path):
+    node = SmallNode(tmp_path)
+    live(node, seconds=5)
+    node.values = node.values | {'x.limits.efficiency': 0.95, 'x.publish_period': 0.5}
+    node.axes['x'].adapt(node.values)
+    node.describe('parameters', ['x'])
+    live(node, seconds=5, begin=BEGIN + 5 * SECOND, seed=2)
+    for axis in node.axes.values():
+        axis.monitor.acknowledge(node.now)
+        axis.monitor.reset_totals()
+    node.describe('acknowledge')
+    live(node, seconds=12, begin=BEGIN + 10 * SECOND, seed=3)
+    node.close()
+    states, own = again(bag_in(tmp_path))
+    assert masked(states) == masked(node.said)
+    assert own.proven
+    assert not own.refuted
+
+
+def test_a_recording_around_events_begins_where_an_axis_is_described(tmp_path):
+    settings = dataclasses.replace(ALWAYS, always=False, before=25.0, after=3.0)
+    node = SmallNode(tmp_path, settings, **{'z.limits.raise_delay': 30.0, 'x.limits.rcs': 0.9})
+    live(node, seconds=60)
+    node.close()
+    for path in sorted(tmp_path.iterdir()):
+        states, own = again(Bag(path))
+        assert states
+        assert not own.refuted
+        assert '\n'.join(masked(states)) in '\n'.join(masked(node.said))
+
+
+def test_after_a_hole_an_axis_begins_where_it_is_described_again(tmp_path):
+    node = SmallNode(tmp_path)
+    live(node, seconds=3)
+    before = len(node.said)
+    node.process.room = False
+    live(node, seconds=3, begin=BEGIN + 3 * SECOND, seed=4)
+    missed = len(node.said)
+    assert node.journal.problem == 'the recording has a hole'
+    node.process.room = True
+    node.tick()
+    resumed = len(node.said)
+    live(node, seconds=3, begin=BEGIN + 6 * SECOND, seed=5)
+    node.close()
+    assert node.journal.problem == ''
+    states, own = again(bag_in(tmp_path))
+    assert missed > before
+    assert masked(states) == masked(node.said[:before] + node.said[resumed:])
+    assert not own.refuted
+
+
+def test_a_surface_that_is_not_that_of_the_recording_is_refused(tmp_path):
+    node = SmallNode(tmp_path)
+    node.axes['x'].surface = types.SimpleNamespace(base_sha256='f' * 64, corrections=())
+    node.describe('reload_surface', ['x'])
+    node.close()
+    with pytest.raises(InputError, match='axis x: .* the surface ffffffffffffffff, the file is'):
+        again(bag_in(tmp_path))
+
+
+def test_corrections_of_the_surface_are_taken_up(tmp_path):
+    node = SmallNode(tmp_path)
+    axis = node.axes['x']
+    where = SolvedAt(speed=61.0, opposing_load=900.0, temperature=315.0)
+    numbers = axis.surface.lookup(where.speed, where.opposing_load, where.temperature)
+    better = types.SimpleNamespace(
+        **{name: getattr(numbers, name) for name in FIELDS}
+        | {'friction_torque': 1.05 * numbers.friction_torque}
+    )
+    axis.use_surface(axis.surface.with_correction(where, better), node.values)
+    node.describe('surface', ['x'])
+    live(node, seconds=12)
+    node.close()
+    states, own = again(bag_in(tmp_path))
+    assert masked(states) == masked(node.said)
+    assert own.proven
+    assert not own.refuted
+
+
+def test_a_replay_that_differs_is_refuted(tmp_path):
+    node = SmallNode(tmp_path)
+    live(node, seconds=2)
+    node.axes['x'].monitor.reset_totals()  # and nobody is told
+    live(node, seconds=12, begin=BEGIN + 2 * SECOND)
+    node.close()
+    _, own = again(bag_in(tmp_path))
+    assert own.refuted == 1

@@ -1,0 +1,106 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What is whole of a recording whose writer was killed becomes a complete bag."""
+
+import os
+from pathlib import Path
+import signal
+import subprocess
+import sys
+
+from ballscrew_monitor.recordings.bag import Bag
+from ballscrew_monitor.recordings.bag_writer import Announced, BagWriter, Offer, Topic
+from ballscrew_monitor.recordings.recover import recover
+import pytest
+from surrogate.files import InputError
+import yaml
+
+TOPIC = Topic(name='/a', type_name='std_msgs/msg/Float64', offer=Offer.LATCHED)
+KILLED = """
+import os, signal, sys
+from pathlib import Path
+from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
+writer = BagWriter(Path(sys.argv[1]), 'flight')
+writer.add_topic(Topic(name='/a', type_name='std_msgs/msg/Float64', offer=Offer.LATCHED))
+for number in range(200):
+    writer.write('/a', os.urandom(4096), log_time=number * 10**9, publish_time=7, sequence=number)
+os.kill(os.getpid(), signal.SIGKILL)
+"""
+
+
+def numbers(path):
+    return [
+        (one.log_time // 10**9, one.publish_time, one.sequence) for one in Bag(path).messages()
+    ]
+
+
+def test_a_writer_that_was_killed_loses_its_last_chunk_at_most(tmp_path):
+    done = subprocess.run([sys.executable, '-c', KILLED, str(tmp_path)], check=False, timeout=60)
+    assert done.returncode == -signal.SIGKILL
+    active = tmp_path / 'flight.mcap.active'
+    before = active.read_bytes()
+    path, count, seconds = recover(tmp_path)
+    assert (path, active.read_bytes()) == (tmp_path / 'flight.mcap', before)
+    assert count > 200 - 2 * 64 * 1024 // 4096
+    assert seconds == count - 1
+    assert numbers(tmp_path) == [(number, 7, number) for number in range(count)]
+    stated = yaml.safe_load((tmp_path / 'metadata.yaml').read_text())
+    topic = stated['rosbag2_bagfile_information']['topics_with_message_count'][0]
+    assert topic['topic_metadata']['offered_qos_profiles'] == [Offer.LATCHED.profile]
+
+
+@pytest.fixture
+def whole(tmp_path):
+    """Return a finished file of many small chunks."""
+    with BagWriter(tmp_path, 'whole') as writer:
+        writer.add_topic(TOPIC)
+        for number in range(100):
+            writer.write('/a', os.urandom(9000), log_time=number * 10**9, publish_time=7)
+    return tmp_path / 'whole.mcap'
+
+
+@pytest.mark.parametrize('share', [0.1, 0.33, 0.5, 0.9, 0.999])
+def test_a_file_that_was_cut_gives_what_lies_before_the_cut(whole, share):
+    data = whole.read_bytes()
+    whole.write_bytes(data[: int(share * len(data))])
+    path, count, _ = recover(whole)
+    assert path.parent.name == 'whole_recovered'
+    assert numbers(path.parent) == [(number, 7, number) for number in range(count)]
+    assert count >= int(100 * share) - 9
+
+
+@pytest.mark.parametrize('content', [b'', b'\x89MCAP0\r\n', b'not a recording at all'])
+def test_where_nothing_is_whole_a_sentence_says_so(tmp_path, content):
+    file = tmp_path / 'a.mcap.active'
+    file.write_bytes(content)
+    with pytest.raises(InputError, match='holds no message that is whole'):
+        recover(file)
+    assert [*tmp_path.iterdir()] == [file]
+
+
+def test_nothing_is_written_over_and_what_is_not_there_is_said(tmp_path, whole):
+    active = Path(f'{whole}.active')
+    active.write_bytes(whole.read_bytes())
+    with pytest.raises(InputError, match='is there already'):
+        recover(active)
+    with pytest.raises(InputError, match='does not exist'):
+        recover(tmp_path / 'none.mcap')
+    active.unlink()
+    with pytest.raises(InputError, match='holds 0 unfinished recordings'):
+        recover(tmp_path)
+
+
+def test_types_that_are_not_installed_are_kept(tmp_path):
+    topic = Announced(
+        name='/a',
+        type_name='mill_msgs/msg/Mill',
+        definition=b'float64 data',
+        type_hash='RIHS01_0',
+        profiles=[],
+    )
+    with BagWriter(tmp_path, 'b') as writer:
+        writer.announce(topic)
+        writer.write('/a', bytes(12), log_time=5, publish_time=7)
+    (tmp_path / 'b.mcap').rename(tmp_path / 'b.mcap.active')
+    path, _, _ = recover(tmp_path / 'b.mcap.active')
+    assert Bag(path).types == {'/a': 'mill_msgs/msg/Mill'}

@@ -1,0 +1,140 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What rosbag2 and rosbags write is read, and of what is damaged all that is whole."""
+
+import itertools
+import shutil
+
+from ballscrew_monitor.recordings.bag import Bag
+import pytest
+from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
+from rosbags.typesys import get_typestore, Stores
+from surrogate.files import InputError
+import yaml
+import zstandard
+
+KINDS = list(itertools.product(StoragePlugin, CompressionMode))
+
+
+@pytest.fixture(scope='module')
+def messages(short_bag):
+    """Return the messages of the short bag."""
+    return list(Bag(short_bag).messages())
+
+
+def content(bag):
+    """Return what is to be the same whatever the storage."""
+    return [(one.topic, one.log_time, one.data) for one in bag.messages()]
+
+
+def plain(messages):
+    return [(one.topic, one.log_time, one.data) for one in messages]
+
+
+def write(path, messages, types, storage, compression):
+    """Write messages by rosbags."""
+    store = get_typestore(Stores.ROS2_JAZZY)
+    writer = Writer(path, version=9, storage_plugin=storage)
+    if compression is not CompressionMode.NONE:
+        writer.set_compression(compression, CompressionFormat.ZSTD)
+    with writer:
+        connections = {
+            topic: writer.add_connection(topic, kind, typestore=store)
+            for topic, kind in types.items()
+        }
+        for one in messages:
+            writer.write(connections[one.topic], one.log_time, one.data)
+    return path
+
+
+@pytest.mark.parametrize(
+    ('storage', 'compression'),
+    [pair for pair in KINDS if pair != (StoragePlugin.SQLITE3, CompressionMode.STORAGE)],
+    ids=lambda word: word.name,
+)
+def test_every_storage_and_compression_of_rosbags_is_read(
+    storage, compression, messages, short_bag, tmp_path
+):
+    types = Bag(short_bag).types
+    bag = Bag(write(tmp_path / 'bag', messages, types, storage, compression))
+    assert content(bag) == plain(messages)
+    assert bag.types == types
+    assert (bag.start_time, bag.end_time) == (messages[0].log_time, messages[-1].log_time)
+    assert len(list(bag.messages(['/axial_load']))) == bag.topics['/axial_load'].count > 100
+    assert not list(bag.messages([]))
+
+
+@pytest.mark.parametrize('storage', list(StoragePlugin), ids=lambda word: word.name)
+def test_a_split_bag_is_one(storage, messages, short_bag, tmp_path):
+    types, half = Bag(short_bag).types, len(messages) // 2
+    parts = [
+        write(tmp_path / name, some, types, storage, CompressionMode.NONE)
+        for name, some in (('one', messages[:half]), ('two', messages[half:]))
+    ]
+    whole, names = tmp_path / 'whole', []
+    whole.mkdir()
+    for part in parts:
+        file = next(part.glob(f'{part.name}*'))
+        names.append(shutil.copy(file, whole / file.name).name)
+    information = {'storage_identifier': storage.name.lower(), 'relative_file_paths': names}
+    (whole / 'metadata.yaml').write_text(
+        yaml.safe_dump({'rosbag2_bagfile_information': information})
+    )
+    assert content(Bag(whole)) == plain(messages)
+    (whole / names[1]).write_bytes(b'')
+    with pytest.raises(InputError, match='truncated or damaged'):
+        Bag(whole)
+    left = Bag(whole, salvage=True)
+    assert content(left) == plain(messages[:half])
+    assert names[1] in left.notes[0]
+    assert left.notes[0].endswith('it is left out')
+
+
+def test_a_lone_file_may_be_packed(short_bag, messages, tmp_path):
+    packed = tmp_path / 'short.mcap.zstd'
+    packed.write_bytes(zstandard.compress((short_bag / 'short.mcap').read_bytes()))
+    bag = Bag(packed)
+    assert content(bag) == plain(messages)
+    folder = bag.files[0].parent
+    assert folder.is_dir()
+    del bag
+    assert not folder.exists()
+    packed.write_bytes(packed.read_bytes()[:4] + bytes(20))
+    with pytest.raises(InputError, match='truncated or damaged'):
+        Bag(packed)
+
+
+@pytest.mark.parametrize('part', [0.6, 0.8, 0.95])
+def test_what_is_whole_of_a_truncated_file_is_read_and_counted(
+    short_bag, messages, tmp_path, part
+):
+    data = (short_bag / 'short.mcap').read_bytes()
+    cut = tmp_path / 'cut.mcap.active'
+    cut.write_bytes(data[: int(part * len(data))])
+    bag = Bag(tmp_path, salvage=True)
+    found = content(bag)
+    assert 0 < len(found) <= len(messages)
+    assert found == plain(messages)[: len(found)]
+    assert f'used are the {len(found)} messages of ' in bag.notes[0]
+    assert sum(info.count for info in bag.topics.values()) == len(found)
+
+
+def test_a_damaged_chunk_is_left_out(short_bag, messages, tmp_path):
+    data = bytearray((short_bag / 'short.mcap').read_bytes())
+    data[int(0.2 * len(data))] ^= 0x55
+    path = tmp_path / 'bad.mcap'
+    path.write_bytes(data)
+    bag = Bag(path, salvage=True)
+    found = content(bag)
+    assert 0 < len(found) < len(messages)
+    assert set(found) < set(plain(messages))
+    assert bag.notes[0].endswith('what is whole of it is used')
+
+
+def test_nothing_can_be_had_of_an_empty_file(tmp_path):
+    (tmp_path / 'empty.mcap').touch()
+    with pytest.raises(InputError, match='truncated or damaged'):
+        Bag(tmp_path / 'empty.mcap', salvage=True)
+    (tmp_path / 'text.db3').write_text('no database')
+    with pytest.raises(InputError, match='truncated or damaged'):
+        Bag(tmp_path / 'text.db3')
