@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The nominal cycle as a bag made by its generator, and a short piece of it."""
 
+import importlib
 from importlib.abc import MetaPathFinder
-import importlib.util
 from pathlib import Path
 import sys
 
@@ -72,6 +72,7 @@ class Skipper(MetaPathFinder):
 
 
 sys.meta_path.append(Skipper())
+sys.path.append(str(ROOT / 'bags'))  # the generators are scripts beside each other
 
 
 def pytest_collection_modifyitems(items):
@@ -87,11 +88,7 @@ def pytest_collection_modifyitems(items):
 @pytest.fixture(scope='session')
 def nominal_cycle():
     """Return the generator as a module."""
-    path = ROOT / 'bags' / 'nominal_cycle.py'
-    spec = importlib.util.spec_from_file_location('nominal_cycle', path)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+    return importlib.import_module('nominal_cycle')
 
 
 @pytest.fixture(scope='session')
