@@ -12,10 +12,15 @@ import dataclasses
 import os
 from pathlib import Path
 import shutil
-import struct
 import tempfile
 
+from ballscrew_monitor.core.cdr import serialized
+from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
+from builtin_interfaces.msg import Time
+from geometry_msgs.msg import WrenchStamped
+from sensor_msgs.msg import JointState, Temperature
+from std_msgs.msg import Header
 
 BEGIN = 1_767_600_000_000_000_000  # [ns] 2026-01-05 08:00 UTC
 JOINT_STATES = Topic(
@@ -40,62 +45,36 @@ class Record:
     data: bytes
 
 
-class Cdr:
-    """Little-endian CDR with zeroed padding, which a ROS serialiser does not promise."""
-
-    def __init__(self, stamp: int, frame: str) -> None:
-        """Begin a message with its header."""
-        self._bytes = bytearray()
-        self.put('i', stamp // 1_000_000_000)
-        self.put('I', stamp % 1_000_000_000)
-        self.text(frame)
-
-    def put(self, kind: str, *values: float) -> None:
-        """Append numbers of one kind, aligned to its size."""
-        size = struct.calcsize(f'<{kind}')
-        self._bytes += bytes(-len(self._bytes) % size)
-        self._bytes += struct.pack(f'<{len(values)}{kind}', *values)
-
-    def text(self, value: str) -> None:
-        """Append a text."""
-        data = value.encode() + b'\0'
-        self.put('I', len(data))
-        self._bytes += data
-
-    def doubles(self, *values: float) -> None:
-        """Append a sequence of float64."""
-        self.put('I', len(values))
-        if values:
-            self.put('d', *values)
-
-    def message(self) -> bytes:
-        """Return the serialised message."""
-        return b'\0\1\0\0' + bytes(self._bytes)
-
-
 def joint_state(stamp: int, position: float, velocity: float, *effort: float) -> bytes:
     """Return the joint `x_axis`: screw angle [rad], its speed [rad/s], torque [N m] if any."""
-    cdr = Cdr(stamp, 'x_axis')
-    cdr.put('I', 1)
-    cdr.text('x_axis')
-    cdr.doubles(position)
-    cdr.doubles(velocity)
-    cdr.doubles(*effort)
-    return cdr.message()
+    return serialized(
+        JointState(
+            header=_header(stamp, 'x_axis'),
+            name=['x_axis'],
+            position=[position],
+            velocity=[velocity],
+            effort=list(effort),
+        )
+    )
 
 
 def wrench(stamp: int, force: float) -> bytes:
     """Return the force on the nut [N]."""
-    cdr = Cdr(stamp, 'x_nut')
-    cdr.put('d', force, 0.0, 0.0, 0.0, 0.0, 0.0)
-    return cdr.message()
+    message = WrenchStamped(header=_header(stamp, 'x_nut'))
+    message.wrench.force.x = force
+    return serialized(message)
 
 
 def temperature(stamp: int, degrees: float) -> bytes:
     """Return the oil temperature [degC]."""
-    cdr = Cdr(stamp, 'x_nut')
-    cdr.put('d', degrees, 0.0025)
-    return cdr.message()
+    return serialized(
+        Temperature(header=_header(stamp, 'x_nut'), temperature=degrees, variance=0.0025)
+    )
+
+
+def _header(stamp: int, frame: str) -> Header:
+    seconds, rest = divmod(stamp, SECOND)
+    return Header(stamp=Time(sec=seconds, nanosec=rest), frame_id=frame)
 
 
 def write_bag(directory: Path, records: Iterable[Record]) -> None:

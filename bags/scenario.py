@@ -14,6 +14,7 @@ import math
 from pathlib import Path
 from typing import Any
 
+from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.recordings.bag_writer import Topic
 from courses import constant, Course, Steps
 from recording import (
@@ -37,7 +38,6 @@ PERIOD = 0.02  # [s] of speed and load samples
 OIL_PERIOD = 1.0  # [s] of oil samples
 DELAYS = {OIL_TEMPERATURE.name: 100_000, AXIAL_LOAD.name: 200_000, JOINT_STATES.name: 400_000}
 """Times from the measurement to its arrival [ns]."""
-SECOND = 1_000_000_000  # [ns]
 
 Span = tuple[float, float]
 

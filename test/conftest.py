@@ -11,7 +11,14 @@ from hypothesis import HealthCheck, settings
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
-OPTIONAL = ('apsw', 'mcap', 'polars', 'rosbags', 'zstandard')  # no package of a machine with ROS 2
+OPTIONAL = (
+    'apsw',
+    'mcap',
+    'mcap_ros2',
+    'polars',
+    'rosbags',
+    'zstandard',
+)  # no package of a machine with ROS 2
 # Tests that solve contacts, talk over DDS, start processes, draw many pictures, repeat thousands
 # of fits or run linters over the whole tree: folders and files, and fixtures that make any test
 # such a one. All others are `fast`.

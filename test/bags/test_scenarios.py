@@ -5,12 +5,12 @@
 import math
 from pathlib import Path
 
-from ballscrew_monitor.core.conversions import kelvin
+from ballscrew_monitor.core.conversions import kelvin, SECOND
 from ballscrew_monitor.node.axis import load_surface
 from ballscrew_monitor.node.parameters import read_file
 import pytest
 from recording import BEGIN
-from scenario import generate, PARAMETERS, PERIOD, SECOND
+from scenario import generate, PARAMETERS, PERIOD
 from scenarios import main, SCENARIOS
 from surrogate.units import RPM
 
