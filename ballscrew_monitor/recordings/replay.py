@@ -156,10 +156,11 @@ def _ordered(entries: Iterator[_Entry]) -> Iterator[_Entry]:
     waiting: list[_Entry] = []
     last: dict[tuple[int, int], int] = {}  # stamps [ns] by axis and source
     for entry in entries:
-        line = entry.axis, entry.source
-        if last.get(line, entry.stamp) - entry.stamp > BACKWARD_JUMP:
-            yield from _emptied(waiting)
-        last[line] = entry.stamp
+        if isinstance(entry.event, InputSample):  # the stamp of a refusal is a log time
+            line = entry.axis, entry.source
+            if last.get(line, entry.stamp) - entry.stamp > BACKWARD_JUMP:
+                yield from _emptied(waiting)
+            last[line] = entry.stamp
         heapq.heappush(waiting, entry)
         while entry.log_time - waiting[0].log_time > REORDER:
             yield heapq.heappop(waiting)
