@@ -10,6 +10,8 @@ bytes than belong to the message, which strict readers refuse.
 
 from collections.abc import Callable, Sequence
 import functools
+import itertools
+import operator
 import struct
 from typing import Any
 
@@ -18,6 +20,7 @@ from rosidl_parser import definition
 from surrogate.files import InputError
 
 HEADER = b'\0\1\0\0'  # little-endian CDR
+LARGEST = 8  # bytes of the largest number, to a multiple of which anything is aligned
 _LENGTH = struct.Struct('<I')
 _FORMATS = {
     'boolean': '?',
@@ -46,14 +49,53 @@ def serialized(message: Any) -> bytes:
 
 @functools.lru_cache
 def _message_encoder(message_type: Any) -> Encoder:
-    names = list(message_type.get_fields_and_field_types())
-    fields = [(name, _encoder(kind)) for name, kind in zip(names, message_type.SLOT_TYPES)]
+    names = message_type.get_fields_and_field_types()
+    parts: list[Encoder] = []
+    fields = zip(names, message_type.SLOT_TYPES)
+    for plain, group in itertools.groupby(fields, key=lambda field: _is_plain(field[1])):
+        run = list(group)
+        parts += [_row(run)] if plain else [_field(name, _encoder(kind)) for name, kind in run]
 
     def encode(data: bytearray, message: Any) -> None:
-        for name, encode_field in fields:
-            encode_field(data, getattr(message, name))
-        if not fields:  # a message without fields has one byte
+        for encode_part in parts:
+            encode_part(data, message)
+        if not parts:  # a message without fields has one byte
             data.append(0)
+
+    return encode
+
+
+def _is_plain(kind: Any) -> bool:
+    """Tell whether a field is a number as it stands; an octet is a `bytes` of length one."""
+    return getattr(kind, 'typename', 'octet') in _FORMATS.keys() - {'octet'}
+
+
+def _row(fields: Sequence[tuple[str, Any]]) -> Encoder:
+    """Return what appends numbers in a row, packed at once."""
+    names, kinds = zip(*fields)
+    values = operator.attrgetter(*names)
+    codes = [_FORMATS[kind.typename] for kind in kinds]
+    packs = [_padded(codes, begin) for begin in range(LARGEST)]
+
+    def encode(data: bytearray, message: Any) -> None:
+        pack, found = packs[len(data) % LARGEST], values(message)
+        data += pack(*found) if len(names) > 1 else pack(found)
+
+    return encode
+
+
+def _padded(codes: Sequence[str], begin: int) -> Callable[..., bytes]:
+    """Return what packs numbers from a `begin` [bytes] on, each at a multiple of its size."""
+    layout = '<'
+    for code in codes:
+        gap = -(begin + struct.calcsize(layout)) % struct.calcsize(f'<{code}')
+        layout += 'x' * gap + code
+    return struct.Struct(layout).pack
+
+
+def _field(name: str, encode_value: Encoder) -> Encoder:
+    def encode(data: bytearray, message: Any) -> None:
+        encode_value(data, getattr(message, name))
 
     return encode
 
@@ -68,18 +110,8 @@ def _encoder(kind: Any) -> Encoder:
         return _put_text
     if isinstance(kind, definition.NamespacedType):
         return _message_encoder(message_class('/'.join(kind.namespaced_name())))
-    return _number(kind)
-
-
-def _number(kind: Any) -> Encoder:
-    pack = _format(kind)
-    whole = _whole(kind)
-
-    def encode(data: bytearray, value: Any) -> None:
-        _align(data, pack.size)
-        data += pack.pack(whole(value))
-
-    return encode
+    encode_all = _numbers(kind)
+    return lambda data, value: encode_all(data, (value,))
 
 
 def _all_of(kind: Any, *, counted: bool) -> Encoder:
@@ -98,11 +130,16 @@ def _all_of(kind: Any, *, counted: bool) -> Encoder:
 
 
 def _numbers(kind: Any) -> Encoder:
-    size, code, whole = _format(kind).size, _format(kind).format[1:], _whole(kind)
+    name = getattr(kind, 'typename', '')
+    if name not in _FORMATS:
+        raise InputError(f'a field is of type {type(kind).__name__}, which cannot be serialised')
+    code = _FORMATS[name]
+    size = struct.calcsize(f'<{code}')
 
     def encode(data: bytearray, values: Sequence[Any]) -> None:
         _align(data, size)
-        data += struct.pack(f'<{len(values)}{code}', *map(whole, values))
+        found = map(ord, values) if name == 'octet' else values
+        data += struct.pack(f'<{len(values)}{code}', *found)
 
     return encode
 
@@ -113,22 +150,6 @@ def _each(encode_one: Encoder) -> Encoder:
             encode_one(data, value)
 
     return encode
-
-
-def _format(kind: Any) -> struct.Struct:
-    name = getattr(kind, 'typename', '')
-    if name not in _FORMATS:
-        raise InputError(f'a field is of type {type(kind).__name__}, which cannot be serialised')
-    return struct.Struct(f'<{_FORMATS[name]}')
-
-
-def _whole(kind: Any) -> Callable[[Any], Any]:
-    """Return what makes a number of a value: an octet is a `bytes` of length one."""
-    return ord if kind.typename == 'octet' else _same
-
-
-def _same(value: Any) -> Any:
-    return value
 
 
 def _put_text(data: bytearray, value: str) -> None:
