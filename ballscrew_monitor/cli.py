@@ -91,9 +91,7 @@ def _parser() -> argparse.ArgumentParser:
         )
     )
     _add_play(subparsers.add_parser('play', help='play a bag over DDS, with /clock'))
-    _add_recover(
-        subparsers.add_parser('recover', help='mend a recording whose writer was killed')
-    )
+    _add_recover(subparsers.add_parser('recover', help='mend a recording whose writer was killed'))
     add_commands(subparsers, _read_bag)
     return parser
 
