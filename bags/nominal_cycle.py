@@ -14,16 +14,23 @@ the same every time.
 import argparse
 import dataclasses
 import math
-import os
 from pathlib import Path
-import shutil
-import struct
 import sys
-import tempfile
 
-from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
+from ballscrew_monitor.recordings.bag_writer import Topic
 import numpy as np
 from numpy.typing import NDArray
+from recording import (
+    AXIAL_LOAD,
+    BEGIN,
+    joint_state,
+    JOINT_STATES,
+    OIL_TEMPERATURE,
+    Record,
+    temperature,
+    wrench,
+    write_bag,
+)
 
 Array = NDArray[np.float64]
 
@@ -39,18 +46,7 @@ PERIOD = 0.010  # [s] of speed and load samples
 LOAD_PHASE = 0.004  # [s] load samples come before speed samples by this time
 COUNTS = 2**17  # encoder counts per revolution
 SPEED_WINDOW = 0.001  # [s] over which the drive counts to get a speed
-BEGIN = 1_767_600_000_000_000_000  # [ns] 2026-01-05 08:00 UTC
 SEED = 2026
-
-JOINT_STATES = Topic(
-    name='/joint_states', type_name='sensor_msgs/msg/JointState', offer=Offer.SENSOR
-)
-AXIAL_LOAD = Topic(
-    name='/axial_load', type_name='geometry_msgs/msg/WrenchStamped', offer=Offer.SENSOR
-)
-OIL_TEMPERATURE = Topic(
-    name='/oil_temperature', type_name='sensor_msgs/msg/Temperature', offer=Offer.SENSOR
-)
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -188,16 +184,6 @@ def _smooth(values: Array, time: float) -> Array:
     return (sums[width:] - sums[:-width]) / width
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Record:
-    """One message: topic, stamp and log time [ns], serialised."""
-
-    topic: str
-    stamp: int
-    log_time: int
-    data: bytes
-
-
 def records() -> list[Record]:
     """Return every message of the cycle in the order of log time."""
     motion, random = simulate(), np.random.Generator(np.random.PCG64(SEED))
@@ -216,7 +202,7 @@ def _joint_records(motion: Motion, random: np.random.Generator) -> list[Record]:
     speed = np.round(speed * SPEED_WINDOW / count) * count / SPEED_WINDOW
     angle = np.round(_at(motion, 'angle', time) / count) * count
     return [
-        _record(JOINT_STATES, at, random, _joint_state, position, velocity)
+        _record(JOINT_STATES, at, random, joint_state, position, velocity)
         for at, position, velocity in zip(time.tolist(), angle.tolist(), speed.tolist())
     ]
 
@@ -227,7 +213,7 @@ def _load_records(motion: Motion, random: np.random.Generator) -> list[Record]:
     load = _at(motion, 'load', time) + random.normal(0.0, 4.0, time.size)
     load = np.round(load / 0.5) * 0.5
     return [
-        _record(AXIAL_LOAD, at, random, _wrench, force)
+        _record(AXIAL_LOAD, at, random, wrench, force)
         for at, force in zip(time.tolist(), load.tolist())
     ]
 
@@ -237,7 +223,7 @@ def _oil_records(motion: Motion, random: np.random.Generator) -> list[Record]:
     time = np.arange(0.0, motion.time[-1], 1.0)
     oil = np.round(_at(motion, 'oil', time) + random.normal(0.0, 0.05, time.size), 1)
     return [
-        _record(OIL_TEMPERATURE, at, random, _temperature, degrees)
+        _record(OIL_TEMPERATURE, at, random, temperature, degrees)
         for at, degrees in zip(time.tolist(), oil.tolist())
     ]
 
@@ -255,85 +241,9 @@ def _record(topic: Topic, time: float, random: np.random.Generator, encode, *val
     )
 
 
-class Cdr:
-    """Little-endian CDR with zeroed padding, which a ROS serialiser does not promise."""
-
-    def __init__(self, stamp: int, frame: str) -> None:
-        """Begin a message with its header."""
-        self._bytes = bytearray()
-        self.put('i', stamp // 1_000_000_000)
-        self.put('I', stamp % 1_000_000_000)
-        self.text(frame)
-
-    def put(self, kind: str, *values: float) -> None:
-        """Append numbers of one kind, aligned to its size."""
-        size = struct.calcsize(f'<{kind}')
-        self._bytes += bytes(-len(self._bytes) % size)
-        self._bytes += struct.pack(f'<{len(values)}{kind}', *values)
-
-    def text(self, value: str) -> None:
-        """Append a text."""
-        data = value.encode() + b'\0'
-        self.put('I', len(data))
-        self._bytes += data
-
-    def doubles(self, *values: float) -> None:
-        """Append a sequence of float64."""
-        self.put('I', len(values))
-        if values:
-            self.put('d', *values)
-
-    def message(self) -> bytes:
-        """Return the serialised message."""
-        return b'\0\1\0\0' + bytes(self._bytes)
-
-
-def _joint_state(stamp: int, position: float, velocity: float) -> bytes:
-    cdr = Cdr(stamp, 'x_axis')
-    cdr.put('I', 1)
-    cdr.text('x_axis')
-    cdr.doubles(position)
-    cdr.doubles(velocity)
-    cdr.doubles()
-    return cdr.message()
-
-
-def _wrench(stamp: int, force: float) -> bytes:
-    cdr = Cdr(stamp, 'x_nut')
-    cdr.put('d', force, 0.0, 0.0, 0.0, 0.0, 0.0)
-    return cdr.message()
-
-
-def _temperature(stamp: int, degrees: float) -> bytes:
-    cdr = Cdr(stamp, 'x_nut')
-    cdr.put('d', degrees, 0.0025)
-    return cdr.message()
-
-
 def generate(directory: Path) -> None:
     """Write the bag to `directory`, which appears, or is replaced, only when it is complete."""
-    directory = directory.resolve()
-    directory.parent.mkdir(parents=True, exist_ok=True)
-    partial = Path(tempfile.mkdtemp(prefix=f'.{directory.name}.', dir=directory.parent))
-    try:
-        _write(partial, directory.name)
-        partial.chmod(0o755)
-        if directory.exists():
-            shutil.rmtree(directory)
-        os.replace(partial, directory)
-    finally:
-        shutil.rmtree(partial, ignore_errors=True)
-
-
-def _write(directory: Path, name: str) -> None:
-    # Uncompressed, so that the bytes do not depend on the version of a compressor.
-    with BagWriter(directory, name, compress=False) as writer:
-        for topic in (JOINT_STATES, AXIAL_LOAD, OIL_TEMPERATURE):
-            writer.add_topic(topic)
-        for record in records():
-            writer.write(
-                record.topic, record.data, log_time=record.log_time, publish_time=record.stamp
-            )
+    write_bag(directory, records())
 
 
 def main(arguments: list[str] | None = None) -> int:

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The nominal cycle as a bag made by its generator, and a short piece of it."""
 
+import importlib
 from importlib.abc import MetaPathFinder
-import importlib.util
 from pathlib import Path
 import sys
 
@@ -11,7 +11,14 @@ from hypothesis import HealthCheck, settings
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
-OPTIONAL = ('apsw', 'mcap', 'polars', 'rosbags', 'zstandard')  # no package of a machine with ROS 2
+OPTIONAL = (
+    'apsw',
+    'mcap',
+    'mcap_ros2',
+    'polars',
+    'rosbags',
+    'zstandard',
+)  # no package of a machine with ROS 2
 # Tests that solve contacts, talk over DDS, start processes, draw many pictures, repeat thousands
 # of fits or run linters over the whole tree: folders and files, and fixtures that make any test
 # such a one. All others are `fast`.
@@ -73,6 +80,7 @@ class Skipper(MetaPathFinder):
 
 
 sys.meta_path.append(Skipper())
+sys.path.append(str(ROOT / 'bags'))  # the generators are scripts beside each other
 
 
 def pytest_collection_modifyitems(items):
@@ -88,11 +96,7 @@ def pytest_collection_modifyitems(items):
 @pytest.fixture(scope='session')
 def nominal_cycle():
     """Return the generator as a module."""
-    path = ROOT / 'bags' / 'nominal_cycle.py'
-    spec = importlib.util.spec_from_file_location('nominal_cycle', path)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+    return importlib.import_module('nominal_cycle')
 
 
 @pytest.fixture(scope='session')

@@ -95,6 +95,7 @@ THEMES = {
     'ballscrew_monitor/node/test_policy.py',
     'ballscrew_monitor/node/test_solve.py',
     'ballscrew_monitor/test_shared_memory.py',
+    'ballscrew_monitor/recordings/test_compatibility.py',
     'config/test_deployment.py',
     'config/test_parameter_files.py',
     'surrogate/builder/full/test_shipped.py',

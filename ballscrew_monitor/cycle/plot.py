@@ -35,6 +35,8 @@ LEVELS = (
 )
 REGIME_COLOURS = ('#fbe3d6', '#fdf6d3', '#dbeaf5')
 SMALLEST_RCS = 1e-4  # [-] the bottom of its strip; smaller ones are drawn on it
+NAME_MARGIN = 0.003  # [-] of the axes, on both sides of the name of an event
+NEAR_EDGE = (0.96, 0.93)  # parts of the map from which on a mark is left of or below its spot
 STRIPS = (1.25, 1.25, 0.8, 1.25, 1.35, 1.35, 0.35)
 
 
@@ -79,7 +81,7 @@ def _mark_event(
     axes: Axes, trace: Trace, speed: Array, event: EventRecord, summary: Summary
 ) -> None:
     """Write the number of the event at the median of its points outside."""
-    begin, end = summary.since_first(event.start), summary.since_first(event.end)
+    begin, end = summary.span(event)
     inside = (
         (trace.time >= begin)
         & (trace.time <= end)
@@ -92,7 +94,7 @@ def _mark_event(
     axes.annotate(
         str(event.event_id),
         spot,
-        xytext=(18, 16),
+        xytext=_towards_inside(axes, spot),
         textcoords='offset points',
         fontsize=9,
         fontweight='bold',
@@ -102,6 +104,12 @@ def _mark_event(
         bbox={'boxstyle': 'circle,pad=0.25', 'facecolor': 'white', 'edgecolor': VERMILION},
         arrowprops={'arrowstyle': '-', 'color': VERMILION},
     )
+
+
+def _towards_inside(axes: Axes, spot: tuple[float, float]) -> tuple[float, float]:
+    """Return where a mark is from its spot [point]: above and right of it, but within the map."""
+    x, y = axes.transAxes.inverted().transform(axes.transData.transform(spot))
+    return (18 if x < NEAR_EDGE[0] else -18), (16 if y < NEAR_EDGE[1] else -16)
 
 
 def _finish_map(axes: Axes, trace: Trace, mean: float, *, others: bool, banded: bool) -> None:
@@ -138,21 +146,17 @@ def _draw_strips(strips: Sequence[Axes], trace: Trace, summary: Summary) -> None
     _draw_efficiency(efficiency, trace)
     _draw_ratio(ratio, trace)
     _draw_rcs(rcs, trace)
-    _draw_level(level, trace, summary)
+    _draw_level(level, trace)
     for strip in strips:
         strip.grid(axis='x', color='#d0d0d0', linewidth=0.5)
         strip.tick_params(labelsize=8)
         for event in summary.events if strip is not ratio else ():
             strip.axvspan(
-                summary.since_first(event.start),
-                summary.since_first(event.end),
-                color='#f0a56e',
-                alpha=0.16,
-                linewidth=0.0,
-                zorder=0,
+                *summary.span(event), color='#f0a56e', alpha=0.16, linewidth=0.0, zorder=0
             )
     strips[-1].set_xlim(0.0, float(trace.time[-1]) or 1.0)
     strips[-1].set_xlabel('time [s]')
+    _name_events(level, summary)
 
 
 def _line(axes: Axes, trace: Trace, values: Array, label: str) -> None:
@@ -226,7 +230,7 @@ def _name_limit(axes: Axes, value: float, text: str, colour: str) -> None:
     )
 
 
-def _draw_level(axes: Axes, trace: Trace, summary: Summary) -> None:
+def _draw_level(axes: Axes, trace: Trace) -> None:
     for level, colour, _ in LEVELS:
         axes.fill_between(
             trace.time,
@@ -237,17 +241,47 @@ def _draw_level(axes: Axes, trace: Trace, summary: Summary) -> None:
             step='post',
             linewidth=0.0,
         )
-    for event in summary.events:
-        middle = 0.5 * (summary.since_first(event.start) + summary.since_first(event.end))
-        axes.text(
-            middle,
-            0.5,
-            f'{event.event_id}: {event.quantity}',
-            fontsize=8,
-            ha='center',
-            va='center',
-            fontweight='bold',
-        )
     axes.set_ylim(0.0, 1.0)
     axes.set_yticks([])
     axes.set_ylabel('warning', fontsize=8, rotation=0, ha='right', va='center')
+
+
+def _name_events(axes: Axes, summary: Summary) -> None:
+    """
+    Write number and cause of each event in its middle, or the number alone where that is too wide.
+
+    A name stays within the axes, beside which that of the strip stands, and ends before the next
+    event begins; where not even the number has room, none is written.
+
+    """
+    width = axes.get_xlim()[1]
+    spans = [(begin / width, end / width) for begin, end in map(summary.span, summary.events)]
+    limits = [begin for begin, _ in spans[1:]] + [1.0]
+    free = 0.0
+    for event, (begin, end), limit in zip(summary.events, spans, limits, strict=True):
+        for words in (f'{event.event_id}: {event.quantity}', str(event.event_id)):
+            label = _name_event(axes, words, 0.5 * (begin + end), (free, limit))
+            if label is not None:
+                free = label
+                break
+
+
+def _name_event(axes: Axes, words: str, middle: float, room: tuple[float, float]) -> float | None:
+    """Write a name near `middle` [-] within its room; return its end, None where it has none."""
+    label = axes.text(
+        middle,
+        0.5,
+        words,
+        fontsize=8,
+        ha='center',
+        va='center',
+        fontweight='bold',
+        transform=axes.transAxes,
+    )
+    half = 0.5 * label.get_window_extent().width / axes.get_window_extent().width + NAME_MARGIN
+    low, high = room[0] + half, room[1] - half
+    if low > high:
+        label.remove()
+        return None
+    label.set_x(min(max(middle, low), high))
+    return float(label.get_position()[0]) + half

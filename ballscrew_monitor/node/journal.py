@@ -15,13 +15,13 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 import json
 from typing import Any
 
+from ballscrew_monitor.core.cdr import serialized
 from ballscrew_monitor.core.conversions import nanoseconds
 from ballscrew_monitor.core.snapshot import freeze_monitor
 from ballscrew_monitor.node.axis import Axis
 from ballscrew_monitor.node.frames import Frame, FrameKind, MOST_SEQUENCE
 from ballscrew_monitor.node.recording_process import RecordingProcess
 from ballscrew_monitor.node.topic import Arrival
-from rclpy.serialization import serialize_message
 from std_msgs.msg import String
 
 VERSION = 1
@@ -86,7 +86,7 @@ class Journal:
             kind = type(message)
             type_name = f'{kind.__module__.split(".")[0]}/msg/{kind.__name__}'
             offer = 'LATCHED' if kind.__name__ in LATCHED else 'RELIABLE'
-            self._put(topic, type_name, offer, serialize_message(message), now, now, 0)
+            self._put(topic, type_name, offer, serialized(message), now, now, 0)
 
     def trigger(self, now: int) -> None:
         """Let a recording around events show what has just happened."""
@@ -161,9 +161,7 @@ class Journal:
 
     def _note(self, now: int, entry: Mapping[str, Any]) -> None:
         text = json.dumps(entry, allow_nan=False, separators=(',', ':'))
-        self._put(
-            self._name, STRING, 'RELIABLE', serialize_message(String(data=text)), now, now, 0
-        )
+        self._put(self._name, STRING, 'RELIABLE', serialized(String(data=text)), now, now, 0)
 
     def _put(
         self,

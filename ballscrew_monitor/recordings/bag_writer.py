@@ -190,10 +190,6 @@ class BagWriter:
             ) from None
 
     def _metadata(self) -> dict[str, Any]:
-        span = {
-            'duration': {'nanoseconds': self._last - self._first},
-            'starting_time': {'nanoseconds_since_epoch': self._first},
-        }
         topics = [
             {
                 'topic_metadata': {
@@ -210,13 +206,20 @@ class BagWriter:
         return {
             'version': METADATA_VERSION,
             'storage_identifier': 'mcap',
-            **span,
+            **self._span(),
             'message_count': self.total,
             'topics_with_message_count': topics,
             'compression_format': '',
             'compression_mode': '',
             'relative_file_paths': [self.path.name],
-            'files': [{'path': self.path.name, **span, 'message_count': self.total}],
+            'files': [{'path': self.path.name, **self._span(), 'message_count': self.total}],
             'custom_data': None,
             'ros_distro': 'jazzy',
+        }
+
+    def _span(self) -> dict[str, Any]:
+        """Return duration and begin; made anew each time, or YAML refers to the first one."""
+        return {
+            'duration': {'nanoseconds': self._last - self._first},
+            'starting_time': {'nanoseconds_since_epoch': self._first},
         }

@@ -17,6 +17,7 @@ from typing import Any, NamedTuple
 from ballscrew_monitor.core.conversions import nanoseconds
 from ballscrew_monitor.core.fields import OtherJoints
 from ballscrew_monitor.core.inputs import Input, InputSample, Refusal, Source, Why
+from ballscrew_monitor.core.monitor import BACKWARD_JUMP
 from ballscrew_monitor.core.state import State
 from ballscrew_monitor.node.axis import Axis, build_axis
 from ballscrew_monitor.node.messages import out_of_zone_message, StateWriter, TIERS
@@ -146,11 +147,26 @@ def _not_decoded(source: Source, text: str, arrival: int) -> Refusal:
 
 
 def _ordered(entries: Iterator[_Entry]) -> Iterator[_Entry]:
-    """Yield the entries by stamp, as far as they are out of order by less than `REORDER`."""
+    """
+    Yield the entries by stamp, as far as they are out of order by less than `REORDER`.
+
+    A clock that is set back begins a new time line: what came before comes before.
+
+    """
     waiting: list[_Entry] = []
+    last: dict[tuple[int, int], int] = {}  # stamps [ns] by axis and source
     for entry in entries:
+        if isinstance(entry.event, InputSample):  # the stamp of a refusal is a log time
+            line = entry.axis, entry.source
+            if last.get(line, entry.stamp) - entry.stamp > BACKWARD_JUMP:
+                yield from _emptied(waiting)
+            last[line] = entry.stamp
         heapq.heappush(waiting, entry)
         while entry.log_time - waiting[0].log_time > REORDER:
             yield heapq.heappop(waiting)
+    yield from _emptied(waiting)
+
+
+def _emptied(waiting: list[_Entry]) -> Iterator[_Entry]:
     while waiting:
         yield heapq.heappop(waiting)

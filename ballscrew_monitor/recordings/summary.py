@@ -88,6 +88,11 @@ class Summary:
         """Return a stamp [ns] as time since the first state [s]."""
         return (stamp - self.first) / SECOND
 
+    def span(self, event: EventRecord) -> tuple[float, float]:
+        """Return begin and end [s] since the first state; one that is on lasts to the last."""
+        end = max(self.last, event.end) if event.active else event.end
+        return self.since_first(event.start), self.since_first(end)
+
     def lines(self) -> list[str]:
         """Return the summary in words."""
         span = self.since_first(self.last)

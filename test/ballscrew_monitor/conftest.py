@@ -6,6 +6,7 @@ import collections
 import contextlib
 import dataclasses
 import fcntl
+import itertools
 import math
 import os
 import pathlib
@@ -19,6 +20,7 @@ import warnings
 
 from ballscrew_monitor.core.conversions import direction_of, SECOND
 from ballscrew_monitor.core.estimate import MachinePoint, PointSource, PointValidity
+from ballscrew_monitor.core.fields import message_class
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.core.monitor import Monitor
@@ -37,6 +39,7 @@ import rclpy
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile, QoSReliabilityPolicy
+from rosidl_parser import definition
 from sensor_msgs.msg import JointState
 from surrogate.surface import file as surface_file
 from surrogate.surface import shipped_surface
@@ -255,6 +258,36 @@ def remove_stale_segments():
         for path in stale_segments(SHARED_MEMORY, free):
             with contextlib.suppress(FileNotFoundError, PermissionError):
                 path.unlink()
+
+
+@pytest.fixture(scope='session')
+def filled():
+    """Return what makes a message of a type with a value of its own in every field."""
+    return _filled
+
+
+def _filled(message_type, start=1):
+    """Return a message with 3 elements in each sequence, numbered from `start`."""
+    message, numbers = message_type(), itertools.count(start)
+    for name, kind in zip(message.get_fields_and_field_types(), message.SLOT_TYPES):
+        setattr(message, name, _value(kind, numbers))
+    return message
+
+
+def _value(kind, numbers):
+    number = next(numbers)
+    if isinstance(kind, definition.AbstractNestedType):
+        size = kind.size if isinstance(kind, definition.Array) else 3
+        return [_value(kind.value_type, numbers) for _ in range(size)]
+    if isinstance(kind, definition.NamespacedType):
+        return _filled(message_class('/'.join(kind.namespaced_name())), number)
+    if isinstance(kind, definition.AbstractString):
+        return f'text {number} °' + 'x' * (number % 5)
+    if kind.typename in ('float', 'double'):
+        return math.nan if number % 11 == 0 else number / 8
+    if kind.typename == 'octet':
+        return bytes([number % 256])
+    return bool(number % 2) if kind.typename == 'boolean' else number % 100
 
 
 @pytest.fixture(scope='session', autouse=True)

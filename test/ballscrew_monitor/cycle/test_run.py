@@ -23,6 +23,7 @@ from ballscrew_monitor.recordings.replay import replay
 from ballscrew_msgs.msg import BallScrewState
 import pytest
 from rclpy.serialization import deserialize_message
+from rosbags.highlevel import AnyReader
 from surrogate.files import InputError
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -94,6 +95,13 @@ def test_the_recording_holds_inputs_and_outputs(finished, short_bag):
     for name in ('x/out_of_zone', 'x/surface_info'):
         assert recorded.topics[f'/ballscrew_monitor/{name}'].count >= 1
     assert recorded.topics['/diagnostics'].count >= 1
+
+
+def test_another_library_reads_every_message_of_the_recording(finished):
+    with AnyReader([finished[0]]) as reader:
+        for connection, _, data in reader.messages():
+            reader.deserialize(data, connection.msgtype)
+        assert set(reader.topics) == set(Bag(finished[0]).topics)
 
 
 def test_the_node_says_what_the_replay_says(finished, short_bag):

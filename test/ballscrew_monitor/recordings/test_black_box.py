@@ -13,6 +13,7 @@ from ballscrew_msgs.msg import BallScrewState
 from diagnostic_msgs.msg import DiagnosticArray
 import pytest
 from rclpy.serialization import deserialize_message
+from rosbags.highlevel import AnyReader
 from std_srvs.srv import Trigger
 
 FAST, SLOW = 100.0, 0.8  # [rad/s] optimal and outside at 1 kN and 40 degC
@@ -78,6 +79,9 @@ def test_a_recording_gives_the_states_again_bit_for_bit(node, start):
     again, own = replayed(path)
     assert again == recorded(path)
     assert len(again) >= number > 50
+    with AnyReader([path]) as reader:  # strict about the length of a message
+        for connection, _, data in reader.messages():
+            reader.deserialize(data, connection.msgtype)
     assert not own.refuted
     assert set(Bag(path).topics) >= {
         '/axial_load',

@@ -48,6 +48,11 @@ def test_an_event_is_listed_once_with_its_last_word():
     ]
 
 
+def test_an_event_that_is_still_on_lasts_to_the_last_state():
+    summary = make_summary()
+    assert [summary.span(event) for event in summary.events] == [(3.0, 5.0), (6.0, 10.0)]
+
+
 def test_json_has_units_and_no_nan():
     summarizer = Summarizer()
     state = BallScrewState(axis='x')

@@ -1,0 +1,63 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What the monitor says of a bag, as plain rows that can be held against an expectation."""
+
+import dataclasses
+
+from ballscrew_monitor.core.conversions import Direction
+from ballscrew_monitor.core.estimate import PointValidity
+from ballscrew_monitor.core.fields import stamp_of
+from ballscrew_monitor.core.judgement import Code, Gate, Level, Zone
+from ballscrew_monitor.node.parameters import read_file
+from ballscrew_monitor.recordings.bag import Bag
+from ballscrew_monitor.recordings.replay import replay
+from ballscrew_monitor.recordings.summary import Summarizer, Summary
+import pytest
+
+REGIMES = ('UNKNOWN', 'BOUNDARY', 'MIXED', 'HYDRODYNAMIC')
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Judgement:
+    """Every state as a row of names and numbers, the cause of each event, totals, last inputs."""
+
+    rows: list
+    causes: dict
+    summary: Summary
+    inputs: dict
+
+
+@pytest.fixture(scope='session')
+def judge():
+    """Return what replays a bag with a parameter file."""
+    return _judge
+
+
+def _judge(bag, parameters):
+    summarizer, rows, causes, inputs = Summarizer(), [], {}, {}
+    for state, event in replay(Bag(bag), read_file(parameters)):
+        summarizer.add_state(state)
+        if event is not None:
+            summarizer.add_event(event)
+            causes[event.event_id] = Code(event.cause.code).name
+        rows.append(_row(state))
+        inputs = {
+            health.name: (health.state, health.dropped, health.received, health.lag)
+            for health in state.inputs
+        }
+    return Judgement(rows=rows, causes=causes, summary=summarizer.result(), inputs=inputs)
+
+
+def _row(state):
+    return {
+        'stamp': stamp_of(state),
+        'zone': Zone(state.zone).name,
+        'level': Level(state.level).name,
+        'regime': REGIMES[state.result.regime],
+        'gates': [Gate(gate).name for gate in state.active_gates],
+        'validity': PointValidity(state.result.validity).name,
+        'reason': state.result.reason,
+        'direction': Direction(state.point.direction).name,
+        'torque': state.result.driving_torque,
+        'residual': state.torque_residual,
+    }

@@ -1,0 +1,139 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Every scenario is judged as its closed form says."""
+
+import math
+from pathlib import Path
+
+from ballscrew_monitor.core.conversions import kelvin, SECOND
+from ballscrew_monitor.node.axis import load_surface
+from ballscrew_monitor.node.parameters import read_file
+import pytest
+from recording import BEGIN
+from scenario import generate, PARAMETERS, PERIOD
+from scenarios import main, SCENARIOS
+from surrogate.units import RPM
+
+ROOT = Path(__file__).resolve().parents[2]
+MADE = {name: made() for name, made in SCENARIOS.items()}
+TINY = 1e-9
+
+
+def cases(field):
+    """Return every entry of a field of the expectations with its scenario, named for pytest."""
+    return [
+        pytest.param(name, entry, id=f'{name}-{number}')
+        for name, scenario in MADE.items()
+        for number, entry in enumerate(getattr(scenario.expected, field))
+    ]
+
+
+@pytest.fixture(scope='module')
+def judged(judge, tmp_path_factory):
+    """Return what gives the judgement of a scenario; each is made and replayed once."""
+    known, root = {}, tmp_path_factory.mktemp('scenarios')
+
+    def of(name):
+        if name not in known:
+            generate(MADE[name], root / name)
+            known[name] = judge(root / name, root / name / PARAMETERS)
+        return known[name]
+
+    return of
+
+
+def within(name, rows, time):
+    """Return the rows whose stamps lie in a span [s] of a scenario."""
+    low, high = (MADE[name].stamp(at) for at in time)
+    return [row for row in rows if low <= row['stamp'] <= high]
+
+
+def seconds(stamp):
+    """Return a stamp [ns] as time since the begin [s]."""
+    return (stamp - BEGIN) / SECOND
+
+
+@pytest.mark.parametrize('name', MADE)
+def test_the_levels_follow_each_other_as_expected(judged, name):
+    levels = [row['level'] for row in judged(name).rows]
+    changes = [levels[0]] + [now for before, now in zip(levels, levels[1:]) if now != before]
+    assert tuple(changes) == MADE[name].expected.levels
+
+
+@pytest.mark.parametrize('name', MADE)
+def test_the_number_of_events_is_the_expected_one(judged, name):
+    assert len(judged(name).summary.events) == len(MADE[name].expected.events)
+
+
+@pytest.mark.parametrize(('name', 'expected'), cases('events'))
+def test_an_event_has_its_cause_start_and_end(judged, name, expected):
+    judgement = judged(name)
+    event = judgement.summary.events[MADE[name].expected.events.index(expected)]
+    assert judgement.causes[event.event_id] == expected.cause
+    low, high = expected.start
+    assert low - TINY <= seconds(event.start) <= high + TINY
+    assert event.active is (expected.end is None)
+    if expected.end is not None:
+        low, high = expected.end
+        assert low - TINY <= seconds(event.end) <= high + TINY
+
+
+@pytest.mark.parametrize(('name', 'expected'), cases('stretches'))
+def test_a_steady_stretch_is_judged_as_expected(judged, name, expected):
+    rows = within(name, judged(name).rows, expected.time)
+    assert len(rows) > 5
+    for row in rows:
+        for quantity in ('zone', 'level', 'validity', 'direction'):
+            assert getattr(expected, quantity) in (None, row[quantity]), (quantity, row)
+        assert (expected.reason or '') in row['reason']
+        if expected.torque is not None:
+            assert expected.torque[0] <= row['torque'] <= expected.torque[1]
+
+
+@pytest.mark.parametrize(('name', 'expected'), cases('residuals'))
+def test_the_residual_changes_by_what_the_generator_put_in(judged, name, expected):
+    then, now = (
+        [row['residual'] for row in within(name, judged(name).rows, time)]
+        for time in (expected.since, expected.time)
+    )
+    assert min(len(then), len(now)) > 100
+    change = math.fsum(now) / len(now) - math.fsum(then) / len(then)
+    assert change == pytest.approx(expected.change, rel=1e-6, abs=TINY)
+
+
+@pytest.mark.parametrize('name', MADE)
+def test_samples_are_judged_refused_and_late_as_expected(judged, name):
+    judgement, expected = judged(name), MADE[name].expected
+    _, dropped, received, lag = judgement.inputs['speed']
+    sent = sum(record.topic == '/joint_states' for record in MADE[name].records())
+    assert dropped == (received if expected.all_refused else 0)
+    if expected.all_judged:
+        assert judgement.summary.judged == received == sent
+    if expected.lag is not None:
+        assert lag == pytest.approx(expected.lag, abs=PERIOD)
+
+
+@pytest.mark.parametrize(('name', 'expected'), cases('limit_points'))
+def test_the_limits_that_expectations_stand_on_are_those_of_the_surface(name, expected):
+    surface = load_surface('x', read_file(ROOT / 'config' / 'nominal_cycle.yaml'))
+
+    def look(part):
+        speed, oil = part * expected.speed * RPM, kelvin(expected.oil)
+        return getattr(surface.lookup(speed, expected.load, oil), expected.quantity)
+
+    if expected.quantity == 'rcs':
+        assert look(1.1) < expected.value <= look(0.9)
+    else:
+        assert look(1.0) == pytest.approx(expected.value, abs=0.01)
+
+
+def test_the_same_source_gives_the_same_bytes(tmp_path):
+    for folder in ('one', 'two'):
+        assert main(['flapping', '--out', str(tmp_path / folder)]) == 0
+    for file in (tmp_path / 'one' / 'flapping').iterdir():
+        assert file.read_bytes() == (tmp_path / 'two' / 'flapping' / file.name).read_bytes()
+
+
+def test_without_a_name_all_are_named(capsys):
+    assert main([]) == 0
+    assert capsys.readouterr().out.splitlines()[0].startswith('warm_up ')
