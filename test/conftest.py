@@ -30,6 +30,7 @@ SLOW = (
     'ballscrew_monitor/clients/test_solve.py',
     'ballscrew_monitor/node/test_clocks.py',
     'ballscrew_monitor/node/test_loss.py',
+    'ballscrew_monitor/node/test_motor_torque.py',
     'ballscrew_monitor/node/test_node.py',
     'ballscrew_monitor/node/test_solve.py',
     'ballscrew_monitor/recordings/test_black_box.py',

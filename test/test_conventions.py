@@ -91,6 +91,7 @@ THEMES = {
     'ballscrew_monitor/node/test_cures.py',
     'ballscrew_monitor/node/test_dump.py',
     'ballscrew_monitor/node/test_loss.py',
+    'ballscrew_monitor/node/test_motor_torque.py',
     'ballscrew_monitor/node/test_policy.py',
     'ballscrew_monitor/node/test_solve.py',
     'ballscrew_monitor/test_shared_memory.py',

@@ -17,14 +17,14 @@ from typing import Any
 
 from ballscrew_monitor.clients.hearing import Hearing
 from ballscrew_monitor.clients.surroundings import surroundings
-from ballscrew_monitor.core.conversions import nanoseconds
+from ballscrew_monitor.core.conversions import nanoseconds, POSITION_UNITS
 from ballscrew_monitor.core.doctor import findings, InputFacts, Surroundings
 from ballscrew_monitor.core.fields import message_class, number_fields
 from ballscrew_monitor.core.inputs import Input, make_input, Source
 from ballscrew_monitor.core.links import Link, types_of
 from ballscrew_monitor.node import parameters
-from ballscrew_monitor.node.axis import is_configured, load_surface, scaling_of
-from ballscrew_monitor.node.parameter_table import ParameterRow
+from ballscrew_monitor.node.axis import derivation_of, is_configured, load_surface, scaling_of
+from ballscrew_monitor.node.parameter_row import ParameterRow
 from ballscrew_monitor.node.qos import check_overrides, input_qos, overridden, publishers_on
 from ballscrew_monitor.node.topics import absolute
 import rclpy
@@ -91,6 +91,9 @@ class Examination:
             for source in reversed(Source)
             if is_configured(axis, values, source)
         ]
+        self._wanted = [one for one in self._wanted if self._can_scale(*one)]
+        for axis in values['axes']:
+            self._try(functools.partial(derivation_of, axis, values))
         topics = {self._topic(*wanted) for wanted in self._wanted}
         self._try(lambda: check_overrides(given, topics))
         self._surfaces: dict[str, Surface | None] = {
@@ -106,8 +109,14 @@ class Examination:
         try:
             return make()
         except InputError as error:
-            self.refused.append(str(error))
+            if str(error) not in self.refused:
+                self.refused.append(str(error))
             return None
+
+    def _can_scale(self, axis: str, source: Source) -> bool:
+        """Tell whether the unit of an input is complete, and note why it is not."""
+        scale = functools.partial(scaling_of, axis, self._values, source, 1.0)
+        return self._try(scale) is not None
 
     def _spin(self, seconds: float, over: Callable[[], bool] = lambda: False) -> None:
         end = time.monotonic() + seconds
@@ -190,7 +199,7 @@ class Examination:
             timeout=self._value(axis, source, 'timeout'),
             unit=self._value(axis, source, 'unit'),
             scalings=self._scalings(axis, source),
-            known=_range_of(surface, source),
+            known=_range_of(surface, source, self._value(axis, source, 'unit')),
             heard=hearing.heard() if hearing else None,
             problem=problem,
             numbers=numbers,
@@ -208,11 +217,12 @@ class Examination:
     def _scalings(self, axis: str, source: Source) -> dict[str, Any]:
         surface, name = self._surfaces[axis], f'{axis}.{source.name.lower()}.unit'
         row: ParameterRow = parameters.table([axis])[name]
-        if surface is None:
+        if surface is None or source is Source.TORQUE:
             return {}
         return {
             unit: scaling_of(axis, {**self._values, name: unit}, source, surface.lead)
             for unit in row.choices
+            if unit not in POSITION_UNITS
         }
 
 
@@ -223,9 +233,9 @@ def _numbers_of(type_name: str) -> tuple[str, ...]:
         return ()
 
 
-def _range_of(surface: Surface | None, source: Source) -> tuple[float, float] | None:
-    """Return the range of a surface [SI] in what an input measures."""
-    if surface is None or source is Source.TORQUE:
+def _range_of(surface: Surface | None, source: Source, unit: str) -> tuple[float, float] | None:
+    """Return the range of a surface [SI] in what an input measures; a position has none."""
+    if surface is None or source is Source.TORQUE or unit in POSITION_UNITS:
         return None
     ranges = {
         Source.SPEED: surface.speed_range,

@@ -25,9 +25,14 @@ LINEAR_SPEED_UNITS = {
     'mm/min': 1e-3 / MINUTE,
     'm/min': 1.0 / MINUTE,
 }  # [m/s]
+ROTARY_POSITION_UNITS = {'rad': 1.0, 'rev': TURN, 'deg': TURN / 360.0}  # [rad]
+LINEAR_POSITION_UNITS = {'m': 1.0, 'mm': 1e-3}  # [m]
+POSITION_UNITS = ROTARY_POSITION_UNITS | LINEAR_POSITION_UNITS
+SPEED_UNITS = ROTARY_SPEED_UNITS | LINEAR_SPEED_UNITS
 LOAD_UNITS = {'N': 1.0, 'kN': 1e3}  # [N]
 TEMPERATURE_UNITS = {'degC': ZERO_CELSIUS, 'K': 0.0}  # zero of the unit [K]
-TORQUE_UNITS = {'N m': 1.0}  # [N m]
+TORQUE_UNITS = ('N m', 'A', '%')  # of current and of the rated torque by stated constants
+_ROTARY_UNITS = ROTARY_SPEED_UNITS | ROTARY_POSITION_UNITS
 HANDS = {'right': 1.0, 'left': -1.0}
 
 
@@ -65,17 +70,24 @@ def speed_scaling(
     """
     Return the line from a speed in `unit` to the screw speed [rad/s], machine frame.
 
+    A position likewise, to [rad].
+
     A rotary unit describes the screw: positive rotation moves the nut of a right-hand thread in
     the positive direction and that of a left-hand thread in the negative one. A linear unit
     describes the nut, so that handedness has no say; it is divided by lead / (2 pi), lead [m].
 
     """
-    if unit in ROTARY_SPEED_UNITS:
-        factor = ROTARY_SPEED_UNITS[unit] * _known('handedness', handedness, HANDS)
-    else:
-        allowed = ROTARY_SPEED_UNITS | LINEAR_SPEED_UNITS
-        factor = _known('speed unit', unit, allowed) * TURN / lead
+    factor = screw_turn(unit, lead=lead) * (
+        _known('handedness', handedness, HANDS) if unit in _ROTARY_UNITS else 1.0
+    )
     return Scaling(factor=scale * factor, shift=offset * factor)
+
+
+def screw_turn(unit: str, *, lead: float) -> float:
+    """Return the speed [rad/s] or the position [rad] of the screw that `unit` is; lead [m]."""
+    if unit in _ROTARY_UNITS:
+        return _ROTARY_UNITS[unit]
+    return _known('speed unit', unit, SPEED_UNITS | POSITION_UNITS) * TURN / lead
 
 
 def load_scaling(unit: str, *, scale: float, offset: float) -> Scaling:
@@ -90,16 +102,39 @@ def temperature_scaling(unit: str, *, scale: float, offset: float) -> Scaling:
     return Scaling(factor=scale, shift=offset + zero)
 
 
-def torque_scaling(unit: str, *, scale: float, offset: float, handedness: str) -> Scaling:
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class MotorData:
     """
-    Return the line from a torque on the screw in `unit` to [N m], machine frame.
+    What a torque at the screw follows from; 0 is not stated.
 
-    The torque is positive along positive rotation of the screw, hence handedness as for speed.
+    constant [N m/A] and rated [N m] of the motor, gear_ratio its turns per turn of the screw [-].
 
     """
-    hand = _known('handedness', handedness, HANDS)
-    factor = _known('torque unit', unit, TORQUE_UNITS) * hand
+
+    constant: float = 0.0
+    rated: float = 0.0
+    gear_ratio: float = 1.0
+
+
+def torque_scaling(unit: float, *, scale: float, offset: float, handedness: str) -> Scaling:
+    """
+    Return the line from a torque to that on the screw [N m], machine frame.
+
+    `unit` is the torque at the screw [N m] of one unit, see `torque_unit`. The torque is positive
+    along positive rotation of the screw, hence handedness as for speed.
+
+    """
+    factor = unit * _known('handedness', handedness, HANDS)
     return Scaling(factor=scale * factor, shift=offset * factor)
+
+
+def torque_unit(unit: str, motor: MotorData) -> float:
+    """Return the torque at the screw [N m] that one `unit` of the motor is."""
+    values = {'N m': 1.0, 'A': motor.constant, '%': motor.rated / 100.0}
+    if _known('torque unit', unit, values) == 0.0:
+        needed = 'torque.constant [N m/A]' if unit == 'A' else 'torque.rated [N m]'
+        raise InputError(f'torque unit {unit!r} needs {needed}, it is 0.0, not stated')
+    return values[unit] * motor.gear_ratio
 
 
 def _known(what: str, key: str, table: dict[str, float]) -> float:

@@ -14,7 +14,8 @@ from ballscrew_monitor.core.conversions import (
     Nut,
     opposing_load,
 )
-from surrogate.surface import Regime, regime_of, Surface, SurfacePoint
+from ballscrew_monitor.core.derived_load import DerivedLoad
+from surrogate.surface import Regime, regime_of, Surface, SurfacePoint, Validity
 
 NAN = math.nan
 DOMINANT_RCS = 0.5  # [-] from here on asperities carry the larger part of the load
@@ -27,6 +28,7 @@ class PointSource(enum.IntEnum):
     MEASURED = 1
     DEFAULT = 2
     HELD = 3
+    DERIVED = 4  # the load, from the motor torque
 
 
 class PointValidity(enum.IntEnum):
@@ -57,7 +59,8 @@ class MachinePoint:
     """
     Where the screw is operated, in the machine frame.
 
-    speed [rad/s], axial_load [N], temperature [K], motor_torque [N m]; NaN is unknown.
+    speed [rad/s], axial_load [N], temperature [K], motor_torque [N m]; NaN is unknown. `derived`
+    is how a load from the motor torque came out, None where the load is an input.
 
     """
 
@@ -71,6 +74,14 @@ class MachinePoint:
     motor_torque_source: PointSource = PointSource.UNKNOWN
     direction: Direction = Direction.UNKNOWN
     direction_held: bool = False
+    derived: DerivedLoad | None = None
+
+    @property
+    def axial_load_uncertainty(self) -> float:
+        """Return the half width of the range of a derived load [N], NaN for any other."""
+        if self.derived is None or self.axial_load_source is not PointSource.DERIVED:
+            return NAN
+        return self.derived.uncertainty
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -125,6 +136,11 @@ def estimate(point: MachinePoint, surface: Surface, *, rcs_limit: float) -> Poin
             reason='the direction of motion is unknown, the screw has not moved yet',
         )
     load = opposing_load(point.axial_load, point.direction)
+    derived = point.derived
+    if derived is not None and derived.validity != Validity.VALID:
+        validity = PointValidity(int(derived.validity))
+        reason = derived.reason or _outside(validity, point, load, surface)
+        return PointEstimate(validity=validity, reason=reason)
     numbers = surface.lookup(abs(point.speed), load, point.temperature)
     validity = PointValidity(int(numbers.validity))
     if validity is not PointValidity.VALID:
@@ -151,18 +167,26 @@ def estimate_from(
 def _inputs(point: MachinePoint) -> tuple[tuple[str, float, PointSource], ...]:
     return (
         ('speed', point.speed, point.speed_source),
-        ('load', point.axial_load, point.axial_load_source),
+        _loading(point),
         ('temperature', point.temperature, point.temperature_source),
     )
+
+
+def _loading(point: MachinePoint) -> tuple[str, float, PointSource]:
+    """Return the input that the load rests on."""
+    if point.derived is not None:
+        return 'torque', point.motor_torque, point.motor_torque_source
+    return 'load', point.axial_load, point.axial_load_source
 
 
 def _complete(point: MachinePoint) -> bool:
     """Tell whether every number is there and none is only held; a held one is never judged."""
     held = PointSource.HELD
+    _, loading, source = _loading(point)
     return (
-        math.isfinite(point.speed + point.axial_load + point.temperature)
+        math.isfinite(point.speed + loading + point.temperature)
         and point.speed_source is not held
-        and point.axial_load_source is not held
+        and source is not held
         and point.temperature_source is not held
     )
 

@@ -27,6 +27,7 @@ class InputState(enum.IntEnum):
     MISSING = 3
     BAD = 4
     NOT_CONFIGURED = 5
+    DERIVED = 6  # from the other inputs
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -68,11 +69,18 @@ class Tracker:
     """The last sample of one input, and what is needed to say how well it does."""
 
     def __init__(
-        self, source: Source, *, configured: bool, timeout: int, max_lag: int = YEAR
+        self,
+        source: Source,
+        *,
+        configured: bool,
+        timeout: int,
+        max_lag: int = YEAR,
+        derived: bool = False,
     ) -> None:
-        """Begin without a sample; `timeout` and `max_lag` [ns]."""
+        """Begin without a sample; `timeout` and `max_lag` [ns]; a `derived` one gets none."""
         self.source = source
         self.configured = configured
+        self._absent = InputState.DERIVED if derived else InputState.NOT_CONFIGURED
         self.timeout = timeout
         self.max_lag = max_lag
         self.received = 0
@@ -168,7 +176,7 @@ class Tracker:
 
         """
         if not self.configured:
-            return InputState.NOT_CONFIGURED
+            return self._absent
         if self.refusal is not None:
             return InputState.BAD
         if self.last is None:

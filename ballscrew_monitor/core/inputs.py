@@ -54,6 +54,7 @@ class Why(enum.IntEnum):
     TOO_SHORT = 4  # the array of the field is empty, or ends before the element
     IMPLAUSIBLE = 5  # beyond what the machine can do: a glitch, or another unit
     NOT_DECODED = 6  # truncated, or of another type; of recordings alone
+    HOLE = 7  # no speed follows from a position and one long before it
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)

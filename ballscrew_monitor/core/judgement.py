@@ -18,6 +18,7 @@ from surrogate.files import InputError
 from surrogate.surface import SurfacePoint
 
 NAN = math.nan
+FROM_TORQUE = ', efficiency judged from a load derived of the motor torque'
 
 
 class Level(enum.IntEnum):
@@ -167,7 +168,7 @@ def judge(point: MachinePoint, estimate: PointEstimate, limits: Limits) -> Verdi
     ):
         return Verdict(zone=Zone.UNKNOWN, gates=gates, findings=(_unjudged(estimate),))
     light = Gate.LIGHT_LOAD in gates
-    findings = violations(estimate, limits, light=light)
+    findings = violations(estimate, limits, light=light, derived=point.derived is not None)
     if findings:
         return Verdict(zone=Zone.OUTSIDE, gates=gates, findings=findings)
     return Verdict(zone=Zone.OPTIMAL, gates=gates, clear=clears(estimate, limits, light=light))
@@ -185,8 +186,15 @@ def clears(estimate: PointEstimate | SurfacePoint, limits: Limits, *, light: boo
     )
 
 
-def violations(estimate: PointEstimate, limits: Limits, *, light: bool) -> tuple[Finding, ...]:
-    """Return a finding for each criterion that is not met; efficiency is left out if `light`."""
+def violations(
+    estimate: PointEstimate, limits: Limits, *, light: bool, derived: bool = False
+) -> tuple[Finding, ...]:
+    """
+    Return a finding for each criterion that is not met; efficiency is left out if `light`.
+
+    Under a `derived` load the finding about efficiency says so.
+
+    """
     findings = []
     if estimate.rcs >= limits.rcs:
         findings.append(
@@ -206,7 +214,8 @@ def violations(estimate: PointEstimate, limits: Limits, *, light: bool) -> tuple
                 value=estimate.efficiency,
                 limit=limits.efficiency,
                 text='too much power is lost: efficiency '
-                f'{estimate.efficiency:.3g}, limit {limits.efficiency:.3g}',
+                f'{estimate.efficiency:.3g}, limit {limits.efficiency:.3g}'
+                f'{FROM_TORQUE if derived else ""}',
             )
         )
     return tuple(findings)

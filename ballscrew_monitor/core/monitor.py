@@ -14,7 +14,8 @@ import dataclasses
 import math
 
 from ballscrew_monitor.core.advice import Advisor
-from ballscrew_monitor.core.conversions import Direction, direction_of, nanoseconds, SECOND
+from ballscrew_monitor.core.conversions import nanoseconds, SECOND
+from ballscrew_monitor.core.differentiation import SpeedFromPosition
 from ballscrew_monitor.core.estimate import (
     estimate,
     MachinePoint,
@@ -22,15 +23,17 @@ from ballscrew_monitor.core.estimate import (
     PointSource,
     PointValidity,
 )
-from ballscrew_monitor.core.health import InputState, Tracker
+from ballscrew_monitor.core.health import Tracker
 from ballscrew_monitor.core.inputs import implausible, InputSample, Refusal, Source, Why
 from ballscrew_monitor.core.judgement import Hold, hold, is_judged, judge, Level, Verdict, Zone
+from ballscrew_monitor.core.point_reader import PointReader
 from ballscrew_monitor.core.state import Event, MonitorSettings, State
 from ballscrew_monitor.core.tally import Account, moment, WindowTally
 from surrogate.surface import Surface
 
 NAN = math.nan
 SHOWN = (Source.SPEED, Source.LOAD, Source.TEMPERATURE, Source.TORQUE)  # in a state
+_NO_POINT = (PointValidity.NO_INPUT, PointValidity.UNKNOWN)
 BACKWARD_JUMP = SECOND  # [ns] a longer step back of one input is a clock that was set back
 
 
@@ -45,7 +48,6 @@ class Monitor:
         self._judged = 0
         self._hold = Hold()
         self._pending: Event | None = None  # an event that is not raised yet
-        self._direction = Direction.UNKNOWN
         self._last_tick = 0
         self._last_published: int | None = None
         self._window = WindowTally()
@@ -56,9 +58,15 @@ class Monitor:
                 configured=source in settings.timeouts,
                 timeout=settings.timeouts.get(source, 0),
                 max_lag=settings.max_lag,
+                derived=source is Source.LOAD and settings.derivation is not None,
             )
             for source in SHOWN
         }
+        self._reader = PointReader(settings)
+        self._positions: SpeedFromPosition | None = None
+        if settings.positions is not None:
+            timeout = settings.timeouts[Source.SPEED]
+            self._positions = SpeedFromPosition(settings.positions, max_gap=timeout)
 
     @property
     def level(self) -> Level:
@@ -86,8 +94,12 @@ class Monitor:
             if event.source is Source.SPEED:
                 self._jump_back(event.stamp)
             tracker.forget()
-        tracker.accept(event)
-        return self._judge_speed(event) if event.source is Source.SPEED else None
+        sample = self._speed_of(event) if event.source is Source.SPEED else event
+        if not isinstance(sample, InputSample):
+            tracker.drop() if sample is None else tracker.refuse(sample)
+            return None
+        tracker.accept(sample)
+        return self._judge_speed(sample) if sample.source is Source.SPEED else None
 
     def tick(self, now: int) -> State | None:
         """Return a state at the grid stamp `now` [ns] if the speed is missing or stale."""
@@ -136,7 +148,7 @@ class Monitor:
         """Return the operating point at `now` [ns], or in a sentence why it is not known."""
         point = self._point(now)
         result = self._estimate(point)
-        if result.validity in (PointValidity.NO_INPUT, PointValidity.UNKNOWN):
+        if math.isnan(point.axial_load) or result.validity in _NO_POINT:
             return result.reason
         if abs(point.speed) < self.settings.limits.standstill_speed:
             return 'the screw stands still'
@@ -150,10 +162,24 @@ class Monitor:
         """Return why the value of a sample cannot be used, if it cannot."""
         if not math.isfinite(sample.value):
             return Refusal(source=sample.source, why=Why.NOT_A_NUMBER)
+        if sample.source is Source.SPEED and self._positions is not None:
+            return None  # of a position; what is plausible is the speed that follows from it
+        return self._implausible(sample)
+
+    def _implausible(self, sample: InputSample) -> Refusal | None:
         most = self.settings.plausible.get(sample.source, math.inf)
         return implausible(sample, most) if abs(sample.value) > most else None
 
+    def _speed_of(self, sample: InputSample) -> InputSample | Refusal | None:
+        """Return the speed in a sample, made of positions where those are the samples."""
+        if self._positions is None:
+            return sample
+        most = self.settings.plausible.get(Source.SPEED, math.inf)
+        made = self._positions.take(sample, most=most)
+        return (self._implausible(made) or made) if isinstance(made, InputSample) else made
+
     def _judge_speed(self, sample: InputSample) -> State | None:
+        self._reader.take_speed(sample)
         stamp, point = sample.stamp, self._point(sample.arrival)
         result = self._estimate(point)
         verdict = judge(point, result, self.settings.limits)
@@ -170,39 +196,7 @@ class Monitor:
         return estimate(point, self.surface, rcs_limit=self.settings.limits.rcs)
 
     def _point(self, now: int) -> MachinePoint:
-        """Return the operating point of what has arrived by `now` [ns]."""
-        speed, speed_source = self._value(Source.SPEED, now)
-        load, load_source = self._value(Source.LOAD, now)
-        temperature, temperature_source = self._value(Source.TEMPERATURE, now)
-        if temperature_source is PointSource.DEFAULT:
-            temperature = self.settings.default_temperature
-        torque, torque_source = self._value(Source.TORQUE, now)
-        moving = abs(speed) >= self.settings.limits.standstill_speed
-        if moving and speed_source is PointSource.MEASURED:
-            self._direction = direction_of(speed)
-        return MachinePoint(
-            speed=speed,
-            axial_load=load,
-            temperature=temperature,
-            motor_torque=torque,
-            speed_source=speed_source,
-            axial_load_source=load_source,
-            temperature_source=temperature_source,
-            motor_torque_source=torque_source,
-            direction=self._direction,
-            direction_held=not moving and self._direction is not Direction.UNKNOWN,
-        )
-
-    def _value(self, source: Source, now: int) -> tuple[float, PointSource]:
-        """Return the last value and its standing; one that was followed by a bad one is held."""
-        tracker = self._inputs[source]
-        if not tracker.configured:
-            default = PointSource.DEFAULT if source is Source.TEMPERATURE else PointSource.UNKNOWN
-            return NAN, default
-        if tracker.last is None:
-            return NAN, PointSource.UNKNOWN
-        good = tracker.state(now) is InputState.OK
-        return tracker.last.value, PointSource.MEASURED if good else PointSource.HELD
+        return self._reader.point(self._inputs, now, self.settings, self.surface)
 
     def _advance(
         self, stamp: int, now: int, point: MachinePoint, result: PointEstimate, verdict: Verdict
@@ -292,7 +286,8 @@ class Monitor:
             totals=self._account.totals(),
             judged=self._judged,
             measured_torque=torque,
-            torque_residual=torque - result.machine_torque,
+            # Of a load derived from it, the torque of the model says nothing new.
+            torque_residual=NAN if point.derived is not None else torque - result.machine_torque,
             surface_id=self._surface_id,
         )
 
@@ -325,7 +320,7 @@ class Monitor:
         self._account.forget()
         self._pending = None
         self._last_published = None
-        self._direction = Direction.UNKNOWN
+        self._reader.forget_direction()
         for tracker in self._inputs.values():
             if tracker.is_ahead(stamp + BACKWARD_JUMP):
                 tracker.forget()

@@ -19,17 +19,20 @@ from typing import Any
 from ballscrew_monitor.core import (
     advice,
     conversions,
+    derived_load,
+    differentiation,
     estimate,
     fields,
     health,
     inputs,
     judgement,
+    point_reader,
     tally,
 )
 from ballscrew_monitor.core import state as states
 from ballscrew_monitor.core.monitor import Monitor
 from surrogate.files import InputError
-from surrogate.surface import Regime, Surface
+from surrogate.surface import Regime, Surface, Validity
 
 GIVEN = ('settings', 'surface', '_surface_id')  # parts of a monitor that are not written
 ENUMS: dict[str, type[enum.Enum]] = {
@@ -37,6 +40,7 @@ ENUMS: dict[str, type[enum.Enum]] = {
     for kind in (
         conversions.Direction,
         estimate.PointSource,
+        health.InputState,
         inputs.Source,
         inputs.StampSource,
         inputs.Why,
@@ -45,12 +49,16 @@ ENUMS: dict[str, type[enum.Enum]] = {
         judgement.Severity,
         judgement.Zone,
         Regime,
+        Validity,
     )
 }
 CLASSES: dict[str, type[Any]] = {
     kind.__name__: kind
     for kind in (
         advice.Advisor,
+        derived_load.DerivedLoad,
+        differentiation.SlopeFilter,
+        differentiation.SpeedFromPosition,
         estimate.MachinePoint,
         fields.OtherJoints,
         health.Tracker,
@@ -60,6 +68,7 @@ CLASSES: dict[str, type[Any]] = {
         judgement.Hold,
         judgement.Limits,
         judgement.UnbrokenRun,
+        point_reader.PointReader,
         states.Event,
         tally.Account,
         tally.Column,

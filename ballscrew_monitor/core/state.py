@@ -7,6 +7,8 @@ import dataclasses
 import math
 
 from ballscrew_monitor.core.advice import Advice, Advisor
+from ballscrew_monitor.core.derived_load import LoadDerivation
+from ballscrew_monitor.core.differentiation import PositionSettings
 from ballscrew_monitor.core.estimate import MachinePoint, PointEstimate
 from ballscrew_monitor.core.health import Health
 from ballscrew_monitor.core.inputs import Source, YEAR
@@ -26,6 +28,8 @@ class MonitorSettings:
     the states, 0 keeps all; a stamp may be `max_future` [ns] ahead of the clock, and that is less
     than `tick_period` [ns] ahead of the tick. Stamps more than `max_lag` [ns] behind their arrival
     are warned of. Samples whose amount is above that in `plausible` [SI] are refused.
+    With a `derivation` the load is derived from the motor torque, with `positions` the samples of
+    the speed are positions.
 
     """
 
@@ -38,6 +42,8 @@ class MonitorSettings:
     max_lag: int = YEAR
     tick_period: int = 0
     plausible: Mapping[Source, float] = dataclasses.field(default_factory=dict)
+    derivation: LoadDerivation | None = None
+    positions: PositionSettings | None = None
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)

@@ -9,21 +9,29 @@ from typing import Any
 from ballscrew_monitor.core.conversions import (
     kelvin,
     load_scaling,
+    MotorData,
     nanoseconds,
+    POSITION_UNITS,
     Scaling,
+    screw_turn,
     speed_scaling,
     temperature_scaling,
     torque_scaling,
+    torque_unit,
 )
+from ballscrew_monitor.core.derived_load import LoadDerivation
+from ballscrew_monitor.core.differentiation import PositionSettings
 from ballscrew_monitor.core.fields import check_path
 from ballscrew_monitor.core.inputs import Input, make_input, OpenInput, Source
 from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.core.monitor import Monitor
 from ballscrew_monitor.core.state import MonitorSettings
+from ballscrew_monitor.node.parameter_table import LOAD_SOURCES
 from surrogate.files import InputError
 from surrogate.surface import find_surface, Surface, SurfaceError
 
 PLAUSIBLE = 3.0  # times the largest of the surface: what lies beyond is a glitch
+MOTOR_TORQUE = LOAD_SOURCES[1]
 OPTIONAL = (Source.TEMPERATURE, Source.TORQUE)
 
 
@@ -139,6 +147,54 @@ def settings_of(name: str, values: Mapping[str, Any], surface: Surface) -> Monit
         max_lag=nanoseconds(values[f'{name}.max_lag']),
         tick_period=nanoseconds(values['tick_period']),
         plausible=_plausible_of(name, values, surface),
+        derivation=derivation_of(name, values),
+        positions=_positions_of(name, values, surface.lead),
+    )
+
+
+def derivation_of(name: str, values: Mapping[str, Any]) -> LoadDerivation | None:
+    """
+    Return how the load follows from the motor torque, None where it is an input.
+
+    Raises InputError where the torque or its uncertainty is not stated.
+
+    """
+    if values[f'{name}.load.source'] != MOTOR_TORQUE:
+        return None
+    for leaf, what in (('topic', 'the topic of the torque'), ('uncertainty', 'how sure that is')):
+        if not values[f'{name}.torque.{leaf}']:
+            raise InputError(
+                f'parameter {name}.torque.{leaf} is {values[f"{name}.torque.{leaf}"]!r}, not '
+                f'stated, {name}.load.source {MOTOR_TORQUE} needs {what}'
+            )
+    uncertainty = values[f'{name}.torque.uncertainty']
+    return LoadDerivation(
+        inertia=values[f'{name}.inertia'],
+        window=nanoseconds(values[f'{name}.acceleration_window']),
+        torque_uncertainty=uncertainty * _torque_unit(name, values),
+        parts_uncertainty=values[f'{name}.load.parts_uncertainty'],
+        largest_share=values[f'{name}.load.largest_share'],
+    )
+
+
+def _torque_unit(name: str, values: Mapping[str, Any]) -> float:
+    """Return the torque at the screw [N m] that one unit of the input is."""
+    leaves = ('constant', 'rated', 'gear_ratio')
+    motor = MotorData(**{leaf: values[f'{name}.torque.{leaf}'] for leaf in leaves})
+    try:
+        return torque_unit(values[f'{name}.torque.unit'], motor)
+    except InputError as error:
+        raise InputError(f'parameters {name}.torque: {error}') from None
+
+
+def _positions_of(name: str, values: Mapping[str, Any], lead: float) -> PositionSettings | None:
+    """Return how the speed follows from positions, None where it is an input; lead [m]."""
+    unit = values[f'{name}.speed.unit']
+    if unit not in POSITION_UNITS:
+        return None
+    return PositionSettings(
+        window=nanoseconds(values[f'{name}.speed.window']),
+        wrap=values[f'{name}.speed.wrap'] * screw_turn(unit, lead=lead),
     )
 
 
@@ -168,7 +224,9 @@ def _limits_of(name: str, values: Mapping[str, Any], preload: float) -> Limits:
 
 
 def is_configured(name: str, values: Mapping[str, Any], source: Source) -> bool:
-    """Tell whether the axis `name` has an input; some may be left out."""
+    """Tell whether the axis `name` has an input; some may be left out, or be derived."""
+    if source is Source.LOAD and values[f'{name}.load.source'] == MOTOR_TORQUE:
+        return False
     return source not in OPTIONAL or bool(values[f'{name}.{source.name.lower()}.topic'])
 
 
@@ -199,7 +257,12 @@ def _input_of(
 
 
 def scaling_of(name: str, values: Mapping[str, Any], source: Source, lead: float) -> Scaling:
-    """Return the line to SI units of an input of the axis `name`; lead of the screw [m]."""
+    """
+    Return the line to SI units of an input of the axis `name`; lead of the screw [m].
+
+    Raises InputError for a torque in a unit whose constant is not stated.
+
+    """
     prefix = f'{name}.{source.name.lower()}'
     unit, hand = values[f'{prefix}.unit'], values[f'{name}.handedness']
     scale, offset = values[f'{prefix}.scale'], values[f'{prefix}.offset']
@@ -209,4 +272,5 @@ def scaling_of(name: str, values: Mapping[str, Any], source: Source, lead: float
         return load_scaling(unit, scale=scale, offset=offset)
     if source is Source.TEMPERATURE:
         return temperature_scaling(unit, scale=scale, offset=offset)
-    return torque_scaling(unit, scale=scale, offset=offset, handedness=hand)
+    torque = _torque_unit(name, values)
+    return torque_scaling(torque, scale=scale, offset=offset, handedness=hand)

@@ -30,6 +30,7 @@ NOTHING_YET = 'nothing has been judged yet'
 CLOCK_STANDS = (
     'the clock stands still, nothing is seen to go stale: play /clock, or unset use_sim_time'
 )
+NOT_DERIVED = 'not judged: the motor torque does not tell the load here'
 INACTIVE = 'the node is inactive, nothing is judged'
 RECORDED = 'what the node hears and says is recorded'
 PARTS = ('Lubrication', 'Inputs', 'Surface')
@@ -144,6 +145,8 @@ def _lubrication(state: State, event: Event) -> StatusSummary:
     if validity is PointValidity.NO_INPUT:
         return STALE, _NOT_JUDGED[validity]
     still = Gate.STANDSTILL in state.verdict.gates
+    if validity is PointValidity.UNKNOWN and state.point.derived is not None and not still:
+        return WARN, NOT_DERIVED
     if validity is not PointValidity.VALID and not (still and validity in _OF_STANDSTILL):
         return WARN, _NOT_JUDGED[validity]
     if state.level is Level.OK:
@@ -170,6 +173,8 @@ def _lubrication_values(state: State) -> list[tuple[str, object]]:
         ('Event', state.event_id),
         ('Speed [rad/s]', point.speed),
         ('Axial load [N]', point.axial_load),
+        ('Axial load from', point.axial_load_source.name),
+        ('Axial load uncertainty [N]', point.axial_load_uncertainty),
         ('Oil temperature [degC]', celsius(point.temperature)),
         ('Efficiency [-]', result.efficiency),
         ('Efficiency limit [-]', state.limits.efficiency),

@@ -76,7 +76,7 @@ def fill_point(message: OperatingPoint, point: MachinePoint) -> None:
     message.motor_torque_source = int(point.motor_torque_source)
     message.direction = int(point.direction)
     message.direction_held = point.direction_held
-    message.axial_load_uncertainty = NAN
+    message.axial_load_uncertainty = float(point.axial_load_uncertainty)
 
 
 def read_point(message: OperatingPoint, *, default_temperature: float) -> MachinePoint:

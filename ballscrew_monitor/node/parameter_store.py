@@ -6,7 +6,8 @@ from collections.abc import Callable
 from typing import Any
 
 from ballscrew_monitor.node import parameters
-from ballscrew_monitor.node.parameter_table import Change, NODE_ROWS, ParameterRow
+from ballscrew_monitor.node.parameter_row import Change, ParameterRow
+from ballscrew_monitor.node.parameter_table import NODE_ROWS
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.node import Node
 from rclpy.parameter import Parameter

@@ -2,122 +2,21 @@
 # SPDX-License-Identifier: Apache-2.0
 """Every parameter of the node, declared once: its default, what is allowed, and a sentence."""
 
-from collections.abc import Callable, Mapping
-import dataclasses
-import enum
-import math
-from typing import Any
+from collections.abc import Iterable
 
 from ballscrew_monitor.core.conversions import (
     HANDS,
-    LINEAR_SPEED_UNITS,
     LOAD_UNITS,
-    ROTARY_SPEED_UNITS,
+    POSITION_UNITS,
+    SPEED_UNITS,
     TEMPERATURE_UNITS,
     TORQUE_UNITS,
 )
 from ballscrew_monitor.core.fields import check_path
-from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
-from surrogate.files import InputError
+from ballscrew_monitor.node.parameter_row import Change, ParameterRow
 from surrogate.surface import EFFICIENCY_LIMIT, LIGHT_LOAD, RCS_LIMIT
 
-Value = str | float | bool | list[str]
-_TYPE_NAMES = {
-    bool: 'true or false',
-    float: 'a number with a decimal point',
-    str: 'a text',
-    list: 'a list of texts',
-}
-BARE_LETTERS = {'y': True, 'Y': True, 'n': False, 'N': False, 'off': False}
-BARE_WORDS = "ROS reads a bare y, n, yes, no, on or off as true or false: quote it, such as 'y'"
-
-
-class Change(enum.Enum):
-    """When a parameter may change."""
-
-    LIVE = 'any time'
-    UNCONFIGURED = 'while unconfigured'
-    NEVER = 'at start only'
-
-
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class ParameterRow:
-    """
-    One parameter: numbers lie from `low` to `high`, texts are one of `choices` if there are.
-
-    A `rule` raises InputError for a text that has not the form it must have.
-
-    """
-
-    name: str
-    default: Value
-    text: str
-    unit: str = ''
-    low: float = -math.inf
-    high: float = math.inf
-    choices: tuple[str, ...] = ()
-    nonzero: bool = False
-    rule: Callable[[Any], None] | None = None
-    change: Change = Change.UNCONFIGURED
-
-    @property
-    def allowed(self) -> str:
-        """Return what is allowed, in words; empty if anything of the type is."""
-        if self.choices:
-            return 'one of ' + ', '.join(self.choices)
-        if not isinstance(self.default, float):
-            return ''
-        return f'{self.low:g} to {self.high:g}' + (', not 0' if self.nonzero else '')
-
-    def read(self, value: Any) -> Any:
-        """Return `value`, or the choice for which ROS reads it: `N` without quotes is false."""
-        if not isinstance(value, bool):
-            return value
-        return next((word for word in self.choices if BARE_LETTERS.get(word) is value), value)
-
-    def check(self, name: str, value: Any) -> None:
-        """Raise InputError unless `value` is allowed for the parameter `name`."""
-        value = self.read(value)
-        self._check_type(name, value)
-        good = not self.choices or value in self.choices
-        if isinstance(value, float):
-            good = self.low <= value <= self.high and not (self.nonzero and value == 0.0)
-        if not good:
-            unit = f' {self.unit}' if self.unit else ''
-            raise InputError(
-                f'parameter {name} is {value!r}{unit}, allowed is {self.allowed}{unit}'
-            )
-        try:
-            if self.rule is not None:
-                self.rule(value)
-        except InputError as error:
-            raise InputError(f'parameter {name}: {error}') from None
-
-    def _check_type(self, name: str, value: Any) -> None:
-        parts = value if isinstance(value, list) else [value]
-        texts = isinstance(self.default, (str, list))
-        if type(value) is type(self.default) and (
-            not isinstance(value, list) or all(isinstance(part, str) for part in parts)
-        ):
-            return
-        hint = f', {BARE_WORDS}' if texts and any(isinstance(part, bool) for part in parts) else ''
-        allowed = _TYPE_NAMES[type(self.default)]
-        raise InputError(f'parameter {name} is {value!r}, it must be {allowed}{hint}')
-
-    def descriptor(self) -> ParameterDescriptor:
-        """Return the descriptor that ROS tools show and that rclpy enforces."""
-        made = ParameterDescriptor(
-            description=f'{self.text} [{self.unit}]' if self.unit else self.text,
-            read_only=self.change is Change.NEVER,
-        )
-        if isinstance(self.default, float):
-            made.floating_point_range = [
-                FloatingPointRange(from_value=self.low, to_value=self.high)
-            ]
-        changes = f'changes {self.change.value}' if self.change is not Change.NEVER else ''
-        made.additional_constraints = '; '.join(filter(None, (self.allowed, changes)))
-        return made
-
+LOAD_SOURCES = ('topic', 'motor_torque')
 
 RECORD_ROWS = (
     ParameterRow(
@@ -221,7 +120,7 @@ def _input_rows(
     topic: str,
     type_name: str,
     field: str,
-    units: Mapping[str, float],
+    units: Iterable[str],
     timeout: float,
     what: str,
 ) -> tuple[ParameterRow, ...]:
@@ -303,9 +202,25 @@ AXIS_ROWS = (
         topic='joint_states',
         type_name='sensor_msgs/msg/JointState',
         field='velocity[{axis}_axis]',
-        units=ROTARY_SPEED_UNITS | LINEAR_SPEED_UNITS,
+        units=(*SPEED_UNITS, *POSITION_UNITS),
         timeout=0.5,
         what='speed: of the screw in a rotary unit, of the nut in a linear',
+    ),
+    ParameterRow(
+        name='speed.window',
+        default=0.05,
+        unit='s',
+        low=1e-3,
+        high=10.0,
+        text='Time over which positions, in a unit without time, give a speed by least squares; '
+        'half of it is the delay.',
+    ),
+    ParameterRow(
+        name='speed.wrap',
+        default=0.0,
+        low=0.0,
+        high=1e12,
+        text='Position, in the unit above, at which it begins anew, such as 360.0; 0: never.',
     ),
     *_input_rows(
         'load',
@@ -315,6 +230,46 @@ AXIS_ROWS = (
         units=LOAD_UNITS,
         timeout=0.5,
         what='axial force on the nut, positive along the axis',
+    ),
+    ParameterRow(
+        name='load.source',
+        default=LOAD_SOURCES[0],
+        choices=LOAD_SOURCES,
+        text='Where the load comes from: its topic, or the motor torque by the surface.',
+    ),
+    ParameterRow(
+        name='load.parts_uncertainty',
+        default=0.2,
+        unit='-',
+        low=0.0,
+        high=1.0,
+        text='Uncertainty of inertia torque and drag over themselves, for a load from the torque.',
+    ),
+    ParameterRow(
+        name='load.largest_share',
+        default=0.5,
+        unit='-',
+        low=0.0,
+        high=1.0,
+        text='Share of inertia and drag in the motor torque above which no load is derived.',
+    ),
+    ParameterRow(
+        name='inertia',
+        default=0.0,
+        unit='kg m2',
+        low=0.0,
+        high=1e3,
+        text='Inertia of screw, coupling and rotor, at the screw; its torque is taken off before '
+        'a load is derived.',
+    ),
+    ParameterRow(
+        name='acceleration_window',
+        default=0.05,
+        unit='s',
+        low=1e-3,
+        high=10.0,
+        text='Time over which speeds give the acceleration for it by least squares; half of it is '
+        'the delay.',
     ),
     *_input_rows(
         'temperature',
@@ -341,7 +296,39 @@ AXIS_ROWS = (
         field='data',
         units=TORQUE_UNITS,
         timeout=0.5,
-        what='motor torque at the screw, only compared with the model; empty: none',
+        what='motor torque, compared with the model or the source of the load; empty: none',
+    ),
+    ParameterRow(
+        name='torque.constant',
+        default=0.0,
+        unit='N m/A',
+        low=0.0,
+        high=1e6,
+        text='Torque constant of the motor, for the unit A; 0: not stated.',
+    ),
+    ParameterRow(
+        name='torque.rated',
+        default=0.0,
+        unit='N m',
+        low=0.0,
+        high=1e6,
+        text='Rated torque of the motor, for the unit %; 0: not stated.',
+    ),
+    ParameterRow(
+        name='torque.gear_ratio',
+        default=1.0,
+        unit='-',
+        low=1e-3,
+        high=1e3,
+        text='Turns of the motor per turn of the screw; a gear without loss.',
+    ),
+    ParameterRow(
+        name='torque.uncertainty',
+        default=0.0,
+        low=0.0,
+        high=1e12,
+        text='Half width of the range of the true torque, in the unit above; a load derived from '
+        'the torque needs it; 0: not stated.',
     ),
     ParameterRow(
         name='limits.rcs',

@@ -12,13 +12,8 @@ import pathlib
 import re
 from typing import Any
 
-from ballscrew_monitor.node.parameter_table import (
-    AXIS_ROWS,
-    BARE_LETTERS,
-    BARE_WORDS,
-    NODE_ROWS,
-    ParameterRow,
-)
+from ballscrew_monitor.node.parameter_row import BARE_LETTERS, BARE_WORDS, ParameterRow
+from ballscrew_monitor.node.parameter_table import AXIS_ROWS, NODE_ROWS
 from surrogate.files import InputError
 
 NODE_NAME = 'ballscrew_monitor'

@@ -5,6 +5,8 @@
 from collections.abc import Mapping
 from typing import Any
 
+from ballscrew_monitor.core.inputs import Source
+from ballscrew_monitor.node.axis import is_configured
 from ballscrew_monitor.node.parameters import NODE_NAME
 
 
@@ -17,10 +19,11 @@ def input_topics(values: Mapping[str, Any]) -> dict[str, str]:
     """Return topic and type of every input configured in the parameters `values`."""
     found = {}
     for axis in values['axes']:
-        for name in ('speed', 'load', 'temperature', 'torque'):
-            topic = values[f'{axis}.{name}.topic']
-            if topic:
-                found[absolute(topic)] = values[f'{axis}.{name}.type']
+        for source in reversed(Source):
+            prefix = f'{axis}.{source.name.lower()}'
+            topic = values[f'{prefix}.topic']
+            if topic and is_configured(axis, values, source):
+                found[absolute(topic)] = values[f'{prefix}.type']
     return found
 
 

@@ -80,7 +80,7 @@ def speed_channel(topic: str, field: str, unit: str, lead: float) -> Channel:
 
 def torque_channel(topic: str, field: str, scale: float) -> Channel:
     """Return the torque, `scale` times the field [N m]."""
-    scaling = torque_scaling('N m', scale=scale, offset=0.0, handedness='right')
+    scaling = torque_scaling(1.0, scale=scale, offset=0.0, handedness='right')
     return Channel(topic=absolute(topic), field=field, scaling=scaling)
 
 

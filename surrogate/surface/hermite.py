@@ -10,6 +10,7 @@ takes its own one-sided slope, which keeps a kink a kink. Needs numpy only.
 """
 
 from collections.abc import Sequence
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -115,9 +116,10 @@ def _slopes_by_piece(nodes: Array, breaks: Array, values: Array, axis: int) -> A
 
 
 Weights = tuple[float, float, float, float]
+Number = TypeVar('Number', float, Array)
 
 
-def hermite_weights(width: float, fraction: float) -> Weights:
+def hermite_weights(width: Number, fraction: Number) -> tuple[Number, Number, Number, Number]:
     """Return the weights of value, slope, value, slope at `fraction` of a cell of `width`."""
     rest = 1.0 - fraction
     left, right = rest * rest, fraction * fraction

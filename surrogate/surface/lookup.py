@@ -12,12 +12,15 @@ keeps the kinks at zero load and at the unloading load. Needs numpy only and nev
 from bisect import bisect_right
 from collections.abc import Mapping
 import copy
+import functools
 import math
 from operator import mul
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
+from surrogate.formulas import torque
 from surrogate.surface import file as surface_file
 from surrogate.surface.correction import (
     corrected_hash,
@@ -36,15 +39,14 @@ from surrogate.surface.hermite import (
     patch_weights,
     trilinear_weights,
 )
-from surrogate.surface.point import FIELDS, MEASURED, NO_SPREADS, SurfacePoint, Validity
-from surrogate.surface.tables import open_cells, spread_table, summary, transform
+from surrogate.surface.load_scan import LoadScan
+from surrogate.surface.point import FIELDS, INDEX, MEASURED, NO_SPREADS, SurfacePoint, Validity
+from surrogate.surface.tables import open_cells, ROUNDING, spread_table, summary, transform
 
 Place = tuple[int, float, float]
 """Cell, its width and the fraction of it at which a value lies."""
 Located = tuple[Place, Place, Place, list[float]]
 """Places along speed, load and temperature, and the weights of the face of the last two."""
-ROUNDING = 1e-9
-"""Largest error of a mapped speed [-]."""
 
 
 class Surface:
@@ -176,6 +178,43 @@ class Surface:
         if isinstance(found, Validity):
             return self._empty(found, opposing_load)
         return self._interpolate(*found, opposing_load)
+
+    def driving_torques(
+        self, speed: float, temperature: float
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """
+        Return opposing loads [N] from end to end, and the torques that drive the screw there.
+
+        Speed |w| [rad/s], temperature [K]; a torque [N m] is along the motion, and NaN where a
+        lookup has no answer. The loads are the nodes and places between them.
+
+        """
+        heat, (slowest, fastest) = self._place(2, temperature), self._speed_range
+        loads = self._scan.loads
+        if heat is None or not slowest <= speed <= fastest:
+            return loads, np.full_like(loads, np.nan)
+        weights = hermite_weights(heat[1], heat[2])
+        friction = self._scan.friction_torques(speed, heat[0], weights)
+        for cell in {cell[1] for cell in self._pulls if cell[2] == heat[0]}:
+            for place in np.flatnonzero(self._scan.cells == cell):
+                point = self.lookup(speed, float(loads[place]), temperature)
+                friction[place] = point.friction_torque
+        return loads, torque.driving_torque(friction, loads, self._lead)
+
+    @functools.cached_property
+    def _scan(self) -> LoadScan:
+        return LoadScan(
+            self._axes,
+            self._rows,
+            np.array(self._onset),
+            self._table[..., INDEX['friction_torque']],
+            self._open_cells,
+        )
+
+    def drag(self, speed: float) -> float:
+        """Return the parasitic part [N m] of the friction torque at a speed [rad/s]."""
+        screw = self.header['inputs']['screw']
+        return float(screw['parasitic_torque'] + screw['parasitic_torque_rate'] * abs(speed))
 
     @property
     def corrections(self) -> tuple[Correction, ...]:

@@ -10,6 +10,8 @@ from surrogate.surface.file import SurfaceData
 from surrogate.surface.point import FIELDS, LOGARITHMIC
 
 Array = NDArray[np.float64]
+ROUNDING = 1e-9
+"""Largest error of a mapped speed [-]."""
 
 
 def transform(name: str, values: Array) -> Array:

@@ -70,6 +70,8 @@ class Numbers:
     efficiency: float = 0.9
     film_ratio: float = 3.0
     friction_torque: float = 0.125
+    friction_torque_error: float = math.nan
+    friction_torque_stderr: float = math.nan
     driving_torque: float = 2.0
     back_driving: bool = False
     worst_nut: int = 1
@@ -103,6 +105,7 @@ class ConstantSurface:
     temperature_range = (283.15, 353.15)
     errors = {'rcs': (2e-3, 1e-3)}
     corrections = ()
+    parasitic = 0.0
 
     def __init__(self, **numbers):
         self.numbers = numbers
@@ -124,6 +127,15 @@ class ConstantSurface:
                 for name, value in self.numbers.items()
             }
         )
+
+    def driving_torques(self, speed, temperature):
+        loads = np.linspace(*self.load_range, 81)
+        points = [self.lookup(speed, float(load), temperature) for load in loads]
+        valid = [point.validity is PointValidity.VALID for point in points]
+        return loads, np.where(valid, [point.driving_torque for point in points], math.nan)
+
+    def drag(self, speed):
+        return self.parasitic
 
 
 def make_limits(**changes):
@@ -430,15 +442,15 @@ class NodeProcess:
 
         return publish
 
-    def until_matched(self, *publishers):
-        """Wait until speed and load have one publisher each, and these their node."""
+    def until_matched(self, *publishers, inputs=('Speed', 'Load')):
+        """Wait until the inputs have one publisher each, and these their node."""
         told = self.listen(DiagnosticArray, '/diagnostics')
         # A best-effort sample is lost unless both sides know of each other.
         self.until(
             lambda: (
                 all(publisher.get_subscription_count() for publisher in publishers)
                 and told
-                and {'Speed publishers [-]', 'Load publishers [-]'}
+                and {f'{name} publishers [-]' for name in inputs}
                 <= {
                     pair.key
                     for status in told[-1].status

@@ -50,6 +50,16 @@ def test_a_prismatic_joint_turns_the_screw_once_a_lead():
     assert Source.TORQUE not in inputs
 
 
+def test_a_motor_current_takes_the_place_of_the_load():
+    axis = axes_of('motor_current.yaml')['x']
+    inputs = inputs_of(axis)
+    assert set(inputs) == {Source.TORQUE, Source.SPEED}
+    assert inputs[Source.TORQUE].scaling(10.0) == pytest.approx(6.2)
+    derivation = axis.monitor.settings.derivation
+    assert derivation.torque_uncertainty == pytest.approx(0.15 * 0.62)
+    assert derivation.inertia == 0.0012
+
+
 def test_numbers_of_a_plc_carry_no_stamp():
     inputs = inputs_of(axes_of('plc.yaml')['x'])
     assert set(inputs) == set(Source)

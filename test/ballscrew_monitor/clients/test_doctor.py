@@ -56,6 +56,19 @@ WRONG = {
         {'temperature': "{topic: 'oil_temperature', unit: 'K'}"},
         'set x.temperature.unit to degC',
     ),
+    'torque_unit': (
+        {'torque': "{topic: 'spindle', unit: 'A', uncertainty: 0.1}"}
+        | {'load': "{source: 'motor_torque'}"},
+        "parameters x.torque: torque unit 'A' needs torque.constant [N m/A], it is 0.0",
+    ),
+    'torque_uncertainty': (
+        {'torque': "{topic: 'spindle'}", 'load': "{source: 'motor_torque'}"},
+        'parameter x.torque.uncertainty is 0.0, not stated, x.load.source motor_torque needs',
+    ),
+    'no_torque': (
+        {'load': "{source: 'motor_torque'}", 'torque': '{uncertainty: 0.1}'},
+        "parameter x.torque.topic is '', not stated, x.load.source motor_torque needs the topic",
+    ),
     'timeout': (
         {'load': "{topic: 'slow_load', timeout: 0.1}"},
         'x.load: it comes less often than its timeout allows: set x.load.timeout to ',
@@ -159,6 +172,19 @@ def test_a_good_file_has_no_finding(domain, tmp_path, monkeypatch, capsys):
     assert out.startswith(f'ROS domain {domain}, discovery range LOCALHOST: nodes 1, ')
     assert 'x.load: /axial_load (geometry_msgs/msg/WrenchStamped): ' in out
     assert out.endswith(', 40 to 40 degC\nfindings: none\n')
+
+
+def test_positions_and_a_torque_instead_of_a_load_have_no_finding(
+    domain, tmp_path, monkeypatch, capsys
+):
+    monkeypatch.setenv('ROS_DOMAIN_ID', str(domain))
+    field = "{topic: 'positions', field: 'position[0]', unit: 'deg', timeout: 30.0}"
+    torque = "{topic: 'spindle', uncertainty: 0.1, timeout: 30.0}"
+    changes = {'speed': field, 'load': "{source: 'motor_torque'}", 'torque': torque}
+    assert doctor(write(tmp_path, changes), seconds=SECONDS) == 0
+    out = capsys.readouterr().out
+    assert 'x.load' not in out
+    assert 'x.torque: /spindle (std_msgs/msg/Float64): ' in out
 
 
 @pytest.mark.parametrize('name', WRONG)

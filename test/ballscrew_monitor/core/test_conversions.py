@@ -11,14 +11,17 @@ from ballscrew_monitor.core.conversions import (
     load_scaling,
     machine_nut,
     machine_torque,
+    MotorData,
     nanoseconds,
     Nut,
     opposing_load,
+    screw_turn,
     seconds,
     signed_speed,
     speed_scaling,
     temperature_scaling,
     torque_scaling,
+    torque_unit,
 )
 from hypothesis import given
 from hypothesis import strategies as st
@@ -64,8 +67,37 @@ def test_scale_comes_before_offset_and_both_before_the_unit():
 
 
 def test_torque_is_along_the_screw():
-    assert torque_scaling('N m', handedness='right', **PLAIN)(2.0) == 2.0
-    assert torque_scaling('N m', handedness='left', **PLAIN)(2.0) == -2.0
+    assert torque_scaling(1.0, handedness='right', **PLAIN)(2.0) == 2.0
+    assert torque_scaling(1.0, handedness='left', **PLAIN)(2.0) == -2.0
+
+
+@pytest.mark.parametrize(('unit', 'torque'), [('N m', 4.0), ('A', 0.5 * 4.0), ('%', 0.25 * 4.0)])
+def test_a_torque_in_the_unit_of_the_drive(unit, torque):
+    motor = MotorData(constant=0.5, rated=25.0, gear_ratio=4.0)
+    assert torque_unit(unit, motor) == torque
+
+
+@pytest.mark.parametrize(
+    ('unit', 'match'),
+    [
+        ('A', r"torque unit 'A' needs torque.constant \[N m/A\], it is 0.0, not stated"),
+        ('%', r"torque unit '%' needs torque.rated \[N m\], it is 0.0, not stated"),
+    ],
+)
+def test_a_constant_that_is_not_stated_is_asked_for(unit, match):
+    with pytest.raises(InputError, match=match):
+        torque_unit(unit, MotorData())
+
+
+@pytest.mark.parametrize(
+    ('unit', 'hand', 'angle'),
+    [('rad', 'left', -1.0), ('deg', 'right', math.pi / 180), ('rev', 'right', math.tau)]
+    + [('m', 'left', math.tau / 0.01), ('mm', 'right', math.tau / 10.0)],
+)
+def test_a_position_is_an_angle_of_the_screw(unit, hand, angle):
+    made = speed_scaling(unit, lead=0.01, handedness=hand, **PLAIN)
+    assert made(1.0) == pytest.approx(angle, rel=1e-15)
+    assert abs(made(1.0)) == pytest.approx(screw_turn(unit, lead=0.01), rel=1e-15)
 
 
 @pytest.mark.parametrize(
@@ -75,7 +107,7 @@ def test_torque_is_along_the_screw():
         (lambda: speed('rad/s', 1.0, handedness='both'), "handedness 'both' is unknown"),
         (lambda: load_scaling('lbf', **PLAIN), "load unit 'lbf' is unknown, allowed are N, kN"),
         (lambda: temperature_scaling('degF', **PLAIN), "temperature unit 'degF'"),
-        (lambda: torque_scaling('N', handedness='right', **PLAIN), "torque unit 'N'"),
+        (lambda: torque_unit('N', MotorData()), "torque unit 'N' is unknown.* N m, A, %"),
     ],
 )
 def test_unknown_units_are_refused(call, match):

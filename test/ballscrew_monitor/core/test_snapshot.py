@@ -6,6 +6,9 @@ import json
 import math
 
 from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.core.derived_load import LoadDerivation
+from ballscrew_monitor.core.differentiation import PositionSettings
+from ballscrew_monitor.core.estimate import PointSource
 from ballscrew_monitor.core.fields import OtherJoints
 from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, Why
 from ballscrew_monitor.core.judgement import Level
@@ -40,7 +43,7 @@ def streams(draw):
     made, now = [], START
     for _ in range(draw(st.integers(2, 50))):
         now += draw(st.sampled_from([STEP, STEP, SECOND // 3, -2 * SECOND]))
-        source = draw(st.sampled_from([Source.SPEED, Source.SPEED, Source.LOAD]))
+        source = draw(st.sampled_from([Source.SPEED, Source.SPEED, Source.LOAD, Source.TORQUE]))
         kind = draw(st.sampled_from(['sample'] * 6 + ['tick', 'other', 'refused']))
         if kind == 'tick':
             made.append(now)
@@ -57,11 +60,26 @@ def streams(draw):
     return made
 
 
+DERIVED = {
+    'timeouts': dict.fromkeys((Source.SPEED, Source.TORQUE), SECOND // 2),
+    'derivation': LoadDerivation(
+        inertia=1e-4,
+        window=SECOND // 20,
+        torque_uncertainty=0.1,
+        parts_uncertainty=0.1,
+        largest_share=1e9,
+    ),
+    'positions': PositionSettings(window=SECOND // 20, wrap=math.tau),
+}
+
+
 @settings(max_examples=200)
-@given(stream=streams(), data=st.data())
-def test_the_monitor_goes_on_as_if_nothing_had_happened(core, stream, data):
-    plausible = {Source.SPEED: 1000.0}
-    first = core.monitor(is_slow_bad(core), core.limits(raise_delay=0), plausible=plausible)
+@given(stream=streams(), derived=st.booleans(), data=st.data())
+def test_the_monitor_goes_on_as_if_nothing_had_happened(core, stream, derived, data):
+    changes = {'plausible': {Source.SPEED: 1000.0}} | (DERIVED if derived else {})
+    surface = is_slow_bad(core)
+    surface.numbers['driving_torque'] = lambda speed, load: load / 8.0
+    first = core.monitor(surface, core.limits(raise_delay=0), **changes)
     cut = data.draw(st.integers(0, len(stream)))
     for event in stream[:cut]:
         give(first, event)
@@ -72,6 +90,24 @@ def test_the_monitor_goes_on_as_if_nothing_had_happened(core, stream, data):
         if said is not None and said.event is not None:
             assert repr(again.event.advice) == repr(said.event.advice)
     assert freeze_monitor(second) == freeze_monitor(first)
+
+
+def test_a_load_of_the_motor_torque_is_derived_on(core):
+    surface = core.surface(driving_torque=lambda speed, load: load / 1024.0)
+    first = core.monitor(surface, core.limits(raise_delay=0), **DERIVED)
+
+    def turn(monitor, i):
+        stamp = START + i * STEP
+        monitor.update(InputSample(source=Source.TORQUE, value=1.0, stamp=stamp))
+        angle = math.remainder(0.2 * i + 1e-3 * i**2, math.tau)
+        return monitor.update(InputSample(source=Source.SPEED, value=angle, stamp=stamp))
+
+    for i in range(40):
+        turn(first, i)
+    second = through_json(first)
+    said, again = turn(first, 40), turn(second, 40)
+    assert said.point.axial_load_source is PointSource.DERIVED
+    assert repr(again) == repr(said)
 
 
 def test_an_event_that_is_on_stays_on_with_its_number_and_totals(core):

@@ -5,6 +5,7 @@
 import math
 
 from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.core.derived_load import LoadDerivation
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.node import parameters
 from ballscrew_monitor.node.axis import build_axis, check_topics, settings_of
@@ -65,9 +66,70 @@ def test_units_and_handedness_reach_the_input(unit, value, expected):
     assert sample.value == pytest.approx(expected)
 
 
+MOTOR = {
+    'load__source': 'motor_torque',
+    'torque__topic': 'torque',
+    'torque__unit': '%',
+    'torque__rated': 8.0,
+    'torque__gear_ratio': 2.0,
+    'torque__uncertainty': 5.0,
+}
+
+
+def test_a_load_of_the_motor_torque_has_no_topic():
+    axis = build(**MOTOR, inertia=2e-3, load__largest_share=0.25, acceleration_window=0.1)
+    assert [source.source for source in axis.inputs] == [Source.TORQUE, Source.SPEED]
+    assert axis.topics == {Source.TORQUE: 'torque', Source.SPEED: 'joint_states'}
+    assert Source.LOAD not in axis.monitor.settings.timeouts
+    assert axis.inputs[0].scaling(50.0) == pytest.approx(0.5 * 8.0 * 2.0)
+    assert axis.monitor.settings.derivation == LoadDerivation(
+        inertia=2e-3,
+        window=SECOND // 10,
+        torque_uncertainty=0.05 * 8.0 * 2.0,
+        parts_uncertainty=0.2,
+        largest_share=0.25,
+    )
+
+
+def test_a_load_of_a_topic_is_not_derived():
+    assert build().monitor.settings.derivation is None
+
+
+def test_a_torque_that_is_only_compared_has_the_unit_of_the_drive():
+    axis = build(
+        torque__topic='current', torque__unit='A', torque__constant=0.5, handedness='left'
+    )
+    assert axis.inputs[1].scaling(4.0) == -2.0
+
+
+def test_a_position_unit_makes_the_speed_of_positions():
+    assert build().monitor.settings.positions is None
+    axis = build(speed__unit='deg', speed__field='position[0]', speed__wrap=360.0)
+    positions = axis.monitor.settings.positions
+    assert positions.window == SECOND // 20
+    assert positions.wrap == pytest.approx(math.tau)
+    assert axis.inputs[-1].scaling(180.0) == pytest.approx(math.pi)
+
+
 @pytest.mark.parametrize(
     ('changes', 'match'),
     [
+        (
+            MOTOR | {'torque__topic': ''},
+            "parameter x.torque.topic is '', not stated, x.load.source motor_torque needs",
+        ),
+        (
+            MOTOR | {'torque__uncertainty': 0.0},
+            'parameter x.torque.uncertainty is 0.0, not stated, x.load.source motor_torque needs',
+        ),
+        (
+            MOTOR | {'torque__rated': 0.0},
+            "parameters x.torque: torque unit '%' needs torque.rated",
+        ),
+        (
+            {'torque__topic': 'current', 'torque__unit': 'A'},
+            r"parameters x.torque: torque unit 'A' needs torque.constant \[N m/A\], it is 0.0",
+        ),
         ({'speed__topic': ''}, 'parameter x.speed.topic is empty'),
         ({'speed__field': 'velocity'}, "parameters x.speed: field 'velocity' .* not a number"),
         ({'speed__type': '', 'speed__field': 'velocity['}, 'parameters x.speed: .* is not a name'),

@@ -3,11 +3,13 @@
 """What the diagnostics say, case by case."""
 
 import dataclasses
+import math
 from pathlib import Path
 import re
 
 from ballscrew_monitor.core import reasons
 from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.core.derived_load import LoadDerivation
 from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, Why
 from ballscrew_monitor.core.links import Link
 from ballscrew_monitor.core.state import Event
@@ -254,6 +256,7 @@ SENTENCES = [
     *(f'outside the optimal zone: {cause}' for cause in diagnostics._CAUSES.values()),
     diagnostics.NOTHING_YET,
     diagnostics.INACTIVE,
+    diagnostics.NOT_DERIVED,
 ]
 BEGINNINGS = [
     diagnostics.CLOCK_STANDS,
@@ -269,3 +272,59 @@ BEGINNINGS = [
 def test_the_guide_says_what_to_do_about_each_message(words):
     guide = (Path(__file__).parents[3] / 'docs' / 'guide' / 'node.md').read_text()
     assert words in guide
+
+
+DERIVED = {
+    'timeouts': dict.fromkeys((Source.SPEED, Source.TORQUE), SECOND // 2),
+    'derivation': LoadDerivation(
+        inertia=0.0,
+        window=SECOND // 20,
+        torque_uncertainty=0.125,
+        parts_uncertainty=0.0,
+        largest_share=0.5,
+    ),
+}
+
+
+def values_of(status):
+    """Return the values of a status by key."""
+    return {pair.key: pair.value for pair in status.values}
+
+
+def straight(core, drag=0.0):
+    """Return a surface whose torque follows the load."""
+    surface = core.surface(driving_torque=lambda speed, load: load / 1024.0)
+    surface.parasitic, surface.lead = drag, math.tau / 1024.0
+    return surface
+
+
+def test_a_derived_load_is_told_with_its_uncertainty(core):
+    torque = sample(Source.TORQUE, 1.0)
+    found = after(core, torque, SPEED, surface=straight(core), settings=DERIVED)
+    lubrication, inputs = values_of(found['Lubrication']), values_of(found['Inputs'])
+    assert lubrication['Axial load [N]'] == '-1024'
+    assert lubrication['Axial load from'] == 'DERIVED'
+    assert lubrication['Axial load uncertainty [N]'] == '128'
+    assert (inputs['Load state'], inputs['Torque state']) == ('DERIVED', 'OK')
+    assert found['Inputs'].level == OK
+
+
+def test_a_torque_that_does_not_tell_the_load(core):
+    torque = sample(Source.TORQUE, 1.0)
+    found = after(core, torque, SPEED, surface=straight(core, 0.75), settings=DERIVED)
+    assert (found['Lubrication'].level, found['Lubrication'].message) == (
+        WARN,
+        'not judged: the motor torque does not tell the load here',
+    )
+    assert found['Inputs'].level == OK
+    still = after(core, torque, SPEED, STILL, surface=straight(core), settings=DERIVED)
+    assert still['Lubrication'].level == OK
+
+
+def test_without_the_torque_a_derived_load_is_lost(core):
+    links = {Source.TORQUE: Link(topic='/t', type_name='a/msg/B')}
+    found = after(core, SPEED, surface=straight(core), settings=DERIVED, links=links)
+    assert (found['Inputs'].level, found['Lubrication'].level) == (STALE, STALE)
+    assert found['Inputs'].message == (
+        'torque was never received: no publisher yet on /t: start it, or set x.torque.topic'
+    )

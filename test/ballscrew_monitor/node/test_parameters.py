@@ -7,7 +7,8 @@ import pathlib
 import re
 
 from ballscrew_monitor.node import parameters
-from ballscrew_monitor.node.parameter_table import AXIS_ROWS, Change
+from ballscrew_monitor.node.parameter_row import Change
+from ballscrew_monitor.node.parameter_table import AXIS_ROWS
 import pytest
 from surrogate.files import InputError
 import yaml

@@ -18,6 +18,12 @@ def test_the_inputs_are_those_of_the_parameters():
     }
 
 
+def test_a_load_of_the_motor_torque_has_no_topic():
+    assert input_topics(read_file(CONFIG.with_name('motor_current.yaml'))) == {
+        '/joint_states': 'sensor_msgs/msg/JointState'
+    }
+
+
 def test_empty_types_are_filled_in_by_topic():
     values = {
         'axes': ['x'],

@@ -1,0 +1,250 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""A load out of the motor torque: round trips, refusals, and what the uncertainty holds."""
+
+import math
+
+from ballscrew_monitor.core.conversions import (
+    Direction,
+    direction_of,
+    machine_torque,
+    opposing_load,
+)
+from ballscrew_monitor.core.derived_load import (
+    derive_load,
+    LoadDerivation,
+    NO_ACCELERATION,
+    Running,
+)
+from hypothesis import assume, given
+from hypothesis import strategies as st
+import pytest
+from surrogate.surface import shipped_surface, Surface, Validity
+
+SURFACES = [Surface.load(shipped_surface(tier=tier)) for tier in ('closed_form', 'full')]
+either = st.sampled_from(SURFACES)
+SPEEDS = st.floats(0.5, 220.0)
+LOADS = st.floats(1.0, 3900.0)
+KELVINS = st.floats(284.0, 352.0)
+SIGNS = st.sampled_from((-1.0, 1.0))
+INERTIA = 2e-3  # [kg m2]
+PER_NEWTON = 0.01 / math.tau  # [N m/N]
+IDLE = (2600.0, 2860.0)  # [N] about the load at which a nut falls idle the torque turns back
+
+
+def told(**changes):
+    """Return settings without uncertainty that derive whatever inertia takes."""
+    values = {
+        'inertia': INERTIA,
+        'window': 50_000_000,
+        'torque_uncertainty': 0.0,
+        'parts_uncertainty': 0.0,
+        'largest_share': 1e9,
+    }
+    return LoadDerivation(**(values | changes))
+
+
+def at(speed, torque, *, acceleration=0.0, change=0.0, temperature=313.15):
+    """Return how a screw runs in the direction of its speed."""
+    return Running(
+        speed=speed,
+        acceleration=acceleration,
+        acceleration_change=change,
+        motor_torque=torque,
+        temperature=temperature,
+        direction=direction_of(speed),
+    )
+
+
+def motor_torque(surface, speed, force, *, acceleration=0.0, temperature=313.15):
+    """Return the torque [N m] that a motor gives at a load [N], machine frame; None: no answer."""
+    direction = direction_of(speed)
+    point = surface.lookup(abs(speed), opposing_load(force, direction), temperature)
+    if point.validity != Validity.VALID:
+        return None
+    return machine_torque(point.driving_torque, direction) + INERTIA * acceleration
+
+
+@given(either, SPEEDS, SIGNS, LOADS, SIGNS, KELVINS, st.floats(-100.0, 100.0))
+def test_the_load_comes_back_in_all_four_quadrants(
+    surface, amount, way, force, sign, temperature, acceleration
+):
+    assume(not IDLE[0] < force < IDLE[1])
+    speed, load = way * amount, sign * force
+    torque = motor_torque(surface, speed, load, acceleration=acceleration, temperature=temperature)
+    assume(torque is not None)
+    found = derive_load(
+        at(speed, torque, acceleration=acceleration, temperature=temperature), surface, told()
+    )
+    assume(found.validity is not Validity.MASKED)  # a gap beside the load hides it
+    assert found.reason == ''
+    assert found.axial_load == pytest.approx(load, rel=1e-6)
+
+
+@given(either, SPEEDS, SIGNS, LOADS, SIGNS, st.floats(0.001, 0.5), st.floats(-1.0, 1.0))
+def test_the_uncertainty_holds_the_load_for_every_torque_within_its_own(
+    surface, amount, way, force, sign, uncertainty, off
+):
+    speed, load = way * amount, sign * force
+    torque = motor_torque(surface, speed, load)
+    assume(torque is not None)
+    settings = told(torque_uncertainty=uncertainty)
+    found = derive_load(at(speed, torque + off * uncertainty), surface, settings)
+    assume(found.validity is Validity.VALID)
+    # Linear between the scanned loads, so not to the last digit.
+    assert abs(found.axial_load - load) <= found.uncertainty * 1.02 + 1e-6
+
+
+@given(SPEEDS, LOADS, SIGNS)
+def test_a_mirrored_machine_mirrors_the_load(amount, force, sign):
+    surface = SURFACES[0]
+    torque = motor_torque(surface, amount, sign * force)
+    here, there = (
+        derive_load(at(way * amount, way * torque), surface, told(torque_uncertainty=0.01))
+        for way in (1.0, -1.0)
+    )
+    assert there.validity is here.validity
+    assert there.axial_load == pytest.approx(-here.axial_load, rel=1e-12, nan_ok=True)
+    assert there.uncertainty == pytest.approx(here.uncertainty, rel=1e-12, nan_ok=True)
+
+
+@pytest.fixture
+def straight(core):
+    """Return a surface of 0.125 N m of friction at any load, and 1/1024 N m more a newton."""
+    made = core.surface(driving_torque=lambda speed, load: load / 1024.0 + 0.125)
+    made.lead = math.tau / 1024.0
+    return made
+
+
+@pytest.mark.parametrize(
+    ('speed', 'torque', 'load'),
+    [
+        (10.0, 1.125, -1024.0),  # drives against a load that opposes
+        (10.0, -0.875, 1024.0),  # brakes a load that assists
+        (10.0, 0.0, 128.0),  # a load that just overcomes friction
+        (-10.0, -1.125, 1024.0),
+        (-10.0, 0.875, -1024.0),
+    ],
+)
+def test_four_quadrants_by_hand(straight, speed, torque, load):
+    found = derive_load(at(speed, torque), straight, told(inertia=0.0))
+    assert found.axial_load == pytest.approx(load, rel=1e-12)
+
+
+def test_inertia_is_taken_off_in_the_machine_frame(straight):
+    for way in (1.0, -1.0):
+        for acceleration in (100.0, -100.0):
+            running = at(way * 10.0, way * 1.125 + INERTIA * acceleration)
+            running = at(running.speed, running.motor_torque, acceleration=acceleration)
+            found = derive_load(running, straight, told())
+            assert found.axial_load == pytest.approx(-way * 1024.0, rel=1e-9)
+
+
+def test_the_half_width_is_the_sum_of_what_is_stated(straight):
+    straight.numbers |= {'friction_torque_error': 0.0625, 'friction_torque_stderr': 0.03125}
+    straight.parasitic = 0.25
+    settings = told(torque_uncertainty=0.125, parts_uncertainty=0.5)
+    running = at(10.0, 1.125 + INERTIA * 125.0, acceleration=125.0, change=50.0)
+    found = derive_load(running, straight, settings)
+    parts = 0.25 + INERTIA * 125.0
+    expected = (0.125 + 0.5 * parts + INERTIA * 50.0 + 0.0625 + 0.03125) * 1024.0
+    assert found.uncertainty == pytest.approx(expected, rel=1e-9)
+
+
+def test_the_range_may_reach_beyond_the_surface(straight):
+    found = derive_load(at(10.0, 4.0), straight, told(inertia=0.0, torque_uncertainty=1.0))
+    assert found.uncertainty == pytest.approx(1024.0, rel=1e-9)
+
+
+def test_drag_is_not_taken_off_twice(straight):
+    """The friction of the surface holds it already."""
+    without = derive_load(at(10.0, 1.125), straight, told())
+    straight.parasitic = 0.1
+    assert derive_load(at(10.0, 1.125), straight, told()).axial_load == without.axial_load
+
+
+def test_a_share_of_inertia_and_drag_up_to_the_stated_one(straight):
+    straight.parasitic = 0.25
+    running = at(10.0, 1.0, acceleration=0.25 / INERTIA)
+    assert derive_load(running, straight, told(largest_share=0.5)).validity is Validity.VALID
+    below = math.nextafter(0.5, 0.0)
+    found = derive_load(running, straight, told(largest_share=below))
+    assert (found.validity, found.reason) == (
+        Validity.UNKNOWN,
+        'inertia and drag take 0.5 N m and the torque is 1 N m, allowed is a share of 0.5: too '
+        'little is left for the load',
+    )
+    assert math.isnan(found.axial_load)
+    assert math.isnan(found.uncertainty)
+
+
+def test_without_an_acceleration_inertia_is_not_known(straight):
+    running = at(10.0, 1.0, acceleration=math.nan)
+    assert derive_load(running, straight, told()).reason == NO_ACCELERATION
+    assert derive_load(running, straight, told(inertia=0.0)).validity is Validity.VALID
+
+
+def folded(speed, load):
+    """Return a driving torque that falls by 1 N m from 1000 to 1024 N."""
+    drop = min(max((load - 1000.0) / 24.0, 0.0), 1.0)
+    return load / 1024.0 + 0.125 - drop
+
+
+def test_a_torque_of_several_loads_is_that_of_none(core):
+    surface = core.surface(driving_torque=folded)
+    surface.lead = math.tau / 1024.0
+    found = derive_load(at(10.0, 0.6), surface, told(inertia=0.0))
+    assert found.validity is Validity.UNKNOWN
+    assert found.reason == (
+        'the torque is that of several loads, from 486.4 to 1510 N that oppose the motion'
+    )
+    wide = derive_load(at(10.0, 0.6), surface, told(inertia=0.0, torque_uncertainty=0.6))
+    assert wide.axial_load == pytest.approx(-0.5 * (486.4 + 1510.4), rel=1e-3)
+    assert wide.uncertainty > 1510.4 - 486.4
+
+
+@pytest.mark.parametrize('torque', [4.5, -4.5, 1e12])
+def test_a_torque_beyond_the_surface(straight, torque):
+    found = derive_load(at(10.0, torque), straight, told(inertia=0.0))
+    assert found.validity is Validity.LOAD_OUT_OF_RANGE
+    assert found.reason == (
+        f'the torque along the motion, {torque:.3g} N m, asks for a load outside the surface, '
+        '-4000 to 4000 N that oppose the motion'
+    )
+
+
+@pytest.mark.parametrize(
+    ('changes', 'validity'),
+    [
+        ({'speed': 0.05}, Validity.SPEED_BELOW_RANGE),
+        ({'speed': 200.0}, Validity.SPEED_ABOVE_RANGE),
+        ({'temperature': 200.0}, Validity.TEMPERATURE_OUT_OF_RANGE),
+    ],
+)
+def test_speed_and_temperature_outside_the_surface(straight, changes, validity):
+    values = {'speed': 10.0, 'temperature': 313.15} | changes
+    found = derive_load(
+        at(values['speed'], 1.0, temperature=values['temperature']), straight, told(inertia=0.0)
+    )
+    assert (found.validity, found.reason) == (validity, '')
+
+
+def test_a_gap_of_the_surface_that_may_hold_the_load(core):
+    surface = core.surface(
+        driving_torque=lambda speed, load: (
+            math.nan if 900.0 < load < 1100.0 else load / 1024.0 + 0.125
+        )
+    )
+    assert derive_load(at(10.0, 1.125), surface, told()).validity is Validity.MASKED
+    assert derive_load(at(10.0, 2.125), surface, told()).validity is Validity.VALID
+
+
+def test_a_surface_without_answers(core):
+    surface = core.surface(driving_torque=math.nan)
+    assert derive_load(at(10.0, 1.0), surface, told()).validity is Validity.MASKED
+
+
+def test_the_direction_and_not_the_sign_of_the_torque_says_what_opposes(straight):
+    running = at(10.0, 1.125)
+    assert running.direction is Direction.POSITIVE
+    assert derive_load(running, straight, told()).axial_load < 0.0

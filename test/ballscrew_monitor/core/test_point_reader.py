@@ -1,0 +1,246 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The monitor with a load out of the motor torque, and with speeds out of positions."""
+
+import dataclasses
+import math
+
+from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.core.derived_load import LoadDerivation, STANDSTILL
+from ballscrew_monitor.core.differentiation import PositionSettings
+from ballscrew_monitor.core.estimate import PointSource, PointValidity
+from ballscrew_monitor.core.health import InputState
+from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, Why
+from ballscrew_monitor.core.judgement import Gate, Zone
+import pytest
+from surrogate.surface import shipped_surface, Surface
+
+STEP, TIMEOUT = SECOND // 100, SECOND // 2
+START = 1000 * SECOND
+WINDOW = SECOND // 20
+INERTIA = 1.0 / 1024.0  # [kg m2]
+SETTINGS = LoadDerivation(
+    inertia=0.0, window=WINDOW, torque_uncertainty=0.125, parts_uncertainty=0.25, largest_share=0.5
+)
+
+
+def straight(core, **numbers):
+    """Return a surface of 1/1024 N m a newton and 0.125 N m of friction."""
+    surface = core.surface(driving_torque=lambda speed, load: load / 1024.0 + 0.125, **numbers)
+    surface.lead = math.tau / 1024.0
+    return surface
+
+
+def derived(core, surface=None, limits=None, **changes):
+    """Return a monitor that has speed and torque, and no topic of the load."""
+    settings = {
+        'timeouts': dict.fromkeys((Source.SPEED, Source.TORQUE), TIMEOUT),
+        'derivation': dataclasses.replace(SETTINGS, **changes),
+    }
+    return core.monitor(surface or straight(core), limits, **settings)
+
+
+def sample(source, value, stamp=START):
+    return InputSample(source=source, value=value, stamp=stamp)
+
+
+def run(monitor, speed, torque, stamp=START):
+    """Take a torque and a speed; return the state."""
+    assert monitor.update(sample(Source.TORQUE, torque, stamp)) is None
+    return monitor.update(sample(Source.SPEED, speed, stamp))
+
+
+def test_the_load_is_derived_and_marked(core):
+    state = run(derived(core), 10.0, 1.125)
+    assert state.point.axial_load == pytest.approx(-1024.0)
+    assert state.point.axial_load_source is PointSource.DERIVED
+    assert state.point.axial_load_uncertainty == pytest.approx(128.0)
+    assert state.estimate.validity is PointValidity.VALID
+    assert (state.verdict.zone, state.judged) == (Zone.OPTIMAL, 1)
+    assert state.measured_torque == 1.125
+    assert math.isnan(state.torque_residual)
+
+
+def test_a_load_of_a_topic_has_no_uncertainty(core):
+    monitor = core.monitor()
+    monitor.update(sample(Source.LOAD, -1000.0))
+    point = monitor.update(sample(Source.SPEED, 10.0)).point
+    assert math.isnan(point.axial_load_uncertainty)
+
+
+def test_a_finding_says_that_the_load_is_derived(core):
+    surface = straight(core, efficiency=0.5)
+    finding = run(derived(core, surface), 10.0, 1.125).verdict.findings[0]
+    assert finding.text == (
+        'too much power is lost: efficiency 0.5, limit 0.75, efficiency judged from a load '
+        'derived of the motor torque'
+    )
+    monitor = core.monitor(surface)
+    monitor.update(sample(Source.LOAD, -1000.0))
+    measured = monitor.update(sample(Source.SPEED, 10.0)).verdict.findings[0]
+    assert measured.text == 'too much power is lost: efficiency 0.5, limit 0.75'
+
+
+def test_the_input_of_the_load_is_called_derived(core):
+    states = {health.source: health.state for health in run(derived(core), 10.0, 1.0).inputs}
+    assert states[Source.LOAD] is InputState.DERIVED
+    assert states[Source.TORQUE] is InputState.OK
+
+
+def test_before_the_torque_arrives_nothing_can_be_judged(core):
+    state = derived(core).update(sample(Source.SPEED, 10.0))
+    assert state.estimate.validity is PointValidity.NO_INPUT
+    assert state.estimate.reason == 'no valid sample of torque'
+    assert (state.point.axial_load_source, state.judged) == (PointSource.UNKNOWN, 0)
+
+
+def test_a_stale_torque_makes_the_load_stale(core):
+    monitor = derived(core)
+    run(monitor, 10.0, 1.125)
+    good = monitor.update(sample(Source.SPEED, 10.0, START + TIMEOUT))
+    assert good.point.axial_load_source is PointSource.DERIVED
+    stale = monitor.update(sample(Source.SPEED, 20.0, START + TIMEOUT + 1))
+    assert stale.point.axial_load == pytest.approx(-1024.0)
+    assert stale.point.axial_load_source is PointSource.HELD
+    assert math.isnan(stale.point.axial_load_uncertainty)
+    assert stale.estimate.reason == 'no valid sample of torque'
+    assert math.isnan(stale.torque_residual)
+
+
+def test_a_bad_torque_holds_the_load(core):
+    monitor = derived(core)
+    run(monitor, 10.0, 1.125)
+    monitor.update(Refusal(source=Source.TORQUE, why=Why.NOT_A_NUMBER))
+    state = monitor.update(sample(Source.SPEED, 10.0, START + STEP))
+    assert state.point.axial_load_source is PointSource.HELD
+    assert state.estimate.validity is PointValidity.NO_INPUT
+
+
+def test_at_standstill_friction_hides_the_load(core):
+    monitor = derived(core)
+    run(monitor, 10.0, 1.125)
+    state = run(monitor, 0.25, 1.125, START + STEP)
+    assert math.isnan(state.point.axial_load)
+    assert state.point.axial_load_source is PointSource.UNKNOWN
+    assert (state.estimate.validity, state.estimate.reason) == (PointValidity.UNKNOWN, STANDSTILL)
+    assert state.verdict.gates == (Gate.STANDSTILL,)
+    assert (state.verdict.findings, state.judged) == ((), 2)
+    assert monitor.current_point(START + STEP) == STANDSTILL
+
+
+def test_a_load_that_is_not_known_is_not_judged(core):
+    surface = straight(core)
+    surface.parasitic = 1.0
+    monitor = derived(core, surface)
+    state = run(monitor, 10.0, 1.125)
+    assert state.estimate.validity is PointValidity.UNKNOWN
+    assert state.estimate.reason.startswith('inertia and drag take 1 N m')
+    assert (state.verdict.zone, state.judged) == (Zone.UNKNOWN, 0)
+    assert state.verdict.findings[0].text == state.estimate.reason
+    assert monitor.current_point(START) == state.estimate.reason
+
+
+@pytest.mark.parametrize(
+    ('speed', 'torque', 'validity', 'reason'),
+    [
+        (10.0, 9.0, PointValidity.LOAD_OUT_OF_RANGE, 'the torque along the motion, 9 N m, asks'),
+        (1e3, 1.0, PointValidity.SPEED_ABOVE_RANGE, 'speed 1000 rad/s is above the surface'),
+    ],
+)
+def test_outside_the_surface_the_limit_is_named(core, speed, torque, validity, reason):
+    state = run(derived(core), speed, torque)
+    assert state.estimate.validity is validity
+    assert state.estimate.reason.startswith(reason)
+    assert math.isnan(state.point.axial_load)
+
+
+def test_inertia_is_taken_off_while_the_axis_speeds_up(core):
+    monitor = derived(core, inertia=INERTIA)
+    first = run(monitor, 10.0, 1.125)
+    assert first.estimate.reason.startswith('the acceleration is not known yet')
+    for i in range(1, 30):
+        state = run(monitor, 10.0 + i, 1.125 + 100.0 * INERTIA, START + i * STEP)
+        assert state.point.axial_load == pytest.approx(-1024.0, rel=1e-9)
+    # Half width: torque, and a quarter of what inertia takes.
+    assert state.point.axial_load_uncertainty == pytest.approx(128.0 + 25.0)
+
+
+def test_a_ramp_that_sets_in_is_within_the_uncertainty(core):
+    """From the second sample on: of the first one the speeds know nothing yet."""
+    monitor = derived(core, inertia=INERTIA, torque_uncertainty=1e-6, largest_share=1e9)
+    for i in range(60):
+        speed = 10.0 + 2.0 * max(i - 20, 0)
+        torque = 1.125 + (200.0 * INERTIA if i >= 20 else 0.0)
+        state = run(monitor, speed, torque, START + i * STEP)
+        if i not in (0, 20):
+            assert abs(state.point.axial_load + 1024.0) <= state.point.axial_load_uncertainty
+
+
+def test_the_filter_of_the_acceleration_follows_a_new_time_line(core):
+    monitor = derived(core, inertia=INERTIA)
+    for i in range(5):
+        run(monitor, 10.0 + i, 1.125, START + i * STEP)
+    back = run(monitor, 50.0, 1.125, START - 10 * SECOND)
+    assert back.estimate.reason.startswith('the acceleration is not known yet')
+    again = run(monitor, 50.0, 1.125, START - 10 * SECOND + STEP)
+    assert again.point.axial_load == pytest.approx(-1024.0)
+
+
+def test_the_load_of_the_shipped_surface_closes_the_circle(core):
+    surface = Surface.load(shipped_surface())
+    monitor = derived(core, surface, core.limits(light_load=0.0))
+    for speed, force in ((60.0, -1000.0), (60.0, 1000.0), (-60.0, -1000.0), (-60.0, 1000.0)):
+        measured = core.monitor(surface)
+        measured.update(sample(Source.LOAD, force))
+        known = measured.update(sample(Source.SPEED, speed))
+        state = run(monitor, speed, known.estimate.machine_torque)
+        assert state.point.axial_load == pytest.approx(force, rel=1e-9)
+        assert state.estimate.efficiency == pytest.approx(known.estimate.efficiency, rel=1e-9)
+
+
+def turning(core, **changes):
+    """Return a monitor whose samples of the speed are positions [rad]."""
+    values = {'positions': PositionSettings(window=WINDOW, wrap=math.tau)}
+    return core.monitor(**(values | {'plausible': {Source.SPEED: 50.0}} | changes))
+
+
+def turn(monitor, angle, i):
+    """Take a load and a position; return the state."""
+    monitor.update(sample(Source.LOAD, -1000.0, START + i * STEP))
+    return monitor.update(sample(Source.SPEED, angle, START + i * STEP))
+
+
+def test_positions_are_judged_by_their_speed(core):
+    monitor = turning(core)
+    assert turn(monitor, 0.0, 0) is None
+    for i in range(1, 300):
+        state = turn(monitor, math.remainder(0.2 * i, math.tau), i)
+        assert state.point.speed == pytest.approx(20.0)
+    assert (state.verdict.zone, state.judged) == (Zone.OPTIMAL, 299)
+    assert (state.inputs[0].received, state.inputs[0].dropped) == (300, 1)
+    assert state.totals.revolutions == pytest.approx(298 * 0.2 / math.tau)
+
+
+def test_a_jump_of_the_position_never_reaches_the_totals(core):
+    monitor = turning(core, positions=PositionSettings(window=WINDOW))
+    states = [turn(monitor, 0.2 * i + 1e6 * (i == 10), i) for i in range(21)]
+    assert [i for i, state in enumerate(states) if state is None] == [0, 10, 11]
+    assert states[-1].inputs[0].implausible == 2
+    assert states[-1].totals.revolutions == pytest.approx(19 * 0.2 / math.tau)
+    assert states[-1].window.speed.high == pytest.approx(20.0)
+
+
+def test_a_speed_of_positions_that_is_not_plausible_is_refused(core):
+    monitor = turning(core)
+    for i in range(5):
+        assert turn(monitor, 0.6 * i, i) is None
+    assert monitor.tick(START + 10 * SECOND).inputs[0].implausible == 4
+
+
+def test_after_a_hole_two_positions_are_needed(core):
+    monitor = turning(core)
+    turn(monitor, 0.0, 0)
+    turn(monitor, 0.2, 1)
+    assert turn(monitor, 0.4, 200) is None
+    assert monitor.tick(START + 2 * SECOND).inputs[0].why is Why.HOLE
+    assert turn(monitor, 0.6, 201).point.speed == pytest.approx(20.0)

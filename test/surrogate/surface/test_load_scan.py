@@ -1,0 +1,69 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The scan over the load says what a lookup says at each of its loads."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+from hypothesis import given, settings
+from hypothesis import strategies as st
+import numpy as np
+import pytest
+from surrogate.surface import shipped_surface, Surface, Validity
+from surrogate.surface.load_scan import SPLITS
+
+SHIPPED = [Surface.load(shipped_surface(tier=tier)) for tier in ('closed_form', 'full')]
+
+
+def looked_up(surface, speed, temperature):
+    """Return the driving torque at each scanned load, NaN without an answer."""
+    points = [surface.lookup(speed, float(load), temperature) for load in surface._scan.loads]
+    return np.array(
+        [point.driving_torque if point.validity is Validity.VALID else np.nan for point in points]
+    )
+
+
+@given(st.sampled_from(SHIPPED), st.floats(0.05, 229.0), st.floats(283.15, 353.15))
+@settings(max_examples=30)
+def test_the_scan_is_the_lookup(surface, speed, temperature):
+    loads, torques = surface.driving_torques(speed, temperature)
+    np.testing.assert_allclose(
+        torques, looked_up(surface, speed, temperature), rtol=1e-12, atol=1e-12
+    )
+    assert np.isfinite(torques).any()
+    assert (loads[0], loads[-1]) == surface.load_range
+
+
+def test_the_loads_are_the_nodes_and_places_between():
+    surface = SHIPPED[0]
+    loads, _ = surface.driving_torques(30.0, 313.15)
+    assert (np.diff(loads) > 0).all()
+    assert len(loads) == SPLITS * surface.cells[1] + 1
+
+
+def test_the_scan_knows_the_corrections():
+    surface = SHIPPED[1]
+    point = SimpleNamespace(speed=62.8, opposing_load=1020.0, temperature=313.15)
+    torque = surface.lookup(62.8, 1020.0, 313.15).friction_torque
+    surface.driving_torques(62.8, 313.15)
+    pulled = surface.with_correction(point, SimpleNamespace(friction_torque=1.5 * torque))
+    _, before = surface.driving_torques(62.8, 313.15)
+    _, torques = pulled.driving_torques(62.8, 313.15)
+    assert (torques != before).any()
+    np.testing.assert_allclose(torques, looked_up(pulled, 62.8, 313.15), rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ('speed', 'temperature'), [(1e-3, 313.15), (1e3, 313.15), (30.0, 200.0), (np.nan, 313.15)]
+)
+def test_outside_there_is_no_torque(speed, temperature):
+    assert np.isnan(SHIPPED[0].driving_torques(speed, temperature)[1]).all()
+
+
+def test_the_drag_is_the_parasitic_part(surface_data):
+    header = dict(surface_data.header)
+    screw = header['inputs']['screw'] | {'parasitic_torque': 0.1, 'parasitic_torque_rate': 1e-3}
+    header['inputs'] = header['inputs'] | {'screw': screw}
+    surface = Surface(replace(surface_data, header=header))
+    assert surface.drag(-50.0) == surface.drag(50.0) == pytest.approx(0.15)
+    assert SHIPPED[0].drag(50.0) == 0.0
