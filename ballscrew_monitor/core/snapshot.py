@@ -24,6 +24,8 @@ from ballscrew_monitor.core import (
     health,
     inputs,
     judgement,
+    shelving,
+    stays,
     tally,
 )
 from ballscrew_monitor.core import state as states
@@ -60,7 +62,9 @@ CLASSES: dict[str, type[Any]] = {
         judgement.Hold,
         judgement.Limits,
         judgement.UnbrokenRun,
+        shelving.Shelving,
         states.Event,
+        stays.Stays,
         tally.Account,
         tally.Column,
         tally.Moment,
