@@ -62,7 +62,8 @@ class Machine:
             judged = [state for state in self.heard if state.judged]
             if judged:
                 return judged[0]
-        raise SystemExit('the node judges nothing')
+        said = [(one.result.reason, one.inputs[0].received) for one in self.heard[-1:]]
+        raise SystemExit(f'the node judges nothing: {len(self.heard)} states, the last {said}')
 
     def _take(self, state: BallScrewState) -> None:
         self.heard.append(state)
@@ -96,7 +97,9 @@ def kill_one(machine: Machine, folder: Path, domain: int, seconds: float) -> tup
     finally:
         process.kill()
         process.wait()
-    return first, machine.heard[-1]
+    last = machine.heard[-1]
+    print(f'{last.event_id} events, {last.totals.running_time:.1f} s', flush=True)
+    return first, last
 
 
 def log_of(folder: Path) -> list[dict[str, Any]]:
