@@ -91,7 +91,7 @@ class Machine:
         self.monitor = Monitor(surface, settings, self.keeping.recall('x'))
         axis = types.SimpleNamespace(name='x', monitor=self.monitor)
         publisher = types.SimpleNamespace(publish=nothing)
-        self.alarm = Alarm(self.node, axis, publisher, self.keeping)
+        self.alarm = Alarm(self.node, axis, publisher, self.keeping, nothing)
 
     def move(self, speed):
         """Take a sample, and let the thread that writes have its turn."""
