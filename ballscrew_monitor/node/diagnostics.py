@@ -31,6 +31,7 @@ CLOCK_STANDS = (
     'the clock stands still, nothing is seen to go stale: play /clock, or unset use_sim_time'
 )
 INACTIVE = 'the node is inactive, nothing is judged'
+KEPT = 'sums, events and corrections are kept'
 RECORDED = 'what the node hears and says is recorded'
 PARTS = ('Lubrication', 'Inputs', 'Surface')
 StatusSummary = tuple[bytes, str]  # level and message of a status
@@ -69,7 +70,7 @@ def of_folder(node: str, problem: str) -> DiagnosticStatus:
     return DiagnosticStatus(
         name=f'{node.lstrip("/")}: State directory',
         level=WARN if problem else OK,
-        message=problem or 'sums, events and corrections are kept',
+        message=problem or KEPT,
     )
 
 

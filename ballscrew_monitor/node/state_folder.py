@@ -20,6 +20,9 @@ from surrogate.files import InputError, json_text, replace_file
 
 AUTO = 'auto'
 EMPTY = 'state_dir is empty'
+UNWRITABLE = 'cannot be written'
+IN_USE = 'is in use by another node of this name'
+DAMAGED = 'is damaged'
 VERSION = 1
 LARGEST = 10_000_000  # [B] a file that is longer is none of ours
 OLD_LOGS = 'events.*.jsonl'
@@ -67,7 +70,7 @@ class StateFolder:
             fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
             self.close()
-            self.reason = f'{self.path} is in use by another node of this name'
+            self.reason = f'{self.path} {IN_USE}'
             return False
         except OSError as error:
             self.close()
@@ -106,7 +109,7 @@ class StateFolder:
                 path.replace(aside)
             except OSError as refused:
                 moved = f'and cannot be moved, {refused.strerror}'
-            raise InputError(f'{path} is damaged ({error}), {moved}') from None
+            raise InputError(f'{path} {DAMAGED} ({error}), {moved}') from None
 
     def write(self, name: str, content: Mapping[str, Any], *, spare: int = 0) -> str:
         """
@@ -143,7 +146,7 @@ class StateFolder:
 
     def unwritable(self, error: OSError) -> str:
         """Return that the directory cannot be written, and why."""
-        return f'{self.path} cannot be written, {error.strerror}'
+        return f'{self.path} {UNWRITABLE}, {error.strerror}'
 
     def _sweep(self) -> None:
         """Remove what a node that was killed in the middle of a write has left."""
