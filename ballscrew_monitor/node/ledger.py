@@ -9,7 +9,7 @@ What cannot be written stays here, and is tried again until it can.
 """
 
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 import contextlib
 import math
 import threading
@@ -20,7 +20,7 @@ from ballscrew_monitor.node.event_log import EventLog
 from ballscrew_monitor.node.memory_store import MemoryStore
 from ballscrew_monitor.node.state_folder import StateFolder
 
-LINES = 0.1  # [s] shortest time between two writes of the log
+LINES = 0.02  # [s] shortest time between two writes of the log
 MEMORIES = 1.0  # [s] shortest time between two writes of the memories, and after a failure
 MOST_LINES = 10_000  # waiting while nothing can be written; the oldest are dropped
 
@@ -65,7 +65,8 @@ class Ledger:
 
     def work(self, now: float) -> float | None:
         """Write what is due at `now` [s]; return when to come again [s], None: when there is."""
-        lines, memories = now >= self._lines_at, now >= self._memories_at
+        memories = bool(self._memories) and now >= self._memories_at
+        lines = memories or now >= self._lines_at  # no memory knows of more than the log
         if lines or memories:
             self._write(lines=lines, memories=memories)
             pause = MEMORIES if self.problem else LINES
@@ -87,10 +88,16 @@ class Ledger:
 
     def _write(self, *, lines: bool, memories: bool) -> None:
         with self._disk:
+            # Taken before the lines: what they know of has been noted by then.
+            taken = self._waiting() if memories else {}
             if lines and self._lines:
                 self._problems[0] = self._write_lines()
-            if memories and self._memories:
-                self._problems[1] = self._write_memories()
+            if taken:
+                self._problems[1] = self._write_memories(taken)
+
+    def _waiting(self) -> dict[str, Memory]:
+        with self._pending:
+            return dict(self._memories)
 
     def _write_lines(self) -> str:
         with self._pending:
@@ -102,9 +109,7 @@ class Ledger:
                 self._lines = deque([*lines, *self._lines], maxlen=MOST_LINES)
         return problem
 
-    def _write_memories(self) -> str:
-        with self._pending:
-            memories = dict(self._memories)
+    def _write_memories(self, memories: Mapping[str, Memory]) -> str:
         for axis, memory in memories.items():
             problem = self._store.save(axis, memory)
             if problem:
