@@ -29,6 +29,7 @@ SLOW = (
     'ballscrew_monitor/cycle/test_run.py',
     'ballscrew_monitor/clients/test_solve.py',
     'ballscrew_monitor/node/test_clocks.py',
+    'ballscrew_monitor/node/test_kept.py',
     'ballscrew_monitor/node/test_loss.py',
     'ballscrew_monitor/node/test_motor_torque.py',
     'ballscrew_monitor/node/test_node.py',

@@ -89,7 +89,9 @@ ROSDEP = {
 THEMES = {
     'ballscrew_monitor/node/test_clocks.py',
     'ballscrew_monitor/node/test_cures.py',
+    'ballscrew_monitor/node/test_deadline.py',
     'ballscrew_monitor/node/test_dump.py',
+    'ballscrew_monitor/node/test_kept.py',
     'ballscrew_monitor/node/test_loss.py',
     'ballscrew_monitor/node/test_motor_torque.py',
     'ballscrew_monitor/node/test_policy.py',

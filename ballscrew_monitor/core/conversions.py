@@ -11,6 +11,7 @@ only the amount of the speed, and a load that is positive when it opposes the mo
 """
 
 import dataclasses
+import datetime
 import enum
 
 from surrogate.files import InputError
@@ -161,6 +162,13 @@ def nanoseconds(seconds: float) -> int:
 def seconds(nanoseconds: int) -> float:
     """Return a time [ns] in [s]."""
     return nanoseconds / SECOND
+
+
+def clock_text(stamp: int) -> str:
+    """Return a stamp [ns] for people, in UTC, to the second."""
+    return (
+        f'{datetime.datetime.fromtimestamp(stamp // SECOND, datetime.UTC):%Y-%m-%d %H:%M:%S} UTC'
+    )
 
 
 def direction_of(speed: float) -> Direction:

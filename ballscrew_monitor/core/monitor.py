@@ -13,7 +13,6 @@ events gives the same list of states, bit for bit.
 import dataclasses
 import math
 
-from ballscrew_monitor.core.advice import Advisor
 from ballscrew_monitor.core.conversions import nanoseconds, SECOND
 from ballscrew_monitor.core.differentiation import SpeedFromPosition
 from ballscrew_monitor.core.estimate import (
@@ -25,9 +24,12 @@ from ballscrew_monitor.core.estimate import (
 )
 from ballscrew_monitor.core.health import Tracker
 from ballscrew_monitor.core.inputs import implausible, InputSample, Refusal, Source, Why
-from ballscrew_monitor.core.judgement import Hold, hold, is_judged, judge, Level, Verdict, Zone
+from ballscrew_monitor.core.judgement import Hold, hold, is_judged, judge, Level, Verdict
+from ballscrew_monitor.core.memory import Memory, NOTHING
 from ballscrew_monitor.core.point_reader import PointReader
+from ballscrew_monitor.core.shelving import NOT_SHELVED
 from ballscrew_monitor.core.state import Event, MonitorSettings, State
+from ballscrew_monitor.core.stays import Stays
 from ballscrew_monitor.core.tally import Account, moment, WindowTally
 from surrogate.surface import Surface
 
@@ -40,14 +42,17 @@ BACKWARD_JUMP = SECOND  # [ns] a longer step back of one input is a clock that w
 class Monitor:
     """Judges one axis; feed it events in order."""
 
-    def __init__(self, surface: Surface, settings: MonitorSettings) -> None:
-        """Begin with nothing received and the level UNKNOWN."""
+    def __init__(
+        self, surface: Surface, settings: MonitorSettings, memory: Memory = NOTHING
+    ) -> None:
+        """Begin with nothing received, the level UNKNOWN, and what `memory` holds from before."""
         self.settings = settings
         self.use_surface(surface)
-        self.event = Event()
+        self.shelving = NOT_SHELVED
         self._judged = 0
         self._hold = Hold()
-        self._pending: Event | None = None  # an event that is not raised yet
+        self._stays = Stays()
+        self._stamp = 0  # of the last verdict
         self._last_tick = 0
         self._last_published: int | None = None
         self._window = WindowTally()
@@ -67,11 +72,32 @@ class Monitor:
         if settings.positions is not None:
             timeout = settings.timeouts[Source.SPEED]
             self._positions = SpeedFromPosition(settings.positions, max_gap=timeout)
+        self.take_up(memory)
 
     @property
     def level(self) -> Level:
         """Return the held level."""
         return self._hold.level
+
+    @property
+    def event(self) -> Event:
+        """Return the event that is active, or the last one."""
+        return self._stays.event
+
+    @property
+    def memory(self) -> Memory:
+        """Return what is to be kept over a restart."""
+        event = self.event
+        if event.active:
+            event = dataclasses.replace(event, stamp=self._stamp)
+        return Memory(totals=self._account.totals(), event=event, shelving=self.shelving)
+
+    def take_up(self, memory: Memory) -> None:
+        """Go on with what was kept; what has been added up meanwhile counts too."""
+        self._account.take_up(memory.totals)
+        self._stays.take_up(memory.event)
+        if not self.shelving.until:
+            self.shelving = memory.shelving
 
     def update(self, event: InputSample | Refusal) -> State | None:
         """Take one sample or refusal; return the state when one is due."""
@@ -126,9 +152,9 @@ class Monitor:
         self.surface = surface
         self._surface_id = surface.sha256[:16]
 
-    def acknowledge(self, now: int) -> Event | None:
+    def acknowledge(self, now: int, ending: str = '') -> Event | None:
         """
-        Set the level back to UNKNOWN at `now` [ns]; return the event that this ends, if any.
+        Set the level back to UNKNOWN; return the event that this ends, if any.
 
         Stamps may run ahead of the clock, and events follow the stamps: it ends with the last one
         at the earliest. What is still outside is raised again as a new event.
@@ -137,12 +163,8 @@ class Monitor:
         last = self._inputs[Source.SPEED].last
         stamp = now if last is None else max(now, last.stamp)
         self._hold = Hold(since=stamp)
-        self._pending = None
-        if not self.event.active:
-            return None
-        end = max(stamp, self.event.start)
-        self.event = dataclasses.replace(self.event, active=False, stamp=end)
-        return self.event
+        self._stays.forget_pending()
+        return self._stays.end(max(stamp, self.event.start), ending)
 
     def current_point(self, now: int) -> MachinePoint | str:
         """Return the operating point at `now` [ns], or in a sentence why it is not known."""
@@ -210,46 +232,20 @@ class Monitor:
         before = self._hold
         gaps = {'max_gap': self._max_gap, 'period': self._inputs[Source.SPEED].slow_period}
         self._hold = hold(before, verdict, stamp, self.settings.limits, **gaps)
-        self._follow(stamp, result, verdict)
-        edge = self._edge(before.level, stamp, point)
+        self._stamp = stamp
+        self._stays.follow(self._hold, verdict, result, stamp)
+        edge = self._stays.edge(
+            before.level,
+            self._hold.level,
+            stamp,
+            point=point,
+            surface=self.surface,
+            limits=self.settings.limits,
+        )
         if not self._due(stamp) and edge is None and self._hold.level is before.level:
             return None
         self._last_published = stamp
         return self._state(stamp, now, point, result, verdict, edge)
-
-    def _follow(self, stamp: int, result: PointEstimate, verdict: Verdict) -> None:
-        """Keep the worst value of the event that is active, or of the one that may follow."""
-        if verdict.zone is Zone.OPTIMAL and self._hold.level is not Level.WARN:
-            self._pending = None
-        if verdict.zone is not Zone.OUTSIDE:
-            return
-        if self.event.active:
-            self.event = self.event.worsened(result)
-            return
-        run = self._hold.raising
-        if self._pending is None or (run is not None and run.start == stamp):
-            self._pending = Event(
-                start=stamp, cause=verdict.findings[0], worst_value=verdict.findings[0].value
-            )
-        self._pending = self._pending.worsened(result)
-
-    def _edge(self, before: Level, stamp: int, point: MachinePoint) -> Event | None:
-        """Return the event that the change of the level begins or ends, if any."""
-        level = self._hold.level
-        if level is Level.WARN and before is not Level.WARN and self._pending is not None:
-            self.event = dataclasses.replace(
-                self._pending,
-                number=self.event.number + 1,
-                active=True,
-                stamp=stamp,
-                advisor=Advisor(point=point, surface=self.surface, limits=self.settings.limits),
-            )
-            self._pending = None
-            return self.event
-        if level is not Level.WARN and self.event.active:
-            self.event = dataclasses.replace(self.event, active=False, stamp=stamp)
-            return self.event
-        return None
 
     def _due(self, stamp: int) -> bool:
         """Tell whether `stamp` is the first one in its period."""
@@ -289,6 +285,7 @@ class Monitor:
             # Of a load derived from it, the torque of the model says nothing new.
             torque_residual=NAN if point.derived is not None else torque - result.machine_torque,
             surface_id=self._surface_id,
+            shelving=self.shelving.at(now),
         )
 
     def _forget_the_future(self, now: int) -> None:
@@ -317,8 +314,9 @@ class Monitor:
         speed = self._inputs[Source.SPEED].last
         if speed is not None:
             self._move_times(stamp - speed.stamp)
+        self._stamp = stamp
         self._account.forget()
-        self._pending = None
+        self._stays.forget_pending()
         self._last_published = None
         self._reader.forget_direction()
         for tracker in self._inputs.values():
@@ -327,5 +325,5 @@ class Monitor:
 
     def _move_times(self, shift: int) -> None:
         self._hold = Hold(level=self._hold.level, since=max(0, self._hold.since + shift))
-        if self.event.active:
-            self.event = dataclasses.replace(self.event, start=max(0, self.event.start + shift))
+        self._stays.move(shift)
+        self._account.move(shift)

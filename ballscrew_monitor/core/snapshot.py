@@ -27,6 +27,8 @@ from ballscrew_monitor.core import (
     inputs,
     judgement,
     point_reader,
+    shelving,
+    stays,
     tally,
 )
 from ballscrew_monitor.core import state as states
@@ -69,7 +71,9 @@ CLASSES: dict[str, type[Any]] = {
         judgement.Limits,
         judgement.UnbrokenRun,
         point_reader.PointReader,
+        shelving.Shelving,
         states.Event,
+        stays.Stays,
         tally.Account,
         tally.Column,
         tally.Moment,

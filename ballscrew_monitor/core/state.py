@@ -13,6 +13,7 @@ from ballscrew_monitor.core.estimate import MachinePoint, PointEstimate
 from ballscrew_monitor.core.health import Health
 from ballscrew_monitor.core.inputs import Source, YEAR
 from ballscrew_monitor.core.judgement import Code, Finding, Level, Limits, Severity, Verdict
+from ballscrew_monitor.core.shelving import NOT_SHELVED, Shelving
 from ballscrew_monitor.core.tally import Totals, WindowStatistics
 
 NAN = math.nan
@@ -51,7 +52,8 @@ class Event:
     """
     One stay outside the optimal zone; stamps [ns], event 0 is none yet.
 
-    The first reading of `advice` takes milliseconds.
+    `ending` says why the node ended it, empty if the axis came back. The first reading of
+    `advice` takes milliseconds.
 
     """
 
@@ -62,6 +64,7 @@ class Event:
     worst_value: float = NAN
     cause: Finding = Finding(code=Code.UNKNOWN, severity=Severity.UNKNOWN)
     advisor: Advisor | None = None
+    ending: str = ''
 
     @property
     def advice(self) -> Advice:
@@ -83,7 +86,8 @@ class State:
     Judgement of one axis at one instant.
 
     `event` is that which began or ended at this state, else None; `event_id` is that of the
-    active event or of the last one. Torques [N m] in the machine frame.
+    active event or of the last one. `shelving` is that in force. Torques [N m] in the machine
+    frame.
 
     """
 
@@ -104,3 +108,4 @@ class State:
     measured_torque: float
     torque_residual: float
     surface_id: str
+    shelving: Shelving = NOT_SHELVED

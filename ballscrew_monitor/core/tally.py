@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Sums over time: statistics of the current window, and totals since the start."""
+"""Sums over time: statistics of the current window, and totals since they were reset."""
 
 import dataclasses
 import math
@@ -104,7 +104,13 @@ class WindowTally:
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Totals:
-    """Sums since the start; times [ns] so that they add up exactly, energy_lost [J]."""
+    """
+    Sums since they were reset.
+
+    Times [ns] so that they add up exactly, angle [rad] of both directions counted up, energy_lost
+    [J]; `since` is the stamp [ns] of their first sample, 0 before it.
+
+    """
 
     running_time: int = 0
     unjudged_time: int = 0
@@ -113,8 +119,14 @@ class Totals:
     hydrodynamic_time: int = 0
     optimal_time: int = 0
     outside_time: int = 0
-    revolutions: float = 0.0
+    angle: float = 0.0
     energy_lost: float = 0.0
+    since: int = 0
+
+    @property
+    def revolutions(self) -> float:
+        """Return the revolutions of the screw [-]."""
+        return self.angle / TURN
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -155,6 +167,24 @@ class Account:
         self._in_regime = dict.fromkeys(Regime, 0)
         self._in_zone = dict.fromkeys(Zone, 0)
         self._angle = self._energy = 0.0
+        self._since = 0
+
+    def take_up(self, kept: Totals) -> None:
+        """Add sums that were kept from before."""
+        self._running += kept.running_time
+        self._unjudged += kept.unjudged_time
+        self._in_regime[Regime.BOUNDARY] += kept.boundary_time
+        self._in_regime[Regime.MIXED] += kept.mixed_time
+        self._in_regime[Regime.HYDRODYNAMIC] += kept.hydrodynamic_time
+        self._in_zone[Zone.OPTIMAL] += kept.optimal_time
+        self._in_zone[Zone.OUTSIDE] += kept.outside_time
+        self._angle += kept.angle
+        self._energy += kept.energy_lost
+        self._since = kept.since or self._since
+
+    def move(self, shift: int) -> None:
+        """Move the beginning by `shift` [ns] with the clock, so that it lies as far back."""
+        self._since = max(0, self._since + shift) if self._since else 0
 
     def forget(self) -> None:
         """Forget the last sample, so that nothing is added up to the next one."""
@@ -163,6 +193,7 @@ class Account:
     def add(self, now: Moment, *, max_gap: int) -> None:
         """Add the time since the last sample, unless that is longer than `max_gap` [ns]."""
         last, self._last = self._last, now
+        self._since = self._since or now.stamp
         if last is None or last.speed == 0.0 or not 0 < now.stamp - last.stamp <= max_gap:
             return
         span = now.stamp - last.stamp
@@ -185,6 +216,7 @@ class Account:
             hydrodynamic_time=self._in_regime[Regime.HYDRODYNAMIC],
             optimal_time=self._in_zone[Zone.OPTIMAL],
             outside_time=self._in_zone[Zone.OUTSIDE],
-            revolutions=self._angle / TURN,
+            angle=self._angle,
             energy_lost=self._energy,
+            since=self._since,
         )

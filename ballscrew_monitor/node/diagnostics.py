@@ -12,7 +12,7 @@ publishing; numbers are values, with the unit in brackets.
 from collections.abc import Mapping
 
 from ballscrew_monitor.core import reasons
-from ballscrew_monitor.core.conversions import celsius, seconds
+from ballscrew_monitor.core.conversions import celsius, clock_text, seconds
 from ballscrew_monitor.core.estimate import PointValidity
 from ballscrew_monitor.core.health import Health
 from ballscrew_monitor.core.inputs import Source
@@ -32,6 +32,7 @@ CLOCK_STANDS = (
 )
 NOT_DERIVED = 'not judged: the motor torque does not tell the load here'
 INACTIVE = 'the node is inactive, nothing is judged'
+KEPT = 'sums, events and corrections are kept'
 RECORDED = 'what the node hears and says is recorded'
 PARTS = ('Lubrication', 'Inputs', 'Surface')
 StatusSummary = tuple[bytes, str]  # level and message of a status
@@ -63,6 +64,15 @@ def failed(node: str, axis: str, reason: str) -> list[DiagnosticStatus]:
         DiagnosticStatus(name=f'{node.lstrip("/")}: {axis}: {part}', level=ERROR, message=reason)
         for part in PARTS
     ]
+
+
+def of_folder(node: str, problem: str) -> DiagnosticStatus:
+    """Return the status of what the `node`, by full name, keeps on the disk."""
+    return DiagnosticStatus(
+        name=f'{node.lstrip("/")}: State directory',
+        level=WARN if problem else OK,
+        message=problem or KEPT,
+    )
 
 
 def blank(node: str, axis: str) -> list[DiagnosticStatus]:
@@ -138,7 +148,8 @@ def summaries(
 
 
 def _lubrication(state: State, event: Event) -> StatusSummary:
-    if state.level is Level.WARN:
+    shelved = state.shelving.until != 0
+    if state.level is Level.WARN and not shelved:
         cause = _CAUSES.get(event.cause.code, 'cause unknown')
         return WARN, f'outside the optimal zone: {cause}'
     validity = state.estimate.validity
@@ -149,6 +160,8 @@ def _lubrication(state: State, event: Event) -> StatusSummary:
         return WARN, NOT_DERIVED
     if validity is not PointValidity.VALID and not (still and validity in _OF_STANDSTILL):
         return WARN, _NOT_JUDGED[validity]
+    if state.level is Level.WARN:
+        return OK, f'shelved until {clock_text(state.shelving.until)}: {state.shelving.reason}'
     if state.level is Level.OK:
         return OK, 'standstill' if still else 'optimal'
     if still:  # nothing is amiss with an axis that has been parked since it was switched on

@@ -169,6 +169,7 @@ def fill_totals(message: Any, totals: tally.Totals) -> None:
         setattr(message, name, seconds(getattr(totals, name)))
     message.revolutions = float(totals.revolutions)
     message.energy_lost = float(totals.energy_lost)
+    fill_time(message.since, totals.since)
 
 
 class StateWriter:
@@ -195,6 +196,9 @@ class StateWriter:
         message.measured_torque = float(state.measured_torque)
         message.torque_residual = float(state.torque_residual)
         message.surface_id = state.surface_id
+        message.shelved = state.shelving.until != 0
+        fill_time(message.shelved_until, state.shelving.until)
+        message.shelve_reason = state.shelving.reason
         return message
 
 
@@ -211,7 +215,7 @@ def _fill_judgement(message: BallScrewState, state: State) -> None:
     message.judged = state.judged
 
 
-def out_of_zone_message(axis: str, event: Event) -> OutOfZone:
+def out_of_zone_message(axis: str, event: Event, *, shelved: bool) -> OutOfZone:
     """Return an event as a message; event 0 is inactive and says that there has been none."""
     message = OutOfZone(
         axis=axis,
@@ -220,7 +224,8 @@ def out_of_zone_message(axis: str, event: Event) -> OutOfZone:
         duration=seconds(event.stamp - event.start),
         worst_value=float(event.worst_value),
         cause=finding_message(event.cause, event.advice),
-        advice=event.advice.text,
+        advice=event.ending or event.advice.text,
+        shelved=shelved,
     )
     message.header.frame_id = axis
     fill_time(message.header.stamp, event.stamp)

@@ -15,14 +15,19 @@ from ballscrew_monitor.core.pulse import Pulse
 from ballscrew_monitor.core.state import State
 from ballscrew_monitor.node import diagnostics, parameters
 from ballscrew_monitor.node.axis import Axis, build_axis, check_topics
-from ballscrew_monitor.node.correction_store import CorrectionStore, state_directory
+from ballscrew_monitor.node.caretaker import Caretaker
+from ballscrew_monitor.node.correction_store import CorrectionStore
+from ballscrew_monitor.node.event_log import Kind
 from ballscrew_monitor.node.intake import Intake
 from ballscrew_monitor.node.journal import Journal, SILENT
+from ballscrew_monitor.node.keeping import Keeping
 from ballscrew_monitor.node.parameter_store import ParameterStore
-from ballscrew_monitor.node.qos import check_overrides
+from ballscrew_monitor.node.qos import check_overrides, longest_period
 from ballscrew_monitor.node.recording_process import recording, RecordingProcess
+from ballscrew_monitor.node.shelve_service import ShelveService
 from ballscrew_monitor.node.solve_server import MOST_SOLVES, SolveServer
 from ballscrew_monitor.node.solver_process import SolverProcess
+from ballscrew_monitor.node.state_folder import state_directory, StateFolder
 from ballscrew_monitor.node.station import STATE_QOS, Station
 from ballscrew_monitor.node.trigger_services import TriggerServices
 from ballscrew_msgs.msg import OutOfZone
@@ -37,6 +42,7 @@ from rclpy.signals import SignalHandlerOptions
 from surrogate.files import InputError
 
 SUCCESS, FAILURE = TransitionCallbackReturn.SUCCESS, TransitionCallbackReturn.FAILURE
+MEGABYTE = 1e6  # [B]
 POLL = 0.2  # [s] longest wait before a signal is noticed
 
 
@@ -78,10 +84,19 @@ class BallscrewMonitor(LifecycleNode):
             self._values['diagnostics_period'], self._publish_diagnostics, clock=self._steady
         )
         self.create_service(EvaluateOperatingPoint, '~/evaluate', self._on_evaluate)
-        self._folder = state_directory(self._values['state_dir'], self.get_fully_qualified_name())
+        self._folder = StateFolder(
+            state_directory(self._values['state_dir'], self.get_fully_qualified_name()),
+            limit=round(self._values['state_limit'] * MEGABYTE),
+        )
         self._corrections = CorrectionStore(self._folder)
+        self._keeping = Keeping(self, self._folder)
+        self._keeping.note(Kind.NODE_START)
+        self._caretaker = Caretaker(
+            self, self._keeping, lambda: self._stations, self._on_kept, clock=self._steady
+        )
         self._solves = SolveServer(self, SolverProcess, self._find_station)
-        TriggerServices(self, self._values, lambda: self._stations, self._describe)
+        TriggerServices(self, self._values, lambda: self._stations, self._on_service)
+        ShelveService(self, lambda: self._stations, self._on_service)
 
     def start(self) -> None:
         """Configure and activate, if the node is to do so itself."""
@@ -106,7 +121,7 @@ class BallscrewMonitor(LifecycleNode):
             axes = [build_axis(name, self._values) for name in self._values['axes']]
             topics = check_topics(axes, self.resolve_topic_name)
             check_overrides(self._store.given, topics)
-            self._recording = recording(self._values, self._folder)
+            self._recording = recording(self._values, self._folder.path)
         except InputError as error:
             self._reason = f'not configured: {error}'
             self.get_logger().error(self._reason)
@@ -114,22 +129,23 @@ class BallscrewMonitor(LifecycleNode):
             return FAILURE
         self._stations = {
             axis.name: Station(
-                self, axis, self._values, self._corrections, self._record, self._describe
+                self,
+                axis,
+                self._values,
+                self._corrections,
+                keeping=self._keeping,
+                record=self._record,
+                changed=self._describe,
             )
             for axis in axes
         }
-        self._restore()
+        self._caretaker.restore()
+        self._store.ceilings = {
+            f'{axis.name}.publish_period': longest_period(axis.name, self._values) for axis in axes
+        }
         self._store.locked = True
         self._publish_diagnostics()
         return super().on_configure(state)
-
-    def _restore(self) -> None:
-        """Take up kept corrections, and say what came of that."""
-        if self._values['state_dir'] and self._corrections.reason:
-            self.get_logger().warning(f'no corrections are kept: {self._corrections.reason}')
-        for name, station in self._stations.items():
-            if said := station.restore():
-                self.get_logger().info(f'axis {name}: {said}')
 
     def _find_station(self, axis: str) -> Station | str:
         """Return what a solve of an axis needs, or why there is none."""
@@ -149,7 +165,7 @@ class BallscrewMonitor(LifecycleNode):
         self._journal = Journal(self.resolve_topic_name('~/journal'), self._recording)
         for station in self._stations.values():
             station.publish_info()
-            station.publish_event()
+            station.alarm.publish()
         axes = [station.axis for station in self._stations.values()]
         self._describe(self._stations, 'begin')
         self._intake = Intake(self, axes, self._on_event, self._journal)
@@ -172,6 +188,8 @@ class BallscrewMonitor(LifecycleNode):
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Stop to judge; levels, events and totals stand."""
         self._stop()
+        self._caretaker.remember()
+        self._keeping.flush()
         result = super().on_deactivate(state)
         self._publish_diagnostics()
         return result
@@ -187,6 +205,8 @@ class BallscrewMonitor(LifecycleNode):
         """Stop and forget the axes."""
         self._finalized = True
         self._clear('shut down')
+        self._keeping.note(Kind.NODE_STOP)
+        self._keeping.close()
         return SUCCESS
 
     def on_error(self, state: LifecycleState) -> TransitionCallbackReturn:
@@ -204,6 +224,17 @@ class BallscrewMonitor(LifecycleNode):
                 for source, topic in axis.topics.items()
             }
             self._journal.describe(axis, self._values, topics, because, now)
+
+    def _on_kept(self, axes: Iterable[str]) -> None:
+        """Say what has changed by itself in what is kept of some axes."""
+        self._describe(axes, 'kept')
+        self._publish_diagnostics(list(axes))
+
+    def _on_service(self, axes: Iterable[str], name: str) -> str:
+        """Keep what a service has changed at once; return why that failed, or nothing."""
+        self._describe(axes, name)
+        self._publish_diagnostics(list(axes))
+        return self._keeping.flush()
 
     def _record(self, topic: str, message: Any) -> None:
         """Let a recording show what the node publishes; a warning is an event of it."""
@@ -228,9 +259,11 @@ class BallscrewMonitor(LifecycleNode):
     def _clear(self, reason: str) -> None:
         self._stop()
         for station in self._stations.values():
-            station.end_event(reason)
+            station.alarm.end(reason)
             station.close()
         self._stations = {}
+        self._keeping.flush()
+        self._keeping.forget_damage()
         self._store.locked = False
         self._reason = reason
         self._publish_diagnostics()
@@ -269,9 +302,10 @@ class BallscrewMonitor(LifecycleNode):
         for station in self._stations.values():
             station.log_inputs(self._steady.now().nanoseconds)
         stood = self._pulse.stood(now.nanoseconds, self._steady.now().nanoseconds)
-        message = DiagnosticArray(
-            status=self._statuses(self._values['axes'] if axes is None else axes, stood)
-        )
+        statuses = self._statuses(self._values['axes'] if axes is None else axes, stood)
+        if axes is None:
+            statuses += self._keeping.statuses()
+        message = DiagnosticArray(status=statuses)
         message.header.stamp = now.to_msg()
         self._diagnostics.publish(message)
         self._record('/diagnostics', message)

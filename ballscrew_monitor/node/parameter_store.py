@@ -18,14 +18,16 @@ class ParameterStore:
     """
     The values of all parameters as plain Python, by full name.
 
-    While `locked`, only what may change at any time does; `on_change` is called with the first
-    parts of the names that have changed. `given` is what the node was started with.
+    While `locked`, only what may change at any time does, up to the number in `ceilings` if there
+    is one; `on_change` is called with the first parts of the names that have changed. `given` is
+    what the node was started with.
 
     """
 
     def __init__(self, node: Node, on_change: Callable[[set[str]], None]) -> None:
         """Declare every parameter on `node`; raises InputError for a bad one."""
         self.locked = False
+        self.ceilings: dict[str, float] = {}
         self.values: dict[str, Any] = {}
         self._on_change = on_change
         # Private to rclpy; without it rclpy refuses bad values itself, in its own words.
@@ -66,6 +68,15 @@ class ParameterStore:
             raise InputError(
                 f'parameter {parameter.name} changes only while the node is unconfigured, '
                 'clean it up first'
+            )
+        if self.locked and parameter.name in self.ceilings:
+            self._check_ceiling(parameter.name, _plain(parameter.value), row.unit)
+
+    def _check_ceiling(self, name: str, value: float, unit: str) -> None:
+        if value > self.ceilings[name]:
+            raise InputError(
+                f'parameter {name} is {value:g} {unit}, while the node is configured at most '
+                f'{self.ceilings[name]:g} {unit}, which its publisher promises: clean it up first'
             )
 
     def _take(self, changed: list[Parameter]) -> None:

@@ -102,6 +102,15 @@ NODE_ROWS = (
         '$XDG_STATE_HOME/ballscrew_monitor/<name of the node>; empty: nothing is kept.',
     ),
     ParameterRow(
+        name='state_limit',
+        default=64.0,
+        unit='MB',
+        low=1.0,
+        high=1e6,
+        change=Change.NEVER,
+        text='Limit of what is kept in state_dir; the oldest part of the event log goes first.',
+    ),
+    ParameterRow(
         name='diagnostics_period',
         default=1.0,
         unit='s',
@@ -435,8 +444,8 @@ AXIS_ROWS = (
         low=0.0,
         high=3600.0,
         change=Change.LIVE,
-        text='Period of the state topic, besides each change of the level; '
-        '0: a state for every judged speed sample.',
+        text='Period of the state topic, besides each change of the level; 0: a state for every '
+        'judged speed sample. Above 1 s it rises only while unconfigured.',
     ),
     ParameterRow(
         name='plain_topics',

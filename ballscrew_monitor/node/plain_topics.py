@@ -27,7 +27,7 @@ def plain_values(state: State) -> dict[str, float | str | bool]:
         'rcs': float(result.rcs),
         'film_ratio': float(result.film_ratio),
         'regime': result.regime.name,
-        'out_of_zone': state.level is Level.WARN,
+        'out_of_zone': state.level is Level.WARN and not state.shelving.until,
     }
 
 

@@ -6,6 +6,7 @@ from collections.abc import Collection, Mapping
 from typing import Any
 
 from ballscrew_monitor.core.links import Publisher
+from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.qos import (
     QoSDurabilityPolicy,
@@ -27,6 +28,30 @@ POLICIES = {
 """What may be overridden, and the values of it that are words."""
 OF_ROS = frozenset({'/clock', '/parameter_events', '/rosout'})
 PREFIX = 'qos_overrides'
+
+
+STEADY_PERIOD = 1.0  # [s] to which `publish_period` may rise without a change of the promise
+
+
+def longest_period(axis: str, values: Mapping[str, Any]) -> float:
+    """Return the longest publish period [s] for which the deadline of a state still holds."""
+    return max(STEADY_PERIOD, float(values[f'{axis}.publish_period']))
+
+
+def state_qos(axis: str, values: Mapping[str, Any], *, simulated: bool) -> QoSProfile:
+    """
+    Return the QoS of the state of an axis: while the node is active, one comes by the deadline.
+
+    After the last sample it takes the timeout until the ticks speak, and they keep the period.
+    Simulated time may stand, so that nothing can be promised in it.
+
+    """
+    qos = QoSProfile(depth=10, reliability=QoSReliabilityPolicy.RELIABLE)
+    if not simulated:
+        ticks = 3.0 * values['tick_period']
+        longest = longest_period(axis, values) + values[f'{axis}.speed.timeout'] + ticks
+        qos.deadline = Duration(seconds=longest)
+    return qos
 
 
 def input_qos() -> QoSProfile:

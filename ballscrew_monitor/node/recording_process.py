@@ -11,9 +11,9 @@ import subprocess
 import sys
 from typing import Any
 
-from ballscrew_monitor.node.correction_store import AUTO
 from ballscrew_monitor.node.frames import Frame, FrameSender
 from ballscrew_monitor.node.solver_process import worker_environment
+from ballscrew_monitor.node.state_folder import AUTO
 from surrogate.files import InputError
 
 MODULE = 'ballscrew_monitor.recordings.black_box'

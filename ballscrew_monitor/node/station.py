@@ -3,6 +3,7 @@
 """What the node keeps of one axis: the axis, its publishers, and what it last said."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+import dataclasses
 import functools
 from typing import Any
 
@@ -11,28 +12,29 @@ from ballscrew_monitor.core.dwell import Dwell
 from ballscrew_monitor.core.estimate import estimate, MachinePoint
 from ballscrew_monitor.core.full_point import corrected, objection, solved_at
 from ballscrew_monitor.core.inputs import Source
-from ballscrew_monitor.core.judgement import Level
 from ballscrew_monitor.core.links import Link
+from ballscrew_monitor.core.shelving import Shelving
 from ballscrew_monitor.core.state import State
 from ballscrew_monitor.node import diagnostics
+from ballscrew_monitor.node.alarm import Alarm
 from ballscrew_monitor.node.axis import Axis
 from ballscrew_monitor.node.correction_store import CorrectionStore
+from ballscrew_monitor.node.event_log import Kind, point_facts
+from ballscrew_monitor.node.keeping import Keeping
 from ballscrew_monitor.node.messages import (
     fill_result,
-    out_of_zone_message,
     read_point,
     StateWriter,
     surface_info_message,
     TIERS,
 )
 from ballscrew_monitor.node.plain_topics import PlainTopics
+from ballscrew_monitor.node.qos import state_qos
 from ballscrew_msgs.msg import BallScrewState, OperatingPoint, OutOfZone, PointResult, SurfaceInfo
 from ballscrew_msgs.srv import EvaluateOperatingPoint
 from diagnostic_msgs.msg import DiagnosticStatus
-from rclpy.duration import Duration
 from rclpy.event_handler import PublisherEventCallbacks
 from rclpy.lifecycle import LifecycleNode
-from rclpy.publisher import Publisher
 from rclpy.qos import QoSDurabilityPolicy, QoSProfile, QoSReliabilityPolicy
 from surrogate.files import InputError
 from surrogate.surface import Surface, SurfaceError, SurfacePoint
@@ -40,7 +42,6 @@ from surrogate.surface import Surface, SurfaceError, SurfacePoint
 STATE_QOS = QoSProfile(depth=10, reliability=QoSReliabilityPolicy.RELIABLE)
 LOG_INTERVAL = nanoseconds(1.0)  # [ns] shortest time between two lines about the inputs
 NEWS_INTERVAL = nanoseconds(0.1)  # [ns] shortest time between two diagnostics sent for a change
-LAST_WORD = Duration(seconds=0.5)  # for subscribers to take the end of an event
 LATCHED_QOS = QoSProfile(
     depth=1,
     reliability=QoSReliabilityPolicy.RELIABLE,
@@ -57,22 +58,27 @@ class Station:
         axis: Axis,
         values: Mapping[str, Any],
         store: CorrectionStore,
+        *,
+        keeping: Keeping,
         record: Callable[[str, Any], None],
         changed: Callable[[Iterable[str], str], None],
     ) -> None:
         """
         Make the publishers, which stay silent until the node is active.
 
-        `values` are the parameters as they are at any time; corrections are kept in the `store`.
-        `record` is given each message with its topic, `changed` the axis and what has changed it.
+        `values` are the parameters as they are at any time; corrections are kept in the `store`,
+        and `keeping` is told what happens. `record` is given each message with its topic,
+        `changed` the axis and what has changed it.
 
         """
         self.axis = axis
         self.dwell = Dwell()
         self._values = values
         self._store = store
+        self._keeping = keeping
         self._record = record
         self._changed = changed
+        self._unsaved = False  # corrections that could not be kept
         self._node = node
         self._writer = StateWriter(axis.name, TIERS[axis.surface.tier])
         self._last: State | None = None
@@ -85,8 +91,11 @@ class Station:
         # a subscriber with QoS that does not fit, its own node warns of too.
         quiet = {'event_callbacks': PublisherEventCallbacks(use_default_callbacks=False)}
         make = functools.partial(node.create_lifecycle_publisher, **quiet)
-        self._state = make(BallScrewState, f'~/{axis.name}/state', STATE_QOS)
+        simulated = node.get_parameter('use_sim_time').value
+        promise = state_qos(axis.name, values, simulated=simulated)
+        self._state = make(BallScrewState, f'~/{axis.name}/state', promise)
         self._event = make(OutOfZone, f'~/{axis.name}/out_of_zone', LATCHED_QOS)
+        self.alarm = Alarm(node, axis, self._event, keeping, record)
         self._info = make(SurfaceInfo, f'~/{axis.name}/surface_info', LATCHED_QOS)
         self._plain = None
         if values[f'{axis.name}.plain_topics']:
@@ -108,30 +117,28 @@ class Station:
         if self._plain is not None:
             self._plain.publish(state)
         if state.event is not None:
-            self.publish_event()
-            self._log_event()
+            self.alarm.follow(state)
 
-    def publish_event(self) -> None:
-        """Publish the event that is active, or the last one."""
-        message = out_of_zone_message(self.axis.name, self.axis.monitor.event)
-        self._event.publish(message)
-        self._record(f'~/{self.name}/out_of_zone', message)
+    def shelve(self, shelving: Shelving) -> None:
+        """Shelve the warning, or no longer, and let the last state say so."""
+        self.alarm.shelve(shelving)
+        self._show_shelving()
 
-    def end_event(self, reason: str) -> None:
-        """End the event that is active, if one is, because nothing is judged any more."""
-        event = self.axis.monitor.acknowledge(self._node.get_clock().now().nanoseconds)
-        if event is None:
+    def look(self) -> bool:
+        """End a shelving that is over, and keep what could not be kept; tell of the former."""
+        if self._unsaved:
+            self._save()
+        over = self.alarm.end_shelving()
+        if over:
+            self._show_shelving()
+        return over
+
+    def _show_shelving(self) -> None:
+        if self._last is None:
             return
-        message = out_of_zone_message(self.axis.name, event)
-        message.advice = (
-            f'ended by the node, not by the axis, nothing is judged any more: {reason}'
-        )
-        # Past the lifecycle: the publisher of an inactive node is mute.
-        Publisher.publish(self._event, message)
-        self._event.wait_for_all_acked(LAST_WORD)
-        self._node.get_logger().warning(
-            f'axis {self.axis.name}: event {event.number}: {message.advice}'
-        )
+        self._last = dataclasses.replace(self._last, shelving=self.axis.monitor.shelving)
+        if self._plain is not None:
+            self._plain.publish(self._last)
 
     def publish_info(self) -> None:
         """Publish what the surface and the limits are."""
@@ -191,9 +198,16 @@ class Station:
         except SurfaceError as error:
             return False, str(error)
         self.use_surface(surface)
-        problem = self._store.save(self.name, surface.base_sha256, surface.corrections)
+        problem = self._save()
         kept = f'not kept: {problem}' if problem else 'kept'
+        self._keeping.note(Kind.CORRECTION, self.name, point=point_facts(point), result=kept)
         return True, f'corrected the surface about this point, {kept}'
+
+    def _save(self) -> str:
+        """Keep the corrections; return why that failed, or nothing."""
+        problem = self._store.save(self.name, self.surface.base_sha256, self.surface.corrections)
+        self._unsaved = bool(problem)
+        return problem
 
     def restore(self) -> str:
         """Take up the corrections that were kept; return what became of them, if there are any."""
@@ -224,10 +238,11 @@ class Station:
         if before and same:
             surface = corrected(surface, before)
         self.use_surface(surface)
+        self._keeping.note(Kind.RELOAD_SURFACE, self.name, sha256=surface.sha256)
         if not before:
             return ''
         if not same:
-            self._store.save(self.name, surface.base_sha256, ())
+            self._save()
         return f'{len(before)} corrections {"stay" if same else "dropped"}'
 
     def use_surface(self, surface: Surface) -> None:
@@ -299,13 +314,3 @@ class Station:
 
     def _summaries(self, state: State) -> tuple[diagnostics.StatusSummary, ...]:
         return diagnostics.summaries(state, self.axis.monitor.event, self._links)
-
-    def _log_event(self) -> None:
-        event, name = self.axis.monitor.event, self.axis.name
-        if event.active:
-            advice = f'; {event.advice.text}' if event.advice.text else ''
-            self._node.get_logger().warning(
-                f'axis {name}: event {event.number}: {event.cause.text}{advice}'
-            )
-        elif self.axis.monitor.level is Level.OK:
-            self._node.get_logger().info(f'axis {name}: event {event.number} is over')

@@ -24,12 +24,13 @@ class TriggerServices:
         node: Node,
         values: Mapping[str, Any],
         find: Callable[[], Stations],
-        changed: Callable[[Stations, str], None],
+        changed: Callable[[Stations, str], str],
     ) -> None:
         """
         Make the services; `find` returns the stations, none while the node is unconfigured.
 
-        `changed` is told which stations a service has changed, and its name.
+        `changed` is told which stations a service has changed, and its name; it keeps them and
+        returns why that failed, or nothing.
 
         """
         self._node = node
@@ -56,7 +57,8 @@ class TriggerServices:
             return response
         try:
             response.message = act(stations)
-            self._changed(stations, act.__name__.strip('_'))
+            problem = self._changed(stations, act.__name__.strip('_'))
+            response.message += f', not kept: {problem}' if problem else ''
             response.success = True
         except InputError as error:
             response.message = f'kept the old surface: {error}'
@@ -74,15 +76,13 @@ class TriggerServices:
     def _reset(self, stations: Stations) -> str:
         """Set the totals to zero."""
         for station in stations.values():
-            station.axis.monitor.reset_totals()
+            station.alarm.reset_totals()
         return f'set the totals to zero of {_names(stations)}'
 
     def _acknowledge(self, stations: Stations) -> str:
         """Set the levels back to UNKNOWN and end the events."""
-        now = self._node.get_clock().now().nanoseconds
         for station in stations.values():
-            if station.axis.monitor.acknowledge(now) is not None:
-                station.publish_event()
+            station.alarm.acknowledge()
         return f'acknowledged of {_names(stations)}'
 
 

@@ -102,7 +102,9 @@ def _run(bag: Bag, axes: list[Axis], period: int) -> Iterator[list[Judged]]:
 def _judged(writer: StateWriter, axis: str, state: State | None) -> list[Judged]:
     if state is None:
         return []
-    event = None if state.event is None else out_of_zone_message(axis, state.event)
+    event = None
+    if state.event is not None:
+        event = out_of_zone_message(axis, state.event, shelved=state.shelving.until != 0)
     return [Judged(state=writer.write(state), event=event)]
 
 

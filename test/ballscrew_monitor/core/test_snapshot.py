@@ -139,6 +139,6 @@ def test_what_no_monitor_has_written_is_refused(core, change, text):
 
 def test_what_is_not_listed_is_not_written(core):
     monitor = core.monitor()
-    monitor.event = object()
+    monitor.shelving = object()
     with pytest.raises(TypeError, match='object is no part of the memory'):
         freeze_monitor(monitor)

@@ -14,6 +14,7 @@ import pytest
 from surrogate.units import TURN
 
 GAP = SECOND // 2
+BEGIN = 1000 * SECOND
 
 
 def seen(core, point, **numbers):
@@ -53,7 +54,7 @@ def test_efficiency_counts_only_where_it_was_judged(core):
 def add_up(core, stream):
     account = Account()
     for stamp, point, numbers in stream:
-        account.add(moment(stamp, *seen(core, point, **numbers)), max_gap=GAP)
+        account.add(moment(BEGIN + stamp, *seen(core, point, **numbers)), max_gap=GAP)
     return account.totals()
 
 
@@ -72,14 +73,17 @@ def test_each_sample_lasts_until_the_next(core):
         outside_time=GAP,
         mixed_time=GAP,
         optimal_time=GAP,
-        revolutions=1.5,
+        angle=1.5 * TURN,
         energy_lost=pytest.approx(1.5 * TURN * 0.125),
+        since=BEGIN,
     )
+    assert totals.revolutions == 1.5
 
 
 def test_a_gap_and_a_standstill_add_nothing(core):
-    assert add_up(core, [(0, core.point(), {}), (GAP + 1, core.point(), {})]) == Totals()
-    assert add_up(core, [(0, core.point(speed=0.2), {}), (GAP, core.point(), {})]) == Totals()
+    nothing = Totals(since=BEGIN)
+    assert add_up(core, [(0, core.point(), {}), (GAP + 1, core.point(), {})]) == nothing
+    assert add_up(core, [(0, core.point(speed=0.2), {}), (GAP, core.point(), {})]) == nothing
 
 
 def test_motion_that_is_not_judged_is_counted_as_such(core):
@@ -113,4 +117,30 @@ def test_a_reset_begins_at_zero_and_loses_no_time(core):
     account.reset()
     assert account.totals() == Totals()
     account.add(moment(2 * GAP, *seen(core, core.point())), max_gap=GAP)
-    assert account.totals().running_time == GAP
+    assert (account.totals().running_time, account.totals().since) == (GAP, 2 * GAP)
+
+
+@given(st.lists(st.tuples(st.integers(0, GAP), speeds), min_size=2, max_size=20), st.data())
+def test_sums_that_are_kept_and_taken_up_are_the_same_bit_for_bit(core, stream, data):
+    """Taken over by another account between any two samples."""
+    account, other, stamp = Account(), Account(), BEGIN
+    cut = data.draw(st.integers(0, len(stream) - 1))
+    for number, (step, speed) in enumerate(stream):
+        stamp += step
+        for one in (account, other):
+            one.add(moment(stamp, *seen(core, core.point(speed=speed))), max_gap=GAP)
+        if number == cut:
+            kept, other = other.totals(), Account()
+            other.take_up(kept)
+            assert other.totals() == kept == account.totals()
+            account.forget()
+    assert other.totals() == account.totals()
+
+
+def test_the_beginning_moves_with_the_clock(core):
+    account = Account()
+    account.move(-GAP)
+    assert account.totals().since == 0
+    account.add(moment(3 * GAP, *seen(core, core.point())), max_gap=GAP)
+    account.move(-GAP)
+    assert account.totals().since == 2 * GAP

@@ -6,8 +6,9 @@ import errno
 import json
 import types
 
-from ballscrew_monitor.node import correction_store
-from ballscrew_monitor.node.correction_store import CorrectionStore, state_directory
+from ballscrew_monitor.node import state_folder
+from ballscrew_monitor.node.correction_store import CorrectionStore
+from ballscrew_monitor.node.state_folder import StateFolder
 import pytest
 from surrogate.files import InputError
 
@@ -18,9 +19,9 @@ SOLVE = types.SimpleNamespace(
 
 @pytest.fixture(name='store')
 def make_store(tmp_path):
-    store = CorrectionStore(tmp_path / 'state')
-    yield store
-    store.close()
+    folder = StateFolder(tmp_path / 'state')
+    yield CorrectionStore(folder)
+    folder.close()
 
 
 def test_what_is_kept_comes_back_bit_for_bit(store):
@@ -39,31 +40,13 @@ def test_each_axis_has_its_own_and_the_last_word_counts(store):
     assert [len(store.load(axis)[1]) for axis in 'xy'] == [0, 2]
 
 
-def test_a_second_node_of_the_name_keeps_nothing_and_says_so(store, tmp_path):
-    second = CorrectionStore(tmp_path / 'state')
-    assert second.reason == f'{tmp_path / "state"} is in use by another node of this name'
-    assert second.save('x', 'abc', [SOLVE]) == second.reason
-    assert second.load('x') == ('', [])
-    store.close()
-    third = CorrectionStore(tmp_path / 'state')
-    assert third.reason == ''
-    third.close()
-
-
-def test_no_directory_keeps_nothing(tmp_path):
-    store = CorrectionStore(None)
-    assert store.save('x', 'abc', [SOLVE]) == 'state_dir is empty'
-    (tmp_path / 'file').write_text('')
-    assert 'cannot be written' in CorrectionStore(tmp_path / 'file' / 'state').reason
-
-
 def test_a_full_disk_loses_nothing_that_was_kept(store, monkeypatch):
     store.save('x', 'abc', [SOLVE])
 
     def full(path, content):
         raise OSError(errno.ENOSPC, 'No space left on device', str(path))
 
-    monkeypatch.setattr(correction_store, 'replace_file', full)
+    monkeypatch.setattr(state_folder, 'replace_file', full)
     assert 'No space left on device' in store.save('x', 'abc', [SOLVE, SOLVE])
     assert len(store.load('x')[1]) == 1
 
@@ -88,6 +71,15 @@ def test_a_damaged_file_is_moved_aside_with_a_sentence(store, tmp_path, content)
     assert store.load('x') == ('', [])
 
 
+def test_corrections_leave_room_for_the_sums(tmp_path):
+    folder = StateFolder(tmp_path, limit=1000)
+    store = CorrectionStore(folder)
+    assert store.save('x', 'abc', [SOLVE]) == ''
+    assert store.save('y', 'abc', [SOLVE] * 9) == f'{tmp_path} is at its state_limit of 0.001 MB'
+    assert [len(store.load(axis)[1]) for axis in 'xy'] == [1, 0]
+    folder.close()
+
+
 def test_the_file_says_its_units(store, tmp_path):
     store.save('x', 'abc', [SOLVE])
     content = json.loads((tmp_path / 'state' / 'x.corrections.json').read_text())
@@ -97,24 +89,3 @@ def test_the_file_says_its_units(store, tmp_path):
         'temperature_K',
         'solved',
     }
-
-
-@pytest.mark.parametrize(
-    ('wanted', 'place'),
-    [
-        ('', None),
-        ('/var/lib/screw', '/var/lib/screw'),
-        ('auto', '/state/ballscrew_monitor/cell/monitor'),
-    ],
-)
-def test_where_things_are_kept(monkeypatch, wanted, place):
-    monkeypatch.setenv('XDG_STATE_HOME', '/state')
-    found = state_directory(wanted, '/cell/monitor')
-    assert found is None if place is None else str(found) == place
-
-
-def test_without_the_variable_it_is_the_place_of_the_specification(monkeypatch):
-    monkeypatch.delenv('XDG_STATE_HOME', raising=False)
-    monkeypatch.setenv('HOME', '/someone')
-    found = state_directory('auto', '/monitor')
-    assert str(found) == '/someone/.local/state/ballscrew_monitor/monitor'

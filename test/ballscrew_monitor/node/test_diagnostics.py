@@ -11,10 +11,13 @@ from ballscrew_monitor.core import reasons
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.derived_load import LoadDerivation
 from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, Why
+from ballscrew_monitor.core.judgement import Level
 from ballscrew_monitor.core.links import Link
+from ballscrew_monitor.core.shelving import shelve
 from ballscrew_monitor.core.state import Event
-from ballscrew_monitor.node import diagnostics
+from ballscrew_monitor.node import diagnostics, state_folder
 from ballscrew_monitor.node.diagnostics import ERROR, OK, STALE, WARN
+from ballscrew_monitor.node.plain_topics import plain_values
 import pytest
 
 START = 1000 * SECOND
@@ -227,6 +230,32 @@ def test_without_a_state_there_is_no_news(core, links, message):
     assert made[2].level == OK
 
 
+@pytest.mark.parametrize(
+    ('events', 'shown'),
+    [
+        ([LOAD, SPEED], (OK, 'shelved until 1970-01-01 00:17:40 UTC: nut is ordered')),
+        ([LOAD, SPEED, STILL], (OK, 'shelved until 1970-01-01 00:17:40 UTC: nut is ordered')),
+        ([LOAD, SPEED, HEAVY, SPEED], (WARN, 'not judged: load outside the surface')),
+    ],
+)
+def test_a_shelved_warning_is_no_warning_and_hides_no_other(core, events, shown):
+    state, monitor = None, core.monitor(core.surface(rcs=0.5), core.limits(raise_delay=0))
+    monitor.shelving = shelve(START, 60.0, 'nut is ordered')
+    for event in events:
+        state = monitor.update(event) or state
+    assert state.level is Level.WARN
+    (said, _) = diagnostics.summaries(state, monitor.event, LINKS)
+    assert said == shown
+    assert not plain_values(state)['out_of_zone']
+
+
+def test_the_state_directory():
+    good, bad = (diagnostics.of_folder('/cell/node', problem) for problem in ('', 'it is full'))
+    assert (good.level, good.message) == (OK, 'sums, events and corrections are kept')
+    assert (bad.level, bad.message) == (WARN, 'it is full')
+    assert good.name == bad.name == 'cell/node: State directory'
+
+
 def test_values_carry_their_unit(core):
     made = after(core, LOAD, SPEED)
     values = {pair.key: pair.value for pair in made['Lubrication'].values}
@@ -257,6 +286,8 @@ SENTENCES = [
     diagnostics.NOTHING_YET,
     diagnostics.INACTIVE,
     diagnostics.NOT_DERIVED,
+    diagnostics.KEPT,
+    *(state_folder.UNWRITABLE, state_folder.IN_USE, state_folder.DAMAGED),
 ]
 BEGINNINGS = [
     diagnostics.CLOCK_STANDS,
@@ -270,8 +301,8 @@ BEGINNINGS = [
     'words', [*SENTENCES, *sorted({first_words(text) for text in BEGINNINGS})]
 )
 def test_the_guide_says_what_to_do_about_each_message(words):
-    guide = (Path(__file__).parents[3] / 'docs' / 'guide' / 'node.md').read_text()
-    assert words in guide
+    guide = Path(__file__).parents[3] / 'docs' / 'guide'
+    assert words in (guide / 'node.md').read_text() + (guide / 'kept.md').read_text()
 
 
 DERIVED = {

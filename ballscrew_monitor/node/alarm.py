@@ -1,0 +1,142 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The warning of one axis: its topic, its log, and what people do to it."""
+
+from collections.abc import Callable
+from typing import Any
+
+from ballscrew_monitor.core.conversions import clock_text, seconds
+from ballscrew_monitor.core.judgement import Level
+from ballscrew_monitor.core.shelving import NOT_SHELVED, Shelving
+from ballscrew_monitor.core.state import State
+from ballscrew_monitor.node.axis import Axis
+from ballscrew_monitor.node.event_log import event_facts, Kind, point_facts, totals_facts
+from ballscrew_monitor.node.keeping import Keeping
+from ballscrew_monitor.node.messages import out_of_zone_message
+from ballscrew_msgs.msg import OutOfZone
+from rclpy.duration import Duration
+from rclpy.lifecycle import LifecycleNode
+from rclpy.publisher import Publisher
+
+LAST_WORD = Duration(seconds=0.5)  # for subscribers to take the end of an event
+
+
+class Alarm:
+    """Speaks of the events of one axis, and keeps them."""
+
+    def __init__(
+        self,
+        node: LifecycleNode,
+        axis: Axis,
+        publisher: Publisher,
+        keeping: Keeping,
+        record: Callable[[str, Any], None],
+    ) -> None:
+        """Speak through a `publisher` of the node; `record` is given each message and topic."""
+        self._node = node
+        self._axis = axis
+        self._publisher = publisher
+        self._keeping = keeping
+        self._record = record
+
+    def publish(self) -> None:
+        """Publish the event that is active, or the last one."""
+        message = self._message()
+        self._publisher.publish(message)
+        self._record(f'~/{self._axis.name}/out_of_zone', message)
+
+    def follow(self, state: State) -> None:
+        """Speak of the event that a state has begun or ended."""
+        event, monitor = self._axis.monitor.event, self._axis.monitor
+        self.publish()
+        kind = Kind.EVENT_BEGIN if event.active else Kind.EVENT_END
+        self._note_event(kind, point=point_facts(state.point))
+        if event.active:
+            advice = f'; {event.advice.text}' if event.advice.text else ''
+            self._warn(f'event {event.number}: {event.cause.text}{advice}')
+        elif monitor.level is Level.OK:
+            self._say(f'event {event.number} is over')
+
+    def end(self, reason: str) -> None:
+        """End the event that is active, if one is, because nothing is judged any more."""
+        monitor = self._axis.monitor
+        why = f'ended by the node, not by the axis, nothing is judged any more: {reason}'
+        if monitor.acknowledge(self._now, why) is not None:
+            # Past the lifecycle: the publisher of an inactive node is mute.
+            Publisher.publish(self._publisher, self._message())
+            self._publisher.wait_for_all_acked(LAST_WORD)
+            self._warn(f'event {monitor.event.number}: {why}')
+            self._note_event(Kind.EVENT_END)
+        self.remember()
+
+    def acknowledge(self) -> None:
+        """Set the level back to UNKNOWN and end the event, because somebody has seen it."""
+        ended = self._axis.monitor.acknowledge(self._now)
+        self._keeping.note(
+            Kind.ACKNOWLEDGE, self._axis.name, event=self._axis.monitor.event.number
+        )
+        if ended is not None:
+            self.publish()
+            self._note_event(Kind.EVENT_END)
+        self.remember()
+
+    def reset_totals(self) -> None:
+        """Set the sums to zero; what they were is in the log."""
+        totals = self._axis.monitor.memory.totals
+        self._axis.monitor.reset_totals()
+        self._keeping.note(Kind.RESET_TOTALS, self._axis.name, totals=totals_facts(totals))
+        self.remember()
+
+    def shelve(self, shelving: Shelving) -> None:
+        """Shelve the warning, or no longer."""
+        before, self._axis.monitor.shelving = self._axis.monitor.shelving, shelving
+        if shelving.until:
+            until = clock_text(shelving.until)
+            self._warn(f'the warning is shelved until {until}: {shelving.reason}')
+            duration = seconds(shelving.until - self._now)
+            self._keeping.note(
+                Kind.SHELVE,
+                self._axis.name,
+                duration_s=duration,
+                until=until,
+                until_ns=shelving.until,
+                reason=shelving.reason,
+            )
+        elif before.until:
+            self._say('the warning is no longer shelved')
+            self._keeping.note(Kind.UNSHELVE, self._axis.name, reason=before.reason)
+        self.publish()
+        self.remember()
+
+    def end_shelving(self) -> bool:
+        """End the shelving if its time is over; tell whether it was."""
+        monitor = self._axis.monitor
+        over = monitor.shelving.until != monitor.shelving.at(self._now).until
+        if over:
+            self.shelve(NOT_SHELVED)
+        return over
+
+    def remember(self) -> None:
+        """Keep the sums, the event and the shelving."""
+        self._keeping.remember(self._axis.name, self._axis.monitor.memory)
+
+    @property
+    def _now(self) -> int:
+        return self._node.get_clock().now().nanoseconds
+
+    def _message(self) -> OutOfZone:
+        monitor = self._axis.monitor
+        shelved = bool(monitor.shelving.at(self._now).until)
+        return out_of_zone_message(self._axis.name, monitor.event, shelved=shelved)
+
+    def _note_event(self, kind: Kind, **facts: Any) -> None:
+        event = self._axis.monitor.event
+        self._keeping.note(kind, self._axis.name, stamp=event.stamp, **event_facts(event), **facts)
+        self.remember()
+
+    # Two functions: rclpy ties one severity to one place in the code.
+    def _say(self, text: str) -> None:
+        self._node.get_logger().info(f'axis {self._axis.name}: {text}')
+
+    def _warn(self, text: str) -> None:
+        self._node.get_logger().warning(f'axis {self._axis.name}: {text}')

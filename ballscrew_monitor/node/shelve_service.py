@@ -1,0 +1,66 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The service that shelves the warning of an axis, or of all, for a stated time."""
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from ballscrew_monitor.core.conversions import clock_text
+from ballscrew_monitor.core.shelving import shelve
+from ballscrew_monitor.node.messages import fill_time
+from ballscrew_monitor.node.station import Station
+from ballscrew_msgs.srv import ShelveAlarm
+from rclpy.node import Node
+from surrogate.files import InputError
+
+
+class ShelveService:
+    """Shelves warnings."""
+
+    def __init__(
+        self,
+        node: Node,
+        find: Callable[[], Mapping[str, Station]],
+        changed: Callable[[Mapping[str, Station], str], str],
+    ) -> None:
+        """
+        Make the service; `find` returns the stations, none while the node is unconfigured.
+
+        `changed` is told which stations the service has changed, and its name; it keeps them and
+        returns why that failed, or nothing.
+
+        """
+        self._node = node
+        self._find = find
+        self._changed = changed
+        node.create_service(ShelveAlarm, '~/shelve', self._serve)
+
+    def _serve(self, request: Any, response: Any) -> Any:
+        stations = self._find()
+        axes = [request.axis] if request.axis else list(stations)
+        unknown = [axis for axis in axes if axis not in stations]
+        if not stations:
+            response.message = 'the node is not configured'
+        elif unknown:
+            response.message = f'axis {unknown[0]!r} is unknown, known are: {", ".join(stations)}'
+        else:
+            self._shelve({axis: stations[axis] for axis in axes}, request, response)
+        return response
+
+    def _shelve(self, stations: Mapping[str, Station], request: Any, response: Any) -> None:
+        now = self._node.get_clock().now().nanoseconds
+        try:
+            shelving = shelve(now, request.duration, request.reason)
+        except InputError as error:
+            response.message = str(error)
+            return
+        for station in stations.values():
+            station.shelve(shelving)
+        names = ', '.join(stations)
+        response.success = True
+        response.message = f'no longer shelved: {names}'
+        if shelving.until:
+            response.message = f'shelved until {clock_text(shelving.until)}: {names}'
+        fill_time(response.until, shelving.until)
+        problem = self._changed(stations, 'shelve')
+        response.message += f', not kept: {problem}' if problem else ''

@@ -1,0 +1,52 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""A warning is shelved for a stated time and a reason, and never for longer than a day."""
+
+import math
+
+from ballscrew_monitor.core.conversions import clock_text, SECOND
+from ballscrew_monitor.core.shelving import LONGEST, NOT_SHELVED, shelve, Shelving
+import pytest
+from surrogate.files import InputError
+
+NOW = 1_800_000_000 * SECOND
+
+
+def test_it_holds_until_its_time_and_not_at_it():
+    shelving = shelve(NOW, 60.0, ' nut is\nordered ')
+    assert shelving == Shelving(until=NOW + 60 * SECOND, reason='nut is ordered')
+    assert shelving.at(NOW) is shelving
+    assert shelving.at(shelving.until - 1) is shelving
+    assert shelving.at(shelving.until) is NOT_SHELVED
+
+
+def test_a_clock_that_is_set_back_shelves_no_longer_than_a_day():
+    shelving = shelve(NOW, 86400.0, 'why')
+    assert shelving.at(shelving.until - LONGEST) is shelving
+    assert shelving.at(shelving.until - LONGEST - 1) is NOT_SHELVED
+    assert shelving.at(10 * SECOND) is NOT_SHELVED
+
+
+def test_a_duration_of_zero_ends_it_without_a_reason():
+    assert shelve(NOW, 0.0, '') is NOT_SHELVED
+
+
+@pytest.mark.parametrize(
+    ('now', 'duration', 'reason', 'sentence'),
+    [
+        (NOW, -1.0, 'why', 'duration is -1 s, allowed is 0 to 86400 s'),
+        (NOW, 86400.1, 'why', 'duration is 86400.1 s, allowed is 0 to 86400 s'),
+        (NOW, math.nan, 'why', 'duration is nan s, allowed'),
+        (NOW, math.inf, 'why', 'duration is inf s, allowed'),
+        (NOW, 1.0, ' \n', 'reason has 0 characters, it must say why in 1 to 500'),
+        (NOW, 1.0, 'x' * 501, 'reason has 501 characters'),
+        (0, 1.0, 'why', 'the clock of the node stands at zero, play /clock first'),
+    ],
+)
+def test_what_is_refused(now, duration, reason, sentence):
+    with pytest.raises(InputError, match=sentence):
+        shelve(now, duration, reason)
+
+
+def test_a_stamp_for_people():
+    assert clock_text(NOW + 999_999_999) == '2027-01-15 08:00:00 UTC'

@@ -1,0 +1,223 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What the node keeps, over the real middleware: killed, restarted, on a full disk, shelved."""
+
+import json
+import resource
+import signal
+
+from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.core.memory import Memory, RESTARTED
+from ballscrew_monitor.core.state import Event
+from ballscrew_monitor.core.tally import Totals
+from ballscrew_monitor.node.memory_store import memory_record
+from ballscrew_msgs.msg import BallScrewState, OutOfZone
+from ballscrew_msgs.srv import ShelveAlarm
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+import pytest
+from rclpy.qos import QoSDurabilityPolicy, QoSProfile
+from std_msgs.msg import Bool
+from std_srvs.srv import Trigger
+from surrogate.files import json_text
+
+LATCHED = QoSProfile(depth=10, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL)
+FAST, SLOW = 100.0, 0.8  # [rad/s] optimal and outside at 1 kN and 40 degC
+KILLS = 3
+AT_ONCE = {'x__max_future': 3600.0, 'x__limits__raise_delay': 0.0, 'x__limits__clear_delay': 0.0}
+
+
+@pytest.fixture(name='axis')
+def make_axis(node, tmp_path):
+    """Return an axis whose node keeps in a folder, and is not started yet."""
+    return Axis(node, tmp_path / 'state')
+
+
+class Axis:
+    """A node, its machine and all that is heard of them."""
+
+    def __init__(self, node, folder):
+        self.node, self.folder = node, folder
+        self.states = node.states()
+        self.events = node.listen(OutOfZone, f'{node.name}/x/out_of_zone', LATCHED)
+        self.told = node.listen(DiagnosticArray, '/diagnostics')
+        self.publish = None
+
+    def start(self, **parameters):
+        """Start the node, the first time with its machine."""
+        self.states.clear()
+        self.events.clear()
+        self.told.clear()
+        self.node.start(**{'state_dir': self.folder} | AT_ONCE | parameters)
+        self.publish = self.publish or self.node.machine()
+
+    def move(self, speed, condition, what):
+        """Move until a state fulfils a condition; return the state."""
+
+        def moved():
+            self.publish(speed)
+            return next((one for one in reversed(self.states) if condition(one)), None)
+
+        return self.node.until(moved, what)
+
+    def kill(self):
+        """Kill the node, as the system does."""
+        self.node.process.kill()
+        assert self.node.process.wait() == -signal.SIGKILL
+
+    def statuses(self, part):
+        """Return the levels and messages of a status, each change of them once."""
+        found = [
+            (status.level, status.message)
+            for message in self.told
+            for status in message.status
+            if status.name == f'ballscrew_monitor: {part}'
+        ]
+        return [now for now, before in zip(found, [None, *found], strict=False) if now != before]
+
+    def kept(self):
+        """Return what is on the disk of the axis."""
+        path = self.folder / 'x.memory.json'
+        return json.loads(path.read_text()) if path.exists() else None
+
+    def begin(self, number):
+        """Leave the zone until the event of a number is on the disk as active."""
+        begun = self.move(SLOW, lambda state: state.event_id == number, 'the event')
+        assert begun.level == BallScrewState.LEVEL_WARN
+
+        def active():
+            kept = self.kept()
+            return kept and (kept['event']['event'], kept['event']['active']) == (number, True)
+
+        self.node.until(active, 'the event on the disk')
+
+    def log(self):
+        """Return the lines of the event log."""
+        lines = (self.folder / 'events.jsonl').read_text().splitlines()
+        return [json.loads(line) for line in lines]
+
+
+def test_a_node_that_is_killed_in_an_event_goes_on(axis):
+    known = 0.0
+    for number in range(1, KILLS + 1):
+        axis.start()
+        last = axis.node.until(lambda: axis.events and axis.events[0], 'the last event')
+        assert (last.event_id, last.active) == (number - 1, False)
+        assert last.advice == (RESTARTED if number > 1 else '')
+        first = axis.move(SLOW, lambda state: state.judged, 'a state')
+        assert first.totals.running_time >= known
+        axis.begin(number)
+        known = axis.kept()['totals']['running_time_ns'] / SECOND
+        axis.kill()
+    lines = [(line['kind'], line.get('event'), line.get('ending')) for line in axis.log()]
+    assert [line for line in lines if line[0] == 'event_begin'] == [
+        ('event_begin', number, '') for number in range(1, KILLS + 1)
+    ]
+    assert [line for line in lines if line[0] == 'event_end'] == [
+        ('event_end', number, RESTARTED) for number in range(1, KILLS)
+    ]
+    assert [line[0] for line in lines].count('node_start') == KILLS
+
+
+def test_a_full_disk_is_one_sentence_and_nothing_is_lost(axis):
+    """The limit on the size of a file stands for the disk: nothing can be written below it."""
+    axis.start()
+    axis.move(FAST, lambda state: state.judged > 2, 'a state')
+    axis.node.until(lambda: axis.kept(), 'the first file')
+    process = axis.node.process.pid
+    soft, hard = resource.prlimit(process, resource.RLIMIT_FSIZE)
+    axis.node.until(lambda: axis.statuses('State directory'), 'the status')
+    resource.prlimit(process, resource.RLIMIT_FSIZE, (0, hard))
+    axis.move(SLOW, lambda state: state.event_id == 1, 'the event')
+    axis.node.until(lambda: axis.statuses('State directory')[1:], 'the sentence')
+    axis.move(FAST, lambda state: state.level == BallScrewState.LEVEL_OK, 'the end of it')
+    reset = axis.node.call(Trigger, 'x/reset_totals')
+    assert reset.success
+    assert reset.message.endswith('cannot be written, File too large')
+    resource.prlimit(process, resource.RLIMIT_FSIZE, (soft, hard))
+    axis.node.until(lambda: axis.statuses('State directory')[2:], 'the disk to work again')
+    good = (DiagnosticStatus.OK, 'sums, events and corrections are kept')
+    bad = f'{axis.folder} cannot be written, File too large'
+    assert axis.statuses('State directory') == [good, (DiagnosticStatus.WARN, bad), good]
+    kinds = [line['kind'] for line in axis.log()]
+    assert [kind for kind in kinds if kind != 'reset_totals'] == [
+        'node_start',
+        'event_begin',
+        'event_end',
+    ]
+    assert 'reset_totals' in kinds
+    assert axis.kept()['event']['event'] == 1
+    assert axis.node.stop() == 0
+    assert axis.log()[-1]['kind'] == 'node_stop'
+
+
+def test_a_directory_that_is_mounted_later_is_taken_up(axis, tmp_path):
+    disk = tmp_path / 'disk'
+    disk.write_text('not mounted yet')
+    axis.folder = disk / 'state'
+    axis.start()
+    axis.move(SLOW, lambda state: state.event_id == 1, 'the event')
+    bad = f'{axis.folder} cannot be written, Not a directory'
+    axis.node.until(
+        lambda: axis.statuses('State directory')[-1:] == [(DiagnosticStatus.WARN, bad)]
+    )
+    disk.unlink()
+    axis.folder.mkdir(parents=True)
+    before = Memory(totals=Totals(running_time=7 * SECOND, since=1), event=Event(number=41))
+    record = json_text({'version': 1, **memory_record(before)})
+    (axis.folder / 'x.memory.json').write_text(record)
+    state = axis.move(SLOW, lambda state: state.event_id == 42, 'the number that goes on')
+    assert state.totals.running_time > 7.0
+    assert state.totals.since.nanosec == 1
+    axis.node.until(lambda: axis.statuses('State directory')[-1][0] == DiagnosticStatus.OK)
+    assert [line['kind'] for line in axis.log()] == ['node_start', 'event_begin']
+
+
+def test_a_damaged_file_is_one_sentence_and_begins_anew(axis):
+    axis.folder.mkdir()
+    path = axis.folder / 'x.memory.json'
+    path.write_text('{"version": 1, "totals": {}}')
+    axis.start()
+    state = axis.move(SLOW, lambda state: state.event_id == 1, 'the event')
+    assert state.totals.running_time < 7.0
+    (level, message), *rest = axis.statuses('State directory')
+    assert (level, rest) == (DiagnosticStatus.WARN, [])
+    assert message.startswith(f'{path} is damaged (')
+    assert message.endswith('), moved to x.memory.damaged')
+    assert path.with_suffix('.damaged').exists()
+
+
+def test_a_shelved_warning_calls_nobody_and_outlives_the_node(axis):
+    plain = axis.node.listen(Bool, f'{axis.node.name}/x/plain/out_of_zone')
+    axis.start(x__plain_topics='true')
+    axis.move(SLOW, lambda state: state.event_id == 1, 'the event')
+    axis.node.until(lambda: axis.statuses('x: Lubrication')[-1][0] == DiagnosticStatus.WARN)
+    node, ask = axis.node, {'axis': 'x', 'duration': 3600.0, 'reason': 'nut is ordered'}
+    refused = node.call(ShelveAlarm, 'shelve', **ask | {'reason': ''})
+    assert (refused.success, refused.until.sec) == (False, 0)
+    assert refused.message == 'reason has 0 characters, it must say why in 1 to 500'
+    unknown = node.call(ShelveAlarm, 'shelve', **ask | {'axis': 'q'}).message
+    assert unknown == "axis 'q' is unknown, known are: x"
+    answer = node.call(ShelveAlarm, 'shelve', **ask)
+    assert answer.success
+    state = axis.move(SLOW, lambda state: state.shelved, 'a state that says so')
+    assert (state.level, state.event_id) == (BallScrewState.LEVEL_WARN, 1)
+    assert (state.shelved_until, state.shelve_reason) == (answer.until, 'nut is ordered')
+    node.until(lambda: plain and not plain[-1].data, 'the plain topic')
+    node.until(
+        lambda: axis.events[-1].shelved and axis.events[-1].active, 'the event that says so'
+    )
+    level, message = axis.statuses('x: Lubrication')[-1]
+    assert level == DiagnosticStatus.OK
+    assert message.startswith('shelved until 2')
+    assert message.endswith(' UTC: nut is ordered')
+    axis.kill()
+    axis.start()
+    state = axis.move(SLOW, lambda state: state.event_id == 2, 'the next event')
+    assert (state.shelved_until, state.shelve_reason) == (answer.until, 'nut is ordered')
+    assert node.call(ShelveAlarm, 'shelve', duration=0.0).message == 'no longer shelved: x'
+    axis.move(SLOW, lambda state: state.event_id == 2 and not state.shelved, 'the warning')
+    assert node.call(ShelveAlarm, 'shelve', duration=0.5, reason='short').success
+    node.until(lambda: axis.log()[-1]['kind'] == 'unshelve', 'its end by itself')
+    assert axis.log()[-1]['reason'] == 'short'
+    node.until(lambda: not axis.events[-1].shelved, 'the event that says so')
+    node.until(lambda: axis.statuses('x: Lubrication')[-1][0] == DiagnosticStatus.WARN)
