@@ -4,8 +4,6 @@
 
 from collections.abc import Callable, Iterable, Sequence
 import functools
-import signal
-import sys
 import traceback
 from typing import Any
 
@@ -14,30 +12,25 @@ from ballscrew_monitor.core.inputs import InputSample, Refusal
 from ballscrew_monitor.core.pulse import Pulse
 from ballscrew_monitor.core.state import State
 from ballscrew_monitor.node import diagnostics, parameters
-from ballscrew_monitor.node.axis import Axis, build_axis, check_topics
+from ballscrew_monitor.node.axis import Axis, build_axes, named_topics
 from ballscrew_monitor.node.correction_store import CorrectionStore, state_directory
 from ballscrew_monitor.node.intake import Intake
 from ballscrew_monitor.node.journal import Journal, SILENT
 from ballscrew_monitor.node.parameter_store import ParameterStore
 from ballscrew_monitor.node.qos import check_overrides
 from ballscrew_monitor.node.recording_process import recording, RecordingProcess
-from ballscrew_monitor.node.solve_server import MOST_SOLVES, SolveServer
+from ballscrew_monitor.node.solve_server import SolveServer
 from ballscrew_monitor.node.solver_process import SolverProcess
 from ballscrew_monitor.node.station import STATE_QOS, Station
-from ballscrew_monitor.node.trigger_services import TriggerServices
+from ballscrew_monitor.node.trigger_services import not_built, TriggerServices
 from ballscrew_msgs.msg import OutOfZone
 from ballscrew_msgs.srv import EvaluateOperatingPoint
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
-import rclpy
 from rclpy.clock import Clock, ClockType
-from rclpy.exceptions import ParameterException
-from rclpy.executors import SingleThreadedExecutor
 from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
-from rclpy.signals import SignalHandlerOptions
 from surrogate.files import InputError
 
 SUCCESS, FAILURE = TransitionCallbackReturn.SUCCESS, TransitionCallbackReturn.FAILURE
-POLL = 0.2  # [s] longest wait before a signal is noticed
 
 
 def _reported(transition: Callable[..., Any]) -> Callable[..., Any]:
@@ -64,6 +57,7 @@ class BallscrewMonitor(LifecycleNode):
         self._active = False
         self._finalized = False
         self._reason = 'not configured'
+        self._failed: dict[str, str] = {}  # axes that could not be built, and why
         self._intake: Intake | None = None
         self._tick_timer: Any = None
         self._steady = Clock(clock_type=ClockType.STEADY_TIME)
@@ -81,7 +75,9 @@ class BallscrewMonitor(LifecycleNode):
         self._folder = state_directory(self._values['state_dir'], self.get_fully_qualified_name())
         self._corrections = CorrectionStore(self._folder)
         self._solves = SolveServer(self, SolverProcess, self._find_station)
-        TriggerServices(self, self._values, lambda: self._stations, self._describe)
+        TriggerServices(
+            self, self._values, lambda: self._stations, lambda: self._failed, self._describe
+        )
 
     def start(self) -> None:
         """Configure and activate, if the node is to do so itself."""
@@ -101,15 +97,18 @@ class BallscrewMonitor(LifecycleNode):
 
     @_reported
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Load the surfaces, compile the inputs; on failure stay unconfigured, with a reason."""
+        """Load the surfaces, compile the inputs; without one axis that works stay unconfigured."""
         try:
-            axes = [build_axis(name, self._values) for name in self._values['axes']]
-            topics = check_topics(axes, self.resolve_topic_name)
-            check_overrides(self._store.given, topics)
+            resolve = self.resolve_topic_name
+            check_overrides(self._store.given, named_topics(self._values, resolve))
+            axes, reasons = build_axes(self._values, resolve)
             self._recording = recording(self._values, self._folder)
         except InputError as error:
-            self._reason = f'not configured: {error}'
-            self.get_logger().error(self._reason)
+            axes, reasons = [], dict.fromkeys(self._values['axes'], str(error))
+        self._failed = {name: f'not configured: {why}' for name, why in reasons.items()}
+        for reason in dict.fromkeys(self._failed.values()):
+            self.get_logger().error(reason)
+        if not axes:
             self._publish_diagnostics()
             return FAILURE
         self._stations = {
@@ -138,6 +137,8 @@ class BallscrewMonitor(LifecycleNode):
         return self._stations[axis] if self._active else 'the node is inactive, activate it first'
 
     def _unknown(self, axis: str) -> str:
+        if axis in self._failed:
+            return not_built(axis, self._failed[axis])
         known = ', '.join(self._stations) or 'none, the node is not configured'
         return f'axis {axis!r} is unknown, known are: {known}'
 
@@ -230,7 +231,7 @@ class BallscrewMonitor(LifecycleNode):
         for station in self._stations.values():
             station.end_event(reason)
             station.close()
-        self._stations = {}
+        self._stations, self._failed = {}, {}
         self._store.locked = False
         self._reason = reason
         self._publish_diagnostics()
@@ -277,17 +278,16 @@ class BallscrewMonitor(LifecycleNode):
         self._record('/diagnostics', message)
 
     def _statuses(self, axes: Sequence[str], stood: int) -> list[DiagnosticStatus]:
-        made = []
+        made, node = [], self.get_fully_qualified_name()
         for name in axes:
             if name in self._stations:
                 station = self._stations[name]
                 links = self._intake.links(station.axis) if self._intake else None
                 made += station.statuses(links=links, stood=stood)
             else:
-                made += diagnostics.failed(self.get_fully_qualified_name(), name, self._reason)
+                made += diagnostics.failed(node, name, self._failed.get(name, self._reason))
         if self._journal.on:
-            name = self.get_fully_qualified_name()
-            made.append(diagnostics.recording(name, self._journal.problem))
+            made.append(diagnostics.recording(node, self._journal.problem))
         return made
 
     def _on_evaluate(self, request: Any, response: Any) -> Any:
@@ -298,32 +298,3 @@ class BallscrewMonitor(LifecycleNode):
         else:
             station.evaluate(request.points, response)
         return response
-
-
-def main(args: list[str] | None = None) -> int:
-    """Run the node until SIGINT or SIGTERM; return 0, or 2 after bad input."""
-    stop: list[int] = []
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda received, frame: stop.append(received))
-    try:
-        # The handlers of rclpy tear the context down while the executor still waits on it.
-        rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
-        node = BallscrewMonitor()
-    except (InputError, ParameterException, RuntimeError) as error:
-        print(f'{parameters.NODE_NAME}: {parameters.explain(error)}', file=sys.stderr)
-        rclpy.try_shutdown()
-        return 2
-    executor = SingleThreadedExecutor()
-    executor.add_node(node)
-    node.start()
-    while not stop:
-        executor.spin_once(timeout_sec=POLL)
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, signal.SIG_IGN)
-    node.finish()
-    for _ in range(MOST_SOLVES):  # the goals that this has ended are answered
-        executor.spin_once(timeout_sec=0.0)
-    executor.shutdown()
-    node.destroy_node()
-    rclpy.shutdown()
-    return 0

@@ -69,6 +69,7 @@ class Station:
         """
         self.axis = axis
         self.dwell = Dwell()
+        self.refused = ''  # why the last reload of the surface was
         self._values = values
         self._store = store
         self._record = record
@@ -224,6 +225,7 @@ class Station:
         if before and same:
             surface = corrected(surface, before)
         self.use_surface(surface)
+        self.refused = ''
         if not before:
             return ''
         if not same:
@@ -295,6 +297,7 @@ class Station:
             self.axis.surface,
             links=links,
             clock_stands=stood > self.axis.monitor.settings.timeouts[Source.SPEED],
+            refused=self.refused,
         )
 
     def _summaries(self, state: State) -> tuple[diagnostics.StatusSummary, ...]:
