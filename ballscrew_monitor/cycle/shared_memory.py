@@ -93,8 +93,9 @@ def files_of(process: Path, folder: Path) -> Iterator[Path]:
     """Yield the files of `folder` that a process has, as far as /proc lets it be seen."""
     with contextlib.suppress(OSError):  # it has ended, or is of somebody else
         for line in (process / 'maps').read_text(errors='replace').splitlines():
-            if f' {folder}/' in line:
-                yield Path(line[line.index(f'{folder}/') :])
+            before, slash, name = line.partition(f' {folder}/')
+            if slash:
+                yield folder / name
         for opened in (process / 'fd').iterdir():
             with contextlib.suppress(OSError):
                 yield Path(os.readlink(opened))

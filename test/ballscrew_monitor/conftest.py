@@ -9,6 +9,7 @@ import ipaddress
 import math
 import os
 import pathlib
+import re
 import signal
 import subprocess
 import sys
@@ -420,7 +421,7 @@ def socket_lines(process):
 def address_of(column):
     """Return address and port out of a table of sockets, whose words are of little endian."""
     address, _, port = column.partition(':')
-    words = [bytes.fromhex(address[at : at + 8])[::-1] for at in range(0, len(address), 8)]
+    words = [bytes.fromhex(word)[::-1] for word in re.findall('.{8}', address)]
     return str(ipaddress.ip_address(b''.join(words))), int(port, 16)
 
 

@@ -187,10 +187,11 @@ def test_in_a_loop_time_goes_on(short_bag):
     stamps = [stamp_of(message) for message in joints]
     one = bag.topics['/joint_states'].count
     length = bag.end_time - bag.start_time + PAUSE
-    assert len(joints) > 2 * one
-    assert [stamp - length for stamp in stamps[one : 2 * one]] == stamps[:one]
+    twice = 2 * one
+    assert len(joints) > twice
+    assert [stamp - length for stamp in stamps[one:twice]] == stamps[:one]
     assert stamps == sorted(set(stamps))
-    assert [message.velocity for message in joints[one : 2 * one]] == [
+    assert [message.velocity for message in joints[one:twice]] == [
         message.velocity for message in joints[:one]
     ]
     clock = [shown.clock.sec * SECOND + shown.clock.nanosec for shown in node.sent['/clock']]
