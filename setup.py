@@ -58,7 +58,7 @@ setup(
     version='0.1.0',
     packages=find_packages(include=['ballscrew_monitor*', 'surrogate*']),
     package_data={
-        'ballscrew_monitor': ['py.typed'],
+        'ballscrew_monitor': ['py.typed', 'node/*.xml'],
         'surrogate': [
             'py.typed',
             'data/cases/*.yaml',
@@ -104,8 +104,8 @@ setup(
     license='Apache-2.0',
     entry_points={
         'console_scripts': [
-            'ballscrew = ballscrew_monitor.cli:main',
-            'ballscrew_monitor = ballscrew_monitor.node.node:main',
+            'ballscrew = ballscrew_monitor.__main__:main',
+            'ballscrew_monitor = ballscrew_monitor.node.__main__:main',
         ]
     },
 )

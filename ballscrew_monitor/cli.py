@@ -10,22 +10,25 @@ Subcommands that need ROS import it in their handlers, so that the offline ones 
 import argparse
 import math
 import os
-from pathlib import Path
 import signal
 import sys
 from typing import Any
 
-from ballscrew_monitor.recordings.interrupts import FAILED, SIGNALLED
+from ballscrew_monitor.node.interrupts import FAILED, leave_to_python, SIGNALLED
+from ballscrew_monitor.node.middleware import check_middleware
+from ballscrew_monitor.options import (
+    add_doctor,
+    add_play,
+    add_recover,
+    add_replay,
+    add_run,
+    add_solve,
+)
 from surrogate.cli import add_commands
 from surrogate.files import InputError, json_text
 from surrogate.surface import SurfaceError
 from surrogate.units import RPM
 
-TREE = Path(__file__).resolve().parent.parent
-"""The repository, when the package runs from it: the defaults hold in any working directory."""
-BAG, PARAMS = TREE / 'bags' / 'nominal_cycle', TREE / 'config' / 'nominal_cycle.yaml'
-BAG_TEXT, PARAMS_TEXT = (f'{path.relative_to(TREE)} of the repository' for path in (BAG, PARAMS))
-OUT = Path('out')
 BAD_INPUT, INTERRUPTED = 2, SIGNALLED + signal.SIGINT
 # What some commands need beyond the rest, and how to get it.
 NEEDED = {
@@ -41,6 +44,11 @@ def main(arguments: list[str] | None = None) -> int:
     """Run the command line; return the exit code."""
     args = _parser().parse_args(arguments)
     try:
+        if args.handler in WITH_ROS:
+            # It is loaded with rclpy, and what does not suit it ends the process without a word.
+            check_middleware(discovers=args.handler in DISCOVERING)
+        else:
+            leave_to_python()
         return int(args.handler(args))
     except (InputError, SurfaceError) as error:
         print(f'ballscrew: {error}', file=sys.stderr)
@@ -74,135 +82,17 @@ def _parser() -> argparse.ArgumentParser:
         'files, and the monitor at work on a recorded cycle.',
     )
     subparsers = parser.add_subparsers(required=True, metavar='COMMAND')
-    _add_run(
-        subparsers.add_parser(
-            'run', help='play a bag into the real node over DDS and record what it says'
-        )
-    )
-    _add_replay(
-        subparsers.add_parser('replay', help='judge a bag without DDS, faster than real time')
-    )
-    _add_solve(
-        subparsers.add_parser('solve', help='ask the running node for a full solve of a point')
-    )
-    _add_doctor(
-        subparsers.add_parser(
-            'doctor', help='compare the running ROS graph with a parameter file, and say the cure'
-        )
-    )
-    _add_play(subparsers.add_parser('play', help='play a bag over DDS, with /clock'))
-    _add_recover(subparsers.add_parser('recover', help='mend a recording whose writer was killed'))
+    for add, handler in (
+        (add_run, _run),
+        (add_replay, _replay),
+        (add_solve, _solve),
+        (add_doctor, _doctor),
+        (add_play, _play),
+        (add_recover, _recover),
+    ):
+        add(subparsers).set_defaults(handler=handler)
     add_commands(subparsers, _read_bag)
     return parser
-
-
-def _add_params(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        '--params',
-        type=Path,
-        default=PARAMS,
-        metavar='FILE',
-        help=f'parameters of the node (default {PARAMS_TEXT})',
-    )
-
-
-def _add_run(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument('--bag', type=Path, default=BAG, help=f'bag to play (default {BAG_TEXT})')
-    _add_params(parser)
-    parser.add_argument(
-        '--out',
-        type=Path,
-        default=OUT,
-        metavar='DIR',
-        help='directory for recording, picture and log (default %(default)s)',
-    )
-    parser.add_argument(
-        '--rate', type=float, default=1.0, help='bag time over wall time (default 1)'
-    )
-    parser.set_defaults(handler=_run)
-
-
-def _add_replay(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument('bag', type=Path, metavar='BAG', help='bag directory or MCAP file')
-    _add_params(parser)
-    parser.add_argument('--json', action='store_true', help='print JSON')
-    parser.set_defaults(handler=_replay)
-
-
-def _add_play(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument('bag', type=Path, metavar='BAG', help='bag directory or MCAP file')
-    parser.add_argument(
-        '--rate', type=float, default=1.0, help='bag time over wall time (default 1)'
-    )
-    parser.add_argument(
-        '--wait',
-        type=float,
-        default=10.0,
-        metavar='SECONDS',
-        help='longest wait for a subscriber of every topic (default 10)',
-    )
-    parser.set_defaults(handler=_play)
-
-
-def _add_recover(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        'file', type=Path, metavar='FILE', help='MCAP file, or the folder of an unfinished one'
-    )
-    parser.set_defaults(handler=_recover)
-
-
-def _add_doctor(parser: argparse.ArgumentParser) -> None:
-    _add_params(parser)
-    parser.add_argument(
-        '--seconds',
-        type=float,
-        default=3.0,
-        metavar='T',
-        help='how long to listen (default 3); longer for slow topics',
-    )
-    parser.add_argument('--json', action='store_true', help='print JSON')
-    parser.set_defaults(handler=_doctor)
-
-
-def _add_solve(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument('--axis', required=True, help='name of the axis, such as x')
-    parser.add_argument(
-        '--speed-rpm',
-        type=float,
-        metavar='N',
-        help='screw speed [rev/min]; none: the current point',
-    )
-    parser.add_argument(
-        '--load-N',
-        type=float,
-        dest='load',
-        metavar='F',
-        help='axial load [N]; it opposes the motion when it has the sign of the speed',
-    )
-    parser.add_argument(
-        '--temperature-degC',
-        type=float,
-        dest='temperature',
-        metavar='T',
-        help='oil temperature [degC] (default that of the axis)',
-    )
-    parser.add_argument(
-        '--timeout',
-        type=float,
-        default=0.0,
-        metavar='SECONDS',
-        help="longest solve (default the node's)",
-    )
-    parser.add_argument('--node', default='', help='full name of the node, if there are several')
-    parser.add_argument(
-        '--wait',
-        type=float,
-        default=10.0,
-        metavar='SECONDS',
-        help='longest wait for the node (default 10)',
-    )
-    parser.add_argument('--json', action='store_true', help='print JSON')
-    parser.set_defaults(handler=_solve)
 
 
 def _run(args: argparse.Namespace) -> int:
@@ -256,6 +146,7 @@ def _read_bag(args: argparse.Namespace, lead: float) -> tuple[dict[str, Any], tu
     from ballscrew_monitor.recordings import no_load as no_load_bag
     from ballscrew_monitor.recordings.bag import Bag
 
+    check_middleware(discovers=False)
     for name in ('speed_topic', 'speed_field', 'torque_field'):
         if getattr(args, name) is None:
             raise InputError(f'--{name.replace("_", "-")} is missing, a bag needs it')
@@ -304,10 +195,18 @@ def _recover(args: argparse.Namespace) -> int:
 
 
 def _play(args: argparse.Namespace) -> int:
-    from ballscrew_monitor.recordings.playback import playback
+    from ballscrew_monitor.recordings.playback import Choice, playback
 
-    return playback(args.bag, rate=args.rate, patience=args.wait)
+    return playback(
+        args.bag,
+        Choice(params=args.params, topics=args.topics, every=args.all),
+        rate=args.rate,
+        patience=args.wait,
+        loop=args.loop,
+    )
 
 
-if __name__ == '__main__':
-    sys.exit(main())
+DISCOVERING = (_solve, _doctor, _play)
+"""Commands that need others in the ROS graph."""
+WITH_ROS = (_run, _replay, *DISCOVERING)
+"""Commands that need ROS; they put in order themselves what a signal would leave behind."""

@@ -12,6 +12,7 @@ import contextlib
 import functools
 import math
 from pathlib import Path
+import threading
 import time
 from typing import Any
 
@@ -24,6 +25,8 @@ from ballscrew_monitor.core.inputs import Input, make_input, Source
 from ballscrew_monitor.core.links import Link, types_of
 from ballscrew_monitor.node import parameters
 from ballscrew_monitor.node.axis import derivation_of, is_configured, load_surface, scaling_of
+from ballscrew_monitor.node.interrupts import interrupts, SIGNALLED
+from ballscrew_monitor.node.middleware import notice
 from ballscrew_monitor.node.parameter_row import ParameterRow
 from ballscrew_monitor.node.qos import check_overrides, input_qos, overridden, publishers_on
 from ballscrew_monitor.node.topics import absolute
@@ -50,11 +53,14 @@ def doctor(params: Path, *, seconds: float, as_json: bool = False) -> int:
     if not 0.1 <= seconds <= 3600.0:
         raise InputError(f'--seconds is {seconds:g} s, allowed is 0.1 to 3600 s')
     values, given = parameters.read_file(params), parameters.read_ros_parameters(params)
-    with _node(bool(given.get('use_sim_time', False))) as node:
-        examination = Examination(node, values, given)
+    stop = threading.Event()
+    with interrupts(stop) as interrupted, _node(bool(given.get('use_sim_time', False))) as node:
+        examination = Examination(node, values, given, stop)
         facts = examination.listen(seconds)
         around = surroundings(node)
-    found = examination.refused + findings(around, facts, seconds)
+    if interrupted:
+        return SIGNALLED + interrupted[0]
+    found = [*filter(None, [notice()]), *examination.refused, *findings(around, facts, seconds)]
     print(_record(found, facts) if as_json else _page(found, facts, around))
     return ILL if found else HEALTHY
 
@@ -81,9 +87,16 @@ def _node(simulated: bool) -> Iterator[Node]:
 class Examination:
     """What the parameters ask for, listened to; `refused` is what the node would not take."""
 
-    def __init__(self, node: Node, values: Mapping[str, Any], given: Mapping[str, Any]) -> None:
-        """Read the surfaces and find the publishers."""
+    def __init__(
+        self,
+        node: Node,
+        values: Mapping[str, Any],
+        given: Mapping[str, Any],
+        stop: threading.Event,
+    ) -> None:
+        """Read the surfaces and find the publishers; no longer than until `stop` is set."""
         self.refused: list[str] = []
+        self._stop = stop
         self._node, self._values, self._given = node, values, given
         self._wanted = [
             (axis, source)
@@ -120,7 +133,7 @@ class Examination:
 
     def _spin(self, seconds: float, over: Callable[[], bool] = lambda: False) -> None:
         end = time.monotonic() + seconds
-        while time.monotonic() < end and not over():
+        while time.monotonic() < end and not (over() or self._stop.is_set()):
             self._executor.spin_once(timeout_sec=POLL)
 
     def _value(self, axis: str, source: Source, leaf: str) -> Any:

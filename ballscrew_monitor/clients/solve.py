@@ -8,16 +8,18 @@ The node wants the machine frame, in which the force on the nut counts.
 
 """
 
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 import dataclasses
 import math
 import signal
 import sys
+import threading
 import time
 from typing import Any
 
 from ballscrew_monitor.core.conversions import axial_load, direction_of
+from ballscrew_monitor.node.interrupts import interrupts, SIGNALLED
+from ballscrew_monitor.node.middleware import notice
 from ballscrew_msgs.action import SolveOperatingPoint
 from ballscrew_msgs.msg import OperatingPoint, PointResult
 import rclpy
@@ -29,7 +31,7 @@ from rclpy.signals import SignalHandlerOptions
 from surrogate.files import InputError, json_text
 
 ACTION_TYPE = 'ballscrew_msgs/action/SolveOperatingPoint'
-SOLVED, NOT_SOLVED, INTERRUPTED = 0, 1, 130
+SOLVED, NOT_SOLVED, INTERRUPTED = 0, 1, SIGNALLED + signal.SIGINT
 POLL = 0.1  # [s]
 REJECTED = 'the node takes no more solves now, its queue is full'
 SIDES = {PointResult.SIDE_SCREW: 'screw', PointResult.SIDE_NUT: 'nut'}
@@ -89,7 +91,9 @@ def goal_of(question: Question) -> Any:
 
 def ask(question: Question, *, wait: float, as_json: bool) -> int:
     """Ask the node, print what comes of it, and return the exit code."""
-    with _interrupts() as interrupted:
+    with interrupts(threading.Event()) as interrupted:
+        if said := notice():
+            print(f'ballscrew: {said}', file=sys.stderr)
         rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
         node = rclpy.create_node('ballscrew_solve', enable_rosout=False)
         executor = SingleThreadedExecutor()
@@ -110,20 +114,7 @@ def ask(question: Question, *, wait: float, as_json: bool) -> int:
             executor.shutdown()
             node.destroy_node()
             rclpy.shutdown()
-        return INTERRUPTED if interrupted else code
-
-
-@contextmanager
-def _interrupts() -> Iterator[list[int]]:
-    """Collect SIGINT and SIGTERM instead of dying of them, so that the goal is taken back."""
-    found: list[int] = []
-    numbers = (signal.SIGINT, signal.SIGTERM)
-    before = [signal.signal(number, lambda got, frame: found.append(got)) for number in numbers]
-    try:
-        yield found
-    finally:
-        for number, handler in zip(numbers, before, strict=True):
-            signal.signal(number, handler)
+        return SIGNALLED + interrupted[0] if interrupted else code
 
 
 class _Conversation:

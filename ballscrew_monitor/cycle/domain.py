@@ -21,6 +21,7 @@ DOMAINS = range(1, 101)  # 0 is everybody's default; above, ports may be taken b
 PORT_BASE, DOMAIN_GAIN, UNICAST_OFFSET, PARTICIPANT_GAIN = 7400, 250, 10, 2
 PARTICIPANTS = range(10)  # numbers looked at; they are given out from 0
 LOCK_PARTICIPANT = 119
+LOOPBACK = '127.0.0.1'
 
 
 def port(domain: int, participant: int) -> int:
@@ -41,7 +42,7 @@ def is_free(domain: int) -> bool:
 @contextlib.contextmanager
 def held(domain: int) -> Iterator[bool]:
     """Hold a domain, if it is free; tell whether that is so."""
-    lock = _bind(port(domain, LOCK_PARTICIPANT))
+    lock = _bind(port(domain, LOCK_PARTICIPANT), LOOPBACK)
     if lock is None:
         yield False
         return
@@ -63,11 +64,11 @@ def free_domain() -> Iterator[int]:
     )
 
 
-def _bind(number: int) -> socket.socket | None:
-    """Return a socket bound to a UDP port, None when somebody has it."""
+def _bind(number: int, address: str = '') -> socket.socket | None:
+    """Return a socket bound to a UDP port, None when somebody has it on any address."""
     made = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     try:
-        made.bind(('', number))
+        made.bind((address, number))
     except OSError:
         made.close()
         return None

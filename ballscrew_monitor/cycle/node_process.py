@@ -11,6 +11,7 @@ import subprocess
 import sys
 from typing import Any
 
+from ballscrew_monitor.node.middleware import loopback
 from ballscrew_monitor.node.solver_process import WHEEL_VARIABLES
 
 PATIENCE = ((signal.SIGINT, 8.0), (signal.SIGTERM, 3.0), (signal.SIGKILL, 5.0))  # [s] after each
@@ -111,9 +112,14 @@ def child_environment(domain: int) -> dict[str, str]:
     if '_ROS_WHEELS_BOOTSTRAP_COMPLETE' in made:
         for name in WHEEL_VARIABLES:
             made.pop(name, None)
-    return made | ros_environment(domain) | {'PYTHONUNBUFFERED': '1'}
+    return made | confined(domain) | {'PYTHONUNBUFFERED': '1'}
+
+
+def confined(domain: int) -> dict[str, str]:
+    """Return the variables that put a process into `domain`, all its ports on 127.0.0.1."""
+    return ros_environment(domain) | loopback()
 
 
 def ros_environment(domain: int) -> dict[str, str]:
-    """Return the variables that put a ROS process into `domain`, on this machine only."""
+    """Return the variables with which a ROS process finds those in `domain` on this machine."""
     return {'ROS_DOMAIN_ID': str(domain), 'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST'}

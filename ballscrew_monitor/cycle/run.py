@@ -17,14 +17,15 @@ from pathlib import Path
 import sys
 import threading
 
-from ballscrew_monitor.cycle.domain import free_domain
-from ballscrew_monitor.cycle.node_process import NodeProcess, ros_environment
+from ballscrew_monitor.cycle.domain import free_domain, is_free
+from ballscrew_monitor.cycle.node_process import confined, NodeProcess, ros_environment
 from ballscrew_monitor.cycle.outcome import Outcome
 from ballscrew_monitor.cycle.plan import Plan, RECORDING
 from ballscrew_monitor.cycle.report import LOG, losses, picture, report
+from ballscrew_monitor.cycle.shared_memory import remove_stale
 from ballscrew_monitor.cycle.supervision import RunFailure, Supervision
+from ballscrew_monitor.node.interrupts import DONE, FAILED, interrupts, SIGNALLED
 from ballscrew_monitor.recordings.bag_writer import BagWriter
-from ballscrew_monitor.recordings.interrupts import DONE, FAILED, interrupts, SIGNALLED
 from surrogate.files import InputError
 
 LOCK = '.lock'
@@ -59,7 +60,8 @@ def _remove_pictures(made: Plan) -> None:
 
 def _supervise(made: Plan, stop: threading.Event) -> Outcome:
     with free_domain() as domain, contextlib.ExitStack() as stack:
-        os.environ |= ros_environment(domain)
+        os.environ |= confined(domain)
+        stack.enter_context(_clean_shared_memory(domain))
         node = stack.enter_context(NodeProcess(made.params, made.out / LOG, domain=domain))
         print(
             f'node ballscrew_monitor: process {node.pid}, ROS_DOMAIN_ID={domain} '
@@ -74,6 +76,16 @@ def _supervise(made: Plan, stop: threading.Event) -> Outcome:
             return supervision.carry_out(stop)
         except RunFailure as failure:
             return supervision.outcome(str(failure))
+
+
+@contextlib.contextmanager
+def _clean_shared_memory(domain: int) -> Iterator[None]:
+    """Remove what killed processes have left, before and after; somebody may be in `domain`."""
+    remove_stale({domain})  # it has just been found free
+    try:
+        yield
+    finally:
+        remove_stale({domain} if is_free(domain) else ())
 
 
 def solve_lines(made: Plan, domain: int) -> list[str]:

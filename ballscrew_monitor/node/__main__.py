@@ -2,9 +2,28 @@
 # SPDX-License-Identifier: Apache-2.0
 """`python -m ballscrew_monitor.node`, and the executable `ballscrew_monitor`."""
 
+import signal
 import sys
 
-from ballscrew_monitor.node.node import main
+
+def main(args: list[str] | None = None) -> int:
+    """Run the node until SIGINT or SIGTERM; return 0, or 2 after bad input."""
+    # First of all: what follows takes a second to import, and a signal may come meanwhile.
+    stop: list[int] = []
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda received, frame: stop.append(received))
+    from ballscrew_monitor.node.middleware import check_middleware
+    from surrogate.files import InputError
+
+    try:
+        check_middleware()
+    except InputError as error:
+        print(f'ballscrew_monitor: {error}', file=sys.stderr)
+        return 2
+    from ballscrew_monitor.node.life import live
+
+    return live(args, stop)
+
 
 if __name__ == '__main__':
     sys.exit(main())

@@ -3,6 +3,7 @@
 """From parameter values to one ready axis: its surface, its inputs and its monitor."""
 
 from collections.abc import Callable, Iterable, Mapping
+import contextlib
 import dataclasses
 from typing import Any
 
@@ -80,25 +81,50 @@ def build_axis(name: str, values: Mapping[str, Any]) -> Axis:
     )
 
 
-def check_topics(axes: Iterable[Axis], resolve: Callable[[str], str]) -> set[str]:
+def build_axes(
+    values: Mapping[str, Any], resolve: Callable[[str], str]
+) -> tuple[list[Axis], dict[str, str]]:
     """
-    Return the full names of the topics.
+    Return the axes that can be built of parameter `values`, and by name why others cannot.
 
-    Raises InputError for a name that `resolve` refuses, and for a topic of two types.
+    `resolve` returns the full name of a topic, and raises RuntimeError for what is no name.
 
     """
+    built: list[Axis] = []
+    reasons: dict[str, str] = {}
+    for name in values['axes']:
+        try:
+            axis = build_axis(name, values)
+            check_topics([*built, axis], resolve)
+            built.append(axis)
+        except InputError as error:
+            reasons[name] = str(error)
+    return built, reasons
+
+
+def check_topics(axes: Iterable[Axis], resolve: Callable[[str], str]) -> None:
+    """Raise InputError for a name that `resolve` refuses, and for a topic of two types."""
     types: dict[str, str] = {}
-    names = set()
     for axis in axes:
         for source, topic in axis.topics.items():
-            names.add(_resolved(axis.name, source, topic, resolve))
+            _resolved(axis.name, source, topic, resolve)
         for one in axis.inputs:
             name = resolve(one.topic)
             if types.setdefault(name, one.type_name) != one.type_name:
                 raise InputError(
                     f'topic {name} is configured as {types[name]} and as {one.type_name}'
                 )
-    return names
+
+
+def named_topics(values: Mapping[str, Any], resolve: Callable[[str], str]) -> set[str]:
+    """Return the full names of all topics that parameters `values` name, as far as they are."""
+    found = set()
+    for axis in values['axes']:
+        for source in Source:
+            if topic := values[f'{axis}.{source.name.lower()}.topic']:
+                with contextlib.suppress(InputError):
+                    found.add(_resolved(axis, source, topic, resolve))
+    return found
 
 
 def _resolved(axis: str, source: Source, topic: str, resolve: Callable[[str], str]) -> str:

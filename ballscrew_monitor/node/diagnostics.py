@@ -103,12 +103,13 @@ def statuses(
     *,
     links: Mapping[Source, Link] | None,
     clock_stands: bool = False,
+    refused: str = '',
 ) -> list[DiagnosticStatus]:
     """
     Return the three statuses of a configured axis of the `node`, by full name.
 
     `state` is its last one, if there is one; `links` says how each input is connected, None: the
-    node is inactive.
+    node is inactive; `refused` why the surface was not reloaded.
     While the clock stands no state tells that an input is dead, so nothing but a warning is held.
 
     """
@@ -117,6 +118,9 @@ def statuses(
         status.hardware_id = hardware_id(node, axis, surface.screw_name)
     changed = ' and corrected' if surface.corrections else ''
     made[2].level, made[2].message = OK, f'{surface.tier} surface loaded{changed}'
+    if refused:
+        made[2].level = WARN
+        made[2].message = f'kept the old surface, the reload is refused: {refused}'
     made[2].values = _values(_surface_values(surface))
     made[1].values = _values(
         [

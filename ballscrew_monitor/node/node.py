@@ -4,8 +4,6 @@
 
 from collections.abc import Callable, Iterable, Sequence
 import functools
-import signal
-import sys
 import traceback
 from typing import Any
 
@@ -14,7 +12,7 @@ from ballscrew_monitor.core.inputs import InputSample, Refusal
 from ballscrew_monitor.core.pulse import Pulse
 from ballscrew_monitor.core.state import State
 from ballscrew_monitor.node import diagnostics, parameters
-from ballscrew_monitor.node.axis import Axis, build_axis, check_topics
+from ballscrew_monitor.node.axis import Axis, build_axes, named_topics
 from ballscrew_monitor.node.caretaker import Caretaker
 from ballscrew_monitor.node.correction_store import CorrectionStore
 from ballscrew_monitor.node.event_log import Kind
@@ -25,25 +23,20 @@ from ballscrew_monitor.node.parameter_store import ParameterStore
 from ballscrew_monitor.node.qos import check_overrides, longest_period
 from ballscrew_monitor.node.recording_process import recording, RecordingProcess
 from ballscrew_monitor.node.shelve_service import ShelveService
-from ballscrew_monitor.node.solve_server import MOST_SOLVES, SolveServer
+from ballscrew_monitor.node.solve_server import SolveServer
 from ballscrew_monitor.node.solver_process import SolverProcess
 from ballscrew_monitor.node.state_folder import state_directory, StateFolder
 from ballscrew_monitor.node.station import STATE_QOS, Station
-from ballscrew_monitor.node.trigger_services import TriggerServices
+from ballscrew_monitor.node.trigger_services import not_built, TriggerServices
 from ballscrew_msgs.msg import OutOfZone
 from ballscrew_msgs.srv import EvaluateOperatingPoint
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
-import rclpy
 from rclpy.clock import Clock, ClockType
-from rclpy.exceptions import ParameterException
-from rclpy.executors import SingleThreadedExecutor
 from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
-from rclpy.signals import SignalHandlerOptions
 from surrogate.files import InputError
 
 SUCCESS, FAILURE = TransitionCallbackReturn.SUCCESS, TransitionCallbackReturn.FAILURE
 MEGABYTE = 1e6  # [B]
-POLL = 0.2  # [s] longest wait before a signal is noticed
 
 
 def _reported(transition: Callable[..., Any]) -> Callable[..., Any]:
@@ -70,6 +63,7 @@ class BallscrewMonitor(LifecycleNode):
         self._active = False
         self._finalized = False
         self._reason = 'not configured'
+        self._failed: dict[str, str] = {}  # axes that could not be built, and why
         self._intake: Intake | None = None
         self._tick_timer: Any = None
         self._steady = Clock(clock_type=ClockType.STEADY_TIME)
@@ -95,7 +89,9 @@ class BallscrewMonitor(LifecycleNode):
             self, self._keeping, lambda: self._stations, self._on_kept, clock=self._steady
         )
         self._solves = SolveServer(self, SolverProcess, self._find_station)
-        TriggerServices(self, self._values, lambda: self._stations, self._on_service)
+        TriggerServices(
+            self, self._values, lambda: self._stations, lambda: self._failed, self._on_service
+        )
         ShelveService(self, lambda: self._stations, self._on_service)
 
     def start(self) -> None:
@@ -116,15 +112,18 @@ class BallscrewMonitor(LifecycleNode):
 
     @_reported
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Load the surfaces, compile the inputs; on failure stay unconfigured, with a reason."""
+        """Load the surfaces, compile the inputs; without one axis that works stay unconfigured."""
         try:
-            axes = [build_axis(name, self._values) for name in self._values['axes']]
-            topics = check_topics(axes, self.resolve_topic_name)
-            check_overrides(self._store.given, topics)
+            resolve = self.resolve_topic_name
+            check_overrides(self._store.given, named_topics(self._values, resolve))
+            axes, reasons = build_axes(self._values, resolve)
             self._recording = recording(self._values, self._folder.path)
         except InputError as error:
-            self._reason = f'not configured: {error}'
-            self.get_logger().error(self._reason)
+            axes, reasons = [], dict.fromkeys(self._values['axes'], str(error))
+        self._failed = {name: f'not configured: {why}' for name, why in reasons.items()}
+        for reason in dict.fromkeys(self._failed.values()):
+            self.get_logger().error(reason)
+        if not axes:
             self._publish_diagnostics()
             return FAILURE
         self._stations = {
@@ -154,6 +153,8 @@ class BallscrewMonitor(LifecycleNode):
         return self._stations[axis] if self._active else 'the node is inactive, activate it first'
 
     def _unknown(self, axis: str) -> str:
+        if axis in self._failed:
+            return not_built(axis, self._failed[axis])
         known = ', '.join(self._stations) or 'none, the node is not configured'
         return f'axis {axis!r} is unknown, known are: {known}'
 
@@ -261,7 +262,7 @@ class BallscrewMonitor(LifecycleNode):
         for station in self._stations.values():
             station.alarm.end(reason)
             station.close()
-        self._stations = {}
+        self._stations, self._failed = {}, {}
         self._keeping.flush()
         self._keeping.forget_damage()
         self._store.locked = False
@@ -311,17 +312,16 @@ class BallscrewMonitor(LifecycleNode):
         self._record('/diagnostics', message)
 
     def _statuses(self, axes: Sequence[str], stood: int) -> list[DiagnosticStatus]:
-        made = []
+        made, node = [], self.get_fully_qualified_name()
         for name in axes:
             if name in self._stations:
                 station = self._stations[name]
                 links = self._intake.links(station.axis) if self._intake else None
                 made += station.statuses(links=links, stood=stood)
             else:
-                made += diagnostics.failed(self.get_fully_qualified_name(), name, self._reason)
+                made += diagnostics.failed(node, name, self._failed.get(name, self._reason))
         if self._journal.on:
-            name = self.get_fully_qualified_name()
-            made.append(diagnostics.recording(name, self._journal.problem))
+            made.append(diagnostics.recording(node, self._journal.problem))
         return made
 
     def _on_evaluate(self, request: Any, response: Any) -> Any:
@@ -332,32 +332,3 @@ class BallscrewMonitor(LifecycleNode):
         else:
             station.evaluate(request.points, response)
         return response
-
-
-def main(args: list[str] | None = None) -> int:
-    """Run the node until SIGINT or SIGTERM; return 0, or 2 after bad input."""
-    stop: list[int] = []
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda received, frame: stop.append(received))
-    try:
-        # The handlers of rclpy tear the context down while the executor still waits on it.
-        rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
-        node = BallscrewMonitor()
-    except (InputError, ParameterException, RuntimeError) as error:
-        print(f'{parameters.NODE_NAME}: {parameters.explain(error)}', file=sys.stderr)
-        rclpy.try_shutdown()
-        return 2
-    executor = SingleThreadedExecutor()
-    executor.add_node(node)
-    node.start()
-    while not stop:
-        executor.spin_once(timeout_sec=POLL)
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, signal.SIG_IGN)
-    node.finish()
-    for _ in range(MOST_SOLVES):  # the goals that this has ended are answered
-        executor.spin_once(timeout_sec=0.0)
-    executor.shutdown()
-    node.destroy_node()
-    rclpy.shutdown()
-    return 0

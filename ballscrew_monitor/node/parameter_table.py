@@ -86,6 +86,12 @@ NODE_ROWS = (
         text='Configure and activate at start; false under a lifecycle manager.',
     ),
     ParameterRow(
+        name='localhost',
+        default=False,
+        change=Change.NEVER,
+        text='Bind every port of the node to 127.0.0.1: no other machine reaches it.',
+    ),
+    ParameterRow(
         name='tick_period',
         default=0.1,
         unit='s',

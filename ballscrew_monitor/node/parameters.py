@@ -80,7 +80,7 @@ def read_file(path: str | pathlib.Path, node: str = NODE_NAME) -> dict[str, Any]
 
     """
     try:
-        given = _given(_sections(path), node)
+        given = _given(sections(path), node)
         axes = given.get('axes', NODE_ROWS[0].default)
         NODE_ROWS[0].check('axes', axes)
         rows = table(axes)
@@ -99,7 +99,7 @@ def read_ros_parameters(path: str | pathlib.Path, node: str = NODE_NAME) -> dict
 
     """
     try:
-        given = _addressed(_sections(path), node)
+        given = _addressed(sections(path), node)
     except InputError as error:
         raise InputError(f'{path}: {error}') from None
     return {name: value for name, value in given.items() if is_of_ros(name)}
@@ -112,14 +112,14 @@ def explain(error: Exception) -> str:
     return f'{sentence}, {BARE_WORDS}' if mixed else sentence
 
 
-def _given(sections: Mapping[str, Any], node: str) -> dict[str, Any]:
-    given = _addressed(sections, node)
+def _given(nodes: Mapping[str, Any], node: str) -> dict[str, Any]:
+    given = _addressed(nodes, node)
     return {name: value for name, value in given.items() if not is_of_ros(name)}
 
 
-def _addressed(sections: Mapping[str, Any], node: str) -> dict[str, Any]:
+def _addressed(nodes: Mapping[str, Any], node: str) -> dict[str, Any]:
     given: dict[str, Any] = {}
-    for key, section in sections.items():
+    for key, section in nodes.items():
         if key.lstrip('/') in ('**', node, f'**/{node}'):
             values = section.get('ros__parameters')
             if not isinstance(values, dict):
@@ -132,7 +132,8 @@ def _addressed(sections: Mapping[str, Any], node: str) -> dict[str, Any]:
     return given
 
 
-def _sections(path: str | pathlib.Path) -> dict[str, Any]:
+def sections(path: str | pathlib.Path) -> dict[str, Any]:
+    """Return what the file at `path` says by nodes; raises InputError if it cannot be read."""
     import yaml  # the node itself is handed its parameters by ROS
 
     try:
@@ -140,15 +141,15 @@ def _sections(path: str | pathlib.Path) -> dict[str, Any]:
         root = loader.get_single_node()
         if root is not None:
             _take_letters_as_ros(root)
-        sections = None if root is None else loader.construct_document(root)
+        found = None if root is None else loader.construct_document(root)
     except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
         reason = ' '.join(str(error).split())
         raise InputError(f'the parameter file cannot be read: {reason}') from None
-    if not isinstance(sections, dict) or not all(
-        isinstance(key, str) and isinstance(section, dict) for key, section in sections.items()
+    if not isinstance(found, dict) or not all(
+        isinstance(key, str) and isinstance(section, dict) for key, section in found.items()
     ):
         raise InputError('no ROS parameter file, it must be node names with ros__parameters below')
-    return sections
+    return found
 
 
 def _take_letters_as_ros(root: Any) -> None:

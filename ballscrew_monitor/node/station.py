@@ -73,6 +73,7 @@ class Station:
         """
         self.axis = axis
         self.dwell = Dwell()
+        self.refused = ''  # why the last reload of the surface was
         self._values = values
         self._store = store
         self._keeping = keeping
@@ -239,6 +240,7 @@ class Station:
             surface = corrected(surface, before)
         self.use_surface(surface)
         self._keeping.note(Kind.RELOAD_SURFACE, self.name, sha256=surface.sha256)
+        self.refused = ''
         if not before:
             return ''
         if not same:
@@ -310,6 +312,7 @@ class Station:
             self.axis.surface,
             links=links,
             clock_stands=stood > self.axis.monitor.settings.timeouts[Source.SPEED],
+            refused=self.refused,
         )
 
     def _summaries(self, state: State) -> tuple[diagnostics.StatusSummary, ...]:

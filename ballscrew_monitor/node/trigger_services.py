@@ -11,6 +11,7 @@ from ballscrew_monitor.node.station import Station
 from rclpy.node import Node
 from std_srvs.srv import Trigger
 from surrogate.files import InputError
+from surrogate.surface import Surface
 
 Stations = Mapping[str, Station]
 Act = Callable[[Stations], str]
@@ -24,19 +25,22 @@ class TriggerServices:
         node: Node,
         values: Mapping[str, Any],
         find: Callable[[], Stations],
+        find_failed: Callable[[], Mapping[str, str]],
         changed: Callable[[Stations, str], str],
     ) -> None:
         """
-        Make the services; `find` returns the stations, none while the node is unconfigured.
+        Make the services.
 
-        `changed` is told which stations a service has changed, and its name; it keeps them and
-        returns why that failed, or nothing.
+        `find` returns the stations, none while the node is unconfigured, and `find_failed` why
+        other axes have none. `changed` is told which stations a service has changed, and its name;
+        it keeps them and returns why that failed, or nothing.
 
         """
         self._node = node
         self._changed = changed
         self._values = values
         self._find = find
+        self._find_failed = find_failed
         acts: dict[str, Act] = {
             'reload_surface': self._reload,
             'reset_totals': self._reset,
@@ -52,13 +56,17 @@ class TriggerServices:
 
     def _serve(self, act: Act, axes: list[str], request: Any, response: Any) -> Any:
         stations = {name: one for name, one in self._find().items() if name in axes}
+        failed = [
+            not_built(name, why) for name, why in self._find_failed().items() if name in axes
+        ]
         if not stations:
-            response.message = 'the node is not configured'
+            response.message = '; '.join(failed) or 'the node is not configured'
             return response
         try:
-            response.message = act(stations)
+            done = act(stations)
             problem = self._changed(stations, act.__name__.strip('_'))
-            response.message += f', not kept: {problem}' if problem else ''
+            done += f', not kept: {problem}' if problem else ''
+            response.message = '; '.join([done, *failed])
             response.success = True
         except InputError as error:
             response.message = f'kept the old surface: {error}'
@@ -67,11 +75,17 @@ class TriggerServices:
 
     def _reload(self, stations: Stations) -> str:
         """Swap the surfaces for the files as they are now, if all of them verify."""
-        surfaces = {
-            name: reload_surface(station.axis, self._values) for name, station in stations.items()
-        }
+        surfaces = {name: self._load(station) for name, station in stations.items()}
         said = [station.reload(surfaces[name]) for name, station in stations.items()]
         return ', '.join(filter(None, (f'reloaded the surface of {_names(stations)}', *said)))
+
+    def _load(self, station: Station) -> Surface:
+        """Return the surface of the file as it is now; a refusal stays in the diagnostics."""
+        try:
+            return reload_surface(station.axis, self._values)
+        except InputError as error:
+            station.refused = str(error)
+            raise
 
     def _reset(self, stations: Stations) -> str:
         """Set the totals to zero."""
@@ -84,6 +98,11 @@ class TriggerServices:
         for station in stations.values():
             station.alarm.acknowledge()
         return f'acknowledged of {_names(stations)}'
+
+
+def not_built(axis: str, reason: str) -> str:
+    """Return what a service says of an axis that could not be built for `reason`."""
+    return f'axis {axis} is {reason}; mend it and configure the node again'
 
 
 def _names(stations: Stations) -> str:

@@ -2,46 +2,115 @@
 # SPDX-License-Identifier: Apache-2.0
 """Just the player: a bag over DDS in the domain of the environment, for whoever listens."""
 
+from collections.abc import Iterable, Sequence
+import dataclasses
 from pathlib import Path
 import sys
 import threading
 
+from ballscrew_monitor.core.fields import message_class
+from ballscrew_monitor.node import parameters
+from ballscrew_monitor.node.interrupts import DONE, FAILED, interrupts, SIGNALLED
+from ballscrew_monitor.node.middleware import notice
+from ballscrew_monitor.node.topics import absolute, input_topics
 from ballscrew_monitor.recordings.bag import Bag
-from ballscrew_monitor.recordings.interrupts import DONE, FAILED, interrupts, SIGNALLED
-from ballscrew_monitor.recordings.player import Player
+from ballscrew_monitor.recordings.player import CLOCK, Player
 import rclpy
 from rclpy.signals import SignalHandlerOptions
+from surrogate.files import InputError
 
 
-def playback(path: Path, *, rate: float, patience: float) -> int:
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Choice:
+    """What is to be played: `every` topic, those in `topics`, or the inputs in a file."""
+
+    params: Path
+    topics: Sequence[str] | None = None
+    every: bool = False
+
+
+def playback(path: Path, choice: Choice, *, rate: float, patience: float, loop: bool) -> int:
     """Play the bag at `path` to whom listens within `patience` [s]; return the exit code."""
     bag = Bag(path)
-    rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
-    node = rclpy.create_node('ballscrew_player', start_parameter_services=False)
+    topics = playable(bag, chosen(bag, choice))
     stop = threading.Event()
-    try:
-        player = Player(node, bag, rate=rate)
-        with interrupts(stop) as interrupted:
-            code = _play(player, bag, patience, stop)
+    with interrupts(stop) as interrupted:
+        rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
+        node = rclpy.create_node('ballscrew_player', start_parameter_services=False)
+        try:
+            if said := notice():
+                print(f'ballscrew: {said}', file=sys.stderr)
+            player = Player(node, bag, rate=rate, topics=topics)
+            code = _play(player, topics, patience, stop, loop)
+        finally:
+            node.destroy_node()
+            rclpy.shutdown()
         return SIGNALLED + interrupted[0] if interrupted else code
-    finally:
-        node.destroy_node()
-        rclpy.shutdown()
 
 
-def _play(player: Player, bag: Bag, patience: float, stop: threading.Event) -> int:
+def chosen(bag: Bag, choice: Choice) -> list[str]:
+    """Return the topics of the bag to be played; raises InputError if there is none of them."""
+    if choice.every:
+        return [topic for topic in bag.topics if topic != CLOCK]
+    if choice.topics is not None:
+        wanted, whose = list(map(absolute, choice.topics)), 'the topics asked for'
+    else:
+        wanted = list(input_topics(parameters.read_file(choice.params)))
+        whose = f'the inputs in {choice.params}'
+    missing = [topic for topic in wanted if topic not in bag.topics]
+    if missing and (choice.topics or len(missing) == len(wanted)):
+        raise InputError(
+            f'bag {bag.path}: of {whose} it holds no {_names(missing)}, it holds '
+            f'{_names(sorted(bag.topics))}: give --topics, --all or another --params'
+        )
+    if missing:
+        print(f'the bag holds no {_names(missing)}', flush=True)
+    return [topic for topic in dict.fromkeys(wanted) if topic in bag.topics]
+
+
+def playable(bag: Bag, topics: Sequence[str]) -> list[str]:
+    """Return the topics that can be sent, and say which cannot; raises InputError for none."""
+    reasons = {topic: _problem(bag, topic) for topic in topics}
+    for topic, reason in reasons.items():
+        if reason:
+            print(f'not played: {topic}, {reason}', flush=True)
+    found = [topic for topic, reason in reasons.items() if not reason]
+    if not found:
+        raise InputError(f'bag {bag.path}: no topic can be played')
+    return found
+
+
+def _problem(bag: Bag, topic: str) -> str:
+    """Return why a topic cannot be sent, empty if it can."""
+    info = bag.topics[topic]
+    if info.encoding != 'cdr':
+        return f'encoded as {info.encoding}'
+    try:
+        message_class(info.type_name)
+    except InputError as error:
+        return str(error)
+    return ''
+
+
+def _names(topics: Iterable[str]) -> str:
+    return ', '.join(topics)
+
+
+def _play(
+    player: Player, topics: Sequence[str], patience: float, stop: threading.Event, loop: bool
+) -> int:
     missing = player.wait_for_subscribers(patience, stop)
     if stop.is_set():
         return FAILED
-    if set(bag.topics) <= set(missing):
+    if set(topics) <= set(missing):
         print(
-            f'ballscrew: nobody subscribed to {", ".join(bag.topics)} within {patience:g} s',
+            f'ballscrew: nobody subscribed to {_names(topics)} within {patience:g} s',
             file=sys.stderr,
         )
         return FAILED
     if missing:
-        print(f'nobody listens to {", ".join(missing)}', flush=True)
-    played = player.play(stop)
+        print(f'nobody listens to {_names(missing)}', flush=True)
+    played = player.play(stop, loop=loop)
     print(
         f'{sum(played.sent.values())} messages in {player.elapsed:.1f} s of bag time, '
         f'at most {1e3 * played.lateness:.1f} ms late'

@@ -4,28 +4,34 @@
 Plays a bag over DDS: the serialised messages as they are, and `/clock` from their log times.
 
 `/clock` ticks at 100 Hz and before each message, so that a subscriber on simulated time never
-sees a message from its future. The messages are offered reliably: a subscriber that asks for
-best effort gets them as such, one that asks for more is not refused.
+sees a message from its future. In a loop each pass goes on from the end of the one before:
+`/clock` and every stamp in the messages are shifted by whole passes. The messages are offered
+reliably: a subscriber that asks for best effort gets them as such, one that asks for more is not
+refused.
 
 """
 
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 import dataclasses
+import itertools
 import threading
 import time
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.fields import message_class
-from ballscrew_monitor.recordings.bag import Bag
+from ballscrew_monitor.recordings.bag import Bag, Message
+from ballscrew_monitor.recordings.stamps import shifted
 from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.qos import QoSDurabilityPolicy, QoSHistoryPolicy, QoSProfile, QoSReliabilityPolicy
 from rosgraph_msgs.msg import Clock
 from surrogate.files import InputError
 
+CLOCK = '/clock'
 CLOCK_PERIOD = 0.01  # [s] of wall time
 MATCH_POLL = 0.02  # [s] between two looks at who has matched
+PAUSE = SECOND // 10  # [ns] of bag time from the last message of a pass to the first of the next
 DELIVERY = 5.0  # [s] that the last messages may take
 CLOCK_QOS = QoSProfile(depth=1, reliability=QoSReliabilityPolicy.BEST_EFFORT)
 DATA_QOS = QoSProfile(
@@ -68,9 +74,10 @@ class Player:
                 message_class(bag.topics[topic].type_name), topic, DATA_QOS
             )
             for topic in (bag.topics if topics is None else topics)
+            if topic != CLOCK
         }
         # Made last: who hears it has heard of the others.
-        self._clock = node.create_publisher(Clock, '/clock', CLOCK_QOS)
+        self._clock = node.create_publisher(Clock, CLOCK, CLOCK_QOS)
 
     @property
     def now(self) -> int:
@@ -94,7 +101,7 @@ class Player:
             for topic, publisher in self._publishers.items()
             if publisher.get_subscription_count() < wanted
         ]
-        return missing + (['/clock'] if self._clock.get_subscription_count() == 0 else [])
+        return missing + ([CLOCK] if self._clock.get_subscription_count() == 0 else [])
 
     def wait_for_subscribers(self, timeout: float, stop: threading.Event) -> list[str]:
         """Wait until every topic has a subscriber, at most `timeout` [s]; return those without."""
@@ -108,10 +115,15 @@ class Player:
         """Publish the time at which the bag begins, so that a listener may answer to it."""
         self._tick(self._bag.start_time)
 
-    def play(self, stop: threading.Event) -> Played:
-        """Publish the bag until its end or until `stop` is set; raises InputError on damage."""
+    def play(self, stop: threading.Event, *, loop: bool = False) -> Played:
+        """
+        Publish the bag until its end, again and again in a `loop`, or until `stop` is set.
+
+        Raises InputError on damage.
+
+        """
         begin, latest = time.monotonic(), 0.0
-        for message in self._bag.messages(self._publishers):
+        for message in self._messages(loop):
             due = begin + (message.log_time - self._bag.start_time) / SECOND / self._rate
             if not self._wait(due, stop, begin):
                 return Played(sent=self._sent, complete=False, lateness=latest)
@@ -121,6 +133,19 @@ class Player:
             latest = max(latest, time.monotonic() - due)
         self._deliver()
         return Played(sent=self._sent, complete=True, lateness=latest)
+
+    def _messages(self, loop: bool) -> Iterator[Message]:
+        """Yield the messages of the bag, those of a further pass later by whole passes."""
+        yield from self._bag.messages(self._publishers)
+        length = self._bag.end_time - self._bag.start_time + PAUSE
+        kinds = {name: message_class(self._bag.types[name]) for name in self._publishers}
+        for number in itertools.count(1) if loop else ():
+            for message in self._bag.messages(self._publishers):
+                yield dataclasses.replace(
+                    message,
+                    log_time=message.log_time + number * length,
+                    data=shifted(message.data, kinds[message.topic], number * length),
+                )
 
     def _deliver(self) -> None:
         """Wait until reliable subscribers have all: what is under way dies with its publisher."""

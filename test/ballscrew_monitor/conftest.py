@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """A surface of constants for exact tests of the core, and the node in a process of its own."""
 
-import collections
 import contextlib
 import dataclasses
 import fcntl
+import ipaddress
 import itertools
 import math
 import os
@@ -25,8 +25,9 @@ from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.core.monitor import Monitor
 from ballscrew_monitor.core.state import MonitorSettings
-from ballscrew_monitor.cycle.domain import DOMAIN_GAIN, DOMAINS, free_domain, held, PORT_BASE
+from ballscrew_monitor.cycle.domain import DOMAINS, free_domain, held
 from ballscrew_monitor.cycle.node_process import child_environment
+from ballscrew_monitor.cycle.shared_memory import remove_stale, SHARED_MEMORY
 from ballscrew_monitor.node.solver_process import MODULE
 from ballscrew_msgs.msg import BallScrewState
 from diagnostic_msgs.msg import DiagnosticArray
@@ -53,11 +54,6 @@ with warnings.catch_warnings():
 os.environ['ROS_PYTHON_CHECK_FIELDS'] = '1'
 os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-SHARED_MEMORY = pathlib.Path('/dev/shm')
-# A segment or a port, its lock files, and the mutex of a port.
-SEGMENT = re.compile(
-    r'(?:sem\.)?(?P<name>fast(?:rtps|dds)_(?:port(?P<port>\d+)|[0-9a-f]{16}))(?:_el|_sl|_mutex)?'
-)
 DEADLINE = 120.0  # [s] for anything that another process has to do, however busy the machine
 
 
@@ -188,47 +184,6 @@ def core():
     )
 
 
-def stale_segments(folder, free_domains):
-    """
-    Return the files of FastDDS in `folder` that nobody uses any more.
-
-    A segment of a participant has a random name and a lock file, which its process keeps locked
-    with flock(2) as long as it lives: where the lock can be had the owner is gone for good, which
-    is the rule of `fastdds shm clean` too. A port has a number that another participant of the
-    domain will want again, and not always a lock file: its domain must be one of `free_domains`
-    as well, in which nobody is and into which nobody comes meanwhile.
-
-    """
-    groups = collections.defaultdict(list)
-    for path in folder.iterdir():
-        found = SEGMENT.fullmatch(path.name)
-        if found:
-            groups[found['name'], found['port']].append(path)
-    return {
-        path
-        for (_, port), paths in groups.items()
-        for locks in [[path for path in paths if path.name.endswith(('_el', '_sl'))]]
-        if not any(map(is_locked, locks))
-        if (domain_of(int(port)) in free_domains if port else locks)
-        for path in paths
-    }
-
-
-def is_locked(path):
-    """Tell whether a process holds the lock file; one that is not ours to open counts as held."""
-    try:
-        with path.open('rb') as file:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except OSError:
-        return True
-    return False
-
-
-def domain_of(port):
-    """Return the domain of the number of a port."""
-    return (port - PORT_BASE) // DOMAIN_GAIN
-
-
 @contextlib.contextmanager
 def last_one_cleans(folder, clean):
     """
@@ -254,10 +209,7 @@ def last_one_cleans(folder, clean):
 def remove_stale_segments():
     """Remove what killed nodes have left in the shared memory."""
     with contextlib.ExitStack() as stack:
-        free = {domain for domain in DOMAINS if stack.enter_context(held(domain))}
-        for path in stale_segments(SHARED_MEMORY, free):
-            with contextlib.suppress(FileNotFoundError, PermissionError):
-                path.unlink()
+        remove_stale({domain for domain in DOMAINS if stack.enter_context(held(domain))})
 
 
 @pytest.fixture(scope='session')
@@ -293,7 +245,7 @@ def _value(kind, numbers):
 @pytest.fixture(scope='session', autouse=True)
 def shared_memory():
     """Leave the shared memory clean at the end; return what that is done with."""
-    parts = types.SimpleNamespace(stale_segments=stale_segments, last_one_cleans=last_one_cleans)
+    parts = types.SimpleNamespace(last_one_cleans=last_one_cleans)
     if not SHARED_MEMORY.is_dir():
         yield parts
         return
@@ -316,6 +268,9 @@ class NodeProcess:
 
     def __init__(self, domain, folder):
         self.domain = domain
+        paths = (str(ROOT), os.environ.get('PYTHONPATH', ''))
+        self.environment = child_environment(domain)
+        self.environment['PYTHONPATH'] = os.pathsep.join(filter(None, paths))
         self.output = folder / 'node.log'
         self.process = None
         self.clients = {}
@@ -341,11 +296,10 @@ class NodeProcess:
         defaults |= {'diagnostics_period': 0.1, 'state_dir': "''"}
         for name, value in (defaults | parameters).items():
             command += ['-p', f'{name.replace("__", ".")}:={value}']
-        paths = (str(ROOT), os.environ.get('PYTHONPATH', ''))
-        environment = child_environment(self.domain)
-        environment['PYTHONPATH'] = os.pathsep.join(filter(None, paths))
         with open(self.output, 'w') as output:
-            self.process = subprocess.Popen(command, env=environment, stdout=output, stderr=output)
+            self.process = subprocess.Popen(
+                command, env=self.environment, stdout=output, stderr=output
+            )
 
     def until(self, condition, what='the condition', *, deadline=DEADLINE):
         """Spin until `condition` gives something true, and return that."""
@@ -486,6 +440,34 @@ class NodeProcess:
         self.executor.shutdown()
         self.node.destroy_node()
         rclpy.shutdown(context=self.context)
+
+
+@pytest.fixture(scope='session')
+def bound_addresses():
+    """Return a function that gives address and port of every UDP and TCP socket of a process."""
+
+    def find(pid):
+        process = pathlib.Path('/proc', str(pid))
+        mine = {f'socket:[{line[9]}]': line[1] for line in socket_lines(process)}
+        links = [opened.readlink() for opened in (process / 'fd').iterdir()]
+        return {address_of(mine[str(link)]) for link in links if str(link) in mine}
+
+    return find
+
+
+def socket_lines(process):
+    """Yield the columns of every socket in the network of a process."""
+    for table in ('udp', 'udp6', 'tcp', 'tcp6'):
+        path = process / 'net' / table
+        if path.exists():
+            yield from (line.split() for line in path.read_text().splitlines()[1:])
+
+
+def address_of(column):
+    """Return address and port out of a table of sockets, whose words are of little endian."""
+    address, _, port = column.partition(':')
+    words = [bytes.fromhex(word)[::-1] for word in re.findall('.{8}', address)]
+    return str(ipaddress.ip_address(b''.join(words))), int(port, 16)
 
 
 @pytest.fixture(scope='session')

@@ -155,7 +155,7 @@ def test_offline_commands_import_no_ros():
 
 def test_a_reader_that_has_seen_enough_is_no_crash(short_bag):
     process = subprocess.Popen(
-        [sys.executable, '-m', 'ballscrew_monitor.cli', 'replay', short_bag, '--params', PARAMS],
+        [sys.executable, '-m', 'ballscrew_monitor', 'replay', short_bag, '--params', PARAMS],
         cwd=ROOT,
         env=child_environment(0),
         stdout=subprocess.PIPE,

@@ -7,7 +7,7 @@ from pathlib import Path
 from ballscrew_monitor.core.conversions import TURN
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.node import parameters
-from ballscrew_monitor.node.axis import build_axis, check_topics
+from ballscrew_monitor.node.axis import build_axes
 import pytest
 
 CONFIG = Path(__file__).resolve().parents[2] / 'config'
@@ -17,8 +17,8 @@ FILES = sorted(CONFIG.glob('*.yaml'))
 def axes_of(name):
     """Return the axes of a file by name, as the node builds them."""
     values = parameters.read_file(CONFIG / name)
-    axes = [build_axis(axis, values) for axis in values['axes']]
-    assert check_topics(axes, lambda topic: f'/{topic}')
+    axes, reasons = build_axes(values, lambda topic: f'/{topic}')
+    assert not reasons
     return {axis.name: axis for axis in axes}
 
 

@@ -35,7 +35,7 @@ STATE = '/ballscrew_monitor/x/state'
 def start(*arguments):
     """Start `ballscrew run` as a process."""
     return subprocess.Popen(
-        [sys.executable, '-u', '-m', 'ballscrew_monitor.cli', 'run', *map(str, arguments)],
+        [sys.executable, '-u', '-m', 'ballscrew_monitor', 'run', *map(str, arguments)],
         cwd=ROOT,
         env=child_environment(0),
         stdout=subprocess.PIPE,
@@ -127,12 +127,14 @@ def what_was_judged(state):
     return (stamp_of(state), state.judged), str(state.point), str((state.zone, state.result))
 
 
-def test_an_interrupt_ends_everything_in_order(nominal_bag, tmp_path):
+def test_an_interrupt_ends_everything_in_order(nominal_bag, tmp_path, bound_addresses):
     with start('--bag', nominal_bag, '--params', PARAMS, '--out', tmp_path / 'out') as process:
         for line in process.stdout:
             if line.startswith('['):
                 break
         [node] = children(process.pid)
+        for pid in (process.pid, node):  # nothing that another machine could reach
+            assert {address for address, _ in bound_addresses(pid)} == {'127.0.0.1'}
         process.send_signal(signal.SIGINT)
         _, errors = process.communicate(timeout=DEADLINE)
     assert process.returncode == 130

@@ -8,7 +8,7 @@ from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.derived_load import LoadDerivation
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.node import parameters
-from ballscrew_monitor.node.axis import build_axis, check_topics, settings_of
+from ballscrew_monitor.node.axis import build_axes, build_axis, named_topics, settings_of
 import pytest
 from std_msgs.msg import Float64
 from surrogate.files import InputError
@@ -49,7 +49,6 @@ def test_an_empty_type_leaves_the_input_open():
     assert [source.source for source in axis.inputs] == [Source.LOAD]
     assert [source.source for source in axis.open_inputs] == [Source.SPEED]
     assert axis.topics == {Source.LOAD: 'axial_load', Source.SPEED: 'joint_states'}
-    assert check_topics([axis], lambda topic: f'/{topic}') == {'/axial_load', '/joint_states'}
 
 
 @pytest.mark.parametrize(
@@ -142,6 +141,32 @@ def test_a_position_unit_makes_the_speed_of_positions():
 def test_an_axis_that_cannot_work_is_refused(changes, match):
     with pytest.raises(InputError, match=match):
         build(**changes)
+
+
+def resolve(topic):
+    if ' ' in topic:
+        raise RuntimeError(topic)
+    return f'/{topic}'
+
+
+def test_an_axis_that_cannot_be_built_leaves_the_others():
+    changes = {
+        'w.load.topic': 'no name',
+        'y.oil': 'olive',
+        'z.speed.type': 'std_msgs/msg/Float64',
+        'z.speed.field': 'data',
+    }
+    values = parameters.defaults(['w', 'x', 'y', 'z']) | changes
+    built, reasons = build_axes(values, resolve)
+    assert [axis.name for axis in built] == ['x']
+    assert list(reasons) == ['w', 'y', 'z']
+    assert reasons['w'] == "parameter w.load.topic is 'no name', no topic name"
+    assert "'olive'" in reasons['y']
+    assert reasons['z'] == (
+        'topic /joint_states is configured as sensor_msgs/msg/JointState and as '
+        'std_msgs/msg/Float64'
+    )
+    assert named_topics(values, resolve) == {'/axial_load', '/joint_states'}
 
 
 def test_a_surface_of_another_screw_is_refused():

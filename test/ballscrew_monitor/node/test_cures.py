@@ -19,6 +19,10 @@ NO_LOAD = 'load was never received: no publisher yet on /axial_load: start it, o
 NOT_A_NUMBER = (
     'speed is not usable: it is not a finite number, mend its source or read another field'
 )
+ABSURD = (
+    'speed is not usable: it is beyond the plausible range, mend the source, its unit or scale, '
+    'or raise limits.plausible_speed or limits.plausible_load'
+)
 JOINTS = 'sensor_msgs/msg/JointState'
 
 
@@ -45,7 +49,10 @@ class Source:
             for status in array.status
             if status.name == 'ballscrew_monitor: x: Inputs'
         ]
-        return found[-1].split('; ') if found else []
+        sentences = found[-1].split('; ') if found else []
+        of_speed = [text for text in sentences if text.startswith('speed')]
+        assert len(of_speed) <= 1, 'one fault has one sentence'
+        return sentences
 
     def until_told(self, text, make=lambda: None):
         """Publish what `make` gives until the node says a text, which then is in its log too."""
@@ -72,7 +79,9 @@ def test_joints_position_only_numbers_and_stamps(node):
         'or read another field',
         lambda: source.joints('x_axis'),
     )
-    source.until_told(NOT_A_NUMBER, lambda: source.joints('x_axis', math.nan))
+    for number in (math.nan, math.inf, -math.inf):
+        source.until_told(ABSURD, lambda: source.joints('x_axis', 1e300))
+        source.until_told(NOT_A_NUMBER, lambda number=number: source.joints('x_axis', number))
     source.until_told(
         'speed is not usable: its stamps lie ahead of the clock, set the clocks alike or raise '
         'max_future',

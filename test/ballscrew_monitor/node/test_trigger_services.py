@@ -3,6 +3,7 @@
 """The services of one axis leave the other one alone; the node-wide ones act on all."""
 
 from ballscrew_msgs.msg import BallScrewState
+from ballscrew_msgs.srv import EvaluateOperatingPoint
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 import pytest
 from std_srvs.srv import Trigger
@@ -59,6 +60,31 @@ def test_an_axis_is_served_by_itself(two):
     assert not kept.success
     assert kept.message.startswith('kept the old surface: axis x: ')
     assert node.call(Trigger, 'acknowledge').message == 'acknowledged of x, y'
+
+
+def test_an_axis_that_cannot_be_built_leaves_the_other_at_work(node):
+    node.start(
+        axes="['x','y']", y__oil='olive', y__speed__field='velocity[x_axis]', x__max_future=3600.0
+    )
+    told, states = node.listen(DiagnosticArray, '/diagnostics'), node.states()
+    publish = node.machine()
+    node.until(lambda: publish(100.0) or (states and states[-1].judged), 'a judged sample')
+    said = {
+        status.message for status in told[-1].status if ': y: ' in status.name and status.level
+    }
+    assert len(said) == 1
+    (reason,) = said
+    assert reason.startswith("not configured: axis y: no surface is shipped for screw 'nominal'")
+    assert reason in node.output.read_text()
+    cure = f'axis y is {reason}; mend it and configure the node again'
+    for name in ('acknowledge', 'reset_totals', 'reload_surface'):
+        own, all_axes = node.call(Trigger, f'y/{name}'), node.call(Trigger, name)
+        assert (own.success, own.message) == (False, cure)
+        assert all_axes.success
+        assert all_axes.message.endswith(f' x; {cure}')
+    answer = node.call(EvaluateOperatingPoint, 'evaluate', axis='y')
+    assert (answer.success, answer.message) == (False, cure)
+    assert node.lifecycle() == 'active'
 
 
 def test_an_axis_parked_since_it_was_switched_on_is_well(node):

@@ -9,16 +9,23 @@ import sys
 import threading
 import time
 
-from ballscrew_monitor.core.inputs import message_class
+from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.core.fields import message_class, stamp_of
 from ballscrew_monitor.cycle.domain import free_domain
 from ballscrew_monitor.cycle.node_process import child_environment, ros_environment
+from ballscrew_monitor.node.parameters import read_file
+from ballscrew_monitor.node.topics import input_topics
 from ballscrew_monitor.recordings.bag import Bag
-from ballscrew_monitor.recordings.player import Player
+from ballscrew_monitor.recordings.playback import Choice, chosen, playable
+from ballscrew_monitor.recordings.player import PAUSE, Player
+from mcap.writer import Writer
 import pytest
 import rclpy
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.qos import QoSProfile, QoSReliabilityPolicy
+from rclpy.serialization import deserialize_message
 from rosgraph_msgs.msg import Clock
+from sensor_msgs.msg import JointState
 from surrogate.files import InputError
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -80,7 +87,7 @@ def listener(domain, short_bag):
 def play(domain, *arguments):
     """Start the player as a process."""
     return subprocess.Popen(
-        [sys.executable, '-m', 'ballscrew_monitor.cli', 'play', *map(str, arguments)],
+        [sys.executable, '-m', 'ballscrew_monitor', 'play', *map(str, arguments)],
         cwd=ROOT,
         env=child_environment(domain),
         stdout=subprocess.PIPE,
@@ -162,6 +169,102 @@ def test_the_clock_is_never_behind_a_message_and_runs_on_after_the_end(short_bag
     answers = iter([False, False, True, True])
     assert player.run_on(lambda: next(answers), DEADLINE, threading.Event())
     assert player.now > bag.end_time
+
+
+def test_in_a_loop_time_goes_on(short_bag):
+    bag, node, stop = Bag(short_bag), Publishers(), threading.Event()
+    count = sum(info.count for info in bag.topics.values())
+    player = Player(node, bag, rate=1000.0)
+
+    def stop_in_the_third_pass(data):
+        joints.append(deserialize_message(data, JointState))
+        if sum(player.sent.values()) > 2.5 * count:
+            stop.set()
+
+    joints = []
+    player._publishers['/joint_states'].publish = stop_in_the_third_pass
+    assert not player.play(stop, loop=True).complete
+    stamps = [stamp_of(message) for message in joints]
+    one = bag.topics['/joint_states'].count
+    length = bag.end_time - bag.start_time + PAUSE
+    twice = 2 * one
+    assert len(joints) > twice
+    assert [stamp - length for stamp in stamps[one:twice]] == stamps[:one]
+    assert stamps == sorted(set(stamps))
+    assert [message.velocity for message in joints[one:twice]] == [
+        message.velocity for message in joints[:one]
+    ]
+    clock = [shown.clock.sec * SECOND + shown.clock.nanosec for shown in node.sent['/clock']]
+    assert clock == sorted(clock)
+    assert clock[-1] > bag.start_time + 2 * length
+
+
+@pytest.fixture
+def foreign_bag(short_bag, tmp_path):
+    """Return an MCAP file with what any machine records: other topics, and types of its own."""
+    path, bag = tmp_path / 'foreign.mcap', Bag(short_bag)
+    kinds = {**bag.types, '/drive': 'acme_msgs/msg/Drive', '/note': 'std_msgs/msg/String'}
+    with path.open('wb') as stream:
+        writer = Writer(stream)
+        writer.start()
+        channels = {
+            topic: writer.register_channel(
+                topic, 'cdr', writer.register_schema(kind, 'ros2msg', b'')
+            )
+            for topic, kind in kinds.items()
+        }
+        for message in bag.messages():
+            times = {'log_time': message.log_time, 'publish_time': message.publish_time}
+            writer.add_message(channels[message.topic], data=message.data, **times)
+        for topic in ('/drive', '/note'):
+            writer.add_message(channels[topic], data=b'\0\1\0\0' + bytes(8), **times)
+        writer.finish()
+    return path
+
+
+def test_the_inputs_of_the_node_are_played_unless_told_otherwise(foreign_bag, capsys):
+    bag = Bag(foreign_bag)
+    params = ROOT / 'config' / 'nominal_cycle.yaml'
+    inputs = set(input_topics(read_file(params)))
+    assert set(chosen(bag, Choice(params=params))) == inputs < set(bag.topics)
+    assert chosen(bag, Choice(params=params, topics=['note', '/note'])) == ['/note']
+    every = chosen(bag, Choice(params=params, every=True))
+    assert set(every) == set(bag.topics)
+    assert set(playable(bag, every)) == set(bag.topics) - {'/drive'}
+    assert capsys.readouterr().out == (
+        "not played: /drive, message type 'acme_msgs/msg/Drive' is not installed\n"
+    )
+    with pytest.raises(InputError, match='no topic can be played'):
+        playable(bag, ['/drive'])
+
+
+def test_topics_that_the_bag_does_not_hold_are_named(foreign_bag, tmp_path, capsys):
+    bag, params = Bag(foreign_bag), tmp_path / 'params.yaml'
+    form = '/**:\n  ros__parameters:\n    x: {{speed: {{topic: {}}}, load: {{topic: {}}}}}\n'
+    params.write_text(form.format('joint_states', 'force'))
+    assert chosen(bag, Choice(params=params)) == ['/joint_states']
+    assert capsys.readouterr().out == 'the bag holds no /force\n'
+    params.write_text(form.format('motion', 'force'))
+    for choice in (Choice(params=params), Choice(params=params, topics=['/note', '/motion'])):
+        with pytest.raises(InputError, match='it holds no /motion.* it holds .*/drive, .*: give'):
+            chosen(bag, choice)
+
+
+def test_a_bag_of_any_machine_is_played(domain, listener, foreign_bag):
+    with play(domain, foreign_bag, '--rate', 4, '--topics', 'joint_states', 'drive') as player:
+        listener.until(lambda: listener.received['/joint_states'], 'the first message')
+        out, err = player.communicate(timeout=DEADLINE)
+    assert (player.returncode, err) == (0, '')
+    assert out.startswith('not played: /drive, ')
+
+
+def test_a_loop_goes_on_until_it_is_interrupted(domain, listener, short_bag):
+    once = Bag(short_bag).topics['/joint_states'].count
+    with play(domain, short_bag, '--rate', 20, '--loop', '--topics', 'joint_states') as player:
+        listener.until(lambda: len(listener.received['/joint_states']) > once, 'a second pass')
+        player.send_signal(signal.SIGINT)
+        _, err = player.communicate(timeout=DEADLINE)
+    assert (player.returncode, err) == (130, '')
 
 
 def test_a_stop_ends_it_at_once(short_bag):

@@ -47,7 +47,7 @@ def test_what_is_played_is_recorded(spinner, short_bag, tmp_path):
         for name, info in bag.topics.items()
     ]
     total = sum(info.count for info in bag.topics.values())
-    command = [sys.executable, '-m', 'ballscrew_monitor.cli', 'play', short_bag, '--rate', '4']
+    command = [sys.executable, '-m', 'ballscrew_monitor', 'play', short_bag, '--rate', '4']
     with BagWriter(tmp_path, 'copy') as writer:
         recorder = Recorder(
             node, writer, topics, lambda: next(ticks), {'/axial_load': heard.append}

@@ -4,6 +4,7 @@
 
 from collections.abc import Iterator
 import contextlib
+import os
 import signal
 import threading
 from typing import Any
@@ -29,3 +30,27 @@ def interrupts(stop: threading.Event) -> Iterator[list[int]]:
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
+
+
+def end_at_once() -> None:
+    """
+    Let SIGINT and SIGTERM end the process with one line and their exit code.
+
+    For the time in which there is nothing to be put in order, such as that of imports: an
+    exception in the middle of one has many faces.
+
+    """
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, _leave)
+
+
+def leave_to_python() -> None:
+    """Undo `end_at_once`: SIGINT raises KeyboardInterrupt."""
+    if signal.getsignal(signal.SIGINT) is _leave:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+        signal.signal(signal.SIGTERM, signal.SIG_DFL)
+
+
+def _leave(number: int, frame: Any) -> None:
+    os.write(2, b'ballscrew: interrupted\n')
+    os._exit(SIGNALLED + number)

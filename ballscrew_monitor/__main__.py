@@ -1,0 +1,22 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""`python -m ballscrew_monitor`, and the executable `ballscrew`."""
+
+import signal
+import sys
+
+from ballscrew_monitor.node.interrupts import end_at_once
+
+
+def main() -> int:
+    """Run the command line; return the exit code."""
+    end_at_once()  # before the imports that take long
+    from ballscrew_monitor import cli
+
+    code = cli.main()
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # it has ended; Python clears up
+    return code
+
+
+if __name__ == '__main__':
+    sys.exit(main())

@@ -1,0 +1,175 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+What the middleware is told through the environment, before any of it is loaded.
+
+A middleware that is not there ends the process in C, without a word that helps; a discovery
+server that cannot be found leaves it alone in the graph. So both are looked at first.
+
+"""
+
+from collections.abc import Mapping, MutableMapping
+import os
+from pathlib import Path
+import re
+import socket
+import sys
+import threading
+
+from surrogate.files import InputError
+
+DEFAULT = 'rmw_fastrtps_cpp'
+FAST_DDS = (DEFAULT, 'rmw_fastrtps_dynamic_cpp')
+CHOICE, SERVERS = 'RMW_IMPLEMENTATION', 'ROS_DISCOVERY_SERVER'
+RANGE = 'ROS_AUTOMATIC_DISCOVERY_RANGE'
+WHEELS = '_ROS_WHEELS_BOOTSTRAP_COMPLETE'
+INDEX = Path('share', 'ament_index', 'resource_index', 'rmw_typesupport')
+PROFILE = Path(__file__).with_name('loopback.xml')
+PROFILE_VARIABLES = ('FASTRTPS_DEFAULT_PROFILES_FILE', 'FASTDDS_DEFAULT_PROFILES_FILE')
+# Would take the discovery out of the hands of the profile.
+UNSET = ('ROS_LOCALHOST_ONLY', 'ROS_STATIC_PEERS', 'ROS_SUPER_CLIENT', SERVERS)
+RESOLVE = 1.0  # [s] longest wait for the address of a name
+ANSWER = 0.1  # [s] for this machine, or one nearby, to say that nobody listens
+SERVER_PORT = 11811
+_SERVER = re.compile(
+    r'(?:(?P<kind>UDPv4|UDPv6|TCPv4|TCPv6):)?'
+    r'(?:\[(?P<bracketed>[^\]\s]+)\]|(?P<host>[^\[\]:\s]+))(?::(?P<port>\d{1,5}))?'
+)
+
+
+def check_middleware(
+    environment: Mapping[str, str] = os.environ, *, discovers: bool = True
+) -> None:
+    """
+    Raise InputError for a middleware or a discovery server with which nothing can work.
+
+    `discovers`: whether anything is to be found in the graph of the environment.
+
+    """
+    chosen, known = environment.get(CHOICE, ''), installed(environment)
+    if chosen and known and chosen not in known:
+        raise InputError(
+            f'{CHOICE} is {chosen}, which is not installed, allowed is {", ".join(sorted(known))}'
+            ': unset it, or install the package of that name'
+        )
+    for server in _servers(environment) if discovers else ():
+        _check_server(server)
+
+
+def installed(environment: Mapping[str, str]) -> set[str]:
+    """Return the names of the middlewares that can be loaded; empty if that is not known."""
+    prefixes = [sys.prefix]
+    if WHEELS not in environment:  # the wheels load their own, whatever else is sourced
+        prefixes += filter(None, environment.get('AMENT_PREFIX_PATH', '').split(os.pathsep))
+    found = {path.name for prefix in prefixes for path in Path(prefix, INDEX).glob('rmw_*')}
+    return found - {'rmw_implementation'}
+
+
+def _is_fast_dds(environment: Mapping[str, str]) -> bool:
+    return environment.get(CHOICE, '') in ('', *FAST_DDS)
+
+
+def _servers(environment: Mapping[str, str]) -> list[str]:
+    """Return the discovery servers that are named, as far as the middleware asks them."""
+    if not _is_fast_dds(environment):
+        return []
+    return [server for server in environment.get(SERVERS, '').split(';') if server]
+
+
+def _check_server(server: str) -> None:
+    address = _address(server)
+    if address is None:
+        raise InputError(
+            f'{SERVERS} names {server!r}, a server must be HOST:PORT such as '
+            f'127.0.0.1:{SERVER_PORT}, several with a semicolon between them'
+        )
+    if _resolves(address[0]) is False:
+        raise InputError(
+            f'{SERVERS} names {server!r}, whose host has no address: mend the name, or unset it'
+        )
+
+
+def _address(server: str) -> tuple[str, int] | None:
+    """Return host and port of a server, None if it has not the form of one."""
+    found = _SERVER.fullmatch(server)
+    if found is None or not 0 < int(found['port'] or SERVER_PORT) <= 0xFFFF:
+        return None
+    return found['bracketed'] or found['host'], int(found['port'] or SERVER_PORT)
+
+
+def _resolves(host: str) -> bool | None:
+    """Tell whether a host has an address; None when that takes too long to know."""
+    answers: list[bool] = []
+
+    def ask() -> None:
+        try:
+            socket.getaddrinfo(host, None)
+            answers.append(True)
+        except OSError:
+            answers.append(False)
+
+    asking = threading.Thread(target=ask, daemon=True)
+    asking.start()
+    asking.join(RESOLVE)
+    return answers[0] if answers else None
+
+
+def _is_silent(server: str) -> bool:
+    address = _address(server)
+    if address is None or 'TCP' in server:
+        return False
+    try:
+        family = socket.AF_INET6 if ':' in address[0] else socket.AF_INET
+        with socket.socket(family, socket.SOCK_DGRAM) as probe:
+            probe.settimeout(ANSWER)
+            probe.connect(address)
+            probe.send(b'\0')  # no message of DDS: who listens ignores it
+            probe.recv(1)
+    except ConnectionRefusedError:
+        return True
+    except OSError:  # no answer is the good one
+        pass
+    return False
+
+
+def notice(environment: Mapping[str, str] = os.environ) -> str:
+    """Return what is to be said of discovery servers at which certainly nobody listens now."""
+    silent = [server for server in _servers(environment) if _is_silent(server)]
+    if not silent:
+        return ''
+    return (
+        f'nobody answers at {", ".join(silent)} of {SERVERS}, through it nothing is discovered: '
+        f'start the discovery server, or unset {SERVERS}'
+    )
+
+
+def loopback(environment: Mapping[str, str] = os.environ) -> dict[str, str]:
+    """
+    Return the variables that bind all ports of FastDDS to 127.0.0.1.
+
+    The profile does what the discovery range LOCALHOST does, and that would add sockets of its
+    own. Other middlewares are given that range, which keeps discovery on this machine.
+
+    """
+    if not _is_fast_dds(environment):
+        return {RANGE: 'LOCALHOST'}
+    return (
+        dict.fromkeys(PROFILE_VARIABLES, str(PROFILE))
+        | dict.fromkeys(UNSET, '')
+        | {RANGE: 'SYSTEM_DEFAULT', 'SKIP_DEFAULT_XML_FILE': '1'}
+    )
+
+
+def stay_local(environment: MutableMapping[str, str] = os.environ) -> None:
+    """Bind all ports to 127.0.0.1 from now on; raises InputError where that cannot be."""
+    if not _is_fast_dds(environment):
+        raise InputError(
+            f'parameter localhost is true, which needs {DEFAULT}, and {CHOICE} is '
+            f'{environment[CHOICE]}: leave localhost out and confine that one by its own settings'
+        )
+    for name in (*PROFILE_VARIABLES, SERVERS):
+        if environment.get(name, '') not in ('', str(PROFILE)):
+            raise InputError(
+                f'parameter localhost is true and {name} is {environment[name]}: unset one of them'
+            )
+    environment.update(loopback(environment))

@@ -1,0 +1,164 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What the commands that need ROS may be told on the command line, and their defaults."""
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+TREE = Path(__file__).resolve().parent.parent
+"""The repository, when the package runs from it: the defaults hold in any working directory."""
+BAG, PARAMS = TREE / 'bags' / 'nominal_cycle', TREE / 'config' / 'nominal_cycle.yaml'
+BAG_TEXT, PARAMS_TEXT = (f'{path.relative_to(TREE)} of the repository' for path in (BAG, PARAMS))
+OUT = Path('out')
+Commands = Any
+"""What `argparse` gives for subcommands; its class is private."""
+
+
+def _add_params(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        '--params',
+        type=Path,
+        default=PARAMS,
+        metavar='FILE',
+        help=f'parameters of the node (default {PARAMS_TEXT})',
+    )
+
+
+def _add_rate(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        '--rate', type=float, default=1.0, help='bag time over wall time (default 1)'
+    )
+
+
+def add_run(commands: Commands) -> argparse.ArgumentParser:
+    """Add `ballscrew run`."""
+    parser: argparse.ArgumentParser = commands.add_parser(
+        'run', help='play a bag into the real node over DDS and record what it says'
+    )
+    parser.add_argument('--bag', type=Path, default=BAG, help=f'bag to play (default {BAG_TEXT})')
+    _add_params(parser)
+    parser.add_argument(
+        '--out',
+        type=Path,
+        default=OUT,
+        metavar='DIR',
+        help='directory for recording, picture and log (default %(default)s)',
+    )
+    _add_rate(parser)
+    return parser
+
+
+def add_replay(commands: Commands) -> argparse.ArgumentParser:
+    """Add `ballscrew replay`."""
+    parser: argparse.ArgumentParser = commands.add_parser(
+        'replay', help='judge a bag without DDS, faster than real time'
+    )
+    parser.add_argument('bag', type=Path, metavar='BAG', help='bag directory or MCAP file')
+    _add_params(parser)
+    parser.add_argument('--json', action='store_true', help='print JSON')
+    return parser
+
+
+def add_play(commands: Commands) -> argparse.ArgumentParser:
+    """Add `ballscrew play`."""
+    parser: argparse.ArgumentParser = commands.add_parser(
+        'play', help='play the inputs of the node from a bag over DDS, with /clock'
+    )
+    parser.add_argument('bag', type=Path, metavar='BAG', help='bag directory or MCAP file')
+    _add_params(parser)
+    chosen = parser.add_mutually_exclusive_group()
+    chosen.add_argument(
+        '--topics',
+        nargs='+',
+        metavar='TOPIC',
+        help='play these topics (default: the inputs in the parameter file)',
+    )
+    chosen.add_argument('--all', action='store_true', help='play every topic of the bag')
+    parser.add_argument(
+        '--loop',
+        action='store_true',
+        help='play again and again until Ctrl-C; the stamps go on from one pass to the next',
+    )
+    _add_rate(parser)
+    parser.add_argument(
+        '--wait',
+        type=float,
+        default=10.0,
+        metavar='SECONDS',
+        help='longest wait for a subscriber of every topic (default 10)',
+    )
+    return parser
+
+
+def add_recover(commands: Commands) -> argparse.ArgumentParser:
+    """Add `ballscrew recover`."""
+    parser: argparse.ArgumentParser = commands.add_parser(
+        'recover', help='mend a recording whose writer was killed'
+    )
+    parser.add_argument(
+        'file', type=Path, metavar='FILE', help='MCAP file, or the folder of an unfinished one'
+    )
+    return parser
+
+
+def add_doctor(commands: Commands) -> argparse.ArgumentParser:
+    """Add `ballscrew doctor`."""
+    parser: argparse.ArgumentParser = commands.add_parser(
+        'doctor', help='compare the running ROS graph with a parameter file, and say the cure'
+    )
+    _add_params(parser)
+    parser.add_argument(
+        '--seconds',
+        type=float,
+        default=3.0,
+        metavar='T',
+        help='how long to listen (default 3); longer for slow topics',
+    )
+    parser.add_argument('--json', action='store_true', help='print JSON')
+    return parser
+
+
+def add_solve(commands: Commands) -> argparse.ArgumentParser:
+    """Add `ballscrew solve`."""
+    parser: argparse.ArgumentParser = commands.add_parser(
+        'solve', help='ask the running node for a full solve of a point'
+    )
+    parser.add_argument('--axis', required=True, help='name of the axis, such as x')
+    parser.add_argument(
+        '--speed-rpm',
+        type=float,
+        metavar='N',
+        help='screw speed [rev/min]; none: the current point',
+    )
+    parser.add_argument(
+        '--load-N',
+        type=float,
+        dest='load',
+        metavar='F',
+        help='axial load [N]; it opposes the motion when it has the sign of the speed',
+    )
+    parser.add_argument(
+        '--temperature-degC',
+        type=float,
+        dest='temperature',
+        metavar='T',
+        help='oil temperature [degC] (default that of the axis)',
+    )
+    parser.add_argument(
+        '--timeout',
+        type=float,
+        default=0.0,
+        metavar='SECONDS',
+        help="longest solve (default the node's)",
+    )
+    parser.add_argument('--node', default='', help='full name of the node, if there are several')
+    parser.add_argument(
+        '--wait',
+        type=float,
+        default=10.0,
+        metavar='SECONDS',
+        help='longest wait for the node (default 10)',
+    )
+    parser.add_argument('--json', action='store_true', help='print JSON')
+    return parser

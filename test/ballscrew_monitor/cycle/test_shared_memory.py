@@ -1,0 +1,157 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Which files of FastDDS are removed: those of killed processes, never those of living ones."""
+
+import contextlib
+import fcntl
+import mmap
+import os
+from pathlib import Path
+import re
+import subprocess
+import sys
+
+from ballscrew_monitor.cycle.domain import free_domain, port
+from ballscrew_monitor.cycle.node_process import child_environment
+from ballscrew_monitor.cycle.shared_memory import files_of, remove_stale, SHARED_MEMORY, stale
+import pytest
+
+SEGMENT = 'fastrtps_0123456789abcdef'
+SEGMENT_NAME = re.compile(r'fast(rtps|dds)_[0-9a-f]{16}')
+PORT = f'fastrtps_port{port(7, 0) + 1}'
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """Return a folder with a segment, a port without and one with locks, and other files."""
+    for name in (SEGMENT, PORT, f'fastdds_port{port(8, 1) + 1}'):
+        (tmp_path / name).touch()
+    for name in (f'{SEGMENT}_el', f'sem.{PORT}_mutex', f'fastdds_port{port(8, 1) + 1}_sl'):
+        (tmp_path / name).touch()
+    for name in ('fastrtps_port7000', 'fastrtps_fedcba9876543210', 'lttng-ust-wait-6', 'sem.x'):
+        (tmp_path / name).touch()
+    return tmp_path
+
+
+def names(paths):
+    return {path.name for path in paths}
+
+
+def test_a_segment_is_stale_when_its_lock_can_be_had(folder):
+    assert names(stale(folder, set())) == {SEGMENT, f'{SEGMENT}_el'}
+    with (folder / f'{SEGMENT}_el').open() as owner:
+        fcntl.flock(owner, fcntl.LOCK_EX)
+        assert not stale(folder, set())
+    assert names(stale(folder, set())) == {SEGMENT, f'{SEGMENT}_el'}
+
+
+@pytest.mark.parametrize('name', [SEGMENT, f'{SEGMENT}_el'])
+def test_a_segment_that_a_process_has_open_is_kept(folder, name):
+    with (folder / name).open():  # its lock could be had: it has just been made
+        assert not stale(folder, set())
+    assert stale(folder, set())
+
+
+def test_a_segment_that_a_process_has_mapped_is_kept(folder):
+    (folder / SEGMENT).write_bytes(b'0')
+    with (folder / SEGMENT).open('r+b') as file:
+        mapped = mmap.mmap(file.fileno(), 1)
+    assert not stale(folder, set())
+    mapped.close()
+    assert stale(folder, set())
+
+
+def test_what_is_of_another_user_is_kept(folder, monkeypatch):
+    monkeypatch.setattr(os, 'geteuid', lambda: os.getuid() + 1)
+    assert not stale(folder, {7, 8})
+
+
+def test_a_port_is_stale_in_a_free_domain_only(folder):
+    ports = stale(folder, {7}) - stale(folder, set())
+    assert names(ports) == {PORT, f'sem.{PORT}_mutex'}
+    assert len(stale(folder, {7, 8}) - stale(folder, {7})) == 2
+
+
+def test_a_port_of_no_domain_is_stale_when_its_lock_can_be_had(folder):
+    assert 'fastrtps_port7000' not in names(stale(folder, {7, 8}))
+    (folder / 'fastrtps_port7000_el').touch()
+    assert {'fastrtps_port7000', 'fastrtps_port7000_el'} <= names(stale(folder, set()))
+
+
+def test_a_port_that_somebody_listens_to_is_kept(folder):
+    with (folder / f'fastdds_port{port(8, 1) + 1}_sl').open() as listener:
+        fcntl.flock(listener, fcntl.LOCK_SH)
+        assert stale(folder, {8}) == stale(folder, set())
+
+
+def test_what_cannot_be_opened_is_kept(folder):
+    lock = folder / f'{SEGMENT}_el'
+    lock.unlink()
+    lock.mkdir()
+    assert not stale(folder, set())
+
+
+@pytest.fixture
+def two():
+    """Return two processes with a participant each, with their segments, and their domain."""
+    script = 'import rclpy; rclpy.init(); n = rclpy.create_node("n"); print(flush=True); input()'
+    with free_domain() as domain, contextlib.ExitStack() as stack:
+        made = []
+        for _ in range(2):
+            process = subprocess.Popen(
+                [sys.executable, '-c', script],
+                env=child_environment(domain),
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+            )
+            stack.enter_context(process)
+            stack.callback(process.kill)
+            assert process.stdout.readline() == b'\n'
+            files = set(files_of(Path(f'/proc/{process.pid}'), SHARED_MEMORY))
+            made.append((process, {path for path in files if SEGMENT_NAME.match(path.name)}))
+        yield made, domain
+
+
+def test_what_a_killed_process_leaves_is_removed_and_a_living_one_keeps_its_own(two):
+    ((killed, left), (living, kept)), domain = two
+    killed.kill()
+    killed.wait()
+    assert left - kept
+    assert kept
+    remove_stale({domain})
+    assert not [path for path in left - kept if path.exists()]
+    assert all(path.exists() for path in kept)
+    living.kill()
+    living.wait()
+    remove_stale({domain})
+    assert not [path for path in kept if path.exists()]
+
+
+@pytest.fixture
+def runs(tmp_path, shared_memory):
+    """Return a function that makes the context of a run of the tests, and who has cleaned."""
+    cleaned = []
+
+    def make(name):
+        return shared_memory.last_one_cleans(tmp_path, lambda: cleaned.append(name))
+
+    return make, cleaned
+
+
+def test_the_last_of_the_runs_at_work_cleans(runs):
+    make, cleaned = runs
+    with make('first'):
+        with make('second'):
+            pass
+        assert cleaned == []
+    assert cleaned == ['first']
+
+
+def test_after_a_failure_nothing_is_held(runs, tmp_path):
+    make, cleaned = runs
+    with pytest.raises(ValueError, match='why'), make('failed'):
+        raise ValueError('why')
+    assert cleaned == []
+    descriptor = os.open(tmp_path, os.O_RDONLY)
+    fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    os.close(descriptor)

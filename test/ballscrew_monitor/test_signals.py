@@ -1,0 +1,122 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""A signal at any moment after the first line of the program ends it without a traceback."""
+
+import os
+from pathlib import Path
+import signal
+import subprocess
+import sys
+import time
+
+from ballscrew_monitor.cycle.domain import free_domain
+from ballscrew_monitor.cycle.node_process import child_environment
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+DEADLINE = 60.0  # [s]
+COMMANDS = {
+    'run': ['ballscrew_monitor', 'run', '--bag'],
+    'play': ['ballscrew_monitor', 'play'],
+    'replay': ['ballscrew_monitor', 'replay'],
+    'doctor': ['ballscrew_monitor', 'doctor', '--seconds', '60'],
+    'solve': ['ballscrew_monitor', 'solve', '--axis', 'x', '--wait', '60'],
+}
+STAGES = {'start': '', 'rclpy': 'librcl.so', 'participant': '/dev/shm/fastrtps_'}
+"""What a process has mapped at a moment of its start."""
+
+
+@pytest.fixture(scope='module')
+def domain():
+    """Return a domain for all of these processes, none of which is to hear another."""
+    with free_domain() as number:
+        yield number
+
+
+def start(domain, command, *more, folder):
+    """Start a program, and wait until it takes SIGTERM, which Python leaves alone."""
+    process = subprocess.Popen(
+        [sys.executable, '-m', *command, *more],
+        env=child_environment(domain) | {'PYTHONPATH': str(ROOT), 'ROS_LOG_DIR': str(folder)},
+        cwd=folder,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    until(process, lambda: takes(process.pid, signal.SIGTERM))
+    return process
+
+
+def until(process, condition):
+    """Wait for a condition, or for the end of a process."""
+    deadline = time.monotonic() + DEADLINE
+    while process.poll() is None and not condition():
+        assert time.monotonic() < deadline
+        os.sched_yield()
+
+
+def takes(pid, number):
+    """Tell whether a process has a handler for a signal."""
+    try:
+        lines = Path(f'/proc/{pid}/status').read_text().splitlines()
+    except OSError:
+        return False
+    caught = next(line for line in lines if line.startswith('SigCgt:'))
+    return bool(int(caught.split()[1], 16) >> (number - 1) & 1)
+
+
+def has_mapped(pid, text):
+    """Tell whether a process has mapped a file of a name."""
+    try:
+        return text in Path(f'/proc/{pid}/maps').read_text()
+    except OSError:
+        return False
+
+
+@pytest.mark.parametrize(
+    ('stage', 'number'),
+    [
+        ('start', signal.SIGINT),
+        ('rclpy', signal.SIGINT),
+        ('rclpy', signal.SIGTERM),
+        ('participant', signal.SIGINT),
+    ],
+)
+def test_the_node_ends_with_0(domain, tmp_path, stage, number):
+    arguments = ['--ros-args', '-p', "state_dir:=''"]
+    with start(domain, ['ballscrew_monitor.node'], *arguments, folder=tmp_path) as process:
+        until(process, lambda: has_mapped(process.pid, STAGES[stage]))
+        process.send_signal(number)
+        out, err = process.communicate(timeout=DEADLINE)
+    assert (process.returncode, out) == (0, '')
+    assert 'Traceback' not in err
+
+
+@pytest.mark.parametrize(
+    ('command', 'stage'),
+    [
+        ('run', 'start'),
+        ('run', 'participant'),
+        ('play', 'rclpy'),
+        ('play', 'participant'),
+        ('replay', 'rclpy'),
+        ('doctor', 'participant'),
+        ('solve', 'participant'),
+    ],
+)
+def test_a_command_ends_with_130(domain, tmp_path, short_bag, command, stage):
+    more = [str(short_bag)] if command in ('run', 'play', 'replay') else []
+    with start(domain, COMMANDS[command], *more, folder=tmp_path) as process:
+        until(process, lambda: has_mapped(process.pid, STAGES[stage]))
+        process.send_signal(signal.SIGINT)
+        out, err = process.communicate(timeout=DEADLINE)
+    assert process.returncode == 130
+    assert 'Traceback' not in err
+    assert not err or err.startswith('ballscrew: interrupted')
+
+
+def test_sigterm_has_its_own_exit_code(domain, tmp_path):
+    with start(domain, COMMANDS['doctor'], folder=tmp_path) as process:
+        process.terminate()
+        process.communicate(timeout=DEADLINE)
+    assert process.returncode == 143
