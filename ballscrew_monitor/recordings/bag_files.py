@@ -22,7 +22,10 @@ MAGIC = {
 ZSTD = next(magic for magic, kind in MAGIC.items() if kind == 'zstd')
 ENDINGS = ('.mcap', '.db3', '.mcap.zstd', '.db3.zstd')
 ACTIVE = '.mcap.active'
+TABLES = ('.csv', '.tsv', '.txt', '.parquet')
 STORAGES = ('mcap', 'sqlite3')
+OWN = 'ballscrew_monitor'
+"""Name of the metadata record in which an MCAP file holds what this program says of it."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -47,6 +50,11 @@ def is_bag(path: Path) -> bool:
     return path.name.endswith((*ENDINGS, ACTIVE)) or (
         path.is_file() and kind_of(path) in (*STORAGES, 'zstd')
     )
+
+
+def is_table(path: Path) -> bool:
+    """Tell whether something is to be read as a table: a file that is one by name or content."""
+    return path.is_file() and (path.suffix.lower() in TABLES or kind_of(path) == 'parquet')
 
 
 def manifest(path: Path, *, salvage: bool) -> Manifest:
