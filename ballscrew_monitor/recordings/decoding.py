@@ -20,12 +20,18 @@ SEEN = 100  # messages of a topic that tell what it holds
 
 def decode(bag: Bag, message: Message, message_type: Any) -> tuple[Any, str]:
     """Return a decoded message, or None and why there is none; `bag` counts those."""
-    if not message.data:
-        return None, bag.refuse(message, 'it is empty')
+    decoded = _decoded(message, message_type)
+    if decoded is not None:
+        return decoded, ''
+    reason = 'it is truncated, or of another type' if message.data else 'it is empty'
+    return None, bag.refuse(message, reason)
+
+
+def _decoded(message: Message, message_type: Any) -> Any:
     try:
-        return deserialize_message(message.data, message_type), ''
+        return deserialize_message(message.data, message_type) if message.data else None
     except UNDECODABLE:
-        return None, bag.refuse(message, 'it is truncated, or of another type')
+        return None
 
 
 def silence(bag: Bag, axis: Axis) -> str:
@@ -60,7 +66,7 @@ def _readings(bag: Bag, topic: str, one: Input) -> list[Any]:
     """Return what the field of an input gives of the first messages of its topic."""
     readings = []
     for message in bag.messages([topic]):
-        decoded, _ = decode(bag, message, one.message_type)
+        decoded = _decoded(message, one.message_type)
         if decoded is not None:
             readings.append(one.read_field(decoded))
         if len(readings) == SEEN:

@@ -8,7 +8,7 @@ from pathlib import Path
 import tempfile
 
 from ballscrew_monitor.recordings.bag import Bag
-from ballscrew_monitor.recordings.bag_files import is_bag, is_table
+from ballscrew_monitor.recordings.bag_files import ACTIVE, is_bag, is_table
 from surrogate.files import InputError
 
 
@@ -21,11 +21,24 @@ def opened_log(path: Path, *, mapping: Path | None = None) -> Iterator[Bag]:
     Raises InputError when there is no log, or a map is missing or too much.
 
     """
+    with tempfile.TemporaryDirectory(prefix='ballscrew_log_') as folder:
+        bag = Bag(bag_of(path, mapping, Path(folder)), salvage=True)
+        bag.path = path  # what is said is said of the log
+        yield bag
+
+
+def bag_of(path: Path, mapping: Path | None, folder: Path) -> Path:
+    """
+    Return where the log at `path` is as a bag: itself, or made of a table below `folder`.
+
+    Raises InputError as `opened_log` does.
+
+    """
     if not path.exists():
         raise InputError(f'log {path} does not exist, it must be a bag, a CSV or a Parquet file')
     if path.is_dir() or is_bag(path):
-        yield _bag(path, mapping)
-        return
+        _check_bag(path, mapping)
+        return path
     if not is_table(path):
         raise InputError(
             f'log {path} is neither a bag nor a table, it must be of MCAP, sqlite3, CSV or Parquet'
@@ -38,17 +51,13 @@ def opened_log(path: Path, *, mapping: Path | None = None) -> Iterator[Bag]:
     from ballscrew_monitor.recordings.tables.convert import convert
     from ballscrew_monitor.recordings.tables.mapping import read_map
 
-    with tempfile.TemporaryDirectory(prefix='ballscrew_log_') as folder:
-        made = Path(folder) / (path.stem or 'log')
-        convert(path, read_map(mapping), made)
-        bag = Bag(made)
-        bag.path = path  # what is said is said of the log
-        yield bag
+    made = folder / (path.stem or 'log')
+    convert(path, read_map(mapping), made)
+    return made
 
 
-def _bag(path: Path, mapping: Path | None) -> Bag:
+def _check_bag(path: Path, mapping: Path | None) -> None:
     if mapping is not None:
         raise InputError(f'log {path} is a bag, a map is for tables')
-    if path.is_dir() and not is_bag(path) and not any(path.glob('*.mcap.active')):
+    if path.is_dir() and not is_bag(path) and not any(path.glob(f'*{ACTIVE}')):
         raise InputError(f'{path} holds no log, neither a bag nor a file of one')
-    return Bag(path, salvage=True)

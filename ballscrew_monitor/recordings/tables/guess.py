@@ -13,7 +13,11 @@ import math
 from pathlib import Path
 from typing import Any
 
-from ballscrew_monitor.core.conversions import LENGTH_UNITS, LINEAR_SPEED_UNITS, TIME_UNITS
+from ballscrew_monitor.core.conversions import (
+    LINEAR_POSITION_UNITS,
+    LINEAR_SPEED_UNITS,
+    TIME_UNITS,
+)
 from ballscrew_monitor.recordings.tables import estimates
 from ballscrew_monitor.recordings.tables.mapping import INPUTS, UNITS
 from ballscrew_monitor.recordings.tables.names import axis_names, Named, read_name
@@ -152,7 +156,7 @@ class _Guesser:
             for name, chosen in self.axes.items()
             if {'speed', 'position'} <= set(chosen)
             and {self._unit(name, kind, axes) for kind in ('speed', 'position')}
-            <= set(LINEAR_SPEED_UNITS | LENGTH_UNITS)
+            <= set(LINEAR_SPEED_UNITS | LINEAR_POSITION_UNITS)
         ]
         found = estimates.period([self._in_metres(axes, *one) for one in motions])
         if math.isfinite(found):
@@ -174,7 +178,7 @@ class _Guesser:
         self, axes: Mapping[str, Any], name: str, position: Array, speed: Array
     ) -> tuple[Array, Array]:
         return (
-            position * LENGTH_UNITS[self._unit(name, 'position', axes)],
+            position * LINEAR_POSITION_UNITS[self._unit(name, 'position', axes)],
             speed * LINEAR_SPEED_UNITS[self._unit(name, 'speed', axes)],
         )
 
@@ -246,7 +250,7 @@ class _Guesser:
             return None
         values = self.data[used['position']['column']]
         unit = chosen['position'].unit or estimates.position_unit(values)[0]
-        return values * LENGTH_UNITS[unit] if unit in LENGTH_UNITS else None
+        return values * LINEAR_POSITION_UNITS[unit] if unit in LINEAR_POSITION_UNITS else None
 
     def _set_load(
         self, name: str, used: dict[str, dict[str, Any]], chosen: Mapping[str, Named]

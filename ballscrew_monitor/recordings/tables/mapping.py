@@ -17,16 +17,15 @@ from pathlib import Path
 from typing import Any
 
 from ballscrew_monitor.core.conversions import (
-    ANGLE_UNITS,
     CURRENT_UNITS,
-    LENGTH_UNITS,
+    LINEAR_POSITION_UNITS,
     LINEAR_SPEED_UNITS,
     LOAD_UNITS,
+    ROTARY_POSITION_UNITS,
     ROTARY_SPEED_UNITS,
     SECOND,
     TEMPERATURE_UNITS,
     TIME_UNITS,
-    TORQUE_UNITS,
 )
 from ballscrew_monitor.node.parameters import check_axes
 from ballscrew_monitor.recordings.log_facts import Assumption
@@ -36,9 +35,9 @@ import yaml
 
 UNITS: dict[str, Mapping[str, float]] = {
     'speed': LINEAR_SPEED_UNITS | ROTARY_SPEED_UNITS,
-    'position': LENGTH_UNITS | ANGLE_UNITS,
+    'position': LINEAR_POSITION_UNITS | ROTARY_POSITION_UNITS,
     'load': LOAD_UNITS,
-    'torque': TORQUE_UNITS,
+    'torque': {'N m': 1.0},
     'current': CURRENT_UNITS,
     'temperature': TEMPERATURE_UNITS,
     'time': TIME_UNITS,

@@ -7,17 +7,16 @@ import math
 from pathlib import Path
 
 from ballscrew_monitor.core.conversions import (
-    ANGLE_UNITS,
     celsius,
     CURRENT_UNITS,
-    LENGTH_UNITS,
+    LINEAR_POSITION_UNITS,
     LINEAR_SPEED_UNITS,
     LOAD_UNITS,
+    ROTARY_POSITION_UNITS,
     ROTARY_SPEED_UNITS,
     SECOND,
     TEMPERATURE_UNITS,
     TIME_UNITS,
-    TORQUE_UNITS,
 )
 from ballscrew_monitor.recordings.tables.mapping import AxisMap, Column, TableMap
 from ballscrew_monitor.recordings.tables.read import Array, read_table, Table
@@ -117,14 +116,17 @@ def _axis(axis: AxisMap, table: Table, rows: NDArray[np.intp], stamps: Stamps) -
         return axis.columns[kind].unit if kind in axis.columns else ''
 
     per_metre = TURN / axis.lead
-    position = column('position', _turned(unit('position'), LENGTH_UNITS, ANGLE_UNITS, per_metre))
+    position = column(
+        'position',
+        _turned(unit('position'), LINEAR_POSITION_UNITS, ROTARY_POSITION_UNITS, per_metre),
+    )
     speed = column(
         'speed', _turned(unit('speed'), LINEAR_SPEED_UNITS, ROTARY_SPEED_UNITS, per_metre)
     )
     if speed is None:
         assert position is not None  # the map has one of them
         speed = _slope(position, stamps)
-    torque = column('torque', TORQUE_UNITS.get(unit('torque'), 1.0))
+    torque = column('torque', 1.0)
     current = column('current', CURRENT_UNITS.get(unit('current'), 1.0))
     if torque is None and current is not None and math.isfinite(axis.torque_constant):
         torque = current * axis.torque_constant
