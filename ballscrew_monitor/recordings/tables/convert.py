@@ -8,11 +8,12 @@ Topics are `joint_states` with speed, position and torque of each screw, `<axis>
 
 """
 
+from collections.abc import Iterator
+import itertools
 import math
 from pathlib import Path
 from typing import Any
 
-from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.reasons import enough_timeout
 from ballscrew_monitor.node import parameters
 from ballscrew_monitor.node.axis import load_surface
@@ -20,14 +21,21 @@ from ballscrew_monitor.node.topics import absolute
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
 from ballscrew_monitor.recordings.log_facts import Assumption, LogFacts
 from ballscrew_monitor.recordings.tables.mapping import AxisMap, TableMap
+from ballscrew_monitor.recordings.tables.read import Array
+from ballscrew_monitor.recordings.tables.rows import marks, RowTemplate
 from ballscrew_monitor.recordings.tables.series import read_series, Series
 from geometry_msgs.msg import WrenchStamped
-from rclpy.serialization import serialize_message
+import numpy as np
 from sensor_msgs.msg import JointState, Temperature
 from surrogate.files import InputError
 from surrogate.units import MILLI
 
 JOINTS = 'joint_states'
+JOINT, WRENCH, TEMPERATURE = (
+    'sensor_msgs/msg/JointState',
+    'geometry_msgs/msg/WrenchStamped',
+    'sensor_msgs/msg/Temperature',
+)
 SLOW = 0.5  # of the timeout: rows that far apart leave no room for a late one
 SAME = 1e-6  # part by which two leads may differ
 
@@ -83,7 +91,7 @@ def _axis_parameters(axis: AxisMap) -> dict[str, Any]:
         values['temperature.default'] = axis.temperature
     # A torque that the load was worked out from has nothing to be compared with.
     if 'torque' in axis.columns and axis.load_from != 'torque':
-        joint = {'topic': JOINTS, 'type': 'sensor_msgs/msg/JointState'}
+        joint = {'topic': JOINTS, 'type': JOINT}
         joint['field'] = f'effort[{axis.name}_axis]'
         values |= {f'torque.{key}': value for key, value in joint.items()}
     return {f'{axis.name}.{key}': value for key, value in values.items()}
@@ -121,53 +129,47 @@ def _assumption(key: str, value: str, reason: str) -> Assumption:
 
 
 def _write(writer: BagWriter, series: Series) -> None:
-    loads = {axis.name: absolute(f'{axis.name}/axial_load') for axis in series.axes}
-    warmths = {
-        axis.name: absolute(f'{axis.name}/oil_temperature')
-        for axis in series.axes
-        if axis.temperature is not None
-    }
-    joints = absolute(JOINTS)
-    topics = {joints: 'sensor_msgs/msg/JointState'}
-    topics |= dict.fromkeys(loads.values(), 'geometry_msgs/msg/WrenchStamped')
-    topics |= dict.fromkeys(warmths.values(), 'sensor_msgs/msg/Temperature')
-    for name, kind in topics.items():
-        writer.add_topic(Topic(name=name, type_name=kind, offer=Offer.RELIABLE))
-
-    def write(topic: str, message: Any, stamp: int) -> None:
-        message.header.stamp.sec, message.header.stamp.nanosec = divmod(stamp, SECOND)
-        writer.write(topic, serialize_message(message), log_time=stamp, publish_time=stamp)
-
-    rows = _Rows(series)
-    for row, stamp in enumerate(series.stamps.tolist()):
-        for axis in series.axes:
-            if axis.temperature is not None:
-                warm = Temperature(temperature=float(axis.temperature[row]))
-                write(warmths[axis.name], warm, stamp)
-            load = WrenchStamped()
-            load.header.frame_id = f'{axis.name}_nut'
-            load.wrench.force.x = float(axis.load[row])
-            write(loads[axis.name], load, stamp)
-        write(joints, rows.joints(row), stamp)
+    streams = []
+    for name, type_name, message, numbers in _topics(series):
+        topic = Topic(name=absolute(name), type_name=type_name, offer=Offer.RELIABLE)
+        writer.add_topic(topic)
+        rows = RowTemplate(message, len(numbers)).rows(series.stamps, numbers)
+        streams.append((topic.name, rows))
+    for stamp in series.stamps.tolist():
+        for name, rows in streams:
+            writer.write(name, next(rows), log_time=stamp, publish_time=stamp)
 
 
-class _Rows:
-    """The joints of each row: a list that no axis has stays empty, as the message asks for."""
+def _topics(series: Series) -> Iterator[tuple[str, str, Any, list[Array]]]:
+    """Yield name, type, message with marks and numbers of each topic, the joints last."""
+    for axis in series.axes:
+        (mark,) = marks(1)
+        if axis.temperature is not None:
+            warm = Temperature(temperature=mark)
+            yield f'{axis.name}/oil_temperature', TEMPERATURE, warm, [axis.temperature]
+        load = WrenchStamped()
+        load.header.frame_id = f'{axis.name}_nut'
+        load.wrench.force.x = mark
+        yield f'{axis.name}/axial_load', WRENCH, load, [axis.load]
+    yield JOINTS, JOINT, *_joints(series)
 
-    def __init__(self, series: Series) -> None:
-        self._names = [f'{axis.name}_axis' for axis in series.axes]
-        self._speed = [axis.speed for axis in series.axes]
-        self._position = self._all([axis.position for axis in series.axes])
-        self._torque = self._all([axis.torque for axis in series.axes])
 
-    def joints(self, row: int) -> JointState:
-        return JointState(
-            name=self._names,
-            velocity=[float(values[row]) for values in self._speed],
-            position=[math.nan if one is None else float(one[row]) for one in self._position],
-            effort=[math.nan if one is None else float(one[row]) for one in self._torque],
-        )
+def _joints(series: Series) -> tuple[JointState, list[Array]]:
+    """Return the joints with marks, and the numbers: what no axis has stays an empty list."""
+    found: dict[str, list[Array]] = {'velocity': [axis.speed for axis in series.axes]}
+    found['position'] = _all(series, [axis.position for axis in series.axes])
+    found['effort'] = _all(series, [axis.torque for axis in series.axes])
+    numbers = [values for part in found.values() for values in part]
+    message = JointState(name=[f'{axis.name}_axis' for axis in series.axes])
+    left = iter(marks(len(numbers)))
+    for field, part in found.items():
+        setattr(message, field, list(itertools.islice(left, len(part))))
+    return message, numbers
 
-    @staticmethod
-    def _all(found: list[Any]) -> list[Any]:
-        return found if any(one is not None for one in found) else []
+
+def _all(series: Series, found: list[Array | None]) -> list[Array]:
+    """Return a quantity of all axes, NaN for those without; nothing if none has it."""
+    if all(one is None for one in found):
+        return []
+    unknown = np.full(len(series.stamps), math.nan)
+    return [unknown if one is None else one for one in found]
