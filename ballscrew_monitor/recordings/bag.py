@@ -154,7 +154,7 @@ class Bag:
         with damage_is_input(file):
             kind = kind_of(file)
             if kind == 'zstd':
-                file = unpack(file, self._scratch())
+                file = unpack(file, self._scratch(), salvage=self._salvage)
                 kind = kind_of(file)
         if kind == 'rosbag1':
             raise InputError(f'bag {file} is of ROS 1, it must be converted to rosbag2')

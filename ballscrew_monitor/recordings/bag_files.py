@@ -76,14 +76,20 @@ def manifest(path: Path, *, salvage: bool) -> Manifest:
     return Manifest(files=files, custom=found.custom if found else {})
 
 
-def unpack(file: Path, folder: Path) -> Path:
-    """Return the unpacked copy in `folder` of a zstd file; raises InputError on damage."""
+def unpack(file: Path, folder: Path, *, salvage: bool) -> Path:
+    """
+    Return the unpacked copy in `folder` of a zstd file.
+
+    Raises InputError on damage; with `salvage` what comes before it is kept.
+
+    """
     target = folder / file.name.removesuffix('.zstd')
     try:
         with file.open('rb') as packed, target.open('wb') as unpacked:
             ZstdDecompressor().copy_stream(packed, unpacked)
     except ZstdError as error:
-        raise InputError(f'bag {file} is truncated or damaged ({error})') from None
+        if not salvage:
+            raise InputError(f'bag {file} is truncated or damaged ({error})') from None
     return target
 
 

@@ -20,7 +20,7 @@ from ballscrew_monitor.core.conversions import (
 )
 from ballscrew_monitor.recordings.tables import estimates
 from ballscrew_monitor.recordings.tables.mapping import INPUTS, UNITS
-from ballscrew_monitor.recordings.tables.names import axis_names, Named, read_name
+from ballscrew_monitor.recordings.tables.names import axis_names, is_of_the_screw, Named, read_name
 from ballscrew_monitor.recordings.tables.read import Array, column_names, read_table
 import numpy as np
 from surrogate.files import InputError
@@ -202,7 +202,9 @@ class _Guesser:
             f'{name}.lead_mm', float(f'{lead:.6g}'), f'the log does not say it; that of {SCREW}'
         )
         self._set_load(name, used, chosen)
-        if 'temperature' not in used:
+        if 'temperature' in used:
+            self._set_oil(name, used['temperature'])
+        else:
             self._assume(
                 f'{name}.temperature_degC', TEMPERATURE, 'the log holds no temperature of the oil'
             )
@@ -252,6 +254,12 @@ class _Guesser:
         unit = chosen['position'].unit or estimates.position_unit(values)[0]
         return values * LINEAR_POSITION_UNITS[unit] if unit in LINEAR_POSITION_UNITS else None
 
+    def _set_oil(self, name: str, place: dict[str, Any]) -> None:
+        """Say of a temperature that does not say so that it is taken for that of the oil."""
+        if not is_of_the_screw(place['column']):
+            column = place.pop('column')
+            self._assume(f'{name}.temperature.column', column, 'taken for that of the oil')
+
     def _set_load(
         self, name: str, used: dict[str, dict[str, Any]], chosen: Mapping[str, Named]
     ) -> None:
@@ -275,6 +283,7 @@ class _Guesser:
 
     def _say_what_is_left_out(self, axes: Mapping[str, Any], time: Mapping[str, Any]) -> None:
         used = {part.get('column') for axis in axes.values() for part in axis.values()}
+        used |= {entry['value'] for entry in self.assumed.values()}
         left = [one for one in self.named if one.column not in used | {time.get('column', '')}]
         spindle = sum(one.place == 'spindle' for one in left)
         if spindle:
@@ -289,6 +298,6 @@ def _best(found: Sequence[Named]) -> dict[str, Named]:
     ranked = sorted(found, key=lambda one: -one.rank)
     best: dict[str, Named] = {}
     for one in ranked:
-        if one.kind in INPUTS and (one.kind != 'temperature' or one.rank > 0):
+        if one.kind in INPUTS:
             best.setdefault(one.kind, one)
     return best

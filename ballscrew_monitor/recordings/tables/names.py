@@ -26,8 +26,9 @@ KINDS = {
 # Words that make a column something else, whatever else its name says.
 OTHERS = frozenset(
     'acceleration accel acc jerk voltage volt volts power error deviation feedrate override '
-    'program sequence number line block inertia bus count index status limit'.split()
+    'program sequence number line block inertia bus count index status limit percent pct'.split()
 )
+ELSEWHERE = frozenset('motor drive ambient cabinet winding room air coolant'.split())
 MEASURED = frozenset('actual act feedback fb measured meas encoder real'.split())
 WANTED = frozenset(
     'command commanded cmd set setpoint target reference ref demand desired nominal'.split()
@@ -72,14 +73,16 @@ def read_name(column: str) -> Named:
     words = [word.lower() for word in _WORD.findall(_BRACKETS.sub(' ', column))]
     place, axis = _place(words)
     kind = _kind(words)
-    return Named(
-        column=column,
-        place=place,
-        axis=axis,
-        kind=kind,
-        unit=_unit(column, kind),
-        rank=_rank(words),
-    )
+    unit = _unit(column, kind)
+    # In another unit than those of the quantity it is another quantity, such as a load in percent.
+    if _BRACKETS.search(column) and not unit:
+        kind = ''
+    return Named(column=column, place=place, axis=axis, kind=kind, unit=unit, rank=_rank(words))
+
+
+def is_of_the_screw(column: str) -> bool:
+    """Tell whether the name of a column says that it is about the screw or its oil."""
+    return bool(OF_THE_SCREW & {word.lower() for word in _WORD.findall(column)})
 
 
 def axis_names(named: Sequence[Named]) -> dict[str, str]:
@@ -109,7 +112,9 @@ def _kind(words: Sequence[str]) -> str:
     if OTHERS & set(words):
         return ''
     found = [kind for word in words for kind, known in KINDS.items() if word in known]
-    return found[-1] if found else ''
+    if not found or (found[-1] == 'temperature' and ELSEWHERE & set(words)):
+        return ''
+    return found[-1]
 
 
 def _rank(words: Sequence[str]) -> int:

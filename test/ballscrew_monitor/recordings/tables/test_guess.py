@@ -115,3 +115,21 @@ def test_a_column_of_texts_is_left_out(guessed):
     assert any("column 'y_vel' holds no number" in note for note in made.notes)
     with pytest.raises(InputError, match='holds no number'):
         guessed({'t': TIME, 'x_vel': words})
+
+
+def test_what_another_unit_or_place_is_of_is_left_out(guessed):
+    made = guessed(
+        {
+            't [s]': TIME,
+            'x speed [mm/s]': SPEED,
+            'x load [%]': SPEED,
+            'x motor temperature [C]': TIME + 60,
+            'x temperature [C]': TIME + 30,
+        }
+    )
+    axis, assumed = made.content['axes']['x'], made.content['assumed']
+    assert axis['load'] == {'unknown': 'no force, torque or current'}
+    assert axis['temperature'] == {'unit': 'degC'}
+    assert assumed['x.temperature.column']['value'] == 'x temperature [C]'
+    assert made.notes[-1] == 'not used: x load [%], x motor temperature [C]'
+    assert 'temperature' in make_map(made.content).axes[0].columns
