@@ -49,9 +49,15 @@ class RowTemplate:
         self, stamps: NDArray[np.int64], numbers: Sequence[NDArray[np.float64]]
     ) -> Iterator[bytes]:
         data = np.tile(self._bytes, (len(stamps), 1))
-        parts = np.stack([stamps // SECOND, stamps % SECOND], axis=1).astype(np.uint32)
-        data[:, self._stamp : self._stamp + 8] = parts.view(np.uint8)
+        times = np.stack([stamps // SECOND, stamps % SECOND], axis=1).astype(np.uint32)
+        _put(data, self._stamp, times)
         for place, values in zip(self._places, numbers, strict=True):
-            plain = np.array(values, dtype=np.float64).reshape(-1, 1)
-            data[:, place : place + 8] = plain.view(np.uint8)
+            _put(data, place, np.array(values, dtype=np.float64).reshape(-1, 1))
         return (row.tobytes() for row in data)
+
+
+def _put(data: NDArray[np.uint8], begin: int, numbers: NDArray[Any]) -> None:
+    """Write the numbers of each row to its bytes."""
+    parts = numbers.view(np.uint8)
+    end = begin + parts.shape[1]
+    data[:, begin:end] = parts
