@@ -100,7 +100,7 @@ def values_for(bag: Bag, given: Path | None, nominal: Path) -> tuple[dict[str, A
         return parameters.read_file(given), str(given)
     own = parameters_of(bag)
     if own is not None:
-        return own, f'the metadata of {bag.path}'
+        return own, f'those of {bag.path}'
     return parameters.read_file(nominal), f'{nominal}, the nominal ones'
 
 

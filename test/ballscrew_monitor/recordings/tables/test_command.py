@@ -25,13 +25,13 @@ def test_a_guess_is_a_map_that_works_unedited(mill_log, tmp_path, capsys):
     captured = capsys.readouterr()
     by_bag = json.loads(captured.out)
     assert set(by_bag) == {'x', 'y', 'z'}
-    assert f'parameters: the metadata of {bag}' in captured.err
+    assert f'parameters: those of {bag}' in captured.err
     assert 'assumed of mill.csv: ' in captured.err
     assert 'nothing was judged on axis z: no valid sample of load' in captured.err
     assert cli.main(['replay', str(mill_log), '--map', str(mapping), '--json']) == 0
     captured = capsys.readouterr()
     assert json.loads(captured.out) == by_bag
-    assert f'parameters: the metadata of {mill_log}' in captured.err
+    assert f'parameters: those of {mill_log}' in captured.err
 
 
 def test_what_is_missing_is_named(mill_log, tmp_path, capsys):

@@ -94,7 +94,7 @@ def test_parameters_are_those_given_else_its_own_else_the_nominal(mill_bag, shor
     assert values_for(mill_bag, NOMINAL, NOMINAL)[0]['axes'] == ['x']
     values, whose = values_for(mill_bag, None, NOMINAL)
     assert values['axes'] == ['x', 'y', 'z']
-    assert whose == f'the metadata of {mill_bag.path}'
+    assert whose == f'those of {mill_bag.path}'
     values, whose = values_for(Bag(short_bag), None, NOMINAL)
     assert values == parameters.read_file(NOMINAL)
     assert whose.endswith('the nominal ones')
