@@ -4,7 +4,7 @@
 Serialised messages of many rows at once.
 
 Messages of one shape differ in their stamp and their numbers alone: these are put into the bytes
-of one that the middleware has serialised.
+of one of them.
 
 """
 
@@ -12,10 +12,10 @@ from collections.abc import Iterator, Sequence
 import struct
 from typing import Any
 
+from ballscrew_monitor.core.cdr import serialized
 from ballscrew_monitor.core.conversions import SECOND
 import numpy as np
 from numpy.typing import NDArray
-from rclpy.serialization import serialize_message
 
 BLOCK = 4096  # rows that are made at a time
 _STAMP = (1_234_567_891, 987_654_321)  # [s], [ns]
@@ -32,10 +32,10 @@ class RowTemplate:
     def __init__(self, message: Any, count: int) -> None:
         """Find where the stamp and the marks stand in the bytes of `message`."""
         message.header.stamp.sec, message.header.stamp.nanosec = _STAMP
-        data = serialize_message(message)
+        data = serialized(message)
         self._bytes = np.frombuffer(data, np.uint8)
-        self._stamp = data.index(struct.pack('=iI', *_STAMP))
-        self._places = [data.index(struct.pack('=d', mark)) for mark in marks(count)]
+        self._stamp = data.index(struct.pack('<iI', *_STAMP))
+        self._places = [data.index(struct.pack('<d', mark)) for mark in marks(count)]
 
     def rows(
         self, stamps: NDArray[np.int64], numbers: Sequence[NDArray[np.float64]]
@@ -49,10 +49,10 @@ class RowTemplate:
         self, stamps: NDArray[np.int64], numbers: Sequence[NDArray[np.float64]]
     ) -> Iterator[bytes]:
         data = np.tile(self._bytes, (len(stamps), 1))
-        times = np.stack([stamps // SECOND, stamps % SECOND], axis=1).astype(np.uint32)
+        times = np.stack([stamps // SECOND, stamps % SECOND], axis=1).astype('<u4')
         _put(data, self._stamp, times)
         for place, values in zip(self._places, numbers, strict=True):
-            _put(data, place, np.array(values, dtype=np.float64).reshape(-1, 1))
+            _put(data, place, np.array(values, dtype='<f8').reshape(-1, 1))
         return (row.tobytes() for row in data)
 
 
