@@ -60,4 +60,6 @@ def _check_bag(path: Path, mapping: Path | None) -> None:
     if mapping is not None:
         raise InputError(f'log {path} is a bag, a map is for tables')
     if path.is_dir() and not is_bag(path) and not any(path.glob(f'*{ACTIVE}')):
-        raise InputError(f'{path} holds no log, neither a bag nor a file of one')
+        tables = sorted(file.name for file in path.iterdir() if is_table(file))
+        hint = f'; its tables, such as {tables[0]}, are to be named one by one' if tables else ''
+        raise InputError(f'{path} holds no log, neither a bag nor a file of one{hint}')

@@ -49,6 +49,8 @@ def test_a_table_needs_a_map_and_a_bag_none(short_bag, tmp_path):
 def test_no_log_at_all(tmp_path):
     assert 'does not exist' in sentence(tmp_path / 'nothing')
     assert 'holds no log' in sentence(tmp_path)
+    (tmp_path / 'one.csv').touch()
+    assert sentence(tmp_path).endswith('its tables, such as one.csv, are to be named one by one')
     odd = tmp_path / 'picture.png'
     odd.write_bytes(b'\x89PNG')
     assert 'is neither a bag nor a table' in sentence(odd)
