@@ -9,7 +9,7 @@ import re
 from typing import Any
 
 from ballscrew_monitor.node import parameters
-from ballscrew_monitor.node.parameter_table import BARE_LETTERS
+from ballscrew_monitor.node.parameter_row import BARE_LETTERS
 from ballscrew_monitor.recordings.bag import Bag
 from surrogate.files import InputError
 import yaml
@@ -21,7 +21,11 @@ class _Quoting(yaml.SafeDumper):
     """Quotes the letters that ROS reads as true and false."""
 
 
-_Quoting.add_implicit_resolver('tag:yaml.org,2002:bool', re.compile('[yYnN]$'), [*BARE_LETTERS])
+_Quoting.add_implicit_resolver(
+    'tag:yaml.org,2002:bool',
+    re.compile(f'({"|".join(BARE_LETTERS)})$'),
+    sorted({word[0] for word in BARE_LETTERS}),
+)
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)

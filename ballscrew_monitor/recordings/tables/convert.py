@@ -16,7 +16,7 @@ from typing import Any
 
 from ballscrew_monitor.core.reasons import enough_timeout
 from ballscrew_monitor.node import parameters
-from ballscrew_monitor.node.axis import load_surface
+from ballscrew_monitor.node.axis import load_surface, MOTOR_TORQUE
 from ballscrew_monitor.node.topics import absolute
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
 from ballscrew_monitor.recordings.log_facts import Assumption, LogFacts
@@ -84,13 +84,22 @@ def _parameters(mapping: TableMap, series: Series, notes: list[str]) -> dict[str
 
 
 def _axis_parameters(axis: AxisMap) -> dict[str, Any]:
-    values: dict[str, Any] = dict(axis.texts) | {'load.topic': f'{axis.name}/axial_load'}
+    values: dict[str, Any] = dict(axis.texts)
+    by_node = axis.load_from == MOTOR_TORQUE
+    if by_node:
+        values |= {
+            'load.source': MOTOR_TORQUE,
+            'torque.uncertainty': axis.torque_uncertainty,
+            'inertia': axis.inertia,
+        }
+    else:
+        values['load.topic'] = f'{axis.name}/axial_load'
     if 'temperature' in axis.columns:
         values['temperature.topic'] = f'{axis.name}/oil_temperature'
     elif math.isfinite(axis.temperature):
         values['temperature.default'] = axis.temperature
     # A torque that the load was worked out from has nothing to be compared with.
-    if 'torque' in axis.columns and axis.load_from != 'torque':
+    if by_node or ('torque' in axis.columns and axis.load_from != 'torque'):
         joint = {'topic': JOINTS, 'type': JOINT}
         joint['field'] = f'effort[{axis.name}_axis]'
         values |= {f'torque.{key}': value for key, value in joint.items()}
@@ -147,10 +156,11 @@ def _topics(series: Series) -> Iterator[tuple[str, str, Any, list[Array]]]:
         if axis.temperature is not None:
             warm = Temperature(temperature=mark)
             yield f'{axis.name}/oil_temperature', TEMPERATURE, warm, [axis.temperature]
-        load = WrenchStamped()
-        load.header.frame_id = f'{axis.name}_nut'
-        load.wrench.force.x = mark
-        yield f'{axis.name}/axial_load', WRENCH, load, [axis.load]
+        if axis.load is not None:
+            load = WrenchStamped()
+            load.header.frame_id = f'{axis.name}_nut'
+            load.wrench.force.x = mark
+            yield f'{axis.name}/axial_load', WRENCH, load, [axis.load]
     yield JOINTS, JOINT, *_joints(series)
 
 

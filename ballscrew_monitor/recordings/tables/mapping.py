@@ -44,11 +44,14 @@ UNITS: dict[str, Mapping[str, float]] = {
 }
 """Units of each kind of column."""
 INPUTS = tuple(kind for kind in UNITS if kind != 'time')
-DERIVED = ('current', 'torque')  # what a load may be worked out from
+DERIVED = ('current', 'torque', 'motor_torque')
+"""A load may be worked out from a current or torque, or by the node from the motor torque."""
 NUMBERS = {
     'lead_mm': (0.1, 1000.0),
     'torque_constant_Nm_per_A': (1e-6, 1e3),
     'efficiency': (0.1, 1.0),
+    'torque_uncertainty_Nm': (1e-9, 1e6),
+    'inertia_kg_m2': (0.0, 1e3),
     'temperature_degC': (-50.0, 200.0),
     'rate_Hz': (1e-3, 1e6),
 }
@@ -72,8 +75,9 @@ class AxisMap:
     One axis: its columns by input, and what they are worked with.
 
     Lead [m], torque constant [N m/A] and oil temperature [degC], NaN where not said; efficiency
-    [-]; `load_from` is the input that the load is worked out from; `unknown` says of an input why
-    it is not known.
+    [-]; half width of the range of the torque [N m], NaN where not said, and inertia [kg m2], for
+    a load that the node works out; `load_from` says from what it is; `unknown` says of an input
+    why it is not known.
 
     """
 
@@ -82,6 +86,8 @@ class AxisMap:
     lead: float
     torque_constant: float
     efficiency: float
+    torque_uncertainty: float
+    inertia: float
     temperature: float
     load_from: str
     unknown: Mapping[str, str]
@@ -210,6 +216,8 @@ def _axis(name: str, values: dict[str, Any]) -> AxisMap:
         lead=part.number('lead_mm') / MILLI,
         torque_constant=part.number('torque_constant_Nm_per_A'),
         efficiency=part.number('efficiency', 1.0),
+        torque_uncertainty=part.number('torque_uncertainty_Nm'),
+        inertia=part.number('inertia_kg_m2', 0.0),
         temperature=part.number('temperature_degC'),
         load_from=part.text('load.from'),
         unknown={kind: text for kind in INPUTS if (text := part.text(f'{kind}.unknown'))},
@@ -226,16 +234,23 @@ def _check_axis(axis: AxisMap) -> None:
     if math.isnan(axis.lead):
         raise InputError(f'{axis.name}.lead_mm is missing, it must be the lead of the screw')
     source = axis.load_from
-    if source and (source not in DERIVED or 'load' in axis.columns):
+    if not source:
+        return
+    if source not in DERIVED or 'load' in axis.columns:
         raise InputError(
-            f'{axis.name}.load.from is {source!r}, allowed is {" or ".join(DERIVED)}, without a '
+            f'{axis.name}.load.from is {source!r}, allowed is {", ".join(DERIVED)}, without a '
             'column of the load'
         )
-    if source and source not in axis.columns:
+    used = {'motor_torque': {'current', 'torque'}}.get(source, {source}) & set(axis.columns)
+    if not used:
         raise InputError(f'{axis.name}.load.from is {source!r}, of which no column is named')
-    if source == 'current' and math.isnan(axis.torque_constant):
+    if used == {'current'} and math.isnan(axis.torque_constant):
         raise InputError(
             f'{axis.name}.torque_constant_Nm_per_A is missing, a load from the current needs it'
+        )
+    if source == 'motor_torque' and math.isnan(axis.torque_uncertainty):
+        raise InputError(
+            f'{axis.name}.torque_uncertainty_Nm is missing, a load from motor_torque needs it'
         )
 
 

@@ -37,13 +37,14 @@ class AxisSeries:
     One axis by rows, NaN where a quantity is not known.
 
     Speed [rad/s], position [rad] and torque [N m] of the screw, force on the nut [N] and oil
-    temperature [degC], machine frame; None for what the log does not hold, but for speed and load.
+    temperature [degC], machine frame; None for what the log does not hold, but for the speed, and
+    for a load that the node works out.
 
     """
 
     name: str
     speed: Array
-    load: Array
+    load: Array | None
     position: Array | None
     torque: Array | None
     temperature: Array | None
@@ -132,9 +133,7 @@ def _axis(axis: AxisMap, table: Table, rows: NDArray[np.intp], stamps: Stamps) -
         torque = current * axis.torque_constant
     load = column('load', LOAD_UNITS.get(unit('load'), 1.0))
     if load is None:
-        load = np.full(len(rows), math.nan)
-        if axis.load_from and torque is not None:
-            load = force_of(torque, lead=axis.lead, efficiency=axis.efficiency)
+        load = _load_without_column(axis, torque, len(rows))
     warmth = column('temperature', 1.0)
     zero = TEMPERATURE_UNITS.get(unit('temperature'), 0.0)
     return AxisSeries(
@@ -145,6 +144,15 @@ def _axis(axis: AxisMap, table: Table, rows: NDArray[np.intp], stamps: Stamps) -
         torque=torque,
         temperature=None if warmth is None else np.vectorize(celsius)(warmth + zero),
     )
+
+
+def _load_without_column(axis: AxisMap, torque: Array | None, count: int) -> Array | None:
+    """Return the load of an axis as the map says, None if the node is to work it out."""
+    if axis.load_from == 'motor_torque':
+        return None
+    if not axis.load_from or torque is None:
+        return np.full(count, math.nan)
+    return force_of(torque, lead=axis.lead, efficiency=axis.efficiency)
 
 
 def force_of(torque: Array, *, lead: float, efficiency: float) -> Array:

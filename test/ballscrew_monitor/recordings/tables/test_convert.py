@@ -141,6 +141,21 @@ def test_a_torque_and_a_temperature_have_their_topics(tmp_path, write_csv):
     assert last.point.motor_torque == 0.5
 
 
+def test_a_load_may_be_left_to_the_node(tmp_path, write_csv):
+    columns = {'t': np.arange(40.0) / 100, 'x_vel_mm_s': [100.0] * 40, 'x_current_A': [20.0] * 40}
+    log = write_csv(tmp_path / 'log.csv', columns)
+    content = guess(log).content
+    content['assumed']['x.load.from']['value'] = 'motor_torque'
+    content['axes']['x'] |= {'torque_uncertainty_Nm': 0.05, 'inertia_kg_m2': 1e-4}
+    convert(log, make_map(content), tmp_path / 'bag')
+    bag = Bag(tmp_path / 'bag')
+    assert list(bag.topics) == ['/joint_states']
+    last = [state for state, _ in replay(bag, parameters_of(bag))][-1]
+    assert last.point.motor_torque == pytest.approx(2.0)
+    assert -1400.0 < last.point.axial_load < -900.0
+    assert last.inputs[1].state == InputHealth.STATE_DERIVED
+
+
 def test_another_lead_than_that_of_the_surface_is_said(tmp_path, write_csv, mill):
     log = write_csv(tmp_path / 'mill.csv', mill())
     content = guess(log).content

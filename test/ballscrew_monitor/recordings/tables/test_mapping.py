@@ -71,7 +71,11 @@ def test_a_map_says_what_is_stated_and_what_is_assumed():
         (changed(axes__x__speed__column=3), 'x.speed.column is 3, it must be a text'),
         (changed(axes__x__speed__colum='v'), 'x.speed.colum is unknown'),
         (changed(axes__x__efficiency=3.0), 'it must be a number from 0.1 to 1'),
-        (changed(axes__x__load__from='speed'), "x.load.from is 'speed', allowed is current or"),
+        (
+            changed(axes__x__load__from='speed'),
+            "x.load.from is 'speed', allowed is current, torque",
+        ),
+        (changed(axes__x__load__from='motor_torque'), 'x.torque_uncertainty_Nm is missing'),
         (changed(axes__x__load__from='torque'), 'of which no column is named'),
         (changed(axes__x__torque_constant_Nm_per_A=None), 'a load from the current needs it'),
         (changed(axes__x__lead_mm=5.0), 'x.lead_mm is both stated and assumed'),
