@@ -18,11 +18,13 @@ from ballscrew_monitor.node.interrupts import FAILED, leave_to_python, SIGNALLED
 from ballscrew_monitor.node.middleware import check_middleware
 from ballscrew_monitor.options import (
     add_doctor,
+    add_import,
     add_play,
     add_recover,
     add_replay,
     add_run,
     add_solve,
+    PARAMS,
 )
 from surrogate.cli import add_commands
 from surrogate.files import InputError, json_text
@@ -34,6 +36,9 @@ BAD_INPUT, INTERRUPTED = 2, SIGNALLED + signal.SIGINT
 NEEDED = {
     'mcap': 'pip install mcap zstandard',
     'zstandard': 'pip install mcap zstandard',
+    'rosbags': 'pip install rosbags',
+    'apsw': 'pip install rosbags',
+    'polars': 'pip install polars',
     'matplotlib': 'pip install matplotlib',
     'rclpy': 'source the set-up file of ROS 2',
     'ballscrew_msgs': 'source the set-up file of the workspace in which it was built',
@@ -85,6 +90,7 @@ def _parser() -> argparse.ArgumentParser:
     for add, handler in (
         (add_run, _run),
         (add_replay, _replay),
+        (add_import, _import),
         (add_solve, _solve),
         (add_doctor, _doctor),
         (add_play, _play),
@@ -105,31 +111,65 @@ def _run(args: argparse.Namespace) -> int:
 
 
 def _replay(args: argparse.Namespace) -> int:
-    from ballscrew_monitor.node import parameters
-    from ballscrew_monitor.recordings.bag import Bag
+    from ballscrew_monitor.recordings.log_facts import facts_of, values_for
+    from ballscrew_monitor.recordings.opener import opened_log
     from ballscrew_monitor.recordings.replay import replay
     from ballscrew_monitor.recordings.summary import Summarizer
 
-    values = parameters.read_file(args.params)
-    summarizers = {axis: Summarizer() for axis in values['axes']}
-    for judged in replay(Bag(args.bag), values):
-        summarizers[judged.state.axis].add_state(judged.state)
-        if judged.event is not None:
-            summarizers[judged.state.axis].add_event(judged.event)
-    results = {axis: made.result() for axis, made in summarizers.items()}
+    with opened_log(args.bag, mapping=args.map) as bag:
+        values, whose = values_for(bag, args.params, PARAMS)
+        facts = facts_of(bag)
+        _say(f'parameters: {whose}', *(facts.sentences() if facts else ()))
+        summarizers = {axis: Summarizer() for axis in values['axes']}
+        reasons = dict.fromkeys(values['axes'], '')
+        for judged in replay(bag, values):
+            reasons[judged.state.axis] = judged.state.result.reason
+            summarizers[judged.state.axis].add_state(judged.state)
+            if judged.event is not None:
+                summarizers[judged.state.axis].add_event(judged.event)
+        results = {axis: made.result() for axis, made in summarizers.items()}
+        silent = [axis for axis, made in results.items() if made is None or made.says_nothing]
+        _say(*bag.notes, *_silences(bag, values, {axis: reasons[axis] for axis in silent}))
     if args.json:
         print(json_text({axis: made and made.record() for axis, made in results.items()}))
     else:
         for axis, result in results.items():
             _print_summary(axis, result)
-    silent = [axis for axis, result in results.items() if result is None or not result.judged]
-    if silent:
-        print(
-            f'ballscrew: nothing was judged on axis {", ".join(silent)}: topics, fields and '
-            f'joints in {args.params} must be those of {args.bag}',
-            file=sys.stderr,
-        )
-    return FAILED if silent else 0
+    return FAILED if len(silent) == len(results) else 0
+
+
+def _silences(bag: Any, values: dict[str, Any], silent: dict[str, str]) -> list[str]:
+    """Return a sentence for each axis of which nothing was judged, with its last reason."""
+    from ballscrew_monitor.node.axis import build_axis
+    from ballscrew_monitor.node.topics import with_types
+    from ballscrew_monitor.recordings.decoding import silence
+
+    full = with_types(values, bag.types)
+    sentences = []
+    for axis, last in silent.items():
+        reason = silence(bag, build_axis(axis, full))
+        if reason or not last:
+            last = (
+                'topics, fields and joints of its parameters must be those of '
+                f'{bag.path}{f"; {reason}" if reason else ""}'
+            )
+        sentences.append(f'nothing was judged on axis {axis}: {last}')
+    return sentences
+
+
+def _import(args: argparse.Namespace) -> int:
+    from ballscrew_monitor.recordings.tables.command import make_bag, print_guess
+
+    if args.guess:
+        print_guess(args.log)
+    else:
+        make_bag(args.log, args.config, args.out)
+    return 0
+
+
+def _say(*sentences: str) -> None:
+    for sentence in sentences:
+        print(f'ballscrew: {sentence}', file=sys.stderr)
 
 
 def _print_summary(axis: str, result: Any) -> None:
@@ -144,7 +184,7 @@ def _read_bag(args: argparse.Namespace, lead: float) -> tuple[dict[str, Any], tu
     """Return torque over speed out of a bag, for `identify`; the lead of the screw [m]."""
     from ballscrew_monitor.core.inputs import Source
     from ballscrew_monitor.recordings import no_load as no_load_bag
-    from ballscrew_monitor.recordings.bag import Bag
+    from ballscrew_monitor.recordings.opener import opened_log
 
     check_middleware(discovers=False)
     for name in ('speed_topic', 'speed_field', 'torque_field'):
@@ -163,7 +203,9 @@ def _read_bag(args: argparse.Namespace, lead: float) -> tuple[dict[str, Any], tu
         channels[Source.TEMPERATURE] = no_load_bag.temperature_channel(
             args.temperature_topic, args.temperature_field or 'temperature'
         )
-    return no_load_bag.read_no_load(Bag(args.data), channels)
+    with opened_log(args.data) as bag:
+        columns, notes = no_load_bag.read_no_load(bag, channels)
+        return columns, (*bag.notes, *notes)
 
 
 def _solve(args: argparse.Namespace) -> int:
@@ -208,5 +250,5 @@ def _play(args: argparse.Namespace) -> int:
 
 DISCOVERING = (_solve, _doctor, _play)
 """Commands that need others in the ROS graph."""
-WITH_ROS = (_run, _replay, *DISCOVERING)
+WITH_ROS = (_run, _replay, _import, *DISCOVERING)
 """Commands that need ROS; they put in order themselves what a signal would leave behind."""

@@ -52,11 +52,35 @@ def add_run(commands: Commands) -> argparse.ArgumentParser:
 def add_replay(commands: Commands) -> argparse.ArgumentParser:
     """Add `ballscrew replay`."""
     parser: argparse.ArgumentParser = commands.add_parser(
-        'replay', help='judge a bag without DDS, faster than real time'
+        'replay', help='judge a log without DDS, faster than real time'
     )
-    parser.add_argument('bag', type=Path, metavar='BAG', help='bag directory or MCAP file')
-    _add_params(parser)
+    parser.add_argument(
+        'bag', type=Path, metavar='LOG', help='bag directory or file; CSV or Parquet with --map'
+    )
+    parser.add_argument(
+        '--map', type=Path, metavar='FILE', help='map of the columns of a CSV or Parquet file'
+    )
+    parser.add_argument(
+        '--params',
+        type=Path,
+        metavar='FILE',
+        help=f'parameters of the node (default those that the log carries, else {PARAMS_TEXT})',
+    )
     parser.add_argument('--json', action='store_true', help='print JSON')
+    return parser
+
+
+def add_import(commands: Commands) -> argparse.ArgumentParser:
+    """Add `ballscrew import`."""
+    parser: argparse.ArgumentParser = commands.add_parser(
+        'import', help='make a bag of a machine log, CSV or Parquet'
+    )
+    parser.add_argument('log', type=Path, metavar='LOG', help='CSV or Parquet file')
+    parser.add_argument(
+        '--guess', action='store_true', help='print a first map of the columns, and nothing else'
+    )
+    parser.add_argument('--config', type=Path, metavar='MAP', help='map of the columns')
+    parser.add_argument('--out', type=Path, metavar='BAG', help='directory of the bag to be made')
     return parser
 
 

@@ -34,6 +34,8 @@ LOAD_UNITS = {'N': 1.0, 'kN': 1e3}  # [N]
 TEMPERATURE_UNITS = {'degC': ZERO_CELSIUS, 'K': 0.0}  # zero of the unit [K]
 TORQUE_UNITS = ('N m', 'A', '%')  # of current and of the rated torque by stated constants
 _ROTARY_UNITS = ROTARY_SPEED_UNITS | ROTARY_POSITION_UNITS
+CURRENT_UNITS = {'A': 1.0, 'mA': 1e-3}  # [A]
+TIME_UNITS = {'s': 1.0, 'ms': 1e-3, 'us': 1e-6, 'ns': 1e-9, 'min': MINUTE, 'h': 60 * MINUTE}  # [s]
 HANDS = {'right': 1.0, 'left': -1.0}
 
 

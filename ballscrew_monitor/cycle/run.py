@@ -40,6 +40,8 @@ def run(made: Plan) -> int:
             f'parameters {made.params}',
             flush=True,
         )
+        for note in made.bag.notes:
+            print(f'ballscrew: {note}', file=sys.stderr)
         _remove_pictures(made)
         outcome = _supervise(made, stop)
     if interrupted:

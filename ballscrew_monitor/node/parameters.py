@@ -79,15 +79,20 @@ def read_file(path: str | pathlib.Path, node: str = NODE_NAME) -> dict[str, Any]
     parameter that is unknown or bad.
 
     """
+    return read_text(_text_of(path), str(path), node)
+
+
+def read_text(text: str, origin: str, node: str = NODE_NAME) -> dict[str, Any]:
+    """Return what `read_file` does, of the text of such a file; `origin` names it in errors."""
     try:
-        given = _given(sections(path), node)
+        given = _given(_sections(text), node)
         axes = given.get('axes', NODE_ROWS[0].default)
         NODE_ROWS[0].check('axes', axes)
         rows = table(axes)
         check(rows, given)
         given = {name: rows[name].read(value) for name, value in given.items()}
     except InputError as error:
-        raise InputError(f'{path}: {error}') from None
+        raise InputError(f'{origin}: {error}') from None
     return defaults(axes) | given
 
 
@@ -98,8 +103,9 @@ def read_ros_parameters(path: str | pathlib.Path, node: str = NODE_NAME) -> dict
     Raises InputError when the file cannot be read, or says nothing to the node at all.
 
     """
+    text = _text_of(path)
     try:
-        given = _addressed(sections(path), node)
+        given = _addressed(_sections(text), node)
     except InputError as error:
         raise InputError(f'{path}: {error}') from None
     return {name: value for name, value in given.items() if is_of_ros(name)}
@@ -134,15 +140,26 @@ def _addressed(nodes: Mapping[str, Any], node: str) -> dict[str, Any]:
 
 def sections(path: str | pathlib.Path) -> dict[str, Any]:
     """Return what the file at `path` says by nodes; raises InputError if it cannot be read."""
+    return _sections(_text_of(path))
+
+
+def _text_of(path: str | pathlib.Path) -> str:
+    try:
+        return pathlib.Path(path).read_text()
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f'{path}: the parameter file cannot be read: {error}') from None
+
+
+def _sections(text: str) -> dict[str, Any]:
     import yaml  # the node itself is handed its parameters by ROS
 
     try:
-        loader = yaml.SafeLoader(pathlib.Path(path).read_text())
+        loader = yaml.SafeLoader(text)
         root = loader.get_single_node()
         if root is not None:
             _take_letters_as_ros(root)
         found = None if root is None else loader.construct_document(root)
-    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
+    except yaml.YAMLError as error:
         reason = ' '.join(str(error).split())
         raise InputError(f'the parameter file cannot be read: {reason}') from None
     if not isinstance(found, dict) or not all(

@@ -18,7 +18,7 @@ import shutil
 import tempfile
 import weakref
 
-from ballscrew_monitor.recordings.bag_files import kind_of, manifest, unpack, unpacked, ZSTD
+from ballscrew_monitor.recordings.bag_files import kind_of, manifest, OWN, unpack, unpacked, ZSTD
 from ballscrew_monitor.recordings.storages import (
     damage_is_input,
     McapStorage,
@@ -29,9 +29,6 @@ from ballscrew_monitor.recordings.storages import (
 from mcap.reader import make_reader
 from surrogate.files import InputError
 from zstandard import ZstdError
-
-OWN = 'ballscrew_monitor'
-"""Name of the metadata record of an MCAP file that holds what `Bag.metadata` gives."""
 
 
 @dataclasses.dataclass(kw_only=True, slots=True)
@@ -157,7 +154,7 @@ class Bag:
         with damage_is_input(file):
             kind = kind_of(file)
             if kind == 'zstd':
-                file = unpack(file, self._scratch())
+                file = unpack(file, self._scratch(), salvage=self._salvage)
                 kind = kind_of(file)
         if kind == 'rosbag1':
             raise InputError(f'bag {file} is of ROS 1, it must be converted to rosbag2')

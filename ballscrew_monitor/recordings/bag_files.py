@@ -22,7 +22,10 @@ MAGIC = {
 ZSTD = next(magic for magic, kind in MAGIC.items() if kind == 'zstd')
 ENDINGS = ('.mcap', '.db3', '.mcap.zstd', '.db3.zstd')
 ACTIVE = '.mcap.active'
+TABLES = ('.csv', '.tsv', '.txt', '.parquet')
 STORAGES = ('mcap', 'sqlite3')
+OWN = 'ballscrew_monitor'
+"""Name of the metadata record in which an MCAP file holds what this program says of it."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -49,6 +52,11 @@ def is_bag(path: Path) -> bool:
     )
 
 
+def is_table(path: Path) -> bool:
+    """Tell whether something is to be read as a table: a file that is one by name or content."""
+    return path.is_file() and (path.suffix.lower() in TABLES or kind_of(path) == 'parquet')
+
+
 def manifest(path: Path, *, salvage: bool) -> Manifest:
     """Return the files of the bag at `path`; raises InputError when there is none."""
     if path.is_file():
@@ -68,14 +76,20 @@ def manifest(path: Path, *, salvage: bool) -> Manifest:
     return Manifest(files=files, custom=found.custom if found else {})
 
 
-def unpack(file: Path, folder: Path) -> Path:
-    """Return the unpacked copy in `folder` of a zstd file; raises InputError on damage."""
+def unpack(file: Path, folder: Path, *, salvage: bool) -> Path:
+    """
+    Return the unpacked copy in `folder` of a zstd file.
+
+    Raises InputError on damage; with `salvage` what comes before it is kept.
+
+    """
     target = folder / file.name.removesuffix('.zstd')
     try:
         with file.open('rb') as packed, target.open('wb') as unpacked:
             ZstdDecompressor().copy_stream(packed, unpacked)
     except ZstdError as error:
-        raise InputError(f'bag {file} is truncated or damaged ({error})') from None
+        if not salvage:
+            raise InputError(f'bag {file} is truncated or damaged ({error})') from None
     return target
 
 

@@ -10,11 +10,13 @@ are.
 """
 
 from collections import Counter
+from collections.abc import Mapping
 import dataclasses
 import enum
 from pathlib import Path
 from typing import Any, BinaryIO
 
+from ballscrew_monitor.recordings.bag_files import OWN
 from ballscrew_monitor.recordings.message_definitions import message_definition, type_hash
 from mcap.writer import CompressionType, Writer
 from surrogate.files import InputError, replace_file
@@ -79,6 +81,7 @@ class BagWriter:
         self._topics: dict[str, Announced] = {}
         self._channels: dict[str, int] = {}
         self._counts: Counter[str] = Counter()
+        self._custom: dict[str, str] = {}
         self._first = self._last = 0
         self._chunk = 0
         self._file = self._open(directory)
@@ -96,6 +99,11 @@ class BagWriter:
     def __exit__(self, *unused: object) -> None:
         """Close the bag; what was written before an error is kept."""
         self.close()
+
+    def add_metadata(self, texts: Mapping[str, str]) -> None:
+        """Let the bag say `texts` of itself, in its file and in the metadata beside it."""
+        self._custom |= texts
+        self._writer.add_metadata(OWN, dict(texts))
 
     def add_topic(self, topic: Topic) -> None:
         """Announce a topic; raises InputError when its type is not installed."""
@@ -213,7 +221,7 @@ class BagWriter:
             'compression_mode': '',
             'relative_file_paths': [self.path.name],
             'files': [{'path': self.path.name, **self._span(), 'message_count': self.total}],
-            'custom_data': None,
+            'custom_data': self._custom or None,
             'ros_distro': 'jazzy',
         }
 

@@ -3,11 +3,13 @@
 """From a serialised message to a message; one that does not decode is counted and named."""
 
 from collections.abc import Sequence
+import itertools
 from typing import Any
 
+from ballscrew_monitor.core.conversions import seconds
 from ballscrew_monitor.core.fields import OtherJoints, TooShort
 from ballscrew_monitor.core.inputs import Input, short_text
-from ballscrew_monitor.core.reasons import joint_reason
+from ballscrew_monitor.core.reasons import joint_reason, slow_reason
 from ballscrew_monitor.node.axis import Axis
 from ballscrew_monitor.node.topics import absolute
 from ballscrew_monitor.recordings.bag import Bag, Message
@@ -20,24 +22,46 @@ SEEN = 100  # messages of a topic that tell what it holds
 
 def decode(bag: Bag, message: Message, message_type: Any) -> tuple[Any, str]:
     """Return a decoded message, or None and why there is none; `bag` counts those."""
-    if not message.data:
-        return None, bag.refuse(message, 'it is empty')
+    decoded = _decoded(message, message_type)
+    if decoded is not None:
+        return decoded, ''
+    reason = 'it is truncated, or of another type' if message.data else 'it is empty'
+    return None, bag.refuse(message, reason)
+
+
+def _decoded(message: Message, message_type: Any) -> Any:
     try:
-        return deserialize_message(message.data, message_type), ''
+        return deserialize_message(message.data, message_type) if message.data else None
     except UNDECODABLE:
-        return None, bag.refuse(message, 'it is truncated, or of another type')
+        return None
 
 
 def silence(bag: Bag, axis: Axis) -> str:
-    """Return why nothing of `axis` could be read of `bag`, as far as its messages tell."""
-    reasons = []
-    for one in axis.inputs:
-        absent = _absence(bag, one)
-        if isinstance(absent, OtherJoints):
-            reasons.append(joint_reason(absent, f'{axis.name}.{one.source.name.lower()}'))
-        elif absent is not None:
-            reasons.append(short_text(absent))
-    return '; '.join(reasons)
+    """Return why nothing of `axis` could be judged of `bag`, as far as its messages tell."""
+    reasons = [_fault(bag, axis, one) for one in axis.inputs]
+    return '; '.join(filter(None, reasons))
+
+
+def _fault(bag: Bag, axis: Axis, one: Input) -> str:
+    """Return what is wrong with an input of an axis, nothing if it has samples often enough."""
+    name = one.source.name.lower()
+    parameter = f'{axis.name}.{name}'
+    absent = _absence(bag, one)
+    if isinstance(absent, OtherJoints):
+        return joint_reason(absent, parameter)
+    if absent is not None:
+        return short_text(absent)
+    gap = _usual_gap(bag, absolute(one.topic))
+    if gap <= axis.monitor.settings.timeouts[one.source]:
+        return ''
+    return f'{name} {slow_reason(seconds(gap), parameter)}'
+
+
+def _usual_gap(bag: Bag, topic: str) -> int:
+    """Return the time between two messages of a topic [ns] that half of the first keep."""
+    times = [message.log_time for message in itertools.islice(bag.messages([topic]), SEEN)]
+    gaps = sorted(after - before for before, after in itertools.pairwise(times))
+    return gaps[len(gaps) // 2] if gaps else 0
 
 
 def named_instead(bag: Bag, one: Input) -> str:
@@ -60,7 +84,7 @@ def _readings(bag: Bag, topic: str, one: Input) -> list[Any]:
     """Return what the field of an input gives of the first messages of its topic."""
     readings = []
     for message in bag.messages([topic]):
-        decoded, _ = decode(bag, message, one.message_type)
+        decoded = _decoded(message, one.message_type)
         if decoded is not None:
             readings.append(one.read_field(decoded))
         if len(readings) == SEEN:

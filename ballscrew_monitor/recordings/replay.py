@@ -49,12 +49,16 @@ def speed_messages(bag: Bag, axes: Sequence[Axis]) -> dict[str, int]:
     """
     speed = {axis.name: axis.inputs[-1] for axis in axes}
     counts = dict.fromkeys(speed, 0)
+    readers: dict[str, list[tuple[str, Input]]] = {}
+    for axis in axes:
+        for source in axis.inputs:
+            readers.setdefault(absolute(source.topic), []).append((axis.name, source))
     for message in bag.messages():
-        for name, source in speed.items():
-            if message.topic == absolute(source.topic):
-                decoded, _ = decode(bag, message, source.message_type)
-                if decoded is not None:
-                    counts[name] += not isinstance(source.read_field(decoded), OtherJoints)
+        wanted = readers.get(message.topic, [])
+        decoded = decode(bag, message, wanted[0][1].message_type)[0] if wanted else None
+        for name, source in wanted if decoded is not None else ():
+            if source is speed[name]:
+                counts[name] += not isinstance(source.read_field(decoded), OtherJoints)
     for name, count in counts.items():
         if not count:
             raise InputError(

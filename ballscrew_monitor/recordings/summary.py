@@ -62,6 +62,12 @@ class Summary:
     energy_lost: float
     events: tuple[EventRecord, ...]
 
+    @property
+    def says_nothing(self) -> bool:
+        """Tell whether no sample was judged, or none of those in motion."""
+        moving = self.optimal_time + self.outside_time
+        return not self.judged or (self.unjudged_time > 0.0 and not moving)
+
     def record(self) -> dict[str, Any]:
         """Return plain data for JSON; times of events are relative [s]."""
         record = {

@@ -112,7 +112,7 @@ def test_an_interrupt_is_exit_code_130(monkeypatch, capsys):
 def test_a_bag_that_does_not_exist(capsys):
     assert cli.main(['replay', '/nowhere', '--params', str(PARAMS)]) == 2
     assert capsys.readouterr().err == (
-        'ballscrew: bag /nowhere does not exist, it must be a bag directory or an MCAP file\n'
+        'ballscrew: log /nowhere does not exist, it must be a bag, a CSV or a Parquet file\n'
     )
 
 
@@ -130,7 +130,7 @@ def test_help_names_the_defaults_without_the_place_of_the_clone(command, capsys)
     with pytest.raises(SystemExit):
         cli.main([command, '--help'])
     out = ' '.join(capsys.readouterr().out.split())
-    assert 'default config/nominal_cycle.yaml of the repository' in out
+    assert 'config/nominal_cycle.yaml of the repository' in out
     assert str(ROOT) not in out
 
 

@@ -6,6 +6,7 @@ import shutil
 
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
+from mcap.writer import Writer
 import pytest
 from surrogate.files import InputError
 import yaml
@@ -139,3 +140,15 @@ def test_bad_metadata_is_one_sentence(copy, content, expected):
         content = yaml.safe_dump({'rosbag2_bagfile_information': content})
     (copy / 'metadata.yaml').write_text(content)
     assert expected in sentence(lambda: Bag(copy))
+
+
+def test_a_topic_whose_schema_is_missing_is_named(tmp_path):
+    path = tmp_path / 'bag.mcap'
+    with path.open('wb') as stream:
+        writer = Writer(stream)
+        writer.start()
+        channel = writer.register_channel(topic='/a', message_encoding='cdr', schema_id=0)
+        writer.add_message(channel, log_time=1, data=b'', publish_time=1)
+        writer.finish()
+    text = sentence(lambda: Bag(path).require({'/a': 'std_msgs/msg/Header'}))
+    assert text.endswith('topic /a states no type: its schema is missing')

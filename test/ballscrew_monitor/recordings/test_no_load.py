@@ -141,6 +141,23 @@ def test_numbers_that_are_none_are_counted(tmp_path):
     assert notes[1] == '5 messages held no finite number'
 
 
+def test_messages_that_do_not_decode_are_counted_and_named(tmp_path):
+    speed = speeds(0.0, 10.0, 40.0)
+    whole = write(tmp_path / 'whole', speed, 0.01 * speed)
+    with BagWriter(tmp_path / 'bad', 'bag') as writer:
+        for name, kind in whole.types.items():
+            writer.add_topic(Topic(name=name, type_name=kind, offer=Offer.SENSOR))
+        for number, message in enumerate(whole.messages()):
+            data = message.data[:20] if number in (500, 600) else message.data
+            writer.write(message.topic, data, log_time=message.log_time, publish_time=0)
+    bad = Bag(tmp_path / 'bad')
+    columns, notes = read_no_load(bad, CHANNELS)
+    assert columns['speed'] == pytest.approx([10.0, 40.0])
+    assert notes[-1] == '2 messages held no finite number'
+    assert 'the message of /joint_states at ' in bad.notes[0]
+    assert bad.notes[0].endswith('; 2 such messages were refused')
+
+
 def test_a_bag_without_what_is_asked_for_is_refused(tmp_path):
     """Topic, field and joint are named."""
     bag = write(tmp_path, speeds(10.0), speeds(10.0), joint='y_axis')

@@ -229,3 +229,16 @@ def test_the_joints_that_are_there_are_named_instead_of_a_wrong_one(tmp_path):
     with pytest.raises(InputError, match='they name a, b and no joint x_axis'):
         speed_messages(bag, [axis])
     assert 'name a, b and no joint x_axis, set x.speed.field to velocity[a]' in silence(bag, axis)
+
+
+def test_an_input_that_is_slower_than_its_timeout_is_named(tmp_path):
+    times = [BEGIN + 2 * SECOND * number for number in range(5)]
+    bag = write(
+        tmp_path,
+        *((time, load_message(time, -1000.0)) for time in times),
+        *((time, speed_message(time, 100.0)) for time in times),
+    )
+    text = silence(bag, build_axis('x', every_state()))
+    assert 'load comes less often than its timeout allows: set x.load.timeout to 5.0' in text
+    fast = every_state() | {'x.speed.timeout': 5.0, 'x.load.timeout': 5.0}
+    assert silence(bag, build_axis('x', fast)) == ''

@@ -1,0 +1,65 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Any log as a bag: a bag of whatever storage, or a table and the map of its columns."""
+
+from collections.abc import Iterator
+import contextlib
+from pathlib import Path
+import tempfile
+
+from ballscrew_monitor.recordings.bag import Bag
+from ballscrew_monitor.recordings.bag_files import ACTIVE, is_bag, is_table
+from surrogate.files import InputError
+
+
+@contextlib.contextmanager
+def opened_log(path: Path, *, mapping: Path | None = None) -> Iterator[Bag]:
+    """
+    Yield the log at `path` as a bag; of damaged files what is whole.
+
+    A table is read by the map in the file `mapping` into a bag that goes when the block ends.
+    Raises InputError when there is no log, or a map is missing or too much.
+
+    """
+    with tempfile.TemporaryDirectory(prefix='ballscrew_log_') as folder:
+        bag = Bag(bag_of(path, mapping, Path(folder)), salvage=True)
+        bag.path = path  # what is said is said of the log
+        yield bag
+
+
+def bag_of(path: Path, mapping: Path | None, folder: Path) -> Path:
+    """
+    Return where the log at `path` is as a bag: itself, or made of a table below `folder`.
+
+    Raises InputError as `opened_log` does.
+
+    """
+    if not path.exists():
+        raise InputError(f'log {path} does not exist, it must be a bag, a CSV or a Parquet file')
+    if path.is_dir() or is_bag(path):
+        _check_bag(path, mapping)
+        return path
+    if not is_table(path):
+        raise InputError(
+            f'log {path} is neither a bag nor a table, it must be of MCAP, sqlite3, CSV or Parquet'
+        )
+    if mapping is None:
+        raise InputError(
+            f'log {path} is no bag, a table needs a map: ballscrew import {path} --guess > '
+            f'map.yaml, then --map map.yaml'
+        )
+    from ballscrew_monitor.recordings.tables.convert import convert
+    from ballscrew_monitor.recordings.tables.mapping import read_map
+
+    made = folder / (path.stem or 'log')
+    convert(path, read_map(mapping), made)
+    return made
+
+
+def _check_bag(path: Path, mapping: Path | None) -> None:
+    if mapping is not None:
+        raise InputError(f'log {path} is a bag, a map is for tables')
+    if path.is_dir() and not is_bag(path) and not any(path.glob(f'*{ACTIVE}')):
+        tables = sorted(file.name for file in path.iterdir() if is_table(file))
+        hint = f'; its tables, such as {tables[0]}, are to be named one by one' if tables else ''
+        raise InputError(f'{path} holds no log, neither a bag nor a file of one{hint}')

@@ -1,0 +1,185 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+From a table to a bag that says how it is to be judged, and what was assumed to make it.
+
+Topics are `joint_states` with speed, position and torque of each screw, `<axis>/axial_load` and
+`<axis>/oil_temperature`. Parameters of the node, map, assumptions and notes are in the metadata.
+
+"""
+
+from collections.abc import Iterator
+import itertools
+import math
+from pathlib import Path
+from typing import Any
+
+from ballscrew_monitor.core.reasons import enough_timeout
+from ballscrew_monitor.node import parameters
+from ballscrew_monitor.node.axis import load_surface, MOTOR_TORQUE
+from ballscrew_monitor.node.topics import absolute
+from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
+from ballscrew_monitor.recordings.log_facts import Assumption, LogFacts
+from ballscrew_monitor.recordings.tables.mapping import AxisMap, TableMap
+from ballscrew_monitor.recordings.tables.read import Array
+from ballscrew_monitor.recordings.tables.rows import marks, RowTemplate
+from ballscrew_monitor.recordings.tables.series import read_series, Series
+from geometry_msgs.msg import WrenchStamped
+import numpy as np
+from sensor_msgs.msg import JointState, Temperature
+from surrogate.files import InputError
+from surrogate.units import MILLI
+
+JOINTS = 'joint_states'
+JOINT, WRENCH, TEMPERATURE = (
+    'sensor_msgs/msg/JointState',
+    'geometry_msgs/msg/WrenchStamped',
+    'sensor_msgs/msg/Temperature',
+)
+SLOW = 0.5  # of the timeout: rows that far apart leave no room for a late one
+SAME = 1e-6  # part by which two leads may differ
+
+
+def convert(path: Path, mapping: TableMap, out: Path) -> LogFacts:
+    """
+    Write the log at `path` as a bag to the directory `out`; return what the bag says of itself.
+
+    Raises InputError when the log cannot be read by the map, before anything is written.
+
+    """
+    if out.is_file():
+        raise InputError(f'output {out} is a file, it must be a directory')
+    series = read_series(path, mapping)
+    notes = list(series.notes)
+    facts = LogFacts(
+        source=path.name,
+        parameters=_parameters(mapping, series, notes),
+        mapping=mapping.content,
+        assumptions=(*mapping.assumptions, *_derived(mapping)),
+        notes=tuple(notes),
+    )
+    with BagWriter(out, out.name) as writer:
+        writer.add_metadata(facts.texts())
+        _write(writer, series)
+    return facts
+
+
+def _parameters(mapping: TableMap, series: Series, notes: list[str]) -> dict[str, Any]:
+    """Return what the node is to be told; add a note about each thing that does not fit."""
+    names = [axis.name for axis in mapping.axes]
+    values: dict[str, Any] = {'axes': names}
+    for axis in mapping.axes:
+        values |= _axis_parameters(axis)
+    every = parameters.defaults(names)
+    period = series.usual_period
+    for name, default in every.items():
+        if name.endswith('.timeout') and period > SLOW * default:
+            values[name] = enough_timeout(period)
+    if any(name.endswith('.timeout') for name in values):
+        notes.append(f'rows are {period:.3g} s apart: timeouts are longer than usual')
+    values |= mapping.parameters
+    parameters.check(parameters.table(names), values)
+    notes += [note for axis in mapping.axes if (note := _lead_note(axis, every | values))]
+    return values
+
+
+def _axis_parameters(axis: AxisMap) -> dict[str, Any]:
+    values: dict[str, Any] = dict(axis.texts)
+    by_node = axis.load_from == MOTOR_TORQUE
+    if by_node:
+        values |= {
+            'load.source': MOTOR_TORQUE,
+            'torque.uncertainty': axis.torque_uncertainty,
+            'inertia': axis.inertia,
+        }
+    else:
+        values['load.topic'] = f'{axis.name}/axial_load'
+    if 'temperature' in axis.columns:
+        values['temperature.topic'] = f'{axis.name}/oil_temperature'
+    elif math.isfinite(axis.temperature):
+        values['temperature.default'] = axis.temperature
+    # A torque that the load was worked out from has nothing to be compared with.
+    if by_node or ('torque' in axis.columns and axis.load_from != 'torque'):
+        joint = {'topic': JOINTS, 'type': JOINT}
+        joint['field'] = f'effort[{axis.name}_axis]'
+        values |= {f'torque.{key}': value for key, value in joint.items()}
+    return {f'{axis.name}.{key}': value for key, value in values.items()}
+
+
+def _lead_note(axis: AxisMap, values: dict[str, Any]) -> str:
+    """Return what is to be said about the surface that an axis is judged with, if anything."""
+    try:
+        lead = load_surface(axis.name, values).lead
+    except InputError as error:
+        return f'{error}: the bag cannot be judged before there is a surface'
+    if abs(lead / axis.lead - 1.0) <= SAME:
+        return ''
+    return (
+        f'axis {axis.name}: the lead is {axis.lead * MILLI:g} mm, that of the surface '
+        f'{lead * MILLI:g} mm: build the surface of this screw'
+    )
+
+
+def _derived(mapping: TableMap) -> list[Assumption]:
+    """Return what the import itself works out."""
+    found = []
+    for axis in mapping.axes:
+        if 'speed' not in axis.columns:
+            why = 'the map names no column of the speed'
+            found.append(_assumption(f'{axis.name}.speed', 'slope of the position', why))
+        if 'load' not in axis.columns and not axis.load_from:
+            why = axis.unknown.get('load', 'the map names none')
+            found.append(_assumption(f'{axis.name}.load', 'unknown', why))
+    return found
+
+
+def _assumption(key: str, value: str, reason: str) -> Assumption:
+    return Assumption(key=key, value=value, reason=reason)
+
+
+def _write(writer: BagWriter, series: Series) -> None:
+    streams = []
+    for name, type_name, message, numbers in _topics(series):
+        topic = Topic(name=absolute(name), type_name=type_name, offer=Offer.RELIABLE)
+        writer.add_topic(topic)
+        rows = RowTemplate(message, len(numbers)).rows(series.stamps, numbers)
+        streams.append((topic.name, rows))
+    for stamp in series.stamps.tolist():
+        for name, rows in streams:
+            writer.write(name, next(rows), log_time=stamp, publish_time=stamp)
+
+
+def _topics(series: Series) -> Iterator[tuple[str, str, Any, list[Array]]]:
+    """Yield name, type, message with marks and numbers of each topic, the joints last."""
+    for axis in series.axes:
+        (mark,) = marks(1)
+        if axis.temperature is not None:
+            warm = Temperature(temperature=mark)
+            yield f'{axis.name}/oil_temperature', TEMPERATURE, warm, [axis.temperature]
+        if axis.load is not None:
+            load = WrenchStamped()
+            load.header.frame_id = f'{axis.name}_nut'
+            load.wrench.force.x = mark
+            yield f'{axis.name}/axial_load', WRENCH, load, [axis.load]
+    yield JOINTS, JOINT, *_joints(series)
+
+
+def _joints(series: Series) -> tuple[JointState, list[Array]]:
+    """Return the joints with marks, and the numbers: what no axis has stays an empty list."""
+    found: dict[str, list[Array]] = {'velocity': [axis.speed for axis in series.axes]}
+    found['position'] = _all(series, [axis.position for axis in series.axes])
+    found['effort'] = _all(series, [axis.torque for axis in series.axes])
+    numbers = [values for part in found.values() for values in part]
+    message = JointState(name=[f'{axis.name}_axis' for axis in series.axes])
+    left = iter(marks(len(numbers)))
+    for field, part in found.items():
+        setattr(message, field, list(itertools.islice(left, len(part))))
+    return message, numbers
+
+
+def _all(series: Series, found: list[Array | None]) -> list[Array]:
+    """Return a quantity of all axes, NaN for those without; nothing if none has it."""
+    if all(one is None for one in found):
+        return []
+    unknown = np.full(len(series.stamps), math.nan)
+    return [unknown if one is None else one for one in found]

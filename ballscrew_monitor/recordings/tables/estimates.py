@@ -1,0 +1,106 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What the numbers of a log say: rate, unit of the time and of the speeds, what never changes."""
+
+from collections.abc import Mapping, Sequence
+import math
+
+from ballscrew_monitor.core.conversions import LINEAR_SPEED_UNITS, TIME_UNITS
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+ROUND = (1.0, 2.0, 2.5, 4.0, 5.0, 8.0, 10.0)  # leading digits of a usual rate
+NEAR = 0.05  # part by which an estimated rate may miss a usual one
+FAST = 2.0  # [m/s] no feed axis moves faster
+FASTEST = 2000.0  # in mm/s, the same
+EARLIEST = 3e8  # [s] of the universal clock: no log is older, and no run lasts as long
+RATES = (0.5, 50e3)  # [Hz] of plausible logs
+FACTOR = 1.5  # by which a place and its speed may disagree
+
+
+def is_silent(values: Array) -> bool:
+    """Tell whether there is nothing but zeros."""
+    return not np.nan_to_num(values).any()
+
+
+def period(motions: Sequence[tuple[Array, Array]]) -> float:
+    """
+    Return the time between rows [s] for which places are the integrals of their speeds, NaN: none.
+
+    Each motion is positions [m] and speeds [m/s] of an axis; all are fitted as one by least
+    squares, so that fast motion counts and noise at rest does not.
+
+    """
+    across = along = 0.0
+    for position, speed in motions:
+        mean, moved = (speed[1:] + speed[:-1]) / 2, np.diff(position)
+        good = np.isfinite(mean) & np.isfinite(moved)
+        across += float(moved[good] @ mean[good])
+        along += float(mean[good] @ mean[good])
+    return across / along if across > 0.0 and along > 0.0 else math.nan
+
+
+def usual_rate(time: float) -> float:
+    """Return the rate [Hz] of rows a `time` [s] apart, a usual one if that is near."""
+    rate = 1.0 / time
+    decade = 10.0 ** math.floor(math.log10(rate))
+    near = min((digit * decade for digit in ROUND), key=lambda usual: abs(usual / rate - 1.0))
+    return float(f'{near if abs(near / rate - 1.0) <= NEAR else rate:.3g}')
+
+
+def speed_unit(speed: Array, position: Array | None, step: float) -> tuple[str, str]:
+    """
+    Return the linear unit of a speed and why it is that.
+
+    Positions [m] a `step` [s] apart, if both are known, decide; else the largest amount does.
+
+    """
+    if position is not None and math.isfinite(step):
+        for unit, factor in LINEAR_SPEED_UNITS.items():
+            found = period([(position, speed * factor)])
+            if step / FACTOR < found < step * FACTOR:
+                return unit, 'it agrees with the position over time'
+    largest = float(np.nanmax(np.abs(speed)))
+    if largest <= FAST:
+        return 'm/s', f'its largest amount is {largest:.3g}'
+    if largest <= FASTEST:
+        return 'mm/s', f'its largest amount is {largest:.3g}, more than a feed axis does in m/s'
+    return 'mm/min', f'its largest amount is {largest:.3g}, more than a feed axis does in mm/s'
+
+
+def position_unit(position: Array) -> tuple[str, str]:
+    """Return the linear unit of a position and why it is that."""
+    largest = float(np.nanmax(np.abs(position)))
+    if largest <= FAST:
+        return 'm', f'its largest amount is {largest:.3g}'
+    return 'mm', f'its largest amount is {largest:.3g}, more than a feed axis has in m'
+
+
+def time_unit(values: Array) -> tuple[str, bool, str]:
+    """Return the unit of times, whether they are those of the universal clock, and why."""
+    first, step = float(values[0]), float(np.nanmedian(np.diff(values)))
+    for unit in ('s', 'ms', 'us', 'ns'):
+        if EARLIEST <= first * TIME_UNITS[unit] < 20 * EARLIEST:
+            return unit, True, f'its first value, {first:.10g}, is a time of the universal clock'
+    for unit in ('s', 'ms', 'us', 'ns'):
+        if step > 0 and RATES[0] <= 1.0 / (step * TIME_UNITS[unit]) <= RATES[1]:
+            return unit, False, f'its rows are {step:.3g} apart'
+    return 's', False, f'its rows are {step:.3g} apart'
+
+
+def is_rising(values: Array) -> bool:
+    """Tell whether values can be times: they rise, but for a few."""
+    steps = np.diff(values[np.isfinite(values)])
+    return bool(len(steps) and np.mean(steps >= 0.0) > 0.9 and steps.sum() > 0.0)
+
+
+def oddities(name: str, speed: Array, unit: str, factors: Mapping[str, float]) -> list[str]:
+    """Return what is odd about a linear speed: none at all, or more [m/s] than axes do."""
+    if is_silent(speed):
+        return [f'axis {name} never moves: its speed is always 0']
+    largest = float(np.nanmax(np.abs(speed))) * factors.get(unit, 0.0)
+    if largest > FAST:
+        return [f'axis {name} moves at up to {largest:.3g} m/s: is its speed in {unit}?']
+    return []

@@ -1,0 +1,303 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+A first map of a log, by names, ranges and rates of its columns.
+
+What nothing in the log tells stands under `assumed` with a value and a reason.
+
+"""
+
+from collections.abc import Mapping, Sequence
+import dataclasses
+import math
+from pathlib import Path
+from typing import Any
+
+from ballscrew_monitor.core.conversions import (
+    LINEAR_POSITION_UNITS,
+    LINEAR_SPEED_UNITS,
+    TIME_UNITS,
+)
+from ballscrew_monitor.recordings.tables import estimates
+from ballscrew_monitor.recordings.tables.mapping import INPUTS, UNITS
+from ballscrew_monitor.recordings.tables.names import axis_names, is_of_the_screw, Named, read_name
+from ballscrew_monitor.recordings.tables.read import Array, column_names, read_table
+import numpy as np
+from surrogate.files import InputError
+from surrogate.surface import find_surface, Surface
+from surrogate.units import MILLI
+import yaml
+
+SCREW, OIL = 'nominal', 'iso_vg_68'
+TORQUE_CONSTANT = 0.1  # [N m/A]
+EFFICIENCY = 0.9
+TEMPERATURE = 40.0  # [degC]
+RATE = 100.0  # [Hz]
+EPOCH = '2000-01-01T00:00:00Z'
+FORCE = (
+    '2 pi efficiency torque / lead against the torque: friction of guides and seals, and what '
+    'accelerates the axis, count as load'
+)
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Guess:
+    """A map as its content, and what is to be said about it."""
+
+    content: dict[str, Any]
+    notes: tuple[str, ...]
+
+    @property
+    def text(self) -> str:
+        """Return the map as YAML."""
+        head = (
+            '# A first map of a machine log. What it assumes is judged with as it stands; who\n'
+            '# knows a value writes it in its place, such as `axes: {x: {lead_mm: 5.0}}`, and\n'
+            '# takes it out of `assumed`.\n'
+        )
+        return head + yaml.safe_dump(
+            self.content, sort_keys=False, width=96, allow_unicode=True, default_flow_style=None
+        )
+
+
+def guess(path: Path) -> Guess:
+    """Return a first map of the log at `path`; raises InputError when it has no speed."""
+    return _Guesser(path).result()
+
+
+class _Guesser:
+    """What is found so far."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.named = [read_name(name) for name in column_names(path)]
+        self.assumed: dict[str, dict[str, Any]] = {}
+        self.notes: list[str] = []
+        self.axes = {
+            name: chosen
+            for name, found in self._by_axis().items()
+            if {'speed', 'position'} & set(chosen := _best(found))
+        }
+        if not self.axes:
+            raise InputError(
+                f'log {path}: no column looks like the speed or position of an axis, it holds '
+                f'{", ".join(one.column for one in self.named)}'
+            )
+        self.times = [one for one in self.named if one.kind == 'time']
+        columns = [one for chosen in self.axes.values() for one in chosen.values()]
+        table = read_table(path, [one.column for one in [*columns, *self.times]], strict=False)
+        self.data = table.columns
+        self.notes += table.notes
+        self._forget_texts()
+
+    def result(self) -> Guess:
+        time, step = self._time_column()
+        axes = {name: self._axis(name, chosen, step) for name, chosen in self.axes.items()}
+        if not time:
+            self._assume_rate(axes)
+        self._say_what_is_left_out(axes, time)
+        content = {'log': self.path.name} | ({'time': time} if time else {})
+        return Guess(
+            content=content | {'axes': axes, 'assumed': self.assumed}, notes=tuple(self.notes)
+        )
+
+    def _assume(self, key: str, value: Any, reason: str) -> None:
+        self.assumed[key] = {'value': value, 'reason': reason}
+
+    def _forget_texts(self) -> None:
+        """Leave out columns without a number, and axes that so have no speed."""
+        self.times = [one for one in self.times if one.column in self.data]
+        for name, chosen in list(self.axes.items()):
+            left = {kind: one for kind, one in chosen.items() if one.column in self.data}
+            self.axes[name] = left
+            if not {'speed', 'position'} & set(left):
+                self.axes.pop(name)
+        if not self.axes:
+            raise InputError(f'log {self.path}: {"; ".join(self.notes)}')
+
+    def _by_axis(self) -> dict[str, list[Named]]:
+        """Return the columns of each axis; those of the machine are its only one's, if it has."""
+        names = axis_names(self.named)
+        general = [one for one in self.named if one.place == 'machine']
+        if not names:
+            return {'x': general}
+        oil = [one for one in general if one.kind == 'temperature']
+        return {
+            name: [one for one in self.named if one.axis == axis] + oil
+            for axis, name in names.items()
+        }
+
+    def _time_column(self) -> tuple[dict[str, Any], float]:
+        """Return what the map says of the time, and the step between rows [s], NaN: not known."""
+        for one in self.times:
+            values = self.data[one.column]
+            if estimates.is_rising(values):
+                return self._time_of(one, values)
+        return {}, math.nan
+
+    def _time_of(self, one: Named, values: Array) -> tuple[dict[str, Any], float]:
+        unit, absolute, why = estimates.time_unit(values[np.isfinite(values)])
+        if one.unit and not absolute:
+            unit = one.unit
+        elif not absolute:
+            self._assume('time.unit', unit, f'column {one.column} states none; {why}')
+        if not absolute:
+            self._assume_epoch(f'column {one.column} does not count from a known time')
+        step = float(np.nanmedian(np.diff(values))) * TIME_UNITS[unit]
+        place = {'column': one.column}
+        return place if 'time.unit' in self.assumed else place | {'unit': unit}, step
+
+    def _assume_epoch(self, why: str) -> None:
+        self._assume('time.epoch', EPOCH, f'{why}, and a stamp of 0 means that there is none')
+
+    def _assume_rate(self, axes: Mapping[str, Any]) -> None:
+        motions = [
+            self._motion(name, chosen)
+            for name, chosen in self.axes.items()
+            if {'speed', 'position'} <= set(chosen)
+            and {self._unit(name, kind, axes) for kind in ('speed', 'position')}
+            <= set(LINEAR_SPEED_UNITS | LINEAR_POSITION_UNITS)
+        ]
+        found = estimates.period([self._in_metres(axes, *one) for one in motions])
+        if math.isfinite(found):
+            rate = estimates.usual_rate(found)
+            axes_used = ', '.join(name for name, _, _ in motions)
+            why = (
+                f'the log has no time; at {1.0 / found:.3g} Hz the speeds of axes {axes_used} '
+                'make their positions best'
+            )
+        else:
+            rate, why = RATE, 'the log has no time, and nothing in it tells the rate'
+        self._assume('time.rate_Hz', rate, why)
+        self._assume_epoch('the log has no time')
+
+    def _motion(self, name: str, chosen: Mapping[str, Named]) -> tuple[str, Array, Array]:
+        return name, self.data[chosen['position'].column], self.data[chosen['speed'].column]
+
+    def _in_metres(
+        self, axes: Mapping[str, Any], name: str, position: Array, speed: Array
+    ) -> tuple[Array, Array]:
+        return (
+            position * LINEAR_POSITION_UNITS[self._unit(name, 'position', axes)],
+            speed * LINEAR_SPEED_UNITS[self._unit(name, 'speed', axes)],
+        )
+
+    def _unit(self, name: str, kind: str, axes: Mapping[str, Any]) -> str:
+        """Return the unit of an input as the map says or assumes it."""
+        assumed = self.assumed.get(f'{name}.{kind}.unit', {}).get('value', '')
+        return str(axes[name][kind].get('unit', assumed))
+
+    def _axis(self, name: str, chosen: Mapping[str, Named], step: float) -> dict[str, Any]:
+        used = {
+            kind: {'column': chosen[kind].column}
+            for kind in INPUTS
+            if kind in chosen and self._is_used(chosen[kind])
+        }
+        for kind, place in used.items():
+            self._set_unit(name, kind, place, used, chosen, step)
+        lead = Surface.load(find_surface('', SCREW, OIL), screw=SCREW, oil=OIL).lead * MILLI
+        for key, value in (('screw', SCREW), ('oil', OIL)):
+            self._assume(f'{name}.{key}', value, 'the log does not say it; the shipped one')
+        self._assume(
+            f'{name}.lead_mm', float(f'{lead:.6g}'), f'the log does not say it; that of {SCREW}'
+        )
+        self._set_load(name, used, chosen)
+        if 'temperature' in used:
+            self._set_oil(name, used['temperature'])
+        else:
+            self._assume(
+                f'{name}.temperature_degC', TEMPERATURE, 'the log holds no temperature of the oil'
+            )
+        if 'speed' in used:
+            speed, unit = (
+                self.data[used['speed']['column']],
+                self._unit(name, 'speed', {name: used}),
+            )
+            self.notes += estimates.oddities(name, speed, unit, LINEAR_SPEED_UNITS)
+        return used
+
+    def _is_used(self, one: Named) -> bool:
+        """Tell whether a column says something: a force or current of nothing but 0 is unknown."""
+        silent = estimates.is_silent(self.data[one.column])
+        return one.kind in ('speed', 'position') or not silent
+
+    def _set_unit(
+        self,
+        name: str,
+        kind: str,
+        place: dict[str, Any],
+        used: Mapping[str, dict[str, Any]],
+        chosen: Mapping[str, Named],
+        step: float,
+    ) -> None:
+        if chosen[kind].unit:
+            place['unit'] = chosen[kind].unit
+            return
+        values = self.data[place['column']]
+        if kind == 'position':
+            unit, why = estimates.position_unit(values)
+        elif kind == 'speed':
+            unit, why = estimates.speed_unit(values, self._metres(used, chosen), step)
+        elif kind == 'temperature' and np.nanmin(values) > TEMPERATURE * 5:
+            unit, why = 'K', f'its least is {np.nanmin(values):.3g}'
+        else:
+            unit, why = next(iter(UNITS[kind])), 'the usual one'
+        self._assume(f'{name}.{kind}.unit', unit, f'{place["column"]} states none; {why}')
+
+    def _metres(
+        self, used: Mapping[str, dict[str, Any]], chosen: Mapping[str, Named]
+    ) -> Array | None:
+        """Return the position of an axis [m], None if there is none that is linear."""
+        if 'position' not in used:
+            return None
+        values = self.data[used['position']['column']]
+        unit = chosen['position'].unit or estimates.position_unit(values)[0]
+        return values * LINEAR_POSITION_UNITS[unit] if unit in LINEAR_POSITION_UNITS else None
+
+    def _set_oil(self, name: str, place: dict[str, Any]) -> None:
+        """Say of a temperature that does not say so that it is taken for that of the oil."""
+        if not is_of_the_screw(place['column']):
+            column = place.pop('column')
+            self._assume(f'{name}.temperature.column', column, 'taken for that of the oil')
+
+    def _set_load(
+        self, name: str, used: dict[str, dict[str, Any]], chosen: Mapping[str, Named]
+    ) -> None:
+        if 'load' in used:
+            return
+        source = next((kind for kind in ('torque', 'current') if kind in used), '')
+        if source:
+            self._assume(f'{name}.load.from', source, f'no force is in the log; {FORCE}')
+            self._assume(f'{name}.efficiency', EFFICIENCY, 'usual for a ball screw')
+            if source == 'current':
+                self._assume(
+                    f'{name}.torque_constant_Nm_per_A',
+                    TORQUE_CONSTANT,
+                    'the log does not say it; it is on the plate of the motor',
+                )
+            return
+        silent = [chosen[kind].column for kind in ('load', 'torque', 'current') if kind in chosen]
+        why = f'{", ".join(silent)} is always 0' if silent else 'no force, torque or current'
+        used['load'] = {'unknown': why}
+        self.notes.append(f'axis {name}: the load is not known ({why}), nothing will be judged')
+
+    def _say_what_is_left_out(self, axes: Mapping[str, Any], time: Mapping[str, Any]) -> None:
+        used = {part.get('column') for axis in axes.values() for part in axis.values()}
+        used |= {entry['value'] for entry in self.assumed.values()}
+        left = [one for one in self.named if one.column not in used | {time.get('column', '')}]
+        spindle = sum(one.place == 'spindle' for one in left)
+        if spindle:
+            self.notes.append(f'{spindle} columns are of the spindle, which is no ball-screw axis')
+        others = [one.column for one in left if one.place != 'spindle']
+        if others:
+            self.notes.append(f'not used: {", ".join(others)}')
+
+
+def _best(found: Sequence[Named]) -> dict[str, Named]:
+    """Return for each kind the column that is most likely the measured quantity."""
+    ranked = sorted(found, key=lambda one: -one.rank)
+    best: dict[str, Named] = {}
+    for one in ranked:
+        if one.kind in INPUTS:
+            best.setdefault(one.kind, one)
+    return best

@@ -1,0 +1,309 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+The map of a table: which column is which input, and what the log itself does not say.
+
+A value stands in its place, such as `axes: {x: {lead_mm: 10.0}}`, or with its reason under
+`assumed`, such as `x.lead_mm: {value: 10.0, reason: ...}`; then it is told wherever the log is
+judged.
+
+"""
+
+from collections.abc import Mapping
+import dataclasses
+import datetime
+import math
+from pathlib import Path
+from typing import Any
+
+from ballscrew_monitor.core.conversions import (
+    CURRENT_UNITS,
+    LINEAR_POSITION_UNITS,
+    LINEAR_SPEED_UNITS,
+    LOAD_UNITS,
+    ROTARY_POSITION_UNITS,
+    ROTARY_SPEED_UNITS,
+    SECOND,
+    TEMPERATURE_UNITS,
+    TIME_UNITS,
+)
+from ballscrew_monitor.node.parameters import check_axes
+from ballscrew_monitor.recordings.log_facts import Assumption
+from surrogate.files import InputError
+from surrogate.units import MICRO, MILLI
+import yaml
+
+UNITS: dict[str, Mapping[str, float]] = {
+    'speed': LINEAR_SPEED_UNITS | ROTARY_SPEED_UNITS,
+    'position': LINEAR_POSITION_UNITS | ROTARY_POSITION_UNITS,
+    'load': LOAD_UNITS,
+    'torque': {'N m': 1.0},
+    'current': CURRENT_UNITS,
+    'temperature': TEMPERATURE_UNITS,
+    'time': TIME_UNITS,
+}
+"""Units of each kind of column."""
+INPUTS = tuple(kind for kind in UNITS if kind != 'time')
+DERIVED = ('current', 'torque', 'motor_torque')
+"""A load may be worked out from a current or torque, or by the node from the motor torque."""
+NUMBERS = {
+    'lead_mm': (0.1, 1000.0),
+    'torque_constant_Nm_per_A': (1e-6, 1e3),
+    'efficiency': (0.1, 1.0),
+    'torque_uncertainty_Nm': (1e-9, 1e6),
+    'inertia_kg_m2': (0.0, 1e3),
+    'temperature_degC': (-50.0, 200.0),
+    'rate_Hz': (1e-3, 1e6),
+}
+"""Numbers of an axis, and of the time, with the least and the most allowed."""
+TEXTS = ('screw', 'oil', 'surface')
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Column:
+    """A column: its name, and its unit after factor and offset."""
+
+    name: str
+    unit: str
+    scale: float = 1.0
+    offset: float = 0.0
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class AxisMap:
+    """
+    One axis: its columns by input, and what they are worked with.
+
+    Lead [m], torque constant [N m/A] and oil temperature [degC], NaN where not said; efficiency
+    [-]; half width of the range of the torque [N m], NaN where not said, and inertia [kg m2], for
+    a load that the node works out; `load_from` says from what it is; `unknown` says of an input
+    why it is not known.
+
+    """
+
+    name: str
+    columns: Mapping[str, Column]
+    lead: float
+    torque_constant: float
+    efficiency: float
+    torque_uncertainty: float
+    inertia: float
+    temperature: float
+    load_from: str
+    unknown: Mapping[str, str]
+    texts: Mapping[str, str]
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class TableMap:
+    """
+    A checked map.
+
+    Column of the time, or the rate [Hz] of a log without one; epoch [ns] of the first row, None
+    when the log tells it; `content` is the map as it was written.
+
+    """
+
+    time: Column | None
+    rate: float
+    epoch: int | None
+    axes: tuple[AxisMap, ...]
+    assumptions: tuple[Assumption, ...]
+    parameters: Mapping[str, Any]
+    content: Mapping[str, Any]
+
+    @property
+    def columns(self) -> list[str]:
+        """Return the names of all columns that are read."""
+        chosen = [column for axis in self.axes for column in axis.columns.values()]
+        names = [column.name for column in ([self.time] if self.time else []) + chosen]
+        return list(dict.fromkeys(names))
+
+
+def read_map(path: Path) -> TableMap:
+    """Return the map in a file; raises InputError when it is none."""
+    try:
+        content = yaml.safe_load(path.read_text())
+    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
+        reason = ' '.join(str(error).split())
+        raise InputError(f'map {path} cannot be read: {reason}') from None
+    try:
+        return make_map(content)
+    except InputError as error:
+        raise InputError(f'map {path}: {error}') from None
+
+
+def make_map(content: Any) -> TableMap:
+    """Return a map made of its content; raises InputError when that is not right."""
+    known = ('log', 'time', 'axes', 'assumed', 'parameters')
+    _check_keys('the map', content, known)
+    axes = content.get('axes')
+    if not isinstance(axes, dict) or not axes:
+        raise InputError('axes is missing, it must name at least one axis with its columns')
+    check_axes([str(name) for name in axes])
+    for name, section in axes.items():
+        _check_keys(f'axis {name}', section, None)
+    assumptions = _assumptions(content.get('assumed') or {})
+    stated = _flatten(content.get('time') or {}, 'time') | _flatten(axes, '')
+    values = _joined(stated, assumptions)
+    epoch = values.pop('time.epoch', None)
+    time = _Part('time', values)
+    made = TableMap(
+        time=time.column('time', at='time'),
+        rate=time.number('rate_Hz'),
+        epoch=None if epoch is None else _epoch(epoch),
+        axes=tuple(_axis(str(name), values) for name in axes),
+        assumptions=assumptions,
+        parameters=_flatten(content.get('parameters') or {}, ''),
+        content=content,
+    )
+    if made.time is None and math.isnan(made.rate):
+        raise InputError('time is missing, it must name a column or a rate_Hz')
+    if values:
+        raise InputError(f'{next(iter(values))} is unknown')
+    return made
+
+
+class _Part:
+    """The values below one name; each that is asked for is taken out."""
+
+    def __init__(self, prefix: str, values: dict[str, Any]) -> None:
+        self._prefix, self._values = prefix, values
+
+    def take(self, name: str, default: Any = None) -> Any:
+        return self._values.pop(f'{self._prefix}.{name}', default)
+
+    def number(self, name: str, default: float = math.nan) -> float:
+        value = self.take(name, default)
+        low, high = NUMBERS[name]
+        if value is not default and not (_is_number(value) and low <= value <= high):
+            raise InputError(
+                f'{self._prefix}.{name} is {value!r}, it must be a number from {low:g} to {high:g}'
+            )
+        return float(value)
+
+    def text(self, name: str, default: str = '') -> str:
+        value = self.take(name, default)
+        if not isinstance(value, str):
+            raise InputError(f'{self._prefix}.{name} is {value!r}, it must be a text')
+        return value
+
+    def column(self, kind: str, *, at: str = '') -> Column | None:
+        """Return the column of a kind of quantity, `at` its place unless that is its name."""
+        part = self if at else _Part(f'{self._prefix}.{kind}', self._values)
+        name, units = part.text('column'), UNITS[kind]
+        unit = part.take('unit')
+        numbers = [part.take(key, default) for key, default in (('scale', 1.0), ('offset', 0.0))]
+        if name and unit not in units:
+            found = 'missing' if unit is None else repr(unit)
+            raise InputError(f'{part._prefix}.unit is {found}, allowed are {", ".join(units)}')
+        if not all(map(_is_number, numbers)) or not numbers[0]:
+            raise InputError(
+                f'{part._prefix}: scale and offset are {numbers[0]!r} and {numbers[1]!r}, they '
+                'must be numbers, the scale not 0'
+            )
+        if not name:
+            return None
+        return Column(name=name, unit=unit, scale=float(numbers[0]), offset=float(numbers[1]))
+
+
+def _axis(name: str, values: dict[str, Any]) -> AxisMap:
+    part = _Part(name, values)
+    found = {kind: part.column(kind) for kind in INPUTS}
+    made = AxisMap(
+        name=name,
+        columns={kind: column for kind, column in found.items() if column},
+        lead=part.number('lead_mm') / MILLI,
+        torque_constant=part.number('torque_constant_Nm_per_A'),
+        efficiency=part.number('efficiency', 1.0),
+        torque_uncertainty=part.number('torque_uncertainty_Nm'),
+        inertia=part.number('inertia_kg_m2', 0.0),
+        temperature=part.number('temperature_degC'),
+        load_from=part.text('load.from'),
+        unknown={kind: text for kind in INPUTS if (text := part.text(f'{kind}.unknown'))},
+        texts={key: text for key in TEXTS if (text := part.text(key))},
+    )
+    _check_axis(made)
+    return made
+
+
+def _check_axis(axis: AxisMap) -> None:
+    """Raise InputError unless an axis says enough for what it holds."""
+    if not {'speed', 'position'} & set(axis.columns):
+        raise InputError(f'{axis.name} has no speed, it must name a column of speed or position')
+    if math.isnan(axis.lead):
+        raise InputError(f'{axis.name}.lead_mm is missing, it must be the lead of the screw')
+    source = axis.load_from
+    if not source:
+        return
+    if source not in DERIVED or 'load' in axis.columns:
+        raise InputError(
+            f'{axis.name}.load.from is {source!r}, allowed is {", ".join(DERIVED)}, without a '
+            'column of the load'
+        )
+    used = {'motor_torque': {'current', 'torque'}}.get(source, {source}) & set(axis.columns)
+    if not used:
+        raise InputError(f'{axis.name}.load.from is {source!r}, of which no column is named')
+    if used == {'current'} and math.isnan(axis.torque_constant):
+        raise InputError(
+            f'{axis.name}.torque_constant_Nm_per_A is missing, a load from the current needs it'
+        )
+    if source == 'motor_torque' and math.isnan(axis.torque_uncertainty):
+        raise InputError(
+            f'{axis.name}.torque_uncertainty_Nm is missing, a load from motor_torque needs it'
+        )
+
+
+def _assumptions(content: Any) -> tuple[Assumption, ...]:
+    _check_keys('assumed', content, None)
+    made = []
+    for key, entry in content.items():
+        _check_keys(f'assumed {key}', entry, ('value', 'reason'))
+        if not entry.get('reason') or 'value' not in entry:
+            raise InputError(f'assumed {key} must have a value and a reason')
+        made.append(Assumption(key=str(key), value=entry['value'], reason=str(entry['reason'])))
+    return tuple(made)
+
+
+def _joined(stated: dict[str, Any], assumptions: tuple[Assumption, ...]) -> dict[str, Any]:
+    for one in assumptions:
+        if one.key in stated:
+            raise InputError(f'{one.key} is both stated and assumed, one must go')
+    return stated | {one.key: one.value for one in assumptions}
+
+
+def _flatten(section: Any, prefix: str) -> dict[str, Any]:
+    _check_keys(prefix or 'axes', section, None)
+    flat: dict[str, Any] = {}
+    for key, value in section.items():
+        name = f'{prefix}.{key}' if prefix else str(key)
+        flat |= _flatten(value, name) if isinstance(value, dict) else {name: value}
+    return flat
+
+
+def _check_keys(what: str, section: Any, known: tuple[str, ...] | None) -> None:
+    if not isinstance(section, dict):
+        raise InputError(f'{what} is {section!r}, it must hold keys and values')
+    for key in section:
+        if known is not None and key not in known:
+            raise InputError(f'{what} holds {key!r}, allowed are {", ".join(known)}')
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+
+
+def _epoch(value: Any) -> int:
+    """Return the time [ns] of the universal clock that a text or date of YAML says."""
+    try:
+        at = value if isinstance(value, datetime.datetime) else None
+        at = at or datetime.datetime.fromisoformat(str(value))
+    except ValueError:
+        raise InputError(
+            f'time.epoch is {value!r}, it must be a date such as 2000-01-01T00:00:00Z'
+        ) from None
+    at = at.replace(tzinfo=at.tzinfo or datetime.UTC)
+    nanoseconds = round(at.timestamp() * MICRO) * (SECOND // round(MICRO))
+    if nanoseconds <= 0:
+        raise InputError(f'time.epoch is {value}, it must be after 1970: a stamp of 0 means none')
+    return nanoseconds

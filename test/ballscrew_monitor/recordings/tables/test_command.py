@@ -1,0 +1,51 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""`ballscrew import`, from the guess to the judged log, as it is typed."""
+
+import json
+from pathlib import Path
+
+from ballscrew_monitor import cli
+from ballscrew_monitor.recordings.tables.command import print_guess
+import pytest
+from surrogate.files import InputError
+import yaml
+
+
+def test_a_guess_is_a_map_that_works_unedited(mill_log, tmp_path, capsys):
+    assert cli.main(['import', str(mill_log), '--guess']) == 0
+    captured = capsys.readouterr()
+    assert set(yaml.safe_load(captured.out)) == {'log', 'axes', 'assumed'}
+    assert 'axis z: the load is not known (Z1_CurrentFeedback is always 0)' in captured.err
+    mapping, bag = tmp_path / 'map.yaml', tmp_path / 'bag'
+    mapping.write_text(captured.out)
+    assert cli.main(['import', str(mill_log), '--config', str(mapping), '--out', str(bag)]) == 0
+    assert '  assumed x.lead_mm = 10.0: ' in capsys.readouterr().out
+    assert cli.main(['replay', str(bag), '--json']) == 0
+    captured = capsys.readouterr()
+    by_bag = json.loads(captured.out)
+    assert set(by_bag) == {'x', 'y', 'z'}
+    assert f'parameters: those of {bag}' in captured.err
+    assert 'assumed of mill.csv: ' in captured.err
+    assert 'nothing was judged on axis z: no valid sample of load' in captured.err
+    assert cli.main(['replay', str(mill_log), '--map', str(mapping), '--json']) == 0
+    captured = capsys.readouterr()
+    assert json.loads(captured.out) == by_bag
+    assert f'parameters: those of {mill_log}' in captured.err
+
+
+def test_what_is_missing_is_named(mill_log, tmp_path, capsys):
+    assert cli.main(['import', str(mill_log)]) == 2
+    assert '--config is missing; --guess prints' in capsys.readouterr().err
+    assert cli.main(['import', str(mill_log), '--config', str(tmp_path / 'map.yaml')]) == 2
+    assert '--out is missing' in capsys.readouterr().err
+    assert cli.main(['replay', str(mill_log)]) == 2
+    assert 'a table needs a map: ballscrew import' in capsys.readouterr().err
+
+
+def test_a_bag_needs_no_import(short_bag, tmp_path):
+    for log in (short_bag, short_bag / 'short.mcap'):
+        with pytest.raises(InputError, match='a bag needs no import'):
+            print_guess(log)
+    with pytest.raises(InputError, match='cannot be read'):
+        print_guess(Path(tmp_path / 'nothing.csv'))

@@ -1,0 +1,189 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""From a table to a bag that is judged: a small log always, the real one where it is."""
+
+import os
+from pathlib import Path
+
+from ballscrew_monitor.node import parameters
+from ballscrew_monitor.recordings.bag import Bag
+from ballscrew_monitor.recordings.log_facts import facts_of, parameters_of, values_for
+from ballscrew_monitor.recordings.replay import replay
+from ballscrew_monitor.recordings.tables.convert import convert
+from ballscrew_monitor.recordings.tables.guess import guess
+from ballscrew_monitor.recordings.tables.mapping import make_map
+from ballscrew_msgs.msg import InputHealth
+from mcap.reader import make_reader
+from mcap_ros2.decoder import DecoderFactory
+import numpy as np
+import pytest
+from rosbags.highlevel import AnyReader
+from rosbags.typesys import get_typestore, Stores
+from surrogate.files import InputError
+
+ROOT = Path(__file__).resolve().parents[4]
+NOMINAL = ROOT / 'config' / 'nominal_cycle.yaml'
+TYPES = {
+    '/joint_states': 'sensor_msgs/msg/JointState',
+    **{f'/{axis}/axial_load': 'geometry_msgs/msg/WrenchStamped' for axis in 'xyz'},
+}
+
+
+def converted(log, out):
+    """Return the bag of a log by the map that is guessed."""
+    convert(log, make_map(guess(log).content), out)
+    return Bag(out)
+
+
+def states_of(bag):
+    """Return for each axis the states of all its samples, as what matters of them."""
+    values = parameters_of(bag)
+    found = {axis: [] for axis in values['axes']}
+    for axis in values['axes']:
+        values[f'{axis}.publish_period'] = 0.0
+    for state, _ in replay(bag, values):
+        health = {one.name: (one.state, one.refusal) for one in state.inputs}
+        result = state.result
+        known = result.validity == result.VALIDITY_VALID
+        found[state.axis].append((known, result.reason, health['load']))
+    return found
+
+
+def check_every_sample(bag, rows):
+    """Hold that each row is judged, or refused with a reason, on each axis; z has no load."""
+    found = states_of(bag)
+    for axis, states in found.items():
+        assert len(states) == rows, axis
+        assert all(known or reason for known, reason, _ in states)
+    assert any(known for known, _, _ in found['x'])
+    assert all(load == (InputHealth.STATE_OK, '') for _, _, load in found['x'])
+    assert {reason for _, reason, _ in found['z']} == {'no valid sample of load'}
+    assert all('must be a finite number' in refusal for _, _, (_, refusal) in found['z'])
+
+
+@pytest.fixture(scope='module')
+def mill_bag(tmp_path_factory, write_csv, mill):
+    """Return the bag of the small log."""
+    folder = tmp_path_factory.mktemp('mill')
+    return converted(write_csv(folder / 'mill.csv', mill()), folder / 'bag')
+
+
+def test_every_sample_of_the_small_log_is_judged_or_refused_with_a_reason(mill_bag):
+    assert mill_bag.types == TYPES
+    check_every_sample(mill_bag, 300)
+
+
+def test_the_bag_says_what_it_was_made_of(mill_bag):
+    facts = facts_of(mill_bag)
+    assert facts.source == 'mill.csv'
+    assert facts.mapping['axes']['x']['speed'] == {'column': 'X1_ActualVelocity'}
+    assumed = {one.key: one.value for one in facts.assumptions}
+    assert assumed['time.rate_Hz'] == 10.0
+    assert assumed['x.load.from'] == 'current'
+    assert assumed['z.load'] == 'unknown'
+    assert facts.parameters['axes'] == ['x', 'y', 'z']
+    assert facts.parameters['y.load.topic'] == 'y/axial_load'
+    assert 'x.lead_mm = 10.0' in facts.sentences()[-1]
+
+
+def test_the_file_alone_says_it_too(mill_bag):
+    assert Bag(mill_bag.files[0]).metadata == mill_bag.metadata
+
+
+def test_parameters_are_those_given_else_its_own_else_the_nominal(mill_bag, short_bag):
+    assert values_for(mill_bag, NOMINAL, NOMINAL)[0]['axes'] == ['x']
+    values, whose = values_for(mill_bag, None, NOMINAL)
+    assert values['axes'] == ['x', 'y', 'z']
+    assert whose == f'those of {mill_bag.path}'
+    values, whose = values_for(Bag(short_bag), None, NOMINAL)
+    assert values == parameters.read_file(NOMINAL)
+    assert whose.endswith('the nominal ones')
+
+
+def test_other_programs_read_it(mill_bag):
+    with AnyReader([mill_bag.path], default_typestore=get_typestore(Stores.ROS2_JAZZY)) as reader:
+        connection, stamp, data = next(reader.messages())
+        assert reader.deserialize(data, connection.msgtype).header.stamp.sec == 946_684_800
+        assert stamp == 946_684_800 * 10**9
+        assert reader.message_count == 1200
+    with mill_bag.files[0].open('rb') as stream:
+        reader = make_reader(stream, decoder_factories=[DecoderFactory()])
+        found = reader.iter_decoded_messages(topics=['/x/axial_load'])
+        wrenches = [one.decoded_message.wrench.force.x for one in found]
+    assert len(wrenches) == 300
+    assert np.isfinite(wrenches).all()
+
+
+def test_a_log_slower_than_the_timeouts_lengthens_them(tmp_path, write_csv):
+    speed = [100.0] * 20
+    log = write_csv(
+        tmp_path / 'log.csv', {'t': np.arange(20.0) * 2, 'x_vel': speed, 'x_force': speed}
+    )
+    bag = converted(log, tmp_path / 'bag')
+    facts = facts_of(bag)
+    assert facts.parameters['x.speed.timeout'] == 5.0
+    assert 'rows are 2 s apart: timeouts are longer than usual' in facts.notes
+    assert all(known for known, _, _ in states_of(bag)['x'])
+
+
+def test_a_torque_and_a_temperature_have_their_topics(tmp_path, write_csv):
+    columns = {
+        't': np.arange(20.0) / 10,
+        'x_vel_mm_s': [100.0] * 20,
+        'x_force_N': [100.0] * 20,
+        'x_torque_Nm': [0.5] * 20,
+        'oil_temp_degC': [35.0] * 20,
+    }
+    log = write_csv(tmp_path / 'log.csv', columns)
+    bag = converted(log, tmp_path / 'bag')
+    last = [state for state, _ in replay(bag, parameters_of(bag))][-1]
+    assert last.point.temperature == pytest.approx(35.0)
+    assert last.point.motor_torque == 0.5
+
+
+def test_a_load_may_be_left_to_the_node(tmp_path, write_csv):
+    columns = {'t': np.arange(40.0) / 100, 'x_vel_mm_s': [100.0] * 40, 'x_current_A': [20.0] * 40}
+    log = write_csv(tmp_path / 'log.csv', columns)
+    content = guess(log).content
+    content['assumed']['x.load.from']['value'] = 'motor_torque'
+    content['axes']['x'] |= {'torque_uncertainty_Nm': 0.05, 'inertia_kg_m2': 1e-4}
+    convert(log, make_map(content), tmp_path / 'bag')
+    bag = Bag(tmp_path / 'bag')
+    assert list(bag.topics) == ['/joint_states']
+    last = [state for state, _ in replay(bag, parameters_of(bag))][-1]
+    assert last.point.motor_torque == pytest.approx(2.0)
+    assert -1400.0 < last.point.axial_load < -900.0
+    assert last.inputs[1].state == InputHealth.STATE_DERIVED
+
+
+def test_another_lead_than_that_of_the_surface_is_said(tmp_path, write_csv, mill):
+    log = write_csv(tmp_path / 'mill.csv', mill())
+    content = guess(log).content
+    content['assumed']['x.lead_mm']['value'] = 5.0
+    content['assumed']['y.screw']['value'] = 'mine'
+    notes = convert(log, make_map(content), tmp_path / 'bag').notes
+    assert any('axis x: the lead is 5 mm, that of the surface 10 mm' in note for note in notes)
+    assert any('axis y: ' in note and 'before there is a surface' in note for note in notes)
+
+
+def test_nothing_is_written_when_the_log_is_bad(tmp_path, write_csv, mill):
+    log = write_csv(tmp_path / 'mill.csv', mill())
+    content = guess(log).content
+    content['parameters'] = {'x': {'nonsense': 1.0}}
+    with pytest.raises(InputError, match=r'parameter x.nonsense is unknown'):
+        convert(log, make_map(content), tmp_path / 'bag')
+    assert not (tmp_path / 'bag').exists()
+    with pytest.raises(InputError, match='is a file, it must be a directory'):
+        convert(log, make_map(guess(log).content), log)
+
+
+@pytest.mark.skipif(
+    'BALLSCREW_RECORDINGS' not in os.environ, reason='BALLSCREW_RECORDINGS names no recordings'
+)
+def test_every_sample_of_the_real_log_is_judged_or_refused_with_a_reason(tmp_path):
+    log = Path(os.environ['BALLSCREW_RECORDINGS']) / 'cnc_mill' / 'experiment_01.csv'
+    made = guess(log).content
+    assert made['assumed']['time.rate_Hz']['value'] == 10.0
+    bag = converted(log, tmp_path / 'bag')
+    assert bag.types == TYPES
+    check_every_sample(bag, 1055)

@@ -1,0 +1,70 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What numbers of a log say of its rate and its units."""
+
+from ballscrew_monitor.recordings.tables.estimates import (
+    is_rising,
+    period,
+    position_unit,
+    speed_unit,
+    time_unit,
+    usual_rate,
+)
+import numpy as np
+import pytest
+
+
+@pytest.mark.parametrize(
+    ('time', 'rate'), [(0.1011, 10.0), (0.00101, 1000.0), (0.0333, 30.0), (0.004, 250.0), (1, 1)]
+)
+def test_a_rate_near_a_usual_one_is_that(time, rate):
+    assert usual_rate(time) == pytest.approx(rate, rel=2e-3)
+
+
+def test_the_axis_that_moves_decides_on_the_period():
+    time = np.arange(400) * 0.1
+    speed = 0.05 * np.sin(time)
+    moved = np.concatenate([[0.0], np.cumsum((speed[1:] + speed[:-1]) / 2 * 0.1)])
+    noise = np.random.default_rng(1).normal(size=(2, 400))
+    still = (1e-4 * noise[0], 1e-4 * noise[1])
+    assert period([still, (moved, speed)]) == pytest.approx(0.1, rel=0.01)
+    assert np.isnan(period([]))
+    assert np.isnan(period([(np.zeros(9), np.zeros(9))]))
+
+
+@pytest.mark.parametrize(
+    ('largest', 'unit'), [(2.0, 'm/s'), (2.1, 'mm/s'), (2000.0, 'mm/s'), (2001.0, 'mm/min')]
+)
+def test_the_largest_speed_tells_the_unit_where_nothing_else_does(largest, unit):
+    speed = np.array([0.0, -largest, np.nan])
+    assert speed_unit(speed, None, 0.1)[0] == unit
+
+
+def test_the_largest_place_tells_the_unit():
+    assert position_unit(np.array([0.0, 2.0]))[0] == 'm'
+    assert position_unit(np.array([0.0, -2.1]))[0] == 'mm'
+
+
+@pytest.mark.parametrize(
+    ('begin', 'step', 'expected'),
+    [
+        (1.7e9, 0.01, ('s', True)),
+        (1.7e12, 10.0, ('ms', True)),
+        (1.7e15, 1e4, ('us', True)),
+        (1.7e18, 1e7, ('ns', True)),
+        (0.0, 0.01, ('s', False)),
+        (5.0, 10.0, ('ms', False)),
+        (0.0, 0.0, ('s', False)),
+    ],
+)
+def test_size_and_step_tell_the_unit_of_times(begin, step, expected):
+    assert time_unit(begin + step * np.arange(10.0))[:2] == expected
+
+
+def test_times_rise_but_for_a_few():
+    rising = np.arange(50.0)
+    assert is_rising(rising)
+    rising[20] = 3.0
+    assert is_rising(rising)
+    assert not is_rising(np.zeros(50))
+    assert not is_rising(np.sin(np.arange(50.0)))

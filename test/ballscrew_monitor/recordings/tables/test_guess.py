@@ -1,0 +1,135 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The first map of a log: by names, ranges and rates, and honest about what is assumed."""
+
+from ballscrew_monitor.recordings.tables.guess import guess
+from ballscrew_monitor.recordings.tables.mapping import make_map
+import numpy as np
+import pytest
+from surrogate.files import InputError
+import yaml
+
+TIME = np.arange(200) / 50.0
+SPEED = 100.0 * np.sin(TIME)
+
+
+@pytest.fixture
+def guessed(tmp_path, write_csv):
+    """Return a function that guesses at a log of columns."""
+
+    def make(columns, **how):
+        return guess(write_csv(tmp_path / 'log.csv', columns, **how))
+
+    return make
+
+
+def test_a_mill_log_is_understood(mill_log):
+    made = guess(mill_log)
+    axes, assumed = made.content['axes'], made.content['assumed']
+    assert list(axes) == ['x', 'y', 'z']
+    assert axes['x'] == {
+        'speed': {'column': 'X1_ActualVelocity'},
+        'position': {'column': 'X1_ActualPosition'},
+        'current': {'column': 'X1_CurrentFeedback'},
+    }
+    assert axes['z']['load'] == {'unknown': 'Z1_CurrentFeedback is always 0'}
+    assert 'current' not in axes['z']
+    assert assumed['time.rate_Hz']['value'] == 10.0
+    assert assumed['x.speed.unit']['value'] == 'mm/s'
+    assert assumed['x.load.from']['value'] == 'current'
+    assert assumed['x.torque_constant_Nm_per_A']['value'] > 0
+    assert all(entry['reason'] for entry in assumed.values())
+    assert any('spindle' in note for note in made.notes)
+    assert any('axis z: the load is not known' in note for note in made.notes)
+
+
+def test_the_text_is_a_map_as_it_stands(mill_log):
+    made = guess(mill_log)
+    assert make_map(yaml.safe_load(made.text)).rate == 10.0
+    assert yaml.safe_load(made.text) == made.content
+
+
+def test_units_in_names_are_not_assumed(guessed):
+    made = guessed(
+        {
+            'time_ms': TIME * 1e3,
+            'x_speed_mm_s': SPEED,
+            'x load [kN]': SPEED,
+            'y_speed (rpm)': SPEED,
+            'y_torque_Nm': SPEED,
+            'oil_temperature_degC': TIME + 40,
+            'motor_temperature': TIME,
+        }
+    )
+    axes = made.content['axes']
+    assert axes['x'] == {
+        'speed': {'column': 'x_speed_mm_s', 'unit': 'mm/s'},
+        'load': {'column': 'x load [kN]', 'unit': 'kN'},
+        'temperature': {'column': 'oil_temperature_degC', 'unit': 'degC'},
+    }
+    assert axes['y']['speed']['unit'] == 'rev/min'
+    assert axes['y']['torque'] == {'column': 'y_torque_Nm', 'unit': 'N m'}
+    assert made.content['assumed']['y.load.from']['value'] == 'torque'
+    assert made.content['time'] == {'column': 'time_ms', 'unit': 'ms'}
+    assert not [key for key in made.content['assumed'] if key.endswith('.unit')]
+
+
+def test_a_log_of_one_axis_needs_no_letter(guessed):
+    made = guessed({'Timestamp': 1.7e9 + TIME, 'Velocity': SPEED, 'Force': SPEED}, form='{:.12g}')
+    assert list(made.content['axes']) == ['x']
+    assert made.content['time'] == {'column': 'Timestamp', 'unit': 's'}
+    assert 'time.epoch' not in made.content['assumed']
+
+
+@pytest.mark.parametrize(
+    ('factor', 'unit'), [(1.0, 'mm/s'), (60.0, 'mm/min'), (1e-3, 'm/s'), (0.06, 'm/min')]
+)
+def test_position_and_time_tell_the_unit_of_the_speed(factor, unit, guessed):
+    position = 300.0 - 100.0 * np.cos(TIME)
+    made = guessed({'t': TIME, 'x_pos': position, 'x_vel': SPEED * factor}, form='{:.9g}')
+    assert made.content['assumed']['x.speed.unit']['value'] == unit
+
+
+def test_the_rate_cannot_always_be_told(guessed):
+    made = guessed({'x_vel': SPEED, 'x_force': SPEED})
+    entry = made.content['assumed']['time.rate_Hz']
+    assert entry['value'] > 0
+    assert 'nothing in it tells the rate' in entry['reason']
+
+
+def test_what_is_odd_is_said(guessed):
+    made = guessed({'t': TIME, 'x_vel_m_s': SPEED, 'y_vel': 0 * SPEED, 'x_force': SPEED})
+    assert 'axis x moves at up to 100 m/s: is its speed in m/s?' in made.notes
+    assert 'axis y never moves: its speed is always 0' in made.notes
+
+
+def test_a_log_without_a_speed_is_refused(guessed):
+    with pytest.raises(InputError, match=r'no column looks like .* it holds a, b'):
+        guessed({'a': TIME, 'b': TIME})
+
+
+def test_a_column_of_texts_is_left_out(guessed):
+    words = ['fast'] * len(TIME)
+    made = guessed({'t': TIME, 'x_vel': SPEED, 'y_vel': words, 'x_force': SPEED})
+    assert list(made.content['axes']) == ['x']
+    assert any("column 'y_vel' holds no number" in note for note in made.notes)
+    with pytest.raises(InputError, match='holds no number'):
+        guessed({'t': TIME, 'x_vel': words})
+
+
+def test_what_another_unit_or_place_is_of_is_left_out(guessed):
+    made = guessed(
+        {
+            't [s]': TIME,
+            'x speed [mm/s]': SPEED,
+            'x load [%]': SPEED,
+            'x motor temperature [C]': TIME + 60,
+            'x temperature [C]': TIME + 30,
+        }
+    )
+    axis, assumed = made.content['axes']['x'], made.content['assumed']
+    assert axis['load'] == {'unknown': 'no force, torque or current'}
+    assert axis['temperature'] == {'unit': 'degC'}
+    assert assumed['x.temperature.column']['value'] == 'x temperature [C]'
+    assert made.notes[-1] == 'not used: x load [%], x motor temperature [C]'
+    assert 'temperature' in make_map(made.content).axes[0].columns

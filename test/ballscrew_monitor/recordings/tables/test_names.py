@@ -1,0 +1,44 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What names of columns say, in the ways in which controls write them."""
+
+from ballscrew_monitor.recordings.tables.names import axis_names, read_name
+import pytest
+
+
+@pytest.mark.parametrize(
+    ('column', 'place', 'axis', 'kind', 'unit'),
+    [
+        ('X1_ActualVelocity', 'axis', 'x1', 'speed', ''),
+        ('vel_x [mm/min]', 'axis', 'x', 'speed', 'mm/min'),
+        ('Axis 2 Motor Current (mA)', 'axis', 'axis2', 'current', 'mA'),
+        ('Z1 torque [Nm]', 'axis', 'z1', 'torque', 'N m'),
+        ('current_position_x', 'axis', 'x', 'position', ''),
+        ('force_z_kN', 'axis', 'z', 'load', 'kN'),
+        ('U1_pos', 'axis', 'u1', 'position', ''),
+        ('rpm', 'machine', '', 'speed', 'rev/min'),
+        ('Temp_nut_C', 'machine', '', 'temperature', 'degC'),
+        ('Timestamp (ms)', 'machine', '', 'time', 'ms'),
+        ('SpindleSpeed', 'spindle', '', 'speed', ''),
+        ('S1_ActualPosition', 'spindle', '', 'position', ''),
+        ('b1_pos', 'rotary', '', 'position', ''),
+        ('x load [%]', 'axis', 'x', '', ''),
+        ('X1_ActualAcceleration', 'axis', 'x1', '', ''),
+        ('M1_CURRENT_FEEDRATE', 'other', '', '', ''),
+    ],
+)
+def test_a_name_says_axis_quantity_and_unit(column, place, axis, kind, unit):
+    named = read_name(column)
+    assert (named.place, named.axis, named.kind, named.unit) == (place, axis, kind, unit)
+
+
+def test_what_is_measured_comes_before_what_is_asked_for():
+    names = ('X_ActualVelocity', 'X_Velocity', 'X_OutputVelocity', 'X_CommandVelocity')
+    ranks = [read_name(name).rank for name in names]
+    assert ranks == sorted(ranks, reverse=True)
+    assert len(set(ranks)) == len(ranks)
+
+
+def test_the_number_of_an_axis_goes_where_there_is_one_of_its_letter():
+    named = [read_name(name) for name in ('X1_vel', 'Y1_vel', 'Y2_vel', 'axis3_vel')]
+    assert axis_names(named) == {'x1': 'x', 'y1': 'y1', 'y2': 'y2', 'axis3': 'axis3'}

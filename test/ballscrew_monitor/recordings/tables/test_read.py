@@ -1,0 +1,101 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Tables that are not as they should be: one sentence, or the good part and how much it is."""
+
+from ballscrew_monitor.recordings.tables.read import column_names, read_table
+import numpy as np
+import polars as pl
+import pytest
+from surrogate.files import InputError
+
+
+def text_log(tmp_path, text):
+    path = tmp_path / 'log.csv'
+    path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    return path
+
+
+def test_numbers_come_as_they_are(tmp_path):
+    table = read_table(text_log(tmp_path, 'a,b,c\n1,2,x\n3,4e1,y\n'), ['b', 'a'])
+    assert {name: list(values) for name, values in table.columns.items()} == {
+        'a': [1, 3],
+        'b': [2, 40],
+    }
+    assert table.rows == 2
+    assert not table.notes
+
+
+@pytest.mark.parametrize(
+    'text',
+    [
+        'a;b\n1,5;2\n2,5;3\n',
+        'a\tb\n1.5\t2\n2.5\t3\n',
+        '# a comment\na,b\n1.5,2,surplus\n2.5,3\n',
+        b'a,b,\xb5\n1.5,2,1\n2.5,3,1\n',
+    ],
+    ids=['decimal comma', 'tab', 'comment', 'latin'],
+)
+def test_other_forms_are_read_too(text, tmp_path):
+    table = read_table(text_log(tmp_path, text), ['a', 'b'])
+    assert list(table.columns['a']) == [1.5, 2.5]
+    assert list(table.columns['b']) == [2, 3]
+
+
+def test_times_of_day_become_seconds(tmp_path):
+    text = 't\n2026-01-02T03:04:05.5Z\n2026-01-02T03:04:06.5Z\n'
+    values = read_table(text_log(tmp_path, text), ['t']).columns['t']
+    assert values[0] == 1767323045.5
+    assert values[1] - values[0] == 1.0
+
+
+def test_cells_without_a_number_are_unknown_and_counted(tmp_path):
+    table = read_table(text_log(tmp_path, 'a,b\n1,2\n1,oops\n1,\n1'), ['a', 'b'])
+    assert np.isnan(table.columns['b']).tolist() == [False, True, True, True]
+    assert table.notes[0].endswith(
+        "column 'b' holds 3 cells without a number, the first is 'oops' in row 2; "
+        'they count as unknown'
+    )
+
+
+@pytest.mark.parametrize(
+    ('text', 'expected'),
+    [
+        ('', 'is empty'),
+        ('  \n', 'is empty'),
+        ('a,b\n', 'holds no row'),
+        ('a,b\nx,1\ny,2\n', "column 'a' holds no number, but 'x'"),
+        ('b,c\n1,2\n', "column 'a' is missing, the log holds b, c"),
+        (b'\x00\x01\x02' * 50, 'is no text'),
+        (b'PAR1 and no more', 'cannot be read'),
+    ],
+)
+def test_what_cannot_be_read_is_one_sentence(text, expected, tmp_path):
+    with pytest.raises(InputError) as caught:
+        read_table(text_log(tmp_path, text), ['a'])
+    assert expected in str(caught.value)
+    assert '\n' not in str(caught.value)
+
+
+def test_a_log_that_is_not_there_is_one_sentence(tmp_path):
+    with pytest.raises(InputError, match='cannot be read: No such file'):
+        column_names(tmp_path / 'log.csv')
+
+
+def test_parquet_is_read_with_its_types(tmp_path):
+    path = tmp_path / 'log.parquet'
+    times = pl.datetime_range(
+        pl.datetime(2026, 1, 1), pl.datetime(2026, 1, 1, 0, 0, 2), '1s', eager=True
+    )
+    frame = pl.DataFrame(
+        {'t': times, 'n': [1, 2, None], 'text': ['1', '2', 'x'], 'flag': [True, False, True]}
+    )
+    frame.write_parquet(path)
+    table = read_table(path, ['t', 'n', 'text'])
+    assert list(np.diff(table.columns['t'])) == [1.0, 1.0]
+    assert np.isnan(table.columns['n'][2])
+    assert len(table.notes) == 2
+    with pytest.raises(InputError, match="column 'flag' holds Boolean, it must hold numbers"):
+        read_table(path, ['flag'])
+    path.write_bytes(path.read_bytes()[:-20])
+    with pytest.raises(InputError, match='cannot be read'):
+        read_table(path, ['n'])

@@ -1,0 +1,105 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Columns in SI units and in the order of time, and what is said about those that are not."""
+
+import math
+
+from ballscrew_monitor.recordings.tables.mapping import make_map
+from ballscrew_monitor.recordings.tables.series import force_of, read_series
+import numpy as np
+import pytest
+from surrogate.files import InputError
+
+EPOCH = 946_684_800 * 10**9
+AXIS = {'lead_mm': 10.0, 'speed': {'column': 'v', 'unit': 'mm/s'}}
+
+
+@pytest.fixture
+def read(tmp_path, write_csv):
+    """Return a function that reads columns, by the time t unless told otherwise."""
+
+    def make(columns, axis=None, **time):
+        time = time or {'column': 't', 'unit': 's', 'epoch': '2000-01-01T00:00:00Z'}
+        mapping = make_map({'time': time, 'axes': {'x': axis or AXIS}})
+        return read_series(write_csv(tmp_path / 'log.csv', columns, form='{:.15g}'), mapping)
+
+    return make
+
+
+def test_quantities_are_those_of_the_screw(read):
+    axis = AXIS | {
+        'position': {'column': 'p', 'unit': 'mm'},
+        'current': {'column': 'i', 'unit': 'mA'},
+        'temperature': {'column': 'w', 'unit': 'K'},
+        'torque_constant_Nm_per_A': 0.5,
+        'efficiency': 0.8,
+        'load': {'from': 'current'},
+    }
+    columns = {'t': [5, 6], 'v': [10, -20], 'p': [0, 5], 'i': [2000, 0], 'w': [313.15, 293.15]}
+    made = read(columns, axis)
+    (found,) = made.axes
+    assert made.stamps.tolist() == [EPOCH, EPOCH + 10**9]
+    assert found.speed == pytest.approx([2 * math.pi, -4 * math.pi])
+    assert found.position == pytest.approx([0, math.pi])
+    assert found.torque == pytest.approx([1.0, 0.0])
+    # A torque that drives forward holds a force that pushes back.
+    assert found.load == pytest.approx([-2 * math.pi * 0.8 * 1.0 / 0.01, 0.0])
+    assert found.temperature == pytest.approx([40.0, 20.0])
+
+
+def test_the_force_of_no_torque_is_no_negative_zero():
+    assert math.copysign(1.0, force_of(np.zeros(1), lead=0.01, efficiency=0.9)[0]) == 1.0
+
+
+def test_rotary_units_need_no_lead_and_scale_and_offset_come_first(read):
+    speed = {'column': 'v', 'unit': 'rev/min', 'scale': 2.0, 'offset': 60.0}
+    made = read({'t': [0, 1], 'v': [0, 30]}, AXIS | {'speed': speed})
+    assert made.axes[0].speed == pytest.approx([2 * math.pi, 4 * math.pi])
+
+
+def test_an_unknown_load_is_no_zero(read):
+    made = read({'t': [0, 1], 'v': [1, 1]}, AXIS | {'load': {'unknown': 'no sensor'}})
+    assert np.isnan(made.axes[0].load).all()
+
+
+def test_the_speed_may_be_the_slope_of_the_position(read):
+    axis = {'lead_mm': 10.0, 'position': {'column': 'p', 'unit': 'm'}}
+    made = read({'t': [0, 1, 2, 2], 'p': [0.0, 0.01, 0.02, 0.02]}, axis)
+    assert made.axes[0].speed[:2] == pytest.approx([2 * math.pi] * 2)
+    assert np.isnan(made.axes[0].speed[-1])
+
+
+def test_a_rate_makes_stamps(read):
+    made = read({'v': [1, 2, 3]}, rate_Hz=10.0, epoch='2000-01-01T00:00:00Z')
+    assert np.diff(made.stamps).tolist() == [10**8] * 2
+    assert made.usual_period == pytest.approx(0.1)
+
+
+def test_a_time_of_the_universal_clock_stays(read):
+    made = read({'t': [1_767_323_045_500, 1_767_323_046_500], 'v': [1, 2]}, column='t', unit='ms')
+    assert made.stamps.tolist() == [1_767_323_045_500_000_000, 1_767_323_046_500_000_000]
+
+
+@pytest.mark.parametrize('times', [[0, 1], [1e12, 1e12 + 1]])
+def test_times_that_make_no_stamps_are_refused(times, read):
+    with pytest.raises(InputError, match='which give no stamps after 1970 and before 2038'):
+        read({'t': times, 'v': [1, 2]}, column='t', unit='s')
+
+
+def test_rows_out_of_order_are_sorted_and_counted(read):
+    made = read({'t': [0, 2, 1, 3], 'v': [0, 2, 1, 3]})
+    assert made.axes[0].speed == pytest.approx(np.arange(4) * 0.2 * math.pi)
+    assert made.notes[0].endswith('1 rows are earlier than the row before, they were sorted')
+
+
+def test_rows_without_a_time_are_left_out_and_counted(read):
+    made = read({'t': ['0', '', '2'], 'v': [1, 2, 3]})
+    assert len(made.stamps) == len(made.axes[0].speed) == 2
+    assert made.notes[-1].endswith('1 rows without a time are left out')
+    with pytest.raises(InputError, match='holds 1 rows with a time'):
+        read({'t': ['0', '', ''], 'v': [1, 2, 3]})
+
+
+def test_huge_gaps_are_said(read):
+    made = read({'t': [0, 0.1, 0.2, 3600, 3600.1], 'v': [1] * 5})
+    assert '1 gaps are longer than 100 rows, the longest is 3600 s, after row 3' in made.notes[0]
