@@ -116,7 +116,7 @@ def _resolves(host: str) -> bool | None:
 
 def _is_silent(server: str) -> bool:
     address = _address(server)
-    if address is None or 'TCP' in server:
+    if address is None or 'TCP' in server or not _resolves(address[0]):
         return False
     try:
         family = socket.AF_INET6 if ':' in address[0] else socket.AF_INET

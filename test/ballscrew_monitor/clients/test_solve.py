@@ -149,7 +149,7 @@ def test_an_interrupt_takes_the_goal_back(node, number):
     (worker,) = node.until(node.solvers, 'the solve')
     process.send_signal(number)
     code, out, err = end(process)
-    assert (code, out, err) == (130, '', '')
+    assert (code, out, err) == (128 + number, '', '')
     node.until(lambda: worker not in node.solvers(), 'the end of the solve')
     assert node.process.poll() is None
 
