@@ -107,16 +107,13 @@ def _run(args: argparse.Namespace) -> int:
 def _replay(args: argparse.Namespace) -> int:
     from ballscrew_monitor.node import parameters
     from ballscrew_monitor.recordings.bag import Bag
-    from ballscrew_monitor.recordings.replay import replay
-    from ballscrew_monitor.recordings.summary import Summarizer
+    from ballscrew_monitor.recordings.progress import shown_progress
+    from ballscrew_monitor.recordings.replay import replay_outcomes
 
-    values = parameters.read_file(args.params)
-    summarizers = {axis: Summarizer() for axis in values['axes']}
-    for judged in replay(Bag(args.bag), values):
-        summarizers[judged.state.axis].add_state(judged.state)
-        if judged.event is not None:
-            summarizers[judged.state.axis].add_event(judged.event)
-    results = {axis: made.result() for axis, made in summarizers.items()}
+    values, bag = parameters.read_file(args.params), Bag(args.bag)
+    with shown_progress(bag.duration) as on_done:
+        outcomes = replay_outcomes(bag, values, on_done=on_done)
+    results = {outcome.axis: outcome.summary() for outcome in outcomes}
     if args.json:
         print(json_text({axis: made and made.record() for axis, made in results.items()}))
     else:
