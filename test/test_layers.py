@@ -104,6 +104,7 @@ def test_online_half_imports_the_lookup_alone(path: Path) -> None:
         'cli.py': {'surrogate.cli', 'surrogate.parameters'},
         # The bar of both halves, text alone, and the style of all pictures.
         'cycle': PLOTTING | {'surrogate.progress'},
+        'recordings': {'surrogate.progress'},
     }
     allowed = LOOKUP | more.get(path.name, set()) | more.get(path.parent.name, set())
     assert {name for name in imports(path) if name.split('.')[0] == 'surrogate'} <= allowed

@@ -85,6 +85,7 @@ class Tracker:
         self.max_lag = max_lag
         self.received = 0
         self.dropped = 0
+        self.refused: dict[Why, int] = {}  # how many messages, by why
         self._lost, self._lost_known, self._lost_last = 0, True, -LOSS_SHOWN
         self._implausible, self._implausible_last = 0, -GLITCH_SHOWN
         self.refusal: Refusal | None = None  # why the last message was refused, if it was
@@ -112,12 +113,18 @@ class Tracker:
         """Count a message that is left out, with no harm to the input; `others` are its joints."""
         self.received += 1
         self.dropped += 1
-        if others is not None and len(self._others) < MOST_OTHERS:
+        if others is not None:
+            self.hear_of(others)
+
+    def hear_of(self, others: OtherJoints) -> None:
+        """Note other joints, of which a message that is counted already has told."""
+        if len(self._others) < MOST_OTHERS:
             self._others[others] = None
 
     def refuse(self, refusal: Refusal) -> None:
         """Count a bad message; the input stays bad until the next good one."""
         self.drop()
+        self.refused[refusal.why] = self.refused.get(refusal.why, 0) + 1
         self.refusal = refusal
         if refusal.why is Why.IMPLAUSIBLE:
             self._implausible += 1

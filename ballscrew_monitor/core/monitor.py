@@ -10,6 +10,7 @@ events gives the same list of states, bit for bit.
 
 """
 
+from collections.abc import Callable
 import dataclasses
 import math
 
@@ -22,15 +23,15 @@ from ballscrew_monitor.core.estimate import (
     PointSource,
     PointValidity,
 )
-from ballscrew_monitor.core.health import Tracker
+from ballscrew_monitor.core.health import Health, Tracker
 from ballscrew_monitor.core.inputs import implausible, InputSample, Refusal, Source, Why
 from ballscrew_monitor.core.judgement import Hold, hold, is_judged, judge, Level, Verdict
 from ballscrew_monitor.core.memory import Memory, NOTHING
 from ballscrew_monitor.core.point_reader import PointReader
 from ballscrew_monitor.core.shelving import NOT_SHELVED
-from ballscrew_monitor.core.state import Event, MonitorSettings, State
+from ballscrew_monitor.core.state import Event, Instant, MonitorSettings, State
 from ballscrew_monitor.core.stays import Stays
-from ballscrew_monitor.core.tally import Account, moment, WindowTally
+from ballscrew_monitor.core.tally import Account, moment, Totals, WindowTally
 from surrogate.surface import Surface
 
 NAN = math.nan
@@ -47,6 +48,7 @@ class Monitor:
     ) -> None:
         """Begin with nothing received, the level UNKNOWN, and what `memory` holds from before."""
         self.settings = settings
+        self.observer: Callable[[Instant], None] | None = None  # told of every judgement
         self.use_surface(surface)
         self.shelving = NOT_SHELVED
         self._judged = 0
@@ -145,7 +147,7 @@ class Monitor:
         verdict = judge(point, result, self.settings.limits)
         # On the time line of the stamps, which a tick must not leave.
         stamp = now - nanoseconds(tracker.lag) if tracker.lagging else now
-        return self._advance(stamp, now, point, result, verdict)
+        return self._advance(stamp, now, point, result, verdict, tick=True)
 
     def use_surface(self, surface: Surface) -> None:
         """Judge with `surface` from now on."""
@@ -175,6 +177,66 @@ class Monitor:
         if abs(point.speed) < self.settings.limits.standstill_speed:
             return 'the screw stands still'
         return point
+
+    @property
+    def judged(self) -> int:
+        """Return the number of speed samples that could be judged."""
+        return self._judged
+
+    @property
+    def totals(self) -> Totals:
+        """Return the totals."""
+        return self._account.totals()
+
+    def health(self, now: int) -> tuple[Health, ...]:
+        """Return the health of the inputs at `now` [ns]."""
+        return tuple(tracker.health(now) for tracker in self._inputs.values())
+
+    @property
+    def refused(self) -> dict[Source, dict[Why, int]]:
+        """Return how many messages of each input were refused, by why."""
+        return {source: dict(tracker.refused) for source, tracker in self._inputs.items()}
+
+    def state(
+        self,
+        stamp: int,
+        now: int,
+        point: MachinePoint,
+        result: PointEstimate,
+        verdict: Verdict,
+        *,
+        edge: Event | None = None,
+    ) -> State:
+        """
+        Return the state at `stamp` [ns], `now` [ns] being the clock of the arrivals.
+
+        The window begins anew.
+
+        """
+        torque = point.motor_torque
+        if point.motor_torque_source is not PointSource.MEASURED:
+            torque = NAN
+        return State(
+            axis=self.settings.axis,
+            stamp=stamp,
+            point=point,
+            estimate=result,
+            verdict=verdict,
+            level=self._hold.level,
+            level_since=self._hold.since,
+            event_id=self.event.number,
+            event=edge,
+            limits=self.settings.limits,
+            window=self._window.take(),
+            inputs=self.health(now),
+            totals=self._account.totals(),
+            judged=self._judged,
+            measured_torque=torque,
+            # Of a load derived from it, the torque of the model says nothing new.
+            torque_residual=NAN if point.derived is not None else torque - result.machine_torque,
+            surface_id=self._surface_id,
+            shelving=self.shelving.at(now),
+        )
 
     def reset_totals(self) -> None:
         """Set the totals to zero."""
@@ -221,7 +283,14 @@ class Monitor:
         return self._reader.point(self._inputs, now, self.settings, self.surface)
 
     def _advance(
-        self, stamp: int, now: int, point: MachinePoint, result: PointEstimate, verdict: Verdict
+        self,
+        stamp: int,
+        now: int,
+        point: MachinePoint,
+        result: PointEstimate,
+        verdict: Verdict,
+        *,
+        tick: bool = False,
     ) -> State | None:
         """
         Hold the level, follow the event, and return the state when it is due.
@@ -242,10 +311,26 @@ class Monitor:
             surface=self.surface,
             limits=self.settings.limits,
         )
-        if not self._due(stamp) and edge is None and self._hold.level is before.level:
+        due = self._due(stamp) or edge is not None or self._hold.level is not before.level
+        if self.observer is not None:
+            self.observer(
+                Instant(
+                    stamp=stamp,
+                    now=now,
+                    point=point,
+                    estimate=result,
+                    verdict=verdict,
+                    level=self._hold.level,
+                    event=self.event,
+                    edge=edge,
+                    tick=tick,
+                    published=due,
+                )
+            )
+        if not due:
             return None
         self._last_published = stamp
-        return self._state(stamp, now, point, result, verdict, edge)
+        return self.state(stamp, now, point, result, verdict, edge=edge)
 
     def _due(self, stamp: int) -> bool:
         """Tell whether `stamp` is the first one in its period."""
@@ -253,40 +338,6 @@ class Monitor:
         if period == 0 or self._last_published is None:
             return True
         return stamp // period != self._last_published // period
-
-    def _state(
-        self,
-        stamp: int,
-        now: int,
-        point: MachinePoint,
-        result: PointEstimate,
-        verdict: Verdict,
-        edge: Event | None,
-    ) -> State:
-        torque = point.motor_torque
-        if point.motor_torque_source is not PointSource.MEASURED:
-            torque = NAN
-        return State(
-            axis=self.settings.axis,
-            stamp=stamp,
-            point=point,
-            estimate=result,
-            verdict=verdict,
-            level=self._hold.level,
-            level_since=self._hold.since,
-            event_id=self.event.number,
-            event=edge,
-            limits=self.settings.limits,
-            window=self._window.take(),
-            inputs=tuple(tracker.health(now) for tracker in self._inputs.values()),
-            totals=self._account.totals(),
-            judged=self._judged,
-            measured_torque=torque,
-            # Of a load derived from it, the torque of the model says nothing new.
-            torque_residual=NAN if point.derived is not None else torque - result.machine_torque,
-            surface_id=self._surface_id,
-            shelving=self.shelving.at(now),
-        )
 
     def _forget_the_future(self, now: int) -> None:
         """

@@ -36,7 +36,8 @@ from ballscrew_monitor.core.monitor import Monitor
 from surrogate.files import InputError
 from surrogate.surface import Regime, Surface, Validity
 
-GIVEN = ('settings', 'surface', '_surface_id')  # parts of a monitor that are not written
+# Parts of a monitor that are not written.
+GIVEN = ('settings', 'surface', '_surface_id', 'observer')
 ENUMS: dict[str, type[enum.Enum]] = {
     kind.__name__: kind
     for kind in (

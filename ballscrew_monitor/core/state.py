@@ -109,3 +109,24 @@ class State:
     torque_residual: float
     surface_id: str
     shelving: Shelving = NOT_SHELVED
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Instant:
+    """
+    What came of one speed sample or of a tick without speed, whether or not a state is due.
+
+    `stamp` and `now`, the clock of the node, in [ns]; a `tick` has no sample of its own.
+
+    """
+
+    stamp: int
+    now: int
+    point: MachinePoint
+    estimate: PointEstimate
+    verdict: Verdict
+    level: Level
+    event: Event
+    edge: Event | None
+    tick: bool
+    published: bool

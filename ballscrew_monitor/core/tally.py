@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Sums over time: statistics of the current window, and totals since they were reset."""
 
+from collections.abc import Mapping, Sequence
 import dataclasses
 import math
 
@@ -54,6 +55,14 @@ class Column:
         if value > self.high:
             self.high = value
 
+    def add_many(self, values: Sequence[float]) -> None:
+        if values:
+            self.count += len(values)
+            self.low = min(self.low, min(values))
+            self.high = max(self.high, max(values))
+            for value in values:  # not sum(), which may add in a cleverer way
+                self.total += value
+
     def extremes(self) -> Extremes:
         if not self.count:
             return Extremes()
@@ -86,6 +95,27 @@ class WindowTally:
         self._film_ratio.add(estimate.numbers.film_ratio)
         if Gate.LIGHT_LOAD not in verdict.gates:
             self._efficiency.add(estimate.efficiency)
+
+    def add_many(
+        self,
+        *,
+        speed: Sequence[float],
+        axial_load: Sequence[float],
+        rcs: Sequence[float],
+        film_ratio: Sequence[float],
+        efficiency: Sequence[float],
+    ) -> None:
+        """
+        Add samples that were judged, in order.
+
+        speed [rad/s], axial_load [N], rcs, film_ratio, and efficiency where it was judged [-].
+
+        """
+        self._speed.add_many(speed)
+        self._load.add_many(axial_load)
+        self._rcs.add_many(rcs)
+        self._film_ratio.add_many(film_ratio)
+        self._efficiency.add_many(efficiency)
 
     def take(self) -> WindowStatistics:
         """Return the statistics and begin anew."""
@@ -205,6 +235,41 @@ class Account:
             return
         self._in_regime[last.regime] += span
         self._in_zone[last.zone] += span
+
+    @property
+    def last(self) -> Moment | None:
+        """Return the last sample."""
+        return self._last
+
+    def add_sums(
+        self,
+        *,
+        running: int,
+        unjudged: int,
+        in_regime: Mapping[Regime, int],
+        in_zone: Mapping[Zone, int],
+        angles: Sequence[float],
+        energies: Sequence[float],
+        first: int,
+        last: Moment,
+    ) -> None:
+        """
+        Add the sums over samples from the `first` stamp to the `last` one, as `add` would.
+
+        Times and stamp [ns]; `angles` [rad] and `energies` [J] in their order.
+
+        """
+        self._running += running
+        self._unjudged += unjudged
+        for regime, time in in_regime.items():
+            self._in_regime[regime] += time
+        for zone, time in in_zone.items():
+            self._in_zone[zone] += time
+        for angle, energy in zip(angles, energies, strict=True):
+            self._angle += angle
+            self._energy += energy
+        self._since = self._since or first
+        self._last = last
 
     def totals(self) -> Totals:
         """Return the sums."""

@@ -81,6 +81,11 @@ class Bag:
         return {name: info.type_name for name, info in self.topics.items()}
 
     @property
+    def storages(self) -> tuple[McapStorage | SqliteStorage, ...]:
+        """Return the files that are read."""
+        return tuple(self._storages)
+
+    @property
     def notes(self) -> list[str]:
         """Return a sentence for each file and topic of which not all could be read so far."""
         salvaged = [one.note for one in self._storages if one.note]

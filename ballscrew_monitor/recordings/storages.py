@@ -73,14 +73,14 @@ class McapStorage:
         self.span = (0, 0)
         self.note = ''
         self._channels: dict[int, Channel] = {}  # a damaged chunk may have told of them
-        self._has_summary = True
+        self.has_summary = True
         try:
             with damage_is_input(file):
                 self._read_summary()
         except InputError:
             if not salvage or not file.is_file():
                 raise
-            self._has_summary = False
+            self.has_summary = False
             self._read_whole()
             if not self.topics:
                 raise
@@ -94,7 +94,7 @@ class McapStorage:
         Those of the recording of a node are wanted `as_written`.
 
         """
-        if not self._has_summary:
+        if not self.has_summary:
             yield from self._whole(wanted, reorder=not as_written)
             return
         if as_written:

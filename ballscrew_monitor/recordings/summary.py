@@ -5,8 +5,9 @@
 import dataclasses
 from typing import Any
 
-from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.core.conversions import SECOND, seconds
 from ballscrew_monitor.core.fields import stamp_of
+from ballscrew_monitor.core.state import Event
 from ballscrew_msgs.msg import BallScrewState, Finding, OutOfZone
 from surrogate.surface import REGIMES
 
@@ -168,6 +169,22 @@ class Summarizer:
             events=tuple(self._events[key] for key in sorted(self._events)),
             **{name: getattr(totals, name) for name in names},
         )
+
+
+def event_record(event: Event, *, until: int) -> EventRecord:
+    """Return an event as it stands at the stamp `until` [ns]."""
+    quantity, relation = RELATIONS.get(event.cause.code, ('other', 'beyond'))
+    return EventRecord(
+        event_id=event.number,
+        start=event.start,
+        duration=seconds(until - event.start),
+        active=event.active,
+        quantity=quantity,
+        relation=relation,
+        worst_value=event.worst_value,
+        limit=event.cause.limit,
+        advice=event.advice.text,
+    )
 
 
 def _event_record(message: OutOfZone) -> EventRecord:

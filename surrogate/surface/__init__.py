@@ -11,6 +11,7 @@ from surrogate.surface.aims import EFFICIENCY_LIMIT, LIGHT_LOAD, RCS_LIMIT
 from surrogate.surface.correction import Correction, HasOperatingPoint
 from surrogate.surface.file import SurfaceError
 from surrogate.surface.lookup import Surface
+from surrogate.surface.many import ManyLookup, ManyPoints
 from surrogate.surface.point import FIELDS, solved_point, SurfacePoint, Validity
 from surrogate.surface.regime import FILM_RATIO_LIMITS, Regime, regime_of, REGIMES
 from surrogate.surface.shipped import find_surface, shipped_surface
@@ -24,6 +25,8 @@ __all__ = [
     'find_surface',
     'HasOperatingPoint',
     'LIGHT_LOAD',
+    'ManyLookup',
+    'ManyPoints',
     'RCS_LIMIT',
     'Regime',
     'regime_of',

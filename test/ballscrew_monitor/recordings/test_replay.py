@@ -11,8 +11,9 @@ from ballscrew_monitor.node import parameters
 from ballscrew_monitor.node.axis import build_axis
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
+from ballscrew_monitor.recordings.bulk.order import LONGEST_HOLE
 from ballscrew_monitor.recordings.decoding import silence
-from ballscrew_monitor.recordings.replay import LONGEST_HOLE, replay, speed_messages
+from ballscrew_monitor.recordings.replay import replay, speed_messages
 from geometry_msgs.msg import WrenchStamped
 import pytest
 from rclpy.serialization import serialize_message
@@ -242,3 +243,44 @@ def test_an_input_that_is_slower_than_its_timeout_is_named(tmp_path):
     assert 'load comes less often than its timeout allows: set x.load.timeout to 5.0' in text
     fast = every_state() | {'x.speed.timeout': 5.0, 'x.load.timeout': 5.0}
     assert silence(bag, build_axis('x', fast)) == ''
+
+
+def test_many_at_once_give_the_states_of_one_by_one(nominal_bag, values):
+    few = values | {'x.publish_period': 0.05}
+
+    def numbers(at_once):
+        return [
+            (
+                (stamp_of(state), state.zone, state.level, state.event_id, state.judged),
+                (event is not None, event and event.active, state.window.count),
+                [
+                    *(state.result.efficiency, state.result.rcs, state.torque_residual),
+                    *(state.window.rcs_mean, state.window.speed_max, state.inputs[0].rate),
+                    *(state.totals.energy_lost, state.totals.optimal_time),
+                ],
+            )
+            for state, event in replay(Bag(nominal_bag), few, at_once=at_once)
+        ]
+
+    found, expected = numbers(True), numbers(False)
+    assert [each[:2] for each in found] == [each[:2] for each in expected]
+    for one, other in zip(found, expected, strict=True):
+        assert one[2] == pytest.approx(other[2], rel=1e-12, nan_ok=True)
+
+
+def test_two_axes_come_in_the_order_of_their_samples(tmp_path):
+    times = [BEGIN + 10_000_000 * number for number in range(5)]
+    both = {'axes': ['x', 'y']}
+    names = parameters.defaults(['x', 'y']) | both | {'y.publish_period': 0.0}
+    bag = write(
+        tmp_path,
+        *((time, load_message(time, -1000.0)) for time in times),
+        *((time + 1, speed_message(time, 100.0)) for time in times),
+        *((time + 2, speed_message(time, 50.0, joint='y_axis')) for time in times),
+    )
+    for at_once in (False, True):
+        found = [
+            (stamp_of(state), state.axis)
+            for state, _ in replay(bag, names | {'x.publish_period': 0.0}, at_once=at_once)
+        ]
+        assert found == [(time, axis) for time in times for axis in ('x', 'y')]

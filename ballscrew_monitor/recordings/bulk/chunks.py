@@ -1,0 +1,197 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Finds the messages in the chunks of an MCAP file, many at once.
+
+Where they begin is what the message indexes behind a chunk say; that is believed when they and
+what else stands there fill the chunk without a gap. Otherwise the records are walked one by one.
+
+"""
+
+from collections.abc import Collection
+import dataclasses
+import struct
+from typing import Any, BinaryIO
+import zlib
+
+from mcap.reader import make_reader
+import numpy as np
+from numpy.typing import NDArray
+import zstandard
+
+Integers = NDArray[np.int64]
+
+LATEST = 2**62  # [ns] later log times are taken for this one, which leaves room for differences
+MESSAGE, CHUNK, MESSAGE_INDEX = 5, 6, 7  # operation codes of records
+RECORD = struct.Struct('<BQ')  # operation code and length of what follows
+CHUNK_HEAD = struct.Struct('<QQQII')  # times, size, checksum, length of the compression's name
+MESSAGE_HEAD = 22  # [bytes] channel, number, log time and publish time
+LOG_TIME, CHANNEL_NUMBER = RECORD.size + 6, RECORD.size  # where they stand in a record
+
+
+class ChunkDamage(ValueError):
+    """A chunk that cannot be used, and why."""
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Place:
+    """Where a chunk stands in its file, and which times [ns] its messages span."""
+
+    offset: int
+    length: int
+    index_length: int
+    first: int
+    last: int
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Found:
+    """
+    Messages within `data`: where each begins and how long it is [bytes].
+
+    `channel` is its number in the file, `log_time` in [ns].
+
+    """
+
+    data: bytes
+    channel: Integers
+    begin: Integers
+    size: Integers
+    log_time: Integers
+
+
+def chunk_places(stream: BinaryIO, topics: Collection[str]) -> tuple[list[Place], dict[int, str]]:
+    """Return the chunks with messages of `topics` and these topics by channel number."""
+    stream.seek(0)
+    summary = make_reader(stream, validate_crcs=True).get_summary()
+    assert summary is not None
+    channels = {
+        number: channel.topic
+        for number, channel in summary.channels.items()
+        if channel.topic in topics
+    }
+    places = [
+        Place(
+            offset=index.chunk_start_offset,
+            length=index.chunk_length,
+            index_length=index.message_index_length,
+            first=index.message_start_time,
+            last=index.message_end_time,
+        )
+        for index in summary.chunk_indexes
+        if not index.message_index_offsets or channels.keys() & index.message_index_offsets.keys()
+    ]
+    return places, channels
+
+
+def read_chunk(stream: BinaryIO, place: Place) -> Found:
+    """Return the messages of a chunk as they stand in it; raises ChunkDamage."""
+    stream.seek(place.offset)
+    raw = stream.read(place.length + place.index_length)
+    try:
+        data = _records(raw[: place.length])
+        starts = _indexed(data, raw[place.length :])
+    except (struct.error, zstandard.ZstdError, RuntimeError, MemoryError) as error:
+        raise ChunkDamage(' '.join(str(error).split())) from None
+    return _messages(data, _walked(data) if starts is None else starts)
+
+
+def _records(raw: bytes) -> bytes:
+    """Return the records of a chunk, unpacked and with the right checksum."""
+    code, length = RECORD.unpack_from(raw)
+    head = RECORD.size + CHUNK_HEAD.size
+    _, _, size, checksum, name = CHUNK_HEAD.unpack_from(raw, RECORD.size)
+    compression = raw[head : head + name].decode(errors='replace')
+    packed = raw[head + name + 8 :]
+    if code != CHUNK or length != len(raw) - RECORD.size:
+        raise ChunkDamage('no chunk stands where there should be one')
+    data = _unpacked(compression, packed, size)
+    if len(data) != size:
+        raise ChunkDamage(f'it holds {len(data)} bytes, it should hold {size}')
+    if checksum and zlib.crc32(data) != checksum:
+        raise ChunkDamage('its checksum is wrong')
+    return data
+
+
+def _unpacked(compression: str, packed: bytes, size: int) -> bytes:
+    if compression == 'zstd':
+        return zstandard.ZstdDecompressor().decompress(packed, max_output_size=size)
+    if compression == 'lz4':
+        import lz4.frame
+
+        unpacked: bytes = lz4.frame.decompress(packed)
+        return unpacked
+    if compression:
+        raise ChunkDamage(f'its compression {compression!r} is not known, zstd and lz4 are')
+    return packed
+
+
+def _indexed(data: bytes, indexes: bytes) -> Integers | None:
+    """Return where message records begin by the `indexes`, None if these do not tell of all."""
+    parts, at = [], 0
+    while at + RECORD.size <= len(indexes):
+        code, length = RECORD.unpack_from(indexes, at)
+        at += RECORD.size
+        if code == MESSAGE_INDEX and length >= 6 and at + length <= len(indexes):
+            pairs = np.frombuffer(indexes, '<u8', (length - 6) // 16 * 2, at + 6)
+            parts.append(pairs[1::2].astype(np.int64))
+        at += length
+    if not parts:
+        return None
+    starts = np.sort(np.concatenate(parts))
+    return starts if _fill(data, starts) else None
+
+
+def _fill(data: bytes, starts: Integers) -> bool:
+    """Tell whether messages at `starts`, and records that are none, fill all of the data."""
+    last = len(data) - RECORD.size - MESSAGE_HEAD
+    if not len(starts) or starts[0] < 0 or starts[-1] > last:
+        return False
+    if (np.frombuffer(data, np.uint8)[starts] != MESSAGE).any():
+        return False
+    ends = starts + RECORD.size + unaligned(data, '<i8')[starts + 1]
+    gaps = np.flatnonzero(ends[:-1] != starts[1:])
+    holes = [(0, starts[0]), *((ends[gap], starts[gap + 1]) for gap in gaps)]
+    return all(_is_no_message(data, *hole) for hole in [*holes, (ends[-1], len(data))])
+
+
+def _is_no_message(data: bytes, begin: int, end: int) -> bool:
+    """Tell whether records that are no messages fill a hole of the data."""
+    while begin + RECORD.size <= end:
+        code, length = RECORD.unpack_from(data, begin)
+        if code == MESSAGE:
+            return False
+        begin += RECORD.size + length
+    return begin == end
+
+
+def _walked(data: bytes) -> Integers:
+    """Return where message records begin, one after another."""
+    starts, at, end, unpack = [], 0, len(data) - RECORD.size, RECORD.unpack_from
+    while at <= end:
+        code, length = unpack(data, at)
+        if code == MESSAGE:
+            starts.append(at)
+        at += 9 + length
+    if at != len(data):
+        raise ChunkDamage('its last record is cut off')
+    return np.array(starts, dtype=np.int64)
+
+
+def _messages(data: bytes, starts: Integers) -> Found:
+    length = unaligned(data, '<i8')[starts + 1]
+    if (length < MESSAGE_HEAD).any():
+        raise ChunkDamage('a message has no head')
+    return Found(
+        data=data,
+        channel=unaligned(data, '<u2')[starts + CHANNEL_NUMBER].astype(np.int64),
+        begin=starts + RECORD.size + MESSAGE_HEAD,
+        size=length - MESSAGE_HEAD,
+        log_time=np.minimum(unaligned(data, '<u8')[starts + LOG_TIME], LATEST).astype(np.int64),
+    )
+
+
+def unaligned(data: bytes, kind: str) -> NDArray[Any]:
+    """Return a view of the data that begins a number of this `kind` at every byte."""
+    count = max(len(data) - np.dtype(kind).itemsize + 1, 0)
+    return np.ndarray((count,), kind, data, strides=(1,))

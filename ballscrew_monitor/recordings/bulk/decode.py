@@ -1,0 +1,180 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+From the serialised messages of a topic to entries, those of equal layout at once.
+
+What has no layout, and whatever is to be refused, is decoded one by one as the node does it.
+
+"""
+
+import dataclasses
+from typing import Any
+
+from ballscrew_monitor.core.fields import OtherJoints
+from ballscrew_monitor.core.inputs import Input, InputSample, Refusal, Source, Why
+from ballscrew_monitor.node.axis import Axis
+from ballscrew_monitor.node.topics import absolute
+from ballscrew_monitor.recordings.bag import Bag, Message
+from ballscrew_monitor.recordings.bulk.chunks import Integers
+from ballscrew_monitor.recordings.bulk.entries import Entries, entries_of, joined, Kind, made, Told
+from ballscrew_monitor.recordings.bulk.layout import Layout, NoLayout, reads_alike
+from ballscrew_monitor.recordings.decoding import decode, UNDECODABLE
+import numpy as np
+from numpy.typing import NDArray
+from rclpy.serialization import deserialize_message
+
+MOST_LAYOUTS = 32  # of a topic; what is still different then is decoded one by one
+NEW_LAYOUTS = 4  # that are looked for in a batch
+
+Reader = tuple[int, Axis, Input]
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Messages:
+    """Messages of one topic within `data`; `begin` and `size` [bytes], `log_time` [ns]."""
+
+    data: bytes
+    begin: Integers
+    size: Integers
+    log_time: Integers
+    place: Integers
+
+    def __len__(self) -> int:
+        """Return the number of messages."""
+        return len(self.begin)
+
+    def some(self, which: NDArray[Any]) -> 'Messages':
+        """Return some of the messages."""
+        return Messages(
+            data=self.data,
+            begin=self.begin[which],
+            size=self.size[which],
+            log_time=self.log_time[which],
+            place=self.place[which],
+        )
+
+    def content(self, at: int) -> bytes:
+        """Return one message."""
+        begin = int(self.begin[at])
+        return self.data[begin : begin + int(self.size[at])]
+
+
+class TopicDecoder:
+    """Decodes the messages of one topic for all inputs that read it."""
+
+    def __init__(self, bag: Bag, readers: list[Reader]) -> None:
+        """Begin without a layout; `bag` counts what does not decode."""
+        self._bag, self._readers = bag, readers
+        self._topic = absolute(readers[0][2].topic)
+        self._type = readers[0][2].message_type
+        self._layouts: list[Layout] = []
+
+    def entries(self, messages: Messages) -> Entries:
+        """Return what the messages say, in any order."""
+        parts: list[Entries] = []
+        rest, tried, most = messages, 0, len(self._layouts) + NEW_LAYOUTS
+        while len(rest) and tried < most:
+            if tried == len(self._layouts) and not self._learn(rest.content(0)):
+                break
+            layout = self._layouts[tried]
+            tried += 1
+            fits = layout.fits(rest.data, rest.begin, rest.size)
+            if fits.any():
+                parts += self._read(layout, rest if fits.all() else rest.some(fits))
+                rest = rest.some(~fits)
+        return joined([*parts, self._one_by_one(rest)])
+
+    def _learn(self, example: bytes) -> bool:
+        """Take the layout of a message, if it has one that reads what the decoder reads."""
+        if len(self._layouts) == MOST_LAYOUTS:
+            return False
+        try:
+            layout = Layout(example, self._type)
+            message = deserialize_message(example, self._type)
+        except (NoLayout, *UNDECODABLE):
+            return False
+        if not all(reads_alike(layout, example, message, each) for _, _, each in self._readers):
+            return False
+        self._layouts.append(layout)
+        return True
+
+    def _read(self, layout: Layout, messages: Messages) -> list[Entries]:
+        parts = []
+        for number, axis, source in self._readers:
+            found = layout.find(source)
+            if isinstance(found, int):
+                parts += self._samples(layout, messages, found, (number, axis, source))
+            elif isinstance(found, OtherJoints):
+                parts.append(_others(messages, found, number, source))
+            else:
+                parts.append(self._one_by_one(messages, [(number, axis, source)]))
+        return parts
+
+    def _samples(
+        self, layout: Layout, messages: Messages, place: int, reader: Reader
+    ) -> list[Entries]:
+        """Return the samples of one input, and what is refused of them."""
+        number, axis, source = reader
+        now = messages.log_time
+        scaling = source.scaling
+        with np.errstate(invalid='ignore', over='ignore'):
+            value = layout.numbers(messages.data, messages.begin, place)
+            value = value * scaling.factor + scaling.shift
+        stamp = np.zeros_like(now)
+        if source.stamped:
+            stamp = layout.stamps(messages.data, messages.begin)
+        bad = ~np.isfinite(value) | ((now != 0) & (stamp - now > axis.max_future))
+        samples = made(
+            len(messages),
+            log_time=now,
+            place=messages.place,
+            axis=number,
+            source=source.source,
+            kind=Kind.SAMPLE,
+            stamp=np.where(stamp == 0, now, stamp),
+            arrival=np.where(now == 0, stamp, now),
+            value=value,
+            header=stamp != 0,
+        )
+        if not bad.any():
+            return [samples]
+        return [samples.take(~bad), self._one_by_one(messages.some(bad), [reader])]
+
+    def _one_by_one(self, messages: Messages, readers: list[Reader] | None = None) -> Entries:
+        told: list[Told] = []
+        for at in range(len(messages)):
+            now, place = int(messages.log_time[at]), int(messages.place[at])
+            message = Message(
+                topic=self._topic, data=messages.content(at), log_time=now, publish_time=now
+            )
+            decoded, why = decode(self._bag, message, self._type)
+            for number, axis, source in readers or self._readers:
+                event: InputSample | Refusal
+                if decoded is None:
+                    event = not_decoded(source.source, why, now)
+                else:
+                    event = source.read(decoded, now=now, max_future=axis.max_future)
+                told.append((event, now, place, number))
+        return entries_of(told)
+
+
+def _others(messages: Messages, joints: OtherJoints, axis: int, source: Input) -> Entries:
+    """Return entries of messages that speak of other joints."""
+    note = np.empty(len(messages), dtype=object)
+    note[:] = [joints] * len(messages)
+    return made(
+        len(messages),
+        log_time=messages.log_time,
+        place=messages.place,
+        axis=axis,
+        source=source.source,
+        kind=Kind.OTHER_JOINTS,
+        stamp=messages.log_time,
+        arrival=messages.log_time,
+        note=note,
+    )
+
+
+def not_decoded(source: Source, text: str, arrival: int) -> Refusal:
+    """Return the refusal of a message that does not decode, at its arrival [ns], and why."""
+    return Refusal(source=source, why=Why.NOT_DECODED, text=text, arrival=arrival)

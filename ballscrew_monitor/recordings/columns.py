@@ -1,0 +1,248 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+What became of every sample of a recording, as columns, and what it comes to for an axis.
+
+A row is a speed sample that was judged, or a tick that found no fresh speed; states are published
+of some rows only. A long recording is many blocks of rows, so that it need not fit into memory.
+
+"""
+
+from collections.abc import Mapping, Sequence
+import dataclasses
+import enum
+from typing import Any
+
+from ballscrew_monitor.core.conversions import seconds
+from ballscrew_monitor.core.estimate import PointSource, PointValidity
+from ballscrew_monitor.core.health import Health
+from ballscrew_monitor.core.inputs import Source, Why
+from ballscrew_monitor.core.judgement import Limits, Zone
+from ballscrew_monitor.core.tally import Totals
+from ballscrew_monitor.recordings.summary import EventRecord, Summary
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Times = NDArray[np.int64]
+Codes = NDArray[np.uint8]
+Flags = NDArray[np.bool_]
+
+STANDSTILL, LIGHT_LOAD = 1, 2
+"""Bits of the column `gates`."""
+
+
+class Reason(enum.IntEnum):
+    """Why a row has no zone; JUDGED where it has one."""
+
+    JUDGED = 0
+    STANDSTILL = 1
+    NO_DIRECTION = 2
+    SPEED_BELOW_RANGE = 3
+    SPEED_ABOVE_RANGE = 4
+    LOAD_OUT_OF_RANGE = 5
+    TEMPERATURE_OUT_OF_RANGE = 6
+    MASKED = 7
+    NO_NUMBER = 8
+    NO_SPEED = 9
+    NO_LOAD = 10
+    NO_TEMPERATURE = 11
+    NO_INPUTS = 12
+    NO_TORQUE = 13
+    NO_DERIVED_LOAD = 14
+
+    @property
+    def text(self) -> str:
+        """Return the reason in words."""
+        return _REASON_TEXTS[self]
+
+
+_REASON_TEXTS = {
+    Reason.JUDGED: 'judged',
+    Reason.STANDSTILL: 'the screw stands still',
+    Reason.NO_DIRECTION: 'the screw has not moved yet, its direction is unknown',
+    Reason.SPEED_BELOW_RANGE: 'the speed is below the surface',
+    Reason.SPEED_ABOVE_RANGE: 'the speed is above the surface',
+    Reason.LOAD_OUT_OF_RANGE: 'the load is outside the surface',
+    Reason.TEMPERATURE_OUT_OF_RANGE: 'the oil temperature is outside the surface',
+    Reason.MASKED: 'the model did not converge near this point',
+    Reason.NO_NUMBER: 'the surface holds no number here',
+    Reason.NO_SPEED: 'no valid sample of the speed',
+    Reason.NO_LOAD: 'no valid sample of the load',
+    Reason.NO_TEMPERATURE: 'no valid sample of the temperature',
+    Reason.NO_INPUTS: 'no valid sample of several inputs',
+    Reason.NO_TORQUE: 'no valid sample of the motor torque, which the load is derived from',
+    Reason.NO_DERIVED_LOAD: 'the motor torque does not tell the load',
+}
+BY_VALIDITY = {
+    PointValidity.UNKNOWN: Reason.NO_DIRECTION,
+    PointValidity.VALID: Reason.NO_NUMBER,
+    PointValidity.SPEED_BELOW_RANGE: Reason.SPEED_BELOW_RANGE,
+    PointValidity.SPEED_ABOVE_RANGE: Reason.SPEED_ABOVE_RANGE,
+    PointValidity.LOAD_OUT_OF_RANGE: Reason.LOAD_OUT_OF_RANGE,
+    PointValidity.TEMPERATURE_OUT_OF_RANGE: Reason.TEMPERATURE_OUT_OF_RANGE,
+    PointValidity.MASKED: Reason.MASKED,
+    PointValidity.NO_INPUT: Reason.NO_INPUTS,
+    PointValidity.NO_SURFACE: Reason.NO_NUMBER,
+}
+"""The reason of a validity, where the screw moves and the zone is unknown."""
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class JudgedColumns:
+    """
+    A stretch of rows of one axis, one array per quantity.
+
+    stamp and log_time [ns]; speed [rad/s], axial_load [N], motor_torque and machine_torque [N m]
+    in the machine frame, temperature [K], friction_torque [N m]; efficiency, rcs and film_ratio
+    [-]; NaN is not known. The sources are PointSource, the other codes those of the classes that
+    are named like them; `gates` has the bits STANDSTILL and LIGHT_LOAD; `machine_torque` is what
+    the model says that drives the screw, `motor_torque` what was measured or is held,
+    `axial_load_uncertainty` [N] the half width of the range of a derived load, NaN for any other.
+    `tick` tells rows without a sample, `published` those of which the node publishes a state.
+
+    """
+
+    axis: str
+    stamp: Times
+    log_time: Times
+    speed: Floats
+    axial_load: Floats
+    temperature: Floats
+    motor_torque: Floats
+    speed_source: Codes
+    axial_load_source: Codes
+    temperature_source: Codes
+    motor_torque_source: Codes
+    direction: Codes
+    validity: Codes
+    efficiency: Floats
+    rcs: Floats
+    film_ratio: Floats
+    friction_torque: Floats
+    machine_torque: Floats
+    axial_load_uncertainty: Floats
+    worst_nut: Codes
+    regime: Codes
+    contact_state: Codes
+    gates: Codes
+    zone: Codes
+    reason: Codes
+    level: Codes
+    event_id: NDArray[np.uint32]
+    tick: Flags
+    published: Flags
+
+    def __len__(self) -> int:
+        """Return the number of rows."""
+        return len(self.stamp)
+
+    @property
+    def measured_torque(self) -> Floats:
+        """Return the motor torque where it is measured [N m], else NaN."""
+        measured = self.motor_torque_source == PointSource.MEASURED
+        return np.where(measured, self.motor_torque, np.nan)
+
+    @property
+    def torque_residual(self) -> Floats:
+        """
+        Return measured less modelled torque [N m], machine frame, NaN where not known.
+
+        Of a load derived from it, the torque of the model says nothing new.
+
+        """
+        derived = self.axial_load_source == PointSource.DERIVED
+        return np.where(derived, np.nan, self.measured_torque - self.machine_torque)
+
+    @property
+    def judged(self) -> Flags:
+        """Return which rows count as judged: those with a zone, and standstill."""
+        return (self.zone != Zone.UNKNOWN) | (self.gates & STANDSTILL != 0)
+
+    @property
+    def time_to_next(self) -> Times:
+        """Return the time from each row to the next [ns], zero at the end of the block."""
+        return np.diff(self.stamp, append=self.stamp[-1:])
+
+
+COLUMNS: dict[str, Any] = {
+    'stamp': np.int64,
+    'log_time': np.int64,
+    'speed': np.float64,
+    'axial_load': np.float64,
+    'temperature': np.float64,
+    'motor_torque': np.float64,
+    'speed_source': np.uint8,
+    'axial_load_source': np.uint8,
+    'temperature_source': np.uint8,
+    'motor_torque_source': np.uint8,
+    'direction': np.uint8,
+    'validity': np.uint8,
+    'efficiency': np.float64,
+    'rcs': np.float64,
+    'film_ratio': np.float64,
+    'friction_torque': np.float64,
+    'machine_torque': np.float64,
+    'axial_load_uncertainty': np.float64,
+    'worst_nut': np.uint8,
+    'regime': np.uint8,
+    'contact_state': np.uint8,
+    'gates': np.uint8,
+    'zone': np.uint8,
+    'reason': np.uint8,
+    'level': np.uint8,
+    'event_id': np.uint32,
+    'tick': np.bool_,
+    'published': np.bool_,
+}
+"""Type of each array of `JudgedColumns`, in their order."""
+
+
+def joined(blocks: Sequence[JudgedColumns]) -> JudgedColumns:
+    """Return blocks of one axis, at least one, as one."""
+    arrays = {name: np.concatenate([getattr(one, name) for one in blocks]) for name in COLUMNS}
+    return JudgedColumns(axis=blocks[0].axis, **arrays)
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class AxisOutcome:
+    """
+    What a recording comes to for one axis.
+
+    `first` and `last` are stamps of states [ns]; `events` in order, one that is still on as far
+    as it is known; `inputs` as they stood at the last row, `refused` messages by input and
+    why.
+
+    """
+
+    axis: str
+    first: int
+    last: int
+    rows: int
+    states: int
+    judged: int
+    totals: Totals
+    events: tuple[EventRecord, ...]
+    inputs: tuple[Health, ...]
+    refused: Mapping[Source, Mapping[Why, int]]
+    limits: Limits
+
+    def summary(self) -> Summary | None:
+        """Return the summary, None without a state."""
+        if not self.states:
+            return None
+        names = [field.name for field in dataclasses.fields(Totals)]
+        times = {
+            name: seconds(getattr(self.totals, name)) for name in names if name.endswith('_time')
+        }
+        return Summary(
+            axis=self.axis,
+            first=self.first,
+            last=self.last,
+            states=self.states,
+            judged=self.judged,
+            events=self.events,
+            revolutions=self.totals.revolutions,
+            energy_lost=self.totals.energy_lost,
+            **times,
+        )

@@ -1,0 +1,127 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Measure how many times faster than real time recordings are judged, on one core.
+
+Usage: python bench/replay.py [--seconds S] [--long L] [--repeats N]. Makes a recording of one axis
+at 1 kHz of S seconds and one at 100 Hz of L seconds in a temporary folder, and prints duration
+over processor time, which other work on the machine changes little. Beside them the time of one
+Python call, measured in the same run, and the lookup of points all over the surface.
+
+"""
+
+import argparse
+from collections.abc import Iterable
+import os
+from pathlib import Path
+import sys
+import tempfile
+import time
+import timeit
+
+from ballscrew_monitor.node import parameters
+from ballscrew_monitor.recordings.bag import Bag
+from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
+from ballscrew_monitor.recordings.replay import replay, replay_columns
+from geometry_msgs.msg import WrenchStamped
+import numpy as np
+from rclpy.serialization import serialize_message
+from sensor_msgs.msg import JointState
+from surrogate.surface import ManyLookup, shipped_surface, Surface
+
+BEGIN = 1_700_000_000_000_000_000  # [ns]
+CYCLE = 20.0  # [s] of a motion to and fro
+POINTS = 200_000
+TYPES = {'/joint_states': 'sensor_msgs/msg/JointState', '/load': 'geometry_msgs/msg/WrenchStamped'}
+
+
+def write(folder: Path, duration: float, rate: float) -> Bag:
+    """Return a recording of speed and load at a rate [Hz]."""
+    time_ = np.arange(int(duration * rate)) / rate
+    phase = 2 * np.pi * time_ / CYCLE
+    speeds, loads = (
+        150.0 * np.sin(phase),
+        -1200.0 * np.sign(np.sin(phase)) + 300 * np.sin(7 * phase),
+    )
+    joint, wrench = JointState(name=['x_axis'], velocity=[0.0]), WrenchStamped()
+    with BagWriter(folder, 'bag') as writer:
+        for name, kind in TYPES.items():
+            writer.add_topic(Topic(name=name, type_name=kind, offer=Offer.SENSOR))
+        for at, speed, load in zip(time_.tolist(), speeds.tolist(), loads.tolist()):
+            stamp = BEGIN + round(at * 1e9)
+            joint.velocity, wrench.wrench.force.x = [speed], load
+            for topic, message in (('/load', wrench), ('/joint_states', joint)):
+                clock = message.header.stamp
+                clock.sec, clock.nanosec = divmod(stamp, 10**9)
+                data = serialize_message(message)
+                writer.write(topic, data, log_time=stamp + 200_000, publish_time=stamp)
+    return Bag(folder)
+
+
+def values(period: float) -> dict[str, object]:
+    """Return the parameters; states each `period` [s]."""
+    return parameters.defaults(['x']) | {'x.load.topic': 'load', 'x.publish_period': period}
+
+
+def spent(repeats: int, make: object) -> float:
+    """Return the least processor time [s] of running through what `make` returns."""
+    best = float('inf')
+    for _ in range(repeats):
+        begin = time.process_time()
+        run_through(make())  # type: ignore[operator]
+        best = min(best, time.process_time() - begin)
+    return best
+
+
+def run_through(items: Iterable[object]) -> None:
+    """Take all items."""
+    for _ in items:
+        pass
+
+
+def lookups(repeats: int) -> float:
+    """Return how many points are looked up in a second."""
+    surface, drawn = Surface.load(shipped_surface()), np.random.default_rng(1)
+    lookup = ManyLookup(surface)
+    slow, fast = np.log(surface.speed_range)
+    points = (
+        np.exp(drawn.uniform(slow, fast, POINTS)),
+        drawn.uniform(*surface.load_range, POINTS),
+        drawn.uniform(*surface.temperature_range, POINTS),
+    )
+    return POINTS / spent(repeats, lambda: [lookup(*points)])
+
+
+def measure(asked: argparse.Namespace, folder: Path) -> None:
+    """Print the table."""
+    quick = write(folder / 'quick', asked.seconds, 1000.0)
+    long = write(folder / 'long', asked.long, 100.0)
+    rows = (
+        ('1 kHz, columns', 100, quick, lambda: replay_columns(quick, values(0.1))),
+        ('1 kHz, states each 0.1 s', 20, quick, lambda: replay(quick, values(0.1), at_once=True)),
+        ('1 kHz, sample by sample', 10, quick, lambda: replay(quick, values(0.1))),
+        ('100 Hz, columns', 1000, long, lambda: replay_columns(long, values(0.1))),
+    )
+    print(f'{"":28} {"x real time":>12} {"aim":>6} {"us a sample":>12}')
+    for name, aim, bag, make in rows:
+        cost = spent(asked.repeats, make)
+        samples = bag.topics['/joint_states'].count
+        print(f'{name:28} {bag.duration / cost:12.0f} {aim:6d} {1e6 * cost / samples:12.2f}')
+    call = min(timeit.repeat(lambda: None, number=100_000, repeat=7)) / 100_000
+    print(f'one Python call takes {1e6 * call:.3f} us')
+    print(f'{1e-6 * lookups(asked.repeats):.2f} million points a second looked up, aim 0.5')
+
+
+def main() -> None:
+    """Measure in a temporary folder."""
+    parser = argparse.ArgumentParser(description=__doc__.split('\n\n')[0].strip())
+    parser.add_argument('--seconds', type=float, default=60.0, help='of the one at 1 kHz [s]')
+    parser.add_argument('--long', type=float, default=900.0, help='of the one at 100 Hz [s]')
+    parser.add_argument('--repeats', type=int, default=3, help='runs, the best counts')
+    with tempfile.TemporaryDirectory() as folder:
+        measure(parser.parse_args(), Path(folder))
+
+
+if __name__ == '__main__':
+    os.environ.pop('ROS_PYTHON_CHECK_FIELDS', None)  # as a user has it
+    sys.exit(main())

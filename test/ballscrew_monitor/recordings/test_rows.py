@@ -1,0 +1,88 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Rows hold what the states say, and more of them; the outcome is that of the states."""
+
+from pathlib import Path
+
+from ballscrew_monitor.core.conversions import seconds
+from ballscrew_monitor.core.fields import stamp_of
+from ballscrew_monitor.node import parameters
+from ballscrew_monitor.recordings.bag import Bag
+from ballscrew_monitor.recordings.columns import AxisOutcome, COLUMNS, joined, Reason
+from ballscrew_monitor.recordings.replay import replay, replay_columns
+from ballscrew_monitor.recordings.summary import Summarizer
+import numpy as np
+import pytest
+
+CONFIG = Path(__file__).resolve().parents[3] / 'config' / 'nominal_cycle.yaml'
+
+
+@pytest.fixture(scope='module')
+def values():
+    """Return the parameters of the nominal cycle, with few states."""
+    return parameters.read_file(CONFIG) | {'x.publish_period': 0.1}
+
+
+@pytest.fixture(scope='module')
+def judged(nominal_bag, values):
+    """Return the columns of the nominal cycle and its outcome."""
+    *blocks, outcome = replay_columns(Bag(nominal_bag), values, at_once=False)
+    assert isinstance(outcome, AxisOutcome)
+    return joined(blocks), outcome
+
+
+def test_every_sample_is_a_row_and_the_states_are_some_of_them(nominal_bag, judged, values):
+    columns, outcome = judged
+    bag = Bag(nominal_bag)
+    assert len(columns) == bag.topics['/joint_states'].count == outcome.rows
+    states = [
+        (
+            stamp_of(state),
+            state.point.speed,
+            state.point.axial_load,
+            state.result.rcs,
+            state.result.efficiency,
+            state.result.film_ratio,
+            state.result.friction_torque,
+            state.zone,
+            state.level,
+            state.event_id,
+        )
+        for state, _ in replay(bag, values)
+    ]
+    names = 'stamp speed axial_load rcs efficiency film_ratio friction_torque zone level event_id'
+    shown = [getattr(columns, name)[columns.published].tolist() for name in names.split()]
+    np.testing.assert_equal(list(zip(*shown)), states)
+
+
+def test_the_outcome_is_that_of_the_states(nominal_bag, judged, values):
+    summarizer = Summarizer()
+    for state, event in replay(Bag(nominal_bag), values):
+        summarizer.add_state(state)
+        if event is not None:
+            summarizer.add_event(event)
+    columns, outcome = judged
+    summary, expected = outcome.summary(), summarizer.result()
+    assert summary.events == expected.events
+    assert summary.states == expected.states < outcome.rows
+    # The last state comes before the last sample, up to which the totals go.
+    assert expected.running_time <= summary.running_time <= expected.running_time + 0.1
+    assert outcome.judged == np.count_nonzero(columns.judged)
+
+
+def test_columns_tell_zones_reasons_and_times(judged):
+    columns, outcome = judged
+    assert set(columns.reason) == {Reason.JUDGED, Reason.STANDSTILL}
+    np.testing.assert_array_equal(columns.zone == 0, columns.reason == Reason.STANDSTILL)
+    outside = columns.time_to_next[columns.zone == 2].sum()
+    assert seconds(outside) == pytest.approx(seconds(outcome.totals.outside_time), abs=0.02)
+    assert np.isnan(columns.measured_torque).all()  # the bag has no torque
+    assert all(reason.text for reason in Reason)
+
+
+def test_blocks_of_one_axis_join(judged):
+    columns, _ = judged
+    twice = joined([columns, columns])
+    assert len(twice) == 2 * len(columns)
+    for name, kind in COLUMNS.items():
+        assert getattr(twice, name).dtype == kind
