@@ -56,6 +56,7 @@ class Bag:
         """
         self.path = Path(path)
         self.refused: dict[str, Refused] = {}
+        self.remarks: list[str] = []  # of those who read it
         self._salvage = salvage
         self._missing: list[str] = []
         found = manifest(self.path, salvage=salvage)
@@ -93,7 +94,7 @@ class Bag:
             one.sentence + (f'; {one.count} such messages were refused' if one.count > 1 else '')
             for one in self.refused.values()
         ]
-        return [*self._missing, *salvaged, *refused]
+        return [*self._missing, *salvaged, *refused, *self.remarks]
 
     def refuse(self, message: Message, reason: str) -> str:
         """Count a message that does not decode; return the sentence about it."""
@@ -118,10 +119,11 @@ class Bag:
             if problem:
                 raise InputError(f'bag {self.path}: topic {name} {problem}')
 
-    def as_written(self) -> Iterator[Message]:
-        """Yield all messages in the order of the files; raises InputError on damage."""
+    def as_written(self, topics: Collection[str] | None = None) -> Iterator[Message]:
+        """Yield messages of `topics` in the order of the files; raises InputError on damage."""
+        wanted = set(self.topics if topics is None else topics)
         for one in self._storages:
-            for message in one.messages(set(self.topics), as_written=True):
+            for message in one.messages(wanted, as_written=True):
                 yield _whole(message) if message.data[:4] == ZSTD else message
 
     def messages(self, topics: Collection[str] | None = None) -> Iterator[Message]:

@@ -11,6 +11,7 @@ from typing import Any
 from ballscrew_monitor.node import parameters
 from ballscrew_monitor.node.parameter_row import BARE_LETTERS
 from ballscrew_monitor.recordings.bag import Bag
+from ballscrew_monitor.recordings.own_recording import journal_of, recorded_values
 from surrogate.files import InputError
 import yaml
 
@@ -105,6 +106,8 @@ def values_for(bag: Bag, given: Path | None, nominal: Path) -> tuple[dict[str, A
     own = parameters_of(bag)
     if own is not None:
         return own, f'those of {bag.path}'
+    if journal_of(bag):
+        return recorded_values(bag), f'those that the node recorded in {bag.path}'
     return parameters.read_file(nominal), f'{nominal}, the nominal ones'
 
 

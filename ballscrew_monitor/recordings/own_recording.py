@@ -18,6 +18,7 @@ from ballscrew_monitor.core.fields import message_class
 from ballscrew_monitor.core.full_point import corrected
 from ballscrew_monitor.core.inputs import Input, InputSample, Refusal
 from ballscrew_monitor.core.snapshot import freeze_monitor, thaw_monitor
+from ballscrew_monitor.node import parameters
 from ballscrew_monitor.node.axis import Axis, build_axis, settings_of
 from ballscrew_monitor.node.correction_store import KeptSolve
 from ballscrew_monitor.node.intake import ordered
@@ -50,6 +51,33 @@ def journal_of(bag: Bag) -> str:
     return found[0] if len(found) == 1 else ''
 
 
+def recorded_values(bag: Bag) -> dict[str, Any]:
+    """
+    Return the parameters with which a node judged what it recorded, topics by their full names.
+
+    Raises InputError for a recording that describes no axis.
+
+    """
+    found: dict[str, dict[str, Any]] = {}
+    for message in bag.as_written([journal_of(bag)]):
+        entry = _entry(message)
+        if entry['kind'] == 'axis':
+            if entry['axis'] in found:
+                break
+            found[entry['axis']] = _values(entry, bag.types)
+    if not found:
+        raise InputError(f'bag {bag.path}: its journal describes no axis')
+    values = parameters.defaults(list(found))
+    for one in found.values():
+        values |= one
+    return values | {'axes': list(found)}
+
+
+def is_as_recorded(bag: Bag, values: Mapping[str, Any]) -> bool:
+    """Tell whether a bag is the recording of a node, to be judged with the node's parameters."""
+    return bool(journal_of(bag)) and recorded_values(bag) == dict(values)
+
+
 class OwnRecording:
     """The steps in a recording, and how often it proved the replay right and wrong."""
 
@@ -79,6 +107,14 @@ class OwnRecording:
             elif message.topic in self._readers:
                 self._burst.append((message, self._take_lost(message.topic)))
         yield from self._take_burst()
+        self._bag.remarks.append(self._proof())
+
+    def _proof(self) -> str:
+        """Return how often the replay was held against what the node remembered."""
+        held = self.proven + self.refuted
+        if self.refuted:
+            return f'the replay differs from what the node remembered in {self.refuted} of {held}'
+        return f'the replay is what the node did, proven {held} times'
 
     def _take_lost(self, topic: str) -> int | None:
         """Return how many messages were lost; a number counts once, that it is unknown stays."""

@@ -6,7 +6,8 @@ Replays a bag through the same pure pipeline as the node, without DDS, faster th
 Samples are taken in the order of their stamps, equal stamps in the fixed order of the sources.
 Log times stand for the clock of the node: ticks fall on the same grid of it as online, whatever
 the stamps say, and are taken after the samples of equal stamp. Sample by sample the states are
-those of the node to the last bit; many at once, its numbers agree to rounding.
+those of the node to the last bit; many at once, its numbers agree to rounding. The recording that
+a node made of itself, judged with its own parameters, is followed step by step.
 
 """
 
@@ -17,7 +18,7 @@ from typing import Any, NamedTuple
 from ballscrew_monitor.core.conversions import nanoseconds
 from ballscrew_monitor.core.fields import OtherJoints
 from ballscrew_monitor.core.inputs import Input
-from ballscrew_monitor.core.state import State
+from ballscrew_monitor.core.state import Event, State
 from ballscrew_monitor.node.axis import Axis, build_axis
 from ballscrew_monitor.node.messages import out_of_zone_message, StateWriter, TIERS
 from ballscrew_monitor.node.topics import absolute, input_topics, with_types
@@ -27,6 +28,8 @@ from ballscrew_monitor.recordings.bulk.judge import AxisJudge
 from ballscrew_monitor.recordings.bulk.source import OnDone, ordered_entries, places_of_axis
 from ballscrew_monitor.recordings.columns import AxisOutcome, JudgedColumns
 from ballscrew_monitor.recordings.decoding import decode, named_instead
+from ballscrew_monitor.recordings.own_recording import is_as_recorded
+from ballscrew_monitor.recordings.own_replay import own_columns, own_states
 from ballscrew_monitor.recordings.rows import RowCollector
 from ballscrew_msgs.msg import BallScrewState, OutOfZone
 from surrogate.files import InputError
@@ -83,6 +86,8 @@ def replay(
     what is whole of it is to be salvaged, for a damaged one.
 
     """
+    if is_as_recorded(bag, values):
+        return _own_states(bag)
     axes = _axes(bag, values)
     period = nanoseconds(values['tick_period'])
     entries = ordered_entries(bag, axes, period, on_done=on_done)
@@ -99,6 +104,8 @@ def replay_columns(
     is as for `replay`.
 
     """
+    if is_as_recorded(bag, values):
+        return own_columns(bag)
     axes = _axes(bag, values)
     period = nanoseconds(values['tick_period'])
     entries = ordered_entries(bag, axes, period, on_done=on_done)
@@ -141,11 +148,19 @@ def _states(batches: Iterator[Entries], axes: list[Axis], *, at_once: bool) -> I
             for at, state in judge.states(entries.take(places))
         ]
         for _, number, state in sorted(found, key=operator.itemgetter(0, 1)):
-            yield _judged(writers[number], axes[number].name, state)
+            yield _judged(writers[number], axes[number].name, state, state.event)
 
 
-def _judged(writer: StateWriter, axis: str, state: State) -> Judged:
-    event = None
-    if state.event is not None:
-        event = out_of_zone_message(axis, state.event, shelved=state.shelving.until != 0)
-    return Judged(state=writer.write(state), event=event)
+def _own_states(bag: Bag) -> Iterator[Judged]:
+    writers: dict[str, StateWriter] = {}
+    for axis, state, event in own_states(bag):
+        writer = writers.setdefault(axis.name, StateWriter(axis.name, TIERS[axis.surface.tier]))
+        writer.tier = TIERS[axis.surface.tier]  # the node may have taken another one
+        yield _judged(writer, axis.name, state, event)
+
+
+def _judged(writer: StateWriter, axis: str, state: State, event: Event | None) -> Judged:
+    message = None
+    if event is not None:
+        message = out_of_zone_message(axis, event, shelved=state.shelving.until != 0)
+    return Judged(state=writer.write(state), event=message)

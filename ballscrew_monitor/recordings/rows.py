@@ -29,11 +29,17 @@ class RowCollector:
     def __init__(self, axis: str, monitor: Monitor) -> None:
         """Begin to observe `monitor`."""
         self.axis = axis
-        self._monitor = monitor
         self._waiting: list[Row] = []
         self._rows = self._states = self._first = self._last = self._now = self._stamp = 0
         self._events: dict[int, EventRecord] = {}
+        self.observe(monitor)
+
+    def observe(self, monitor: Monitor) -> None:
+        """Go on with another monitor, in which an event may have ended meanwhile."""
+        self._monitor = monitor
         monitor.observer = self._take
+        if monitor.event.number in self._events:
+            self._note(monitor.event, monitor.event.stamp)
 
     def __len__(self) -> int:
         """Return the number of rows that wait."""

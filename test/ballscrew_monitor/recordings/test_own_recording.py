@@ -3,6 +3,7 @@
 """A recording of a node gives the states of the node again, bit for bit, wherever it begins."""
 
 import dataclasses
+from pathlib import Path
 import random
 import re
 import types
@@ -16,7 +17,9 @@ from ballscrew_monitor.node.journal import Journal
 from ballscrew_monitor.node.topic import Arrival
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.keeper import Keeper, KeepSettings
-from ballscrew_monitor.recordings.own_recording import journal_of, OwnRecording
+from ballscrew_monitor.recordings.log_facts import values_for
+from ballscrew_monitor.recordings.own_recording import journal_of, OwnRecording, recorded_values
+from ballscrew_monitor.recordings.replay import replay, replay_columns
 from geometry_msgs.msg import WrenchStamped
 import pytest
 from rclpy.serialization import deserialize_message, serialize_message
@@ -265,3 +268,39 @@ def test_a_replay_that_differs_is_refuted(tmp_path):
     node.close()
     _, own = again(bag_in(tmp_path))
     assert own.refuted == 1
+
+
+def test_a_replay_takes_the_parameters_of_the_recording_and_follows_it(tmp_path):
+    node = SmallNode(tmp_path)
+    live(node, seconds=12)
+    node.axes['x'].monitor.acknowledge(node.now)
+    node.describe('acknowledge', ['x'])
+    live(node, seconds=12, begin=BEGIN + 12 * SECOND, seed=2)
+    node.close()
+    bag = bag_in(tmp_path)
+    values, whose = values_for(bag, None, Path('none'))
+    assert values['axes'] == ['x', 'z']
+    assert values['x.speed.topic'] == TOPICS['speed']
+    assert whose == f'those that the node recorded in {bag.path}'
+    states = list(replay(bag, values))
+    assert len(states) == len(node.said)
+    *blocks, x, z = replay_columns(bag, values)
+    for name, outcome in (('x', x), ('z', z)):
+        monitor = node.axes[name].monitor
+        assert (outcome.axis, outcome.judged) == (name, monitor.judged)
+        assert outcome.totals == monitor.totals
+        assert len(outcome.events) == monitor.event.number
+        assert sum(len(one) for one in blocks if one.axis == name) == outcome.rows
+    assert not any(one.active for one in x.events[:-1])
+    assert bag.notes == ['the replay is what the node did, proven 6 times'] * 2
+
+
+def test_with_other_parameters_it_is_a_bag_like_any_other(tmp_path):
+    node = SmallNode(tmp_path)
+    live(node, seconds=12)
+    node.close()
+    bag = bag_in(tmp_path)
+    values = recorded_values(bag) | {'x.limits.efficiency': 0.5}
+    *_, outcome, _ = replay_columns(bag, values)
+    assert outcome.judged > 100
+    assert bag.notes == []
