@@ -2,18 +2,25 @@
 # SPDX-License-Identifier: Apache-2.0
 """Rows hold what the states say, and more of them; the outcome is that of the states."""
 
+import math
 from pathlib import Path
 
 from ballscrew_monitor.core.conversions import seconds
+from ballscrew_monitor.core.estimate import PointSource
 from ballscrew_monitor.core.fields import stamp_of
+from ballscrew_monitor.core.inputs import Source, Why
 from ballscrew_monitor.node import parameters
 from ballscrew_monitor.recordings.bag import Bag
+from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
 from ballscrew_monitor.recordings.columns import AxisOutcome, COLUMNS, joined, Reason
 from ballscrew_monitor.recordings.replay import replay, replay_columns
 from ballscrew_monitor.recordings.summary import Summarizer
 import numpy as np
 import pytest
+from rclpy.serialization import serialize_message
+from sensor_msgs.msg import JointState
 
+JOINT = 'sensor_msgs/msg/JointState'
 CONFIG = Path(__file__).resolve().parents[3] / 'config' / 'nominal_cycle.yaml'
 
 
@@ -86,3 +93,39 @@ def test_blocks_of_one_axis_join(judged):
     assert len(twice) == 2 * len(columns)
     for name, kind in COLUMNS.items():
         assert getattr(twice, name).dtype == kind
+
+
+@pytest.fixture
+def derived(tmp_path):
+    """Return the columns of an axis whose load is derived, the torque lost at the end."""
+    topic = Topic(name='/joint_states', type_name=JOINT, offer=Offer.SENSOR)
+    with BagWriter(tmp_path, 'bag') as writer:
+        writer.add_topic(topic)
+        for number in range(200):
+            stamp = 10**9 + number * 5_000_000
+            message = JointState(name=['x_axis'], velocity=[60.0], effort=[3.0])
+            if number >= 150:
+                message.effort = [math.nan]
+            message.header.stamp.sec, message.header.stamp.nanosec = divmod(stamp, 10**9)
+            data = serialize_message(message)
+            writer.write(topic.name, data, log_time=stamp, publish_time=stamp)
+    values = parameters.defaults(['x']) | {
+        'x.load.source': 'motor_torque',
+        'x.torque.topic': 'joint_states',
+        'x.torque.type': JOINT,
+        'x.torque.field': 'effort[x_axis]',
+        'x.torque.uncertainty': 0.1,
+    }
+    *blocks, outcome = replay_columns(Bag(tmp_path), values)
+    return joined(blocks), outcome
+
+
+def test_a_derived_load_has_its_range_and_no_residual(derived):
+    columns, outcome = derived
+    told = columns.axial_load_source == PointSource.DERIVED
+    assert np.count_nonzero(told) > 100
+    assert (columns.axial_load_uncertainty[told] > 0.0).all()
+    assert np.isnan(columns.axial_load_uncertainty[~told]).all()
+    assert np.isnan(columns.torque_residual).all()
+    assert set(columns.reason[150:]) == {Reason.NO_TORQUE}
+    assert outcome.refused[Source.TORQUE] == {Why.NOT_A_NUMBER: 50}
