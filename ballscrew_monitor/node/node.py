@@ -2,9 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The lifecycle node: declare, subscribe, call the monitor, publish. It decides nothing itself."""
 
-from collections.abc import Callable, Iterable, Sequence
-import functools
-import traceback
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 from ballscrew_monitor.core.conversions import nanoseconds
@@ -14,21 +12,20 @@ from ballscrew_monitor.core.state import State
 from ballscrew_monitor.node import diagnostics, parameters
 from ballscrew_monitor.node.axis import Axis, build_axes, named_topics
 from ballscrew_monitor.node.caretaker import Caretaker
+from ballscrew_monitor.node.chronicle import Chronicle
 from ballscrew_monitor.node.correction_store import CorrectionStore
 from ballscrew_monitor.node.event_log import Kind
 from ballscrew_monitor.node.intake import Intake
-from ballscrew_monitor.node.journal import Journal, SILENT
 from ballscrew_monitor.node.keeping import Keeping
 from ballscrew_monitor.node.parameter_store import ParameterStore
 from ballscrew_monitor.node.qos import check_overrides, longest_period
-from ballscrew_monitor.node.recording_process import recording, RecordingProcess
+from ballscrew_monitor.node.reported import reported
 from ballscrew_monitor.node.shelve_service import ShelveService
 from ballscrew_monitor.node.solve_server import SolveServer
 from ballscrew_monitor.node.solver_process import SolverProcess
 from ballscrew_monitor.node.state_folder import state_directory, StateFolder
 from ballscrew_monitor.node.station import STATE_QOS, Station
 from ballscrew_monitor.node.trigger_services import not_built, TriggerServices
-from ballscrew_msgs.msg import OutOfZone
 from ballscrew_msgs.srv import EvaluateOperatingPoint
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from rclpy.clock import Clock, ClockType
@@ -37,20 +34,6 @@ from surrogate.files import InputError
 
 SUCCESS, FAILURE = TransitionCallbackReturn.SUCCESS, TransitionCallbackReturn.FAILURE
 MEGABYTE = 1e6  # [B]
-
-
-def _reported(transition: Callable[..., Any]) -> Callable[..., Any]:
-    """Log an exception in a transition; rclpy swallows it and goes to error processing."""
-
-    @functools.wraps(transition)
-    def report(self: LifecycleNode, state: LifecycleState) -> Any:
-        try:
-            return transition(self, state)
-        except Exception:
-            self.get_logger().error(traceback.format_exc())
-            raise
-
-    return report
 
 
 class BallscrewMonitor(LifecycleNode):
@@ -69,8 +52,7 @@ class BallscrewMonitor(LifecycleNode):
         self._steady = Clock(clock_type=ClockType.STEADY_TIME)
         self._store = ParameterStore(self, self._on_parameters)
         self._values = self._store.values
-        self._journal = SILENT
-        self._recording: Callable[[], RecordingProcess] | None = None
+        self._chronicle = Chronicle(self, self._values, lambda: self._stations)
         self._pulse = Pulse(nanoseconds(self._values['tick_period']))
         self._diagnostics = self.create_publisher(DiagnosticArray, '/diagnostics', STATE_QOS)
         # On the steady clock: it speaks while a simulated one stands.
@@ -108,16 +90,16 @@ class BallscrewMonitor(LifecycleNode):
         for name in groups & self._stations.keys():
             self._stations[name].axis.adapt(self._values)
             self._stations[name].publish_info()
-            self._describe([name], 'parameters')
+            self._chronicle.describe([name], 'parameters')
 
-    @_reported
+    @reported
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Load the surfaces, compile the inputs; without one axis that works stay unconfigured."""
         try:
             resolve = self.resolve_topic_name
             check_overrides(self._store.given, named_topics(self._values, resolve))
             axes, reasons = build_axes(self._values, resolve)
-            self._recording = recording(self._values, self._folder.path)
+            self._chronicle.configure(self._folder.path)
         except InputError as error:
             axes, reasons = [], dict.fromkeys(self._values['axes'], str(error))
         self._failed = {name: f'not configured: {why}' for name, why in reasons.items()}
@@ -133,8 +115,8 @@ class BallscrewMonitor(LifecycleNode):
                 self._values,
                 self._corrections,
                 keeping=self._keeping,
-                record=self._record,
-                changed=self._describe,
+                record=self._chronicle.record,
+                changed=self._chronicle.describe,
             )
             for axis in axes
         }
@@ -158,18 +140,18 @@ class BallscrewMonitor(LifecycleNode):
         known = ', '.join(self._stations) or 'none, the node is not configured'
         return f'axis {axis!r} is unknown, known are: {known}'
 
-    @_reported
+    @reported
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Subscribe and begin to judge."""
         result = super().on_activate(state)
         self._active = True
-        self._journal = Journal(self.resolve_topic_name('~/journal'), self._recording)
+        self._chronicle.begin()
         for station in self._stations.values():
             station.publish_info()
             station.alarm.publish()
         axes = [station.axis for station in self._stations.values()]
-        self._describe(self._stations, 'begin')
-        self._intake = Intake(self, axes, self._on_event, self._journal)
+        self._chronicle.describe(self._stations, 'begin')
+        self._intake = Intake(self, axes, self._on_event, self._chronicle.journal)
         self._tick_timer = self.create_timer(
             self._values['tick_period'], self._on_tick, clock=self._tick_clock()
         )
@@ -185,7 +167,7 @@ class BallscrewMonitor(LifecycleNode):
         """
         return self.get_clock() if self.get_parameter('use_sim_time').value else self._steady
 
-    @_reported
+    @reported
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Stop to judge; levels, events and totals stand."""
         self._stop()
@@ -195,13 +177,13 @@ class BallscrewMonitor(LifecycleNode):
         self._publish_diagnostics()
         return result
 
-    @_reported
+    @reported
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Forget the axes."""
         self._clear('not configured')
         return SUCCESS
 
-    @_reported
+    @reported
     def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Stop and forget the axes."""
         self._finalized = True
@@ -215,35 +197,16 @@ class BallscrewMonitor(LifecycleNode):
         self._clear('not configured: a transition failed unexpectedly')
         return SUCCESS
 
-    def _describe(self, axes: Iterable[str], because: str) -> None:
-        """Let a recording know all about some axes."""
-        now = self.get_clock().now().nanoseconds
-        for name in axes if self._journal.on else ():
-            axis = self._stations[name].axis
-            topics = {
-                source.name.lower(): self.resolve_topic_name(topic)
-                for source, topic in axis.topics.items()
-            }
-            self._journal.describe(axis, self._values, topics, because, now)
-
     def _on_kept(self, axes: Iterable[str]) -> None:
         """Say what has changed by itself in what is kept of some axes."""
-        self._describe(axes, 'kept')
+        self._chronicle.describe(axes, 'kept')
         self._publish_diagnostics(list(axes))
 
     def _on_service(self, axes: Iterable[str], name: str) -> str:
         """Keep what a service has changed at once; return why that failed, or nothing."""
-        self._describe(axes, name)
+        self._chronicle.describe(axes, name)
         self._publish_diagnostics(list(axes))
         return self._keeping.flush()
-
-    def _record(self, topic: str, message: Any) -> None:
-        """Let a recording show what the node publishes; a warning is an event of it."""
-        if self._journal.on:
-            now = self.get_clock().now().nanoseconds
-            self._journal.say(self.resolve_topic_name(topic), message, now)
-            if isinstance(message, OutOfZone) and message.event_id:
-                self._journal.trigger(now)
 
     def _stop(self) -> None:
         self._active = False
@@ -251,8 +214,7 @@ class BallscrewMonitor(LifecycleNode):
         if self._intake is not None:
             self._intake.close()
             self._intake = None
-        self._journal.close()
-        self._journal = SILENT
+        self._chronicle.close()
         if self._tick_timer is not None:
             self.destroy_timer(self._tick_timer)
             self._tick_timer = None
@@ -279,10 +241,12 @@ class BallscrewMonitor(LifecycleNode):
             return
         self._intake.discover()
         self._intake.drain()
-        self._journal.tick(grid, self.get_clock().now().nanoseconds)
+        journal = self._chronicle.journal
+        journal.tick(grid, self.get_clock().now().nanoseconds)
         for station in self._stations.values():
             self._publish(station, station.axis.monitor.tick(grid))
-        self._describe(self._journal.due(self._stations, self._steady.now().nanoseconds), 'time')
+        due = journal.due(self._stations, self._steady.now().nanoseconds)
+        self._chronicle.describe(due, 'time')
 
     def _publish(self, station: Station, state: State | None) -> None:
         """Publish a state, and diagnostics for what it changes, though these not in a flood."""
@@ -309,7 +273,7 @@ class BallscrewMonitor(LifecycleNode):
         message = DiagnosticArray(status=statuses)
         message.header.stamp = now.to_msg()
         self._diagnostics.publish(message)
-        self._record('/diagnostics', message)
+        self._chronicle.record('/diagnostics', message)
 
     def _statuses(self, axes: Sequence[str], stood: int) -> list[DiagnosticStatus]:
         made, node = [], self.get_fully_qualified_name()
@@ -320,9 +284,7 @@ class BallscrewMonitor(LifecycleNode):
                 made += station.statuses(links=links, stood=stood)
             else:
                 made += diagnostics.failed(node, name, self._failed.get(name, self._reason))
-        if self._journal.on:
-            made.append(diagnostics.recording(node, self._journal.problem))
-        return made
+        return made + self._chronicle.statuses()
 
     def _on_evaluate(self, request: Any, response: Any) -> Any:
         """Answer what the surface says of the points; nothing is judged meanwhile."""
