@@ -4,7 +4,7 @@
 Measure the node beside a bare rclpy node of the same subscriptions, in the same run.
 
 Usage: python bench/node.py [--seconds S] [--pairs N] [--minutes M] [--axes 1,4,16]
-[--rates 100,1000] [--out DIR]. This process publishes speed and load of every axis and times the
+[--rates 100,1000] [--record always] [--out DIR]. This process publishes speed and load of every axis and times the
 states; the node and the bare node are one process each and take turns under the same load, so
 that a busy machine harms both. All shares are of one core, all latencies from the input to the
 reception of its state, without the time that this process takes to look.
@@ -32,9 +32,10 @@ TIMEOUT = 0.3  # [s] after it a tick tells the last counts
 BARE = Path(__file__).parent / 'node_parts' / 'bare.py'
 
 
-def write_parameters(path: Path, axes: int, period: float) -> None:
+def write_parameters(path: Path, axes: int, period: float, record: str) -> None:
     """Write the parameters of the node; JSON is YAML."""
-    values: dict[str, object] = {'axes': axis_names(axes), 'state_dir': ''}
+    values: dict[str, object] = {'axes': axis_names(axes), 'state_dir': '', 'record': record}
+    values['record_dir'] = str(path.parent / 'recordings')
     for axis in axis_names(axes):
         values[axis] = {
             'publish_period': period,
@@ -50,7 +51,9 @@ def write_parameters(path: Path, axes: int, period: float) -> None:
 
 
 @contextlib.contextmanager
-def peers(domain: int, axes: int, period: float) -> Iterator[tuple[Peer, Peer, float]]:
+def peers(
+    domain: int, axes: int, period: float, record: str
+) -> Iterator[tuple[Peer, Peer, float]]:
     """Give the bare node and the node at work, and how long the node took to start [s]."""
     context = rclpy.Context()
     rclpy.init(context=context)
@@ -58,7 +61,7 @@ def peers(domain: int, axes: int, period: float) -> Iterator[tuple[Peer, Peer, f
     try:
         with tempfile.TemporaryDirectory() as folder:
             parameters = Path(folder, 'parameters.yaml')
-            write_parameters(parameters, axes, period)
+            write_parameters(parameters, axes, period, record)
             bare.start([sys.executable, str(BARE), str(axes), str(period)], domain)
             module = [sys.executable, '-m', 'ballscrew_monitor.node', '--ros-args']
             quiet = ['--log-level', 'error', '--params-file', str(parameters)]
@@ -73,7 +76,7 @@ def measure(domain: int, asked: argparse.Namespace) -> Findings:
     """Measure all cases, the two nodes in turns."""
     found = Findings()
     for axes, period in ((1, 0.0), *((axes, 0.1) for axes in asked.axes)):
-        with peers(domain, axes, period) as (bare, node, start):
+        with peers(domain, axes, period, asked.record) as (bare, node, start):
             found.starts.append((axes, start))
             for rate in asked.rates:
                 for _ in range(asked.pairs):
@@ -102,6 +105,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument('--minutes', type=float, default=0.1, help='watch on the memory [min]')
     parser.add_argument('--axes', type=numbers(int), default=[1, 4, 16], help='such as 1,4,16')
     parser.add_argument('--rates', type=numbers(float), default=[100.0, 1000.0], help='[Hz]')
+    parser.add_argument('--record', default='off', help='what the node records of itself')
     parser.add_argument('--out', type=Path, help='folder for node.csv and node.png')
     return parser.parse_args()
 

@@ -209,6 +209,7 @@ class Intake(Waitable):
         self._journal.hear(heard)
         for axis, event in ordered([event for one in heard for event in _events(*one)]):
             self._take(axis, event)
+        self._journal.flush()
         return True
 
 

@@ -65,7 +65,12 @@ class Journal:
             name, kind = arrival.topic.name, arrival.topic.type_name
             self._tell_loss(name, lost, now)
             self._put(name, kind, 'SENSOR', arrival.data, now, arrival.received, self._burst)
-        self._process.flush()
+        self.flush()  # whatever becomes of the node with these messages
+
+    def flush(self) -> None:
+        """Hand over what was taken so far."""
+        if self._process is not None:
+            self._process.flush()
 
     def _tell_loss(self, topic: str, lost: int | None, now: int) -> None:
         """Say how many messages were lost before the next; that it is unknown, just once."""
