@@ -4,10 +4,10 @@
 Measure the node beside a bare rclpy node of the same subscriptions, in the same run.
 
 Usage: python bench/node.py [--seconds S] [--pairs N] [--minutes M] [--axes 1,4,16]
-[--rates 100,1000] [--record always] [--out DIR]. This process publishes speed and load of every axis and times the
-states; the node and the bare node are one process each and take turns under the same load, so
-that a busy machine harms both. All shares are of one core, all latencies from the input to the
-reception of its state, without the time that this process takes to look.
+[--rates 100,1000] [--record always] [--out DIR]. This process publishes speed and load of every
+axis and times the states; the node and the bare node are one process each and take turns under
+the same load, so that a busy machine harms both. All shares are of one core, all latencies from
+the input to the reception of its state, without the time that this process takes to look.
 
 """
 
