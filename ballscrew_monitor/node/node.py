@@ -74,7 +74,7 @@ class BallscrewMonitor(LifecycleNode):
         TriggerServices(
             self, self._values, lambda: self._stations, lambda: self._failed, self._on_service
         )
-        ShelveService(self, lambda: self._stations, self._on_service)
+        ShelveService(self, lambda: self._stations, self._unknown, self._on_service)
 
     def start(self) -> None:
         """Configure and activate, if the node is to do so itself."""

@@ -21,17 +21,19 @@ class ShelveService:
         self,
         node: Node,
         find: Callable[[], Mapping[str, Station]],
+        why_unknown: Callable[[str], str],
         changed: Callable[[Mapping[str, Station], str], str],
     ) -> None:
         """
         Make the service; `find` returns the stations, none while the node is unconfigured.
 
-        `changed` is told which stations the service has changed, and its name; it keeps them and
-        returns why that failed, or nothing.
+        `why_unknown` says why there is none of a name. `changed` is told which stations the
+        service has changed, and its name; it keeps them and returns why that failed, or nothing.
 
         """
         self._node = node
         self._find = find
+        self._why_unknown = why_unknown
         self._changed = changed
         node.create_service(ShelveAlarm, '~/shelve', self._serve)
 
@@ -42,7 +44,7 @@ class ShelveService:
         if not stations:
             response.message = 'the node is not configured'
         elif unknown:
-            response.message = f'axis {unknown[0]!r} is unknown, known are: {", ".join(stations)}'
+            response.message = self._why_unknown(unknown[0])
         else:
             self._shelve({axis: stations[axis] for axis in axes}, request, response)
         return response
