@@ -256,7 +256,7 @@ def _name_events(axes: Axes, summary: Summary) -> None:
     """
     width = axes.get_xlim()[1]
     spans = [(begin / width, end / width) for begin, end in map(summary.span, summary.events)]
-    limits = [begin for begin, _ in spans[1:]] + [1.0]
+    limits = [begin for begin, _ in spans[1:]] + [1.0] * bool(spans)
     free = 0.0
     for event, (begin, end), limit in zip(summary.events, spans, limits, strict=True):
         for words in (f'{event.event_id}: {event.quantity}', str(event.event_id)):
