@@ -80,7 +80,7 @@ setup(
     extras_require={
         'wheels': ROS_WHEELS,
         'plot': ['matplotlib>=3.6'],
-        'bags': ['mcap>=1.1', 'rosbags>=0.10', 'zstandard>=0.20'],
+        'bags': ['lz4>=4.0', 'mcap>=1.1', 'rosbags>=0.10', 'zstandard>=0.20'],
         'report': ['polars>=1.0'],
         'areal': ['SurfaceTopography>=1.17'],
         'dask': ['distributed>=2024.1'],

@@ -111,6 +111,7 @@ OPTIONAL = {
     'SurfaceTopography',
     'apsw',
     'distributed',
+    'lz4',
     'mcap',
     'polars',
     'rosbags',

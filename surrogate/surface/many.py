@@ -27,7 +27,7 @@ AT_ONCE = 2048
 """Points whose weights and corners stay in the cache."""
 CORNERS = [(i, j, k) for i in (0, 1) for j in (0, 1) for k in (0, 1)]
 NEAR = 1e-9
-"""Distance from where the answer jumps, in speed coordinate or fraction, that is left open [-]."""
+"""Distance from a jump of the answer, in speed coordinate or fraction, that is doubtful [-]."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -37,15 +37,15 @@ class ManyPoints:
 
     `values` are those of the fields that were asked for as they are interpolated, films by their
     logarithm, shares not yet cut to 0 and 1; NaN unless the validity is VALID. `worst_contact` is
-    that of a single point. `open` points are so near a jump of the answer or to a full solve that
-    a single lookup is to tell.
+    that of a single point. `doubtful` points are so near to a jump of the answer or to a full
+    solve that a single lookup is to tell.
 
     """
 
     validity: NDArray[np.uint8]
     values: dict[str, Array]
     worst_contact: NDArray[np.int64]
-    open: NDArray[np.bool_]
+    doubtful: NDArray[np.bool_]
 
 
 class ManyLookup:
@@ -73,7 +73,7 @@ class ManyLookup:
             validity=np.empty(count, dtype=np.uint8),
             values={name: np.empty(count) for name in self._fields},
             worst_contact=np.empty(count, dtype=np.int64),
-            open=np.empty(count, dtype=bool),
+            doubtful=np.empty(count, dtype=bool),
         )
         for begin in range(0, count, AT_ONCE):
             part = slice(begin, begin + AT_ONCE)
@@ -85,7 +85,8 @@ class ManyLookup:
     ) -> None:
         """Answer some of the points; those outside are placed at the nearest node meanwhile."""
         places = self._place(1, load), self._place(2, heat)
-        weights = patch_weights(*(hermite_weights(width, at) for _, width, at in places))  # type: ignore[arg-type]
+        sides: list[Any] = [hermite_weights(width, at) for _, width, at in places]
+        weights = patch_weights(*sides)
         slowest, fastest = self._surface.speed_range
         bounded = np.fmin(np.fmax(speed, slowest), fastest)
         s = np.fromiter(map(math.log, bounded.tolist()), float, len(bounded))
@@ -101,7 +102,7 @@ class ManyLookup:
         worst = self._surface._worst[nearest].astype(np.int64)
         found.worst_contact[part] = np.where(outside, -1, worst)
         found.validity[part] = validity
-        found.open[part] = self._is_open(s, fast[2], cell)
+        found.doubtful[part] = self._is_doubtful(s, fast[2], cell)
 
     def _place(self, axis: int, values: Array) -> Places:
         """Return where values lie, those outside at the nearest end."""
@@ -125,7 +126,8 @@ class ManyLookup:
         rows = (table[at] for table, at in zip(self._rows, cell, strict=True))
         i, j, k = rows
         corner = i * self._steps[0] + j * self._steps[1] + k
-        weights = extend_patch_weights(hermite_weights(fast[1], fast[2]), patch)  # type: ignore[arg-type]
+        along: Any = hermite_weights(fast[1], fast[2])
+        weights = extend_patch_weights(along, patch)
         count = len(self._fields)
         sums = [np.zeros(len(corner)) for _ in self._fields]
         for at, (x, y, z) in enumerate(CORNERS):
@@ -151,13 +153,13 @@ class ManyLookup:
         validity[~_between(heat, *surface.temperature_range)] = Validity.TEMPERATURE_OUT_OF_RANGE
         return validity.astype(np.uint8)
 
-    def _is_open(self, s: Array, fraction: Array, cell: Any) -> NDArray[np.bool_]:
+    def _is_doubtful(self, s: Array, fraction: Array, cell: Any) -> NDArray[np.bool_]:
         low, high = self._nodes[0][0], self._nodes[0][-1]
         beside = np.abs(fraction - 0.5) < NEAR
         face = (np.abs(fraction) < NEAR) | (np.abs(fraction - 1.0) < NEAR)
         end = np.minimum(np.abs(s - low), np.abs(s - high)) < 2.0 * ROUNDING
-        opened: NDArray[np.bool_] = beside | face | end | self._pulled[cell]
-        return opened
+        doubtful: NDArray[np.bool_] = beside | face | end | self._pulled[cell]
+        return doubtful
 
 
 def _between(values: Array, low: float, high: float) -> NDArray[np.bool_]:

@@ -95,7 +95,7 @@ def _is_packed(stream: BinaryIO, place: Place) -> bool:
         found = read_chunk(stream, place)
     except ChunkDamage:
         return False
-    return any(found.data[begin : begin + len(ZSTD)] == ZSTD for begin in found.begin.tolist())
+    return any(found.data.startswith(ZSTD, begin) for begin in found.begin.tolist())
 
 
 def _by_chunk(chunks: Sequence[_Chunk]) -> Iterator[Batch]:

@@ -89,8 +89,9 @@ def read_chunk(stream: BinaryIO, place: Place) -> Found:
     stream.seek(place.offset)
     raw = stream.read(place.length + place.index_length)
     try:
-        data = _records(raw[: place.length])
-        starts = _indexed(data, raw[place.length :])
+        chunk, indexes = raw[: place.length], raw[slice(place.length, None)]
+        data = _records(chunk)
+        starts = _indexed(data, indexes)
     except (struct.error, zstandard.ZstdError, RuntimeError, MemoryError) as error:
         raise ChunkDamage(' '.join(str(error).split())) from None
     return _messages(data, _walked(data) if starts is None else starts)
@@ -101,8 +102,8 @@ def _records(raw: bytes) -> bytes:
     code, length = RECORD.unpack_from(raw)
     head = RECORD.size + CHUNK_HEAD.size
     _, _, size, checksum, name = CHUNK_HEAD.unpack_from(raw, RECORD.size)
-    compression = raw[head : head + name].decode(errors='replace')
-    packed = raw[head + name + 8 :]
+    end = head + name
+    compression, packed = raw[head:end].decode(errors='replace'), raw[slice(end + 8, None)]
     if code != CHUNK or length != len(raw) - RECORD.size:
         raise ChunkDamage('no chunk stands where there should be one')
     data = _unpacked(compression, packed, size)

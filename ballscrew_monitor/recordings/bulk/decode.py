@@ -56,7 +56,8 @@ class Messages:
     def content(self, at: int) -> bytes:
         """Return one message."""
         begin = int(self.begin[at])
-        return self.data[begin : begin + int(self.size[at])]
+        end = begin + int(self.size[at])
+        return self.data[begin:end]
 
 
 class TopicDecoder:

@@ -74,7 +74,12 @@ class Points:
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Judgements:
-    """Columns of what the model says of points, and `sign` for the held level."""
+    """
+    Columns of what the model says of points, and `sign` for the held level.
+
+    efficiency, rcs and film_ratio [-], friction_torque and machine_torque [N m].
+
+    """
 
     validity: Codes
     efficiency: Array
@@ -169,7 +174,7 @@ class Estimator:
             gates=gates,
             **self._zones(validity, gates, rcs, efficiency, lost),
         )
-        near = self._near(made) | (found.open & (lost.any(axis=0) == 0))
+        near = self._near(made) | (found.doubtful & ~lost.any(axis=0))
         hair = (raw < 0.0) | (raw > 1.0) | ((raw > 0.0) & (raw < 1e-12))
         cancelled = np.abs(driving) < SMALL * friction
         return made, near | (valid & (hair | cancelled))

@@ -41,7 +41,7 @@ class _Outside:
     def worst(self, event: Event, begin: int, end: int) -> Event:
         """Return an event with its worst value up to the rows from `begin` to before `end`."""
         rows = self.levels.outside.rows
-        rows = rows[np.searchsorted(rows, begin) : np.searchsorted(rows, end)]
+        rows = rows[slice(*np.searchsorted(rows, [begin, end]))]
         if not len(rows):
             return event
         if event.cause.code is Code.RCS_HIGH:
@@ -110,7 +110,7 @@ def _pending(
     """Return the event that the run outside before the row `end` may become."""
     runs = outside.levels.outside
     last = int(np.searchsorted(runs.rows, end)) - 1
-    rows = runs.rows[max(int(runs.first[last]), 0) : last + 1]
+    rows = runs.rows[slice(max(int(runs.first[last]), 0), last + 1)]
     # A run that goes on from before has its event, unless samples of its first stamp follow.
     first = rows[outside.stamp[rows] == runs.start[last]]
     if not len(first) and memory.pending is not None:

@@ -106,7 +106,7 @@ class Lane:
         if len(self.good):
             self._tell_good()
         last = self.good[-1] if len(self.good) else -1
-        others = self.own[np.searchsorted(self.own, last, 'right') :]
+        others = self.own[self.own > last]
         others = others[entries.kind[others] == Kind.OTHER_JOINTS]
         for joints in dict.fromkeys(entries.note[others].tolist()):
             tracker.hear_of(joints)
@@ -119,7 +119,7 @@ class Lane:
         tracker, entries = self.tracker, self.entries
         gap, long = self._gaps()
         run = len(long) - np.flatnonzero(~long)[-1] - 1 if not long.all() else len(long)
-        longest = int(gap[len(gap) - run :].max()) if run else 0
+        longest = int(gap[-run:].max()) if run else 0
         if run == len(long):
             run, longest = run + tracker._long_gaps, max(longest, tracker._longest_gap)
         tracker._long_gaps, tracker._longest_gap = int(run), longest

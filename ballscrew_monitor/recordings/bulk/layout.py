@@ -141,9 +141,9 @@ class _Walk:
         return int(length)
 
     def _text(self) -> str:
-        length = self._length()
-        content = self._data[self._at : self._at + length]
+        length, begin = self._length(), self._at
         self._fix(length)
+        content = self._data[slice(begin, self._at)]
         if length and content[-1]:
             raise NoLayout
         return content[:-1].decode()
@@ -152,8 +152,9 @@ class _Walk:
         self._at += (HEAD - self._at) % size
 
     def _fix(self, size: int) -> None:
-        self.fixed[self._at : self._at + size] = True
+        begin = self._at
         self._pass(size)
+        self.fixed[slice(begin, self._at)] = True
 
     def _pass(self, size: int) -> None:
         self._at += size

@@ -24,7 +24,12 @@ from surrogate.surface import Regime
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Moments:
-    """What the totals need to know of rows, those that are samples; see `tally.Moment`."""
+    """
+    What the totals need to know of rows, and which of them are samples; see `tally.Moment`.
+
+    stamp [ns], speed, an amount [rad/s], power_lost [W].
+
+    """
 
     sample: NDArray[np.bool_]
 

@@ -31,7 +31,7 @@ def drawn_points(surface, beyond):
 
 def compare(surface, speed, load, temperature, fields=FIELDS):
     found = ManyLookup(surface, fields)(speed, load, temperature)
-    for at in np.flatnonzero(~found.open).tolist():
+    for at in np.flatnonzero(~found.doubtful).tolist():
         single = surface.lookup(float(speed[at]), float(load[at]), float(temperature[at]))
         assert found.validity[at] == single.validity
         assert found.worst_contact[at] == single.worst_contact
@@ -47,7 +47,7 @@ def test_points_all_over_the_surface(surface):
     speed, load, temperature = drawn_points(surface, 0.0)
     found = compare(surface, np.exp(speed), load, temperature)
     assert np.count_nonzero(found.validity == Validity.VALID) > 0.9 * COUNT
-    assert np.count_nonzero(found.open) < 5
+    assert np.count_nonzero(found.doubtful) < 5
 
 
 def test_points_beyond_the_ends_say_which_was_passed(surface):
@@ -71,12 +71,12 @@ def test_ends_nodes_and_no_numbers(surface):
         compare(surface, *(axis.ravel() for axis in grid))
 
 
-def test_cells_that_a_full_solve_has_pulled_are_left_open(surface):
+def test_cells_that_a_full_solve_has_pulled_are_doubtful(surface):
     point = SimpleNamespace(speed=50.0, opposing_load=1010.0, temperature=311.0)
     solution = SimpleNamespace(converged=True, friction_torque=0.4)
     corrected = surface.with_correction(point, solution)
     found = ManyLookup(corrected)(*(np.array([value]) for value in (50.0, 1010.0, 311.0)))
-    assert found.open.all()
+    assert found.doubtful.all()
 
 
 def test_no_point_at_all(surface):
