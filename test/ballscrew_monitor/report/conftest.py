@@ -100,7 +100,7 @@ def make_case(blocks, events=(), *, totals=None, values=None, known=None, **chan
             optimal_time=span - outside,
             outside_time=outside,
             mixed_time=span,
-            revolutions=100.0,
+            angle=628.0,
             energy_lost=1000.0,
         )
     facts = {
