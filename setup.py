@@ -58,7 +58,13 @@ setup(
     version='0.1.0',
     packages=find_packages(include=['ballscrew_monitor*', 'surrogate*']),
     package_data={
-        'ballscrew_monitor': ['py.typed', 'node/*.xml'],
+        'ballscrew_monitor': [
+            'py.typed',
+            'node/*.xml',
+            'report/components/*.css',
+            'report/components/*.js',
+            'report/components/uplot/*',
+        ],
         'surrogate': [
             'py.typed',
             'data/cases/*.yaml',
@@ -81,7 +87,7 @@ setup(
         'wheels': ROS_WHEELS,
         'plot': ['matplotlib>=3.6'],
         'bags': ['lz4>=4.0', 'mcap>=1.1', 'rosbags>=0.10', 'zstandard>=0.20'],
-        'report': ['polars>=1.0'],
+        'report': ['contourpy>=1.0', 'polars>=1.0'],
         'areal': ['SurfaceTopography>=1.17'],
         'dask': ['distributed>=2024.1'],
         'netcdf': ['xarray>=2024.1'],

@@ -27,7 +27,7 @@ from ballscrew_monitor.options import (
     PARAMS,
 )
 from surrogate.cli import add_commands
-from surrogate.files import InputError, json_text
+from surrogate.files import InputError
 from surrogate.surface import SurfaceError
 from surrogate.units import RPM
 
@@ -38,7 +38,8 @@ NEEDED = {
     'zstandard': 'pip install mcap zstandard',
     'rosbags': 'pip install rosbags',
     'apsw': 'pip install rosbags',
-    'polars': 'pip install polars',
+    'polars': 'pip install polars contourpy',
+    'contourpy': 'pip install polars contourpy',
     'matplotlib': 'pip install matplotlib',
     'rclpy': 'source the set-up file of ROS 2',
     'ballscrew_msgs': 'source the set-up file of the workspace in which it was built',
@@ -111,50 +112,9 @@ def _run(args: argparse.Namespace) -> int:
 
 
 def _replay(args: argparse.Namespace) -> int:
-    from ballscrew_monitor.recordings.log_facts import facts_of, values_for
-    from ballscrew_monitor.recordings.opener import opened_log
-    from ballscrew_monitor.recordings.replay import replay
-    from ballscrew_monitor.recordings.summary import Summarizer
+    from ballscrew_monitor.report.command import replay_command
 
-    with opened_log(args.bag, mapping=args.map) as bag:
-        values, whose = values_for(bag, args.params, PARAMS)
-        facts = facts_of(bag)
-        _say(f'parameters: {whose}', *(facts.sentences() if facts else ()))
-        summarizers = {axis: Summarizer() for axis in values['axes']}
-        reasons = dict.fromkeys(values['axes'], '')
-        for judged in replay(bag, values):
-            reasons[judged.state.axis] = judged.state.result.reason
-            summarizers[judged.state.axis].add_state(judged.state)
-            if judged.event is not None:
-                summarizers[judged.state.axis].add_event(judged.event)
-        results = {axis: made.result() for axis, made in summarizers.items()}
-        silent = [axis for axis, made in results.items() if made is None or made.says_nothing]
-        _say(*bag.notes, *_silences(bag, values, {axis: reasons[axis] for axis in silent}))
-    if args.json:
-        print(json_text({axis: made and made.record() for axis, made in results.items()}))
-    else:
-        for axis, result in results.items():
-            _print_summary(axis, result)
-    return FAILED if len(silent) == len(results) else 0
-
-
-def _silences(bag: Any, values: dict[str, Any], silent: dict[str, str]) -> list[str]:
-    """Return a sentence for each axis of which nothing was judged, with its last reason."""
-    from ballscrew_monitor.node.axis import build_axis
-    from ballscrew_monitor.node.topics import with_types
-    from ballscrew_monitor.recordings.decoding import silence
-
-    full = with_types(values, bag.types)
-    sentences = []
-    for axis, last in silent.items():
-        reason = silence(bag, build_axis(axis, full))
-        if reason or not last:
-            last = (
-                'topics, fields and joints of its parameters must be those of '
-                f'{bag.path}{f"; {reason}" if reason else ""}'
-            )
-        sentences.append(f'nothing was judged on axis {axis}: {last}')
-    return sentences
+    return replay_command(args, PARAMS)
 
 
 def _import(args: argparse.Namespace) -> int:
@@ -165,19 +125,6 @@ def _import(args: argparse.Namespace) -> int:
     else:
         make_bag(args.log, args.config, args.out)
     return 0
-
-
-def _say(*sentences: str) -> None:
-    for sentence in sentences:
-        print(f'ballscrew: {sentence}', file=sys.stderr)
-
-
-def _print_summary(axis: str, result: Any) -> None:
-    if result is None:
-        print(f'axis {axis}: no state')
-        return
-    print(f'axis {axis}: {result.judged} speed samples judged')
-    print('\n'.join(f'  {line}' for line in result.lines()))
 
 
 def _read_bag(args: argparse.Namespace, lead: float) -> tuple[dict[str, Any], tuple[str, ...]]:

@@ -6,6 +6,8 @@ import argparse
 from pathlib import Path
 from typing import Any
 
+from surrogate.cli import add_workers
+
 TREE = Path(__file__).resolve().parent.parent
 """The repository, when the package runs from it: the defaults hold in any working directory."""
 BAG, PARAMS = TREE / 'bags' / 'nominal_cycle', TREE / 'config' / 'nominal_cycle.yaml'
@@ -55,7 +57,11 @@ def add_replay(commands: Commands) -> argparse.ArgumentParser:
         'replay', help='judge a log without DDS, faster than real time'
     )
     parser.add_argument(
-        'bag', type=Path, metavar='LOG', help='bag directory or file; CSV or Parquet with --map'
+        'logs',
+        type=Path,
+        nargs='+',
+        metavar='LOG',
+        help='bag directory or file, a folder of them; CSV or Parquet with --map',
     )
     parser.add_argument(
         '--map', type=Path, metavar='FILE', help='map of the columns of a CSV or Parquet file'
@@ -66,7 +72,11 @@ def add_replay(commands: Commands) -> argparse.ArgumentParser:
         metavar='FILE',
         help=f'parameters of the node (default those that the log carries, else {PARAMS_TEXT})',
     )
+    parser.add_argument(
+        '--out', type=Path, metavar='DIR', help='directory for the report, its tables and data'
+    )
     parser.add_argument('--json', action='store_true', help='print JSON')
+    add_workers(parser)
     return parser
 
 

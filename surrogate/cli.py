@@ -9,6 +9,9 @@ from surrogate.commands.figures import add_figures_command
 from surrogate.commands.identify import add_identify_command, BagReader
 from surrogate.commands.point import add_point_command
 from surrogate.commands.surface import add_surface_command
+from surrogate.commands.sweep import add_workers
+
+__all__ = ['add_commands', 'add_workers']
 
 
 def add_commands(subparsers: Any, read_bag: BagReader | None = None) -> None:

@@ -13,6 +13,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[1]
 OPTIONAL = (
     'apsw',
+    'contourpy',
     'mcap',
     'mcap_ros2',
     'polars',
@@ -41,6 +42,9 @@ SLOW = (
     'ballscrew_monitor/recordings/test_black_box.py',
     'ballscrew_monitor/recordings/test_player.py',
     'ballscrew_monitor/recordings/test_recorder.py',
+    'ballscrew_monitor/report/test_command.py',
+    'ballscrew_monitor/report/test_course.py',
+    'ballscrew_monitor/report/test_log_page.py',
     'ballscrew_monitor/test_cli.py',
     'ballscrew_monitor/test_signals.py',
     'launch',

@@ -110,6 +110,7 @@ THEMES = {
 OPTIONAL = {
     'SurfaceTopography',
     'apsw',
+    'contourpy',
     'distributed',
     'lz4',
     'mcap',

@@ -32,9 +32,10 @@ NUMERICAL = {
     'yaml',
 }
 PLOTTING = {'surrogate.plotting.style'}  # for the pictures of a cycle alone
+TASKS = {'surrogate.tasks.pool', 'surrogate.tasks.table', 'surrogate.tasks.workers'}
 LOOKUP = {'surrogate', 'surrogate.files', 'surrogate.surface', 'surrogate.units'}
 
-FLOORS = ('core', 'node', 'clients', 'recordings', 'cycle')
+FLOORS = ('core', 'node', 'clients', 'recordings', 'report', 'cycle')
 """Folders of the online half, the lowest first."""
 OFFLINE_FLOORS = (
     ('units', 'files', 'progress'),
@@ -102,9 +103,12 @@ def test_online_half_imports_the_lookup_alone(path: Path) -> None:
     """Only the command line, which is both halves, hands over to the offline one."""
     more = {
         'cli.py': {'surrogate.cli', 'surrogate.parameters'},
+        'options.py': {'surrogate.cli'},
         # The bar of both halves, text alone, and the style of all pictures.
         'cycle': PLOTTING | {'surrogate.progress'},
         'recordings': {'surrogate.progress'},
+        # The page over many recordings, on the workers of the sweeps.
+        'report': {'surrogate.progress'} | TASKS,
     }
     allowed = LOOKUP | more.get(path.name, set()) | more.get(path.parent.name, set())
     assert {name for name in imports(path) if name.split('.')[0] == 'surrogate'} <= allowed

@@ -18,16 +18,21 @@ from typing import Any
 
 from ballscrew_monitor.clients.hearing import Hearing
 from ballscrew_monitor.clients.surroundings import surroundings
-from ballscrew_monitor.core.conversions import nanoseconds, POSITION_UNITS
-from ballscrew_monitor.core.doctor import findings, InputFacts, Surroundings
+from ballscrew_monitor.core.conversions import nanoseconds
+from ballscrew_monitor.core.doctor import findings, InputFacts, known_range, Surroundings
 from ballscrew_monitor.core.fields import message_class, number_fields
 from ballscrew_monitor.core.inputs import Input, make_input, Source
 from ballscrew_monitor.core.links import Link, types_of
 from ballscrew_monitor.node import parameters
-from ballscrew_monitor.node.axis import derivation_of, is_configured, load_surface, scaling_of
+from ballscrew_monitor.node.axis import (
+    derivation_of,
+    is_configured,
+    load_surface,
+    scaling_of,
+    scalings_of,
+)
 from ballscrew_monitor.node.interrupts import interrupts, SIGNALLED
 from ballscrew_monitor.node.middleware import notice
-from ballscrew_monitor.node.parameter_row import ParameterRow
 from ballscrew_monitor.node.qos import check_overrides, input_qos, overridden, publishers_on
 from ballscrew_monitor.node.topics import absolute
 import rclpy
@@ -212,7 +217,7 @@ class Examination:
             timeout=self._value(axis, source, 'timeout'),
             unit=self._value(axis, source, 'unit'),
             scalings=self._scalings(axis, source),
-            known=_range_of(surface, source, self._value(axis, source, 'unit')),
+            known=known_range(surface, source, self._value(axis, source, 'unit')),
             heard=hearing.heard() if hearing else None,
             problem=problem,
             numbers=numbers,
@@ -228,15 +233,10 @@ class Examination:
         return '', ()
 
     def _scalings(self, axis: str, source: Source) -> dict[str, Any]:
-        surface, name = self._surfaces[axis], f'{axis}.{source.name.lower()}.unit'
-        row: ParameterRow = parameters.table([axis])[name]
+        surface = self._surfaces[axis]
         if surface is None or source is Source.TORQUE:
             return {}
-        return {
-            unit: scaling_of(axis, {**self._values, name: unit}, source, surface.lead)
-            for unit in row.choices
-            if unit not in POSITION_UNITS
-        }
+        return scalings_of(axis, self._values, source, surface.lead)
 
 
 def _numbers_of(type_name: str) -> tuple[str, ...]:
@@ -244,18 +244,6 @@ def _numbers_of(type_name: str) -> tuple[str, ...]:
         return number_fields(message_class(type_name))
     except InputError:
         return ()
-
-
-def _range_of(surface: Surface | None, source: Source, unit: str) -> tuple[float, float] | None:
-    """Return the range of a surface [SI] in what an input measures; a position has none."""
-    if surface is None or source is Source.TORQUE or unit in POSITION_UNITS:
-        return None
-    ranges = {
-        Source.SPEED: surface.speed_range,
-        Source.LOAD: surface.load_range,
-        Source.TEMPERATURE: surface.temperature_range,
-    }
-    return ranges[source]
 
 
 def _page(found: list[str], facts: list[InputFacts], around: Surroundings) -> str:

@@ -12,11 +12,12 @@ import dataclasses
 import difflib
 import math
 
-from ballscrew_monitor.core.conversions import celsius, Scaling
+from ballscrew_monitor.core.conversions import celsius, POSITION_UNITS, Scaling
 from ballscrew_monitor.core.health import Health, InputState
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.core.links import Link, link_reason
 from ballscrew_monitor.core.reasons import slow_reason, Standing, summary
+from surrogate.surface import Surface
 
 SAFE_RATE = 3200.0  # [1/s] messages of speed and load that one core takes
 PLAUSIBLE = 1.5  # times the range of the surface
@@ -135,7 +136,7 @@ def _of_input(facts: InputFacts, around: Surroundings, seconds: float) -> list[s
     if facts.problem and not (reason and facts.link.publishers):
         found.append(f'{facts.parameter}: {facts.problem}: {_readable(facts)}')
     if facts.heard is not None:
-        found += [*_of_health(facts, facts.heard, seconds), *_of_unit(facts, facts.heard)]
+        found += [*_of_health(facts, facts.heard, seconds), *unit_doubts(facts, facts.heard)]
     return found
 
 
@@ -175,7 +176,19 @@ def _of_health(facts: InputFacts, heard: Heard, seconds: float) -> list[str]:
     return [] if standing is Standing.GOOD else [f'{facts.parameter}: {text}']
 
 
-def _of_unit(facts: InputFacts, heard: Heard) -> list[str]:
+def known_range(surface: Surface | None, source: Source, unit: str) -> tuple[float, float] | None:
+    """Return the range of a surface [SI] in what an input measures; a position has none."""
+    if surface is None or source is Source.TORQUE or unit in POSITION_UNITS:
+        return None
+    ranges = {
+        Source.SPEED: surface.speed_range,
+        Source.LOAD: surface.load_range,
+        Source.TEMPERATURE: surface.temperature_range,
+    }
+    return ranges[source]
+
+
+def unit_doubts(facts: InputFacts, heard: Heard) -> list[str]:
     """Return that the numbers are too large for the surface, with units that would suit them."""
     if math.isnan(heard.high) or facts.known is None or facts.unit not in facts.scalings:
         return []

@@ -4,8 +4,7 @@
 The operating map under a cycle: what the surface says of speed and opposing load.
 
 It holds at one oil temperature, the mean of the run in motion; the border RCS = limit is drawn for
-the coldest and the warmest oil too, because it moves with the oil. Speeds are logarithmic and
-begin where judging does: contact sets in at a hundredth of the highest speed.
+the coldest and the warmest oil too, because it moves with the oil.
 
 """
 
@@ -14,8 +13,15 @@ import dataclasses
 import math
 from typing import Any
 
-from ballscrew_monitor.core.conversions import kelvin
+from ballscrew_monitor.core.conversions import celsius
 from ballscrew_monitor.cycle.state_trace import LimitsInForce, Trace
+from ballscrew_monitor.recordings.operating_field import (
+    Field,
+    judged_speeds,
+    loads_around,
+    map_temperatures,
+    sample,
+)
 from matplotlib.axes import Axes
 from matplotlib.contour import QuadContourSet
 from matplotlib.lines import Line2D
@@ -23,57 +29,15 @@ from matplotlib.patches import Patch
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.plotting.style import BLUE, PURPLE
-from surrogate.surface import FILM_RATIO_LIMITS, Surface, Validity
-from surrogate.units import RPM
+from surrogate.surface import FILM_RATIO_LIMITS, Surface
 
 Array = NDArray[np.float64]
 
 OPTIMAL_FILL, GREY = '#dff2ea', '#404040'
 EFFICIENCIES = (0.3, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.97)
-SPEEDS, LOADS = 120, 181  # points of the grid
 TICKS = [first * 10.0**power for power in range(-2, 6) for first in (1, 2, 5)]  # [rev/min]
 TOP, BELOW_TOP = 0.975, 0.925  # heights of the labels, as parts of the map
 BOX = {'boxstyle': 'round,pad=0.15', 'facecolor': 'white', 'edgecolor': 'none', 'alpha': 0.85}
-
-
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Field:
-    """
-    Surface on a grid: speed [rev/min] and opposing load [N]; NaN where it says nothing.
-
-    Limit of RCS in speed over that here, with thin and thick boundary films [-].
-
-    """
-
-    speed: Array
-    load: Array
-    efficiency: Array
-    rcs: Array
-    film_ratio: Array
-    band: tuple[float, float]
-
-
-def sample(surface: Surface, trace: Trace, temperature: float) -> Field:
-    """Return the surface at `temperature` [degC] on a grid around the run."""
-    low, high = _load_span(surface, trace)
-    speed = np.geomspace(*_speed_span(surface, trace), SPEEDS)
-    load = np.linspace(low, high, LOADS)
-    points = [
-        [surface.lookup(w, f, kelvin(temperature)) for w in speed.tolist()] for f in load.tolist()
-    ]
-    columns = {
-        name: np.array(
-            [
-                [
-                    getattr(point, name) if point.validity is Validity.VALID else math.nan
-                    for point in row
-                ]
-                for row in points
-            ]
-        )
-        for name in ('efficiency', 'rcs', 'film_ratio')
-    }
-    return Field(speed=speed / RPM, load=load, band=surface.limit_band, **columns)
 
 
 def draw_map(axes: Axes, trace: Trace, surface: Surface) -> tuple[float, bool]:
@@ -81,42 +45,34 @@ def draw_map(axes: Axes, trace: Trace, surface: Surface) -> tuple[float, bool]:
     moving = np.abs(trace.speed) >= trace.limits.standstill
     oil = trace.temperature[moving & np.isfinite(trace.temperature)]
     # Without any motion the datasheet's temperature is as good as another.
-    spread = oil if oil.size else np.array([surface.reference_temperature - kelvin(0.0)])
-    mean = round(float(spread.mean()))
-    field = sample(surface, trace, mean)
+    spread = oil if oil.size else np.array([celsius(surface.reference_temperature)])
+    mean, others = map_temperatures(float(spread.min()), float(spread.mean()), float(spread.max()))
+    spans = _spans(surface, trace)
+    field = sample(surface, mean, **spans)
     _draw_zone(axes, field, trace.limits)
     _draw_lines(axes, field, trace.limits, mean)
-    others = [
-        float(degrees) for degrees in (spread.min(), spread.max()) if abs(degrees - mean) > 2
-    ]
     for degrees in others:
-        other = sample(surface, trace, degrees)
+        other = sample(surface, degrees, **spans)
         _draw_border(axes, other, trace.limits, degrees, width=1.2, linestyles='dashed')
     _label(axes, field)
     return mean, bool(others)
 
 
-def _speed_span(surface: Surface, trace: Trace) -> tuple[float, float]:
-    """Return the speeds that are judged [rad/s], or all of the surface where none is."""
-    slowest, fastest = surface.speed_range
-    judged = max(slowest, trace.limits.standstill)
-    return (judged if judged < fastest else slowest), fastest
-
-
-def _load_span(surface: Surface, trace: Trace) -> tuple[float, float]:
+def _spans(surface: Surface, trace: Trace) -> dict[str, tuple[float, float]]:
     moving = np.abs(trace.speed) >= trace.limits.standstill
     loads = trace.opposing_load[moving & np.isfinite(trace.opposing_load)]
-    reach = 1.5 * trace.limits.light_load
-    low = min(float(loads.min()), -reach) if loads.size else -reach
-    high = max(float(loads.max()), reach) if loads.size else reach
-    margin = 0.06 * (high - low)
-    return max(low - margin, surface.load_range[0]), min(high + margin, surface.load_range[1])
+    low, high = (float(loads.min()), float(loads.max())) if loads.size else (math.nan, math.nan)
+    return {
+        'speeds': judged_speeds(surface, trace.limits.standstill),
+        'loads': loads_around(surface, low, high, light_load=trace.limits.light_load),
+    }
 
 
 def _draw_zone(axes: Axes, field: Field, limits: LimitsInForce) -> None:
     """Fill the optimal zone; under a light load only RCS counts."""
-    light = np.abs(field.load)[:, None] < limits.light_load
-    optimal = (field.rcs < limits.rcs) & (light | (field.efficiency >= limits.efficiency))
+    optimal = field.is_optimal(
+        rcs=limits.rcs, efficiency=limits.efficiency, light_load=limits.light_load
+    )
     axes.contourf(
         field.speed,
         field.load,
@@ -137,9 +93,7 @@ def _draw_zone(axes: Axes, field: Field, limits: LimitsInForce) -> None:
 
 
 def _draw_lines(axes: Axes, field: Field, limits: LimitsInForce, degrees: float) -> None:
-    shown = np.where(
-        np.abs(field.load)[:, None] < 0.2 * limits.light_load, math.nan, field.efficiency
-    )
+    shown = field.judged_efficiency(limits.light_load)
     lines = _contour(axes, field, shown, EFFICIENCIES, BLUE, width=0.6, alpha=0.75)
     axes.clabel(lines, fmt=lambda value: f'{100 * value:.0f} %', fontsize=7)
     _contour(axes, field, shown, [limits.efficiency], BLUE, width=2.2, zorder=3)

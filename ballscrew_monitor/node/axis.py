@@ -9,14 +9,18 @@ from typing import Any
 
 from ballscrew_monitor.core.conversions import (
     kelvin,
+    LINEAR_SPEED_UNITS,
     load_scaling,
+    LOAD_UNITS,
     MotorData,
     nanoseconds,
     POSITION_UNITS,
+    ROTARY_SPEED_UNITS,
     Scaling,
     screw_turn,
     speed_scaling,
     temperature_scaling,
+    TEMPERATURE_UNITS,
     torque_scaling,
     torque_unit,
 )
@@ -34,6 +38,11 @@ from surrogate.surface import find_surface, Surface, SurfaceError
 PLAUSIBLE = 3.0  # times the largest of the surface: what lies beyond is a glitch
 MOTOR_TORQUE = LOAD_SOURCES[1]
 OPTIONAL = (Source.TEMPERATURE, Source.TORQUE)
+UNITS = {
+    Source.SPEED: (*ROTARY_SPEED_UNITS, *LINEAR_SPEED_UNITS),
+    Source.LOAD: tuple(LOAD_UNITS),
+    Source.TEMPERATURE: tuple(TEMPERATURE_UNITS),
+}
 
 
 @dataclasses.dataclass(kw_only=True, slots=True)
@@ -300,3 +309,18 @@ def scaling_of(name: str, values: Mapping[str, Any], source: Source, lead: float
         return temperature_scaling(unit, scale=scale, offset=offset)
     torque = _torque_unit(name, values)
     return torque_scaling(torque, scale=scale, offset=offset, handedness=hand)
+
+
+def scalings_of(
+    name: str, values: Mapping[str, Any], source: Source, lead: float
+) -> dict[str, Scaling]:
+    """
+    Return the line to SI units of an input for every unit that it may have; lead [m].
+
+    A torque has that of its own unit alone, for others may lack a constant; a position has none,
+    only the speed that is worked out from it.
+
+    """
+    name_of_unit = f'{name}.{source.name.lower()}.unit'
+    units = UNITS.get(source, (values[name_of_unit],))
+    return {unit: scaling_of(name, {**values, name_of_unit: unit}, source, lead) for unit in units}

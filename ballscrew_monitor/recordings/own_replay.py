@@ -3,6 +3,7 @@
 """What the monitors of a node said, again, out of the recording that the node made of itself."""
 
 from collections.abc import Iterator
+from typing import NamedTuple
 
 from ballscrew_monitor.core.state import Event, State
 from ballscrew_monitor.node.axis import Axis
@@ -14,9 +15,23 @@ from ballscrew_monitor.recordings.rows import RowCollector
 BLOCK = 65536  # rows of an axis that are handed on at once
 
 
-def own_states(bag: Bag) -> Iterator[tuple[Axis, State, Event | None]]:
+class TimedState(NamedTuple):
     """
-    Yield every state that the node published, its axis, and the event that began or ended.
+    A state, its axis, and the event that began or ended with it.
+
+    `log_time` [ns] is that of the message or the tick at which it is due.
+
+    """
+
+    log_time: int
+    axis: Axis
+    state: State
+    event: Event | None
+
+
+def own_states(bag: Bag) -> Iterator[TimedState]:
+    """
+    Yield every state that the node published.
 
     An event that an acknowledgement has ended comes with the state after that.
 
@@ -30,7 +45,8 @@ def own_states(bag: Bag) -> Iterator[tuple[Axis, State, Event | None]]:
             ended[name] = monitor.event
         last[name] = monitor.event
         if state is not None:
-            yield step.axis, state, state.event or ended.pop(name, None)
+            event = state.event or ended.pop(name, None)
+            yield TimedState(_log_time(step), step.axis, state, event)
 
 
 def own_columns(bag: Bag) -> Iterator[JudgedColumns | AxisOutcome]:
@@ -47,6 +63,13 @@ def own_columns(bag: Bag) -> Iterator[JudgedColumns | AxisOutcome]:
             yield collectors[name].block()
     yield from (one.block() for one in collectors.values() if len(one))
     yield from (one.outcome() for one in collectors.values())
+
+
+def _log_time(step: Step) -> int:
+    """Return when a step was taken on the clock of the node [ns]."""
+    if step.event is not None:
+        return step.event.arrival
+    return step.tick or 0
 
 
 def _take(step: Step) -> State | None:

@@ -29,7 +29,7 @@ from ballscrew_monitor.recordings.bulk.source import OnDone, ordered_entries, pl
 from ballscrew_monitor.recordings.columns import AxisOutcome, JudgedColumns
 from ballscrew_monitor.recordings.decoding import decode, named_instead
 from ballscrew_monitor.recordings.own_recording import is_as_recorded
-from ballscrew_monitor.recordings.own_replay import own_columns, own_states
+from ballscrew_monitor.recordings.own_replay import own_columns, own_states, TimedState
 from ballscrew_monitor.recordings.rows import RowCollector
 from ballscrew_msgs.msg import BallScrewState, OutOfZone
 from surrogate.files import InputError
@@ -86,9 +86,16 @@ def replay(
     what is whole of it is to be salvaged, for a damaged one.
 
     """
+    return _messages(replay_states(bag, values, at_once=at_once, on_done=on_done))
+
+
+def replay_states(
+    bag: Bag, values: Mapping[str, Any], *, at_once: bool = False, on_done: OnDone = ignore
+) -> Iterator[TimedState]:
+    """Yield what `replay` does before it is made a message."""
     if is_as_recorded(bag, values):
-        return _own_states(bag)
-    axes = _axes(bag, values)
+        return own_states(bag)
+    axes = axes_for(bag, values)
     period = nanoseconds(values['tick_period'])
     entries = ordered_entries(bag, axes, period, on_done=on_done)
     return _states(entries, axes, at_once=at_once)
@@ -106,7 +113,7 @@ def replay_columns(
     """
     if is_as_recorded(bag, values):
         return own_columns(bag)
-    axes = _axes(bag, values)
+    axes = axes_for(bag, values)
     period = nanoseconds(values['tick_period'])
     entries = ordered_entries(bag, axes, period, on_done=on_done)
     return _columns(entries, axes, at_once=at_once)
@@ -120,7 +127,13 @@ def replay_outcomes(
     return [each for each in found if isinstance(each, AxisOutcome)]
 
 
-def _axes(bag: Bag, values: Mapping[str, Any]) -> list[Axis]:
+def axes_for(bag: Bag, values: Mapping[str, Any]) -> list[Axis]:
+    """
+    Return the axes that `values` configure, ready for `bag`.
+
+    Raises InputError for bad parameters and for a bag without the topics that they name.
+
+    """
     values = with_types(values, bag.types)
     bag.require(input_topics(values))
     return [build_axis(name, values) for name in values['axes']]
@@ -137,9 +150,10 @@ def _columns(
     yield from (collector.outcome() for collector in collectors)
 
 
-def _states(batches: Iterator[Entries], axes: list[Axis], *, at_once: bool) -> Iterator[Judged]:
+def _states(
+    batches: Iterator[Entries], axes: list[Axis], *, at_once: bool
+) -> Iterator[TimedState]:
     judges = [AxisJudge(axis, at_once=at_once) for axis in axes]
-    writers = [StateWriter(axis.name, TIERS[axis.surface.tier]) for axis in axes]
     for entries in batches:
         found = [
             (int(places[at]), number, state)
@@ -147,16 +161,18 @@ def _states(batches: Iterator[Entries], axes: list[Axis], *, at_once: bool) -> I
             for places in [places_of_axis(entries, number)]
             for at, state in judge.states(entries.take(places))
         ]
-        for _, number, state in sorted(found, key=operator.itemgetter(0, 1)):
-            yield _judged(writers[number], axes[number].name, state, state.event)
+        for place, number, state in sorted(found, key=operator.itemgetter(0, 1)):
+            log_time = int(entries.log_time[place])
+            yield TimedState(log_time, axes[number], state, state.event)
 
 
-def _own_states(bag: Bag) -> Iterator[Judged]:
+def _messages(states: Iterator[TimedState]) -> Iterator[Judged]:
     writers: dict[str, StateWriter] = {}
-    for axis, state, event in own_states(bag):
-        writer = writers.setdefault(axis.name, StateWriter(axis.name, TIERS[axis.surface.tier]))
-        writer.tier = TIERS[axis.surface.tier]  # the node may have taken another one
-        yield _judged(writer, axis.name, state, event)
+    for one in states:
+        name, tier = one.axis.name, TIERS[one.axis.surface.tier]
+        writer = writers.setdefault(name, StateWriter(name, tier))
+        writer.tier = tier  # the node may have taken another one
+        yield _judged(writer, name, one.state, one.event)
 
 
 def _judged(writer: StateWriter, axis: str, state: State, event: Event | None) -> Judged:

@@ -1,0 +1,125 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+What a surface says of speed and opposing load around a run, on a grid at one oil temperature.
+
+Speeds are logarithmic and begin where judging does: contact sets in at a hundredth of the highest
+speed.
+
+"""
+
+import dataclasses
+import math
+
+from ballscrew_monitor.core.conversions import kelvin
+import numpy as np
+from numpy.typing import NDArray
+from surrogate.surface import FIELDS, ManyLookup, Surface, SurfacePoint, Validity
+from surrogate.units import RPM
+
+Array = NDArray[np.float64]
+
+SPEEDS, LOADS = 120, 181  # points of the grid
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Field:
+    """
+    Surface on a grid: speed [rev/min] and opposing load [N]; NaN where it says nothing.
+
+    Limit of RCS in speed over that here, with thin and thick boundary films [-].
+
+    """
+
+    speed: Array
+    load: Array
+    efficiency: Array
+    rcs: Array
+    film_ratio: Array
+    band: tuple[float, float]
+
+    def is_optimal(self, *, rcs: float, efficiency: float, light_load: float) -> NDArray[np.bool_]:
+        """Tell where limits [-] are kept; below a light load [N] only RCS counts."""
+        light = np.abs(self.load)[:, None] < light_load
+        return (self.rcs < rcs) & (light | (self.efficiency >= efficiency))
+
+    def judged_efficiency(self, light_load: float) -> Array:
+        """Return the efficiency [-] without its valley about no load; a light load [N]."""
+        return np.where(np.abs(self.load)[:, None] < 0.2 * light_load, math.nan, self.efficiency)
+
+    def middles(self) -> 'Field':
+        """Return the numbers amid each four points of the grid."""
+        return Field(
+            speed=np.sqrt(self.speed[1:] * self.speed[:-1]),
+            load=0.5 * (self.load[1:] + self.load[:-1]),
+            efficiency=_amid(self.efficiency),
+            rcs=_amid(self.rcs),
+            film_ratio=_amid(self.film_ratio),
+            band=self.band,
+        )
+
+
+def _amid(values: Array) -> Array:
+    return 0.25 * (values[1:, 1:] + values[1:, :-1] + values[:-1, 1:] + values[:-1, :-1])
+
+
+def sample(
+    surface: Surface,
+    temperature: float,
+    *,
+    speeds: tuple[float, float],
+    loads: tuple[float, float],
+) -> Field:
+    """Return a surface at a temperature [degC] between speeds [rad/s] and opposing loads [N]."""
+    speed, load = np.geomspace(*speeds, SPEEDS), np.linspace(*loads, LOADS)
+    points = _points(surface, *np.meshgrid(speed, load), kelvin(temperature))
+    columns = {
+        name: np.array([getattr(point, name) if point else math.nan for point in points])
+        for name in ('efficiency', 'rcs', 'film_ratio')
+    }
+    shaped = {name: values.reshape(LOADS, SPEEDS) for name, values in columns.items()}
+    return Field(speed=speed / RPM, load=load, band=surface.limit_band, **shaped)
+
+
+def _points(
+    surface: Surface, speed: Array, load: Array, temperature: float
+) -> list[SurfacePoint | None]:
+    """Return what the surface says of each point of a grid, None where it has no number."""
+    speed, load = speed.ravel(), load.ravel()
+    found = ManyLookup(surface)(speed, load, np.full(speed.size, temperature))
+    values = np.stack([found.values[name] for name in FIELDS], axis=-1).tolist()
+    made = [
+        SurfacePoint(validity=Validity.VALID, opposing_load=f, lead=surface.lead, values=row)
+        if validity == Validity.VALID
+        else None
+        for f, row, validity in zip(load.tolist(), values, found.validity.tolist(), strict=True)
+    ]
+    for at in np.flatnonzero(found.doubtful).tolist():
+        point = surface.lookup(float(speed[at]), float(load[at]), temperature)
+        made[at] = point if point.validity is Validity.VALID else None
+    return made
+
+
+def judged_speeds(surface: Surface, standstill: float) -> tuple[float, float]:
+    """Return the speeds that are judged [rad/s], or all of the surface where none is."""
+    slowest, fastest = surface.speed_range
+    judged = max(slowest, standstill)
+    return (judged if judged < fastest else slowest), fastest
+
+
+def loads_around(
+    surface: Surface, low: float, high: float, *, light_load: float
+) -> tuple[float, float]:
+    """Return opposing loads about those of a run [N], NaN without any, and the light load [N]."""
+    reach = 1.5 * light_load
+    low, high = min(low, -reach), max(high, reach)
+    if math.isnan(low + high):
+        low, high = -reach, reach
+    margin = 0.06 * (high - low)
+    return max(low - margin, surface.load_range[0]), min(high + margin, surface.load_range[1])
+
+
+def map_temperatures(low: float, mean: float, high: float) -> tuple[float, list[float]]:
+    """Return the temperature of a map, and others whose border is to be drawn [degC]."""
+    middle = round(mean)
+    return float(middle), [degrees for degrees in (low, high) if abs(degrees - middle) > 2]

@@ -1,0 +1,94 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""One axis of a recording, with all that a report says of it."""
+
+from collections.abc import Callable, Iterable, Mapping
+import dataclasses
+import math
+from typing import Any
+
+from ballscrew_monitor.core.conversions import Scaling, SECOND
+from ballscrew_monitor.core.inputs import Source
+from ballscrew_monitor.core.state import MonitorSettings
+from ballscrew_monitor.recordings.columns import AxisOutcome, JudgedColumns
+from ballscrew_monitor.recordings.summary import EventRecord
+from ballscrew_monitor.report.survey import Survey
+from surrogate.surface import Surface
+
+Blocks = Callable[[], Iterable[JudgedColumns]]
+"""Gives the blocks of rows of an axis in order, as often as it is called."""
+RCS = 'RCS'
+FIRST_DATE = 978_307_200.0
+"""Stamps before this [s since 1970] are no calendar: logs without one begin in the year 2000."""
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class InputSetting:
+    """
+    How an input was read: topic, field, unit, and the line to SI of every unit.
+
+    A speed `from_position` is worked out; its unit is that of the speed.
+
+    """
+
+    topic: str
+    field: str
+    unit: str
+    scalings: Mapping[str, Scaling]
+    from_position: bool = False
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class AxisCase:
+    """
+    An axis that has rows; `inputs` holds those that have a topic.
+
+    `load_from` is the input that its load is worked out from, empty where the load is measured;
+    `assumed` says by name what else is not known, each with value and reason.
+
+    """
+
+    axis: str
+    surface: Surface
+    settings: MonitorSettings
+    inputs: Mapping[Source, InputSetting]
+    outcome: AxisOutcome
+    survey: Survey
+    blocks: Blocks
+    load_from: str = ''
+    assumed: Mapping[str, Mapping[str, Any]] = dataclasses.field(default_factory=dict)
+
+    def since_first(self, stamp: int) -> float:
+        """Return a stamp [ns] as time on the time line of the page [s]."""
+        return (stamp + self.survey.shift - self.survey.first) / SECOND
+
+    @property
+    def begins(self) -> float:
+        """Return the date of its first row [s] since 1970, NaN where the log has no calendar."""
+        begins = self.survey.first / SECOND
+        return begins if begins >= FIRST_DATE else math.nan
+
+    @property
+    def is_silent(self) -> bool:
+        """Tell whether nothing was judged, or nothing of what moved."""
+        summary = self.outcome.summary()
+        return summary is None or summary.says_nothing
+
+    @property
+    def worst_first(self) -> list[EventRecord]:
+        """Return the events, the worst first."""
+        return sorted(self.outcome.events, key=badness, reverse=True)
+
+
+def badness(event: EventRecord) -> tuple[float, float]:
+    """
+    Return how bad an event is: depth [-], then duration [s].
+
+    The depth is the RCS itself, or what of the efficiency that is asked for was missing.
+
+    """
+    if event.quantity == RCS:
+        depth = event.worst_value
+    else:
+        depth = (event.limit - event.worst_value) / event.limit
+    return (depth if math.isfinite(depth) else 0.0), event.duration

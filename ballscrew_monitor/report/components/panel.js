@@ -1,0 +1,103 @@
+// Copyright 2026 ballscrew_monitor contributors
+// SPDX-License-Identifier: Apache-2.0
+// How a panel over time looks: scales, axes, lines, limits, and what is shaded behind them.
+
+'use strict';
+
+const Panel = (() => {
+  function scale(panel) {
+    const range = (plot, low, high) => reach(panel, low, high);
+    return panel.floor ? { distr: 3, range } : { range };
+  }
+
+  /** Return the range of a panel: its data with a margin, and what it must show. */
+  function reach(panel, low, high) {
+    const seen = [low, high, ...panel.show].filter((value) => Number.isFinite(value));
+    if (!seen.length) {
+      return panel.floor ? [panel.floor, 10] : [0, 1];
+    }
+    let [least, most] = [Math.min(...seen), Math.max(...seen)];
+    if (panel.floor) {
+      return [Math.max(panel.floor, least) / 1.3, Math.max(most, 2 * panel.floor) * 1.3];
+    }
+    const margin = 0.06 * (most - least) || 0.05 * Math.abs(most) || 1;
+    return [least - margin, panel.most === null ? most + margin : Math.min(most + margin, panel.most)];
+  }
+
+  function series(one) {
+    return {
+      label: one.label,
+      stroke: () => Format.colour(one.colour),
+      width: 1,
+      dash: one.dashed ? [5, 3] : undefined,
+      points: { show: false },
+    };
+  }
+
+  function timeAxis() {
+    return {
+      ...inked(),
+      size: 30,
+      values: (plot, at) => at.map((value) => Format.time(value, (at[1] ?? 1) - (at[0] ?? 0))),
+    };
+  }
+
+  function valueAxis(panel) {
+    const values = (plot, splits) => splits.map((value) => (value === null ? '' : Format.number(value, 6)));
+    const axis = { ...inked(), size: 64, space: 24, values };
+    if (!panel.floor) {
+      return axis;
+    }
+    const filter = (plot, splits) => splits.map(decades);
+    return { ...axis, filter, grid: { ...axis.grid, filter }, ticks: { ...axis.ticks, filter } };
+  }
+
+  function inked() {
+    const grid = { stroke: () => Format.colour('grid'), width: 1 };
+    return { stroke: () => Format.colour('ink'), grid, ticks: grid, font: '11px system-ui, sans-serif' };
+  }
+
+  /** Shade the warnings, and the regimes by film ratio where a panel has bands. */
+  function shade(plot, panel, events) {
+    const { ctx, bbox } = plot;
+    for (const band of panel.bands) {
+      const [top, bottom] = [plot.valToPos(band.high, 'y', true), plot.valToPos(band.low, 'y', true)];
+      const [high, low] = [Math.max(top, bbox.top), Math.min(bottom, bbox.top + bbox.height)];
+      ctx.fillStyle = Format.colour(band.colour);
+      ctx.fillRect(bbox.left, high, bbox.width, Math.max(0, low - high));
+    }
+    ctx.fillStyle = Format.colour('warning-shade');
+    for (const event of events) {
+      const begin = Math.max(bbox.left, plot.valToPos(event.begin, 'x', true));
+      const end = Math.min(bbox.left + bbox.width, plot.valToPos(event.end, 'x', true));
+      if (end >= bbox.left && begin <= bbox.left + bbox.width) {
+        ctx.fillRect(begin, bbox.top, Math.max(1, end - begin), bbox.height);
+      }
+    }
+  }
+
+  function limits(plot, panel) {
+    const { ctx, bbox } = plot;
+    for (const limit of panel.limits) {
+      const at = plot.valToPos(limit.value, 'y', true);
+      ctx.strokeStyle = ctx.fillStyle = Format.colour(limit.colour);
+      ctx.lineWidth = 1.5 * uPlot.pxRatio;
+      ctx.beginPath();
+      ctx.moveTo(bbox.left, at);
+      ctx.lineTo(bbox.left + bbox.width, at);
+      ctx.stroke();
+      ctx.font = `${11 * uPlot.pxRatio}px system-ui, sans-serif`;
+      ctx.textAlign = 'right';
+      ctx.textBaseline = 'bottom';
+      ctx.fillText(limit.label, bbox.left + bbox.width - 4, at - 2);
+    }
+  }
+
+  /** Return a value that begins a decade or is a limit of the film ratio, null for others. */
+  function decades(value) {
+    const first = value / 10 ** Math.floor(Math.log10(value) + 1e-9);
+    return Math.abs(first - 1) < 1e-6 || Math.abs(value - 3) < 1e-6 ? value : null;
+  }
+
+  return { scale, series, timeAxis, valueAxis, shade, limits };
+})();

@@ -1,0 +1,59 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Numbers and texts as a page carries them: compact columns, and JSON that ends no element."""
+
+import base64
+import json
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+from surrogate.files import to_json
+
+LEVELS = 65534  # steps of a packed number between the lowest and the highest
+SELDOM = 4  # numbers to a change from which on runs are the shorter form
+
+
+def floats(values: ArrayLike) -> str:
+    """Return numbers as base64 of little-endian float32."""
+    return base64.b64encode(np.asarray(values, dtype='<f4').tobytes()).decode()
+
+
+def codes(values: ArrayLike) -> str:
+    """Return small whole numbers as base64 of bytes."""
+    return base64.b64encode(np.asarray(values, dtype=np.uint8).tobytes()).decode()
+
+
+def packed(values: ArrayLike) -> dict[str, Any]:
+    """
+    Return numbers in 65534 steps from the lowest to the highest, two bytes each, 0 for NaN.
+
+    Where they seldom change, `runs` tells how often each stands.
+
+    """
+    numbers = np.asarray(values, dtype=float)
+    known = np.isfinite(numbers)
+    low, high = _span(numbers[known])
+    steps = np.zeros(numbers.size, dtype='<u2')
+    scale = LEVELS / (high - low) if high > low else 0.0
+    steps[known] = 1 + np.rint((numbers[known] - low) * scale)
+    record = {'low': low, 'high': high}
+    starts = np.flatnonzero(np.diff(steps, prepend=steps[:1] + 1))
+    if SELDOM * starts.size > steps.size:
+        return record | {'data': _text(steps)}
+    runs = np.diff(starts, append=steps.size).astype('<u4')
+    return record | {'data': _text(steps[starts]), 'runs': _text(runs)}
+
+
+def _text(values: Any) -> str:
+    return base64.b64encode(values.tobytes()).decode()
+
+
+def _span(numbers: Any) -> tuple[float, float]:
+    return (float(numbers.min()), float(numbers.max())) if numbers.size else (0.0, 0.0)
+
+
+def script_json(record: Any) -> str:
+    """Return a record as JSON within a script element: no text in it can end the element."""
+    text = json.dumps(to_json(record), separators=(',', ':'), allow_nan=False)
+    return text.replace('<', '\\u003c').replace('>', '\\u003e').replace('&', '\\u0026')

@@ -1,0 +1,178 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What each input of an axis was like, and what contradicts its stated unit."""
+
+from collections.abc import Sequence
+import dataclasses
+import math
+
+from ballscrew_monitor.core.conversions import celsius
+from ballscrew_monitor.core.doctor import Heard, InputFacts, known_range, unit_doubts
+from ballscrew_monitor.core.estimate import PointSource
+from ballscrew_monitor.core.health import Health
+from ballscrew_monitor.core.inputs import Source, Why
+from ballscrew_monitor.core.links import Link
+from ballscrew_monitor.report.case import AxisCase, InputSetting
+from ballscrew_monitor.report.survey import Span
+from surrogate.units import RPM, TURN
+
+MEASURED = 'measured'
+FASTEST_FEED = 2.0  # [m/s] hardly any ball screw feeds faster
+SHOWN = (Source.SPEED, Source.LOAD, Source.TEMPERATURE, Source.TORQUE)
+NAMES = {
+    Source.SPEED: 'Speed',
+    Source.LOAD: 'Axial load',
+    Source.TEMPERATURE: 'Oil temperature',
+    Source.TORQUE: 'Motor torque',
+}
+REFUSALS = {
+    Why.OTHER_JOINTS: 'of other joints',
+    Why.NOT_A_NUMBER: 'not a number',
+    Why.FUTURE: 'stamped in the future',
+    Why.OTHER_CLOCK: 'stamped by another clock',
+    Why.TOO_SHORT: 'too short an array',
+    Why.IMPLAUSIBLE: 'beyond what is plausible',
+}
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class InputSeen:
+    """
+    One input as it was recorded.
+
+    Lowest and highest number in its `unit`, NaN without any; `rate` [Hz]; `source` in a word,
+    and whether that is a measurement; what was refused, by why; `hints` say what looks wrong.
+
+    """
+
+    source: Source
+    origin: str
+    measured: bool
+    place: str = ''
+    unit: str = ''
+    low: float = math.nan
+    high: float = math.nan
+    rate: float = math.nan
+    received: int = 0
+    refused: str = ''
+    hints: tuple[str, ...] = ()
+
+
+def inputs_seen(case: AxisCase) -> list[InputSeen]:
+    """Return all inputs of an axis, also those that it does not have."""
+    return [_seen(case, source) for source in SHOWN]
+
+
+def _seen(case: AxisCase, source: Source) -> InputSeen:
+    setting, sources = case.inputs.get(source), case.survey.sources[source]
+    if setting is None:
+        return _without_topic(case, source, sources)
+    health = next(one for one in case.outcome.inputs if one.source is source)
+    origin = _origin(case, source) if health.received else 'never received'
+    heard = _heard(setting, case.survey.inputs[source], health)
+    span = case.survey.span
+    return InputSeen(
+        source=source,
+        origin=origin,
+        measured=origin == MEASURED,
+        place=f'{setting.topic}: {setting.field}',
+        unit=setting.unit,
+        low=heard.low,
+        high=heard.high,
+        rate=(health.received - 1) / span if health.received > 1 and span else math.nan,
+        received=health.received,
+        refused=_refused(case, source),
+        hints=tuple(_hints(case, source, setting, heard)),
+    )
+
+
+def _origin(case: AxisCase, source: Source) -> str:
+    """Return where the numbers of an input come from; what is in part assumed says so."""
+    if source is Source.LOAD and case.load_from:
+        return f'worked out from the motor {case.load_from}'
+    setting, unit = case.inputs[source], f'{source.name.lower()}.unit'
+    if setting.from_position:
+        return 'worked out from the position'
+    return f'{MEASURED}, unit assumed' if unit in case.assumed else MEASURED
+
+
+def _without_topic(case: AxisCase, source: Source, sources: frozenset[PointSource]) -> InputSeen:
+    """Return where the numbers of an input without a topic come from."""
+    if PointSource.DERIVED in sources:
+        span = case.survey.inputs[source]
+        origin, unit = 'worked out from the motor torque', 'N'
+        return InputSeen(
+            source=source, origin=origin, measured=False, unit=unit, low=span.low, high=span.high
+        )
+    if PointSource.DEFAULT in sources:
+        origin = f'assumed, {celsius(case.settings.default_temperature):.4g} °C'
+        return InputSeen(source=source, origin=origin, measured=False)
+    return InputSeen(source=source, origin='not recorded', measured=False)
+
+
+def _heard(setting: InputSetting, span: Span, health: Health) -> Heard:
+    """Return the span of an input [SI] in its unit."""
+    scaling = setting.scalings[setting.unit]
+    ends = [(value - scaling.shift) / scaling.factor for value in (span.low, span.high)]
+    return Heard(health=health, low=min(ends), high=max(ends))
+
+
+def _refused(case: AxisCase, source: Source) -> str:
+    refused = case.outcome.refused.get(source, {})
+    return ', '.join(f'{count} {REFUSALS[why]}' for why, count in refused.items() if count)
+
+
+def _hints(case: AxisCase, source: Source, setting: InputSetting, heard: Heard) -> Sequence[str]:
+    facts = InputFacts(
+        axis=case.axis,
+        source=source,
+        link=Link(topic=setting.topic, type_name=''),
+        timeout=case.settings.timeouts[source] * 1e-9,
+        unit=setting.unit,
+        scalings=setting.scalings,
+        known=known_range(case.surface, source, setting.unit),
+    )
+    hints = unit_doubts(facts, heard)
+    if case.outcome.refused.get(source, {}).get(Why.IMPLAUSIBLE):
+        hints.append(
+            f'{facts.parameter}: samples beyond what is plausible were refused: '
+            f'check {facts.parameter}.unit and scale'
+        )
+    if source is Source.SPEED:
+        hints += _of_speed(case, setting, heard, facts.parameter)
+    elif source is not Source.TEMPERATURE and heard.low == heard.high:
+        hints.append(f'{facts.parameter}: it never changes, is it connected?')
+    return hints
+
+
+def _of_speed(
+    case: AxisCase, setting: InputSetting, heard: Heard, parameter: str
+) -> Sequence[str]:
+    """Return that the axis never moves or moves too fast to be true."""
+    if math.isnan(heard.high):
+        return []
+    fastest = _amount(case, setting.unit, setting, heard)
+    limit, feed = case.settings.limits.standstill_speed, case.surface.lead / TURN
+    if fastest * feed > FASTEST_FEED:
+        return [
+            f'{parameter}: it feeds with up to {fastest * feed:.3g} m/s, hardly any ball screw '
+            f'does: check {parameter}.unit and scale'
+        ]
+    if fastest >= limit:
+        return []
+    said = (
+        f'{parameter}: the axis never moves, up to {fastest / RPM:.2g} rev/min: '
+        f'numbers go from {heard.low:.3g} to {heard.high:.3g} {setting.unit}'
+    )
+    top = case.surface.speed_range[1]
+    others = [
+        unit for unit in setting.scalings if limit <= _amount(case, unit, setting, heard) <= top
+    ]
+    if not others:
+        return [said]
+    return [f'{said}, which may be {" or ".join(others)}: then set {parameter}.unit']
+
+
+def _amount(case: AxisCase, unit: str, setting: InputSetting, heard: Heard) -> float:
+    """Return the largest amount of the screw speed [rad/s] if the numbers were in a unit."""
+    return max(abs(setting.scalings[unit](value)) for value in (heard.low, heard.high))

@@ -1,0 +1,111 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""A judged bag: inputs of a recording with the states, events and diagnostics that they give."""
+
+from collections.abc import Iterator, Mapping
+import heapq
+import operator
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.core.state import Event
+from ballscrew_monitor.node.diagnostics import statuses, summaries
+from ballscrew_monitor.node.messages import (
+    fill_time,
+    out_of_zone_message,
+    StateWriter,
+    surface_info_message,
+    TIERS,
+)
+from ballscrew_monitor.node.parameters import NODE_NAME
+from ballscrew_monitor.node.topics import input_topics, output, with_types
+from ballscrew_monitor.recordings.bag import Bag
+from ballscrew_monitor.recordings.bag_writer import BagWriter
+from ballscrew_monitor.recordings.own_replay import TimedState
+from ballscrew_monitor.recordings.recorded_topics import DIAGNOSTICS, recorded_topics
+from ballscrew_monitor.recordings.replay import replay_states
+from diagnostic_msgs.msg import DiagnosticArray
+from rclpy.serialization import serialize_message
+
+NAME = 'judged'
+PERIOD = SECOND  # [ns] of log time after which diagnostics come again
+
+
+class Timed(NamedTuple):
+    """A serialised message, its topic and its log time [ns]."""
+
+    log_time: int
+    topic: str
+    data: bytes
+
+
+def write_judged_bag(bag: Bag, values: Mapping[str, Any], directory: Path) -> None:
+    """Write the judged bag of `bag` with the parameters `values`, on its log times."""
+    values = with_types(values, bag.types)
+    states = replay_states(bag, values, at_once=True)
+    with BagWriter(directory, NAME) as writer:
+        for topic in recorded_topics(values):
+            writer.add_topic(topic)
+        for one in heapq.merge(
+            _inputs(bag, values), Answers().messages(states), key=operator.itemgetter(0)
+        ):
+            writer.write(one.topic, one.data, log_time=one.log_time, publish_time=one.log_time)
+
+
+def _inputs(bag: Bag, values: Mapping[str, Any]) -> Iterator[Timed]:
+    for message in bag.messages(input_topics(values)):
+        yield Timed(message.log_time, message.topic, message.data)
+
+
+class Answers:
+    """Makes messages of states: the state, an event, and diagnostics as often as the node does."""
+
+    def __init__(self) -> None:
+        """Begin with no axis known."""
+        self._writers: dict[str, StateWriter] = {}
+        self._events: dict[str, Event] = {}
+        self._said: dict[str, tuple[Any, int]] = {}
+
+    def messages(self, states: Iterator[TimedState]) -> Iterator[Timed]:
+        """Yield what the node would say, each message at the log time of its cause."""
+        for one in states:
+            name = one.axis.name
+            if name not in self._writers:
+                self._writers[name] = StateWriter(name, TIERS[one.axis.surface.tier])
+                self._events[name] = Event()
+                yield self._surface_info(one)
+            data = serialize_message(self._writers[name].write(one.state))
+            yield Timed(one.log_time, output(name, 'state'), data)
+            if one.event is not None:
+                self._events[name] = one.event
+                event = serialize_message(
+                    out_of_zone_message(name, one.event, shelved=one.state.shelving.until != 0)
+                )
+                yield Timed(one.log_time, output(name, 'out_of_zone'), event)
+            yield from self._diagnostics(one)
+
+    def _surface_info(self, one: TimedState) -> Timed:
+        settings = one.axis.monitor.settings
+        message = surface_info_message(
+            one.axis.name,
+            one.axis.surface,
+            settings.limits,
+            stamp=one.log_time,
+            default_temperature=settings.default_temperature,
+        )
+        topic = output(one.axis.name, 'surface_info')
+        return Timed(one.log_time, topic, serialize_message(message))
+
+    def _diagnostics(self, one: TimedState) -> Iterator[Timed]:
+        """Yield diagnostics of an axis where they change or the last are old."""
+        axis, event = one.axis, self._events[one.axis.name]
+        summary, said = summaries(one.state, event, {}), self._said.get(axis.name)
+        if said is not None and said[0] == summary and one.log_time - said[1] < PERIOD:
+            return
+        self._said[axis.name] = summary, one.log_time
+        array = DiagnosticArray(
+            status=statuses(f'/{NODE_NAME}', axis.name, one.state, event, axis.surface, links={})
+        )
+        fill_time(array.header.stamp, one.log_time)
+        yield Timed(one.log_time, DIAGNOSTICS.name, serialize_message(array))

@@ -1,0 +1,170 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The report of one recording: a page that a person reads, forwards and prints."""
+
+from collections.abc import Mapping, Sequence
+import dataclasses
+import datetime
+import math
+from typing import Any
+
+from ballscrew_monitor.core.conversions import seconds
+from ballscrew_monitor.report import parts
+from ballscrew_monitor.report.case import AxisCase
+from ballscrew_monitor.report.course import course_record, FINE_BYTES
+from ballscrew_monitor.report.encoding import script_json
+from ballscrew_monitor.report.map_record import map_record
+from ballscrew_monitor.report.markup import element, joined, Markup, swatch
+from ballscrew_monitor.report.page import CHARTS, page
+from ballscrew_monitor.report.verdict import AxisVerdict, Standing, verdict_of
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class LogCase:
+    """
+    A recording that was judged.
+
+    `name` as its reader knows it, `parameters` where they came from; axes with rows, and the names
+    of those without any; assumptions by what they are about, with value and reason; notes on the
+    recording itself.
+
+    """
+
+    name: str
+    parameters: str
+    axes: Sequence[AxisCase]
+    empty: Sequence[str] = ()
+    assumptions: Mapping[str, Mapping[str, Any]] = dataclasses.field(default_factory=dict)
+    notes: Sequence[str] = ()
+
+    @property
+    def unjudged(self) -> list[str]:
+        """Return the axes on which nothing was judged."""
+        return [*self.empty, *(one.axis for one in self.axes if one.is_silent)]
+
+
+def report_page(log: LogCase) -> str:
+    """Return the page of a recording."""
+    # What lies around the worst warnings is shared by all axes, for the page is to stay small.
+    room = FINE_BYTES // max(1, len(log.axes))
+    maps = [map_record(case) for case in log.axes]
+    records = [
+        {'id': _id(number), 'map': chart, 'course': course_record(case, room)}
+        for number, (case, chart) in enumerate(zip(log.axes, maps, strict=True))
+    ]
+    body = element(
+        'main',
+        element('h1', f'Ball screw report: {log.name}'),
+        element('p', _when(log), class_='muted'),
+        *(parts.verdict_part(verdict) for verdict in verdicts_of(log)),
+        *parts.caution(log.axes),
+        *(element('p', f'Note: {note}', class_='hint') for note in log.notes),
+        element(
+            'noscript', element('p', 'The charts need JavaScript; all else is here without it.')
+        ),
+        *(
+            _axis_part(_id(number), case, chart, log)
+            for number, (case, chart) in enumerate(zip(log.axes, maps, strict=True))
+        ),
+    )
+    data = script_json({'axes': records})
+    return page(f'Ball screw report: {log.name}', body, scripts=CHARTS, data=data)
+
+
+def verdicts_of(log: LogCase) -> list[AxisVerdict]:
+    """Return the verdicts on all axes, also on those without rows."""
+    return [verdict_of(case) for case in log.axes] + [_no_rows(axis) for axis in log.empty]
+
+
+def _no_rows(axis: str) -> AxisVerdict:
+    return AxisVerdict(
+        standing=Standing.UNKNOWN,
+        word='Not known',
+        sentence=f'the recording holds no usable sample of axis {axis}.',
+        remedy='Check topics, fields and joints in the parameters.',
+    )
+
+
+def _id(number: int) -> str:
+    return f'axis-{number}'
+
+
+def _when(log: LogCase) -> str:
+    if not log.axes:
+        return 'No axis could be judged.'
+    first = min(case.survey.first for case in log.axes)
+    last = max(case.survey.last for case in log.axes)
+    if any(math.isnan(case.begins) for case in log.axes):
+        return f'Recorded over {(last - first) * 1e-9:.1f} s, without a date.'
+    return f'Recorded from {_date(first)} to {_date(last)} UTC.'
+
+
+def _date(stamp: int) -> str:
+    moment = datetime.datetime.fromtimestamp(seconds(stamp), tz=datetime.UTC)
+    return f'{moment:%Y-%m-%d %H:%M:%S}'
+
+
+def _axis_part(name: str, case: AxisCase, chart: Mapping[str, Any], log: LogCase) -> Markup:
+    summary = case.outcome.summary()
+    known = [] if summary is None else [parts.tiles(case, summary)]
+    return element(
+        'section',
+        element('h2', f'Axis {case.axis}'),
+        *known,
+        element('h3', f'Operating map at {chart["temperature"]:g} °C oil'),
+        element('div', class_='map'),
+        _map_legend(chart, case),
+        *([] if summary is None else [parts.shares(case, summary)]),
+        parts.events_part(case),
+        element('h3', 'Course over time'),
+        element(
+            'p',
+            'Drag over a chart to zoom in, double-click to see all. Warnings are shaded.',
+            class_='muted screen',
+        ),
+        element('div', class_='series'),
+        _bar_legend(),
+        parts.torque_part(case),
+        parts.inputs_part(case),
+        parts.gaps_part(case),
+        parts.assumptions_part(case, log.parameters),
+        id=name,
+    )
+
+
+def _map_legend(chart: Mapping[str, Any], case: AxisCase) -> Markup:
+    limits, degrees = case.settings.limits, f'{chart["temperature"]:g} °C'
+    entries = [
+        (swatch('zone'), f'optimal zone at {degrees}'),
+        (swatch('heat'), 'time spent, darker is longer'),
+        (swatch('path', 'line'), 'path'),
+        (swatch('rcs', 'line'), f'RCS {limits.rcs:g}: left of it metal pierces the oil film'),
+        (swatch('efficiency', 'line'), f'efficiency {100 * limits.efficiency:g} %'),
+        (swatch('hatch'), 'light load: efficiency is not judged'),
+        (swatch('film', 'line', '2 3'), 'film ratio Λ 1 and 3'),
+    ]
+    if chart['others']:
+        text = 'RCS limit with the coldest and the warmest oil'
+        entries.insert(4, (swatch('rcs', 'line', '6 4'), text))
+    if chart['banded']:
+        text = 'RCS limit with the thinnest and the thickest boundary film'
+        entries.insert(4, (swatch('rcs', 'line', '8 3 2 3'), text))
+    return _legend(entries)
+
+
+def _bar_legend() -> Markup:
+    return _legend(
+        [
+            (swatch('optimal'), 'optimal, no warning'),
+            (swatch('outside'), 'outside the zone, warning'),
+            (swatch('unjudged'), 'not judged, not known yet'),
+            (swatch('boundary'), 'boundary'),
+            (swatch('mixed'), 'mixed'),
+            (swatch('hydrodynamic'), 'hydrodynamic'),
+        ]
+    )
+
+
+def _legend(entries: Sequence[tuple[Markup, str]]) -> Markup:
+    items = (element('li', joined([sample, text])) for sample, text in entries)
+    return element('ul', *items, class_='legend')

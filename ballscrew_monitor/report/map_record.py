@@ -1,0 +1,209 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The operating map of an axis as a page carries it: zone, borders, time spent, path, warnings."""
+
+from collections.abc import Iterable
+import math
+from typing import Any
+
+from ballscrew_monitor.core.conversions import celsius, SECOND
+from ballscrew_monitor.core.inputs import Source
+from ballscrew_monitor.core.judgement import Limits, Zone
+from ballscrew_monitor.recordings.columns import JudgedColumns
+from ballscrew_monitor.recordings.operating_field import (
+    Field,
+    judged_speeds,
+    loads_around,
+    map_temperatures,
+    sample,
+)
+from ballscrew_monitor.report.case import AxisCase
+from ballscrew_monitor.report.encoding import codes, floats
+from ballscrew_monitor.report.survey import opposing_loads, Span
+from contourpy import contour_generator
+import numpy as np
+from numpy.typing import NDArray
+from surrogate.surface import FILM_RATIO_LIMITS
+from surrogate.units import RPM
+
+Array = NDArray[np.float64]
+
+COLUMNS, ROWS = 72, 48  # cells of the time spent
+PATH_POINTS = 6000
+NAMED_EFFICIENCIES = (0.3, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.97)
+TOP, BELOW_TOP, MIDDLE = 0.96, 0.88, 0.7  # heights of the names of lines, as parts of the map
+OUTSIDE, OPTIMAL, NO_NUMBER = 0, 1, 2  # codes of the cells of the zone
+
+
+def map_record(case: AxisCase) -> dict[str, Any]:
+    """Return the map of an axis at the mean temperature of its oil in motion."""
+    limits, surface, oil = case.settings.limits, case.surface, case.survey.oil
+    speeds = judged_speeds(surface, limits.standstill_speed)
+    opposing = case.survey.opposing
+    loads = loads_around(surface, opposing.low, opposing.high, light_load=limits.light_load)
+    mean, others = map_temperatures(*_celsius(oil, surface.reference_temperature))
+    field = sample(surface, mean, speeds=speeds, loads=loads)
+    lines = _lines(field, limits, mean)
+    for degrees in others:
+        border = sample(surface, degrees, speeds=speeds, loads=loads)
+        lines.append(_line(border, border.rcs, limits.rcs, 'rcs_other', _degrees(degrees)))
+    return {
+        'temperature': mean,
+        'others': bool(others),
+        'banded': math.isfinite(field.band[0]),
+        'speed': {'low': speeds[0] / RPM, 'high': speeds[1] / RPM},
+        'load': {'low': loads[0], 'high': loads[1]},
+        'light_load': limits.light_load,
+        'zone': _zone(field, limits),
+        'lines': lines,
+        **_visited(case, speeds, loads),
+    }
+
+
+def _celsius(oil: Span, reference: float) -> tuple[float, float, float]:
+    """Return coldest, mean and warmest oil [degC], that of the datasheet where none is known."""
+    if math.isnan(oil.mean):
+        return celsius(reference), celsius(reference), celsius(reference)
+    return celsius(oil.low), celsius(oil.mean), celsius(oil.high)
+
+
+def _degrees(temperature: float) -> str:
+    return f'{temperature:.0f} °C'
+
+
+def _zone(field: Field, limits: Limits) -> dict[str, Any]:
+    """Return the zone in the cells between the points of the field."""
+    middles = field.middles()
+    optimal = middles.is_optimal(
+        rcs=limits.rcs, efficiency=limits.efficiency, light_load=limits.light_load
+    )
+    cells = np.where(np.isnan(middles.rcs), NO_NUMBER, np.where(optimal, OPTIMAL, OUTSIDE))
+    return {'columns': cells.shape[1], 'rows': cells.shape[0], 'cells': codes(cells)}
+
+
+def _lines(field: Field, limits: Limits, mean: float) -> list[dict[str, Any]]:
+    shown = field.judged_efficiency(limits.light_load)
+    percent = f'{100 * limits.efficiency:g} %'
+    return [
+        *(
+            _line(field, shown, level, 'efficiency_other', f'{100 * level:g} %', MIDDLE)
+            for level in NAMED_EFFICIENCIES
+        ),
+        *(
+            _line(field, field.film_ratio, level, 'film', f'Λ {level:g}', TOP)
+            for level in FILM_RATIO_LIMITS
+        ),
+        *(
+            _line(field, field.rcs, limits.rcs, 'rcs_band', '', factor=factor)
+            for factor in field.band
+            if math.isfinite(factor)
+        ),
+        _line(field, shown, limits.efficiency, 'efficiency', percent, BELOW_TOP),
+        _line(field, field.rcs, limits.rcs, 'rcs', _degrees(mean)),
+    ]
+
+
+def _line(
+    field: Field,
+    values: Array,
+    level: float,
+    kind: str,
+    label: str,
+    height: float = BELOW_TOP,
+    *,
+    factor: float = 1.0,
+) -> dict[str, Any]:
+    """Return where values are at a level, as points with breaks; speeds times a factor."""
+    found: Any = contour_generator(factor * field.speed, field.load, values).lines(level)
+    gap = np.full((1, 2), np.nan)
+    parts: list[Array] = [part for line in found for part in (line, gap)]
+    points = np.concatenate(parts[:-1]) if parts else np.empty((0, 2))
+    return {'kind': kind, 'label': label, 'height': height, 'points': floats(points.ravel())}
+
+
+def _visited(
+    case: AxisCase, speeds: tuple[float, float], loads: tuple[float, float]
+) -> dict[str, Any]:
+    """Return time spent in each cell, path and places of the warnings."""
+    dwell = Dwell(speeds, loads, max_gap=case.settings.timeouts[Source.SPEED])
+    stride = max(1, case.survey.rows // PATH_POINTS)
+    path, places = [], {event.event_id: Place() for event in case.outcome.events}
+    for block in case.blocks():
+        speed = np.abs(block.speed)
+        moving = speed >= case.settings.limits.standstill_speed
+        load = np.where(moving, opposing_loads(block), np.nan)
+        dwell.add(block, speed, load)
+        path.append(np.stack([speed[::stride] / RPM, load[::stride]], axis=-1))
+        outside = moving & (block.zone == Zone.OUTSIDE)
+        for event in case.outcome.events:
+            chosen = outside & (block.stamp >= event.start) & (block.stamp <= event.end)
+            places[event.event_id].add(speed[chosen] / RPM, load[chosen])
+    return {
+        'dwell': dwell.record(),
+        'path': floats(np.concatenate(path).ravel()),
+        'events': list(_marks(case, places)),
+    }
+
+
+def _marks(case: AxisCase, places: dict[int, 'Place']) -> Iterable[dict[str, Any]]:
+    """Return where the worst events are on the map, the worst last, to be drawn on top."""
+    for event in reversed(case.worst_first[:20]):
+        spot = places[event.event_id].middle
+        if spot is not None:
+            begin, end = case.since_first(event.start), case.since_first(event.end)
+            margin = max(1.0, 0.2 * (end - begin))
+            yield {
+                'number': event.event_id,
+                'speed': spot[0],
+                'load': spot[1],
+                'begin': begin - margin,
+                'end': end + margin,
+            }
+
+
+class Place:
+    """Where most of the samples of an event are: their mean, the speed by its logarithm."""
+
+    def __init__(self) -> None:
+        """Begin without a sample."""
+        self._sums = np.zeros(3)
+
+    def add(self, speed: Array, load: Array) -> None:
+        """Take samples: speed [rev/min], load [N]."""
+        known = np.isfinite(load) & (speed > 0)
+        self._sums += np.log(speed[known]).sum(), load[known].sum(), known.sum()
+
+    @property
+    def middle(self) -> tuple[float, float] | None:
+        """Return speed [rev/min] and load [N], None without a sample."""
+        speed, load, count = self._sums.tolist()
+        return (math.exp(speed / count), load / count) if count else None
+
+
+class Dwell:
+    """Time spent in cells of speed, logarithmic, and opposing load."""
+
+    def __init__(
+        self, speeds: tuple[float, float], loads: tuple[float, float], *, max_gap: int
+    ) -> None:
+        """Begin at zero; speeds [rad/s], loads [N]; times above `max_gap` [ns] are not counted."""
+        self._edges = np.linspace(*loads, ROWS + 1), np.geomspace(*speeds, COLUMNS + 1)
+        self._max_gap = max_gap
+        self._times = np.zeros((ROWS, COLUMNS))
+
+    def add(self, block: JudgedColumns, speed: Array, load: Array) -> None:
+        """Add a block: amount of the speed [rad/s] and opposing load [N] of its rows."""
+        steps = np.where(block.time_to_next <= self._max_gap, block.time_to_next, 0)
+        known = np.isfinite(load) & (steps > 0)
+        self._times += np.histogram2d(
+            load[known], speed[known], bins=self._edges, weights=steps[known] / SECOND
+        )[0]
+
+    def record(self) -> dict[str, Any]:
+        """Return the cells as a page carries them [s]."""
+        return {
+            'columns': COLUMNS,
+            'rows': ROWS,
+            'longest': float(self._times.max()) or 1.0,
+            'cells': floats(self._times),
+        }

@@ -1,0 +1,124 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Judged rows as a Parquet file, and as blocks that can be read again while a report is made.
+
+The blocks wait in a directory of their own until all are there, so that a recording larger than
+memory becomes one file, and a report can go through them twice. Codes are stored by their names.
+
+"""
+
+from collections.abc import Iterator
+import enum
+from pathlib import Path
+import tempfile
+from typing import Any, Self
+
+from ballscrew_monitor.core.conversions import Direction, Nut
+from ballscrew_monitor.core.estimate import ContactState, PointSource, PointValidity
+from ballscrew_monitor.core.judgement import Level, Zone
+from ballscrew_monitor.recordings.columns import COLUMNS, JudgedColumns, Reason
+import numpy as np
+import polars as pl
+from surrogate.files import new_file
+from surrogate.surface import Regime
+
+CODED: dict[str, type[enum.IntEnum]] = {
+    'speed_source': PointSource,
+    'axial_load_source': PointSource,
+    'temperature_source': PointSource,
+    'motor_torque_source': PointSource,
+    'direction': Direction,
+    'validity': PointValidity,
+    'worst_nut': Nut,
+    'regime': Regime,
+    'contact_state': ContactState,
+    'zone': Zone,
+    'reason': Reason,
+    'level': Level,
+}
+"""Columns of codes, which count from 0 without a hole, and their classes."""
+
+
+def frame_of(block: JudgedColumns) -> pl.DataFrame:
+    """Return a block of rows as a frame; the axis is its first column."""
+    columns: dict[str, Any] = {'axis': [block.axis] * len(block)}
+    for name in COLUMNS:
+        values = getattr(block, name)
+        columns[name] = _named(values, CODED[name]) if name in CODED else values
+    return pl.DataFrame(columns, schema_overrides={'axis': pl.String})
+
+
+def block_of(frame: pl.DataFrame) -> JudgedColumns:
+    """Return a frame with rows of one axis, at least one, as a block."""
+    arrays = {
+        name: (frame[name].to_physical() if name in CODED else frame[name]).to_numpy()
+        for name in COLUMNS
+    }
+    return JudgedColumns(
+        axis=frame['axis'][0],
+        **{name: np.ascontiguousarray(arrays[name], dtype=kind) for name, kind in COLUMNS.items()},
+    )
+
+
+def _named(values: Any, kind: type[enum.IntEnum]) -> pl.Series:
+    names = np.array([member.name for member in kind])
+    return pl.Series(names[values], dtype=pl.Enum(names.tolist()))
+
+
+class RowStore:
+    """Keeps blocks of rows on disk, by axis; use it as a context manager."""
+
+    def __init__(self, directory: Path) -> None:
+        """Prepare to keep blocks in a directory of their own below `directory`."""
+        directory.mkdir(parents=True, exist_ok=True)
+        self._folder = tempfile.TemporaryDirectory(dir=directory, prefix='.rows-')
+        self._parts: dict[str, list[Path]] = {}
+        self._count = 0
+
+    def __enter__(self) -> Self:
+        """Return the store."""
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        """Drop what was kept."""
+        self._folder.cleanup()
+
+    def add(self, block: JudgedColumns) -> None:
+        """Keep a block."""
+        if len(block):
+            part = Path(self._folder.name) / f'{self._count:06d}.arrow'
+            frame_of(block).write_ipc(part)
+            self._parts.setdefault(block.axis, []).append(part)
+            self._count += 1
+
+    @property
+    def axes(self) -> list[str]:
+        """Return the axes that have rows."""
+        return list(self._parts)
+
+    def blocks(self, axis: str) -> Iterator[JudgedColumns]:
+        """Yield the blocks of an axis in order."""
+        for part in self._parts.get(axis, []):
+            yield block_of(pl.read_ipc(part))
+
+    def write(self, path: Path) -> None:
+        """Write all rows as Parquet, which appears only when it is complete."""
+        parts = [part for axis in self._parts.values() for part in axis]
+        with new_file(path) as partial:
+            if parts:
+                pl.scan_ipc(parts).sink_parquet(partial, compression='zstd')
+            else:
+                pl.DataFrame(schema=_schema()).write_parquet(partial)
+
+
+def _schema() -> dict[str, Any]:
+    schema: dict[str, Any] = {'axis': pl.String}
+    for name, kind in COLUMNS.items():
+        coded = CODED.get(name)
+        schema[name] = (
+            pl.Enum([member.name for member in coded])
+            if coded
+            else pl.Series(np.empty(0, dtype=kind)).dtype
+        )
+    return schema

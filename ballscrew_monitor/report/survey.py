@@ -1,0 +1,265 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+The first look at the judged rows of an axis: spans, sums, gaps, and what could not be judged.
+
+Each row is taken to last until the next one, unless that is longer than the timeout of the speed:
+then it is a gap. Rows come in blocks, so that a long recording need not fit into memory.
+
+"""
+
+from collections.abc import Iterable
+import dataclasses
+import heapq
+import math
+
+from ballscrew_monitor.core.conversions import Direction, SECOND
+from ballscrew_monitor.core.estimate import PointSource
+from ballscrew_monitor.core.inputs import Source
+from ballscrew_monitor.core.judgement import Zone
+from ballscrew_monitor.recordings.columns import Floats, JudgedColumns, Reason, Times
+import numpy as np
+
+MOST_GAPS = 1000  # of the longest that are kept
+STRAY = 1.5  # times the span of log times from which on stamps are no time line
+STRAY_MARGIN = 60 * SECOND  # [ns]
+COLUMN_OF = {
+    Source.SPEED: 'speed',
+    Source.LOAD: 'axial_load',
+    Source.TEMPERATURE: 'temperature',
+    Source.TORQUE: 'motor_torque',
+}
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Span:
+    """Lowest and highest value, and mean, NaN without any."""
+
+    low: float = math.nan
+    high: float = math.nan
+    mean: float = math.nan
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class TorqueFit:
+    """Torque measured less modelled in motion: samples, mean and root mean square [N m]."""
+
+    count: int
+    forward: float
+    backward: float
+    spread: float
+    measured: float
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Survey:
+    """
+    What an axis was like as a whole.
+
+    `first` and `last` [ns] on the time line, of the stamps or, `by_stamp` false, of the log, and
+    `shift` [ns] from stamps to it. Spans of measured inputs in SI; of load that opposes motion [N]
+    and temperature [K] in motion. `reasons` [s]; `gaps` as start and length [ns], longest first,
+    of `gap_count`, in all `gap_time` [s]. `energy` [J] by zone.
+
+    """
+
+    axis: str
+    rows: int
+    first: int
+    last: int
+    by_stamp: bool
+    shift: int
+    inputs: dict[Source, Span]
+    sources: dict[Source, frozenset[PointSource]]
+    opposing: Span
+    oil: Span
+    reasons: dict[Reason, float]
+    gaps: tuple[tuple[int, int], ...]
+    gap_count: int
+    gap_time: float
+    energy: dict[Zone, float]
+    torque: TorqueFit
+
+    @property
+    def span(self) -> float:
+        """Return the length of the time line [s]."""
+        return (self.last - self.first) / SECOND
+
+
+def opposing_loads(block: JudgedColumns) -> Floats:
+    """Return the loads that oppose the motion [N], NaN where its direction is not known."""
+    signs = np.full(3, np.nan)
+    signs[Direction.POSITIVE], signs[Direction.NEGATIVE] = -1.0, 1.0
+    return 0.0 + signs[block.direction] * block.axial_load
+
+
+class _Running:
+    """Lowest, highest and sum of the finite numbers so far."""
+
+    def __init__(self) -> None:
+        self.low, self.high, self.total, self.squares = math.inf, -math.inf, 0.0, 0.0
+        self.count = 0
+
+    def add(self, values: Floats) -> None:
+        known = values[np.isfinite(values)]
+        if known.size:
+            self.low, self.high = (
+                min(self.low, float(known.min())),
+                max(self.high, float(known.max())),
+            )
+            self.total += float(known.sum())
+            self.squares += float(known @ known)
+            self.count += known.size
+
+    @property
+    def mean(self) -> float:
+        return self.total / self.count if self.count else math.nan
+
+    @property
+    def rms(self) -> float:
+        return math.sqrt(self.squares / self.count) if self.count else math.nan
+
+    def span(self) -> Span:
+        if not self.count:
+            return Span()
+        return Span(low=self.low, high=self.high, mean=self.mean)
+
+
+class Surveyor:
+    """Takes the blocks of one axis in order."""
+
+    def __init__(self, axis: str, *, standstill: float, max_gap: int) -> None:
+        """Begin; the screw moves from a speed `standstill` [rad/s] on; `max_gap` [ns]."""
+        self._axis, self._standstill, self._max_gap = axis, standstill, max_gap
+        self._rows = 0
+        self._inputs = {source: _Running() for source in COLUMN_OF}
+        self._sources: dict[Source, set[int]] = {source: set() for source in COLUMN_OF}
+        self._opposing, self._oil = _Running(), _Running()
+        self._reasons = np.zeros(len(Reason))
+        self._energy = np.zeros(len(Zone))
+        self._gaps: list[tuple[int, int]] = []
+        self._gap_count, self._gap_time = 0, 0
+        self._residuals = {direction: _Running() for direction in Direction}
+        self._residual, self._measured = _Running(), _Running()
+        self._stamps = [math.inf, -math.inf]
+        self._logs = [math.inf, -math.inf]
+        self._before: tuple[int, int, float, int] | None = None
+        self._last_sample: int | None = None
+
+    def add(self, block: JudgedColumns) -> None:
+        """Take the next block of rows."""
+        if not len(block):
+            return
+        self._rows += len(block)
+        _widen(self._stamps, block.stamp)
+        _widen(self._logs, block.log_time)
+        moving = np.abs(block.speed) >= self._standstill
+        self._add_inputs(block)
+        self._opposing.add(opposing_loads(block)[moving])
+        self._oil.add(block.temperature[moving])
+        self._add_sums(block)
+        self._add_gaps(block.stamp[~block.tick])
+        self._add_torque(block, moving)
+
+    def result(self) -> Survey:
+        """Return what came of all blocks; there must have been a row."""
+        by_stamp = _length(self._stamps) <= STRAY * _length(self._logs) + STRAY_MARGIN
+        line = self._stamps if by_stamp else self._logs
+        return Survey(
+            axis=self._axis,
+            rows=self._rows,
+            first=int(line[0]),
+            last=int(line[1]),
+            by_stamp=by_stamp,
+            shift=0 if by_stamp else int(self._logs[1] - self._stamps[1]),
+            inputs={source: running.span() for source, running in self._inputs.items()},
+            sources={
+                source: frozenset(map(PointSource, codes))
+                for source, codes in self._sources.items()
+            },
+            opposing=self._opposing.span(),
+            oil=self._oil.span(),
+            reasons={
+                reason: float(time) for reason, time in zip(Reason, self._reasons) if time > 0
+            },
+            gaps=tuple(sorted(((at, length) for length, at in self._gaps), key=_by_length)),
+            gap_count=self._gap_count,
+            gap_time=self._gap_time / SECOND,
+            energy=dict(zip(Zone, self._energy.tolist())),
+            torque=self._torque_fit(),
+        )
+
+    def _add_inputs(self, block: JudgedColumns) -> None:
+        for source, name in COLUMN_OF.items():
+            origin = getattr(block, f'{name}_source')
+            self._sources[source].update(np.unique(origin).tolist())
+            known = (origin == PointSource.MEASURED) | (origin == PointSource.DERIVED)
+            self._inputs[source].add(getattr(block, name)[known])
+
+    def _add_sums(self, block: JudgedColumns) -> None:
+        """Add the time and the energy of each row up to the next one."""
+        power = np.nan_to_num(block.friction_torque * np.abs(block.speed))
+        stamps, reasons, zones = block.stamp, block.reason, block.zone
+        power[np.abs(block.speed) < self._standstill] = 0.0
+        if self._before is not None:
+            stamp, reason, watts, zone = self._before
+            stamps = np.insert(stamps, 0, stamp)
+            reasons, zones = np.insert(reasons, 0, reason), np.insert(zones, 0, zone)
+            power = np.insert(power, 0, watts)
+        self._before = int(stamps[-1]), int(reasons[-1]), float(power[-1]), int(zones[-1])
+        steps = np.diff(stamps)
+        steps = np.where((steps > 0) & (steps <= self._max_gap), steps, 0) / SECOND
+        np.add.at(self._reasons, reasons[:-1], steps)
+        np.add.at(self._energy, zones[:-1], steps * power[:-1])
+
+    def _add_gaps(self, samples: Times) -> None:
+        if not samples.size:
+            return
+        if self._last_sample is not None:
+            samples = np.insert(samples, 0, self._last_sample)
+        self._last_sample = int(samples[-1])
+        steps = np.diff(samples)
+        for at in np.flatnonzero(steps > self._max_gap).tolist():
+            self._gap_count += 1
+            self._gap_time += int(steps[at])
+            keep = heapq.heappush if len(self._gaps) < MOST_GAPS else heapq.heappushpop
+            keep(self._gaps, (int(steps[at]), int(samples[at])))
+
+    def _add_torque(self, block: JudgedColumns, moving: np.ndarray) -> None:
+        residual = block.torque_residual
+        known = moving & np.isfinite(residual)
+        self._residual.add(residual[known])
+        self._measured.add(block.motor_torque[known])
+        for direction, running in self._residuals.items():
+            running.add(residual[known & (block.direction == direction)])
+
+    def _torque_fit(self) -> TorqueFit:
+        return TorqueFit(
+            count=self._residual.count,
+            forward=self._residuals[Direction.POSITIVE].mean,
+            backward=self._residuals[Direction.NEGATIVE].mean,
+            spread=self._residual.rms,
+            measured=self._measured.rms,
+        )
+
+
+def survey(
+    axis: str, blocks: Iterable[JudgedColumns], *, standstill: float, max_gap: int
+) -> Survey:
+    """Return the survey of blocks; moving from `standstill` [rad/s] on, gaps above [ns]."""
+    surveyor = Surveyor(axis, standstill=standstill, max_gap=max_gap)
+    for block in blocks:
+        surveyor.add(block)
+    return surveyor.result()
+
+
+def _widen(line: list[float], times: Times) -> None:
+    line[0], line[1] = min(line[0], int(times.min())), max(line[1], int(times.max()))
+
+
+def _length(line: list[float]) -> float:
+    return line[1] - line[0]
+
+
+def _by_length(gap: tuple[int, int]) -> tuple[int, int]:
+    return -gap[1], gap[0]

@@ -1,0 +1,180 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The verdict on an axis in one sentence: how long outside the zone, why, and what to do."""
+
+import dataclasses
+import enum
+import math
+
+from ballscrew_monitor.core.inputs import Source
+from ballscrew_monitor.recordings.columns import Reason
+from ballscrew_monitor.recordings.summary import EventRecord, Summary
+from ballscrew_monitor.report.case import AxisCase, RCS
+from ballscrew_monitor.report.words import counted, duration, list_of, percent, share
+
+UNKNOWN_PART = 0.5  # of the motion that is not judged, from which on there is no verdict
+TOLD_PART = 0.01  # of the motion that is not judged, from which on the verdict says so
+REMEDIES = {
+    Reason.NO_DIRECTION: 'record a motion of the axis',
+    Reason.SPEED_BELOW_RANGE: 'build a surface that begins at a slower speed, '
+    'or check the unit of the speed',
+    Reason.SPEED_ABOVE_RANGE: 'build a surface for higher speeds, or check the unit of the speed',
+    Reason.LOAD_OUT_OF_RANGE: 'build a surface for higher loads, or check the unit of the load',
+    Reason.TEMPERATURE_OUT_OF_RANGE: 'build a surface for these oil temperatures, '
+    'or check their unit',
+    Reason.MASKED: 'build the surface anew, its model did not converge there',
+    Reason.NO_NUMBER: 'build the surface anew, it holds no number there',
+    Reason.NO_SPEED: 'record the speed without interruption',
+    Reason.NO_LOAD: 'record the axial load, or a torque that it can be worked out from',
+    Reason.NO_TEMPERATURE: 'record the oil temperature, or state a default one',
+    Reason.NO_INPUTS: 'record speed, load and oil temperature without interruption',
+}
+
+
+class Standing(enum.Enum):
+    """What a verdict comes to."""
+
+    GOOD = 'good'
+    BAD = 'bad'
+    UNKNOWN = 'unknown'
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class AxisVerdict:
+    """The standing, in a word and in the rest of a sentence; why, and what to do."""
+
+    standing: Standing
+    word: str
+    sentence: str
+    why: str = ''
+    remedy: str = ''
+
+
+def verdict_of(case: AxisCase) -> AxisVerdict:
+    """Return the verdict on an axis that has rows."""
+    summary = case.outcome.summary()
+    if summary is None or not summary.running_time:
+        return _unmoved(case)
+    unjudged = summary.unjudged_time / summary.running_time
+    if unjudged > UNKNOWN_PART and not summary.events:
+        return _unjudged(case, summary, unjudged)
+    more = _unjudged_part(case, summary) if unjudged > TOLD_PART else ''
+    if not summary.outside_time:
+        return AxisVerdict(
+            standing=Standing.GOOD,
+            word='Good',
+            sentence=f'axis {case.axis} stayed in its optimal zone for all '
+            f'{duration(summary.running_time - summary.unjudged_time)} of motion '
+            f'that could be judged{more}.',
+        )
+    return _outside(case, summary, more)
+
+
+def _unmoved(case: AxisCase) -> AxisVerdict:
+    """Return that nothing can be said of an axis for which no motion is known."""
+    reason = _main_reason(case)
+    known = math.isfinite(case.survey.inputs[Source.SPEED].high)
+    if known and reason in (None, Reason.STANDSTILL, Reason.NO_DIRECTION):
+        limit = case.settings.limits.standstill_speed
+        return AxisVerdict(
+            standing=Standing.UNKNOWN,
+            word='Not known',
+            sentence=f'axis {case.axis} never moved: its speed stayed below {limit:g} rad/s, '
+            'and at standstill nothing is judged.',
+            remedy='Check the unit of the speed if the machine did move.',
+        )
+    why = reason.text if reason else 'no motion was recorded'
+    return AxisVerdict(
+        standing=Standing.UNKNOWN,
+        word='Not known',
+        sentence=f'nothing could be judged on axis {case.axis}: {why}.',
+        remedy=_remedy(reason),
+    )
+
+
+def _unjudged(case: AxisCase, summary: Summary, part: float) -> AxisVerdict:
+    reason = _main_reason(case)
+    why = reason.text if reason else 'the reason is not known'
+    return AxisVerdict(
+        standing=Standing.UNKNOWN,
+        word='Not known',
+        sentence=f'axis {case.axis} could not be judged for {duration(summary.unjudged_time)} '
+        f'({percent(part)}) of its motion: {why}.',
+        remedy=_remedy(reason),
+    )
+
+
+def _outside(case: AxisCase, summary: Summary, more: str) -> AxisVerdict:
+    part = share(summary.outside_time, summary.running_time)
+    time = f'{duration(summary.outside_time)} ({part} of its motion)'
+    if not summary.events:
+        return AxisVerdict(
+            standing=Standing.GOOD,
+            word='Good',
+            sentence=f'axis {case.axis} left its optimal zone for {time}, each time too briefly '
+            f'for a warning{more}.',
+        )
+    return AxisVerdict(
+        standing=Standing.BAD,
+        word='Outside',
+        sentence=f'axis {case.axis} ran outside its optimal zone for {time}, '
+        f'with {counted(len(summary.events), "warning")}{more}.',
+        why=_why(summary.events),
+        remedy=_advice(case),
+    )
+
+
+def _why(events: tuple[EventRecord, ...]) -> str:
+    """Return what was wrong, in words and with its worst value."""
+    metal = [event for event in events if event.quantity == RCS]
+    loss = [event for event in events if event.quantity == 'efficiency']
+    parts = []
+    if metal:
+        worst = max(event.worst_value for event in metal)
+        parts.append(
+            f'the oil film was too thin: up to {percent(worst)} of the load was carried where '
+            f'metal pierces it, the limit is {percent(metal[0].limit)} '
+            f'({counted(len(metal), "warning")})'
+        )
+    if loss:
+        worst = min(event.worst_value for event in loss)
+        parts.append(
+            f'friction took too much: the efficiency fell to {percent(worst)}, '
+            f'the limit is {percent(loss[0].limit)} ({counted(len(loss), "warning")})'
+        )
+    return f'{list_of(parts).capitalize()}.' if parts else ''
+
+
+def _advice(case: AxisCase) -> str:
+    """Return the advice on the worst event of each cause for which there is one."""
+    found: dict[str, str] = {}
+    for event in case.worst_first:
+        if event.advice and event.quantity not in found:
+            found[event.quantity] = f'as in warning {event.event_id}, {event.advice}'
+    if not found:
+        return (
+            'No speed or load within the surface would have helped; look at oil and temperature.'
+        )
+    return f'{list_of(list(found.values()))}.'
+
+
+def _unjudged_part(case: AxisCase, summary: Summary) -> str:
+    reason = _main_reason(case)
+    why = f', {reason.text}' if reason else ''
+    part = share(summary.unjudged_time, summary.running_time)
+    return f'; {duration(summary.unjudged_time)} ({part}) could not be judged{why}'
+
+
+def _main_reason(case: AxisCase) -> Reason | None:
+    """Return for what most time could not be judged; standstill only where there is no other."""
+    reasons = {
+        reason: time for reason, time in case.survey.reasons.items() if reason is not Reason.JUDGED
+    }
+    moving = {reason: time for reason, time in reasons.items() if reason is not Reason.STANDSTILL}
+    chosen = moving or reasons
+    return max(chosen, key=lambda reason: chosen[reason]) if chosen else None
+
+
+def _remedy(reason: Reason | None) -> str:
+    remedy = REMEDIES.get(reason) if reason else None
+    return f'{remedy[0].upper()}{remedy[1:]}.' if remedy else ''

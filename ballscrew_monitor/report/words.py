@@ -1,0 +1,53 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Numbers as people read them: times, shares, lists."""
+
+from collections.abc import Sequence
+import math
+
+NONE = '–'
+
+
+def number(value: float, digits: int = 3) -> str:
+    """Return a number with some digits that count, a dash for none."""
+    if not math.isfinite(value):
+        return NONE
+    text = f'{value:.{digits}g}'
+    if 'e' in text and 1e-4 <= abs(value) < 1e6:
+        return f'{float(text):.0f}' if abs(value) >= 1.0 else f'{float(text):f}'.rstrip('0')
+    return text
+
+
+def duration(seconds: float) -> str:
+    """Return a time [s] in the unit that a person would use."""
+    if not math.isfinite(seconds):
+        return NONE
+    if seconds < 120.0:
+        return f'{number(seconds)} s'
+    return f'{number(seconds / 60.0)} min' if seconds < 7200.0 else f'{number(seconds / 3600.0)} h'
+
+
+def percent(part: float) -> str:
+    """Return a part of one as percent, never 0 or 100 for what is only near."""
+    if not math.isfinite(part):
+        return NONE
+    if 0.0 < part < 0.001:
+        return 'less than 0.1 %'
+    if 0.99 < part < 1.0:
+        return f'{math.floor(1000.0 * part) / 10.0:.1f} %'
+    return f'{100.0 * part:.2g} %' if part < 0.995 else f'{100.0 * part:.0f} %'
+
+
+def share(part: float, whole: float) -> str:
+    """Return a part of a whole as percent, a dash where there is no whole."""
+    return percent(part / whole) if whole > 0.0 else NONE
+
+
+def counted(count: int, name: str) -> str:
+    """Return a count with the name of what is counted: 1 warning, 2 warnings."""
+    return f'{count} {name}{"" if count == 1 else "s"}'
+
+
+def list_of(parts: Sequence[str]) -> str:
+    """Return phrases as one: a, b; and c."""
+    return parts[0] if len(parts) == 1 else f'{"; ".join(parts[:-1])}; and {parts[-1]}'

@@ -1,0 +1,165 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Judged columns as a recording would give them, without a recording."""
+
+import dataclasses
+import types
+
+from ballscrew_monitor.core.conversions import Direction, SECOND
+from ballscrew_monitor.core.estimate import PointSource, PointValidity
+from ballscrew_monitor.core.health import Health, InputState
+from ballscrew_monitor.core.inputs import Source, StampSource
+from ballscrew_monitor.core.judgement import Level, Zone
+from ballscrew_monitor.core.tally import Totals
+from ballscrew_monitor.node.axis import build_axis
+from ballscrew_monitor.node.parameters import defaults
+from ballscrew_monitor.recordings.columns import AxisOutcome, COLUMNS, JudgedColumns, Reason
+from ballscrew_monitor.recordings.summary import EventRecord
+from ballscrew_monitor.report.log_report import axis_case
+import numpy as np
+import pytest
+from surrogate.surface import Regime
+
+BEGIN = 1_767_600_000 * SECOND
+"""First stamp of what is made here [ns]."""
+
+
+def make_columns(begin=0, count=100, *, rate=100.0, axis='x', **changes):
+    """Return `count` rows from the number `begin` on, in motion and optimal."""
+    numbers = np.arange(begin, begin + count)
+    stamp = BEGIN + np.rint(numbers * (SECOND / rate)).astype(np.int64)
+    columns = {name: np.zeros(count, dtype=kind) for name, kind in COLUMNS.items()}
+    measured = {
+        f'{name}_source': PointSource.MEASURED for name in ('speed', 'axial_load', 'temperature')
+    }
+    columns |= {
+        'stamp': stamp,
+        'log_time': stamp + 1000,
+        'speed': 100.0 + 10.0 * np.sin(0.01 * numbers),
+        'axial_load': -1000.0 + 50.0 * np.cos(0.02 * numbers),
+        'temperature': np.full(count, 313.15),
+        'motor_torque': np.full(count, np.nan),
+        'efficiency': np.full(count, 0.9),
+        'rcs': np.full(count, 1e-3),
+        'film_ratio': np.full(count, 2.0),
+        'friction_torque': np.full(count, 0.1),
+        'machine_torque': np.full(count, 1.5),
+    }
+    codes = measured | {
+        'direction': Direction.POSITIVE,
+        'validity': PointValidity.VALID,
+        'regime': Regime.MIXED,
+        'zone': Zone.OPTIMAL,
+        'reason': Reason.JUDGED,
+        'level': Level.OK,
+    }
+    for name, value in (codes | changes).items():
+        columns[name] = np.broadcast_to(np.asarray(value, COLUMNS[name]), count).copy()
+    return JudgedColumns(axis=axis, **columns)
+
+
+def make_event(number, start, duration, **changes):
+    """Return an event that begins `start` [s] after the first row."""
+    values = {
+        'event_id': number,
+        'start': BEGIN + round(start * SECOND),
+        'duration': duration,
+        'active': False,
+        'quantity': 'RCS',
+        'relation': '>=',
+        'worst_value': 0.1,
+        'limit': 0.01,
+        'advice': 'at this load run at 60 rad/s (573 rev/min)',
+    }
+    return EventRecord(**values | changes)
+
+
+def make_health(source, **changes):
+    """Return the health of an input that does well."""
+    values = {
+        'source': source,
+        'state': InputState.OK,
+        'stamp_source': StampSource.HEADER,
+        'age': 0.0,
+        'rate': 100.0,
+        'received': 100,
+        'dropped': 0,
+    }
+    return Health(**values | changes)
+
+
+def make_case(blocks, events=(), *, totals=None, values=None, known=None, **changes):
+    """Return the case of an axis with blocks of rows and events."""
+    axis, values = blocks[0].axis, values or make_values(blocks[0].axis)
+    rows = sum(len(block) for block in blocks)
+    span = int(blocks[-1].stamp[-1] - blocks[0].stamp[0])
+    outside = sum(round(event.duration * SECOND) for event in events)
+    if totals is None:
+        totals = Totals(
+            running_time=span,
+            optimal_time=span - outside,
+            outside_time=outside,
+            mixed_time=span,
+            angle=628.0,
+            energy_lost=1000.0,
+        )
+    facts = {
+        'axis': axis,
+        'first': int(blocks[0].stamp[0]),
+        'last': int(blocks[-1].stamp[-1]),
+        'rows': rows,
+        'states': rows,
+        'judged': rows,
+        'totals': totals,
+        'events': tuple(events),
+        'inputs': tuple(make_health(source) for source in Source),
+        'refused': {},
+        'limits': build_axis(axis, values).monitor.settings.limits,
+    }
+    outcome = AxisOutcome(**facts | changes)
+    return axis_case(outcome, values, lambda: iter(blocks), **(known or {}))
+
+
+def make_values(axis='x', **changes):
+    """Return parameters of an axis with an oil temperature."""
+    return defaults([axis]) | {f'{axis}.temperature.topic': 'oil_temperature'} | changes
+
+
+@pytest.fixture(scope='session')
+def judged():
+    """Make the parts that tests of reports are built from."""
+    return types.SimpleNamespace(
+        begin=BEGIN,
+        columns=make_columns,
+        event=make_event,
+        health=make_health,
+        case=make_case,
+        values=make_values,
+    )
+
+
+@pytest.fixture(scope='session')
+def hour():
+    """Return an hour at 1 kHz with 60 long events and a measured torque."""
+    noise = np.random.default_rng(1)
+    rows = 60_000
+
+    def block(minute):
+        made = make_columns(minute * rows, rows, rate=1000.0)
+        speed = made.speed + noise.normal(0.0, 1.0, rows)
+        return dataclasses.replace(
+            made,
+            speed=speed,
+            axial_load=made.axial_load + noise.normal(0.0, 20.0, rows),
+            efficiency=made.efficiency + noise.normal(0.0, 0.005, rows),
+            rcs=made.rcs * np.exp(noise.normal(0.0, 0.5, rows)),
+            film_ratio=made.film_ratio + noise.normal(0.0, 0.05, rows),
+            motor_torque=made.machine_torque + noise.normal(0.1, 0.05, rows),
+            motor_torque_source=np.ones(rows, dtype=np.uint8),
+        )
+
+    events = [
+        make_event(n + 1, 60.0 * n + 10.0, 20.0, worst_value=0.011 + 0.001 * n) for n in range(60)
+    ]
+    values = make_values(**{'x.torque.topic': 'torque', 'x.torque.field': 'data'})
+    return make_case([block(minute) for minute in range(60)], events, values=values)

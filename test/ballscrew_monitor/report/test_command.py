@@ -1,0 +1,73 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""`ballscrew replay` with `--out`: exit codes, several recordings, one of them bad."""
+
+import json
+import shutil
+
+from ballscrew_monitor import cli
+import pytest
+
+
+@pytest.fixture
+def logs(short_bag, tmp_path):
+    """Return a folder of two recordings and a broken one."""
+    folder = tmp_path / 'logs'
+    for name in ('first', 'second <script>'):
+        shutil.copytree(short_bag, folder / name)
+    (folder / 'broken.mcap').write_bytes(b'no recording')
+    return folder
+
+
+def test_one_recording(short_bag, tmp_path, capsys):
+    assert cli.main(['replay', str(short_bag), '--out', str(tmp_path / 'out')]) == 0
+    shown = capsys.readouterr()
+    assert 'Outside: axis x ran outside its optimal zone' in shown.out
+    assert 'the nominal ones' in shown.err
+    assert (tmp_path / 'out' / 'report.html').exists()
+
+
+def test_an_axis_without_a_sample_is_named_and_the_other_is_judged(short_bag, tmp_path, capsys):
+    params = tmp_path / 'two.yaml'
+    params.write_text(
+        "/**/ballscrew_monitor:\n  ros__parameters:\n    axes: ['x', 'y']\n"
+        "    x: {temperature: {topic: 'oil_temperature'}}\n"
+        "    y: {speed: {field: 'velocity[nope]'}, load: {topic: 'axial_load'}}\n"
+    )
+    out = tmp_path / 'out'
+    arguments = ['replay', str(short_bag), '--params', str(params), '--out', str(out)]
+    assert cli.main(arguments) == 0
+    assert 'nothing was judged on axis y' in capsys.readouterr().err
+    assert json.loads((out / 'summary.json').read_text())['unjudged_axes'] == ['y']
+
+
+def test_one_bad_recording_does_not_stop_the_rest(logs, tmp_path, capsys):
+    out = tmp_path / 'out'
+    assert cli.main(['replay', str(logs), '--out', str(out), '--workers', '1']) == 1
+    shown = capsys.readouterr()
+    assert 'broken.mcap: bag' in shown.err
+    assert '3 recordings, 1 bad' in shown.out
+    assert sorted(path.name for path in out.iterdir()) == ['first', 'index.html', 'second_script_']
+    index = (out / 'index.html').read_text()
+    assert 'href="first/report.html"' in index
+    assert '<b>broken.mcap</b>' in index
+    assert '<script>' not in index.partition('<main>')[2].partition('</main>')[0]
+
+
+def test_several_recordings_are_printed_one_after_the_other(logs, capsys):
+    paths = [str(logs / name) for name in ('broken.mcap', 'first')]
+    assert cli.main(['replay', *paths]) == 1
+    shown = capsys.readouterr()
+    assert 'axis x: 300 speed samples judged' in shown.out
+    assert 'broken.mcap is truncated or damaged' in shown.err
+
+
+def test_several_recordings_are_one_json(logs, capsys):
+    assert cli.main(['replay', str(logs / 'first'), str(logs / 'second <script>'), '--json']) == 0
+    record = json.loads(capsys.readouterr().out)
+    assert [one['x']['judged'] for one in record.values()] == [300, 300]
+
+
+def test_a_folder_without_recordings_is_bad_input(tmp_path, capsys):
+    assert cli.main(['replay', str(tmp_path), '--out', str(tmp_path / 'out')]) == 2
+    assert 'holds no recording' in capsys.readouterr().err

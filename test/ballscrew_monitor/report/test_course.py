@@ -1,0 +1,97 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The course in time: every sample near the worst events, and what a page may weigh."""
+
+import dataclasses
+
+from ballscrew_monitor.core.judgement import Level, Zone
+from ballscrew_monitor.recordings.columns import LIGHT_LOAD, STANDSTILL
+from ballscrew_monitor.report.course import course_record, SHORT, slice_of
+from ballscrew_monitor.report.log_page import LogCase, report_page
+import numpy as np
+import pytest
+
+MOST_BYTES = 5_000_000
+
+
+def test_a_page_of_an_hour_at_1_khz_is_small(hour):
+    page = report_page(LogCase(name='hour', parameters='my.yaml', axes=[hour]))
+    assert len(page.encode()) < MOST_BYTES
+
+
+def test_around_the_50_worst_events_every_sample_is_kept(hour):
+    record = course_record(hour)
+    assert record['shown'] == 50
+    worst = hour.worst_first[:50]
+    assert min(event.event_id for event in worst) == 11  # the last ones are the worst
+    for event in worst:
+        for end in (hour.since_first(event.start), hour.since_first(event.end)):
+            inside = [one for one in record['fine'] if one['begin'] <= end <= one['end']]
+            assert len(inside) == 1
+            assert inside[0]['count'] == 2000
+
+
+def test_samples_near_events_make_way_where_there_is_no_room(hour):
+    record = course_record(hour, 1_000_000)
+    assert 5 < record['shown'] < 50
+    assert (
+        sum(len(one['columns'][key]['data']) for one in record['fine'] for key in one['columns'])
+        < 1e6
+    )
+
+
+def test_a_short_recording_keeps_every_sample(judged):
+    case = judged.case([judged.columns(count=SHORT)], [judged.event(1, 1.0, 2.0)])
+    record = course_record(case)
+    assert (record['bucket'], record['fine']) == (0.0, [])
+    assert len(record['time']) == pytest.approx(SHORT * 4 * 4 / 3, abs=4)
+
+
+def test_events_are_on_the_time_line_of_the_page(judged):
+    case = judged.case([judged.columns(count=1000)], [judged.event(1, 1.0, 2.0)])
+    assert course_record(case)['events'] == [{'begin': 1.0, 'end': 3.0}]
+
+
+def test_torque_has_a_panel_where_it_was_measured(judged, hour):
+    titles = [panel['title'] for panel in course_record(judged.case([judged.columns()]))['panels']]
+    assert len(titles) == 6
+    assert course_record(hour)['panels'][-1]['title'].startswith('Torque')
+
+
+def test_what_is_not_judged_or_only_held_is_a_gap(judged):
+    gates = np.array([0, STANDSTILL, LIGHT_LOAD, 0], dtype=np.uint8)
+    sources = np.array([1, 1, 1, 3], dtype=np.uint8)
+    block = judged.columns(count=4, gates=gates, speed_source=sources)
+    rows = slice_of(judged.case([block]), block, ('speed', 'efficiency', 'rcs'))
+    assert np.isnan(rows.numbers['speed']).tolist() == [False, False, False, True]
+    assert np.isnan(rows.numbers['efficiency']).tolist() == [False, True, True, False]
+    assert np.isnan(rows.numbers['rcs']).tolist() == [False, True, False, False]
+
+
+def test_codes_are_ordered_by_how_bad_they_are(judged):
+    block = judged.columns(
+        count=3,
+        zone=[Zone.OPTIMAL, Zone.UNKNOWN, Zone.OUTSIDE],
+        level=[Level.UNKNOWN, Level.OK, Level.WARN],
+        regime=[3, 2, 1],
+    )
+    codes = slice_of(judged.case([block]), block, ()).codes
+    assert {key: found.tolist() for key, found in codes.items()} == {
+        'regime': [1, 2, 3],
+        'zone': [2, 3, 4],
+        'level': [1, 2, 3],
+    }
+
+
+def test_temperature_is_in_degrees_celsius(judged):
+    block = judged.columns(count=2)
+    rows = slice_of(judged.case([block]), block, ('temperature',))
+    assert rows.numbers['temperature'].tolist() == pytest.approx([40.0, 40.0])
+
+
+def test_stray_stamps_do_not_stretch_the_page(judged):
+    block = judged.columns(count=100)
+    stamps = block.stamp.copy()
+    stamps[7] = 1
+    case = judged.case([dataclasses.replace(block, stamp=stamps)])
+    assert course_record(case)['span'] == pytest.approx(0.99)

@@ -1,0 +1,49 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Numbers as a page carries them come back as they were, and no text ends its element."""
+
+import base64
+import json
+import math
+
+from ballscrew_monitor.report.encoding import floats, LEVELS, packed, script_json
+from hypothesis import given
+from hypothesis import strategies as st
+import numpy as np
+
+
+def unpacked(record):
+    """Return packed numbers as the page reads them."""
+    steps = np.frombuffer(base64.b64decode(record['data']), dtype='<u2')
+    if 'runs' in record:
+        steps = np.repeat(steps, np.frombuffer(base64.b64decode(record['runs']), dtype='<u4'))
+    step = (record['high'] - record['low']) / LEVELS
+    return np.where(steps == 0, np.nan, record['low'] + (steps.astype(float) - 1.0) * step)
+
+
+@given(st.lists(st.floats(-1e6, 1e6) | st.just(math.nan), min_size=1, max_size=200))
+def test_packed_numbers_are_within_half_a_step(values):
+    record, numbers = packed(values), np.array(values)
+    step = (record['high'] - record['low']) / LEVELS
+    np.testing.assert_allclose(unpacked(record), numbers, rtol=0.0, atol=0.51 * step + 1e-9)
+
+
+def test_extremes_of_packed_numbers_are_exact():
+    record = packed([3.0, -1.0, math.nan, 2.0])
+    assert (record['low'], record['high']) == (-1.0, 3.0)
+
+
+def test_numbers_that_seldom_change_take_no_room():
+    record = packed(np.repeat([1.0, math.nan, 2.0], 1000))
+    assert len(record['data']) < 20
+    np.testing.assert_array_equal(unpacked(record), np.repeat([1.0, math.nan, 2.0], 1000))
+
+
+def test_floats_are_four_bytes_each():
+    assert base64.b64decode(floats([1.0])) == np.float32(1.0).tobytes()
+
+
+def test_no_text_ends_the_element_that_holds_it():
+    text = script_json({'name': '</script><script>alert(1)</script>&', 'none': math.nan})
+    assert not set('<>&') & set(text)
+    assert json.loads(text) == {'name': '</script><script>alert(1)</script>&', 'none': None}

@@ -1,0 +1,153 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The page in a browser: charts are drawn, nothing fails, hostile names stay text, it prints."""
+
+import html
+from pathlib import Path
+import re
+import shutil
+import subprocess
+
+from ballscrew_monitor.report.log_page import LogCase, report_page
+from ballscrew_monitor.report.page import CHARTS
+import pytest
+
+BROWSER = (
+    shutil.which('chromium') or shutil.which('chromium-browser') or shutil.which('google-chrome')
+)
+HOSTILE = '</script><script>document.body.dataset.errors = 1</script><img src=x onerror=alert(1)>'
+browser = pytest.mark.skipif(BROWSER is None, reason='no chromium to open the page in')
+
+
+def browse(page, profile, *options):
+    """Let a browser without a window open a page; return what it prints."""
+    return subprocess.run(
+        [
+            BROWSER,
+            '--headless',
+            '--no-sandbox',
+            '--disable-gpu',
+            f'--user-data-dir={profile}',
+            '--virtual-time-budget=8000',
+            *options,
+            Path(page).as_uri(),
+        ],
+        check=True,
+        capture_output=True,
+        text=True,
+        timeout=120,
+    ).stdout
+
+
+@pytest.fixture
+def written(judged, tmp_path):
+    """Return a page of two axes, one with a torque, with hostile names, and its text."""
+    events = [judged.event(1, 10.0, 5.0, advice=HOSTILE)]
+    values = judged.values('y', **{'y.torque.topic': HOSTILE, 'y.torque.field': 'data'})
+    torque = {'motor_torque': 1.6, 'motor_torque_source': 1, 'axis': 'y'}
+    assumptions = {HOSTILE: {'value': HOSTILE, 'reason': HOSTILE}}
+    known = {'assumed': assumptions, 'load_from': HOSTILE}
+    axes = [
+        judged.case([judged.columns(count=20_000)], events, known=known),
+        judged.case([judged.columns(count=500, **torque)], values=values),
+    ]
+    log = LogCase(
+        name=HOSTILE,
+        parameters=HOSTILE,
+        axes=axes,
+        empty=['z'],
+        assumptions=assumptions,
+        notes=[HOSTILE],
+    )
+    text = report_page(log)
+    path = tmp_path / 'report.html'
+    path.write_text(text)
+    return path, text
+
+
+def test_hostile_names_are_text(written):
+    _, text = written
+    assert HOSTILE not in text
+    assert html.escape(HOSTILE) in text
+    assert text.count('<script') == text.count('</script') == len(CHARTS) + 1
+
+
+def test_the_verdict_comes_first_and_all_axes_have_one(written):
+    main = written[1].partition('<main>')[2]
+    assert re.findall(r'<strong>([^<]*)</strong>', main) == ['Outside:', 'Good:', 'Not known:']
+    assert main.index('class="verdict') < main.index('class="map"')
+
+
+def test_what_was_assumed_is_tagged_so(written):
+    assert '<span class="tag assumed">assumed</span>' in written[1]
+
+
+def test_a_load_that_was_worked_out_is_not_called_measured(judged):
+    known = {'load_from': 'current', 'assumed': {'screw': {'value': 'nominal', 'reason': 'usual'}}}
+    values = judged.values(**{'x.temperature.topic': ''})
+    case = judged.case([judged.columns()], values=values, known=known)
+    text = report_page(LogCase(name='log', parameters='', axes=[case]))
+    assert 'Assumed, neither measured nor stated: axial load, worked out from the motor ' in text
+    assert 'oil temperature of 40 °C, the screw. The verdict holds as far as these do.' in text
+    row = text.partition('<td>Axial load</td>')[2].partition('</tr>')[0]
+    assert '<span class="tag assumed">worked out from the motor current</span>' in row
+    screw = text.partition('<td>Screw</td>')[2].partition('</tr>')[0]
+    assert '<span class="tag assumed">assumed</span>' in screw
+
+
+def test_where_all_is_known_there_is_no_caution(judged):
+    text = report_page(LogCase(name='log', parameters='', axes=[judged.case([judged.columns()])]))
+    assert 'Assumed, neither' not in text
+
+
+def test_tables_are_cut_and_say_so(judged):
+    events = [judged.event(number + 1, 0.1 * number, 0.05) for number in range(1200)]
+    case = judged.case([judged.columns(count=100)], events)
+    text = report_page(LogCase(name='many', parameters='', axes=[case]))
+    assert 'The worst 1000 of 1200 are shown.' in text
+    assert text.count('<tr data-begin') + text.count('<tr class="bad" data-begin') == 1000
+
+
+@browser
+def test_charts_are_drawn_without_an_error(written, tmp_path):
+    dom = browse(written[0], tmp_path / 'profile', '--dump-dom')
+    body = re.search(r'<body[^>]*>', dom)[0]
+    assert 'data-ready="true"' in body
+    assert 'data-errors=""' in body
+    # A map, the bars and the panels of each axis: six, and one more for the torque.
+    assert 'data-charts="17"' in body
+    assert 'every sample around the 1 worst warnings' in dom
+
+
+@browser
+def test_a_click_on_a_warning_leads_to_it_and_one_on_a_head_sorts(judged, tmp_path):
+    events = [judged.event(1, 10.0, 2.0), judged.event(2, 50.0, 5.0)]
+    case = judged.case([judged.columns(count=20_000)], events)
+    text = report_page(LogCase(name='log', parameters='', axes=[case]))
+    script = """<script>
+      document.querySelectorAll('table.leading tr[data-begin]')[1].click();
+      document.querySelectorAll('table.leading th')[2].click();
+      document.querySelectorAll('table.leading th')[2].click();
+      document.querySelector('.controls button:nth-child(2)').click();
+    </script>"""
+    # A script that is not ours may not run where the policy of the page holds.
+    for name, held in (('held.html', True), ('open.html', False)):
+        page = text.replace('</body>', f'{script}</body>')
+        if not held:
+            page = re.sub(r'<meta http-equiv="Content-Security-Policy"[^>]*>', '', page)
+        (tmp_path / name).write_text(page)
+    held = browse(tmp_path / 'held.html', tmp_path / 'profile', '--dump-dom')
+    assert 'Shown: 0.0 s to 3:20.0' in held
+    dom = browse(tmp_path / 'open.html', tmp_path / 'profile', '--dump-dom')
+    # Its row shows 49 to 56 s; half of that after one step in.
+    assert 'Shown: 50.750 s to 54.250 s' in dom
+    assert 'data-errors=""' in re.search(r'<body[^>]*>', dom)[0]
+    rows = re.findall(r'<tr[^>]*data-begin="([\d.]+)"', dom)
+    assert [float(begin) for begin in rows] == [49.0, 9.0]
+
+
+@browser
+def test_it_prints(written, tmp_path):
+    paper = tmp_path / 'report.pdf'
+    browse(written[0], tmp_path / 'profile', f'--print-to-pdf={paper}')
+    assert paper.read_bytes().startswith(b'%PDF')

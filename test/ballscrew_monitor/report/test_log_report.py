@@ -1,0 +1,91 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""One recording from a bag to all that is left of it."""
+
+import json
+
+from ballscrew_monitor.core.fields import stamp_of
+from ballscrew_monitor.node.parameters import read_file
+from ballscrew_monitor.recordings.bag import Bag
+from ballscrew_monitor.recordings.replay import replay
+from ballscrew_monitor.report.log_report import report_log
+from ballscrew_monitor.report.parameters import LogParameters, parameters_for
+from ballscrew_msgs.msg import BallScrewState
+import polars as pl
+import pytest
+from rclpy.serialization import deserialize_message
+from surrogate.files import InputError
+
+
+@pytest.fixture(scope='module')
+def params(request):
+    """Return the parameters of the nominal cycle."""
+    return request.config.rootpath / 'config' / 'nominal_cycle.yaml'
+
+
+@pytest.fixture(scope='module')
+def reported(short_bag, params, tmp_path_factory):
+    """Return the result and the directory of the report on the short bag."""
+    out = tmp_path_factory.mktemp('out') / 'report'
+    bag = Bag(short_bag)
+    return report_log(bag, out, parameters_for(bag, None, params)), out
+
+
+def test_all_products_are_there_and_nothing_else(reported):
+    result, out = reported
+    assert sorted(path.name for path in out.iterdir()) == [
+        'events.csv',
+        'judged',
+        'report.html',
+        'states.parquet',
+        'summary.json',
+    ]
+    assert result.judged
+    assert [(line.axis, line.standing, line.warnings) for line in result.lines] == [
+        ('x', 'bad', 1)
+    ]
+
+
+def test_states_are_all_samples_of_the_speed(reported, short_bag):
+    _, out = reported
+    rows = pl.read_parquet(out / 'states.parquet')
+    assert rows.height == Bag(short_bag).topics['/joint_states'].count
+    totals = json.loads((out / 'summary.json').read_text())['axes']['x']['totals']
+    assert rows['reason'].is_in(['JUDGED', 'STANDSTILL']).sum() == totals['judged']
+
+
+def test_the_judged_bag_holds_inputs_and_what_the_node_would_say(reported, short_bag, params):
+    _, out = reported
+    bag, original = Bag(out / 'judged'), Bag(short_bag)
+    counts = {name: topic.count for name, topic in bag.topics.items()}
+    for name, topic in original.topics.items():
+        assert counts[name] == topic.count
+    assert counts['/ballscrew_monitor/x/out_of_zone'] == 1  # it is still on
+    assert counts['/ballscrew_monitor/x/surface_info'] == 1
+    assert 3 <= counts['/diagnostics'] <= 12
+    found = [
+        (message.log_time, deserialize_message(message.data, BallScrewState))
+        for message in bag.messages(['/ballscrew_monitor/x/state'])
+    ]
+    wanted = [
+        (stamp_of(state), state.zone, state.judged)
+        for state, _ in replay(original, read_file(params))
+    ]
+    assert [(stamp_of(state), state.zone, state.judged) for _, state in found] == wanted
+    speeds = [message.log_time for message in original.messages(['/joint_states'])]
+    assert [log_time for log_time, _ in found] == speeds
+
+
+def test_a_report_is_written_where_nothing_is_judged(short_bag, params, tmp_path):
+    values = read_file(params) | {'x.speed.field': 'velocity[nope]'}
+    result = report_log(Bag(short_bag), tmp_path, LogParameters(values=values, origin='mine'))
+    assert not result.judged
+    assert result.unjudged == ['x']
+    assert 'Not known' in (tmp_path / 'report.html').read_text()
+
+
+def test_a_bag_that_does_not_fit_leaves_nothing(short_bag, params, tmp_path):
+    values = read_file(params) | {'x.load.topic': 'nope'}
+    with pytest.raises(InputError, match='topic /nope'):
+        report_log(Bag(short_bag), tmp_path / 'out', LogParameters(values=values, origin='mine'))
+    assert not list((tmp_path / 'out').glob('*'))

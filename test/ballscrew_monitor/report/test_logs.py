@@ -1,0 +1,63 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Which recordings are meant by paths, and the folders of their reports."""
+
+from pathlib import Path
+
+from ballscrew_monitor.report.logs import find_logs, folder_names, is_one_bag
+import pytest
+from surrogate.files import InputError
+
+
+def touch(*paths):
+    for path in paths:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(b'')
+
+
+def names(found, root):
+    return [str(path.relative_to(root)) for path in found]
+
+
+def test_a_folder_stands_for_what_it_holds(tmp_path):
+    touch(
+        tmp_path / 'one' / 'metadata.yaml',
+        tmp_path / 'a.mcap',
+        tmp_path / 'deep' / 'two' / 'metadata.yaml',
+        tmp_path / 'other' / 'notes.txt',
+        tmp_path / '.rows-x' / 'hidden.mcap',
+    )
+    assert names(find_logs([tmp_path]), tmp_path) == ['a.mcap', 'deep/two', 'one']
+
+
+def test_parts_of_a_split_bag_are_one_recording(tmp_path):
+    touch(tmp_path / 'bag_0.mcap', tmp_path / 'bag_1.mcap')
+    assert is_one_bag(tmp_path)
+    touch(tmp_path / 'other.mcap')
+    assert not is_one_bag(tmp_path)
+    assert len(find_logs([tmp_path])) == 3
+
+
+def test_what_is_named_twice_is_taken_once_and_what_is_not_there_is_kept(tmp_path):
+    gone = tmp_path / 'gone.mcap'
+    assert find_logs([gone, gone]) == [gone]
+
+
+def test_a_folder_without_a_recording_is_a_sentence(tmp_path):
+    with pytest.raises(
+        InputError, match='holds no recording, it must hold bags or files of .mcap'
+    ):
+        find_logs([tmp_path])
+
+
+def test_each_report_has_a_folder_of_its_own():
+    logs = [Path('a/log.mcap'), Path('b/log.mcap'), Path('c/<img src=x>'), Path('d/..mcap')]
+    made = folder_names(logs)
+    assert len(set(made)) == 4
+    assert made[:2] == ['log', 'log-2']
+    assert not set('<> /') & set(''.join(made))
+
+
+def test_a_name_that_looks_like_a_number_takes_no_others_folder():
+    made = folder_names([Path('x/log.mcap'), Path('log-2.mcap'), Path('y/log.mcap')])
+    assert len(set(made)) == 3

@@ -1,0 +1,70 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The page over recordings: rows by date, a trend where there is one, bad ones named."""
+
+import re
+
+from ballscrew_monitor.report.log_report import AxisLine, LogResult
+from ballscrew_monitor.report.overview import LogEntry, overview_page
+
+DAY = 86400.0
+HOSTILE = '</script><script>alert(1)</script>'
+
+
+def make_entry(name, day, outside, *, axis='x'):
+    line = AxisLine(
+        axis=axis,
+        standing='bad' if outside else 'good',
+        verdict='Outside: it was.',
+        begins=1_767_600_000.0 + DAY * day,
+        recorded=3600.0,
+        running_time=1800.0,
+        outside_time=outside,
+        warnings=int(outside > 0),
+        worst='RCS 0.5' if outside else '',
+        depth=0.5,
+    )
+    return LogEntry(name=name, folder=name, result=LogResult(name=name, lines=[line], unjudged=[]))
+
+
+def rows_of(page):
+    return re.findall(r'<td><a href="([^"]*)">', page)
+
+
+def test_rows_are_in_the_order_of_their_dates():
+    page = overview_page([make_entry('late', 9, 18.0), make_entry('early', 1, 0.0)])
+    assert rows_of(page) == ['early/report.html', 'late/report.html']
+    assert '1 of 2 axis recordings ran outside' in page
+    assert '2026-01-14' in page
+
+
+def test_a_trend_has_a_point_for_each_date():
+    page = overview_page(
+        [make_entry('a', 0, 18.0), make_entry('b', 3, 36.0), make_entry('c', 5, 9.0)]
+    )
+    assert page.count('<circle') == 3
+    assert 'the highest point is 2 %' in page
+
+
+def test_one_date_is_no_trend():
+    page = overview_page([make_entry('a', 0, 18.0), make_entry('b', 1, 18.0, axis='y')])
+    assert '<circle' not in page
+
+
+def test_recordings_that_could_not_be_read_are_named_as_text():
+    bad = LogEntry(name=HOSTILE, folder='bad', failure=f'bag {HOSTILE} is damaged')
+    page = overview_page([bad])
+    assert HOSTILE not in page
+    assert page.count('alert(1)') == 2
+    assert '1 recording could not be read' in page
+    assert bad.is_bad
+
+
+def test_what_is_not_known_is_a_dash():
+    line = AxisLine(axis='x', standing='unknown', verdict='nothing was judged')
+    result = LogResult(name='a', lines=[line], unjudged=['x'])
+    page = overview_page([LogEntry(name='a', folder='a', result=result)])
+    assert 'nan' not in page.partition('<tbody>')[2].partition('</tbody>')[0].replace(
+        'data-value="NaN"', ''
+    )
+    assert '1 could not be judged' in page

@@ -1,0 +1,66 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""A page is whole in itself, lets nothing else run, and its vendored part is the released one."""
+
+import base64
+import hashlib
+import re
+
+from ballscrew_monitor.report.markup import element
+from ballscrew_monitor.report.page import CHARTS, component, FOLDER, page, UPLOT_JS
+import pytest
+
+OWN = sorted(one.name for one in FOLDER.iterdir() if one.name.endswith(('.js', '.css')))
+MOST_LINES = 200
+
+
+def test_uplot_is_what_its_pin_says():
+    readme = component('uplot/README.md')
+    pins = dict(re.findall(r'\| `([\w.]+)` \| `([0-9a-f]{64})` \|', readme))
+    assert set(pins) == {'uPlot.iife.min.js', 'uPlot.min.css', 'LICENSE'}
+    for name, pin in pins.items():
+        data = FOLDER.joinpath('uplot', name).read_bytes()
+        assert hashlib.sha256(data).hexdigest() == pin, name
+    assert 'v1.6.32' in component(UPLOT_JS)[:100]
+    assert 'MIT' in component('uplot/LICENSE')
+
+
+@pytest.mark.parametrize('name', OWN)
+def test_own_components_are_plain_and_small(name):
+    text = component(name)
+    assert 'SPDX-License-Identifier: Apache-2.0' in text
+    assert len(text.splitlines()) < MOST_LINES
+    if name.endswith('.js'):
+        assert "'use strict';" in text
+        # Text becomes an element only as text.
+        assert not re.search(
+            r'innerHTML|outerHTML|insertAdjacentHTML|document\.write|eval\(', text
+        )
+
+
+def test_a_page_asks_for_nothing():
+    made = page('t', element('p', 'text'), scripts=CHARTS, data='{"axes":[]}')
+    addresses = set(re.findall(r'https?://[^\s"\'<>)]+', made))
+    assert addresses <= {'https://github.com/leeoniya/uPlot'}  # a comment of uPlot
+    assert not re.search(r'<(?:link|img|iframe|object)\b|@import|\bsrc=|fetch\(|XMLHttp', made)
+
+
+def test_its_policy_names_each_script_and_style_that_is_in_it():
+    made = page('t', element('p', 'text'), scripts=CHARTS, data='{}')
+    policy = re.search(r'Content-Security-Policy" content="([^"]*)"', made)[1].replace(
+        '&#x27;', "'"
+    )
+    assert policy.startswith("default-src 'none'; script-src 'sha256-")
+    assert 'unsafe' not in policy
+    for kind in ('script', 'style'):
+        for text in re.findall(rf'<{kind}>(.*?)</{kind}>', made, re.DOTALL):
+            digest = base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()
+            assert f"'sha256-{digest}'" in policy
+
+
+def test_without_scripts_none_may_run():
+    assert 'script-src &#x27;none&#x27;' in page('t', element('p', 'text'))
+
+
+def test_a_title_is_text():
+    assert '<title>&lt;script&gt;</title>' in page('<script>', element('p', ''))

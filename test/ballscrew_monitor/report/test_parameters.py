@@ -1,0 +1,47 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Whose parameters a recording is judged with, and what they assume of each axis."""
+
+from ballscrew_monitor.report.parameters import LogParameters, parameters_for
+import pytest
+
+
+def test_assumptions_are_those_of_the_axis_and_of_all():
+    assumptions = {
+        name: {'value': 1, 'reason': 'usual'} for name in ('x.lead_mm', 'xy.oil', 'time.rate_Hz')
+    }
+    found = LogParameters(values={'axes': ['x', 'xy']}, origin='', assumptions=assumptions)
+    assert list(found.of_axis('x')) == ['lead_mm', 'time.rate_Hz']
+    assert list(found.of_axis('xy')) == ['oil', 'time.rate_Hz']
+
+
+@pytest.fixture
+def table(tmp_path):
+    """Return a CSV without a time and a map that assumes what it does not say."""
+    rows = '\n'.join(f'{1000 + n % 7},{0.1 * (n % 5)}' for n in range(200))
+    (tmp_path / 'log.csv').write_text(f'speed,current\n{rows}\n')
+    (tmp_path / 'map.yaml').write_text(
+        'log: log.csv\n'
+        'axes: {x: {speed: {column: speed, unit: rev/min}, current: {column: current, unit: A},'
+        ' screw: nominal, oil: iso_vg_68}}\n'
+        'time: {rate_Hz: 10.0}\n'
+        'assumed:\n'
+        '  x.load.from: {value: current, reason: no force is in the log}\n'
+        '  x.lead_mm: {value: 10.0, reason: usual}\n'
+        '  x.efficiency: {value: 0.9, reason: usual}\n'
+        '  x.torque_constant_Nm_per_A: {value: 0.1, reason: usual}\n'
+        '  x.temperature_degC: {value: 40.0, reason: usual}\n'
+        '  time.epoch: {value: 2000-01-01T00:00:00Z, reason: none}\n'
+    )
+    return tmp_path
+
+
+def test_a_table_says_what_its_load_is_worked_out_from(table):
+    from ballscrew_monitor.recordings.opener import opened_log
+
+    with opened_log(table / 'log.csv', mapping=table / 'map.yaml') as bag:
+        found = parameters_for(bag, None, table / 'none.yaml')
+    assert found.load_from == {'x': 'current'}
+    assert found.of_axis('x')['lead_mm'] == {'value': 10.0, 'reason': 'usual'}
+    assert found.origin == f'those of {table / "log.csv"}'
+    assert found.short_origin == 'those of log.csv'

@@ -1,0 +1,68 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The tables beside the page: every event, and a reason for every number that is missing."""
+
+import csv
+import json
+import math
+
+from ballscrew_monitor.report.log_page import LogCase
+from ballscrew_monitor.report.products import known, write_events, write_summary
+
+
+def make_log(judged, **changes):
+    events = [judged.event(1, 0.1, 0.2), judged.event(2, 0.5, 0.1, active=True)]
+    case = judged.case([judged.columns()], events)
+    return LogCase(name='log', parameters='my.yaml', axes=[case], **changes)
+
+
+def test_events_are_a_line_each(judged, tmp_path):
+    write_events(tmp_path / 'events.csv', make_log(judged))
+    with (tmp_path / 'events.csv').open(newline='', encoding='utf-8') as file:
+        rows = list(csv.DictReader(file))
+    assert [(row['axis'], row['event_id'], row['active']) for row in rows] == [
+        ('x', '1', 'False'),
+        ('x', '2', 'True'),
+    ]
+    assert float(rows[1]['start_s']) == 0.5
+    assert int(rows[0]['start_stamp_ns']) == judged.begin + 100_000_000
+
+
+def test_no_event_is_a_table_without_lines(judged, tmp_path):
+    log = LogCase(name='log', parameters='', axes=[judged.case([judged.columns()])])
+    write_events(tmp_path / 'events.csv', log)
+    assert (tmp_path / 'events.csv').read_text().startswith('axis,event_id,')
+
+
+def test_the_summary_is_strict_json_with_reasons_for_null(judged, tmp_path):
+    def refuse(name):
+        raise ValueError(name)
+
+    log = make_log(judged, empty=['y'], assumptions={'x.lead': {'value': 0.01, 'reason': 'usual'}})
+    write_summary(tmp_path / 'summary.json', log)
+    record = json.loads((tmp_path / 'summary.json').read_text(), parse_constant=refuse)
+    assert record['unjudged_axes'] == ['y']
+    assert record['assumptions']['x.lead'] == {'value': 0.01, 'reason': 'usual'}
+    axis = record['axes']['x']
+    assert axis['standing'] == 'bad'
+    assert axis['torque_residual']['rms_Nm'] is None
+    assert axis['torque_residual']['rms_Nm_reason'] == 'no torque was measured in motion'
+    assert axis['inputs']['torque']['lowest_reason'] == 'the input is not recorded'
+    assert len(axis['totals']['events']) == 2
+    assert not unexplained(record)
+
+
+def unexplained(record, path=''):
+    """Return where a null has no reason beside it."""
+    found = []
+    for key, value in record.items():
+        if value is None and f'{key}_reason' not in record:
+            found.append(f'{path}/{key}')
+        elif isinstance(value, dict):
+            found += unexplained(value, f'{path}/{key}')
+    return found
+
+
+def test_known_numbers_have_no_reason():
+    assert known({'a': 1.0}, 'why') == {'a': 1.0}
+    assert math.isnan(known({'a': math.nan}, 'why')['a'])

@@ -1,0 +1,51 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Rows survive being stored, and a Parquet file is whole or not there."""
+
+from ballscrew_monitor.core.judgement import Zone
+from ballscrew_monitor.recordings.columns import COLUMNS, joined
+from ballscrew_monitor.report.store import block_of, CODED, frame_of, RowStore
+import numpy as np
+import polars as pl
+import pytest
+
+
+def assert_same(one, other):
+    assert one.axis == other.axis
+    for name in COLUMNS:
+        np.testing.assert_array_equal(getattr(one, name), getattr(other, name), err_msg=name)
+        assert getattr(one, name).dtype == getattr(other, name).dtype
+
+
+def test_columns_come_back_from_a_frame(judged):
+    block = judged.columns(zone=np.arange(100) % 3, tick=np.arange(100) % 2 == 0)
+    assert_same(block_of(frame_of(block)), block)
+
+
+@pytest.mark.parametrize('kind', CODED.values())
+def test_codes_count_from_zero_without_a_hole(kind):
+    assert [member.value for member in kind] == list(range(len(kind)))
+
+
+def test_parquet_holds_all_rows_by_axis_and_codes_by_name(judged, tmp_path):
+    blocks = [judged.columns(0, 60), judged.columns(0, 40, axis='y'), judged.columns(60, 40)]
+    with RowStore(tmp_path) as store:
+        for block in blocks:
+            store.add(block)
+        store.write(tmp_path / 'states.parquet')
+        assert store.axes == ['x', 'y']
+        assert_same(joined(list(store.blocks('x'))), joined([blocks[0], blocks[2]]))
+    found = pl.read_parquet(tmp_path / 'states.parquet')
+    assert found.columns == ['axis', *COLUMNS]
+    assert found['axis'].value_counts().sort('axis').rows() == [('x', 100), ('y', 40)]
+    assert found['zone'].unique().to_list() == [Zone.OPTIMAL.name]
+    assert_same(block_of(found.filter(pl.col('axis') == 'y')), blocks[1])
+    assert [path.name for path in tmp_path.iterdir()] == ['states.parquet']
+
+
+def test_no_rows_are_a_file_with_the_same_columns(judged, tmp_path):
+    with RowStore(tmp_path) as store:
+        store.write(tmp_path / 'states.parquet')
+    empty = pl.read_parquet(tmp_path / 'states.parquet')
+    assert empty.schema == frame_of(judged.columns()).schema
+    assert empty.height == 0
