@@ -113,21 +113,17 @@ def _run(args: argparse.Namespace) -> int:
 def _replay(args: argparse.Namespace) -> int:
     from ballscrew_monitor.recordings.log_facts import facts_of, values_for
     from ballscrew_monitor.recordings.opener import opened_log
-    from ballscrew_monitor.recordings.replay import replay
-    from ballscrew_monitor.recordings.summary import Summarizer
+    from ballscrew_monitor.recordings.progress import shown_progress
+    from ballscrew_monitor.recordings.replay import replay_outcomes
 
     with opened_log(args.bag, mapping=args.map) as bag:
         values, whose = values_for(bag, args.params, PARAMS)
         facts = facts_of(bag)
         _say(f'parameters: {whose}', *(facts.sentences() if facts else ()))
-        summarizers = {axis: Summarizer() for axis in values['axes']}
-        reasons = dict.fromkeys(values['axes'], '')
-        for judged in replay(bag, values):
-            reasons[judged.state.axis] = judged.state.result.reason
-            summarizers[judged.state.axis].add_state(judged.state)
-            if judged.event is not None:
-                summarizers[judged.state.axis].add_event(judged.event)
-        results = {axis: made.result() for axis, made in summarizers.items()}
+        with shown_progress(bag.duration) as on_done:
+            outcomes = replay_outcomes(bag, values, on_done=on_done)
+        results = {outcome.axis: outcome.summary() for outcome in outcomes}
+        reasons = {outcome.axis: outcome.reason for outcome in outcomes}
         silent = [axis for axis, made in results.items() if made is None or made.says_nothing]
         _say(*bag.notes, *_silences(bag, values, {axis: reasons[axis] for axis in silent}))
     if args.json:
