@@ -211,7 +211,7 @@ class AxisOutcome:
 
     `first` and `last` are stamps of states [ns]; `events` in order, one that is still on as far
     as it is known; `inputs` as they stood at the last row, `refused` messages by input and
-    why.
+    why; `reason` tells why the last row has no answer, if it has none.
 
     """
 
@@ -226,6 +226,7 @@ class AxisOutcome:
     inputs: tuple[Health, ...]
     refused: Mapping[Source, Mapping[Why, int]]
     limits: Limits
+    reason: str = ''
 
     def summary(self) -> Summary | None:
         """Return the summary, None without a state."""

@@ -32,6 +32,7 @@ class RowCollector:
         self._waiting: list[Row] = []
         self._rows = self._states = self._first = self._last = self._now = self._stamp = 0
         self._events: dict[int, EventRecord] = {}
+        self._reason = ''
         self.observe(monitor)
 
     def observe(self, monitor: Monitor) -> None:
@@ -50,8 +51,9 @@ class RowCollector:
         rows, self._waiting = self._waiting, []
         return columns_of(self.axis, rows)
 
-    def add(self, columns: JudgedColumns, edges: Iterable[Event]) -> None:
-        """Count rows, at least one, that were judged in the place of the monitor."""
+    def add(self, columns: JudgedColumns, edges: Iterable[Event], reason: str) -> None:
+        """Count rows, at least one, judged in the place of the monitor; `reason` of the last."""
+        self._reason = reason
         published = columns.stamp[columns.published]
         self._rows += len(columns)
         self._stamp, self._now = int(columns.stamp[-1]), int(columns.log_time[-1])
@@ -79,12 +81,14 @@ class RowCollector:
             inputs=monitor.health(self._now),
             refused=monitor.refused,
             limits=monitor.settings.limits,
+            reason=self._reason,
         )
 
     def _take(self, instant: Instant) -> None:
         self._waiting.append(row_of(instant))
         self._rows += 1
         self._stamp, self._now = instant.stamp, instant.now
+        self._reason = instant.estimate.reason
         if instant.edge is not None:
             self._note(instant.edge, instant.stamp)
         if instant.published:

@@ -13,11 +13,10 @@ from typing import Any, TYPE_CHECKING
 from ballscrew_monitor.node.interrupts import DONE, FAILED
 from ballscrew_monitor.node.topics import with_types
 from ballscrew_monitor.recordings.bag import Bag
-from ballscrew_monitor.recordings.columns import JudgedColumns, Reason
 from ballscrew_monitor.recordings.decoding import silence
 from ballscrew_monitor.recordings.opener import opened_log
 from ballscrew_monitor.recordings.progress import shown_progress
-from ballscrew_monitor.recordings.replay import axes_for, replay_columns
+from ballscrew_monitor.recordings.replay import axes_for, replay_outcomes
 from ballscrew_monitor.recordings.summary import Summary
 from ballscrew_monitor.report.logs import find_logs
 from ballscrew_monitor.report.parameters import LogParameters, parameters_for
@@ -29,7 +28,6 @@ if TYPE_CHECKING:  # the rest asks for packages that printing does not need
     from ballscrew_monitor.report.overview import LogEntry
 
 Results = dict[str, Summary | None]
-TOLD = (Reason.JUDGED, Reason.STANDSTILL)  # no reasons for judging nothing
 
 
 def replay_command(args: argparse.Namespace, nominal: Path) -> int:
@@ -69,17 +67,13 @@ def _print_many(
 
 def _print_one(args: argparse.Namespace, nominal: Path, log: Path) -> tuple[Results, int]:
     """Judge a recording; return what it comes to, and the exit code of that."""
-    results: Results = {}
-    last: dict[str, Reason] = {}
     with opened_log(log, mapping=args.map) as bag:
         parameters = parameters_for(bag, args.params, nominal)
         _say_origin(parameters)
         with shown_progress(bag.duration) as on_done:
-            for part in replay_columns(bag, parameters.values, on_done=on_done):
-                if isinstance(part, JudgedColumns):
-                    last[part.axis] = Reason(int(part.reason[-1]))
-                else:
-                    results[part.axis] = part.summary()
+            outcomes = replay_outcomes(bag, parameters.values, on_done=on_done)
+        results: Results = {outcome.axis: outcome.summary() for outcome in outcomes}
+        last = {outcome.axis: outcome.reason for outcome in outcomes}
         silent = [axis for axis, made in results.items() if made is None or made.says_nothing]
         _say(*bag.notes, *_silences(bag, parameters.values, silent, last))
     return results, FAILED if len(silent) == len(results) else DONE
@@ -106,19 +100,19 @@ def _report_one(args: argparse.Namespace, nominal: Path, log: Path) -> tuple[Res
 
 
 def _silences(
-    bag: Bag, values: Mapping[str, Any], silent: Sequence[str], last: Mapping[str, Reason]
+    bag: Bag, values: Mapping[str, Any], silent: Sequence[str], last: Mapping[str, str]
 ) -> list[str]:
     """Return a sentence for each axis on which nothing was judged."""
     if not silent:
         return []
     axes = {axis.name: axis for axis in axes_for(bag, with_types(values, bag.types))}
-    reasons = {name: _reason(bag, silence(bag, axes[name]), last.get(name)) for name in silent}
+    reasons = {name: _reason(bag, silence(bag, axes[name]), last[name]) for name in silent}
     return [f'nothing was judged on axis {name}: {why}' for name, why in reasons.items()]
 
 
-def _reason(bag: Bag, fault: str, last: Reason | None) -> str:
-    if not fault and last is not None and last not in TOLD:
-        return last.text
+def _reason(bag: Bag, fault: str, last: str) -> str:
+    if last and not fault:
+        return last
     more = f'; {fault}' if fault else ''
     return f'topics, fields and joints of its parameters must be those of {bag.path}{more}'
 

@@ -3,7 +3,7 @@
 """
 The stays outside the zone over a stretch, from where its level changed.
 
-What `Monitor._follow` and `Monitor._edge` do sample by sample.
+What `Stays` does sample by sample.
 
 """
 

@@ -71,7 +71,7 @@ class AxisJudge:
                 rows = part.columns()
                 remind(self._monitor, part.finish())
                 if len(rows):
-                    collector.add(rows, part.events.edges.values())
+                    collector.add(rows, part.events.edges.values(), part.last_reason)
                     yield rows
                 continue
             for at in range(len(part)):
@@ -152,6 +152,11 @@ class Judging:
             advisor_at=self._advisor_at,
             finding_at=self._finding_at,
         )
+
+    @property
+    def last_reason(self) -> str:
+        """Return why there is no answer at the last row, empty if there is one."""
+        return self._estimator.single(self.points.point(-1))[0].reason
 
     @functools.cached_property
     def published(self) -> NDArray[np.bool_]:
