@@ -68,7 +68,7 @@ def tiles(case: AxisCase, summary: Summary) -> Markup:
         (duration(case.survey.span), 'recorded'),
         (duration(running), f'in motion ({share(running, case.survey.span)})'),
         (share(summary.outside_time, running), 'of the motion outside the optimal zone'),
-        (str(len(summary.events)), 'warnings'),
+        (str(len(summary.events)), 'warning' if len(summary.events) == 1 else 'warnings'),
         (f'{number(summary.energy_lost)} J', 'lost to friction in the screw'),
         (number(summary.revolutions, 4), 'revolutions'),
     )
