@@ -25,7 +25,7 @@ EVEN = 0.05  # [-] of a step, by which samples of an even rate are early or late
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Slice:
+class TimedRows:
     """Rows in the order of their times [s]: numbers by key, NaN for none, and codes by key."""
 
     time: Array
@@ -46,7 +46,7 @@ class Buckets:
         self._high = {key: np.full(count, -np.inf) for key in numbers}
         self._codes = {key: np.zeros(count, dtype=np.uint8) for key in codes}
 
-    def add(self, rows: Slice) -> None:
+    def add(self, rows: TimedRows) -> None:
         """Take rows, in any order."""
         place = np.clip((rows.time / self.width).astype(int), 0, self._count - 1)
         for key, values in rows.numbers.items():
@@ -56,10 +56,10 @@ class Buckets:
         for key, found in rows.codes.items():
             np.maximum.at(self._codes[key], place, found)
 
-    def rows(self) -> Slice:
+    def rows(self) -> TimedRows:
         """Return two rows for each bucket: the smallest, then the largest."""
         middles = (np.arange(2 * self._count) + 0.5) * (self.width / 2.0)
-        return Slice(
+        return TimedRows(
             time=middles.astype(np.float64),
             numbers={key: _pairs(self._low[key], self._high[key]) for key in self._low},
             codes={key: np.repeat(found, 2) for key, found in self._codes.items()},
@@ -71,14 +71,14 @@ def _pairs(low: Array, high: Array) -> Array:
     return np.where(np.isfinite(paired), paired, np.nan)
 
 
-def in_order(rows: Slice) -> Slice:
+def in_order(rows: TimedRows) -> TimedRows:
     """Return rows sorted by time, equal times in the order in which they came."""
     return _chosen(rows, np.argsort(rows.time, kind='stable'))
 
 
-def joined_slices(parts: Sequence[Slice]) -> Slice:
+def joined_rows(parts: Sequence[TimedRows]) -> TimedRows:
     """Return slices, at least one, as one."""
-    return Slice(
+    return TimedRows(
         time=np.concatenate([part.time for part in parts]),
         numbers={
             key: np.concatenate([part.numbers[key] for part in parts]) for key in parts[0].numbers
@@ -87,17 +87,17 @@ def joined_slices(parts: Sequence[Slice]) -> Slice:
     )
 
 
-def between(rows: Slice, stretches: Sequence[tuple[float, float]]) -> Slice:
+def between(rows: TimedRows, stretches: Sequence[tuple[float, float]]) -> TimedRows:
     """Return the rows within stretches of time [s], which are in order and do not overlap."""
     edges = np.array(stretches, dtype=float).reshape(-1)
     return _chosen(rows, np.searchsorted(edges, rows.time, side='right') % 2 == 1)
 
 
-def with_breaks(rows: Slice, longest: float) -> Slice:
+def with_breaks(rows: TimedRows, longest: float) -> TimedRows:
     """Return rows with one of no number, code 0, after each that is followed by a longer hole."""
     holes = np.flatnonzero(np.diff(rows.time) > longest)
     after = rows.time[holes] + 1e-6
-    return Slice(
+    return TimedRows(
         time=np.insert(rows.time, holes + 1, after),
         numbers={
             key: np.insert(values, holes + 1, np.nan) for key, values in rows.numbers.items()
@@ -106,15 +106,15 @@ def with_breaks(rows: Slice, longest: float) -> Slice:
     )
 
 
-def _chosen(rows: Slice, which: NDArray[Any]) -> Slice:
-    return Slice(
+def _chosen(rows: TimedRows, which: NDArray[Any]) -> TimedRows:
+    return TimedRows(
         time=rows.time[which],
         numbers={key: values[which] for key, values in rows.numbers.items()},
         codes={key: values[which] for key, values in rows.codes.items()},
     )
 
 
-def coarse_record(rows: Slice) -> dict[str, Any]:
+def coarse_record(rows: TimedRows) -> dict[str, Any]:
     """Return rows as a page carries them."""
     return {
         'time': floats(rows.time),
@@ -123,7 +123,7 @@ def coarse_record(rows: Slice) -> dict[str, Any]:
     }
 
 
-def fine_record(rows: Slice) -> dict[str, Any]:
+def fine_record(rows: TimedRows) -> dict[str, Any]:
     """Return the numbers of a stretch; its times only where they are not even."""
     record: dict[str, Any] = {
         'begin': float(rows.time[0]),

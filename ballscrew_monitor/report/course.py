@@ -24,8 +24,8 @@ from ballscrew_monitor.report.buckets import (
     coarse_record,
     fine_record,
     in_order,
-    joined_slices,
-    Slice,
+    joined_rows,
+    TimedRows,
     with_breaks,
 )
 from ballscrew_monitor.report.case import AxisCase
@@ -125,25 +125,25 @@ def _merged(stretches: Iterable[tuple[float, float]]) -> list[tuple[float, float
 
 def _columns(
     case: AxisCase, numbers: tuple[str, ...], stretches: list[tuple[float, float]]
-) -> tuple[Slice, list[Slice], float]:
+) -> tuple[TimedRows, list[TimedRows], float]:
     """Return the rows of the whole, those of each stretch, and the width of a bucket [s]."""
     gap = case.settings.timeouts[Source.SPEED] / SECOND
     if case.survey.rows <= SHORT:
-        rows = joined_slices([slice_of(case, block, numbers) for block in case.blocks()])
+        rows = joined_rows([rows_of(case, block, numbers) for block in case.blocks()])
         return with_breaks(in_order(rows), gap), [], 0.0
     buckets = Buckets(case.survey.span, numbers, [key for key, _, _ in BARS])
-    kept: list[Slice] = []
+    kept: list[TimedRows] = []
     for block in case.blocks():
-        rows = slice_of(case, block, numbers)
+        rows = rows_of(case, block, numbers)
         buckets.add(rows)
         kept.append(between(rows, stretches))
-    near = in_order(joined_slices(kept))
+    near = in_order(joined_rows(kept))
     parts = [between(near, [stretch]) for stretch in stretches]
     fine = [with_breaks(part, gap) for part in parts if part.time.size > 1]
     return buckets.rows(), fine, buckets.width
 
 
-def slice_of(case: AxisCase, block: JudgedColumns, numbers: tuple[str, ...]) -> Slice:
+def rows_of(case: AxisCase, block: JudgedColumns, numbers: tuple[str, ...]) -> TimedRows:
     """Return a block in the units of the page; NaN where a number is not measured or judged."""
     line = block.stamp if case.survey.by_stamp else block.log_time
     still = block.gates & STANDSTILL != 0
@@ -158,7 +158,7 @@ def slice_of(case: AxisCase, block: JudgedColumns, numbers: tuple[str, ...]) -> 
         'measured_torque': block.measured_torque,
         'machine_torque': np.where(still, np.nan, block.machine_torque),
     }
-    return Slice(
+    return TimedRows(
         time=(line - case.survey.first) / SECOND,
         numbers={key: made[key] for key in numbers},
         codes=_codes(block, still),

@@ -9,14 +9,14 @@ import math
 from typing import Any
 
 from ballscrew_monitor.core.conversions import seconds
-from ballscrew_monitor.report import parts
+from ballscrew_monitor.report import grounds, parts
 from ballscrew_monitor.report.case import AxisCase
 from ballscrew_monitor.report.course import course_record, FINE_BYTES
 from ballscrew_monitor.report.encoding import script_json
 from ballscrew_monitor.report.map_record import map_record
 from ballscrew_monitor.report.markup import element, joined, Markup, swatch
 from ballscrew_monitor.report.page import CHARTS, page
-from ballscrew_monitor.report.verdict import AxisVerdict, Standing, verdict_of
+from ballscrew_monitor.report.verdict import AxisVerdict, verdict_of, VerdictKind
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -57,7 +57,7 @@ def report_page(log: LogCase) -> str:
         element('h1', f'Ball screw report: {log.name}'),
         element('p', _when(log), class_='muted'),
         *(parts.verdict_part(verdict) for verdict in verdicts_of(log)),
-        *parts.caution(log.axes),
+        *grounds.caution(log.axes),
         *(element('p', f'Note: {note}', class_='hint') for note in log.notes),
         element(
             'noscript', element('p', 'The charts need JavaScript; all else is here without it.')
@@ -78,7 +78,7 @@ def verdicts_of(log: LogCase) -> list[AxisVerdict]:
 
 def _no_rows(axis: str) -> AxisVerdict:
     return AxisVerdict(
-        standing=Standing.UNKNOWN,
+        standing=VerdictKind.UNKNOWN,
         word='Not known',
         sentence=f'the recording holds no usable sample of axis {axis}.',
         remedy='Check topics, fields and joints in the parameters.',
@@ -124,10 +124,10 @@ def _axis_part(name: str, case: AxisCase, chart: Mapping[str, Any], log: LogCase
         ),
         element('div', class_='series'),
         _bar_legend(),
-        parts.torque_part(case),
-        parts.inputs_part(case),
-        parts.gaps_part(case),
-        parts.assumptions_part(case, log.parameters),
+        grounds.torque_part(case),
+        grounds.inputs_part(case),
+        grounds.gaps_part(case),
+        grounds.assumptions_part(case, log.parameters),
         id=name,
     )
 

@@ -125,9 +125,9 @@ def _visited(
     case: AxisCase, speeds: tuple[float, float], loads: tuple[float, float]
 ) -> dict[str, Any]:
     """Return time spent in each cell, path and places of the warnings."""
-    dwell = Dwell(speeds, loads, max_gap=case.settings.timeouts[Source.SPEED])
+    dwell = TimeSpent(speeds, loads, max_gap=case.settings.timeouts[Source.SPEED])
     stride = max(1, case.survey.rows // PATH_POINTS)
-    path, places = [], {event.event_id: Place() for event in case.outcome.events}
+    path, places = [], {event.event_id: MeanPlace() for event in case.outcome.events}
     for block in case.blocks():
         speed = np.abs(block.speed)
         moving = speed >= case.settings.limits.standstill_speed
@@ -145,7 +145,7 @@ def _visited(
     }
 
 
-def _marks(case: AxisCase, places: dict[int, 'Place']) -> Iterable[dict[str, Any]]:
+def _marks(case: AxisCase, places: dict[int, 'MeanPlace']) -> Iterable[dict[str, Any]]:
     """Return where the worst events are on the map, the worst last, to be drawn on top."""
     for event in reversed(case.worst_first[:20]):
         spot = places[event.event_id].middle
@@ -161,7 +161,7 @@ def _marks(case: AxisCase, places: dict[int, 'Place']) -> Iterable[dict[str, Any
             }
 
 
-class Place:
+class MeanPlace:
     """Where most of the samples of an event are: their mean, the speed by its logarithm."""
 
     def __init__(self) -> None:
@@ -180,7 +180,7 @@ class Place:
         return (math.exp(speed / count), load / count) if count else None
 
 
-class Dwell:
+class TimeSpent:
     """Time spent in cells of speed, logarithmic, and opposing load."""
 
     def __init__(

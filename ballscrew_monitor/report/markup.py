@@ -44,7 +44,7 @@ def joined(content: Iterable[str]) -> Markup:
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Cell:
+class TableCell:
     """What a cell shows; `value` is what it is sorted by, `kind` its class."""
 
     text: str
@@ -53,16 +53,16 @@ class Cell:
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Row:
+class TableRow:
     """Cells of a row, and the time [s] that it leads to if any."""
 
-    cells: Sequence[Cell]
+    cells: Sequence[TableCell]
     begin: float | None = None
     end: float | None = None
     kind: str = ''
 
 
-def table(heads: Sequence[str], rows: Iterable[Row], *, kind: str = '') -> Markup:
+def table(heads: Sequence[str], rows: Iterable[TableRow], *, kind: str = '') -> Markup:
     """Return a table; a head that ends in `]`, a unit, is that of a column of numbers."""
     head = (element('th', text, class_=_class_of(text), scope='col') for text in heads)
     body = (_row(row) for row in rows)
@@ -79,7 +79,7 @@ def _class_of(head: str) -> str | None:
     return 'number' if head.endswith(']') else None
 
 
-def _row(row: Row) -> Markup:
+def _row(row: TableRow) -> Markup:
     cells = (
         element('td', cell.text, class_=cell.kind or None, data_value=_stated(cell.value))
         for cell in row.cells

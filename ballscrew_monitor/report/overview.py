@@ -9,7 +9,7 @@ import math
 from urllib.parse import quote
 
 from ballscrew_monitor.report.log_report import AxisLine, LogResult, PAGE
-from ballscrew_monitor.report.markup import Cell, element, joined, Markup, Row, table
+from ballscrew_monitor.report.markup import element, joined, Markup, table, TableCell, TableRow
 from ballscrew_monitor.report.page import page
 from ballscrew_monitor.report.words import counted, duration, NONE, number, percent
 
@@ -92,20 +92,20 @@ def _failures(bad: Sequence[LogEntry]) -> Iterable[Markup]:
         yield element('ul', *items)
 
 
-def _row(one: LogEntry, line: AxisLine) -> Row:
+def _row(one: LogEntry, line: AxisLine) -> TableRow:
     part = line.outside_time / line.running_time if line.running_time else math.nan
     link = element('a', one.name, href=f'{quote(one.folder)}/{PAGE}')
-    return Row(
+    return TableRow(
         cells=(
-            Cell(text=link),
-            Cell(text=line.axis),
-            Cell(text=_date(line.begins), kind='short'),
+            TableCell(text=link),
+            TableCell(text=line.axis),
+            TableCell(text=_date(line.begins), kind='short'),
             _hours(line.recorded),
             _hours(line.running_time),
-            Cell(text=number(100.0 * part), kind='number', value=part),
-            Cell(text=str(line.warnings), kind='number', value=line.warnings),
-            Cell(text=line.worst or NONE, value=line.depth),
-            Cell(
+            TableCell(text=number(100.0 * part), kind='number', value=part),
+            TableCell(text=str(line.warnings), kind='number', value=line.warnings),
+            TableCell(text=line.worst or NONE, value=line.depth),
+            TableCell(
                 text=element('span', line.verdict.partition(':')[0], class_=f'tag {line.standing}')
             ),
         ),
@@ -113,8 +113,8 @@ def _row(one: LogEntry, line: AxisLine) -> Row:
     )
 
 
-def _hours(seconds: float) -> Cell:
-    return Cell(text=number(seconds / 3600.0), kind='number', value=seconds)
+def _hours(seconds: float) -> TableCell:
+    return TableCell(text=number(seconds / 3600.0), kind='number', value=seconds)
 
 
 def _date(begins: float) -> str:

@@ -31,7 +31,7 @@ REMEDIES = {
 }
 
 
-class Standing(enum.Enum):
+class VerdictKind(enum.Enum):
     """What a verdict comes to."""
 
     GOOD = 'good'
@@ -43,7 +43,7 @@ class Standing(enum.Enum):
 class AxisVerdict:
     """The standing, in a word and in the rest of a sentence; why, and what to do."""
 
-    standing: Standing
+    standing: VerdictKind
     word: str
     sentence: str
     why: str = ''
@@ -61,7 +61,7 @@ def verdict_of(case: AxisCase) -> AxisVerdict:
     more = _unjudged_part(case, summary) if unjudged > TOLD_PART else ''
     if not summary.outside_time:
         return AxisVerdict(
-            standing=Standing.GOOD,
+            standing=VerdictKind.GOOD,
             word='Good',
             sentence=f'axis {case.axis} stayed in its optimal zone for all '
             f'{duration(summary.running_time - summary.unjudged_time)} of motion '
@@ -77,7 +77,7 @@ def _unmoved(case: AxisCase) -> AxisVerdict:
     if known and reason in (None, Reason.STANDSTILL, Reason.NO_DIRECTION):
         limit = case.settings.limits.standstill_speed
         return AxisVerdict(
-            standing=Standing.UNKNOWN,
+            standing=VerdictKind.UNKNOWN,
             word='Not known',
             sentence=f'axis {case.axis} never moved: its speed stayed below {limit:g} rad/s, '
             'and at standstill nothing is judged.',
@@ -85,7 +85,7 @@ def _unmoved(case: AxisCase) -> AxisVerdict:
         )
     why = reason.text if reason else 'no motion was recorded'
     return AxisVerdict(
-        standing=Standing.UNKNOWN,
+        standing=VerdictKind.UNKNOWN,
         word='Not known',
         sentence=f'nothing could be judged on axis {case.axis}: {why}.',
         remedy=_remedy(reason),
@@ -96,7 +96,7 @@ def _unjudged(case: AxisCase, summary: Summary, part: float) -> AxisVerdict:
     reason = _main_reason(case)
     why = reason.text if reason else 'the reason is not known'
     return AxisVerdict(
-        standing=Standing.UNKNOWN,
+        standing=VerdictKind.UNKNOWN,
         word='Not known',
         sentence=f'axis {case.axis} could not be judged for {duration(summary.unjudged_time)} '
         f'({percent(part)}) of its motion: {why}.',
@@ -109,13 +109,13 @@ def _outside(case: AxisCase, summary: Summary, more: str) -> AxisVerdict:
     time = f'{duration(summary.outside_time)} ({part} of its motion)'
     if not summary.events:
         return AxisVerdict(
-            standing=Standing.GOOD,
+            standing=VerdictKind.GOOD,
             word='Good',
             sentence=f'axis {case.axis} left its optimal zone for {time}, each time too briefly '
             f'for a warning{more}.',
         )
     return AxisVerdict(
-        standing=Standing.BAD,
+        standing=VerdictKind.BAD,
         word='Outside',
         sentence=f'axis {case.axis} ran outside its optimal zone for {time}, '
         f'with {counted(len(summary.events), "warning")}{more}.',

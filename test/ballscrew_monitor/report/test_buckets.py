@@ -10,8 +10,8 @@ from ballscrew_monitor.report.buckets import (
     Buckets,
     fine_record,
     in_order,
-    joined_slices,
-    Slice,
+    joined_rows,
+    TimedRows,
     with_breaks,
 )
 from hypothesis import given
@@ -22,10 +22,10 @@ import pytest
 numbers = st.floats(-1e9, 1e9) | st.just(math.nan)
 
 
-def make_slice(time, values, codes=None):
+def make_rows(time, values, codes=None):
     time, values = np.array(time, dtype=float), np.array(values, dtype=float)
     codes = np.zeros(time.size, dtype=np.uint8) if codes is None else np.array(codes, np.uint8)
-    return Slice(time=time, numbers={'speed': values}, codes={'zone': codes})
+    return TimedRows(time=time, numbers={'speed': values}, codes={'zone': codes})
 
 
 @given(
@@ -37,7 +37,7 @@ def test_buckets_keep_minima_and_maxima(rows, count, cut):
     time, values = np.array([at for at, _ in rows]), np.array([value for _, value in rows])
     buckets = Buckets(10.0, ['speed'], ['zone'], count=count)
     for part in (slice(0, cut), slice(cut, None)):  # blocks may be of any length
-        buckets.add(make_slice(time[part], values[part]))
+        buckets.add(make_rows(time[part], values[part]))
     kept = buckets.rows().numbers['speed'].reshape(count, 2)
     places = np.minimum((time / buckets.width).astype(int), count - 1)
     for place in range(count):
@@ -50,31 +50,31 @@ def test_buckets_keep_minima_and_maxima(rows, count, cut):
 
 def test_the_worst_code_of_a_bucket_is_kept():
     buckets = Buckets(2.0, ['speed'], ['zone'], count=2)
-    buckets.add(make_slice([0.1, 0.2, 1.5], [1.0, 1.0, 1.0], [2, 4, 1]))
+    buckets.add(make_rows([0.1, 0.2, 1.5], [1.0, 1.0, 1.0], [2, 4, 1]))
     assert buckets.rows().codes['zone'].tolist() == [4, 4, 1, 1]
 
 
 def test_rows_between_include_both_ends_of_a_stretch_but_its_last_instant():
-    rows = make_slice([0.0, 1.0, 2.0, 3.0, 4.0], range(5))
+    rows = make_rows([0.0, 1.0, 2.0, 3.0, 4.0], range(5))
     assert between(rows, [(1.0, 2.5), (4.0, 5.0)]).time.tolist() == [1.0, 2.0, 4.0]
     assert between(rows, []).time.size == 0
 
 
 def test_a_hole_becomes_a_break():
-    rows = with_breaks(make_slice([0.0, 0.1, 5.0], [1.0, 2.0, 3.0], [2, 2, 2]), 1.0)
+    rows = with_breaks(make_rows([0.0, 0.1, 5.0], [1.0, 2.0, 3.0], [2, 2, 2]), 1.0)
     assert np.isnan(rows.numbers['speed'][2])
     assert rows.codes['zone'].tolist() == [2, 2, 0, 2]
     assert (np.diff(rows.time) > 0).all()
 
 
 def test_slices_are_joined_and_sorted():
-    rows = in_order(joined_slices([make_slice([2.0], [1.0]), make_slice([1.0], [2.0])]))
+    rows = in_order(joined_rows([make_rows([2.0], [1.0]), make_rows([1.0], [2.0])]))
     assert rows.numbers['speed'].tolist() == [2.0, 1.0]
 
 
 def test_times_of_a_stretch_are_stated_where_they_are_not_even():
-    even = fine_record(make_slice(np.arange(10) * 0.001, np.arange(10)))
+    even = fine_record(make_rows(np.arange(10) * 0.001, np.arange(10)))
     assert 'time' not in even
     assert (even['begin'], even['end'], even['count']) == (0.0, pytest.approx(0.009), 10)
-    uneven = fine_record(make_slice([0.0, 0.001, 0.005], [1.0, 2.0, 3.0]))
+    uneven = fine_record(make_rows([0.0, 0.001, 0.005], [1.0, 2.0, 3.0]))
     assert len(base64.b64decode(uneven['time']['data'])) == 6

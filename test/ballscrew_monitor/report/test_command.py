@@ -3,6 +3,8 @@
 """`ballscrew replay` with `--out`: exit codes, several recordings, one of them bad."""
 
 import json
+import os
+from pathlib import Path
 import shutil
 
 from ballscrew_monitor import cli
@@ -71,3 +73,24 @@ def test_several_recordings_are_one_json(logs, capsys):
 def test_a_folder_without_recordings_is_bad_input(tmp_path, capsys):
     assert cli.main(['replay', str(tmp_path), '--out', str(tmp_path / 'out')]) == 2
     assert 'holds no recording' in capsys.readouterr().err
+
+
+@pytest.mark.skipif(
+    'BALLSCREW_RECORDINGS' not in os.environ, reason='BALLSCREW_RECORDINGS names no recordings'
+)
+def test_the_real_log_ends_in_a_page_that_says_what_was_assumed(tmp_path, capsys):
+    log = Path(os.environ['BALLSCREW_RECORDINGS']) / 'cnc_mill' / 'experiment_01.csv'
+    assert cli.main(['import', str(log), '--guess']) == 0
+    (tmp_path / 'map.yaml').write_text(capsys.readouterr().out)
+    out = tmp_path / 'out'
+    arguments = ['replay', str(log), '--map', str(tmp_path / 'map.yaml'), '--out', str(out)]
+    assert cli.main(arguments) == 0
+    assert 'nothing was judged on axis z' in capsys.readouterr().err
+    page = (out / 'report.html').read_text()
+    assert 'Assumed, neither measured nor stated: axial load, worked out from the motor ' in page
+    assert 'without a date' in page
+    assert 'M1_CURRENT' not in page  # nor any other column of the part program
+    record = json.loads((out / 'summary.json').read_text())
+    assert set(record['axes']) == {'x', 'y', 'z'}
+    assert record['unjudged_axes'] == ['z']
+    assert not record['axes']['x']['inputs']['load']['measured']

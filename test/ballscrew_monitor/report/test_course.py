@@ -6,7 +6,7 @@ import dataclasses
 
 from ballscrew_monitor.core.judgement import Level, Zone
 from ballscrew_monitor.recordings.columns import LIGHT_LOAD, STANDSTILL
-from ballscrew_monitor.report.course import course_record, SHORT, slice_of
+from ballscrew_monitor.report.course import course_record, rows_of, SHORT
 from ballscrew_monitor.report.log_page import LogCase, report_page
 import numpy as np
 import pytest
@@ -62,7 +62,7 @@ def test_what_is_not_judged_or_only_held_is_a_gap(judged):
     gates = np.array([0, STANDSTILL, LIGHT_LOAD, 0], dtype=np.uint8)
     sources = np.array([1, 1, 1, 3], dtype=np.uint8)
     block = judged.columns(count=4, gates=gates, speed_source=sources)
-    rows = slice_of(judged.case([block]), block, ('speed', 'efficiency', 'rcs'))
+    rows = rows_of(judged.case([block]), block, ('speed', 'efficiency', 'rcs'))
     assert np.isnan(rows.numbers['speed']).tolist() == [False, False, False, True]
     assert np.isnan(rows.numbers['efficiency']).tolist() == [False, True, True, False]
     assert np.isnan(rows.numbers['rcs']).tolist() == [False, True, False, False]
@@ -75,7 +75,7 @@ def test_codes_are_ordered_by_how_bad_they_are(judged):
         level=[Level.UNKNOWN, Level.OK, Level.WARN],
         regime=[3, 2, 1],
     )
-    codes = slice_of(judged.case([block]), block, ()).codes
+    codes = rows_of(judged.case([block]), block, ()).codes
     assert {key: found.tolist() for key, found in codes.items()} == {
         'regime': [1, 2, 3],
         'zone': [2, 3, 4],
@@ -85,7 +85,7 @@ def test_codes_are_ordered_by_how_bad_they_are(judged):
 
 def test_temperature_is_in_degrees_celsius(judged):
     block = judged.columns(count=2)
-    rows = slice_of(judged.case([block]), block, ('temperature',))
+    rows = rows_of(judged.case([block]), block, ('temperature',))
     assert rows.numbers['temperature'].tolist() == pytest.approx([40.0, 40.0])
 
 

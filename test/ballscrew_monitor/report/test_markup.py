@@ -4,7 +4,15 @@
 
 from html.parser import HTMLParser
 
-from ballscrew_monitor.report.markup import Cell, element, joined, Row, share_bar, swatch, table
+from ballscrew_monitor.report.markup import (
+    element,
+    joined,
+    share_bar,
+    swatch,
+    table,
+    TableCell,
+    TableRow,
+)
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -51,7 +59,13 @@ def test_markup_is_not_escaped_twice():
 def test_a_table_states_values_and_moments():
     made = table(
         ('Name', 'Time [s]'),
-        [Row(cells=(Cell(text=HOSTILE), Cell(text='1.5', value=1.5)), begin=1.0, end=2.0)],
+        [
+            TableRow(
+                cells=(TableCell(text=HOSTILE), TableCell(text='1.5', value=1.5)),
+                begin=1.0,
+                end=2.0,
+            )
+        ],
     )
     tags = parsed(made).tags
     assert ('tr', {'data-begin': '1.0000', 'data-end': '2.0000'}) in tags

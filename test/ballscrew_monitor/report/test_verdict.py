@@ -8,7 +8,7 @@ from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.judgement import Zone
 from ballscrew_monitor.core.tally import Totals
 from ballscrew_monitor.recordings.columns import Reason
-from ballscrew_monitor.report.verdict import Standing, verdict_of
+from ballscrew_monitor.report.verdict import verdict_of, VerdictKind
 
 
 def totals(running, optimal, outside=0.0):
@@ -24,7 +24,7 @@ def totals(running, optimal, outside=0.0):
 
 def test_good(judged):
     verdict = verdict_of(judged.case([judged.columns()], totals=totals(60.0, 60.0)))
-    assert verdict.standing is Standing.GOOD
+    assert verdict.standing is VerdictKind.GOOD
     assert verdict.sentence == (
         'axis x stayed in its optimal zone for all 60 s of motion that could be judged.'
     )
@@ -45,7 +45,7 @@ def test_outside_says_how_long_why_and_what_to_do(judged):
         ),
     ]
     verdict = verdict_of(judged.case([judged.columns()], events, totals=totals(60.0, 45.0, 15.0)))
-    assert verdict.standing is Standing.BAD
+    assert verdict.standing is VerdictKind.BAD
     assert verdict.sentence == (
         'axis x ran outside its optimal zone for 15 s (25 % of its motion), with 2 warnings.'
     )
@@ -65,7 +65,7 @@ def test_without_advice_there_is_none(judged):
 
 def test_short_excursions_are_no_warning(judged):
     verdict = verdict_of(judged.case([judged.columns()], totals=totals(60.0, 59.0, 1.0)))
-    assert verdict.standing is Standing.GOOD
+    assert verdict.standing is VerdictKind.GOOD
     assert 'each time too briefly for a warning' in verdict.sentence
 
 
@@ -81,7 +81,7 @@ def test_a_part_that_could_not_be_judged_is_told(judged):
 def test_mostly_unjudged_is_unknown(judged):
     block = judged.columns(reason=Reason.TEMPERATURE_OUT_OF_RANGE, zone=Zone.UNKNOWN)
     verdict = verdict_of(judged.case([block], totals=totals(60.0, 6.0)))
-    assert verdict.standing is Standing.UNKNOWN
+    assert verdict.standing is VerdictKind.UNKNOWN
     assert (
         'could not be judged for 54 s (90 %) of its motion: the oil temperature'
         in verdict.sentence
@@ -92,7 +92,7 @@ def test_mostly_unjudged_is_unknown(judged):
 def test_an_axis_that_never_moved(judged):
     block = judged.columns(speed=0.0, reason=Reason.STANDSTILL, zone=Zone.UNKNOWN)
     verdict = verdict_of(judged.case([block], totals=Totals()))
-    assert verdict.standing is Standing.UNKNOWN
+    assert verdict.standing is VerdictKind.UNKNOWN
     assert 'axis x never moved' in verdict.sentence
     assert 'Check the unit of the speed' in verdict.remedy
 

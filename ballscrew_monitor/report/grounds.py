@@ -1,0 +1,264 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What a report rests on: torque beside the model, inputs, gaps, and what was assumed."""
+
+from collections.abc import Iterable, Sequence
+import math
+
+from ballscrew_monitor.core.conversions import celsius
+from ballscrew_monitor.core.inputs import Source
+from ballscrew_monitor.recordings.columns import Reason
+from ballscrew_monitor.report.case import AxisCase
+from ballscrew_monitor.report.inputs_seen import inputs_seen, InputSeen, NAMES
+from ballscrew_monitor.report.markup import element, joined, Markup, table, TableCell, TableRow
+from ballscrew_monitor.report.words import counted, duration, number, share
+
+TIERS = {
+    'full': 'full model (solved contacts, roughness that rolls)',
+    'closed_form': 'closed-form model (published formulas): an estimate, whose contact begins '
+    'within a factor of two in speed',
+}
+KEYS = {
+    'screw': 'the screw',
+    'oil': 'the oil',
+    'lead_mm': 'its lead',
+    'efficiency': 'efficiency used for the load',
+    'torque_constant_Nm_per_A': 'torque constant of the motor',
+    'time.rate_Hz': 'rate of the samples',
+    'time.epoch': 'date',
+}
+"""Words for what a log may leave to be assumed."""
+
+
+def torque_part(case: AxisCase) -> Markup:
+    """Return how measured and modelled torque compare, nothing where none was measured."""
+    fit = case.survey.torque
+    if not fit.count:
+        return Markup()
+    lines = [
+        f'In motion the measured torque differs from the model by {number(fit.spread)} N m '
+        f'(root mean square) at {number(fit.measured)} N m; on average by '
+        f'{number(fit.forward)} N m forward and {number(fit.backward)} N m backward.'
+    ]
+    lines += _torque_reasons(fit.forward, fit.backward)
+    return joined(
+        [element('h3', 'Torque: measured and modelled'), *(element('p', line) for line in lines)]
+    )
+
+
+def _torque_reasons(forward: float, backward: float) -> list[str]:
+    """Return what a mean difference may come from; both directions must have been seen."""
+    if math.isnan(forward + backward):
+        return ['Only one direction was recorded, so friction and offset cannot be told apart.']
+    # What rounding leaves of equal means is no torque.
+    friction, offset = (round(0.5 * mean, 6) for mean in (forward - backward, forward + backward))
+    said = [
+        f'The part that turns with the direction, {number(friction)} N m, is '
+        + (
+            'friction that the model does not know: wipers, recirculation, bearings, guides. '
+            '`ballscrew identify` fits it.'
+            if friction > 0
+            else 'friction that the model has too much of.'
+        ),
+        f'The part that does not, {number(offset)} N m, is weight of the axis, or a wrong zero.',
+    ]
+    return said
+
+
+def inputs_part(case: AxisCase) -> Markup:
+    """Return what the inputs were like, hints, and what interrupted them."""
+    seen = inputs_seen(case)
+    hints = [hint for one in seen for hint in one.hints]
+    return joined(
+        [
+            element('h3', 'Inputs'),
+            *(element('p', f'Check: {hint}.', class_='hint') for hint in hints),
+            table(
+                (
+                    'Input',
+                    'Source',
+                    'Lowest',
+                    'Highest',
+                    'Unit',
+                    'Rate [Hz]',
+                    'Read from',
+                    'Refused',
+                ),
+                (_input_row(one) for one in seen),
+            ),
+            element(
+                'p', 'Only these columns of the recording were read for this page.', class_='muted'
+            ),
+        ]
+    )
+
+
+def _input_row(seen: InputSeen) -> TableRow:
+    tag = element('span', seen.origin, class_=f'tag {"measured" if seen.measured else "assumed"}')
+    return TableRow(
+        cells=(
+            TableCell(text=NAMES[seen.source]),
+            TableCell(text=tag),
+            TableCell(text=number(seen.low, 4), kind='short'),
+            TableCell(text=number(seen.high, 4), kind='short'),
+            TableCell(text=seen.unit, kind='short'),
+            TableCell(text=number(seen.rate, 4), kind='number'),
+            TableCell(text=seen.place),
+            TableCell(text=seen.refused or 'none' if seen.place else ''),
+        )
+    )
+
+
+def gaps_part(case: AxisCase) -> Markup:
+    """Return how long what could not be judged, and the gaps in the speed."""
+    survey = case.survey
+    reasons = sorted(survey.reasons.items(), key=lambda item: -item[1])
+    rows = [
+        TableRow(
+            cells=(
+                TableCell(text=_reason_text(reason)),
+                TableCell(text=number(time, 4), kind='number', value=time),
+                TableCell(text=share(time, survey.span), kind='short'),
+            )
+        )
+        for reason, time in reasons
+    ]
+    return joined(
+        [
+            element('h3', 'What could be judged'),
+            table(('State', 'Time [s]', 'Of the recording'), rows),
+            *_gap_table(case),
+        ]
+    )
+
+
+def _reason_text(reason: Reason) -> str:
+    if reason is Reason.JUDGED:
+        return 'judged'
+    still = reason is Reason.STANDSTILL
+    return reason.text if still else f'not judged: {reason.text}'
+
+
+def _gap_table(case: AxisCase) -> Iterable[Markup]:
+    survey = case.survey
+    timeout = case.settings.timeouts[Source.SPEED] * 1e-9
+    if not survey.gap_count:
+        yield element('p', f'The speed has no gap longer than its timeout of {timeout:g} s.')
+        return
+    cut = (
+        f', the longest {len(survey.gaps)} are listed'
+        if len(survey.gaps) < survey.gap_count
+        else ''
+    )
+    yield element(
+        'p',
+        f'The speed has {counted(survey.gap_count, "gap")} longer than its timeout of '
+        f'{timeout:g} s, in all {duration(survey.gap_time)}{cut}.',
+    )
+    rows = (
+        TableRow(
+            cells=(
+                TableCell(text=f'{begin:.2f}', kind='number', value=begin),
+                TableCell(text=number(length, 4), kind='number', value=length),
+            ),
+            begin=begin - 1.0,
+            end=begin + length + 1.0,
+        )
+        for begin, length in ((case.since_first(at), gap * 1e-9) for at, gap in survey.gaps)
+    )
+    yield element(
+        'details',
+        element('summary', 'Gaps in the speed'),
+        table(('Begins at [s]', 'Lasts [s]'), rows, kind='leading sortable'),
+    )
+
+
+def caution(cases: Sequence[AxisCase]) -> Iterable[Markup]:
+    """Yield what the verdicts rest on that is neither measured nor stated, if anything."""
+    assumed = dict.fromkeys(name for case in cases for name in _assumed_names(case))
+    if assumed:
+        yield element(
+            'p',
+            f'Assumed, neither measured nor stated: {", ".join(assumed)}. '
+            'The verdict holds as far as these do.',
+            class_='hint',
+        )
+
+
+def _assumed_names(case: AxisCase) -> Iterable[str]:
+    """Yield in words what is assumed of an axis."""
+    if case.load_from:
+        yield f'axial load, worked out from the motor {case.load_from}'
+    if Source.TEMPERATURE not in case.inputs:
+        yield f'oil temperature of {celsius(case.settings.default_temperature):g} °C'
+    for key in case.assumed:
+        if key not in ('load.from', 'load', 'temperature_degC'):
+            yield KEYS.get(key, key.replace('.', ' ').replace('_', ' '))
+
+
+def assumptions_part(case: AxisCase, parameters: str) -> Markup:
+    """Return what the verdict stands on: model, screw, oil, limits, and what was assumed."""
+    surface, limits = case.surface, case.settings.limits
+    facts = [
+        ('Model', TIERS.get(surface.tier, surface.tier), 'stated'),
+        ('Screw', surface.screw_name, _stated(case, 'screw')),
+        ('Lead', f'{1e3 * surface.lead:g} mm', _stated(case, 'lead_mm')),
+        ('Preload', f'{surface.preload:g} N', _stated(case, 'screw')),
+        ('Oil', surface.oil_name, _stated(case, 'oil')),
+        *_conditions(case),
+        (
+            'Limits',
+            f'RCS below {limits.rcs:g}, efficiency from {100 * limits.efficiency:g} %, '
+            f'judged from {limits.light_load:.4g} N and {limits.standstill_speed:g} rad/s on',
+            'stated',
+        ),
+        ('Parameters', parameters, 'stated'),
+    ]
+    rows = [_fact_row(*fact) for fact in facts]
+    rows += [
+        _fact_row(f'Assumed: {key}', f'{one.get("value")}: {one.get("reason", "")}', 'assumed')
+        for key, one in case.assumed.items()
+    ]
+    return joined(
+        [
+            element('h3', 'What this rests on'),
+            table(('What', 'Value', 'Known how'), rows),
+            element(
+                'p',
+                'Screw, oil and model are those that the parameters state; nothing in a recording '
+                'tells whether the machine has them.',
+                class_='muted',
+            ),
+        ]
+    )
+
+
+def _stated(case: AxisCase, key: str) -> str:
+    return 'assumed' if key in case.assumed else 'stated'
+
+
+def _conditions(case: AxisCase) -> list[tuple[str, str, str]]:
+    """Return where oil temperature and load come from."""
+    rows = []
+    for seen in inputs_seen(case):
+        if seen.source in (Source.TEMPERATURE, Source.LOAD):
+            known = 'measured' if seen.measured else 'assumed'
+            text = f'{seen.origin}, {seen.place}' if seen.place else seen.origin
+            rows.append((NAMES[seen.source], text, known))
+    oil = case.survey.oil
+    if math.isfinite(oil.mean):
+        low, high = celsius(oil.low), celsius(oil.high)
+        span = f'{low:.3g} °C' if low == high else f'{low:.3g} to {high:.3g} °C'
+        rows.append(('Oil in motion', span, rows[1][2] if len(rows) > 1 else 'assumed'))
+    return rows
+
+
+def _fact_row(name: str, value: str, known: str) -> TableRow:
+    kind = {'measured': 'tag measured', 'assumed': 'tag assumed'}.get(known, 'tag')
+    return TableRow(
+        cells=(
+            TableCell(text=name),
+            TableCell(text=value),
+            TableCell(text=element('span', known, class_=kind)),
+        )
+    )
