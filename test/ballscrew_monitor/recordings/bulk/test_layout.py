@@ -122,6 +122,7 @@ def test_stamps_are_read_from_the_header():
         (JointState, serialize_message(JointState())[:16] + b'\xff' * 12),
         (Empty, serialize_message(Empty())),
     ],
+    ids=['cut off', 'empty', 'another form', 'absurd length', 'no field'],
 )
 def test_a_message_without_places_has_no_layout(kind, data):
     with pytest.raises(NoLayout):

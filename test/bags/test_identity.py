@@ -1,0 +1,163 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What a node records of any scenario gives its states again, bit for bit."""
+
+import itertools
+from pathlib import Path
+import random
+import re
+import types
+
+from ballscrew_monitor.core.conversions import nanoseconds, SECOND
+from ballscrew_monitor.node.axis import build_axis
+from ballscrew_monitor.node.intake import ordered
+from ballscrew_monitor.node.journal import Journal
+from ballscrew_monitor.node.parameters import read_file
+from ballscrew_monitor.node.topic import Arrival
+from ballscrew_monitor.node.topics import absolute, input_topics
+from ballscrew_monitor.recordings.bag import Bag
+from ballscrew_monitor.recordings.keeper import Keeper, KeepSettings
+from ballscrew_monitor.recordings.own_recording import OwnRecording
+import pytest
+from rclpy.serialization import deserialize_message
+from scenario import generate, PARAMETERS
+from scenarios import SCENARIOS
+
+NOMINAL = Path(__file__).resolve().parents[2] / 'config' / 'nominal_cycle.yaml'
+ALWAYS = KeepSettings(always=True, before=60, after=10, longest=1e9, largest=1e9, total=1e12)
+AXIS = 'x'
+HOLE = 5 * SECOND  # [ns] of a silence that is filled with ticks
+
+
+class Frames(list):
+    """Stands for the process that records: its frames are kept at the end."""
+
+    problem, lost = '', False
+
+    def __init__(self, folder):
+        super().__init__()
+        self.folder = folder
+
+    def put(self, frame):
+        self.append(frame)
+        return True
+
+    def flush(self):
+        return True
+
+    def close(self):
+        keeper = Keeper(self.folder, ALWAYS)
+        for frame in self:
+            keeper.take(frame, 0.0)
+        keeper.close()
+
+
+class Listener:
+    """Does with a bag what the node does with messages that come in bursts, and records it."""
+
+    def __init__(self, bag, values, folder):
+        self.axis = build_axis(AXIS, values)
+        self.values, self.said = values, []
+        self.readers = {absolute(one.topic): one for one in self.axis.inputs}
+        self.journal = Journal('/ballscrew_monitor/journal', lambda: Frames(folder))
+        self.describe('begin', bag.start_time)
+
+    def describe(self, because, now):
+        topics = {one.source.name.lower(): topic for topic, one in self.readers.items()}
+        self.journal.describe(self.axis, self.values, topics, because, now)
+
+    def hear(self, messages):
+        heard = [
+            (
+                self.arrival(message),
+                message.log_time,
+                random.Random(message.log_time).choice([0, 1]),
+            )
+            for message in messages
+        ]
+        self.journal.hear(heard)
+        events = [
+            (
+                self.axis,
+                self.readers[one.topic.name].read(
+                    one.message, now=now, max_future=self.axis.max_future, lost=lost
+                ),
+            )
+            for one, now, lost in heard
+        ]
+        for axis, event in ordered(events):
+            self.publish(axis.monitor.update(event))
+
+    def arrival(self, message):
+        reader = self.readers[message.topic]
+        topic = types.SimpleNamespace(name=message.topic, type_name=reader.type_name)
+        decoded = deserialize_message(message.data, reader.message_type)
+        return Arrival(message.log_time, decoded, 0, topic, message.data)
+
+    def tick(self, grid):
+        self.journal.tick(grid, grid)
+        self.publish(self.axis.monitor.tick(grid))
+        for _ in self.journal.due([AXIS], grid):
+            self.describe('time', grid)
+
+    def publish(self, state):
+        if state is not None:
+            self.said.append(text_of(state))
+
+
+def text_of(state):
+    """Return every digit of a state; the surface of an advice is another one in a replay."""
+    return re.sub('surface=<[^>]*>', '', repr(state))
+
+
+def bursts(messages, draw):
+    """Yield messages in bursts of one to six, as a busy machine hands them over."""
+    messages = iter(messages)
+    while burst := list(itertools.islice(messages, draw.randint(1, 6))):
+        yield burst
+
+
+def listen(bag, values, folder):
+    """Return what was said of a bag while it was recorded into a folder."""
+    listener, period = Listener(bag, values, folder), nanoseconds(values['tick_period'])
+    grid = -(-bag.start_time // period) * period
+    for burst in bursts(bag.messages(input_topics(values)), random.Random(7)):
+        now = burst[-1].log_time
+        for due in range(grid, min(now, grid + HOLE), period):
+            listener.tick(due)
+        grid = max(grid, -(-now // period) * period)
+        listener.hear(burst)
+    listener.journal.close()
+    return listener.said
+
+
+def again(folder):
+    """Return what a replay of the recording says, and the recording."""
+    (path,) = folder.iterdir()
+    own, said = OwnRecording(Bag(path)), []
+    for step in own.steps():
+        if step.event is not None:
+            state = step.axis.monitor.update(step.event)
+        else:
+            state = None if step.tick is None else step.axis.monitor.tick(step.tick)
+        if state is not None:
+            said.append(text_of(state))
+    return said, own
+
+
+@pytest.fixture(params=['nominal_cycle', *SCENARIOS])
+def scenario(request, tmp_path, nominal_bag):
+    """Return a bag and the parameters to judge it with."""
+    if request.param == 'nominal_cycle':
+        return Bag(nominal_bag), read_file(NOMINAL)
+    generate(SCENARIOS[request.param](), tmp_path / 'bag')
+    return Bag(tmp_path / 'bag'), read_file(tmp_path / 'bag' / PARAMETERS)
+
+
+def test_a_recording_of_the_scenario_gives_its_states_again(scenario, tmp_path):
+    said = listen(*scenario, tmp_path / 'recordings')
+    replayed, own = again(tmp_path / 'recordings')
+    assert replayed == said
+    assert len(said) > 50
+    assert own.proven >= 1
+    assert own.refuted == 0
