@@ -88,7 +88,7 @@ def _report_one(args: argparse.Namespace, nominal: Path, log: Path) -> tuple[Res
         _say_origin(parameters)
         with shown_progress(bag.duration) as on_done:
             result = report_log(bag, args.out, parameters, on_share=on_done)
-    _say(*result.notes)
+    _say(*(note for note in result.notes if note not in parameters.sentences))
     if result.unjudged:
         _say(f'nothing was judged on axis {", ".join(result.unjudged)}')
     # With --json, standard output is JSON alone.
@@ -168,10 +168,7 @@ def _print_summary(axis: str, result: Summary | None) -> None:
 
 
 def _say_origin(parameters: LogParameters) -> None:
-    assumed = ', '.join(f'{key} = {one["value"]}' for key, one in parameters.assumptions.items())
-    _say(f'parameters: {parameters.origin}', *parameters.notes)
-    if assumed:
-        _say(f'assumed: {assumed}')
+    _say(f'parameters: {parameters.origin}', *parameters.sentences)
 
 
 def _say(*sentences: str) -> None:

@@ -17,6 +17,7 @@ class LogParameters:
     """
     Values by name, where they come from in words, and what they assume, by what it is about.
 
+    `notes` are about the log, `sentences` all that is to be said of it in a terminal;
     `load_from` says of axes what their load is worked out from, where it is not measured.
 
     """
@@ -25,6 +26,7 @@ class LogParameters:
     origin: str
     assumptions: Mapping[str, Mapping[str, Any]] = dataclasses.field(default_factory=dict)
     notes: Sequence[str] = ()
+    sentences: Sequence[str] = ()
     load_from: Mapping[str, str] = dataclasses.field(default_factory=dict)
 
     @property
@@ -62,6 +64,7 @@ def parameters_for(bag: Bag, given: Path | None, nominal: Path) -> LogParameters
         origin=origin,
         assumptions=assumed,
         notes=facts.notes,
+        sentences=facts.sentences(),
         load_from={
             axis: source
             for axis in values['axes']
