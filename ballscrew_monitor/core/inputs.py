@@ -19,6 +19,7 @@ from ballscrew_monitor.core.fields import (
 )
 
 UNSTATED = -1
+UNDECODED = 'the message does not decode: it is truncated, or of another definition of its type'
 YEAR = (
     31_536_000 * SECOND
 )  # [ns] stamps that far from the clock are those of another kind of clock
@@ -53,7 +54,7 @@ class Why(enum.IntEnum):
     OTHER_CLOCK = 3  # stamps of the wall clock, far ahead of simulated time
     TOO_SHORT = 4  # the array of the field is empty, or ends before the element
     IMPLAUSIBLE = 5  # beyond what the machine can do: a glitch, or another unit
-    NOT_DECODED = 6  # truncated, or of another type; of recordings alone
+    NOT_DECODED = 6  # truncated, or of another definition of its type
     HOLE = 7  # no speed follows from a position and one long before it
 
 
@@ -144,6 +145,10 @@ class Input:
             arrival=now or stamp,
             lost=lost,
         )
+
+    def refuse_undecoded(self, *, now: int, lost: int | None = 0) -> Refusal:
+        """Return why a message that does not decode, received at `now` [ns], gives no sample."""
+        return self._refuse(Why.NOT_DECODED, UNDECODED, now, lost)
 
     def _refuse(self, why: Why, text: str, now: int, lost: int | None) -> Refusal:
         return Refusal(source=self.source, why=why, text=text, arrival=now, lost=lost)

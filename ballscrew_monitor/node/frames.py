@@ -4,7 +4,7 @@
 What a node sends to the process that writes its recording: topics, messages and triggers.
 
 A frame is a head of fixed length and a body. The way from the node never blocks: what the pipe
-does not take waits in a backlog of bounded size, and beyond that frames are dropped and counted.
+does not take waits in a backlog of bounded size, and beyond that frames are dropped.
 
 """
 
@@ -70,14 +70,12 @@ class FrameSender:
         self._most = most
         self._backlog: collections.deque[bytes] = collections.deque()
         self._size = 0
-        self.dropped = 0
         self.broken = False
 
     def put(self, frame: Frame) -> bool:
         """Queue a frame; return False if there is no room for it."""
         data = frame.packed()
         if self._size + len(data) > self._most or self.broken:
-            self.dropped += 1
             return False
         self._backlog.append(data)
         self._size += len(data)

@@ -215,9 +215,12 @@ class Intake(Waitable):
 
 def _events(arrival: Arrival, now: int, lost: int | None) -> list[AxisEvent]:
     """Return what a message that arrived at `now` [ns] of the node's clock says of each axis."""
+    readers, message = arrival.topic.readers, arrival.message
+    if message is None:
+        return [(axis, source.refuse_undecoded(now=now, lost=lost)) for axis, source in readers]
     return [
-        (axis, source.read(arrival.message, now=now, max_future=axis.max_future, lost=lost))
-        for axis, source in arrival.topic.readers
+        (axis, source.read(message, now=now, max_future=axis.max_future, lost=lost))
+        for axis, source in readers
     ]
 
 

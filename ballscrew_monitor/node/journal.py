@@ -28,7 +28,9 @@ VERSION = 1
 LATCHED = ('OutOfZone', 'SurfaceInfo')
 STRING = 'std_msgs/msg/String'
 AXIS_PERIOD = nanoseconds(10.0)  # [ns] after which all is said of an axis again
-RESTART = nanoseconds(2.0)  # [ns] after which a lost process is started again
+RESTART = nanoseconds(2.0)  # [ns] after which a lost process is started again, then twice as long
+LONGEST_RESTART = nanoseconds(60.0)  # [ns]
+HOLE_SHOWN = nanoseconds(10.0)  # [ns] for which a hole is warned of
 Heard = tuple[Arrival, int, int | None]
 """A message, its arrival [ns] on the clock of the node, and how many were lost before it."""
 
@@ -46,7 +48,10 @@ class Journal:
         self._topics: dict[str, int] = {}
         self._unknown_loss: set[str] = set()  # topics whose loss was last said to be unknown
         self._burst = 0
+        self._pause = RESTART
         self._hole = False  # frames were dropped: all must be said anew
+        self._hole_shown = False
+        self._hole_over = -HOLE_SHOWN  # on the steady clock
         self._said: dict[str, int] = {}  # when each axis was, on the steady clock
 
     @property
@@ -54,7 +59,7 @@ class Journal:
         """Return why nothing is recorded, in a sentence, or nothing."""
         if self._process is None:
             return ''
-        return self._process.problem or ('the recording has a hole' if self._hole else '')
+        return self._process.problem or ('the recording has a hole' if self._hole_shown else '')
 
     def hear(self, batch: Sequence[Heard]) -> None:
         """Take messages that were taken in one burst."""
@@ -130,19 +135,20 @@ class Journal:
         }
         self._note(now, entry)
 
-    def due(self, axes: Iterable[str], steady: int) -> list[str]:
+    def due(self, axes: Iterable[str], steady: int, now: int) -> list[str]:
         """Return which axes are to be described again at `steady` [ns]: one; all after a hole."""
         if self._process is None:
             return []
         if self._process.lost:
             self._lost_at = steady if self._lost_at is None else self._lost_at
-            if steady - self._lost_at < RESTART:
+            if steady - self._lost_at < self._pause:
                 return []
             self._restart()
-        if self._hole and self._process.flush():
-            self._hole = False
+        if self._hole and not self._process.lost and self._process.flush():
+            self._hole, self._hole_over = False, steady
             self._said.clear()
-            self._note(0, {'kind': 'hole'})
+            self._note(now, {'kind': 'hole'})
+        self._hole_shown = self._hole or steady - self._hole_over < HOLE_SHOWN
         late = [
             name for name in axes if steady - self._said.get(name, -AXIS_PERIOD) >= AXIS_PERIOD
         ]
@@ -161,6 +167,7 @@ class Journal:
         assert self._start is not None
         self._process.close()
         self._process, self._lost_at = self._start(), None
+        self._pause = min(2 * self._pause, LONGEST_RESTART)
         self._topics.clear()
         self._hole = True
 

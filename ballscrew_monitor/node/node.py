@@ -245,7 +245,8 @@ class BallscrewMonitor(LifecycleNode):
         journal.tick(grid, self.get_clock().now().nanoseconds)
         for station in self._stations.values():
             self._publish(station, station.axis.monitor.tick(grid))
-        due = journal.due(self._stations, self._steady.now().nanoseconds)
+        steady, now = self._steady.now().nanoseconds, self.get_clock().now().nanoseconds
+        due = journal.due(self._stations, steady, now)
         self._chronicle.describe(due, 'time')
 
     def _publish(self, station: Station, state: State | None) -> None:

@@ -3,13 +3,17 @@
 """The process that writes the recording of a node: it is started, fed and asked from here."""
 
 from collections.abc import Callable, Mapping
+import contextlib
+import fcntl
 import functools
 import json
 import os
 from pathlib import Path
+import select
 import subprocess
 import sys
-from typing import Any
+import time
+from typing import Any, IO
 
 from ballscrew_monitor.node.frames import Frame, FrameSender
 from ballscrew_monitor.node.solver_process import worker_environment
@@ -34,6 +38,11 @@ def recording(
     """
     if values['record'] == 'off':
         return None
+    if values['record_total'] < 2.0 * values['record_largest']:
+        raise InputError(
+            f'parameter record_total is {values["record_total"]:g} MB, it must be at least twice '
+            f'record_largest, {values["record_largest"]:g} MB: else each one removes the last'
+        )
     folder = Path(values['record_dir'])
     if values['record_dir'] == AUTO:
         if state is None:
@@ -57,63 +66,79 @@ class RecordingProcess:
     """A writer by name; frames that it has no time for wait here, up to a limit."""
 
     def __init__(self, folder: Path, settings: Mapping[str, Any]) -> None:
-        """Start the writer for recordings in `folder`."""
-        self._process = subprocess.Popen(
-            [sys.executable, '-P', '-m', MODULE, str(folder), json.dumps(dict(settings))],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            bufsize=0,
-            pipesize=PIPE_SIZE,
-            env=worker_environment(),
-            start_new_session=True,
-        )
-        assert self._process.stdin is not None
-        assert self._process.stdout is not None
-        self._out = self._process.stdout.fileno()
-        os.set_blocking(self._out, False)
-        self._sender = FrameSender(self._process.stdin.fileno())
+        """Start the writer for recordings in `folder`; one that cannot be started is lost."""
         self._problem = ''
-
-    @property
-    def pid(self) -> int:
-        """Return the number of the process."""
-        return self._process.pid
+        self._process: subprocess.Popen[bytes] | None = None
+        try:
+            self._process = _started(folder, settings)
+        except OSError as error:
+            self._problem = f'the process that records cannot be started, {error.strerror}'
+            return
+        self._sender = FrameSender(_input(self._process).fileno())
 
     @property
     def lost(self) -> bool:
-        """Tell whether the process has ended."""
+        """Tell whether there is no process, or it has ended."""
+        if self._process is None:
+            return True
         return self._sender.broken or self._process.poll() is not None
 
     @property
     def problem(self) -> str:
         """Return why nothing is recorded, in a sentence, or nothing."""
+        if self._process is None:
+            return f'nothing is recorded: {self._problem}'
         if self.lost:
             return 'nothing is recorded: the process that records has ended, it is started again'
         try:
-            lines = os.read(self._out, LONGEST_LINE).decode(errors='replace').splitlines()
+            lines = os.read(_output(self._process).fileno(), LONGEST_LINE)
         except BlockingIOError:
-            lines = []
-        self._problem = lines[-1] if lines else self._problem
+            lines = b''
+        if lines:
+            self._problem = lines.decode(errors='replace').splitlines()[-1]
         return self._problem
 
     def put(self, frame: Frame) -> bool:
         """Queue a frame; return False if it is lost."""
-        return self._sender.put(frame)
+        return self._process is not None and self._sender.put(frame)
 
     def flush(self) -> bool:
         """Send what can be sent without waiting; return whether that was all."""
-        return self._sender.flush()
+        return self._process is None or self._sender.flush()
 
     def close(self) -> None:
-        """Send what is left and let the process finish its recording."""
-        assert self._process.stdin is not None
-        assert self._process.stdout is not None
-        pipe = self._process.stdin
-        os.set_blocking(pipe.fileno(), True)
-        self._sender.flush()
+        """Send what is left and let the process finish its recording, which may take its time."""
+        if self._process is None:
+            return
+        pipe, end = _input(self._process), time.monotonic() + PATIENCE
+        while not self._sender.flush() and (left := end - time.monotonic()) > 0:
+            select.select([], [pipe], [], left)
         pipe.close()
-        try:
-            self._process.wait(PATIENCE)
-        except subprocess.TimeoutExpired:  # it finishes by itself, whenever that is
-            pass
-        self._process.stdout.close()
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            self._process.wait(max(end - time.monotonic(), 0.0))
+        _output(self._process).close()
+
+
+def _started(folder: Path, settings: Mapping[str, Any]) -> subprocess.Popen[bytes]:
+    process = subprocess.Popen(
+        [sys.executable, '-P', '-m', MODULE, str(folder), json.dumps(dict(settings))],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        bufsize=0,
+        env=worker_environment(),
+        start_new_session=True,
+    )
+    with contextlib.suppress(OSError):  # the limit of this machine may be lower
+        fcntl.fcntl(_input(process), fcntl.F_SETPIPE_SZ, PIPE_SIZE)
+    os.set_blocking(_output(process).fileno(), False)
+    return process
+
+
+def _input(process: subprocess.Popen[bytes]) -> IO[bytes]:
+    assert process.stdin is not None
+    return process.stdin
+
+
+def _output(process: subprocess.Popen[bytes]) -> IO[bytes]:
+    assert process.stdout is not None
+    return process.stdout

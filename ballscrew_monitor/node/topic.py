@@ -28,7 +28,8 @@ class Arrival:
     """
     A message, its arrival on the clock of this machine [ns], and the topic that it is of.
 
-    `data` is the message as it came over the wire, of a topic that is taken so.
+    `data` is the message as it came over the wire, of a topic that is taken so; one that does not
+    decode is None.
 
     """
 
@@ -56,7 +57,7 @@ class Topic:
     def arrival(self, taken: Any, info: Mapping[str, Any]) -> Arrival:
         """Return what was taken with what the middleware says of it."""
         data = taken if self.subscription.raw else b''
-        message = deserialize_message(data, self.subscription.msg_type) if data else taken
+        message = self._decoded(data) if self.subscription.raw else taken
         return Arrival(
             info['received_timestamp'],
             message,
@@ -64,6 +65,13 @@ class Topic:
             self,
             data,
         )
+
+    def _decoded(self, data: bytes) -> Any:
+        """Return the message of some bytes, None if they are of another definition of its type."""
+        try:
+            return deserialize_message(data, self.subscription.msg_type)
+        except RuntimeError:  # that of the middleware is one
+            return None
 
     def waiting(self) -> list[Arrival]:
         """

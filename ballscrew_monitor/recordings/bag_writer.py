@@ -13,6 +13,7 @@ from collections import Counter
 from collections.abc import Mapping
 import dataclasses
 import enum
+import os
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -177,6 +178,11 @@ class BagWriter:
         Path(f'{self.path}{ACTIVE}').replace(self.path)
         text = yaml.safe_dump({'rosbag2_bagfile_information': self._metadata()}, sort_keys=False)
         replace_file(self.path.with_name('metadata.yaml'), text.encode())
+
+    def sync(self) -> None:
+        """Let the disk have what was written; a chunk that still grows is not."""
+        self._file.flush()
+        os.fsync(self._file.fileno())
 
     def abandon(self) -> None:
         """Let go of a file that cannot be finished; what it holds stays as it is."""

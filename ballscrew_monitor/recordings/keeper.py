@@ -25,6 +25,7 @@ from surrogate.files import InputError
 NAME = re.compile(r'\d{8}T\d{6}Z(?:_\d+)?')
 OURS = ('.mcap', f'.mcap{ACTIVE}', 'metadata.yaml')  # how files of a recording end
 MOST_RING = 64 * 2**20  # [B] of frames in memory
+SYNC = 1.0  # [s] between two times that the disk is made to have all
 RETRY = 10.0  # [s] after which writing is tried again
 
 
@@ -57,6 +58,7 @@ class Keeper:
         self._ring_size = 0
         self._writer: BagWriter | None = None
         self._opened = 0.0
+        self._synced = 0.0
         self._size = 0
         self._until = 0.0  # when a recording around an event is complete
         self._retry = 0.0
@@ -65,6 +67,8 @@ class Keeper:
     def take(self, frame: Frame, now: float) -> None:
         """Take a frame at `now` [s] of a clock that only runs on."""
         if now < self._retry:
+            if frame.kind is FrameKind.TOPIC:
+                self._announce(frame)
             return
         try:
             self._take(frame, now)
@@ -72,6 +76,8 @@ class Keeper:
             text = error.strerror if isinstance(error, OSError) else error
             self.problem = f'nothing is recorded in {self._folder}: {text}'
             self._retry = now + RETRY
+            self._ring.clear()  # what follows does not go on from there
+            self._ring_size = 0
             self._abandon()
 
     def close(self) -> None:
@@ -90,6 +96,7 @@ class Keeper:
             self._write_always(frame, now)
         else:
             self._write_around(frame, now)
+        self._sync(now)
 
     def _announce(self, frame: Frame) -> None:
         stated = json.loads(frame.body)
@@ -111,7 +118,6 @@ class Keeper:
             self._write(frame)
             if now >= self._until or self._size >= self._settings.largest:
                 self._finish()
-            return
         self._ring.append((now, frame))
         self._ring_size += len(frame.body)
         while self._ring_size > MOST_RING or now - self._ring[0][0] > self._settings.before:
@@ -126,8 +132,7 @@ class Keeper:
             self._open(first, now)
             for _, kept in self._ring:
                 self._write(kept)
-            self._ring.clear()
-            self._ring_size = 0
+            self._size = 0  # of what is to come
 
     def _open(self, log_time: int, now: float) -> None:
         self._make_room()
@@ -148,6 +153,12 @@ class Keeper:
         )
         self._size += len(frame.body)
 
+    def _sync(self, now: float) -> None:
+        """Let the disk have it now and then: a machine that loses its power loses what follows."""
+        if self._writer is not None and now - self._synced >= SYNC:
+            self._writer.sync()
+            self._synced = now
+
     def _finish(self) -> None:
         writer, self._writer = self._writer, None
         if writer is not None:
@@ -164,7 +175,7 @@ class Keeper:
         moment = datetime.datetime.fromtimestamp(max(log_time, 0) // SECOND, datetime.UTC)
         name = moment.strftime('%Y%m%dT%H%M%SZ')
         number, path = 1, self._folder / name
-        while path.exists():
+        while not _is_made(path):
             number += 1
             path = self._folder / f'{name}_{number}'
         return path
@@ -191,3 +202,12 @@ class Keeper:
         for path in self._folder.iterdir():
             if path.is_dir() and NAME.fullmatch(path.name):
                 yield path
+
+
+def _is_made(path: Path) -> bool:
+    """Make a folder; return False if somebody has made it before, another keeper perhaps."""
+    try:
+        path.mkdir(parents=True)
+    except FileExistsError:
+        return False
+    return True

@@ -9,7 +9,7 @@ time the node wrote down what a monitor remembered, the replayed one must rememb
 
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 import dataclasses
 import json
 from typing import Any
@@ -24,11 +24,13 @@ from ballscrew_monitor.node.correction_store import KeptSolve
 from ballscrew_monitor.node.intake import ordered
 from ballscrew_monitor.node.journal import STRING, VERSION
 from ballscrew_monitor.recordings.bag import Bag, Message
+from ballscrew_monitor.recordings.decoding import decode, UNDECODABLE
 from rclpy.serialization import deserialize_message
 from surrogate.files import InputError
 from surrogate.surface import SurfaceError
 
 JOURNAL = '/journal'
+TOLD = 1000  # messages after which the progress is told
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -93,9 +95,17 @@ class OwnRecording:
         self._burst: list[tuple[Message, int | None]] = []
         self._lost: dict[str, int | None] = {}
 
-    def steps(self) -> Iterator[Step]:
-        """Yield every step; raises InputError for a recording that cannot be replayed here."""
-        for message in self._bag.as_written():
+    def steps(self, on_done: Callable[[float], None] | None = None) -> Iterator[Step]:
+        """
+        Yield every step; raises InputError for a recording that cannot be replayed here.
+
+        `on_done` is told which share is done [-].
+
+        """
+        for number, message in enumerate(self._bag.as_written()):
+            if on_done is not None and number % TOLD == 0:
+                span = max(self._bag.end_time - self._bag.start_time, 1)
+                on_done(min(max((message.log_time - self._bag.start_time) / span, 0.0), 1.0))
             entry = _entry(message) if message.topic == self._journal else None
             if entry is not None and entry['kind'] == 'lost':  # of a message in the burst
                 self._lost[entry['topic']] = entry['count']
@@ -125,18 +135,21 @@ class OwnRecording:
 
     def _take_burst(self) -> Iterator[Step]:
         burst, self._burst = self._burst, []
-        events = [
-            (axis, source.read(decoded, now=one.log_time, max_future=axis.max_future, lost=lost))
-            for one, lost in burst
-            for decoded in [self._decode(one)]
-            for axis, source in self._readers[one.topic]
-        ]
+        events = [event for one, lost in burst for event in self._events(one, lost)]
         for axis, event in ordered(events):
             yield Step(axis=axis, event=event)
 
-    def _decode(self, message: Message) -> Any:
-        kind = self._readers[message.topic][0][1].message_type
-        return deserialize_message(message.data, kind)
+    def _events(
+        self, message: Message, lost: int | None
+    ) -> Iterator[tuple[Axis, InputSample | Refusal]]:
+        """Yield what a message says of each axis."""
+        readers, now = self._readers[message.topic], message.log_time
+        decoded, _ = decode(self._bag, message, readers[0][1].message_type)
+        for axis, one in readers:
+            if decoded is None:
+                yield axis, one.refuse_undecoded(now=now, lost=lost)
+            else:
+                yield axis, one.read(decoded, now=now, max_future=axis.max_future, lost=lost)
 
     def _follow(self, entry: Mapping[str, Any]) -> Iterator[Step]:
         """Take an entry of the journal."""
@@ -146,9 +159,14 @@ class OwnRecording:
         elif entry['kind'] == 'hole':  # until each axis is described anew
             self._axes, self._readers, self._entries = {}, {}, {}
         elif entry['kind'] == 'axis':
-            yield from self._describe(entry)
+            try:
+                step = self._describe(entry)
+            except (KeyError, TypeError, AttributeError) as error:
+                raise InputError(f'{self._journal}: an axis is described badly: {error}') from None
+            if step is not None:
+                yield step
 
-    def _describe(self, entry: Mapping[str, Any]) -> Iterator[Step]:
+    def _describe(self, entry: Mapping[str, Any]) -> Step | None:
         """Hold an axis against what is said of it, or make it as is said."""
         name = entry['axis']
         self._lost = dict.fromkeys(entry['loss_unknown'])
@@ -158,14 +176,14 @@ class OwnRecording:
             self.proven += same
             self.refuted += not same
             if same:
-                return
+                return None
         axis = self._rebuilt(known, entry)
         self._axes[name], self._entries[name] = axis, entry
         self._readers = {}
         for one in self._axes.values():
             for source in one.inputs:
                 self._readers.setdefault(source.topic, []).append((one, source))
-        yield Step(axis=axis, because=entry['because'])
+        return Step(axis=axis, because=entry['because'])
 
     def _rebuilt(self, known: Axis | None, entry: Mapping[str, Any]) -> Axis:
         """Return an axis as an entry describes it; what is the same as before is not made anew."""
@@ -183,11 +201,11 @@ class OwnRecording:
 
 
 def _entry(message: Message) -> Mapping[str, Any]:
-    text = deserialize_message(message.data, message_class(STRING)).data
     try:
+        text = deserialize_message(message.data, message_class(STRING)).data
         entry: Mapping[str, Any] = json.loads(text)
         known = entry['kind'] != 'axis' or entry['version'] == VERSION
-    except (ValueError, KeyError, TypeError) as error:
+    except (*UNDECODABLE, KeyError, TypeError) as error:
         raise InputError(f'{message.topic}: no entry of a journal ({error})') from None
     if not known:
         raise InputError(

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the monitors of a node said, again, out of the recording that the node made of itself."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
 from ballscrew_monitor.core.state import Event, State
@@ -12,6 +12,7 @@ from ballscrew_monitor.recordings.columns import AxisOutcome, JudgedColumns
 from ballscrew_monitor.recordings.own_recording import OwnRecording, Step
 from ballscrew_monitor.recordings.rows import RowCollector
 
+OnDone = Callable[[float], None] | None
 BLOCK = 65536  # rows of an axis that are handed on at once
 
 
@@ -29,7 +30,7 @@ class TimedState(NamedTuple):
     event: Event | None
 
 
-def own_states(bag: Bag) -> Iterator[TimedState]:
+def own_states(bag: Bag, on_done: OnDone = None) -> Iterator[TimedState]:
     """
     Yield every state that the node published.
 
@@ -38,7 +39,7 @@ def own_states(bag: Bag) -> Iterator[TimedState]:
     """
     ended: dict[str, Event | None] = {}
     last: dict[str, Event] = {}
-    for step in OwnRecording(bag).steps():
+    for step in OwnRecording(bag).steps(on_done):
         name, monitor = step.axis.name, step.axis.monitor
         state = _take(step)
         if step.because and name in last and last[name].active and not monitor.event.active:
@@ -49,10 +50,10 @@ def own_states(bag: Bag) -> Iterator[TimedState]:
             yield TimedState(_log_time(step), step.axis, state, event)
 
 
-def own_columns(bag: Bag) -> Iterator[JudgedColumns | AxisOutcome]:
+def own_columns(bag: Bag, on_done: OnDone = None) -> Iterator[JudgedColumns | AxisOutcome]:
     """Yield every row that the node judged, in blocks, and at last what each axis comes to."""
     collectors: dict[str, RowCollector] = {}
-    for step in OwnRecording(bag).steps():
+    for step in OwnRecording(bag).steps(on_done):
         name = step.axis.name
         if name not in collectors:
             collectors[name] = RowCollector(name, step.axis.monitor)

@@ -94,7 +94,7 @@ def replay_states(
 ) -> Iterator[TimedState]:
     """Yield what `replay` does before it is made a message."""
     if is_as_recorded(bag, values):
-        return own_states(bag)
+        return own_states(bag, on_done)
     axes = axes_for(bag, values)
     period = nanoseconds(values['tick_period'])
     entries = ordered_entries(bag, axes, period, on_done=on_done)
@@ -112,7 +112,7 @@ def replay_columns(
 
     """
     if is_as_recorded(bag, values):
-        return own_columns(bag)
+        return own_columns(bag, on_done)
     axes = axes_for(bag, values)
     period = nanoseconds(values['tick_period'])
     entries = ordered_entries(bag, axes, period, on_done=on_done)

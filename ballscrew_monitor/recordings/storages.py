@@ -13,6 +13,7 @@ from collections.abc import Collection, Generator, Iterable, Iterator
 import contextlib
 import dataclasses
 import heapq
+import itertools
 from pathlib import Path
 import struct
 from typing import Any
@@ -98,7 +99,7 @@ class McapStorage:
             yield from self._whole(wanted, reorder=not as_written)
             return
         if as_written:
-            yield from self._indexed(wanted, reorder=False)
+            yield from self._as_written(wanted)
             return
         last = -1
         try:
@@ -110,6 +111,18 @@ class McapStorage:
                 raise
             self.note = f'{error}; what is whole of it is used'
             yield from (late for late in self._whole(wanted) if late.log_time > last)
+
+    def _as_written(self, wanted: Collection[str]) -> Iterator[Message]:
+        count = 0
+        try:
+            for message in self._indexed(wanted, reorder=False):
+                yield message
+                count += 1
+        except InputError as error:
+            if not self.salvage:
+                raise
+            self.note = f'{error}; what is whole of it is used'
+            yield from itertools.islice(self._whole(wanted, reorder=False), count, None)
 
     def _indexed(self, wanted: Collection[str], *, reorder: bool = True) -> Iterator[Message]:
         with damage_is_input(self.file), self.file.open('rb') as stream:

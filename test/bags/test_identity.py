@@ -97,7 +97,7 @@ class Listener:
     def tick(self, grid):
         self.journal.tick(grid, grid)
         self.publish(self.axis.monitor.tick(grid))
-        for _ in self.journal.due([AXIS], grid):
+        for _ in self.journal.due([AXIS], grid, grid):
             self.describe('time', grid)
 
     def publish(self, state):

@@ -8,6 +8,7 @@ import types
 from ballscrew_monitor.core.loss import LossCounter
 from ballscrew_monitor.node.topic import Topic
 import pytest
+from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
 
 
@@ -34,3 +35,13 @@ def test_what_waits_while_the_publishers_change_has_no_number(before, after):
     assert topic.loss.publishers == before  # until there is a message to count
     assert losses(3, 41) == [None, None]
     assert losses(42, 44) == ([None, None] if after > 1 else [0, 1])
+
+
+def test_bytes_that_do_not_decode_are_a_message_that_is_none():
+    """A publisher with another definition of the type must not end the node."""
+    subscription = types.SimpleNamespace(msg_type=JointState, raw=True)
+    topic = Topic(name='/a', readers=[], loss=LossCounter(), subscription=subscription)
+    info = {'received_timestamp': 1, 'publication_sequence_number': 1}
+    garbage = b'\0\1\0\0' + b'\xff' * 12
+    found = topic.arrival(garbage, info)
+    assert (found.message, found.data) == (None, garbage)

@@ -157,3 +157,29 @@ def test_a_topic_that_comes_later_is_recorded_too(tmp_path, always):
     keeper.close()
     (path,) = tmp_path.iterdir()
     assert [one.topic for one in Bag(path).messages()] == ['/a'] * 3 + ['/b']
+
+
+def test_an_event_soon_after_another_is_shown_with_what_was_before_it(tmp_path):
+    keeper = keeper_in(tmp_path, always=False)
+    feed(keeper, range(40), triggers=(20, 25))
+    keeper.close()
+    assert [*seconds_in(tmp_path).values()] == [[*range(14, 23)], [*range(19, 28)]]
+
+
+def test_a_topic_that_is_announced_while_nothing_can_be_written_is_known_later(
+    tmp_path, monkeypatch
+):
+    keeper = keeper_in(tmp_path)
+
+    def refuse(*unused):
+        raise OSError(errno.ENOSPC, 'No space left on device')
+
+    with monkeypatch.context() as context:
+        context.setattr(keeper, '_write', refuse)
+        feed(keeper, [0])
+    body = json.dumps({'name': '/b', 'type': 'std_msgs/msg/Float64', 'offer': 'LATCHED'})
+    keeper.take(Frame(FrameKind.TOPIC, topic=4, body=body.encode()), 1.0)
+    keeper.take(Frame(FrameKind.MESSAGE, 4, EPOCH + 20 * SECOND, 0, 0, DATA), 20.0)
+    keeper.close()
+    assert keeper.problem == ''
+    assert seconds_in_last(tmp_path / '20231114T221340Z') == 20

@@ -103,7 +103,7 @@ class SmallNode:
         for axis in self.axes.values():
             self.publish(axis, axis.monitor.tick(grid))
         self.process.now = (self.now - BEGIN) / SECOND
-        self.describe('time', self.journal.due(self.axes, self.now - BEGIN))
+        self.describe('time', self.journal.due(self.axes, self.now - BEGIN, self.now))
 
     def publish(self, axis, state):
         if state is not None:
