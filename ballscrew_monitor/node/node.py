@@ -17,6 +17,7 @@ from ballscrew_monitor.node.correction_store import CorrectionStore
 from ballscrew_monitor.node.event_log import Kind
 from ballscrew_monitor.node.intake import Intake
 from ballscrew_monitor.node.keeping import Keeping
+from ballscrew_monitor.node.latched_topics import LatchedTopics
 from ballscrew_monitor.node.parameter_store import ParameterStore
 from ballscrew_monitor.node.qos import check_overrides, longest_period
 from ballscrew_monitor.node.reported import reported
@@ -60,6 +61,7 @@ class BallscrewMonitor(LifecycleNode):
             self._values['diagnostics_period'], self._publish_diagnostics, clock=self._steady
         )
         self.create_service(EvaluateOperatingPoint, '~/evaluate', self._on_evaluate)
+        self._latched = {name: LatchedTopics(self, name) for name in self._values['axes']}
         self._folder = StateFolder(
             state_directory(self._values['state_dir'], self.get_fully_qualified_name()),
             limit=round(self._values['state_limit'] * MEGABYTE),
@@ -114,6 +116,7 @@ class BallscrewMonitor(LifecycleNode):
                 axis,
                 self._values,
                 self._corrections,
+                latched=self._latched[axis.name],
                 keeping=self._keeping,
                 record=self._chronicle.record,
                 changed=self._chronicle.describe,

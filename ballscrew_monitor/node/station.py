@@ -4,7 +4,6 @@
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 import dataclasses
-import functools
 from typing import Any
 
 from ballscrew_monitor.core.conversions import nanoseconds
@@ -21,6 +20,7 @@ from ballscrew_monitor.node.axis import Axis
 from ballscrew_monitor.node.correction_store import CorrectionStore
 from ballscrew_monitor.node.event_log import Kind, point_facts
 from ballscrew_monitor.node.keeping import Keeping
+from ballscrew_monitor.node.latched_topics import LatchedTopics, quiet_publishers
 from ballscrew_monitor.node.messages import (
     fill_result,
     read_point,
@@ -30,23 +30,17 @@ from ballscrew_monitor.node.messages import (
 )
 from ballscrew_monitor.node.plain_topics import PlainTopics
 from ballscrew_monitor.node.qos import state_qos
-from ballscrew_msgs.msg import BallScrewState, OperatingPoint, OutOfZone, PointResult, SurfaceInfo
+from ballscrew_msgs.msg import BallScrewState, OperatingPoint, PointResult
 from ballscrew_msgs.srv import EvaluateOperatingPoint
 from diagnostic_msgs.msg import DiagnosticStatus
-from rclpy.event_handler import PublisherEventCallbacks
 from rclpy.lifecycle import LifecycleNode
-from rclpy.qos import QoSDurabilityPolicy, QoSProfile, QoSReliabilityPolicy
+from rclpy.qos import QoSProfile, QoSReliabilityPolicy
 from surrogate.files import InputError
 from surrogate.surface import Surface, SurfaceError, SurfacePoint
 
 STATE_QOS = QoSProfile(depth=10, reliability=QoSReliabilityPolicy.RELIABLE)
 LOG_INTERVAL = nanoseconds(1.0)  # [ns] shortest time between two lines about the inputs
 NEWS_INTERVAL = nanoseconds(0.1)  # [ns] shortest time between two diagnostics sent for a change
-LATCHED_QOS = QoSProfile(
-    depth=1,
-    reliability=QoSReliabilityPolicy.RELIABLE,
-    durability=QoSDurabilityPolicy.TRANSIENT_LOCAL,
-)
 
 
 class Station:
@@ -59,12 +53,13 @@ class Station:
         values: Mapping[str, Any],
         store: CorrectionStore,
         *,
+        latched: LatchedTopics,
         keeping: Keeping,
         record: Callable[[str, Any], None],
         changed: Callable[[Iterable[str], str], None],
     ) -> None:
         """
-        Make the publishers, which stay silent until the node is active.
+        Make the publishers, which stay silent until the node is active; `latched` are there.
 
         `values` are the parameters as they are at any time; corrections are kept in the `store`,
         and `keeping` is told what happens. `record` is given each message with its topic,
@@ -88,24 +83,19 @@ class Station:
         self._said_at = -NEWS_INTERVAL
         self._logged: diagnostics.StatusSummary | None = None
         self._logged_at = -LOG_INTERVAL
-        # rclpy looks at every event of every publisher in every round. What these would warn of,
-        # a subscriber with QoS that does not fit, its own node warns of too.
-        quiet = {'event_callbacks': PublisherEventCallbacks(use_default_callbacks=False)}
-        make = functools.partial(node.create_lifecycle_publisher, **quiet)
+        make = quiet_publishers(node)
         simulated = node.get_parameter('use_sim_time').value
         promise = state_qos(axis.name, values, simulated=simulated)
         self._state = make(BallScrewState, f'~/{axis.name}/state', promise)
-        self._event = make(OutOfZone, f'~/{axis.name}/out_of_zone', LATCHED_QOS)
-        self.alarm = Alarm(node, axis, self._event, keeping, record)
-        self._info = make(SurfaceInfo, f'~/{axis.name}/surface_info', LATCHED_QOS)
+        self.alarm = Alarm(node, axis, latched.event, keeping, record)
+        self._info = latched.info
         self._plain = None
         if values[f'{axis.name}.plain_topics']:
             self._plain = PlainTopics(node, axis.name, make, STATE_QOS)
 
     def close(self) -> None:
-        """Destroy the publishers."""
-        for publisher in (self._state, self._event, self._info):
-            self._node.destroy_lifecycle_publisher(publisher)
+        """Destroy the publishers, but for those that outlive the axis."""
+        self._node.destroy_lifecycle_publisher(self._state)
         if self._plain is not None:
             self._plain.close()
 

@@ -37,6 +37,9 @@ def test_on_cleanup(outside):
         'ended by the node, not by the axis, nothing is judged any more: not configured'
     )
     assert advice in node.output.read_text()
+    late = node.listen(OutOfZone, f'{node.name}/x/out_of_zone', LATCHED)
+    node.until(lambda: late, 'the last word for one who comes late')
+    assert (late[0].active, late[0].advice) == (False, advice)
     assert node.transition('configure')
     assert node.transition('activate')
     node.until(lambda: heard[-1].event_id == 0, 'that there has been no event yet')
