@@ -32,6 +32,8 @@ REFUSALS = {
     Why.OTHER_CLOCK: 'stamped by another clock',
     Why.TOO_SHORT: 'too short an array',
     Why.IMPLAUSIBLE: 'beyond what is plausible',
+    Why.NOT_DECODED: 'that do not decode',
+    Why.HOLE: 'too long after the position before',
 }
 
 

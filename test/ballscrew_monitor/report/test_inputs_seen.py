@@ -6,7 +6,7 @@ import math
 
 from ballscrew_monitor.core.health import InputState
 from ballscrew_monitor.core.inputs import Source, Why
-from ballscrew_monitor.report.inputs_seen import inputs_seen
+from ballscrew_monitor.report.inputs_seen import inputs_seen, REFUSALS
 import numpy as np
 import pytest
 
@@ -57,6 +57,10 @@ def test_refused_samples_are_counted_by_why(judged):
     load = seen_of(judged.case([judged.columns()], refused=refused), Source.LOAD)
     assert load.refused == '7 beyond what is plausible, 2 not a number'
     assert 'check x.load.unit and scale' in load.hints[0]
+
+
+def test_every_reason_of_a_refusal_has_words():
+    assert set(REFUSALS) == set(Why)
 
 
 def test_an_input_that_never_came(judged):
