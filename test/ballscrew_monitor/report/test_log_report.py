@@ -10,6 +10,7 @@ from ballscrew_monitor.node.topics import absolute
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
 from ballscrew_monitor.recordings.replay import replay
+from ballscrew_monitor.report.judged_bag import write_judged_bag
 from ballscrew_monitor.report.log_report import report_log
 from ballscrew_monitor.report.parameters import LogParameters, parameters_for
 from ballscrew_msgs.msg import BallScrewState
@@ -76,6 +77,14 @@ def test_the_judged_bag_holds_inputs_and_what_the_node_would_say(reported, short
     assert [(stamp_of(state), state.zone, state.judged) for _, state in found] == wanted
     speeds = [message.log_time for message in original.messages(['/joint_states'])]
     assert [log_time for log_time, _ in found] == speeds
+
+
+def test_the_judged_bag_says_of_what_log_it_is(short_bag, params, tmp_path):
+    bag = Bag(short_bag)
+    own = {'ballscrew_monitor.source': 'log.csv', 'ballscrew_monitor.notes': '[]'}
+    bag.metadata = own | {'robot': 'press 7'}
+    write_judged_bag(bag, read_file(params), tmp_path / 'judged')
+    assert Bag(tmp_path / 'judged').metadata == own
 
 
 def test_a_message_that_does_not_decode_is_counted(short_bag, params, tmp_path):
