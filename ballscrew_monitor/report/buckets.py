@@ -13,7 +13,7 @@ import dataclasses
 from typing import Any
 
 from ballscrew_monitor.report.encoding import codes as encoded_codes
-from ballscrew_monitor.report.encoding import floats, packed
+from ballscrew_monitor.report.encoding import doubles, floats, packed
 import numpy as np
 from numpy.typing import NDArray
 
@@ -117,7 +117,7 @@ def _chosen(rows: TimedRows, which: NDArray[Any]) -> TimedRows:
 def coarse_record(rows: TimedRows) -> dict[str, Any]:
     """Return rows as a page carries them."""
     return {
-        'time': floats(rows.time),
+        'time': doubles(rows.time),
         'columns': {key: floats(values) for key, values in rows.numbers.items()},
         'codes': {key: encoded_codes(values) for key, values in rows.codes.items()},
     }

@@ -8,6 +8,7 @@ import math
 from typing import Any
 
 from ballscrew_monitor.core.conversions import Scaling, SECOND
+from ballscrew_monitor.core.estimate import PointSource
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.core.state import MonitorSettings
 from ballscrew_monitor.recordings.columns import AxisOutcome, JudgedColumns
@@ -44,7 +45,8 @@ class AxisCase:
     An axis that has rows; `inputs` holds those that have a topic.
 
     `load_from` is the input that its load is worked out from, empty where the load is measured;
-    `assumed` says by name what else is not known, each with value and reason.
+    `assumed` says by name what else is not known, each with value and reason; `stated` names what
+    the map of a log says. `nominal`: the parameters are those taken where nobody gave any.
 
     """
 
@@ -57,6 +59,27 @@ class AxisCase:
     blocks: Blocks
     load_from: str = ''
     assumed: Mapping[str, Mapping[str, Any]] = dataclasses.field(default_factory=dict)
+    stated: frozenset[str] = frozenset()
+    nominal: bool = False
+
+    @property
+    def load_origin(self) -> str:
+        """Return in words what its load is worked out from, empty where it is measured."""
+        if self.load_from:
+            return f'worked out from the motor {self.load_from.removeprefix("motor_")}'
+        derived = PointSource.DERIVED in self.survey.sources[Source.LOAD]
+        return 'worked out from the motor torque' if derived else ''
+
+    @property
+    def torque_from_current(self) -> bool:
+        """Tell whether its motor torque is a current times the torque constant of the map."""
+        named = self.stated | set(self.assumed)
+        return 'current.column' in named and 'torque.column' not in named
+
+    @property
+    def default_temperature_known(self) -> str:
+        """Return how its default oil temperature is known, stated or assumed."""
+        return 'stated' if 'temperature_degC' in self.stated else 'assumed'
 
     def since_first(self, stamp: int) -> float:
         """Return a stamp [ns] as time on the time line of the page [s]."""

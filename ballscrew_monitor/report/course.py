@@ -36,6 +36,7 @@ from surrogate.units import RPM
 
 SHORT = 2 * BUCKETS  # rows up to which all are kept
 WORST, AROUND = 50, 1.0  # events of which every sample is kept, and for how long about an end [s]
+SHADED = 1000  # events that are shaded, the worst
 FINE_BYTES = 3_750_000  # of all stretches in the page, in base64
 SAMPLE_BYTES = 8 / 3  # of one number of a stretch in the page
 # What is drawn of codes: the largest of a bucket, so the worst comes last.
@@ -81,7 +82,7 @@ def course_record(case: AxisCase, fine_bytes: int = FINE_BYTES) -> dict[str, Any
         ],
         'events': [
             {'begin': case.since_first(event.start), 'end': case.since_first(event.end)}
-            for event in case.outcome.events
+            for event in case.worst_first[:SHADED]
         ],
         'panels': [
             panel for panel in panels(case.settings.limits) if panel['series'][0]['key'] in numbers

@@ -19,6 +19,11 @@ def floats(values: ArrayLike) -> str:
     return base64.b64encode(np.asarray(values, dtype='<f4').tobytes()).decode()
 
 
+def doubles(values: ArrayLike) -> str:
+    """Return numbers as base64 of little-endian float64."""
+    return base64.b64encode(np.asarray(values, dtype='<f8').tobytes()).decode()
+
+
 def codes(values: ArrayLike) -> str:
     """Return small whole numbers as base64 of bytes."""
     return base64.b64encode(np.asarray(values, dtype=np.uint8).tobytes()).decode()

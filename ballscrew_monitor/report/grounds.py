@@ -28,6 +28,7 @@ KEYS = {
     'time.epoch': 'date',
 }
 """Words for what a log may leave to be assumed."""
+TAGS = {'measured': 'tag measured', 'stated': 'tag', 'assumed': 'tag assumed'}
 
 
 def torque_part(case: AxisCase) -> Markup:
@@ -94,7 +95,8 @@ def inputs_part(case: AxisCase) -> Markup:
 
 
 def _input_row(seen: InputSeen) -> TableRow:
-    tag = element('span', seen.origin, class_=f'tag {"measured" if seen.measured else "assumed"}')
+    tag = element('span', seen.origin, class_=TAGS[seen.known])
+    rate = number(seen.rate, 4) + (' assumed' if seen.rate_assumed else '')
     return TableRow(
         cells=(
             TableCell(text=NAMES[seen.source]),
@@ -102,7 +104,7 @@ def _input_row(seen: InputSeen) -> TableRow:
             TableCell(text=number(seen.low, 4), kind='short'),
             TableCell(text=number(seen.high, 4), kind='short'),
             TableCell(text=seen.unit, kind='short'),
-            TableCell(text=number(seen.rate, 4), kind='number'),
+            TableCell(text=rate, kind='number'),
             TableCell(text=seen.place),
             TableCell(text=seen.refused or 'none' if seen.place else ''),
         )
@@ -187,9 +189,11 @@ def caution(cases: Sequence[AxisCase]) -> Iterable[Markup]:
 
 def _assumed_names(case: AxisCase) -> Iterable[str]:
     """Yield in words what is assumed of an axis."""
-    if case.load_from:
-        yield f'axial load, worked out from the motor {case.load_from}'
-    if Source.TEMPERATURE not in case.inputs:
+    if case.nominal:
+        yield from (KEYS['screw'], KEYS['oil'])
+    if case.load_origin:
+        yield f'axial load, {case.load_origin}'
+    if Source.TEMPERATURE not in case.inputs and case.default_temperature_known == 'assumed':
         yield f'oil temperature of {celsius(case.settings.default_temperature):g} °C'
     for key in case.assumed:
         if key not in ('load.from', 'load', 'temperature_degC'):
@@ -200,7 +204,7 @@ def assumptions_part(case: AxisCase, parameters: str) -> Markup:
     """Return what the verdict stands on: model, screw, oil, limits, and what was assumed."""
     surface, limits = case.surface, case.settings.limits
     facts = [
-        ('Model', TIERS.get(surface.tier, surface.tier), 'stated'),
+        ('Model', TIERS.get(surface.tier, surface.tier), _stated(case, 'surface')),
         ('Screw', surface.screw_name, _stated(case, 'screw')),
         ('Lead', f'{1e3 * surface.lead:g} mm', _stated(case, 'lead_mm')),
         ('Preload', f'{surface.preload:g} N', _stated(case, 'screw')),
@@ -210,9 +214,9 @@ def assumptions_part(case: AxisCase, parameters: str) -> Markup:
             'Limits',
             f'RCS below {limits.rcs:g}, efficiency from {100 * limits.efficiency:g} %, '
             f'judged from {limits.light_load:.4g} N and {limits.standstill_speed:g} rad/s on',
-            'stated',
+            _stated(case, 'limits'),
         ),
-        ('Parameters', parameters, 'stated'),
+        ('Parameters', parameters, _stated(case, 'parameters')),
     ]
     rows = [_fact_row(*fact) for fact in facts]
     rows += [
@@ -225,8 +229,8 @@ def assumptions_part(case: AxisCase, parameters: str) -> Markup:
             table(('What', 'Value', 'Known how'), rows),
             element(
                 'p',
-                'Screw, oil and model are those that the parameters state; nothing in a recording '
-                'tells whether the machine has them.',
+                'Screw, oil and model are those of the parameters; nothing in a recording tells '
+                'whether the machine has them.',
                 class_='muted',
             ),
         ]
@@ -234,7 +238,7 @@ def assumptions_part(case: AxisCase, parameters: str) -> Markup:
 
 
 def _stated(case: AxisCase, key: str) -> str:
-    return 'assumed' if key in case.assumed else 'stated'
+    return 'assumed' if case.nominal or key in case.assumed else 'stated'
 
 
 def _conditions(case: AxisCase) -> list[tuple[str, str, str]]:
@@ -242,9 +246,8 @@ def _conditions(case: AxisCase) -> list[tuple[str, str, str]]:
     rows = []
     for seen in inputs_seen(case):
         if seen.source in (Source.TEMPERATURE, Source.LOAD):
-            known = 'measured' if seen.measured else 'assumed'
             text = f'{seen.origin}, {seen.place}' if seen.place else seen.origin
-            rows.append((NAMES[seen.source], text, known))
+            rows.append((NAMES[seen.source], text, seen.known))
     oil = case.survey.oil
     if math.isfinite(oil.mean):
         low, high = celsius(oil.low), celsius(oil.high)
@@ -254,11 +257,10 @@ def _conditions(case: AxisCase) -> list[tuple[str, str, str]]:
 
 
 def _fact_row(name: str, value: str, known: str) -> TableRow:
-    kind = {'measured': 'tag measured', 'assumed': 'tag assumed'}.get(known, 'tag')
     return TableRow(
         cells=(
             TableCell(text=name),
             TableCell(text=value),
-            TableCell(text=element('span', known, class_=kind)),
+            TableCell(text=element('span', known, class_=TAGS[known])),
         )
     )

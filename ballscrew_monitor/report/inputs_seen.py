@@ -32,6 +32,8 @@ REFUSALS = {
     Why.OTHER_CLOCK: 'stamped by another clock',
     Why.TOO_SHORT: 'too short an array',
     Why.IMPLAUSIBLE: 'beyond what is plausible',
+    Why.NOT_DECODED: 'that do not decode',
+    Why.HOLE: 'too long after the position before',
 }
 
 
@@ -40,22 +42,30 @@ class InputSeen:
     """
     One input as it was recorded.
 
-    Lowest and highest number in its `unit`, NaN without any; `rate` [Hz]; `source` in a word,
-    and whether that is a measurement; what was refused, by why; `hints` say what looks wrong.
+    Lowest and highest number in its `unit`, NaN without any; `rate` [Hz], and whether that is
+    assumed; its `origin` in words, whether that is a measurement or at least stated; what was
+    refused, by why; `hints` say what looks wrong.
 
     """
 
     source: Source
     origin: str
     measured: bool
+    stated: bool = False
     place: str = ''
     unit: str = ''
     low: float = math.nan
     high: float = math.nan
     rate: float = math.nan
+    rate_assumed: bool = False
     received: int = 0
     refused: str = ''
     hints: tuple[str, ...] = ()
+
+    @property
+    def known(self) -> str:
+        """Return how it is known: measured, stated or assumed."""
+        return MEASURED if self.measured else 'stated' if self.stated else 'assumed'
 
 
 def inputs_seen(case: AxisCase) -> list[InputSeen]:
@@ -80,6 +90,7 @@ def _seen(case: AxisCase, source: Source) -> InputSeen:
         low=heard.low,
         high=heard.high,
         rate=(health.received - 1) / span if health.received > 1 and span else math.nan,
+        rate_assumed='time.rate_Hz' in case.assumed,
         received=health.received,
         refused=_refused(case, source),
         hints=tuple(_hints(case, source, setting, heard)),
@@ -88,25 +99,31 @@ def _seen(case: AxisCase, source: Source) -> InputSeen:
 
 def _origin(case: AxisCase, source: Source) -> str:
     """Return where the numbers of an input come from; what is in part assumed says so."""
-    if source is Source.LOAD and case.load_from:
-        return f'worked out from the motor {case.load_from}'
-    setting, unit = case.inputs[source], f'{source.name.lower()}.unit'
-    if setting.from_position:
-        return 'worked out from the position'
-    return f'{MEASURED}, unit assumed' if unit in case.assumed else MEASURED
+    name, origin = source.name.lower(), MEASURED
+    if source is Source.LOAD and case.load_origin:
+        name, origin = case.load_from.removeprefix('motor_'), case.load_origin
+    elif source is Source.SPEED and (case.inputs[source].from_position or 'speed' in case.assumed):
+        name, origin = 'position', 'worked out from the position'
+    elif source is Source.TORQUE and case.torque_from_current:
+        name, origin = 'current', 'worked out from the current'
+    doubtful = [part for part in ('column', 'unit') if f'{name}.{part}' in case.assumed]
+    if name == 'current' and 'torque_constant_Nm_per_A' in case.assumed:
+        doubtful.append('torque constant')
+    return f'{origin}, {" and ".join(doubtful)} assumed' if doubtful else origin
 
 
 def _without_topic(case: AxisCase, source: Source, sources: frozenset[PointSource]) -> InputSeen:
     """Return where the numbers of an input without a topic come from."""
     if PointSource.DERIVED in sources:
         span = case.survey.inputs[source]
-        origin, unit = 'worked out from the motor torque', 'N'
+        origin = case.load_origin
         return InputSeen(
-            source=source, origin=origin, measured=False, unit=unit, low=span.low, high=span.high
+            source=source, origin=origin, measured=False, unit='N', low=span.low, high=span.high
         )
     if PointSource.DEFAULT in sources:
-        origin = f'assumed, {celsius(case.settings.default_temperature):.4g} °C'
-        return InputSeen(source=source, origin=origin, measured=False)
+        known = case.default_temperature_known
+        origin = f'{known}, {celsius(case.settings.default_temperature):.4g} °C'
+        return InputSeen(source=source, origin=origin, measured=False, stated=known == 'stated')
     return InputSeen(source=source, origin='not recorded', measured=False)
 
 

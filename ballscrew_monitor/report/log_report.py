@@ -116,6 +116,8 @@ def _log_case(
                 functools.partial(store.blocks, one.axis),
                 load_from=parameters.load_from.get(one.axis, ''),
                 assumed=parameters.of_axis(one.axis),
+                stated=parameters.stated_of(one.axis),
+                nominal=parameters.nominal,
             )
             for one in outcomes
             if one.axis in rows

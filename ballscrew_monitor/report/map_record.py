@@ -30,6 +30,7 @@ Array = NDArray[np.float64]
 
 COLUMNS, ROWS = 72, 48  # cells of the time spent
 PATH_POINTS = 6000
+MARKED = 20  # events that are drawn, the worst
 NAMED_EFFICIENCIES = (0.3, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.97)
 TOP, BELOW_TOP, MIDDLE = 0.96, 0.88, 0.7  # heights of the names of lines, as parts of the map
 OUTSIDE, OPTIMAL, NO_NUMBER = 0, 1, 2  # codes of the cells of the zone
@@ -127,7 +128,8 @@ def _visited(
     """Return time spent in each cell, path and places of the warnings."""
     dwell = TimeSpent(speeds, loads, max_gap=case.settings.timeouts[Source.SPEED])
     stride = max(1, case.survey.rows // PATH_POINTS)
-    path, places = [], {event.event_id: MeanPlace() for event in case.outcome.events}
+    marked = case.worst_first[:MARKED]
+    path, places = [], {event.event_id: MeanPlace() for event in marked}
     for block in case.blocks():
         speed = np.abs(block.speed)
         moving = speed >= case.settings.limits.standstill_speed
@@ -135,7 +137,10 @@ def _visited(
         dwell.add(block, speed, load)
         path.append(np.stack([speed[::stride] / RPM, load[::stride]], axis=-1))
         outside = moving & (block.zone == Zone.OUTSIDE)
-        for event in case.outcome.events:
+        first, last = block.stamp.min(), block.stamp.max()
+        for event in marked:
+            if event.end < first or event.start > last:
+                continue
             chosen = outside & (block.stamp >= event.start) & (block.stamp <= event.end)
             places[event.event_id].add(speed[chosen] / RPM, load[chosen])
     return {
@@ -147,7 +152,7 @@ def _visited(
 
 def _marks(case: AxisCase, places: dict[int, 'MeanPlace']) -> Iterable[dict[str, Any]]:
     """Return where the worst events are on the map, the worst last, to be drawn on top."""
-    for event in reversed(case.worst_first[:20]):
+    for event in reversed(case.worst_first[:MARKED]):
         spot = places[event.event_id].middle
         if spot is not None:
             begin, end = case.since_first(event.start), case.since_first(event.end)

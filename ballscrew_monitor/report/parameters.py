@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """With which parameters a recording is judged, where they come from, and what they assume."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 import dataclasses
 from pathlib import Path
 import re
@@ -11,6 +11,9 @@ from typing import Any
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.log_facts import facts_of, LogFacts, values_for
 
+NOMINAL = 'the nominal ones'
+"""How an origin ends where neither a person nor the recording gave parameters."""
+
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class LogParameters:
@@ -18,7 +21,8 @@ class LogParameters:
     Values by name, where they come from in words, and what they assume, by what it is about.
 
     `notes` are about the log, `sentences` all that is to be said of it in a terminal;
-    `load_from` says of axes what their load is worked out from, where it is not measured.
+    `load_from` says of axes what their load is worked out from, where it is not measured, and
+    `stated` what the map of the log states, by place. `nominal`: nobody said with what to judge.
 
     """
 
@@ -28,11 +32,18 @@ class LogParameters:
     notes: Sequence[str] = ()
     sentences: Sequence[str] = ()
     load_from: Mapping[str, str] = dataclasses.field(default_factory=dict)
+    stated: frozenset[str] = frozenset()
+    nominal: bool = False
 
     @property
     def short_origin(self) -> str:
         """Return where they come from without folders, for whom a page is forwarded to."""
         return re.sub(r'\S*/', '', self.origin)
+
+    def stated_of(self, axis: str) -> frozenset[str]:
+        """Return the places that the map states of an axis, without its name."""
+        own = f'{axis}.'
+        return frozenset(one.removeprefix(own) for one in self.stated if one.startswith(own))
 
     def of_axis(self, axis: str) -> dict[str, Mapping[str, Any]]:
         """Return the assumptions about an axis, without its name, and those about all axes."""
@@ -57,7 +68,7 @@ def parameters_for(bag: Bag, given: Path | None, nominal: Path) -> LogParameters
     values, origin = values_for(bag, given, nominal)
     facts = facts_of(bag)
     if facts is None:
-        return LogParameters(values=values, origin=origin)
+        return LogParameters(values=values, origin=origin, nominal=origin.endswith(NOMINAL))
     assumed = {one.key: {'value': one.value, 'reason': one.reason} for one in facts.assumptions}
     return LogParameters(
         values=values,
@@ -65,6 +76,7 @@ def parameters_for(bag: Bag, given: Path | None, nominal: Path) -> LogParameters
         assumptions=assumed,
         notes=facts.notes,
         sentences=facts.sentences(),
+        stated=frozenset(_places(facts.mapping.get('axes', {}))),
         load_from={
             axis: source
             for axis in values['axes']
@@ -72,6 +84,15 @@ def parameters_for(bag: Bag, given: Path | None, nominal: Path) -> LogParameters
             if source
         },
     )
+
+
+def _places(section: Mapping[str, Any], prefix: str = '') -> Iterator[str]:
+    """Yield the full names of all values in sections within sections."""
+    for key, value in section.items():
+        if isinstance(value, Mapping):
+            yield from _places(value, f'{prefix}{key}.')
+        else:
+            yield f'{prefix}{key}'
 
 
 def _load_from(facts: LogFacts, axis: str) -> str:

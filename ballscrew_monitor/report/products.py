@@ -117,6 +117,7 @@ def _input_record(seen: InputSeen) -> dict[str, Any]:
         'measured': seen.measured,
         'read_from': seen.place,
         'unit': seen.unit,
+        'rate_assumed': seen.rate_assumed,
         'received': seen.received,
         'refused': seen.refused,
         'hints': list(seen.hints),

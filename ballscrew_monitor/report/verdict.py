@@ -28,6 +28,9 @@ REMEDIES = {
     Reason.NO_LOAD: 'record the axial load, or a torque that it can be worked out from',
     Reason.NO_TEMPERATURE: 'record the oil temperature, or state a default one',
     Reason.NO_INPUTS: 'record speed, load and oil temperature without interruption',
+    Reason.NO_TORQUE: 'record the motor torque without interruption',
+    Reason.NO_DERIVED_LOAD: 'record the axial load, or check unit and uncertainty of the motor '
+    'torque',
 }
 
 

@@ -17,10 +17,10 @@ class Course {
   /** Return the times of the coarse columns: two rows to a bucket, or as they are stated. */
   static coarse(record) {
     if (!record.bucket) {
-      return Format.floats(record.time);
+      return Format.doubles(record.time);
     }
     const count = Math.round(2 * record.span / record.bucket);
-    return Float32Array.from({ length: count }, (none, i) => (i + 0.5) * record.bucket / 2);
+    return Float64Array.from({ length: count }, (none, i) => (i + 0.5) * record.bucket / 2);
   }
 
   static times(stretch) {

@@ -17,6 +17,11 @@ const Format = (() => {
     return new Float32Array(bytes(text).buffer);
   }
 
+  /** Return numbers of a base64 text of little-endian float64. */
+  function doubles(text) {
+    return new Float64Array(bytes(text).buffer);
+  }
+
   /** Return numbers of {low, high, data}: base64 uint16, 0 is none, 1 to 65535 are low to high. */
   function packed(column) {
     const codes = column.runs ? repeated(column) : new Uint16Array(bytes(column.data).buffer);
@@ -76,5 +81,5 @@ const Format = (() => {
     return made;
   }
 
-  return { bytes, floats, packed, number, time, date, colour, element };
+  return { bytes, floats, doubles, packed, number, time, date, colour, element };
 })();

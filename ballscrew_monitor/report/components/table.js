@@ -12,12 +12,13 @@ const Table = (() => {
     return stated === undefined ? cell.textContent : Number(stated);
   }
 
-  function compare(one, other) {
+  /** Compare two keys, `sign` 1 for ascending and -1 for descending. */
+  function compare(one, other, sign) {
     if (typeof one === 'number' && typeof other === 'number') {
       // What is not known stands last, whichever way the rest is sorted.
-      return (Number.isNaN(one) - Number.isNaN(other)) || one - other;
+      return (Number.isNaN(one) - Number.isNaN(other)) || sign * (one - other) || 0;
     }
-    return String(one).localeCompare(String(other));
+    return sign * String(one).localeCompare(String(other));
   }
 
   function sort(table, column) {
@@ -28,7 +29,8 @@ const Table = (() => {
     }
     head[column].setAttribute('aria-sort', down ? 'descending' : 'ascending');
     const rows = Array.from(table.tBodies[0].rows);
-    rows.sort((one, other) => compare(keyOf(one, column), keyOf(other, column)) * (down ? -1 : 1));
+    const sign = down ? -1 : 1;
+    rows.sort((one, other) => compare(keyOf(one, column), keyOf(other, column), sign));
     table.tBodies[0].append(...rows);
   }
 

@@ -8,6 +8,7 @@ import math
 from ballscrew_monitor.report.buckets import (
     between,
     Buckets,
+    coarse_record,
     fine_record,
     in_order,
     joined_rows,
@@ -70,6 +71,12 @@ def test_a_hole_becomes_a_break():
 def test_slices_are_joined_and_sorted():
     rows = in_order(joined_rows([make_rows([2.0], [1.0]), make_rows([1.0], [2.0])]))
     assert rows.numbers['speed'].tolist() == [2.0, 1.0]
+
+
+def test_times_of_a_day_are_exact():
+    time = 86_400.0 + np.arange(5) * 0.001
+    sent = base64.b64decode(coarse_record(make_rows(time, range(5)))['time'])
+    assert np.frombuffer(sent, dtype='<f8').tolist() == time.tolist()
 
 
 def test_times_of_a_stretch_are_stated_where_they_are_not_even():

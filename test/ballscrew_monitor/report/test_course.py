@@ -6,7 +6,7 @@ import dataclasses
 
 from ballscrew_monitor.core.judgement import Level, Zone
 from ballscrew_monitor.recordings.columns import LIGHT_LOAD, STANDSTILL
-from ballscrew_monitor.report.course import course_record, rows_of, SHORT
+from ballscrew_monitor.report.course import course_record, rows_of, SHADED, SHORT
 from ballscrew_monitor.report.log_page import LogCase, report_page
 import numpy as np
 import pytest
@@ -44,12 +44,22 @@ def test_a_short_recording_keeps_every_sample(judged):
     case = judged.case([judged.columns(count=SHORT)], [judged.event(1, 1.0, 2.0)])
     record = course_record(case)
     assert (record['bucket'], record['fine']) == (0.0, [])
-    assert len(record['time']) == pytest.approx(SHORT * 4 * 4 / 3, abs=4)
+    assert len(record['time']) == pytest.approx(SHORT * 8 * 4 / 3, abs=4)
 
 
 def test_events_are_on_the_time_line_of_the_page(judged):
     case = judged.case([judged.columns(count=1000)], [judged.event(1, 1.0, 2.0)])
     assert course_record(case)['events'] == [{'begin': 1.0, 'end': 3.0}]
+
+
+def test_only_the_worst_events_are_shaded(judged):
+    events = [
+        judged.event(n + 1, 0.01 * n, 0.005, worst_value=0.011 + 1e-5 * n)
+        for n in range(SHADED + 200)
+    ]
+    shaded = course_record(judged.case([judged.columns(count=1000)], events))['events']
+    assert len(shaded) == SHADED
+    assert min(one['begin'] for one in shaded) == pytest.approx(2.0)
 
 
 def test_torque_has_a_panel_where_it_was_measured(judged, hour):

@@ -6,7 +6,7 @@ import dataclasses
 
 from ballscrew_monitor.core.judgement import Zone
 from ballscrew_monitor.recordings.columns import Reason
-from ballscrew_monitor.report.grounds import gaps_part, torque_part
+from ballscrew_monitor.report.grounds import assumptions_part, caution, gaps_part, torque_part
 import numpy as np
 import pytest
 
@@ -44,6 +44,29 @@ def test_one_direction_tells_no_friction(judged):
 
 def test_without_a_measured_torque_there_is_no_comparison(judged):
     assert torque_part(judged.case([judged.columns()])) == ''
+
+
+def test_nominal_parameters_are_assumed(judged):
+    case = judged.case([judged.columns()], known={'nominal': True})
+    assert 'nor stated: the screw, the oil. The' in ''.join(caution([case]))
+    rows = assumptions_part(case, 'the nominal ones')
+    for name in ('Model', 'Screw', 'Oil', 'Limits'):
+        row = rows.partition(f'<td>{name}</td>')[2].partition('</tr>')[0]
+        assert '<span class="tag assumed">assumed</span>' in row
+    stated = assumptions_part(judged.case([judged.columns()]), 'mine')
+    assert 'tag assumed' not in stated
+
+
+@pytest.mark.parametrize(('stated', 'count'), [(['temperature_degC'], 0), ([], 1)])
+def test_an_oil_temperature_is_assumed_unless_it_is_stated(judged, stated, count):
+    case = judged.case(
+        [judged.columns(temperature_source=2)],
+        values=judged.values(**{'x.temperature.topic': ''}),
+        known={'stated': frozenset(stated)},
+    )
+    assert ''.join(caution([case])).count('oil temperature of 40 °C') == count
+    rows = assumptions_part(case, 'mine')
+    assert rows.count('tag assumed') == 2 * count  # the oil, and the oil in motion
 
 
 def test_seconds_are_told_for_each_reason(judged):

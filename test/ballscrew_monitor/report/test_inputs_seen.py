@@ -6,7 +6,7 @@ import math
 
 from ballscrew_monitor.core.health import InputState
 from ballscrew_monitor.core.inputs import Source, Why
-from ballscrew_monitor.report.inputs_seen import inputs_seen
+from ballscrew_monitor.report.inputs_seen import inputs_seen, REFUSALS
 import numpy as np
 import pytest
 
@@ -29,6 +29,66 @@ def test_a_default_temperature_is_not_called_measured(judged):
     oil = seen_of(case, Source.TEMPERATURE)
     assert (oil.origin, oil.measured) == ('assumed, 40 °C', False)
     assert seen_of(case, Source.TORQUE).origin == 'not recorded'
+
+
+TORQUE = {'x.torque.topic': 'torque', 'x.torque.field': 'data'}
+
+
+@pytest.mark.parametrize(
+    ('source', 'assumed', 'stated', 'origin'),
+    [
+        (Source.SPEED, ['speed'], ['position.column'], 'worked out from the position'),
+        (Source.SPEED, ['speed.unit'], ['speed.column'], 'measured, unit assumed'),
+        (
+            Source.SPEED,
+            ['speed', 'position.unit'],
+            ['position.column'],
+            'worked out from the position, unit assumed',
+        ),
+        (Source.TEMPERATURE, ['temperature.column'], [], 'measured, column assumed'),
+        (Source.TEMPERATURE, [], ['temperature.column'], 'measured'),
+        (Source.TORQUE, ['torque.column', 'torque.unit'], [], 'measured, column and unit assumed'),
+        (
+            Source.TORQUE,
+            ['torque_constant_Nm_per_A'],
+            ['current.column'],
+            'worked out from the current, torque constant assumed',
+        ),
+        (Source.TORQUE, [], ['current.column'], 'worked out from the current'),
+        (
+            Source.TORQUE,
+            ['torque_constant_Nm_per_A'],
+            ['current.column', 'torque.column'],
+            'measured',
+        ),
+    ],
+)
+def test_what_is_worked_out_or_in_part_assumed_is_not_called_measured(
+    judged, source, assumed, stated, origin
+):
+    known = {'assumed': dict.fromkeys(assumed, {}), 'stated': frozenset(stated)}
+    case = judged.case([judged.columns()], values=judged.values(**TORQUE), known=known)
+    seen = seen_of(case, source)
+    assert (seen.origin, seen.measured) == (origin, origin == 'measured')
+
+
+def test_a_load_of_the_motor_torque_is_said_so_once(judged):
+    case = judged.case([judged.columns()], known={'load_from': 'motor_torque'})
+    assert seen_of(case, Source.LOAD).origin == 'worked out from the motor torque'
+
+
+def test_an_assumed_rate_is_marked(judged):
+    known = {'assumed': {'time.rate_Hz': {'value': 100.0, 'reason': 'usual'}}}
+    assert seen_of(judged.case([judged.columns()], known=known), Source.SPEED).rate_assumed
+    assert not seen_of(judged.case([judged.columns()]), Source.SPEED).rate_assumed
+
+
+def test_a_stated_temperature_is_not_called_assumed(judged):
+    values = judged.values(**{'x.temperature.topic': ''})
+    block = judged.columns(temperature_source=2)
+    known = {'stated': frozenset(['temperature_degC'])}
+    oil = seen_of(judged.case([block], values=values, known=known), Source.TEMPERATURE)
+    assert (oil.origin, oil.known, oil.measured) == ('stated, 40 °C', 'stated', False)
 
 
 def test_metres_read_as_millimetres_are_doubted(judged):
@@ -57,6 +117,10 @@ def test_refused_samples_are_counted_by_why(judged):
     load = seen_of(judged.case([judged.columns()], refused=refused), Source.LOAD)
     assert load.refused == '7 beyond what is plausible, 2 not a number'
     assert 'check x.load.unit and scale' in load.hints[0]
+
+
+def test_every_reason_of_a_refusal_has_words():
+    assert set(REFUSALS) == set(Why)
 
 
 def test_an_input_that_never_came(judged):

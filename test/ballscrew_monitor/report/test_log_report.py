@@ -6,8 +6,11 @@ import json
 
 from ballscrew_monitor.core.fields import stamp_of
 from ballscrew_monitor.node.parameters import read_file
+from ballscrew_monitor.node.topics import absolute
 from ballscrew_monitor.recordings.bag import Bag
+from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
 from ballscrew_monitor.recordings.replay import replay
+from ballscrew_monitor.report.judged_bag import write_judged_bag
 from ballscrew_monitor.report.log_report import report_log
 from ballscrew_monitor.report.parameters import LogParameters, parameters_for
 from ballscrew_msgs.msg import BallScrewState
@@ -74,6 +77,37 @@ def test_the_judged_bag_holds_inputs_and_what_the_node_would_say(reported, short
     assert [(stamp_of(state), state.zone, state.judged) for _, state in found] == wanted
     speeds = [message.log_time for message in original.messages(['/joint_states'])]
     assert [log_time for log_time, _ in found] == speeds
+
+
+def test_the_judged_bag_says_of_what_log_it_is(short_bag, params, tmp_path):
+    bag = Bag(short_bag)
+    own = {'ballscrew_monitor.source': 'log.csv', 'ballscrew_monitor.notes': '[]'}
+    bag.metadata = own | {'robot': 'press 7'}
+    write_judged_bag(bag, read_file(params), tmp_path / 'judged')
+    assert Bag(tmp_path / 'judged').metadata == own
+
+
+def test_a_message_that_does_not_decode_is_counted(short_bag, params, tmp_path):
+    bag, damaged = Bag(short_bag), tmp_path / 'damaged'
+    load = read_file(params)['x.load.topic']
+    with BagWriter(damaged, 'damaged') as writer:
+        for name, info in bag.topics.items():
+            writer.add_topic(Topic(name=name, type_name=info.type_name, offer=Offer.SENSOR))
+        left = 1
+        for message in bag.messages(None):
+            cut = message.topic == absolute(load) and left
+            left -= bool(cut)
+            writer.write(
+                message.topic,
+                message.data[:12] if cut else message.data,
+                log_time=message.log_time,
+                publish_time=message.publish_time,
+            )
+    found = Bag(damaged)
+    result = report_log(found, tmp_path / 'out', parameters_for(found, params, params))
+    assert result.judged
+    inputs = json.loads((tmp_path / 'out' / 'summary.json').read_text())['axes']['x']['inputs']
+    assert inputs['load']['refused'] == '1 that do not decode'
 
 
 def test_a_report_is_written_where_nothing_is_judged(short_bag, params, tmp_path):

@@ -52,6 +52,23 @@ def test_a_warning_is_marked_where_its_samples_are(judged):
     assert mark['speed'] == pytest.approx(50.0 * 30.0 / np.pi)
 
 
+def test_only_the_worst_warnings_are_marked_each_by_its_blocks(judged):
+    speeds = (50.0, 80.0)
+    blocks = [
+        judged.columns(100 * n, speed=speed, axial_load=-700.0, zone=Zone.OUTSIDE)
+        for n, speed in enumerate(speeds)
+    ]
+    events = [
+        judged.event(n + 1, 0.05 * n, 0.04, worst_value=0.011 + 0.001 * n) for n in range(40)
+    ]
+    marks = map_record(judged.case(blocks, events))['events']
+    assert [one['number'] for one in marks] == list(range(21, 41))
+    assert {round(one['speed'] * np.pi / 30.0) for one in marks} == {80}
+    both = judged.event(1, 0.5, 1.0)
+    (mark,) = map_record(judged.case(blocks, [both]))['events']
+    assert 50.0 < mark['speed'] * np.pi / 30.0 < 80.0
+
+
 def test_other_temperatures_have_a_border_of_their_own(judged):
     block = judged.columns(temperature=np.linspace(303.15, 323.15, 100))
     record = map_record(judged.case([block]))

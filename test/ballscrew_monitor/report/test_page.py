@@ -4,7 +4,10 @@
 
 import base64
 import hashlib
+import json
 import re
+import shutil
+import subprocess
 
 from ballscrew_monitor.report.markup import element
 from ballscrew_monitor.report.page import CHARTS, component, FOLDER, page, UPLOT_JS
@@ -64,3 +67,37 @@ def test_without_scripts_none_may_run():
 
 def test_a_title_is_text():
     assert '<title>&lt;script&gt;</title>' in page('<script>', element('p', ''))
+
+
+SORTED_TWICE = """
+function cell(value) {
+  return {
+    dataset: { value },
+    textContent: value,
+    addEventListener(kind, act) { this[kind] = act; },
+    getAttribute() { return this.order; },
+    setAttribute(name, order) { this.order = order; },
+    removeAttribute() { this.order = null; },
+  };
+}
+const head = cell('head');
+const rows = ['2', 'nan', '3', '1', 'nan'].map((value) => ({ cells: [cell(value)] }));
+let shown = [];
+const body = { rows, append(...sorted) { shown = sorted; } };
+Table.sortable({ tHead: { rows: [{ cells: [head] }] }, tBodies: [body] });
+const orders = [0, 1].map(() => {
+  head.click();
+  return shown.map((row) => row.cells[0].dataset.value);
+});
+console.log(JSON.stringify(orders));
+"""
+
+
+@pytest.mark.skipif(shutil.which('node') is None, reason='no JavaScript runs here')
+def test_what_is_not_known_is_sorted_last_both_ways():
+    script = component('table.js') + SORTED_TWICE
+    done = subprocess.run(['node', '-e', script], capture_output=True, text=True, check=True)
+    assert json.loads(done.stdout) == [
+        ['1', '2', '3', 'nan', 'nan'],
+        ['3', '2', '1', 'nan', 'nan'],
+    ]

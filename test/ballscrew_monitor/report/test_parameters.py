@@ -42,6 +42,17 @@ def test_a_table_says_what_its_load_is_worked_out_from(table):
     with opened_log(table / 'log.csv', mapping=table / 'map.yaml') as bag:
         found = parameters_for(bag, None, table / 'none.yaml')
     assert found.load_from == {'x': 'current'}
+    assert found.stated_of('x') >= {'speed.column', 'current.unit', 'screw', 'oil'}
+    assert not found.stated_of('x') & set(found.of_axis('x'))
+    assert not found.nominal
     assert found.of_axis('x')['lead_mm'] == {'value': 10.0, 'reason': 'usual'}
     assert found.origin == f'those of {table / "log.csv"}'
     assert found.short_origin == 'those of log.csv'
+
+
+def test_only_parameters_that_nobody_gave_are_nominal(short_bag, request):
+    from ballscrew_monitor.recordings.bag import Bag
+
+    nominal = request.config.rootpath / 'config' / 'nominal_cycle.yaml'
+    assert parameters_for(Bag(short_bag), None, nominal).nominal
+    assert not parameters_for(Bag(short_bag), nominal, nominal).nominal

@@ -8,7 +8,7 @@ from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.judgement import Zone
 from ballscrew_monitor.core.tally import Totals
 from ballscrew_monitor.recordings.columns import Reason
-from ballscrew_monitor.report.verdict import verdict_of, VerdictKind
+from ballscrew_monitor.report.verdict import REMEDIES, verdict_of, VerdictKind
 
 
 def totals(running, optimal, outside=0.0):
@@ -20,6 +20,10 @@ def totals(running, optimal, outside=0.0):
         outside_time=outside,
         unjudged_time=running - optimal - outside,
     )
+
+
+def test_every_reason_has_a_remedy():
+    assert set(REMEDIES) == set(Reason) - {Reason.JUDGED, Reason.STANDSTILL}
 
 
 def test_good(judged):
