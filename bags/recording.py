@@ -9,14 +9,11 @@ The bytes are the same every time.
 
 from collections.abc import Iterable
 import dataclasses
-import os
 from pathlib import Path
-import shutil
-import tempfile
 
 from ballscrew_monitor.core.cdr import serialized
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
+from ballscrew_monitor.recordings.bag_writer import Offer, Topic, whole_bag
 from builtin_interfaces.msg import Time
 from geometry_msgs.msg import WrenchStamped
 from sensor_msgs.msg import JointState, Temperature
@@ -79,22 +76,8 @@ def _header(stamp: int, frame: str) -> Header:
 
 def write_bag(directory: Path, records: Iterable[Record]) -> None:
     """Write the bag to `directory`, which appears, or is replaced, only when it is complete."""
-    directory = directory.resolve()
-    directory.parent.mkdir(parents=True, exist_ok=True)
-    partial = Path(tempfile.mkdtemp(prefix=f'.{directory.name}.', dir=directory.parent))
-    try:
-        _write(partial, directory.name, records)
-        partial.chmod(0o755)
-        if directory.exists():
-            shutil.rmtree(directory)
-        os.replace(partial, directory)
-    finally:
-        shutil.rmtree(partial, ignore_errors=True)
-
-
-def _write(directory: Path, name: str, records: Iterable[Record]) -> None:
     # Uncompressed, so that the bytes do not depend on the version of a compressor.
-    with BagWriter(directory, name, compress=False) as writer:
+    with whole_bag(directory, directory.resolve().name, compress=False) as writer:
         for topic in TOPICS:
             writer.add_topic(topic)
         for record in records:

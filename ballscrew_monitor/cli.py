@@ -14,7 +14,7 @@ import signal
 import sys
 from typing import Any
 
-from ballscrew_monitor.node.interrupts import FAILED, leave_to_python, SIGNALLED
+from ballscrew_monitor.node.interrupts import FAILED, leave_to_python, raise_signals, SIGNALLED
 from ballscrew_monitor.node.middleware import check_middleware
 from ballscrew_monitor.options import (
     add_doctor,
@@ -114,12 +114,14 @@ def _run(args: argparse.Namespace) -> int:
 def _replay(args: argparse.Namespace) -> int:
     from ballscrew_monitor.report.command import replay_command
 
+    raise_signals()
     return replay_command(args, PARAMS)
 
 
 def _import(args: argparse.Namespace) -> int:
     from ballscrew_monitor.recordings.tables.command import make_bag, print_guess
 
+    raise_signals()
     if args.guess:
         print_guess(args.log)
     else:

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 import contextlib
 import os
 import signal
+import sys
 import threading
 from typing import Any
 
@@ -49,6 +50,19 @@ def leave_to_python() -> None:
     if signal.getsignal(signal.SIGINT) is _leave:
         signal.signal(signal.SIGINT, signal.default_int_handler)
         signal.signal(signal.SIGTERM, signal.SIG_DFL)
+
+
+def raise_signals() -> None:
+    """Undo `end_at_once`: both signals are exceptions, so that what is half made is removed."""
+    if signal.getsignal(signal.SIGINT) is _leave:
+        leave_to_python()
+        signal.signal(signal.SIGTERM, _exit)
+
+
+def _exit(number: int, frame: Any) -> None:
+    signal.signal(number, signal.SIG_IGN)  # nothing interrupts the removal
+    print('ballscrew: interrupted', file=sys.stderr)
+    raise SystemExit(SIGNALLED + number)
 
 
 def _leave(number: int, frame: Any) -> None:

@@ -5,16 +5,19 @@ Writes a bag that rosbag2 accepts: one MCAP file and the `metadata.yaml` beside 
 
 The file grows as `<name>.mcap.active`, in small chunks that are flushed, so that a crash costs
 little; it gets its name, and the metadata, when it is closed. Serialised messages go in as they
-are.
+are. A product of a command is a `whole_bag`, which appears when it is complete or not at all.
 
 """
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+import contextlib
 import dataclasses
 import enum
+import errno
 import os
 from pathlib import Path
+import tempfile
 from typing import Any, BinaryIO
 
 from ballscrew_monitor.recordings.bag_files import OWN
@@ -25,7 +28,7 @@ import yaml
 
 ACTIVE = '.active'
 CHUNK_SIZE = 64 * 1024  # [bytes]
-METADATA_VERSION = 9
+METADATA, METADATA_VERSION = 'metadata.yaml', 9
 FOREVER = {'sec': 9223372036, 'nsec': 854775807}
 
 
@@ -101,10 +104,11 @@ class BagWriter:
         """Close the bag; what was written before an error is kept."""
         self.close()
 
-    def add_metadata(self, texts: Mapping[str, str]) -> None:
-        """Let the bag say `texts` of itself, in its file and in the metadata beside it."""
-        self._custom |= texts
-        self._writer.add_metadata(OWN, dict(texts))
+    def add_metadata(self, texts: Mapping[str, str], *, name: str = OWN) -> None:
+        """Let the file say `texts` of itself, and the metadata beside it those of this program."""
+        if name == OWN:
+            self._custom |= texts
+        self._writer.add_metadata(name, dict(texts))
 
     def add_topic(self, topic: Topic) -> None:
         """Announce a topic; raises InputError when its type is not installed."""
@@ -177,7 +181,7 @@ class BagWriter:
         self._file.close()
         Path(f'{self.path}{ACTIVE}').replace(self.path)
         text = yaml.safe_dump({'rosbag2_bagfile_information': self._metadata()}, sort_keys=False)
-        replace_file(self.path.with_name('metadata.yaml'), text.encode())
+        replace_file(self.path.with_name(METADATA), text.encode())
 
     def sync(self) -> None:
         """Let the disk have what was written; a chunk that still grows is not."""
@@ -195,13 +199,11 @@ class BagWriter:
         try:
             directory.mkdir(parents=True, exist_ok=True)
             # A bag is one MCAP: an older one of this name must not stay beside its successor.
-            for stale in (self.path, directory / 'metadata.yaml'):
+            for stale in (self.path, directory / METADATA):
                 stale.unlink(missing_ok=True)
             return open(f'{self.path}{ACTIVE}', 'wb')
         except OSError as error:
-            raise InputError(
-                f'output directory {directory} cannot be written: {error.strerror}'
-            ) from None
+            raise _unwritable(directory, error) from None
 
     def _metadata(self) -> dict[str, Any]:
         topics = [
@@ -237,3 +239,47 @@ class BagWriter:
             'duration': {'nanoseconds': self._last - self._first},
             'starting_time': {'nanoseconds_since_epoch': self._first},
         }
+
+
+@contextlib.contextmanager
+def whole_bag(directory: Path, name: str, *, compress: bool = True) -> Iterator[BagWriter]:
+    """
+    Yield the writer of a bag that is in `directory` when the block ends.
+
+    It takes the place of an older one of its name. Raises InputError when it cannot be written;
+    then, and when the block raises, the older one stays and nothing half-written does.
+
+    """
+    directory = directory.resolve()
+    with _growing(directory, name) as folder:
+        writer = BagWriter(Path(folder), name, compress=compress)
+        try:
+            yield writer
+            writer.close()
+        finally:
+            writer.abandon()
+        _move(Path(folder), directory)
+
+
+def _growing(directory: Path, name: str) -> 'tempfile.TemporaryDirectory[str]':
+    """Return where a bag grows: in `directory`, or beside it if that is yet to be made."""
+    place = directory if directory.is_dir() else directory.parent
+    try:
+        if directory.is_file():
+            raise NotADirectoryError(errno.ENOTDIR, os.strerror(errno.ENOTDIR))
+        place.mkdir(parents=True, exist_ok=True)
+        return tempfile.TemporaryDirectory(dir=place, prefix=f'.{name}.')
+    except OSError as error:
+        raise _unwritable(directory, error) from None
+
+
+def _move(made: Path, directory: Path) -> None:
+    """Move the files of a bag into `directory`, metadata that are not theirs out of the way."""
+    directory.mkdir(exist_ok=True)
+    (directory / METADATA).unlink(missing_ok=True)
+    for file in sorted(made.iterdir()):
+        file.replace(directory / file.name)
+
+
+def _unwritable(directory: Path, error: OSError) -> InputError:
+    return InputError(f'output directory {directory} cannot be written: {error.strerror}')

@@ -7,14 +7,11 @@ The file itself is left as it is. Nothing is decoded, so the types need not be i
 
 """
 
-from collections.abc import Iterator
 from pathlib import Path
-import tempfile
-from typing import Any
 
-from ballscrew_monitor.recordings.bag_writer import ACTIVE, Announced, BagWriter
+from ballscrew_monitor.recordings.bag_writer import ACTIVE, Announced, BagWriter, whole_bag
 from ballscrew_monitor.recordings.storages import whole_records
-from mcap.records import Channel, Schema
+from mcap.records import Channel, Metadata, Schema
 from mcap.records import Message as McapMessage
 from surrogate.files import InputError
 import yaml
@@ -40,13 +37,8 @@ def recover(path: Path) -> tuple[Path, int, float]:
     topics = _topics(file)
     if not topics:
         raise InputError(f'{file} holds no message that is whole, nothing can be recovered')
-    target.parent.mkdir(parents=True, exist_ok=True)
-    # Apart: a writer begins with a file of the very name of the one that is read.
-    with tempfile.TemporaryDirectory(dir=target.parent, prefix='.recovering_') as folder:
-        with BagWriter(Path(folder), target.name.removesuffix(SUFFIX)) as writer:
-            times = _copy(file, topics, writer)
-        for made in Path(folder).iterdir():
-            made.replace(target.with_name(made.name))
+    with whole_bag(target.parent, target.name.removesuffix(SUFFIX)) as writer:
+        times = _copy(file, topics, writer)
     return target, writer.total, (times[1] - times[0]) * 1e-9
 
 
@@ -95,12 +87,14 @@ def _announced(channel: Channel, schema: Schema) -> Announced:
 
 
 def _copy(file: Path, topics: dict[int, Announced], writer: BagWriter) -> tuple[int, int]:
-    """Copy the messages; return the first and the last log time [ns]."""
+    """Copy messages and what the file says of itself; return first and last log time [ns]."""
     for topic in topics.values():
         writer.announce(topic)
     first = last = None
-    for message in _messages(file):
-        if message.channel_id not in topics:
+    for message in whole_records(file):
+        if isinstance(message, Metadata):
+            writer.add_metadata(message.metadata, name=message.name)
+        if not isinstance(message, McapMessage) or message.channel_id not in topics:
             continue
         writer.write(
             topics[message.channel_id].name,
@@ -112,7 +106,3 @@ def _copy(file: Path, topics: dict[int, Announced], writer: BagWriter) -> tuple[
         first = message.log_time if first is None else min(first, message.log_time)
         last = message.log_time if last is None else max(last, message.log_time)
     return first or 0, last or 0
-
-
-def _messages(file: Path) -> Iterator[Any]:
-    return (record for record in whole_records(file) if isinstance(record, McapMessage))

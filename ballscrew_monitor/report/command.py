@@ -32,7 +32,7 @@ Results = dict[str, Summary | None]
 
 def replay_command(args: argparse.Namespace, nominal: Path) -> int:
     """Do what the command line asks for; return the exit code."""
-    logs = find_logs(args.logs, tables=args.map is not None)
+    logs = find_logs(args.logs, tables=args.map is not None, out=args.out)
     if args.out is not None and (len(logs) > 1 or logs != args.logs):
         return _report_many(logs, args, nominal)
     work = functools.partial(_print_one if args.out is None else _report_one, args, nominal)

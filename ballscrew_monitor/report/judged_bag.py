@@ -21,7 +21,7 @@ from ballscrew_monitor.node.messages import (
 from ballscrew_monitor.node.parameters import NODE_NAME
 from ballscrew_monitor.node.topics import input_topics, output, with_types
 from ballscrew_monitor.recordings.bag import Bag
-from ballscrew_monitor.recordings.bag_writer import BagWriter
+from ballscrew_monitor.recordings.bag_writer import whole_bag
 from ballscrew_monitor.recordings.log_facts import PREFIX
 from ballscrew_monitor.recordings.own_replay import TimedState
 from ballscrew_monitor.recordings.recorded_topics import DIAGNOSTICS, recorded_topics
@@ -51,7 +51,7 @@ def write_judged_bag(bag: Bag, values: Mapping[str, Any], directory: Path) -> No
     values = with_types(values, bag.types)
     states = replay_states(bag, values, at_once=True)
     facts = {key: text for key, text in bag.metadata.items() if key.startswith(PREFIX)}
-    with BagWriter(directory, NAME) as writer:
+    with whole_bag(directory, NAME) as writer:
         if facts:
             writer.add_metadata(facts)
         for topic in recorded_topics(values):

@@ -9,43 +9,62 @@ import re
 from ballscrew_monitor.recordings.bag_files import ACTIVE, ENDINGS, TABLES
 from surrogate.files import InputError
 
-_PART = re.compile(r'(.*)_\d+')  # file of a bag that was split
+_PART = re.compile(r'(.*)_(\d+)')  # file of a bag that was split
+PAGE, PRODUCTS = 'report.html', ('judged', 'states.parquet', 'events.csv')
+"""How a folder with a report is known, and what is no recording in it."""
 _UNSAFE = re.compile(r'[^\w.-]+')
 
 
-def find_logs(paths: Iterable[Path], *, tables: bool = False) -> list[Path]:
+def find_logs(
+    paths: Iterable[Path], *, tables: bool = False, out: Path | None = None
+) -> list[Path]:
     """
     Return the recordings that paths name, those in a folder in the order of their names.
 
     A path that is a bag or a file stands for itself, whatever is in it; `tables` tells whether
-    those in a folder count too. Raises InputError for a folder without any recording.
+    those in a folder count too. Products of reports do not, nor does the folder `out` of reports
+    to come. Raises InputError for a folder without any recording.
 
     """
-    endings = (*ENDINGS, *TABLES) if tables else ENDINGS
     found: list[Path] = []
     for path in paths:
-        whole = not path.is_dir() or is_one_bag(path)
-        found += [path] if whole else _inside(path, endings)
+        whole = not path.is_dir() or is_one_bag(path, tables=tables, out=out)
+        found += [path] if whole else _inside(path, tables, out)
     return list(dict.fromkeys(found))
 
 
-def is_one_bag(folder: Path) -> bool:
-    """Tell whether a folder is one bag: with metadata, or no more than the parts of one."""
+def is_one_bag(folder: Path, *, tables: bool = False, out: Path | None = None) -> bool:
+    """
+    Tell whether a folder is one bag: with metadata, or no more than the parts of one.
+
+    Parts are numbered from 0 without a gap. Tables beside them count if `tables`; `out` does not.
+
+    """
     if (folder / 'metadata.yaml').is_file():
         return True
-    if any(is_one_bag(child) for child in _folders(folder)):
+    if tables and _files(folder, TABLES):
+        return False
+    if any(is_one_bag(child, tables=tables, out=out) for child in _folders(folder, out)):
         return False
     files = _files(folder, (*ENDINGS, ACTIVE))
+    return len(files) == 1 or _are_parts(files)
+
+
+def _are_parts(files: Sequence[Path]) -> bool:
+    """Tell whether files are by their names all parts of one bag that was split."""
     parts = [_PART.fullmatch(file.name.partition('.')[0]) for file in files]
-    stems = {part[1] for part in parts if part is not None}
-    return len(files) == 1 or (len(stems) == 1 and all(parts))
+    found = [(part[1], int(part[2])) for part in parts if part is not None]
+    numbers = sorted(number for _, number in found)
+    return len({stem for stem, _ in found}) == 1 and numbers == list(range(len(files)))
 
 
-def _inside(folder: Path, endings: tuple[str, ...]) -> list[Path]:
+def _inside(folder: Path, tables: bool, out: Path | None) -> list[Path]:
     """Return the recordings in a folder and in those below it."""
+    endings = (*ENDINGS, *TABLES) if tables else ENDINGS
     logs = _files(folder, endings)
-    for child in _folders(folder):
-        logs += [child] if is_one_bag(child) else _below(child, endings)
+    for child in _folders(folder, out):
+        whole = is_one_bag(child, tables=tables, out=out)
+        logs += [child] if whole else _below(child, tables, out)
     if not logs:
         raise InputError(
             f'folder {folder} holds no recording, it must hold bags or files of '
@@ -54,24 +73,31 @@ def _inside(folder: Path, endings: tuple[str, ...]) -> list[Path]:
     return logs
 
 
-def _below(folder: Path, endings: tuple[str, ...]) -> list[Path]:
+def _below(folder: Path, tables: bool, out: Path | None) -> list[Path]:
     try:
-        return _inside(folder, endings)
+        return _inside(folder, tables, out)
     except InputError:  # one that holds other things
         return []
 
 
-def _folders(folder: Path) -> list[Path]:
-    """Return the folders in a folder that are not hidden."""
-    return sorted(
-        path for path in folder.iterdir() if path.is_dir() and not path.name.startswith('.')
-    )
+def _folders(folder: Path, out: Path | None) -> list[Path]:
+    """Return the folders in a folder that are not hidden, nor `out`."""
+    left = None if out is None else out.resolve()
+    return [
+        path
+        for path in _held(folder)
+        if path.is_dir() and not path.name.startswith('.') and path.resolve() != left
+    ]
 
 
 def _files(folder: Path, endings: tuple[str, ...]) -> list[Path]:
-    return sorted(
-        path for path in folder.iterdir() if path.is_file() and path.name.endswith(endings)
-    )
+    return [path for path in _held(folder) if path.is_file() and path.name.endswith(endings)]
+
+
+def _held(folder: Path) -> list[Path]:
+    """Return what a folder holds in order of names, but for the products of a report."""
+    products = PRODUCTS if (folder / PAGE).is_file() else ()
+    return sorted(path for path in folder.iterdir() if path.name not in products)
 
 
 def folder_names(logs: Sequence[Path]) -> list[str]:

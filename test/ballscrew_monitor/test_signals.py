@@ -33,11 +33,12 @@ def domain():
         yield number
 
 
-def start(domain, command, *more, folder):
+def start(domain, command, *more, folder, **environment):
     """Start a program, and wait until it takes SIGTERM, which Python leaves alone."""
     process = subprocess.Popen(
         [sys.executable, '-m', *command, *more],
-        env=child_environment(domain) | {'PYTHONPATH': str(ROOT), 'ROS_LOG_DIR': str(folder)},
+        env=child_environment(domain)
+        | {'PYTHONPATH': str(ROOT), 'ROS_LOG_DIR': str(folder), **environment},
         cwd=folder,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
@@ -113,6 +114,23 @@ def test_a_command_ends_with_130(domain, tmp_path, short_bag, command, stage):
     assert process.returncode == 130
     assert 'Traceback' not in err
     assert not err or err.startswith('ballscrew: interrupted')
+
+
+@pytest.mark.parametrize(('number', 'code'), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_a_report_that_is_ended_leaves_nothing_unfinished(
+    domain, tmp_path, short_bag, number, code
+):
+    out, scratch = tmp_path / 'out', tmp_path / 'scratch'
+    scratch.mkdir()
+    more = [str(short_bag), '--out', str(out)]
+    with start(domain, COMMANDS['replay'], *more, folder=tmp_path, TMPDIR=str(scratch)) as process:
+        until(process, lambda: any(out.glob('.rows-*')))
+        process.send_signal(number)
+        _, err = process.communicate(timeout=DEADLINE)
+    assert process.returncode == code
+    assert err.splitlines()[-1] == 'ballscrew: interrupted'
+    assert 'Traceback' not in err
+    assert not [*out.iterdir(), *scratch.iterdir()]
 
 
 def test_sigterm_has_its_own_exit_code(domain, tmp_path):

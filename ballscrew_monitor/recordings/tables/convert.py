@@ -18,7 +18,7 @@ from ballscrew_monitor.core.reasons import enough_timeout
 from ballscrew_monitor.node import parameters
 from ballscrew_monitor.node.axis import load_surface, MOTOR_TORQUE
 from ballscrew_monitor.node.topics import absolute
-from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
+from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic, whole_bag
 from ballscrew_monitor.recordings.log_facts import Assumption, LogFacts
 from ballscrew_monitor.recordings.tables.mapping import AxisMap, TableMap
 from ballscrew_monitor.recordings.tables.read import Array
@@ -58,7 +58,7 @@ def convert(path: Path, mapping: TableMap, out: Path) -> LogFacts:
         assumptions=(*mapping.assumptions, *_derived(mapping)),
         notes=tuple(notes),
     )
-    with BagWriter(out, out.name) as writer:
+    with whole_bag(out, out.resolve().name) as writer:
         writer.add_metadata(facts.texts())
         _write(writer, series)
     return facts

@@ -22,6 +22,7 @@ from surrogate.files import InputError
 Array = NDArray[np.float64]
 
 SEPARATORS = (',', ';', '\t', '|')
+COMMENT = '#'
 HEAD = 65536  # [bytes] of a file that tell what it is
 UNREADABLE = (PolarsError, pl.exceptions.PanicException)
 
@@ -43,7 +44,7 @@ class Table:
 
 def column_names(path: Path) -> list[str]:
     """Return the names of all columns of a log; raises InputError when it is no table."""
-    return _names(path, _frame(path))
+    return _names(path, _frame(path)[0])
 
 
 def read_table(path: Path, names: Collection[str], *, strict: bool = True) -> Table:
@@ -54,7 +55,7 @@ def read_table(path: Path, names: Collection[str], *, strict: bool = True) -> Ta
     out with a note.
 
     """
-    frame = _frame(path)
+    frame, separator = _frame(path)
     held = _names(path, frame)
     for name in names:
         if name not in held:
@@ -71,7 +72,7 @@ def read_table(path: Path, names: Collection[str], *, strict: bool = True) -> Ta
     columns: dict[str, Array] = {}
     for name in data.columns:
         try:
-            columns[name] = _numbers(path, data[name], notes)
+            columns[name] = _numbers(path, data[name], separator, notes)
         except InputError as error:
             if strict:
                 raise
@@ -79,15 +80,19 @@ def read_table(path: Path, names: Collection[str], *, strict: bool = True) -> Ta
     return Table(path=path, columns=columns, rows=data.height, notes=tuple(notes))
 
 
-def _numbers(path: Path, column: pl.Series, notes: list[str]) -> Array:
+def _numbers(path: Path, column: pl.Series, separator: str, notes: list[str]) -> Array:
     """Return a column as numbers, NaN where there is none; add a note about those."""
-    if column.dtype.is_temporal():
-        return np.asarray(column.cast(pl.Datetime('ns')).cast(pl.Int64).to_numpy()) / SECOND
-    if not (column.dtype.is_numeric() or column.dtype == pl.String):
+    try:
+        numbers = _converted(column, separator)
+    except UNREADABLE as error:
+        raise InputError(
+            f'log {path}: column {column.name!r} of {column.dtype} cannot be read as numbers: '
+            f'{_first_line(error)}'
+        ) from None
+    if numbers is None:
         raise InputError(
             f'log {path}: column {column.name!r} holds {column.dtype}, it must hold numbers'
         )
-    numbers = _parsed(column) if column.dtype == pl.String else column.cast(pl.Float64)
     bad = numbers.is_null()
     if bad.all():
         raise InputError(f'log {path}: column {column.name!r} holds no number, but {column[0]!r}')
@@ -102,16 +107,40 @@ def _numbers(path: Path, column: pl.Series, notes: list[str]) -> Array:
     return np.asarray(numbers.fill_null(float('nan')).to_numpy(), dtype=np.float64)
 
 
-def _parsed(texts: pl.Series) -> pl.Series:
-    """Return texts as numbers, or as times in [s] if they are no numbers but those."""
+def _converted(column: pl.Series, separator: str) -> pl.Series | None:
+    """Return a column as numbers, times and durations in [s]; None if its type is neither."""
+    if column.dtype == pl.String:
+        return _parsed(column, separator)
+    if column.dtype.is_temporal():
+        if column.dtype != pl.Time:  # which is counted in nanoseconds, whatever wrote it
+            spans = isinstance(column.dtype, pl.Duration)
+            column = column.cast(pl.Duration('ns') if spans else pl.Datetime('ns'))
+        return column.cast(pl.Int64).cast(pl.Float64) / SECOND
+    return column.cast(pl.Float64) if column.dtype.is_numeric() else None
+
+
+def _parsed(texts: pl.Series, separator: str) -> pl.Series:
+    """
+    Return texts as numbers, or as times in [s] if they are no numbers but those.
+
+    The decimal mark is the one that leaves fewer cells without a number. Where commas separate the
+    cells, one within a cell may part thousands too: it counts only if no cell is a number as is.
+
+    """
     stripped = texts.str.strip_chars()
     numbers = stripped.cast(pl.Float64, strict=False)
-    if numbers.null_count() < len(numbers):
-        return numbers
-    decimal = stripped.str.replace(',', '.', literal=True).cast(pl.Float64, strict=False)
-    if decimal.null_count() < len(decimal):
-        return decimal
-    return _times(stripped)
+    commas = _decimal_commas(stripped)
+    if commas.null_count() < numbers.null_count() and (
+        separator != ',' or numbers.null_count() == len(numbers)
+    ):
+        return commas
+    return numbers if numbers.null_count() < len(numbers) else _times(stripped)
+
+
+def _decimal_commas(texts: pl.Series) -> pl.Series:
+    """Return texts as numbers with a decimal comma; one with a point is none."""
+    plain = texts.set(texts.str.contains('.', literal=True), None)
+    return plain.str.replace(',', '.', literal=True).cast(pl.Float64, strict=False)
 
 
 def _times(texts: pl.Series) -> pl.Series:
@@ -124,8 +153,13 @@ def _times(texts: pl.Series) -> pl.Series:
     return pl.Series(texts.name, [None] * len(texts), dtype=pl.Float64)
 
 
-def _frame(path: Path) -> pl.LazyFrame:
-    """Return the table in a file, its cells as they stand; raises InputError if it is none."""
+def _frame(path: Path) -> tuple[pl.LazyFrame, str]:
+    """
+    Return the table in a file, its cells as they stand, and their separator if it has one.
+
+    Raises InputError when the file is no table.
+
+    """
     try:
         with path.open('rb') as stream:
             head = stream.read(HEAD)
@@ -134,18 +168,25 @@ def _frame(path: Path) -> pl.LazyFrame:
     if not head.strip():
         raise InputError(f'log {path} is empty, it must be a CSV or Parquet file')
     if head.startswith(b'PAR1'):
-        return pl.scan_parquet(path)
+        return pl.scan_parquet(path), ''
     if b'\0' in head:
         raise InputError(f'log {path} is no text, it must be a CSV or Parquet file')
-    first = next(line for line in head.decode('utf-8', 'replace').splitlines() if line.strip())
-    return pl.scan_csv(
+    separator = max(SEPARATORS, key=_header(head).count)
+    frame = pl.scan_csv(
         path,
-        separator=max(SEPARATORS, key=first.count),
+        separator=separator,
         infer_schema=False,
         encoding='utf8-lossy',
-        comment_prefix='#',
+        comment_prefix=COMMENT,
         truncate_ragged_lines=True,
     )
+    return frame, separator
+
+
+def _header(head: bytes) -> str:
+    """Return the first line that is no comment, of what a file begins with; empty if none."""
+    lines = head.decode('utf-8', 'replace').splitlines()
+    return next((line for line in lines if line.strip() and not line.startswith(COMMENT)), '')
 
 
 def _names(path: Path, frame: pl.LazyFrame) -> list[str]:

@@ -7,7 +7,7 @@ import shutil
 import struct
 
 from ballscrew_monitor.recordings.bag import Bag
-from ballscrew_monitor.recordings.bag_writer import BagWriter, CHUNK_SIZE, Offer, Topic
+from ballscrew_monitor.recordings.bag_writer import BagWriter, CHUNK_SIZE, Offer, Topic, whole_bag
 from mcap.exceptions import EndOfFile
 from mcap.reader import make_reader
 from mcap.records import Message
@@ -114,3 +114,45 @@ def test_an_unknown_type_and_a_bad_directory_are_one_sentence(tmp_path):
     (tmp_path / 'file').write_text('')
     with pytest.raises(InputError, match='cannot be written'):
         BagWriter(tmp_path / 'file', 'bag')
+
+
+def break_off(folder, error):
+    """Fail in the middle of a bag."""
+    with whole_bag(folder, 'bag') as writer:
+        writer.add_topic(HEADERS)
+        write(writer, 1)
+        raise error
+
+
+def test_a_whole_bag_is_there_when_it_is_complete_or_not_at_all(tmp_path):
+    folder = tmp_path / 'new' / 'bag'
+    with pytest.raises(KeyboardInterrupt):
+        break_off(folder, KeyboardInterrupt)
+    assert not [*folder.parent.iterdir()]
+    with whole_bag(folder, 'bag') as writer:
+        writer.add_topic(HEADERS)
+        write(writer, 2)
+        assert not folder.exists()
+    assert [*folder.parent.iterdir()] == [folder]
+    assert sorted(path.name for path in folder.iterdir()) == ['bag.mcap', 'metadata.yaml']
+    assert Bag(folder).topics['/a'].count == 2
+
+
+def test_an_older_bag_and_what_is_beside_it_stay_until_the_next_is_whole(tmp_path):
+    (tmp_path / 'notes.txt').write_text('of the mill')
+    for count in (2, 3):
+        with whole_bag(tmp_path, 'bag') as writer:
+            writer.add_topic(HEADERS)
+            write(writer, count)
+    with pytest.raises(ValueError, match='in the middle'):
+        break_off(tmp_path, ValueError('in the middle'))
+    names = sorted(path.name for path in tmp_path.iterdir())
+    assert names == ['bag.mcap', 'metadata.yaml', 'notes.txt']
+    assert Bag(tmp_path).topics['/a'].count == 3
+
+
+def test_a_place_where_no_whole_bag_can_be_is_one_sentence(tmp_path):
+    (tmp_path / 'file').write_text('')
+    for place in (tmp_path / 'file', tmp_path / 'file' / 'bag'):
+        with pytest.raises(InputError, match='cannot be written'), whole_bag(place, 'bag'):
+            raise AssertionError

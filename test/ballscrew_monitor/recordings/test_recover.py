@@ -9,8 +9,10 @@ import subprocess
 import sys
 
 from ballscrew_monitor.recordings.bag import Bag
+from ballscrew_monitor.recordings.bag_files import OWN
 from ballscrew_monitor.recordings.bag_writer import Announced, BagWriter, Offer, Topic
 from ballscrew_monitor.recordings.recover import recover
+from mcap.reader import make_reader
 import pytest
 from surrogate.files import InputError
 import yaml
@@ -90,7 +92,7 @@ def test_nothing_is_written_over_and_what_is_not_there_is_said(tmp_path, whole):
         recover(tmp_path)
 
 
-def test_types_that_are_not_installed_are_kept(tmp_path):
+def test_types_that_are_not_installed_and_what_a_file_says_of_itself_are_kept(tmp_path):
     topic = Announced(
         name='/a',
         type_name='mill_msgs/msg/Mill',
@@ -100,7 +102,14 @@ def test_types_that_are_not_installed_are_kept(tmp_path):
     )
     with BagWriter(tmp_path, 'b') as writer:
         writer.announce(topic)
+        writer.add_metadata({'source': 'mill.csv'})
+        writer.add_metadata({'key': 'value'}, name='of others')
         writer.write('/a', bytes(12), log_time=5, publish_time=7)
     (tmp_path / 'b.mcap').rename(tmp_path / 'b.mcap.active')
     path, _, _ = recover(tmp_path / 'b.mcap.active')
     assert Bag(path).types == {'/a': 'mill_msgs/msg/Mill'}
+    with path.open('rb') as stream:
+        said = {one.name: one.metadata for one in make_reader(stream).iter_metadata()}
+    assert said == {OWN: {'source': 'mill.csv'}, 'of others': {'key': 'value'}}
+    stated = yaml.safe_load((path.parent / 'metadata.yaml').read_text())
+    assert stated['rosbag2_bagfile_information']['custom_data'] == {'source': 'mill.csv'}

@@ -4,6 +4,7 @@
 
 from pathlib import Path
 
+from ballscrew_monitor.report import log_report
 from ballscrew_monitor.report.logs import find_logs, folder_names, is_one_bag
 import pytest
 from surrogate.files import InputError
@@ -36,6 +37,35 @@ def test_parts_of_a_split_bag_are_one_recording(tmp_path):
     touch(tmp_path / 'other.mcap')
     assert not is_one_bag(tmp_path)
     assert len(find_logs([tmp_path])) == 3
+
+
+@pytest.mark.parametrize('numbers', [(1, 2), (0, 2), (20260101, 20260102)])
+def test_files_whose_numbers_have_a_gap_are_recordings_of_their_own(tmp_path, numbers):
+    touch(*(tmp_path / f'bag_{number}.mcap' for number in numbers))
+    assert not is_one_bag(tmp_path)
+    assert len(find_logs([tmp_path])) == 2
+
+
+def test_tables_count_beside_a_bag_where_they_are_asked_for(tmp_path):
+    touch(tmp_path / 'a.mcap', tmp_path / 'b.csv')
+    assert find_logs([tmp_path]) == [tmp_path]
+    assert names(find_logs([tmp_path], tables=True), tmp_path) == ['a.mcap', 'b.csv']
+
+
+@pytest.mark.parametrize('tables', [False, True])
+def test_reports_that_are_there_already_are_no_recordings(tmp_path, tables):
+    made = (log_report.PAGE, log_report.STATES, log_report.EVENTS, log_report.SUMMARY)
+    for report in (tmp_path, tmp_path / 'one', tmp_path / 'reports' / 'a'):
+        judged = report / log_report.JUDGED
+        touch(*(report / name for name in made), judged / 'j.mcap', judged / 'metadata.yaml')
+    touch(tmp_path / 'a.mcap', tmp_path / 'one' / 'one.mcap')
+    assert names(find_logs([tmp_path], tables=tables), tmp_path) == ['a.mcap', 'one']
+
+
+def test_the_folder_of_the_reports_to_come_holds_no_recordings(tmp_path):
+    touch(tmp_path / 'a.csv', tmp_path / 'out' / 'b' / log_report.STATES)
+    found = find_logs([tmp_path], tables=True, out=tmp_path / 'one' / '..' / 'out')
+    assert names(found, tmp_path) == ['a.csv']
 
 
 def test_what_is_named_twice_is_taken_once_and_what_is_not_there_is_kept(tmp_path):

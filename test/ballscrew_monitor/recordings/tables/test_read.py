@@ -2,6 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tables that are not as they should be: one sentence, or the good part and how much it is."""
 
+import datetime as dt
+
+from ballscrew_monitor.recordings.tables import read
 from ballscrew_monitor.recordings.tables.read import column_names, read_table
 import numpy as np
 import polars as pl
@@ -31,14 +34,30 @@ def test_numbers_come_as_they_are(tmp_path):
         'a;b\n1,5;2\n2,5;3\n',
         'a\tb\n1.5\t2\n2.5\t3\n',
         '# a comment\na,b\n1.5,2,surplus\n2.5,3\n',
+        '# of axis x, drive 3, in the night, at the mill\na;b\n1.5;2\n2.5;3\n',
         b'a,b,\xb5\n1.5,2,1\n2.5,3,1\n',
     ],
-    ids=['decimal comma', 'tab', 'comment', 'latin'],
+    ids=['decimal comma', 'tab', 'comment', 'comment of other marks', 'latin'],
 )
 def test_other_forms_are_read_too(text, tmp_path):
     table = read_table(text_log(tmp_path, text), ['a', 'b'])
     assert list(table.columns['a']) == [1.5, 2.5]
     assert list(table.columns['b']) == [2, 3]
+
+
+@pytest.mark.parametrize(
+    ('text', 'expected'),
+    [
+        ('t;v\n0;0\n0,1;1\n0,2;2\n0,3;3\n', [0.0, 0.1, 0.2, 0.3]),
+        ('t;v\n0;0\n0.1;1\n0.2;2\n0,3;3\n', [0.0, 0.1, 0.2, np.nan]),
+        ('t,v\n0,0\n"1,200",1\n', [0.0, np.nan]),
+        ('t,v\n"0,1",0\n"0,2",1\n', [0.1, 0.2]),
+    ],
+    ids=['whole number among them', 'points in most', 'thousands', 'in quotes'],
+)
+def test_the_decimal_mark_is_that_of_most_cells(text, expected, tmp_path):
+    values = read_table(text_log(tmp_path, text), ['t']).columns['t']
+    np.testing.assert_array_equal(values, expected)
 
 
 def test_times_of_day_become_seconds(tmp_path):
@@ -67,6 +86,7 @@ def test_cells_without_a_number_are_unknown_and_counted(tmp_path):
         ('b,c\n1,2\n', "column 'a' is missing, the log holds b, c"),
         (b'\x00\x01\x02' * 50, 'is no text'),
         (b'PAR1 and no more', 'cannot be read'),
+        ('# nothing but a comment\n', 'cannot be read'),
     ],
 )
 def test_what_cannot_be_read_is_one_sentence(text, expected, tmp_path):
@@ -99,3 +119,29 @@ def test_parquet_is_read_with_its_types(tmp_path):
     path.write_bytes(path.read_bytes()[:-20])
     with pytest.raises(InputError, match='cannot be read'):
         read_table(path, ['n'])
+
+
+@pytest.mark.parametrize('unit', ['ms', 'us', 'ns'])
+def test_times_and_durations_of_parquet_are_seconds(tmp_path, unit):
+    path = tmp_path / 'log.parquet'
+    spans = [dt.timedelta(seconds=1.5), None, dt.timedelta(hours=1)]
+    frame = pl.DataFrame(
+        {
+            'span': pl.Series(spans, dtype=pl.Duration(unit)),
+            'clock': [dt.time(0, 0, 2), dt.time(1), None],
+        }
+    )
+    frame.write_parquet(path)
+    table = read_table(path, ['span', 'clock'])
+    np.testing.assert_array_equal(table.columns['span'], [1.5, np.nan, 3600.0])
+    np.testing.assert_array_equal(table.columns['clock'], [2.0, 3600.0, np.nan])
+    assert len(table.notes) == 2
+
+
+def test_a_column_that_cannot_be_converted_is_one_sentence(tmp_path, monkeypatch):
+    def fail(column, separator):
+        raise pl.exceptions.InvalidOperationError('conversion failed\nmore of it')
+
+    monkeypatch.setattr(read, '_converted', fail)
+    with pytest.raises(InputError, match=r"column 'a' of String cannot .*: conversion failed$"):
+        read_table(text_log(tmp_path, 'a\n1\n'), ['a'])
