@@ -110,8 +110,7 @@ class Alarm:
 
     def end_shelving(self) -> bool:
         """End the shelving if its time is over; tell whether it was."""
-        monitor = self._axis.monitor
-        over = monitor.shelving.until != monitor.shelving.at(self._now).until
+        over = self._axis.monitor.shelving.is_over(self._now)
         if over:
             self.shelve(NOT_SHELVED)
         return over
