@@ -24,6 +24,8 @@ YEAR = (
     31_536_000 * SECOND
 )  # [ns] stamps that far from the clock are those of another kind of clock
 
+NEGATIVE = 'the stamp is negative: mend the clock of the source'
+
 
 class Source(enum.IntEnum):
     """What an input measures; samples of equal stamp are taken in this order, speed last."""
@@ -56,6 +58,7 @@ class Why(enum.IntEnum):
     IMPLAUSIBLE = 5  # beyond what the machine can do: a glitch, or another unit
     NOT_DECODED = 6  # truncated, or of another definition of its type
     HOLE = 7  # no speed follows from a position and one long before it
+    NEGATIVE = 8  # a stamp below zero, which no clock shows
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -118,7 +121,8 @@ class Input:
         Return the sample in `message`, received at `now` [ns] after `lost` others.
 
         A stamp more than `max_future` [ns] ahead of `now` is refused, unless `now` is zero: then
-        the clock has not started and cannot say. A zero stamp means that there is none.
+        the clock has not started and cannot say. A zero stamp means that there is none, and a
+        negative one is refused.
 
         """
         value = self.read_field(message)
@@ -129,6 +133,8 @@ class Input:
         if isinstance(value, TooShort):
             return self._refuse(Why.TOO_SHORT, short_text(value), now, lost)
         stamp = stamp_of(message) if self.stamped else 0
+        if stamp < 0:
+            return self._refuse(Why.NEGATIVE, NEGATIVE, now, lost)
         if now and stamp - now > max_future:
             why = Why.OTHER_CLOCK if stamp - now > YEAR else Why.FUTURE
             return self._refuse(why, _future_text(stamp - now, max_future), now, lost)

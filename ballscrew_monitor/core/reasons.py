@@ -33,6 +33,7 @@ _REFUSED = {
     'stamp with /clock or unset use_sim_time',
     Why.NOT_DECODED: 'its messages do not decode, record them with the type of their publisher',
     Why.IMPLAUSIBLE: f'it is beyond the plausible range, {_PLAUSIBLE}',
+    Why.NEGATIVE: 'its stamps are negative, mend the clock of its source',
     Why.HOLE: 'its positions come less often than its timeout allows, raise speed.timeout',
 }
 _TROUBLES: tuple[tuple[Callable[[Health], bool], str], ...] = (

@@ -28,8 +28,12 @@ class Shelving:
     reason: str = ''
 
     def at(self, now: int) -> 'Shelving':
-        """Return what of it holds at `now` [ns]; of one that is over, nothing."""
+        """Return what of it holds at `now` [ns]: nothing if it is over or ends too far ahead."""
         return self if 0 < self.until - now <= LONGEST else NOT_SHELVED
+
+    def is_over(self, now: int) -> bool:
+        """Tell whether it has ended at `now` [ns]; not by a clock that is behind or at zero."""
+        return 0 < self.until <= now
 
 
 NOT_SHELVED = Shelving()

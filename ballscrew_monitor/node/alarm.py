@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The warning of one axis: its topic, its log, and what people do to it."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+import functools
 from typing import Any
 
 from ballscrew_monitor.core.conversions import clock_text, seconds
@@ -14,11 +15,21 @@ from ballscrew_monitor.node.event_log import event_facts, Kind, point_facts, tot
 from ballscrew_monitor.node.keeping import Keeping
 from ballscrew_monitor.node.messages import out_of_zone_message
 from ballscrew_msgs.msg import OutOfZone
+from rclpy.clock import Clock
 from rclpy.duration import Duration
 from rclpy.lifecycle import LifecycleNode
 from rclpy.publisher import Publisher
 
 LAST_WORD = Duration(seconds=0.5)  # for subscribers to take the end of an event
+
+
+def end_all(alarms: Iterable['Alarm'], reason: str, clock: Clock) -> None:
+    """End what is active; on a steady `clock`, all subscribers together have one time to hear."""
+    ended = [alarm for alarm in alarms if alarm.end(reason)]
+    deadline = (clock.now() + LAST_WORD).nanoseconds
+    for alarm in ended:
+        left = deadline - clock.now().nanoseconds
+        alarm.wait(Duration(nanoseconds=max(left, 0)))  # a negative one never ends
 
 
 class Alarm:
@@ -41,8 +52,11 @@ class Alarm:
 
     def publish(self) -> None:
         """Publish the event that is active, or the last one."""
+        self._speak(self._publisher.publish)
+
+    def _speak(self, publish: Callable[[OutOfZone], None]) -> None:
         message = self._message()
-        self._publisher.publish(message)
+        publish(message)
         self._record(f'~/{self._axis.name}/out_of_zone', message)
 
     def follow(self, state: State) -> None:
@@ -57,17 +71,22 @@ class Alarm:
         elif monitor.level is Level.OK:
             self._say(f'event {event.number} is over')
 
-    def end(self, reason: str) -> None:
-        """End the event that is active, if one is, because nothing is judged any more."""
+    def end(self, reason: str) -> bool:
+        """End the event that is active, because nothing is judged any more; tell if one was."""
         monitor = self._axis.monitor
         why = f'ended by the node, not by the axis, nothing is judged any more: {reason}'
-        if monitor.acknowledge(self._now, why) is not None:
+        ended = monitor.acknowledge(self._now, why) is not None
+        if ended:
             # Past the lifecycle: the publisher of an inactive node is mute.
-            Publisher.publish(self._publisher, self._message())
-            self._publisher.wait_for_all_acked(LAST_WORD)
+            self._speak(functools.partial(Publisher.publish, self._publisher))
             self._warn(f'event {monitor.event.number}: {why}')
             self._note_event(Kind.EVENT_END)
         self.remember()
+        return ended
+
+    def wait(self, duration: Duration) -> None:
+        """Wait until all subscribers have the last message, at most for a `duration`."""
+        self._publisher.wait_for_all_acked(duration)
 
     def acknowledge(self) -> None:
         """Set the level back to UNKNOWN and end the event, because somebody has seen it."""
@@ -110,8 +129,7 @@ class Alarm:
 
     def end_shelving(self) -> bool:
         """End the shelving if its time is over; tell whether it was."""
-        monitor = self._axis.monitor
-        over = monitor.shelving.until != monitor.shelving.at(self._now).until
+        over = self._axis.monitor.shelving.is_over(self._now)
         if over:
             self.shelve(NOT_SHELVED)
         return over

@@ -23,7 +23,7 @@ from ballscrew_monitor.core.estimate import MachinePoint
 from ballscrew_monitor.core.state import Event
 from ballscrew_monitor.core.tally import Totals
 from ballscrew_monitor.node.memory_store import event_record, read_event, TIMES
-from ballscrew_monitor.node.state_folder import OLD_LOGS, StateFolder
+from ballscrew_monitor.node.state_folder import old_logs, StateFolder
 from surrogate.files import to_json
 
 NAME = 'events.jsonl'
@@ -84,7 +84,7 @@ class EventLog:
         path = self._folder.file(NAME)
         if path is None:
             return
-        for one in (*sorted(path.parent.glob(OLD_LOGS))[-1:], path):
+        for one in (*list(old_logs(path.parent).values())[-1:], path):
             with contextlib.suppress(OSError), one.open('rb') as file:
                 file.seek(max(0, one.stat().st_size - TAIL))
                 yield from file.read().splitlines()
@@ -94,8 +94,7 @@ class EventLog:
         part = self._folder.limit // PARTS
         if not path.exists() or path.stat().st_size + size <= part:
             return
-        old = sorted(path.parent.glob(OLD_LOGS))
-        number = int(old[-1].name.split('.')[1]) + 1 if old else 1
+        number = max(old_logs(path.parent), default=0) + 1
         path.replace(path.with_name(f'events.{number:06d}.jsonl'))
         self._folder.make_room(part)
 

@@ -31,6 +31,7 @@ class Keeping:
         self._store = MemoryStore(folder)
         self._logged = EventLog(folder).last_events()
         self._damage: list[str] = []
+        self._unsaved: dict[str, str] = {}  # why the corrections of an axis are not kept
         self._remembered: dict[str, Any] = {}
         self._said = ''
 
@@ -39,8 +40,13 @@ class Keeping:
         """Return what is wrong with what is kept, empty if nothing is."""
         if not self._folder.wanted:
             return ''
-        wrong = [self._folder.reason or self._ledger.problem, *self._damage]
-        return '; '.join(filter(None, wrong))
+        writing = self._folder.reason or self._ledger.problem
+        unsaved = [
+            f'corrections of {axis} are not kept, {why}'
+            for axis, why in self._unsaved.items()
+            if why and why != writing
+        ]
+        return '; '.join(filter(None, [writing, *self._damage, *unsaved]))
 
     def statuses(self) -> list[DiagnosticStatus]:
         """Return the diagnostics of what is kept, none if nothing is to be."""
@@ -95,9 +101,18 @@ class Keeping:
         """Write all that waits, and wait for the disk; return why that failed, or nothing."""
         return self._ledger.flush() if self._folder.wanted else ''
 
+    def note_damage(self, sentence: str) -> None:
+        """Say from now on that a file was set aside."""
+        self._damage.append(sentence)
+
+    def note_unsaved(self, axis: str, problem: str) -> None:
+        """Say from now on why the corrections of an axis are not kept; empty: they are."""
+        self._unsaved[axis] = problem
+
     def forget_damage(self) -> None:
-        """Say no more of files that were set aside."""
+        """Say no more of files that were set aside, nor of corrections that are gone."""
         self._damage.clear()
+        self._unsaved.clear()
 
     def log_problem(self) -> None:
         """Log what is wrong, when that has changed."""
@@ -118,7 +133,7 @@ class Keeping:
         try:
             kept = self._store.load(axis)
         except InputError as error:
-            self._damage.append(str(error))
+            self.note_damage(str(error))
             kept = NOTHING
         logged = self._logged.pop(axis, Event())
         memory = after_restart(kept, logged)

@@ -9,8 +9,9 @@ What cannot be written stays here, and is tried again until it can.
 """
 
 from collections import deque
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 import contextlib
+import functools
 import math
 import threading
 import time
@@ -103,7 +104,7 @@ class Ledger:
         with self._pending:
             lines = list(self._lines)
             self._lines.clear()
-        problem = self._log.append(lines)
+        problem = _tried(lambda: self._log.append(lines))
         if problem:
             with self._pending:
                 self._lines = deque([*lines, *self._lines], maxlen=MOST_LINES)
@@ -111,13 +112,21 @@ class Ledger:
 
     def _write_memories(self, memories: Mapping[str, Memory]) -> str:
         for axis, memory in memories.items():
-            problem = self._store.save(axis, memory)
+            problem = _tried(functools.partial(self._store.save, axis, memory))
             if problem:
                 return problem
             with self._pending:
                 if self._memories.get(axis) is memory:
                     del self._memories[axis]
         return ''
+
+
+def _tried(write: Callable[[], str]) -> str:
+    """Write; return why that failed, or nothing."""
+    try:
+        return write()
+    except Exception as error:  # noqa: BLE001 the thread must live, and what waits must stay
+        return f'what is to be kept cannot be written, {type(error).__name__}: {error}'
 
 
 class Scribe(threading.Thread):

@@ -10,6 +10,7 @@ from ballscrew_monitor.core.inputs import InputSample, Refusal
 from ballscrew_monitor.core.pulse import Pulse
 from ballscrew_monitor.core.state import State
 from ballscrew_monitor.node import diagnostics, parameters
+from ballscrew_monitor.node.alarm import end_all
 from ballscrew_monitor.node.axis import Axis, build_axes, named_topics
 from ballscrew_monitor.node.caretaker import Caretaker
 from ballscrew_monitor.node.chronicle import Chronicle
@@ -211,21 +212,24 @@ class BallscrewMonitor(LifecycleNode):
         self._publish_diagnostics(list(axes))
         return self._keeping.flush()
 
-    def _stop(self) -> None:
+    def _stop(self, reason: str = '') -> None:
+        """Judge no longer; for a `reason` events end, while they are still recorded."""
         self._active = False
         self._solves.close('stopped, the node is no longer active')
         if self._intake is not None:
             self._intake.close()
             self._intake = None
+        if reason:
+            alarms = [station.alarm for station in self._stations.values()]
+            end_all(alarms, reason, self._steady)
         self._chronicle.close()
         if self._tick_timer is not None:
             self.destroy_timer(self._tick_timer)
             self._tick_timer = None
 
     def _clear(self, reason: str) -> None:
-        self._stop()
+        self._stop(reason)
         for station in self._stations.values():
-            station.alarm.end(reason)
             station.close()
         self._stations, self._failed = {}, {}
         self._keeping.flush()

@@ -14,6 +14,7 @@ import fcntl
 import json
 import os
 from pathlib import Path
+import re
 from typing import Any, TypeVar
 
 from surrogate.files import InputError, json_text, replace_file
@@ -25,7 +26,7 @@ IN_USE = 'is in use by another node of this name'
 DAMAGED = 'is damaged'
 VERSION = 1
 LARGEST = 10_000_000  # [B] a file that is longer is none of ours
-OLD_LOGS = 'events.*.jsonl'
+OLD_LOG = re.compile(r'events\.([0-9]+)\.jsonl')
 Content = TypeVar('Content')
 
 
@@ -136,7 +137,7 @@ class StateFolder:
             return False
         with contextlib.suppress(OSError):
             over = sum(one.stat().st_size for one in self.path.iterdir()) + size - self.limit
-            for old in sorted(self.path.glob(OLD_LOGS)):
+            for old in old_logs(self.path).values():
                 if over <= 0:
                     break
                 over -= old.stat().st_size
@@ -154,6 +155,12 @@ class StateFolder:
             for left in self.path.glob('.*.json'):
                 with contextlib.suppress(OSError):
                     left.unlink()
+
+
+def old_logs(folder: Path) -> dict[int, Path]:
+    """Return the full event logs in a folder by number, the oldest first; copies are none."""
+    matches = {path: OLD_LOG.fullmatch(path.name) for path in folder.iterdir()}
+    return dict(sorted((int(match[1]), path) for path, match in matches.items() if match))
 
 
 def _content(path: Path) -> Any:

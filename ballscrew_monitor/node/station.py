@@ -198,6 +198,7 @@ class Station:
         """Keep the corrections; return why that failed, or nothing."""
         problem = self._store.save(self.name, self.surface.base_sha256, self.surface.corrections)
         self._unsaved = bool(problem)
+        self._keeping.note_unsaved(self.name, problem)
         return problem
 
     def restore(self) -> str:
@@ -205,7 +206,8 @@ class Station:
         try:
             sha256, kept = self._store.load(self.name)
         except InputError as error:
-            return str(error)
+            self._keeping.note_damage(str(error))
+            return ''
         if not kept:
             return ''
         if sha256 != self.surface.base_sha256:

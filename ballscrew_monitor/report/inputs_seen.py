@@ -30,6 +30,7 @@ REFUSALS = {
     Why.NOT_A_NUMBER: 'not a number',
     Why.FUTURE: 'stamped in the future',
     Why.OTHER_CLOCK: 'stamped by another clock',
+    Why.NEGATIVE: 'stamped before zero',
     Why.TOO_SHORT: 'too short an array',
     Why.IMPLAUSIBLE: 'beyond what is plausible',
     Why.NOT_DECODED: 'that do not decode',

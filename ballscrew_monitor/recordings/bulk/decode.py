@@ -124,7 +124,7 @@ class TopicDecoder:
         stamp = np.zeros_like(now)
         if source.stamped:
             stamp = layout.stamps(messages.data, messages.begin)
-        bad = ~np.isfinite(value) | ((now != 0) & (stamp - now > axis.max_future))
+        bad = ~np.isfinite(value) | (stamp < 0) | ((now != 0) & (stamp - now > axis.max_future))
         samples = made(
             len(messages),
             log_time=now,

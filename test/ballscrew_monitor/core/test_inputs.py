@@ -93,6 +93,15 @@ def test_a_clock_that_has_not_started_refuses_no_stamp_and_times_nothing():
     assert (sample.stamp, sample.arrival) == (NOW, NOW)
 
 
+@pytest.mark.parametrize('now', [0, NOW])
+def test_a_negative_stamp_is_refused(now):
+    message = joints('x_axis', velocity=[3.0], stamp=-1)
+    refusal = speed_input().read(message, now=now, max_future=0)
+    assert isinstance(refusal, Refusal)
+    assert (refusal.why, refusal.arrival) == (Why.NEGATIVE, now)
+    assert refusal.text == 'the stamp is negative: mend the clock of the source'
+
+
 @pytest.mark.parametrize('bad', [math.nan, math.inf, -math.inf])
 def test_what_is_not_a_number_is_refused(bad):
     refusal = speed_input().read(joints('x_axis', velocity=[bad]), now=NOW, max_future=0)

@@ -27,6 +27,16 @@ def test_a_clock_that_is_set_back_shelves_no_longer_than_a_day():
     assert shelving.at(10 * SECOND) is NOT_SHELVED
 
 
+@pytest.mark.parametrize('wrong', [0, 10 * SECOND, NOW - 86400 * SECOND])
+def test_a_clock_that_is_behind_does_not_end_it(wrong):
+    shelving = shelve(NOW, 60.0, 'why')
+    assert not shelving.is_over(wrong)
+    assert shelving.at(wrong) is NOT_SHELVED
+    assert not shelving.is_over(shelving.until - 1)
+    assert shelving.is_over(shelving.until)
+    assert not NOT_SHELVED.is_over(NOW)
+
+
 def test_a_duration_of_zero_ends_it_without_a_reason():
     assert shelve(NOW, 0.0, '') is NOT_SHELVED
 

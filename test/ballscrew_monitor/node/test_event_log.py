@@ -80,6 +80,16 @@ def test_it_is_rotated_and_stays_within_the_limit(log, tmp_path):
     assert 'events.000001.jsonl' not in names
 
 
+def test_a_copy_beside_the_log_is_neither_counted_nor_removed(log, tmp_path):
+    copies = [tmp_path / name for name in ('events.old.jsonl', 'events.1 (copy).jsonl')]
+    for path in copies:
+        path.write_text('my own')
+    for number in range(1, 201):
+        assert log.append([event_line(Kind.EVENT_BEGIN, number)]) == ''
+    assert log.last_events()['x'].number == 200
+    assert [path.read_text() for path in copies] == ['my own', 'my own']
+
+
 def test_a_full_disk_is_told_and_nothing_half_written_stays(log, tmp_path, monkeypatch):
     log.append([event_line(Kind.EVENT_BEGIN, 1)])
     path = tmp_path / 'events.jsonl'

@@ -172,6 +172,18 @@ def test_a_directory_that_is_mounted_later_is_taken_up(axis, tmp_path):
     assert [line['kind'] for line in axis.log()] == ['node_start', 'event_begin']
 
 
+def test_damaged_corrections_are_one_sentence(axis):
+    axis.folder.mkdir()
+    path = axis.folder / 'x.corrections.json'
+    path.write_text('[1')
+    axis.start()
+    axis.node.until(lambda: axis.statuses('State directory'), 'the status')
+    ((level, message),) = axis.statuses('State directory')
+    assert level == DiagnosticStatus.WARN
+    assert message.startswith(f'{path} is damaged (')
+    assert message.endswith('), moved to x.corrections.damaged')
+
+
 def test_a_damaged_file_is_one_sentence_and_begins_anew(axis):
     axis.folder.mkdir()
     path = axis.folder / 'x.memory.json'

@@ -7,6 +7,7 @@ import json
 from ballscrew_monitor.core.memory import Memory
 from ballscrew_monitor.core.tally import Totals
 from ballscrew_monitor.node import ledger as ledger_module
+from ballscrew_monitor.node.event_log import EventLog
 from ballscrew_monitor.node.ledger import Ledger, LINES, MEMORIES, Scribe
 from ballscrew_monitor.node.memory_store import MemoryStore
 from ballscrew_monitor.node.state_folder import StateFolder
@@ -98,6 +99,23 @@ def test_a_thread_writes_what_comes(folder):
     assert not scribe.is_alive()
     ledger.flush()
     assert logged(folder) == [str(number) for number in range(100)]
+
+
+def test_what_fails_unexpectedly_waits_is_told_and_ends_no_thread(folder, monkeypatch):
+    def fail(*_):
+        raise ValueError('surprise')
+
+    ledger = Ledger(folder)
+    ledger.note('1')
+    ledger.remember('x', memory(1))
+    with monkeypatch.context() as broken:
+        broken.setattr(EventLog, 'append', fail)
+        broken.setattr(MemoryStore, 'save', fail)
+        assert ledger.work(0.0) == MEMORIES
+        told = 'what is to be kept cannot be written, ValueError: surprise'
+        assert ledger.flush() == ledger.problem == told
+    assert ledger.flush() == ''
+    assert (logged(folder), kept(folder)) == (['1'], 1)
 
 
 def test_a_scribe_that_never_began_stops(folder):

@@ -2,8 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """A node that judges no longer ends the event that is active, and says why."""
 
+import types
+
+from ballscrew_monitor.node.alarm import end_all
 from ballscrew_msgs.msg import OutOfZone
 import pytest
+import rclpy.clock
+from rclpy.duration import Duration
 from rclpy.qos import QoSDurabilityPolicy, QoSProfile
 
 LATCHED = QoSProfile(depth=10, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL)
@@ -49,3 +54,23 @@ def test_on_the_way_out(outside):
     node, heard = outside
     assert node.stop() == 0
     assert last_word(node, heard).endswith('nothing is judged any more: shut down')
+
+
+def test_all_axes_speak_before_any_waits_and_share_one_time():
+    clock = rclpy.clock.ROSClock()
+    stand, said = [clock.now()], []
+
+    def end(reason):
+        said.append(reason)
+        return reason != 'nothing to end'
+
+    def wait(duration):
+        said.append(duration.nanoseconds)
+        stand[0] += Duration(nanoseconds=min(duration.nanoseconds, 200_000_000))
+
+    alarm = types.SimpleNamespace(end=end, wait=wait)
+    standing = types.SimpleNamespace(now=lambda: stand[0])
+    end_all([alarm] * 4, 'why', standing)
+    assert said == [*['why'] * 4, 500_000_000, 300_000_000, 100_000_000, 0]
+    end_all([alarm], 'nothing to end', standing)
+    assert said[8:] == ['nothing to end']

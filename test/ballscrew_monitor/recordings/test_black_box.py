@@ -9,7 +9,7 @@ from ballscrew_monitor.node.messages import StateWriter, TIERS
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.own_recording import OwnRecording
 from ballscrew_monitor.recordings.recover import recover
-from ballscrew_msgs.msg import BallScrewState
+from ballscrew_msgs.msg import BallScrewState, OutOfZone
 from diagnostic_msgs.msg import DiagnosticArray
 import pytest
 from rclpy.serialization import deserialize_message
@@ -105,6 +105,21 @@ def test_around_events_alone_is_recorded_with_what_was_before(node, start):
     assert again == recorded(path)
     assert len(again) > 30
     assert not own.refuted
+
+
+def test_the_end_of_an_event_by_the_node_is_recorded(node, start):
+    folder, machine = start()
+    states = node.states()
+    node.until(
+        lambda: machine(SLOW) or (states and states[-1].level == BallScrewState.LEVEL_WARN),
+        'a warning',
+    )
+    node.stop()
+    (path,) = finished(node, folder)
+    *_, last = Bag(path).messages(['/ballscrew_monitor/x/out_of_zone'])
+    said = deserialize_message(last.data, OutOfZone)
+    assert (said.event_id, said.active) == (1, False)
+    assert said.advice.endswith('nothing is judged any more: shut down')
 
 
 def test_after_a_kill_of_the_node_the_recording_is_complete(node, start):

@@ -110,6 +110,7 @@ def faulty():
             now += int(drawn.choice([1500, 40_000, 70_000])) * MS
         stamp = now - int(drawn.choice([0, 0, 0, 1, 400, 3000, -50, -10_000])) * MS
         stamp = 0 if number % 37 == 5 else stamp
+        stamp = -now if number % 37 == 6 else stamp
         kind = drawn.integers(10)
         if kind < 3:
             timed.append((now, joints(stamp, speeds=(float(number), 1.0), frame='f' * kind)))
