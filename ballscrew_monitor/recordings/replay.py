@@ -96,9 +96,7 @@ def replay_states(
     if is_as_recorded(bag, values):
         return own_states(bag, on_done)
     axes = axes_for(bag, values)
-    period = nanoseconds(values['tick_period'])
-    entries = ordered_entries(bag, axes, period, on_done=on_done)
-    return _states(entries, axes, at_once=at_once)
+    return _states(_entries(bag, axes, values, on_done), axes, at_once=at_once)
 
 
 def replay_columns(
@@ -114,9 +112,7 @@ def replay_columns(
     if is_as_recorded(bag, values):
         return own_columns(bag, on_done)
     axes = axes_for(bag, values)
-    period = nanoseconds(values['tick_period'])
-    entries = ordered_entries(bag, axes, period, on_done=on_done)
-    return _columns(entries, axes, at_once=at_once)
+    return _columns(_entries(bag, axes, values, on_done), axes, at_once=at_once)
 
 
 def replay_outcomes(
@@ -137,6 +133,12 @@ def axes_for(bag: Bag, values: Mapping[str, Any]) -> list[Axis]:
     values = with_types(values, bag.types)
     bag.require(input_topics(values))
     return [build_axis(name, values) for name in values['axes']]
+
+
+def _entries(
+    bag: Bag, axes: list[Axis], values: Mapping[str, Any], on_done: OnDone
+) -> Iterator[Entries]:
+    return ordered_entries(bag, axes, nanoseconds(values['tick_period']), on_done=on_done)
 
 
 def _columns(

@@ -18,14 +18,14 @@ from ballscrew_monitor.recordings.replay import replay_columns
 from ballscrew_monitor.report.case import AxisCase, badness, InputSetting
 from ballscrew_monitor.report.judged_bag import write_judged_bag
 from ballscrew_monitor.report.log_page import LogCase, report_page, verdicts_of
+from ballscrew_monitor.report.logs import EVENTS, JUDGED, PAGE, STATES
 from ballscrew_monitor.report.parameters import LogParameters
 from ballscrew_monitor.report.products import write_events, write_summary
 from ballscrew_monitor.report.store import RowStore
 from ballscrew_monitor.report.survey import survey
 from surrogate.files import replace_file
 
-PAGE, STATES, EVENTS, SUMMARY = 'report.html', 'states.parquet', 'events.csv', 'summary.json'
-JUDGED = 'judged'
+SUMMARY = 'summary.json'
 OnShare = Callable[[float], None]
 """Told which share of a recording is judged [-]."""
 

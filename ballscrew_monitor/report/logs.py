@@ -10,7 +10,8 @@ from ballscrew_monitor.recordings.bag_files import ACTIVE, ENDINGS, TABLES
 from surrogate.files import InputError
 
 _PART = re.compile(r'(.*)_(\d+)')  # file of a bag that was split
-PAGE, PRODUCTS = 'report.html', ('judged', 'states.parquet', 'events.csv')
+PAGE, STATES, EVENTS, JUDGED = 'report.html', 'states.parquet', 'events.csv', 'judged'
+PRODUCTS = (JUDGED, STATES, EVENTS)
 """How a folder with a report is known, and what is no recording in it."""
 _UNSAFE = re.compile(r'[^\w.-]+')
 

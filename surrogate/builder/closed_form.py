@@ -22,6 +22,7 @@ from surrogate.builder.tiers import screw_and_oil
 from surrogate.files import InputError
 from surrogate.formulas import closed_form
 from surrogate.formulas.film import film_ratio_at_share_aihara_1987
+from surrogate.formulas.inlet_heating import SPEED_EXPONENT
 from surrogate.formulas.load_sharing import UNLOADING_RATIO, working_preload
 from surrogate.parameters import Lubricant, Screw
 from surrogate.progress import OnProgress
@@ -31,8 +32,6 @@ from surrogate.units import ZERO_CELSIUS
 
 Array = NDArray[np.float64]
 
-FILM_SPEED_EXPONENT = 0.67
-"""Exponent of speed in the central film of Hamrock and Dowson [-]."""
 SLOWEST_SPEED = 0.05
 """Default lower end of the speed range [rad/s], well below any standstill gate."""
 LOADS_IN_PRELOADS = 4.0
@@ -176,7 +175,7 @@ def speed_at_film_ratio(
     """Return the speed [rad/s] of a film ratio [-] by formula; arguments broadcast."""
     load, temperature = np.broadcast_arrays(load, temperature)
     ratio = closed_form.solve(screw, lubricant, 1.0, load, temperature).film_ratio
-    speed = (target / ratio) ** (1 / FILM_SPEED_EXPONENT)
+    speed = (target / ratio) ** (1 / SPEED_EXPONENT)
     # Without any load there is no contact and no onset; the node itself is masked.
     return np.asarray(np.where(np.isfinite(speed), speed, np.nanmedian(speed)))
 
