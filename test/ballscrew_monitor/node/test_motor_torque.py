@@ -97,6 +97,7 @@ def test_the_node_derives_what_a_replay_derives(node, drive, tmp_path):
     assert math.isnan(last.torque_residual)
     assert [health.state for health in last.inputs][1] == InputHealth.STATE_DERIVED
     heard = {told(state)[0]: told(state) for state in states if not math.isnan(state.point.speed)}
-    expected = replayed(tmp_path / 'bag', messages)
+    found = replayed(tmp_path / 'bag', messages)  # a tick before the first speed is no sample
+    expected = [one for one in found if not math.isnan(one[1][0])]
     assert len(expected) == COUNT - 1
     assert [str(heard[one[0]]) for one in expected] == [str(one) for one in expected]
