@@ -94,7 +94,7 @@ def report_log(
         write_events(out / EVENTS, log)
         write_summary(out / SUMMARY, log)
         replace_file(out / PAGE, report_page(log).encode())
-        write_judged_bag(bag, parameters.values, out / JUDGED)
+        write_judged_bag(bag, parameters.values, out / JUDGED, parameters.metadata)
         return _result(log)
 
 

@@ -278,10 +278,11 @@ def test_a_replay_takes_the_parameters_of_the_recording_and_follows_it(tmp_path)
     live(node, seconds=12, begin=BEGIN + 12 * SECOND, seed=2)
     node.close()
     bag = bag_in(tmp_path)
-    values, whose = values_for(bag, None, Path('none'))
+    chosen = values_for(bag, None, Path('none'))
+    values = chosen.values
     assert values['axes'] == ['x', 'z']
     assert values['x.speed.topic'] == TOPICS['speed']
-    assert whose == f'those that the node recorded in {bag.path}'
+    assert chosen.origin == f'those that the node recorded in {bag.path}'
     states = list(replay(bag, values))
     assert len(states) == len(node.said)
     *blocks, x, z = replay_columns(bag, values)
