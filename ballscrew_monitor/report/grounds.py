@@ -9,7 +9,7 @@ from ballscrew_monitor.core.conversions import celsius
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.recordings.columns import Reason
 from ballscrew_monitor.report.case import AxisCase
-from ballscrew_monitor.report.inputs_seen import inputs_seen, InputSeen, NAMES
+from ballscrew_monitor.report.inputs_seen import inputs_seen, InputSeen, NAMES, Trouble
 from ballscrew_monitor.report.markup import element, joined, Markup, table, TableCell, TableRow
 from ballscrew_monitor.report.words import counted, duration, number, share
 
@@ -74,19 +74,7 @@ def inputs_part(case: AxisCase) -> Markup:
         [
             element('h3', 'Inputs'),
             *(element('p', f'Check: {hint}.', class_='hint') for hint in hints),
-            table(
-                (
-                    'Input',
-                    'Source',
-                    'Lowest',
-                    'Highest',
-                    'Unit',
-                    'Rate [Hz]',
-                    'Read from',
-                    'Refused',
-                ),
-                (_input_row(one) for one in seen),
-            ),
+            _input_table(seen),
             element(
                 'p', 'Only these columns of the recording were read for this page.', class_='muted'
             ),
@@ -94,9 +82,17 @@ def inputs_part(case: AxisCase) -> Markup:
     )
 
 
-def _input_row(seen: InputSeen) -> TableRow:
+def _input_table(seen: Sequence[InputSeen]) -> Markup:
+    """Return the table of all inputs; what went well with all of them has no column."""
+    head = ('Input', 'Source', 'Lowest', 'Highest', 'Unit', 'Rate [Hz]', 'Read from', 'Refused')
+    more = tuple(name for name in Trouble if any(name in one.troubles for one in seen))
+    return table((*head, *(name.value for name in more)), (_input_row(one, more) for one in seen))
+
+
+def _input_row(seen: InputSeen, more: Sequence[Trouble]) -> TableRow:
     tag = element('span', seen.origin, class_=TAGS[seen.known])
     rate = number(seen.rate, 4) + (' assumed' if seen.rate_assumed else '')
+    none = 'none' if seen.place else ''
     return TableRow(
         cells=(
             TableCell(text=NAMES[seen.source]),
@@ -106,7 +102,8 @@ def _input_row(seen: InputSeen) -> TableRow:
             TableCell(text=seen.unit, kind='short'),
             TableCell(text=rate, kind='number'),
             TableCell(text=seen.place),
-            TableCell(text=seen.refused or 'none' if seen.place else ''),
+            TableCell(text=seen.refused or none),
+            *(TableCell(text=seen.troubles.get(name, none)) for name in more),
         )
     )
 
@@ -144,18 +141,19 @@ def _reason_text(reason: Reason) -> str:
 def _gap_table(case: AxisCase) -> Iterable[Markup]:
     survey = case.survey
     timeout = case.settings.timeouts[Source.SPEED] * 1e-9
-    if not survey.gap_count:
+    gaps = survey.gaps[Source.SPEED]
+    if not gaps.count:
         yield element('p', f'The speed has no gap longer than its timeout of {timeout:g} s.')
         return
     cut = (
-        f', the longest {len(survey.gaps)} are listed'
-        if len(survey.gaps) < survey.gap_count
+        f', the longest {len(survey.speed_gaps)} are listed'
+        if len(survey.speed_gaps) < gaps.count
         else ''
     )
     yield element(
         'p',
-        f'The speed has {counted(survey.gap_count, "gap")} longer than its timeout of '
-        f'{timeout:g} s, in all {duration(survey.gap_time)}{cut}.',
+        f'The speed has {counted(gaps.count, "gap")} longer than its timeout of '
+        f'{timeout:g} s, in all {duration(gaps.time)}{cut}.',
     )
     rows = (
         TableRow(
@@ -166,7 +164,7 @@ def _gap_table(case: AxisCase) -> Iterable[Markup]:
             begin=begin - 1.0,
             end=begin + length + 1.0,
         )
-        for begin, length in ((case.since_first(at), gap * 1e-9) for at, gap in survey.gaps)
+        for begin, length in ((case.since_first(at), gap * 1e-9) for at, gap in survey.speed_gaps)
     )
     yield element(
         'details',
