@@ -11,7 +11,7 @@ from ballscrew_monitor.recordings.columns import Reason
 from ballscrew_monitor.report.case import AxisCase
 from ballscrew_monitor.report.inputs_seen import inputs_seen, InputSeen, NAMES, Trouble
 from ballscrew_monitor.report.markup import element, joined, Markup, table, TableCell, TableRow
-from ballscrew_monitor.report.words import counted, duration, number, share
+from ballscrew_monitor.report.words import counted, duration, NONE, number, share
 
 TIERS = {
     'full': 'full model (solved contacts, roughness that rolls)',
@@ -74,7 +74,20 @@ def inputs_part(case: AxisCase) -> Markup:
         [
             element('h3', 'Inputs'),
             *(element('p', f'Check: {hint}.', class_='hint') for hint in hints),
-            _input_table(seen),
+            table(
+                (
+                    'Input',
+                    'Source',
+                    'Lowest',
+                    'Highest',
+                    'Unit',
+                    'Rate [Hz]',
+                    'Read from',
+                    'Refused',
+                ),
+                (_input_row(one) for one in seen),
+            ),
+            *_trouble_table(seen),
             element(
                 'p', 'Only these columns of the recording were read for this page.', class_='muted'
             ),
@@ -82,17 +95,9 @@ def inputs_part(case: AxisCase) -> Markup:
     )
 
 
-def _input_table(seen: Sequence[InputSeen]) -> Markup:
-    """Return the table of all inputs; what went well with all of them has no column."""
-    head = ('Input', 'Source', 'Lowest', 'Highest', 'Unit', 'Rate [Hz]', 'Read from', 'Refused')
-    more = tuple(name for name in Trouble if any(name in one.troubles for one in seen))
-    return table((*head, *(name.value for name in more)), (_input_row(one, more) for one in seen))
-
-
-def _input_row(seen: InputSeen, more: Sequence[Trouble]) -> TableRow:
+def _input_row(seen: InputSeen) -> TableRow:
     tag = element('span', seen.origin, class_=TAGS[seen.known])
     rate = number(seen.rate, 4) + (' assumed' if seen.rate_assumed else '')
-    none = 'none' if seen.place else ''
     return TableRow(
         cells=(
             TableCell(text=NAMES[seen.source]),
@@ -102,10 +107,26 @@ def _input_row(seen: InputSeen, more: Sequence[Trouble]) -> TableRow:
             TableCell(text=seen.unit, kind='short'),
             TableCell(text=rate, kind='number'),
             TableCell(text=seen.place),
-            TableCell(text=seen.refused or none),
-            *(TableCell(text=seen.troubles.get(name, none)) for name in more),
+            TableCell(text=seen.refused or 'none' if seen.place else ''),
         )
     )
+
+
+def _trouble_table(seen: Sequence[InputSeen]) -> Iterable[Markup]:
+    """Yield what is wrong with the messages of the inputs; what went well has no column."""
+    heads = [head for head in Trouble if any(head in one.troubles for one in seen)]
+    if heads:
+        rows = (
+            TableRow(
+                cells=(
+                    TableCell(text=NAMES[one.source]),
+                    *(TableCell(text=one.troubles.get(head, NONE)) for head in heads),
+                )
+            )
+            for one in seen
+            if one.place
+        )
+        yield table(('Input', *(head.value for head in heads)), rows)
 
 
 def gaps_part(case: AxisCase) -> Markup:

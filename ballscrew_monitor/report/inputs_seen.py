@@ -46,7 +46,7 @@ class Trouble(enum.Enum):
     """What may be wrong with the messages of an input, as the head of a column."""
 
     GAPS = 'Gaps'
-    SLOW = 'Too slow'
+    SLOW = 'Too slow for its timeout'
     LAG = 'Stamps behind arrival'
     LOST = 'Lost on the way'
     LEFT_OUT = 'Left out'
@@ -92,7 +92,7 @@ class InputSeen:
         lost = 'not known' if self.lost is None else str(self.lost)
         found = {
             Trouble.GAPS: f'{self.gaps.count}, in all {duration(self.gaps.time)}',
-            Trouble.SLOW: 'for its timeout',
+            Trouble.SLOW: 'yes',
             Trouble.LAG: f'{number(self.lag)} s',
             Trouble.LOST: lost,
             Trouble.LEFT_OUT: f'{self.left_out} out of order or of other joints',

@@ -16,7 +16,7 @@ HEAD = 12
 """Width of the column of heads, as that of `Summary.lines`."""
 SAID = {
     Trouble.GAPS: 'gaps {}',
-    Trouble.SLOW: 'too slow {}',
+    Trouble.SLOW: 'too slow for its timeout',
     Trouble.LAG: 'stamps {} behind arrival',
     Trouble.LOST: 'lost on the way {}',
     Trouble.LEFT_OUT: '{}',

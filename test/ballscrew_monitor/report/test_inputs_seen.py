@@ -141,7 +141,7 @@ def test_an_input_that_is_well_has_no_trouble(judged):
         ({'lag': 0.25}, Trouble.LAG, '0.25 s'),
         ({'lag': -0.25}, Trouble.LAG, '-0.25 s'),
         ({'dropped': 3}, Trouble.LEFT_OUT, '3 out of order or of other joints'),
-        ({'slow': True, 'longest_gap': 2.0}, Trouble.SLOW, 'for its timeout'),
+        ({'slow': True, 'longest_gap': 2.0}, Trouble.SLOW, 'yes'),
         ({'lost': 4}, Trouble.LOST, '4'),
         ({'lost': None}, Trouble.LOST, 'not known'),
     ],
