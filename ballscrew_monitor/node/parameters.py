@@ -96,6 +96,19 @@ def read_text(text: str, origin: str, node: str = NODE_NAME) -> dict[str, Any]:
     return defaults(axes) | given
 
 
+def names_in_file(path: str | pathlib.Path, node: str = NODE_NAME) -> frozenset[str]:
+    """Return the names of the parameters to which the file at `path` gives a value."""
+    return names_in_text(_text_of(path), str(path), node)
+
+
+def names_in_text(text: str, origin: str, node: str = NODE_NAME) -> frozenset[str]:
+    """Return what `names_in_file` does, of the text of such a file, which `origin` names."""
+    try:
+        return frozenset(_given(_sections(text), node))
+    except InputError as error:
+        raise InputError(f'{origin}: {error}') from None
+
+
 def read_ros_parameters(path: str | pathlib.Path, node: str = NODE_NAME) -> dict[str, Any]:
     """
     Return what the file at `path` says of the parameters of any ROS node, such as `use_sim_time`.

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a bag made of a log says of itself in its metadata: parameters, map, assumptions, notes."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 import dataclasses
 from pathlib import Path
 import re
@@ -57,9 +57,7 @@ class LogFacts:
         """Return the facts as the metadata of a bag holds them."""
         content = {
             'source': self.source,
-            'parameters': {
-                f'/**/{parameters.NODE_NAME}': {'ros__parameters': _nested(self.parameters)}
-            },
+            'parameters': _parameters_text(self.parameters),
             'mapping': dict(self.mapping),
             'assumptions': [dataclasses.asdict(one) for one in self.assumptions],
             'notes': list(self.notes),
@@ -70,6 +68,23 @@ class LogFacts:
         """Return what is to be said wherever the log is judged."""
         assumed = ', '.join(f'{one.key} = {one.value}' for one in self.assumptions)
         return [*self.notes, *([f'assumed of {self.source}: {assumed}'] if assumed else [])]
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class ChosenValues:
+    """
+    Every parameter that a bag is to be judged with, and in words whose they are.
+
+    `said` names those that somebody gave a value; the others stand at their defaults. `is_given`:
+    a person gave them for this bag; `is_nominal`: neither a person nor the bag gave any.
+
+    """
+
+    values: dict[str, Any]
+    origin: str
+    said: frozenset[str] = frozenset()
+    is_given: bool = False
+    is_nominal: bool = False
 
 
 def facts_of(bag: Bag) -> LogFacts | None:
@@ -99,16 +114,40 @@ def parameters_of(bag: Bag) -> dict[str, Any] | None:
     return None if text is None else parameters.read_text(text, f'bag {bag.path}')
 
 
-def values_for(bag: Bag, given: Path | None, nominal: Path) -> tuple[dict[str, Any], str]:
-    """Return the parameters to judge a bag with, given, its own or nominal, and whose they are."""
+def values_for(bag: Bag, given: Path | None, nominal: Path) -> ChosenValues:
+    """Return the parameters to judge a bag with: those given, its own, or the nominal ones."""
     if given is not None:
-        return parameters.read_file(given), str(given)
+        values = parameters.read_file(given)
+        said = parameters.names_in_file(given)
+        return ChosenValues(values=values, origin=str(given), said=said, is_given=True)
     own = parameters_of(bag)
     if own is not None:
-        return own, f'those of {bag.path}'
+        said = parameters.names_in_text(bag.metadata[f'{PREFIX}parameters'], f'bag {bag.path}')
+        return ChosenValues(values=own, origin=f'those of {bag.path}', said=said)
     if journal_of(bag):
-        return recorded_values(bag), f'those that the node recorded in {bag.path}'
-    return parameters.read_file(nominal), f'{nominal}, the nominal ones'
+        values = recorded_values(bag)
+        origin = f'those that the node recorded in {bag.path}'
+        return ChosenValues(values=values, origin=origin, said=_not_default(values))
+    values = parameters.read_file(nominal)
+    return ChosenValues(values=values, origin=f'{nominal}, the nominal ones', is_nominal=True)
+
+
+def parameters_text(values: Mapping[str, Any], said: Collection[str] = ()) -> str:
+    """Return the text of a ROS parameter file: what is not at its default, and what was `said`."""
+    told = _not_default(values) | set(said)
+    return _parameters_text({name: value for name, value in values.items() if name in told})
+
+
+def _not_default(values: Mapping[str, Any]) -> frozenset[str]:
+    """Return the names of the parameters that are not at their defaults, and that of the axes."""
+    usual = parameters.defaults(values['axes'])
+    return frozenset(
+        name for name, value in values.items() if name == 'axes' or value != usual.get(name)
+    )
+
+
+def _parameters_text(given: Mapping[str, Any]) -> str:
+    return _text({f'/**/{parameters.NODE_NAME}': {'ros__parameters': _nested(given)}})
 
 
 def _text(value: Any) -> str:

@@ -115,14 +115,6 @@ def replay_columns(
     return _columns(_entries(bag, axes, values, on_done), axes, at_once=at_once)
 
 
-def replay_outcomes(
-    bag: Bag, values: Mapping[str, Any], *, at_once: bool = True, on_done: OnDone = ignore
-) -> list[AxisOutcome]:
-    """Return what `bag` comes to for each axis; the rest is as for `replay`."""
-    found = replay_columns(bag, values, at_once=at_once, on_done=on_done)
-    return [each for each in found if isinstance(each, AxisOutcome)]
-
-
 def axes_for(bag: Bag, values: Mapping[str, Any]) -> list[Axis]:
     """
     Return the axes that `values` configure, ready for `bag`.

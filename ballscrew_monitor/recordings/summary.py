@@ -65,9 +65,8 @@ class Summary:
 
     @property
     def says_nothing(self) -> bool:
-        """Tell whether no sample was judged, or none of those in motion."""
-        moving = self.optimal_time + self.outside_time
-        return not self.judged or (self.unjudged_time > 0.0 and not moving)
+        """Tell whether nothing of a motion was judged; at standstill there is nothing to judge."""
+        return not self.judged or not self.optimal_time + self.outside_time
 
     def record(self) -> dict[str, Any]:
         """Return plain data for JSON; times of events are relative [s]."""
@@ -108,9 +107,13 @@ class Summary:
             f'{self.revolutions:.0f} revolutions, {self.energy_lost:.0f} J lost to friction',
             'regime      ' + self._shares(*(regime.word for regime in REGIMES)),
             'zone        ' + self._shares('optimal', 'outside', 'unjudged'),
-            f'events      {len(self.events) or "none"}',
+            f'events      {len(self.events) or self._no_events}',
             *(self._event_line(event) for event in self.events),
         ]
+
+    @property
+    def _no_events(self) -> str:
+        return 'none, for no motion was judged' if self.says_nothing else 'none'
 
     def _shares(self, *names: str) -> str:
         parts = []

@@ -1,8 +1,8 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""One axis of a recording, with all that a report says of it."""
+"""A recording and each of its axes, with all that is said of them."""
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 import dataclasses
 import math
 from typing import Any
@@ -42,11 +42,12 @@ class InputSetting:
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class AxisCase:
     """
-    An axis that has rows; `inputs` holds those that have a topic.
+    An axis that has rows; `inputs` holds those that have a topic; `blocks` gives the rows again.
 
     `load_from` is the input that its load is worked out from, empty where the load is measured;
     `assumed` says by name what else is not known, each with value and reason; `stated` names what
-    the map of a log says. `nominal`: the parameters are those taken where nobody gave any.
+    somebody states, by its place in a map. `nominal`: the parameters are those taken where nobody
+    gave any; `numbered`: the recording tells how many messages were lost on their way to it.
 
     """
 
@@ -56,11 +57,12 @@ class AxisCase:
     inputs: Mapping[Source, InputSetting]
     outcome: AxisOutcome
     survey: Survey
-    blocks: Blocks
+    blocks: Blocks = tuple  # none are kept
     load_from: str = ''
     assumed: Mapping[str, Mapping[str, Any]] = dataclasses.field(default_factory=dict)
     stated: frozenset[str] = frozenset()
     nominal: bool = False
+    numbered: bool = False
 
     @property
     def load_origin(self) -> str:
@@ -101,6 +103,35 @@ class AxisCase:
     def worst_first(self) -> list[EventRecord]:
         """Return the events, the worst first."""
         return sorted(self.outcome.events, key=badness, reverse=True)
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class LogCase:
+    """
+    A recording that was judged.
+
+    `name` as its reader knows it, `parameters` where they came from; axes with rows, and the names
+    of those without any; assumptions by what they are about, with value and reason; notes on the
+    recording itself.
+
+    """
+
+    name: str
+    parameters: str
+    axes: Sequence[AxisCase]
+    empty: Sequence[str] = ()
+    assumptions: Mapping[str, Mapping[str, Any]] = dataclasses.field(default_factory=dict)
+    notes: Sequence[str] = ()
+
+    @property
+    def unjudged(self) -> list[str]:
+        """Return the axes on which nothing was judged."""
+        return [*self.empty, *(one.axis for one in self.axes if one.is_silent)]
+
+    @property
+    def judged(self) -> bool:
+        """Tell whether something was judged on at least one axis."""
+        return len(self.unjudged) < len(self.axes) + len(self.empty)
 
 
 def badness(event: EventRecord) -> tuple[float, float]:

@@ -3,9 +3,9 @@
 """`ballscrew replay`: recordings judged without DDS, in words, as JSON, or as reports."""
 
 import argparse
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 import contextlib
-import functools
+import json
 from pathlib import Path
 import sys
 from typing import Any, TYPE_CHECKING
@@ -16,10 +16,14 @@ from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.decoding import silence
 from ballscrew_monitor.recordings.opener import opened_log
 from ballscrew_monitor.recordings.progress import shown_progress
-from ballscrew_monitor.recordings.replay import axes_for, replay_outcomes
-from ballscrew_monitor.recordings.summary import Summary
-from ballscrew_monitor.report.logs import find_logs
+from ballscrew_monitor.recordings.replay import axes_for
+from ballscrew_monitor.report.case import AxisCase, LogCase
+from ballscrew_monitor.report.judging import judge_log
+from ballscrew_monitor.report.logs import find_logs, PAGE, SUMMARY
 from ballscrew_monitor.report.parameters import LogParameters, parameters_for
+from ballscrew_monitor.report.printed import log_lines, printed_records
+from ballscrew_monitor.report.products import summary_record, without
+from ballscrew_monitor.report.verdict import never_moved
 from ballscrew_monitor.report.words import counted
 from surrogate.files import InputError, json_text
 from surrogate.surface import SurfaceError
@@ -27,97 +31,86 @@ from surrogate.surface import SurfaceError
 if TYPE_CHECKING:  # the rest asks for packages that printing does not need
     from ballscrew_monitor.report.overview import LogEntry
 
-Results = dict[str, Summary | None]
+Records = dict[str, Any]
+"""What JSON holds of a recording: a record for each axis."""
 
 
 def replay_command(args: argparse.Namespace, nominal: Path) -> int:
     """Do what the command line asks for; return the exit code."""
     logs = find_logs(args.logs, tables=args.map is not None, out=args.out)
+    # With --json, standard output is JSON alone.
+    with contextlib.redirect_stdout(sys.stderr if args.json else sys.stdout):
+        records, code = _replay(logs, args, nominal)
+    if args.json:
+        print(json_text(records))
+    return code
+
+
+def _replay(logs: Sequence[Path], args: argparse.Namespace, nominal: Path) -> tuple[Records, int]:
+    """Judge recordings; return what JSON holds of them, and the exit code."""
     if args.out is not None and (len(logs) > 1 or logs != args.logs):
         return _report_many(logs, args, nominal)
-    work = functools.partial(_print_one if args.out is None else _report_one, args, nominal)
+    if args.out is not None:
+        return _report_one(args, nominal, logs[0])
     if len(logs) == 1:
-        results, code = work(logs[0])
-        _show(results, args)
-        return code
-    return _print_many(logs, work, args)
+        return _print_one(args, nominal, logs[0])
+    return _print_many(logs, args, nominal)
 
 
 def _print_many(
-    logs: Sequence[Path], work: Callable[[Path], tuple[Results, int]], args: argparse.Namespace
-) -> int:
+    logs: Sequence[Path], args: argparse.Namespace, nominal: Path
+) -> tuple[Records, int]:
     """Print what each recording comes to; one that cannot be read does not stop the others."""
     codes, records = [], {}
     for log in logs:
         if not args.json:
             print(log)
         try:
-            results, code = work(log)
+            records[str(log)], code = _print_one(args, nominal, log)
         except (InputError, SurfaceError) as error:
             _say(f'{log}: {error}')
-            results, code = {}, FAILED
+            records |= without(str(log), str(error))
+            code = FAILED
         codes.append(code)
-        records[str(log)] = _records(results)
-        if not args.json:
-            _show(results, args)
-    if args.json:
-        print(json_text(records))
-    return max(codes)
+    return records, max(codes)
 
 
-def _print_one(args: argparse.Namespace, nominal: Path, log: Path) -> tuple[Results, int]:
-    """Judge a recording; return what it comes to, and the exit code of that."""
+def _print_one(args: argparse.Namespace, nominal: Path, log: Path) -> tuple[Records, int]:
+    """Judge a recording and print what it comes to, unless that is to be JSON."""
     with opened_log(log, mapping=args.map) as bag:
         parameters = parameters_for(bag, args.params, nominal)
         _say_origin(parameters)
         with shown_progress(bag.duration) as on_done:
-            outcomes = replay_outcomes(bag, parameters.values, on_done=on_done)
-        results: Results = {outcome.axis: outcome.summary() for outcome in outcomes}
-        last = {outcome.axis: outcome.reason for outcome in outcomes}
-        silent = [axis for axis, made in results.items() if made is None or made.says_nothing]
-        _say(*bag.notes, *_silences(bag, parameters.values, silent, last))
-    return results, FAILED if len(silent) == len(results) else DONE
+            found = judge_log(bag, parameters, on_share=on_done)
+        _say_notes(found.notes, parameters)
+        _say(*_silences(bag, parameters.values, found))
+    if not args.json:
+        print('\n'.join(log_lines(found)))
+    return printed_records(summary_record(found)), DONE if found.judged else FAILED
 
 
-def _report_one(args: argparse.Namespace, nominal: Path, log: Path) -> tuple[Results, int]:
-    """Write the report of a recording; return no results, which are in it, and the exit code."""
-    from ballscrew_monitor.report.log_report import PAGE, report_log
+def _report_one(args: argparse.Namespace, nominal: Path, log: Path) -> tuple[Records, int]:
+    """Write the report of a recording."""
+    from ballscrew_monitor.report.log_report import report_log
 
     with opened_log(log, mapping=args.map) as bag:
         parameters = parameters_for(bag, args.params, nominal)
         _say_origin(parameters)
         with shown_progress(bag.duration) as on_done:
             result = report_log(bag, args.out, parameters, on_share=on_done)
-    _say(*(note for note in result.notes if note not in parameters.sentences))
+    _say_notes(result.notes, parameters)
     if result.unjudged:
         _say(f'nothing was judged on axis {", ".join(result.unjudged)}')
-    # With --json, standard output is JSON alone.
-    with contextlib.redirect_stdout(sys.stderr if args.json else sys.stdout):
-        for line in result.lines:
-            print(line.verdict)
-        print(f'report in {args.out / PAGE}')
-    return dict(result.summaries), DONE if result.judged else FAILED
+    for line in result.lines:
+        print(line.verdict)
+    print(f'report in {args.out / PAGE}')
+    return _reported(args.out, args), DONE if result.judged else FAILED
 
 
-def _silences(
-    bag: Bag, values: Mapping[str, Any], silent: Sequence[str], last: Mapping[str, str]
-) -> list[str]:
-    """Return a sentence for each axis on which nothing was judged."""
-    if not silent:
-        return []
-    axes = {axis.name: axis for axis in axes_for(bag, with_types(values, bag.types))}
-    reasons = {name: _reason(bag, silence(bag, axes[name]), last[name]) for name in silent}
-    return [f'nothing was judged on axis {name}: {why}' for name, why in reasons.items()]
-
-
-def _reason(bag: Bag, fault: str, last: str) -> str:
-    if last and not fault:
-        return last
-    more = f'; {fault}' if fault else ''
-    return f'topics, fields and joints of its parameters must be those of {bag.path}{more}'
-
-
-def _report_many(logs: Sequence[Path], args: argparse.Namespace, nominal: Path) -> int:
+def _report_many(
+    logs: Sequence[Path], args: argparse.Namespace, nominal: Path
+) -> tuple[Records, int]:
+    """Write a report of each recording and the page over all."""
     from ballscrew_monitor.report.many_logs import INDEX, report_logs
 
     entries = report_logs(
@@ -129,11 +122,44 @@ def _report_many(logs: Sequence[Path], args: argparse.Namespace, nominal: Path) 
         workers=args.workers,
         dask=args.dask,
     )
-    for entry in entries:
+    records: Records = {}
+    for log, entry in zip(logs, entries, strict=True):
         _print_entry(entry)
+        if entry.result is None:
+            records |= without(str(log), entry.failure)
+        else:
+            records[str(log)] = _reported(args.out / entry.folder, args)
     bad = sum(entry.is_bad for entry in entries)
     print(f'{counted(len(entries), "recording")}, {bad} bad, overview in {args.out / INDEX}')
-    return FAILED if bad else DONE
+    return records, FAILED if bad else DONE
+
+
+def _reported(folder: Path, args: argparse.Namespace) -> Records:
+    """Return what JSON holds of a recording whose report is in a folder, if it is asked for."""
+    if not args.json:
+        return {}
+    return printed_records(json.loads((folder / SUMMARY).read_text(encoding='utf-8')))
+
+
+def _silences(bag: Bag, values: Mapping[str, Any], log: LogCase) -> list[str]:
+    """Return a sentence for each axis on which nothing was judged."""
+    if not log.unjudged:
+        return []
+    axes = {axis.name: axis for axis in axes_for(bag, with_types(values, bag.types))}
+    cases = {case.axis: case for case in log.axes}
+    reasons = {
+        name: _reason(bag, silence(bag, axes[name]), cases.get(name)) for name in log.unjudged
+    }
+    return [f'nothing was judged on axis {name}: {why}' for name, why in reasons.items()]
+
+
+def _reason(bag: Bag, fault: str, case: AxisCase | None) -> str:
+    if case is not None and never_moved(case):
+        return 'it never moved'
+    if case is not None and case.outcome.reason and not fault:
+        return case.outcome.reason
+    more = f'; {fault}' if fault else ''
+    return f'topics, fields and joints of its parameters must be those of {bag.path}{more}'
 
 
 def _print_entry(entry: 'LogEntry') -> None:
@@ -147,28 +173,13 @@ def _print_entry(entry: 'LogEntry') -> None:
         _say(f'{entry.name}: nothing was judged on axis {", ".join(entry.result.unjudged)}')
 
 
-def _show(results: Results, args: argparse.Namespace) -> None:
-    if args.json:
-        print(json_text(_records(results)))
-        return
-    for axis, result in results.items() if args.out is None else ():
-        _print_summary(axis, result)
-
-
-def _records(results: Results) -> dict[str, Any]:
-    return {axis: made and made.record() for axis, made in results.items()}
-
-
-def _print_summary(axis: str, result: Summary | None) -> None:
-    if result is None:
-        print(f'axis {axis}: no state')
-        return
-    print(f'axis {axis}: {result.judged} speed samples judged')
-    print('\n'.join(f'  {line}' for line in result.lines()))
-
-
 def _say_origin(parameters: LogParameters) -> None:
     _say(f'parameters: {parameters.origin}', *parameters.sentences)
+
+
+def _say_notes(notes: Sequence[str], parameters: LogParameters) -> None:
+    """Say what has not been said of the parameters."""
+    _say(*(note for note in notes if note not in parameters.sentences))
 
 
 def _say(*sentences: str) -> None:

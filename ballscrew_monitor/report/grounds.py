@@ -9,9 +9,9 @@ from ballscrew_monitor.core.conversions import celsius
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.recordings.columns import Reason
 from ballscrew_monitor.report.case import AxisCase
-from ballscrew_monitor.report.inputs_seen import inputs_seen, InputSeen, NAMES
+from ballscrew_monitor.report.inputs_seen import inputs_seen, InputSeen, NAMES, Trouble
 from ballscrew_monitor.report.markup import element, joined, Markup, table, TableCell, TableRow
-from ballscrew_monitor.report.words import counted, duration, number, share
+from ballscrew_monitor.report.words import counted, duration, NONE, number, share
 
 TIERS = {
     'full': 'full model (solved contacts, roughness that rolls)',
@@ -87,6 +87,7 @@ def inputs_part(case: AxisCase) -> Markup:
                 ),
                 (_input_row(one) for one in seen),
             ),
+            *_trouble_table(seen),
             element(
                 'p', 'Only these columns of the recording were read for this page.', class_='muted'
             ),
@@ -109,6 +110,23 @@ def _input_row(seen: InputSeen) -> TableRow:
             TableCell(text=seen.refused or 'none' if seen.place else ''),
         )
     )
+
+
+def _trouble_table(seen: Sequence[InputSeen]) -> Iterable[Markup]:
+    """Yield what is wrong with the messages of the inputs; what went well has no column."""
+    heads = [head for head in Trouble if any(head in one.troubles for one in seen)]
+    if heads:
+        rows = (
+            TableRow(
+                cells=(
+                    TableCell(text=NAMES[one.source]),
+                    *(TableCell(text=one.troubles.get(head, NONE)) for head in heads),
+                )
+            )
+            for one in seen
+            if one.place
+        )
+        yield table(('Input', *(head.value for head in heads)), rows)
 
 
 def gaps_part(case: AxisCase) -> Markup:
@@ -144,18 +162,19 @@ def _reason_text(reason: Reason) -> str:
 def _gap_table(case: AxisCase) -> Iterable[Markup]:
     survey = case.survey
     timeout = case.settings.timeouts[Source.SPEED] * 1e-9
-    if not survey.gap_count:
+    gaps = survey.gaps[Source.SPEED]
+    if not gaps.count:
         yield element('p', f'The speed has no gap longer than its timeout of {timeout:g} s.')
         return
     cut = (
-        f', the longest {len(survey.gaps)} are listed'
-        if len(survey.gaps) < survey.gap_count
+        f', the longest {len(survey.speed_gaps)} are listed'
+        if len(survey.speed_gaps) < gaps.count
         else ''
     )
     yield element(
         'p',
-        f'The speed has {counted(survey.gap_count, "gap")} longer than its timeout of '
-        f'{timeout:g} s, in all {duration(survey.gap_time)}{cut}.',
+        f'The speed has {counted(gaps.count, "gap")} longer than its timeout of '
+        f'{timeout:g} s, in all {duration(gaps.time)}{cut}.',
     )
     rows = (
         TableRow(
@@ -166,7 +185,7 @@ def _gap_table(case: AxisCase) -> Iterable[Markup]:
             begin=begin - 1.0,
             end=begin + length + 1.0,
         )
-        for begin, length in ((case.since_first(at), gap * 1e-9) for at, gap in survey.gaps)
+        for begin, length in ((case.since_first(at), gap * 1e-9) for at, gap in survey.speed_gaps)
     )
     yield element(
         'details',

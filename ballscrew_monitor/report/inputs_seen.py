@@ -4,19 +4,23 @@
 
 from collections.abc import Sequence
 import dataclasses
+import enum
 import math
 
-from ballscrew_monitor.core.conversions import celsius
+from ballscrew_monitor.core.conversions import celsius, seconds
 from ballscrew_monitor.core.doctor import Heard, InputFacts, known_range, unit_doubts
 from ballscrew_monitor.core.estimate import PointSource
 from ballscrew_monitor.core.health import Health
-from ballscrew_monitor.core.inputs import Source, Why
+from ballscrew_monitor.core.inputs import Source, Why, YEAR
 from ballscrew_monitor.core.links import Link
+from ballscrew_monitor.core.reasons import slow_reason
 from ballscrew_monitor.report.case import AxisCase, InputSetting
-from ballscrew_monitor.report.survey import Span
+from ballscrew_monitor.report.survey import Gaps, Span
+from ballscrew_monitor.report.words import duration, number
 from surrogate.units import RPM, TURN
 
 MEASURED = 'measured'
+LAG_TOLD = 0.01  # [s] between stamp and arrival from which on it is told
 FASTEST_FEED = 2.0  # [m/s] hardly any ball screw feeds faster
 SHOWN = (Source.SPEED, Source.LOAD, Source.TEMPERATURE, Source.TORQUE)
 NAMES = {
@@ -38,6 +42,16 @@ REFUSALS = {
 }
 
 
+class Trouble(enum.Enum):
+    """What may be wrong with the messages of an input, as the head of a column."""
+
+    GAPS = 'Gaps'
+    SLOW = 'Too slow for its timeout'
+    LAG = 'Stamps behind arrival'
+    LOST = 'Lost on the way'
+    LEFT_OUT = 'Left out'
+
+
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class InputSeen:
     """
@@ -45,7 +59,10 @@ class InputSeen:
 
     Lowest and highest number in its `unit`, NaN without any; `rate` [Hz], and whether that is
     assumed; its `origin` in words, whether that is a measurement or at least stated; what was
-    refused, by why; `hints` say what looks wrong.
+    refused, by why; how many messages were `left_out` as out of order or of other joints, and
+    how many were `lost` on the way, None if that is not known, as in all recordings that are not
+    `numbered`. In the end its stamps lay `lag` [s] behind their arrival, NaN without stamps, and
+    it came too seldom for its timeout if `slow`. `hints` say what looks wrong.
 
     """
 
@@ -61,7 +78,33 @@ class InputSeen:
     rate_assumed: bool = False
     received: int = 0
     refused: str = ''
+    left_out: int = 0
+    lost: int | None = None
+    numbered: bool = False
+    lag: float = math.nan
+    slow: bool = False
+    gaps: Gaps = Gaps()
     hints: tuple[str, ...] = ()
+
+    @property
+    def troubles(self) -> dict[Trouble, str]:
+        """Return in words what is wrong with its messages; what went well has none."""
+        lost = 'not known' if self.lost is None else str(self.lost)
+        found = {
+            Trouble.GAPS: f'{self.gaps.count}, in all {duration(self.gaps.time)}',
+            Trouble.SLOW: 'yes',
+            Trouble.LAG: f'{number(self.lag)} s',
+            Trouble.LOST: lost,
+            Trouble.LEFT_OUT: f'{self.left_out} out of order or of other joints',
+        }
+        there = {
+            Trouble.GAPS: self.gaps.count > 0,
+            Trouble.SLOW: self.slow,
+            Trouble.LAG: abs(self.lag) >= LAG_TOLD,
+            Trouble.LOST: self.numbered and self.lost != 0,
+            Trouble.LEFT_OUT: self.left_out > 0,
+        }
+        return {trouble: text for trouble, text in found.items() if there[trouble]}
 
     @property
     def known(self) -> str:
@@ -79,8 +122,11 @@ def _seen(case: AxisCase, source: Source) -> InputSeen:
     if setting is None:
         return _without_topic(case, source, sources)
     health = next(one for one in case.outcome.inputs if one.source is source)
-    origin = _origin(case, source) if health.received else 'never received'
     heard = _heard(setting, case.survey.inputs[source], health)
+    origin = _origin(case, source)
+    refused = sum(case.outcome.refused.get(source, {}).values())
+    if health.received == refused:
+        origin = 'never valid' if refused else 'never received'
     span = case.survey.span
     return InputSeen(
         source=source,
@@ -94,6 +140,12 @@ def _seen(case: AxisCase, source: Source) -> InputSeen:
         rate_assumed='time.rate_Hz' in case.assumed,
         received=health.received,
         refused=_refused(case, source),
+        left_out=health.dropped - refused,
+        lost=health.lost if case.numbered else None,
+        numbered=case.numbered,
+        lag=health.lag,
+        slow=health.slow,
+        gaps=case.survey.gaps[source],
         hints=tuple(_hints(case, source, setting, heard)),
     )
 
@@ -156,10 +208,26 @@ def _hints(case: AxisCase, source: Source, setting: InputSetting, heard: Heard) 
             f'{facts.parameter}: samples beyond what is plausible were refused: '
             f'check {facts.parameter}.unit and scale'
         )
+    hints += _of_time(heard.health, facts.parameter)
     if source is Source.SPEED:
         hints += _of_speed(case, setting, heard, facts.parameter)
     elif source is not Source.TEMPERATURE and heard.low == heard.high:
         hints.append(f'{facts.parameter}: it never changes, is it connected?')
+    return hints
+
+
+def _of_time(health: Health, parameter: str) -> Sequence[str]:
+    """Return that an input comes too seldom, or with stamps of another clock."""
+    hints = []
+    if health.slow:
+        hints.append(f'{parameter}: it {slow_reason(health.longest_gap, parameter)}')
+    if abs(health.lag) > seconds(YEAR):
+        hints.append(f'{parameter}: its stamps are of another clock than those of its arrival')
+    elif health.lagging:
+        hints.append(
+            f'{parameter}: its stamps lie {duration(health.lag)} behind their arrival: set the '
+            'clocks alike'
+        )
     return hints
 
 

@@ -22,7 +22,6 @@ from ballscrew_monitor.node.parameters import NODE_NAME
 from ballscrew_monitor.node.topics import input_topics, output, with_types
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import whole_bag
-from ballscrew_monitor.recordings.log_facts import PREFIX
 from ballscrew_monitor.recordings.own_replay import TimedState
 from ballscrew_monitor.recordings.recorded_topics import DIAGNOSTICS, recorded_topics
 from ballscrew_monitor.recordings.replay import replay_states
@@ -41,19 +40,20 @@ class Timed(NamedTuple):
     data: bytes
 
 
-def write_judged_bag(bag: Bag, values: Mapping[str, Any], directory: Path) -> None:
+def write_judged_bag(
+    bag: Bag, values: Mapping[str, Any], directory: Path, metadata: Mapping[str, str]
+) -> None:
     """
     Write the judged bag of `bag` with the parameters `values`, on its log times.
 
-    It says what `bag` says of the log that it was made of.
+    `metadata` are what it says of the log, and of the parameters.
 
     """
     values = with_types(values, bag.types)
     states = replay_states(bag, values, at_once=True)
-    facts = {key: text for key, text in bag.metadata.items() if key.startswith(PREFIX)}
     with whole_bag(directory, NAME) as writer:
-        if facts:
-            writer.add_metadata(facts)
+        if metadata:
+            writer.add_metadata(metadata)
         for topic in recorded_topics(values):
             writer.add_topic(topic)
         for one in heapq.merge(

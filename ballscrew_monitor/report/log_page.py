@@ -3,44 +3,19 @@
 """The report of one recording: a page that a person reads, forwards and prints."""
 
 from collections.abc import Mapping, Sequence
-import dataclasses
 import datetime
 import math
 from typing import Any
 
 from ballscrew_monitor.core.conversions import seconds
 from ballscrew_monitor.report import grounds, parts
-from ballscrew_monitor.report.case import AxisCase
+from ballscrew_monitor.report.case import AxisCase, LogCase
 from ballscrew_monitor.report.course import course_record, FINE_BYTES
 from ballscrew_monitor.report.encoding import script_json
 from ballscrew_monitor.report.map_record import map_record
 from ballscrew_monitor.report.markup import element, joined, Markup, swatch
 from ballscrew_monitor.report.page import CHARTS, page
-from ballscrew_monitor.report.verdict import AxisVerdict, verdict_of, VerdictKind
-
-
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class LogCase:
-    """
-    A recording that was judged.
-
-    `name` as its reader knows it, `parameters` where they came from; axes with rows, and the names
-    of those without any; assumptions by what they are about, with value and reason; notes on the
-    recording itself.
-
-    """
-
-    name: str
-    parameters: str
-    axes: Sequence[AxisCase]
-    empty: Sequence[str] = ()
-    assumptions: Mapping[str, Mapping[str, Any]] = dataclasses.field(default_factory=dict)
-    notes: Sequence[str] = ()
-
-    @property
-    def unjudged(self) -> list[str]:
-        """Return the axes on which nothing was judged."""
-        return [*self.empty, *(one.axis for one in self.axes if one.is_silent)]
+from ballscrew_monitor.report.verdict import verdicts_of
 
 
 def report_page(log: LogCase) -> str:
@@ -69,20 +44,6 @@ def report_page(log: LogCase) -> str:
     )
     data = script_json({'axes': records})
     return page(f'Ball screw report: {log.name}', body, scripts=CHARTS, data=data)
-
-
-def verdicts_of(log: LogCase) -> list[AxisVerdict]:
-    """Return the verdicts on all axes, also on those without rows."""
-    return [verdict_of(case) for case in log.axes] + [_no_rows(axis) for axis in log.empty]
-
-
-def _no_rows(axis: str) -> AxisVerdict:
-    return AxisVerdict(
-        standing=VerdictKind.UNKNOWN,
-        word='Not known',
-        sentence=f'the recording holds no usable sample of axis {axis}.',
-        remedy='Check topics, fields and joints in the parameters.',
-    )
 
 
 def _id(number: int) -> str:

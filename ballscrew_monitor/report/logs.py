@@ -11,6 +11,7 @@ from surrogate.files import InputError
 
 _PART = re.compile(r'(.*)_(\d+)')  # file of a bag that was split
 PAGE, STATES, EVENTS, JUDGED = 'report.html', 'states.parquet', 'events.csv', 'judged'
+SUMMARY = 'summary.json'
 PRODUCTS = (JUDGED, STATES, EVENTS)
 """How a folder with a report is known, and what is no recording in it."""
 _UNSAFE = re.compile(r'[^\w.-]+')

@@ -57,8 +57,7 @@ def report_task(inputs: Mapping[str, Any]) -> dict[str, Any]:
     with opened_log(Path(inputs['log']), mapping=_path(inputs['map'])) as bag:
         parameters = parameters_for(bag, _path(inputs['params']), Path(inputs['nominal']))
         result = report_log(bag, Path(inputs['out']), parameters)
-    plain = dataclasses.replace(result, summaries={})  # they are in the report
-    record: dict[str, Any] = to_json(dataclasses.asdict(plain))
+    record: dict[str, Any] = to_json(dataclasses.asdict(result))
     return record
 
 

@@ -9,10 +9,24 @@ import re
 from typing import Any
 
 from ballscrew_monitor.recordings.bag import Bag
-from ballscrew_monitor.recordings.log_facts import facts_of, LogFacts, values_for
+from ballscrew_monitor.recordings.log_facts import (
+    Assumption,
+    ChosenValues,
+    facts_of,
+    LogFacts,
+    parameters_text,
+    PREFIX,
+    values_for,
+)
 
-NOMINAL = 'the nominal ones'
-"""How an origin ends where neither a person nor the recording gave parameters."""
+TEMPERATURE = 'temperature_degC'
+OF_NODE = {
+    TEMPERATURE: 'temperature.default',
+    'screw': 'screw',
+    'oil': 'oil',
+    'surface': 'surface',
+}
+"""Places in the map of an axis that are parameters of the node, and those."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -22,7 +36,8 @@ class LogParameters:
 
     `notes` are about the log, `sentences` all that is to be said of it in a terminal;
     `load_from` says of axes what their load is worked out from, where it is not measured, and
-    `stated` what the map of the log states, by place. `nominal`: nobody said with what to judge.
+    `stated` what somebody states of them, by its place in a map. `nominal`: nobody said with what
+    to judge. `metadata` are those of a bag that is to be judged alike.
 
     """
 
@@ -34,6 +49,7 @@ class LogParameters:
     load_from: Mapping[str, str] = dataclasses.field(default_factory=dict)
     stated: frozenset[str] = frozenset()
     nominal: bool = False
+    metadata: Mapping[str, str] = dataclasses.field(default_factory=dict)
 
     @property
     def short_origin(self) -> str:
@@ -65,25 +81,66 @@ def parameters_for(bag: Bag, given: Path | None, nominal: Path) -> LogParameters
     Raises InputError for a file that cannot be read, and for metadata that are damaged.
 
     """
-    values, origin = values_for(bag, given, nominal)
+    chosen = values_for(bag, given, nominal)
     facts = facts_of(bag)
+    if facts is not None:
+        facts = dataclasses.replace(facts, assumptions=_still_assumed(facts, chosen))
+    known: dict[str, Any] = {
+        'values': chosen.values,
+        'origin': chosen.origin,
+        'nominal': chosen.is_nominal,
+        'stated': frozenset(_stated(facts, chosen)),
+        'metadata': _metadata(bag, facts, chosen),
+    }
     if facts is None:
-        return LogParameters(values=values, origin=origin, nominal=origin.endswith(NOMINAL))
-    assumed = {one.key: {'value': one.value, 'reason': one.reason} for one in facts.assumptions}
+        return LogParameters(**known)
     return LogParameters(
-        values=values,
-        origin=origin,
-        assumptions=assumed,
+        **known,
+        assumptions={
+            one.key: {'value': one.value, 'reason': one.reason} for one in facts.assumptions
+        },
         notes=facts.notes,
         sentences=facts.sentences(),
-        stated=frozenset(_places(facts.mapping.get('axes', {}))),
         load_from={
             axis: source
-            for axis in values['axes']
+            for axis in chosen.values['axes']
             for source in [_load_from(facts, axis)]
             if source
         },
     )
+
+
+def _still_assumed(facts: LogFacts, chosen: ChosenValues) -> tuple[Assumption, ...]:
+    """Return the assumptions of a log without those that other parameters take the place of."""
+    said = set(_places(facts.mapping.get('parameters') or {}))
+    return tuple(
+        one
+        for one in facts.assumptions
+        for axis, _, place in [one.key.partition('.')]
+        if place not in OF_NODE or not (chosen.is_given or f'{axis}.{OF_NODE[place]}' in said)
+    )
+
+
+def _stated(facts: LogFacts | None, chosen: ChosenValues) -> Iterator[str]:
+    """Yield what is stated of the axes, by its place in a map; the temperature as judged with."""
+    assumed = set() if facts is None else {one.key for one in facts.assumptions}
+    temperatures = {f'{axis}.{TEMPERATURE}': axis for axis in chosen.values['axes']}
+    for name in _places({} if facts is None else facts.mapping.get('axes', {})):
+        if name not in temperatures:
+            yield name
+    for name, axis in temperatures.items():
+        if f'{axis}.{OF_NODE[TEMPERATURE]}' in chosen.said and name not in assumed:
+            yield name
+
+
+def _metadata(bag: Bag, facts: LogFacts | None, chosen: ChosenValues) -> dict[str, str]:
+    """Return what a bag says of its log, with the parameters that somebody gave for it."""
+    own = {key: text for key, text in bag.metadata.items() if key.startswith(PREFIX)}
+    if facts is not None:
+        own |= {key: text for key, text in facts.texts().items() if key in own}
+    if chosen.is_nominal:
+        return own
+    return own | {f'{PREFIX}parameters': parameters_text(chosen.values, chosen.said)}
 
 
 def _places(section: Mapping[str, Any], prefix: str = '') -> Iterator[str]:

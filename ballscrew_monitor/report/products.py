@@ -8,10 +8,9 @@ import math
 from pathlib import Path
 from typing import Any
 
-from ballscrew_monitor.report.case import AxisCase
+from ballscrew_monitor.report.case import AxisCase, LogCase
 from ballscrew_monitor.report.inputs_seen import inputs_seen, InputSeen
-from ballscrew_monitor.report.log_page import LogCase, verdicts_of
-from ballscrew_monitor.report.verdict import AxisVerdict
+from ballscrew_monitor.report.verdict import AxisVerdict, verdicts_of
 from surrogate.files import json_text, replace_file
 from surrogate.tasks.table import write_table
 
@@ -64,18 +63,27 @@ def write_summary(path: Path, log: LogCase) -> None:
 
 def summary_record(log: LogCase) -> dict[str, Any]:
     """Return what the report says as plain data; a number that is not known has a reason."""
-    verdicts = verdicts_of(log)
     return {
         'log': log.name,
         'parameters': log.parameters,
         'unjudged_axes': log.unjudged,
-        'axes': {
-            case.axis: axis_record(case, verdict)
-            for case, verdict in zip(log.axes, verdicts, strict=False)
-        },
+        'axes': _axis_records(log),
         'assumptions': {key: dict(one) for key, one in log.assumptions.items()},
         'notes': list(log.notes),
     }
+
+
+def _axis_records(log: LogCase) -> dict[str, Any]:
+    """Return the records of all axes; an axis without rows is None, with its reason."""
+    verdicts = verdicts_of(log)
+    count = len(log.axes)
+    records: dict[str, Any] = {
+        case.axis: axis_record(case, verdict)
+        for case, verdict in zip(log.axes, verdicts[:count], strict=True)
+    }
+    for axis, verdict in zip(log.empty, verdicts[count:], strict=True):
+        records |= without(axis, verdict.sentence)
+    return records
 
 
 def axis_record(case: AxisCase, verdict: AxisVerdict) -> dict[str, Any]:
@@ -90,12 +98,15 @@ def axis_record(case: AxisCase, verdict: AxisVerdict) -> dict[str, Any]:
         'what_to_do': verdict.remedy,
         'model': {'tier': surface.tier, 'screw': surface.screw_name, 'oil': surface.oil_name},
         'recorded_s': survey.span,
-        'totals': None if summary is None else _totals(summary.record()),
+        **(
+            without('totals', 'no state was reached')
+            if summary is None
+            else {'totals': _totals(summary.record())}
+        ),
         'energy_lost_by_zone_J': {
             zone.name.lower(): energy for zone, energy in survey.energy.items()
         },
         'time_by_reason_s': {reason.name.lower(): time for reason, time in survey.reasons.items()},
-        'gaps': {'count': survey.gap_count, 'time_s': survey.gap_time},
         'torque_residual': known(
             {f'mean_{name}_Nm': value for name, value in one_way.items()}
             | {'rms_Nm': survey.torque.spread},
@@ -111,7 +122,7 @@ def _totals(record: dict[str, Any]) -> dict[str, Any]:
 
 
 def _input_record(seen: InputSeen) -> dict[str, Any]:
-    why = 'no sample was received' if seen.place else 'the input is not recorded'
+    why = 'no valid sample was received' if seen.place else 'the input is not recorded'
     return {
         'source': seen.origin,
         'measured': seen.measured,
@@ -120,8 +131,27 @@ def _input_record(seen: InputSeen) -> dict[str, Any]:
         'rate_assumed': seen.rate_assumed,
         'received': seen.received,
         'refused': seen.refused,
+        'left_out': seen.left_out,
+        'gaps': {'count': seen.gaps.count, 'time_s': seen.gaps.time},
+        'slow': seen.slow,
         'hints': list(seen.hints),
-    } | known({'lowest': seen.low, 'highest': seen.high, 'rate_Hz': seen.rate}, why)
+        **_loss(seen),
+        **known({'lag_s': seen.lag}, 'its messages bear no stamp' if seen.received else why),
+        **known({'lowest': seen.low, 'highest': seen.high, 'rate_Hz': seen.rate}, why),
+    }
+
+
+def _loss(seen: InputSeen) -> dict[str, Any]:
+    """Return how many messages were lost, or why that is not known."""
+    if seen.lost is not None:
+        return {'lost': seen.lost}
+    why = 'its publishers do not number them' if seen.numbered else 'the recording does not tell'
+    return without('lost', why)
+
+
+def without(name: str, reason: str) -> dict[str, Any]:
+    """Return nothing by a name, and the reason of that."""
+    return {name: None, f'{name}_reason': reason}
 
 
 def known(numbers: Mapping[str, float], reason: str) -> dict[str, Any]:

@@ -92,11 +92,6 @@ class RowStore:
             self._parts.setdefault(block.axis, []).append(part)
             self._count += 1
 
-    @property
-    def axes(self) -> list[str]:
-        """Return the axes that have rows."""
-        return list(self._parts)
-
     def blocks(self, axis: str) -> Iterator[JudgedColumns]:
         """Yield the blocks of an axis in order."""
         for part in self._parts.get(axis, []):

@@ -8,7 +8,6 @@ then it is a gap. Rows come in blocks, so that a long recording need not fit int
 
 """
 
-from collections.abc import Iterable
 import dataclasses
 import heapq
 import math
@@ -17,7 +16,7 @@ from ballscrew_monitor.core.conversions import Direction, SECOND
 from ballscrew_monitor.core.estimate import PointSource
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.core.judgement import Zone
-from ballscrew_monitor.recordings.columns import Floats, JudgedColumns, Reason, Times
+from ballscrew_monitor.recordings.columns import Flags, Floats, JudgedColumns, Reason, Times
 import numpy as np
 
 MOST_GAPS = 1000  # of the longest that are kept
@@ -52,14 +51,23 @@ class TorqueFit:
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Gaps:
+    """How often an input was interrupted, and how long in all [s]."""
+
+    count: int = 0
+    time: float = 0.0
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Survey:
     """
     What an axis was like as a whole.
 
     `first` and `last` [ns] on the time line, of the stamps or, `by_stamp` false, of the log, and
     `shift` [ns] from stamps to it. Spans of measured inputs in SI; of load that opposes motion [N]
-    and temperature [K] in motion. `reasons` [s]; `gaps` as start and length [ns], longest first,
-    of `gap_count`, in all `gap_time` [s]. `energy` [J] by zone.
+    and temperature [K] in motion. `reasons` [s]; `gaps` of all inputs, that of the speed between
+    two samples, that of any other from its timeout on; `speed_gaps`, the longest of them first, as
+    start and length [ns]. `energy` [J] by zone.
 
     """
 
@@ -74,9 +82,8 @@ class Survey:
     opposing: Span
     oil: Span
     reasons: dict[Reason, float]
-    gaps: tuple[tuple[int, int], ...]
-    gap_count: int
-    gap_time: float
+    gaps: dict[Source, Gaps]
+    speed_gaps: tuple[tuple[int, int], ...]
     energy: dict[Zone, float]
     torque: TorqueFit
 
@@ -108,7 +115,7 @@ class _Running:
                 max(self.high, float(known.max())),
             )
             self.total += float(known.sum())
-            self.squares += float(known @ known)
+            self.squares += float(np.square(known).sum())
             self.count += known.size
 
     @property
@@ -125,6 +132,24 @@ class _Running:
         return Span(low=self.low, high=self.high, mean=self.mean)
 
 
+class _Stretches:
+    """How often and how long something held from row to row."""
+
+    def __init__(self) -> None:
+        self._count, self._time, self._before = 0, 0.0, False
+
+    def add(self, holds: Flags, steps: Floats) -> None:
+        """Take the next rows; `steps` [s] lead to each of them, or to each but the very first."""
+        held = np.insert(holds[:-1], 0, self._before)
+        self._count += int(np.count_nonzero(holds & ~held))
+        first = len(held) - len(steps)
+        self._time += float(steps[held[first:]].sum())
+        self._before = bool(holds[-1])
+
+    def gaps(self) -> Gaps:
+        return Gaps(count=self._count, time=self._time)
+
+
 class Surveyor:
     """Takes the blocks of one axis in order."""
 
@@ -139,6 +164,7 @@ class Surveyor:
         self._energy = np.zeros(len(Zone))
         self._gaps: list[tuple[int, int]] = []
         self._gap_count, self._gap_time = 0, 0
+        self._stale = {source: _Stretches() for source in COLUMN_OF if source != Source.SPEED}
         self._residuals = {direction: _Running() for direction in Direction}
         self._residual, self._measured = _Running(), _Running()
         self._stamps = [math.inf, -math.inf]
@@ -182,9 +208,9 @@ class Surveyor:
             reasons={
                 reason: float(time) for reason, time in zip(Reason, self._reasons) if time > 0
             },
-            gaps=tuple(sorted(((at, length) for length, at in self._gaps), key=_by_length)),
-            gap_count=self._gap_count,
-            gap_time=self._gap_time / SECOND,
+            gaps={source: stale.gaps() for source, stale in self._stale.items()}
+            | {Source.SPEED: Gaps(count=self._gap_count, time=self._gap_time / SECOND)},
+            speed_gaps=tuple(sorted(((at, length) for length, at in self._gaps), key=_by_length)),
             energy=dict(zip(Zone, self._energy.tolist())),
             torque=self._torque_fit(),
         )
@@ -192,7 +218,7 @@ class Surveyor:
     def _add_inputs(self, block: JudgedColumns) -> None:
         for source, name in COLUMN_OF.items():
             origin = getattr(block, f'{name}_source')
-            self._sources[source].update(np.unique(origin).tolist())
+            self._sources[source].update(np.flatnonzero(np.bincount(origin)).tolist())
             known = (origin == PointSource.MEASURED) | (origin == PointSource.DERIVED)
             self._inputs[source].add(getattr(block, name)[known])
 
@@ -209,8 +235,10 @@ class Surveyor:
         self._before = int(stamps[-1]), int(reasons[-1]), float(power[-1]), int(zones[-1])
         steps = np.diff(stamps)
         steps = np.where((steps > 0) & (steps <= self._max_gap), steps, 0) / SECOND
-        np.add.at(self._reasons, reasons[:-1], steps)
-        np.add.at(self._energy, zones[:-1], steps * power[:-1])
+        self._reasons += np.bincount(reasons[:-1], steps, len(Reason))
+        self._energy += np.bincount(zones[:-1], steps * power[:-1], len(Zone))
+        for source, stale in self._stale.items():
+            stale.add(getattr(block, f'{COLUMN_OF[source]}_source') == PointSource.HELD, steps)
 
     def _add_gaps(self, samples: Times) -> None:
         if not samples.size:
@@ -241,16 +269,6 @@ class Surveyor:
             spread=self._residual.rms,
             measured=self._measured.rms,
         )
-
-
-def survey(
-    axis: str, blocks: Iterable[JudgedColumns], *, standstill: float, max_gap: int
-) -> Survey:
-    """Return the survey of blocks; moving from `standstill` [rad/s] on, gaps above [ns]."""
-    surveyor = Surveyor(axis, standstill=standstill, max_gap=max_gap)
-    for block in blocks:
-        surveyor.add(block)
-    return surveyor.result()
 
 
 def _widen(line: list[float], times: Times) -> None:

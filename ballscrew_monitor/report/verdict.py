@@ -9,7 +9,7 @@ import math
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.recordings.columns import Reason
 from ballscrew_monitor.recordings.summary import EventRecord, Summary
-from ballscrew_monitor.report.case import AxisCase, RCS
+from ballscrew_monitor.report.case import AxisCase, LogCase, RCS
 from ballscrew_monitor.report.words import counted, duration, list_of, percent, share
 
 UNKNOWN_PART = 0.5  # of the motion that is not judged, from which on there is no verdict
@@ -53,6 +53,20 @@ class AxisVerdict:
     remedy: str = ''
 
 
+def verdicts_of(log: LogCase) -> list[AxisVerdict]:
+    """Return the verdicts on all axes, also on those without rows."""
+    return [verdict_of(case) for case in log.axes] + [_no_rows(axis) for axis in log.empty]
+
+
+def _no_rows(axis: str) -> AxisVerdict:
+    return AxisVerdict(
+        standing=VerdictKind.UNKNOWN,
+        word='Not known',
+        sentence=f'the recording holds no usable sample of axis {axis}.',
+        remedy='Check topics, fields and joints in the parameters.',
+    )
+
+
 def verdict_of(case: AxisCase) -> AxisVerdict:
     """Return the verdict on an axis that has rows."""
     summary = case.outcome.summary()
@@ -76,8 +90,7 @@ def verdict_of(case: AxisCase) -> AxisVerdict:
 def _unmoved(case: AxisCase) -> AxisVerdict:
     """Return that nothing can be said of an axis for which no motion is known."""
     reason = _main_reason(case)
-    known = math.isfinite(case.survey.inputs[Source.SPEED].high)
-    if known and reason in (None, Reason.STANDSTILL, Reason.NO_DIRECTION):
+    if never_moved(case):
         limit = case.settings.limits.standstill_speed
         return AxisVerdict(
             standing=VerdictKind.UNKNOWN,
@@ -93,6 +106,15 @@ def _unmoved(case: AxisCase) -> AxisVerdict:
         sentence=f'nothing could be judged on axis {case.axis}: {why}.',
         remedy=_remedy(reason),
     )
+
+
+def never_moved(case: AxisCase) -> bool:
+    """Tell whether the speed of an axis is known and the screw stood still all the time."""
+    summary = case.outcome.summary()
+    if summary is not None and summary.running_time:
+        return False
+    known = math.isfinite(case.survey.inputs[Source.SPEED].high)
+    return known and _main_reason(case) in (None, Reason.STANDSTILL, Reason.NO_DIRECTION)
 
 
 def _unjudged(case: AxisCase, summary: Summary, part: float) -> AxisVerdict:

@@ -20,7 +20,7 @@ PARAMS = ROOT / 'config' / 'nominal_cycle.yaml'
 def test_a_replay_prints_the_summary(short_bag, capsys):
     assert cli.main(['replay', str(short_bag), '--params', str(PARAMS)]) == 0
     out = capsys.readouterr().out
-    assert out.startswith('axis x: 300 speed samples judged\n  in motion ')
+    assert out.startswith('axis x: 300 speed samples judged\n  verdict     Outside: axis x ')
     assert '  events      1\n' in out
 
 

@@ -20,6 +20,9 @@ from ballscrew_monitor.recordings.keeper import Keeper, KeepSettings
 from ballscrew_monitor.recordings.log_facts import values_for
 from ballscrew_monitor.recordings.own_recording import journal_of, OwnRecording, recorded_values
 from ballscrew_monitor.recordings.replay import replay, replay_columns
+from ballscrew_monitor.report.inputs_seen import inputs_seen
+from ballscrew_monitor.report.judging import judge_log
+from ballscrew_monitor.report.parameters import LogParameters
 from geometry_msgs.msg import WrenchStamped
 import pytest
 from rclpy.serialization import deserialize_message, serialize_message
@@ -278,10 +281,11 @@ def test_a_replay_takes_the_parameters_of_the_recording_and_follows_it(tmp_path)
     live(node, seconds=12, begin=BEGIN + 12 * SECOND, seed=2)
     node.close()
     bag = bag_in(tmp_path)
-    values, whose = values_for(bag, None, Path('none'))
+    chosen = values_for(bag, None, Path('none'))
+    values = chosen.values
     assert values['axes'] == ['x', 'z']
     assert values['x.speed.topic'] == TOPICS['speed']
-    assert whose == f'those that the node recorded in {bag.path}'
+    assert chosen.origin == f'those that the node recorded in {bag.path}'
     states = list(replay(bag, values))
     assert len(states) == len(node.said)
     *blocks, x, z = replay_columns(bag, values)
@@ -293,6 +297,12 @@ def test_a_replay_takes_the_parameters_of_the_recording_and_follows_it(tmp_path)
         assert sum(len(one) for one in blocks if one.axis == name) == outcome.rows
     assert not any(one.active for one in x.events[:-1])
     assert bag.notes == ['the replay is what the node did, proven 6 times'] * 2
+    log = judge_log(bag_in(tmp_path), LogParameters(values=values, origin='own'))
+    assert all(case.numbered for case in log.axes)
+    lost = {one.source: one.lost for one in node.axes['x'].monitor.health(node.now)}
+    told = {one.source: one.lost for one in inputs_seen(log.axes[0]) if one.place}
+    assert told == {source: lost[source] for source in told}
+    assert any(told.values())
 
 
 def test_with_other_parameters_it_is_a_bag_like_any_other(tmp_path):

@@ -64,5 +64,22 @@ def test_json_has_units_and_no_nan():
     assert record['events'] == []
 
 
+def summary_of(**times):
+    summarizer = Summarizer()
+    state = BallScrewState(axis='x', judged=100)
+    for name, value in times.items():
+        setattr(state.totals, name, value)
+    summarizer.add_state(state)
+    return summarizer.result()
+
+
+def test_no_event_reads_well_only_where_a_motion_was_judged():
+    moved = summary_of(running_time=9.0, optimal_time=9.0)
+    assert (moved.says_nothing, moved.lines()[-1]) == (False, 'events      none')
+    for still in (summary_of(), summary_of(running_time=9.0, unjudged_time=9.0)):
+        assert still.says_nothing
+        assert still.lines()[-1] == 'events      none, for no motion was judged'
+
+
 def test_without_a_state_there_is_none():
     assert Summarizer().result() is None

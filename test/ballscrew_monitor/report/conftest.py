@@ -15,7 +15,7 @@ from ballscrew_monitor.node.axis import build_axis
 from ballscrew_monitor.node.parameters import defaults
 from ballscrew_monitor.recordings.columns import AxisOutcome, COLUMNS, JudgedColumns, Reason
 from ballscrew_monitor.recordings.summary import EventRecord
-from ballscrew_monitor.report.log_report import axis_case
+from ballscrew_monitor.report.judging import CaseMaker
 import numpy as np
 import pytest
 from surrogate.surface import Regime
@@ -117,7 +117,10 @@ def make_case(blocks, events=(), *, totals=None, values=None, known=None, **chan
         'limits': build_axis(axis, values).monitor.settings.limits,
     }
     outcome = AxisOutcome(**facts | changes)
-    return axis_case(outcome, values, lambda: iter(blocks), **(known or {}))
+    maker = CaseMaker(axis, values)
+    for block in blocks:
+        maker.add(block)
+    return maker.case(outcome, blocks=lambda: iter(blocks), **(known or {}))
 
 
 def make_values(axis='x', **changes):

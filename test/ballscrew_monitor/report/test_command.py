@@ -45,10 +45,16 @@ def test_an_axis_without_a_sample_is_named_and_the_other_is_judged(short_bag, tm
 
 def test_one_bad_recording_does_not_stop_the_rest(logs, tmp_path, capsys):
     out = tmp_path / 'out'
-    assert cli.main(['replay', str(logs), '--out', str(out), '--workers', '1']) == 1
+    arguments = ['--out', str(out), '--workers', '1', '--json']
+    assert cli.main(['replay', str(logs), *arguments]) == 1
     shown = capsys.readouterr()
     assert 'broken.mcap: bag' in shown.err
-    assert '3 recordings, 1 bad' in shown.out
+    assert 'first: Outside: axis x ran outside' in shown.err
+    assert '3 recordings, 1 bad' in shown.err
+    record = json.loads(shown.out)
+    assert record[str(logs / 'first')]['x']['judged'] == 300
+    assert record[str(logs / 'broken.mcap')] is None
+    assert 'truncated or damaged' in record[f'{logs / "broken.mcap"}_reason']
     assert sorted(path.name for path in out.iterdir()) == ['first', 'index.html', 'second_script_']
     index = (out / 'index.html').read_text()
     assert 'href="first/report.html"' in index
@@ -68,6 +74,36 @@ def test_several_recordings_are_one_json(logs, capsys):
     assert cli.main(['replay', str(logs / 'first'), str(logs / 'second <script>'), '--json']) == 0
     record = json.loads(capsys.readouterr().out)
     assert [one['x']['judged'] for one in record.values()] == [300, 300]
+
+
+def test_a_recording_that_cannot_be_read_is_null_with_a_reason(logs, capsys):
+    broken = str(logs / 'broken.mcap')
+    assert cli.main(['replay', broken, str(logs / 'first'), '--json']) == 1
+    record = json.loads(capsys.readouterr().out)
+    assert record[broken] is None
+    assert 'broken.mcap is truncated or damaged' in record[f'{broken}_reason']
+
+
+def test_one_report_is_the_same_json(short_bag, tmp_path, capsys):
+    assert cli.main(['replay', str(short_bag), '--json']) == 0
+    printed = json.loads(capsys.readouterr().out)
+    assert cli.main(['replay', str(short_bag), '--json', '--out', str(tmp_path / 'out')]) == 0
+    shown = capsys.readouterr()
+    assert json.loads(shown.out) == printed
+    assert 'report in' in shown.err
+
+
+def test_metres_read_as_millimetres_are_told_and_no_success(short_bag, tmp_path, capsys):
+    params = tmp_path / 'params.yaml'
+    params.write_text(
+        '/**/ballscrew_monitor:\n  ros__parameters:\n'
+        "    x: {temperature: {topic: 'oil_temperature'}, speed: {unit: 'mm/s', scale: 0.001}}\n"
+    )
+    assert cli.main(['replay', str(short_bag), '--params', str(params)]) == 1
+    shown = capsys.readouterr()
+    assert 'Not known: axis x never moved' in shown.out
+    assert 'check       x.speed: the axis never moves' in shown.out
+    assert 'nothing was judged on axis x: it never moved' in shown.err
 
 
 def test_a_folder_without_recordings_is_bad_input(tmp_path, capsys):

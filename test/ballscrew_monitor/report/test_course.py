@@ -6,8 +6,9 @@ import dataclasses
 
 from ballscrew_monitor.core.judgement import Level, Zone
 from ballscrew_monitor.recordings.columns import LIGHT_LOAD, STANDSTILL
+from ballscrew_monitor.report.case import LogCase
 from ballscrew_monitor.report.course import course_record, rows_of, SHADED, SHORT
-from ballscrew_monitor.report.log_page import LogCase, report_page
+from ballscrew_monitor.report.log_page import report_page
 import numpy as np
 import pytest
 

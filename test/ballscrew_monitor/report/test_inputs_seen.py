@@ -6,7 +6,7 @@ import math
 
 from ballscrew_monitor.core.health import InputState
 from ballscrew_monitor.core.inputs import Source, Why
-from ballscrew_monitor.report.inputs_seen import inputs_seen, REFUSALS
+from ballscrew_monitor.report.inputs_seen import inputs_seen, REFUSALS, Trouble
 import numpy as np
 import pytest
 
@@ -121,6 +121,59 @@ def test_refused_samples_are_counted_by_why(judged):
 
 def test_every_reason_of_a_refusal_has_words():
     assert set(REFUSALS) == set(Why)
+
+
+def load_with(judged, known=None, **changes):
+    inputs = tuple(
+        judged.health(source, **(changes if source is Source.LOAD else {})) for source in Source
+    )
+    return seen_of(judged.case([judged.columns()], inputs=inputs, known=known), Source.LOAD)
+
+
+def test_an_input_that_is_well_has_no_trouble(judged):
+    assert load_with(judged, lag=0.001).troubles == {}
+    assert load_with(judged, known={'numbered': True}).troubles == {}
+
+
+@pytest.mark.parametrize(
+    ('changes', 'trouble', 'text'),
+    [
+        ({'lag': 0.25}, Trouble.LAG, '0.25 s'),
+        ({'lag': -0.25}, Trouble.LAG, '-0.25 s'),
+        ({'dropped': 3}, Trouble.LEFT_OUT, '3 out of order or of other joints'),
+        ({'slow': True, 'longest_gap': 2.0}, Trouble.SLOW, 'yes'),
+        ({'lost': 4}, Trouble.LOST, '4'),
+        ({'lost': None}, Trouble.LOST, 'not known'),
+    ],
+)
+def test_troubles_of_the_messages_are_told(judged, changes, trouble, text):
+    assert load_with(judged, known={'numbered': True}, **changes).troubles == {trouble: text}
+
+
+def test_a_recording_that_does_not_number_messages_claims_no_loss(judged):
+    load = load_with(judged, lost=0)
+    assert (load.lost, load.troubles) == (None, {})
+    assert load_with(judged, known={'numbered': True}, lost=0).lost == 0
+
+
+def test_a_slow_input_is_told_a_timeout_that_would_do(judged):
+    hints = load_with(judged, slow=True, longest_gap=2.0).hints
+    assert hints == (
+        'x.load: it comes less often than its timeout allows: set x.load.timeout to 5.0 or more',
+    )
+
+
+def test_stamps_of_another_clock_are_doubted(judged):
+    assert 'lie 3 s behind' in load_with(judged, lag=3.0, lagging=True).hints[0]
+    far = load_with(judged, lag=1.7e9, lagging=True).hints
+    assert far == ('x.load: its stamps are of another clock than those of its arrival',)
+
+
+def test_an_input_that_was_never_valid_is_not_called_measured(judged):
+    block = judged.columns(axial_load=math.nan, axial_load_source=0)
+    refused = {Source.LOAD: {Why.NOT_A_NUMBER: 100}}
+    load = seen_of(judged.case([block], refused=refused), Source.LOAD)
+    assert (load.origin, load.measured) == ('never valid', False)
 
 
 def test_an_input_that_never_came(judged):

@@ -8,7 +8,9 @@ import re
 import shutil
 import subprocess
 
-from ballscrew_monitor.report.log_page import LogCase, report_page
+from ballscrew_monitor.core.inputs import Source
+from ballscrew_monitor.report.case import LogCase
+from ballscrew_monitor.report.log_page import report_page
 from ballscrew_monitor.report.page import CHARTS
 import pytest
 
@@ -151,3 +153,16 @@ def test_it_prints(written, tmp_path):
     paper = tmp_path / 'report.pdf'
     browse(written[0], tmp_path / 'profile', f'--print-to-pdf={paper}')
     assert paper.read_bytes().startswith(b'%PDF')
+
+
+def test_columns_of_inputs_are_those_that_say_something(judged):
+    def page_of(**changes):
+        inputs = tuple(judged.health(source, **changes) for source in Source)
+        case = judged.case([judged.columns()], inputs=inputs)
+        return report_page(LogCase(name='log', parameters='', axes=[case]))
+
+    assert 'Left out' not in page_of()
+    late = page_of(lag=0.3)
+    assert 'Stamps behind arrival' in late
+    assert '0.3 s' in late
+    assert 'Lost on the way' not in late

@@ -10,7 +10,6 @@ from ballscrew_monitor.node.topics import absolute
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
 from ballscrew_monitor.recordings.replay import replay
-from ballscrew_monitor.report.judged_bag import write_judged_bag
 from ballscrew_monitor.report.log_report import report_log
 from ballscrew_monitor.report.parameters import LogParameters, parameters_for
 from ballscrew_msgs.msg import BallScrewState
@@ -81,10 +80,26 @@ def test_the_judged_bag_holds_inputs_and_what_the_node_would_say(reported, short
 
 def test_the_judged_bag_says_of_what_log_it_is(short_bag, params, tmp_path):
     bag = Bag(short_bag)
-    own = {'ballscrew_monitor.source': 'log.csv', 'ballscrew_monitor.notes': '[]'}
+    own = {'ballscrew_monitor.source': 'log.csv', 'ballscrew_monitor.mapping': '{}'}
+    own |= {f'ballscrew_monitor.{name}': '[]\n' for name in ('notes', 'assumptions')}
     bag.metadata = own | {'robot': 'press 7'}
-    write_judged_bag(bag, read_file(params), tmp_path / 'judged')
-    assert Bag(tmp_path / 'judged').metadata == own
+    report_log(bag, tmp_path, parameters_for(bag, None, params))
+    found = Bag(tmp_path / 'judged').metadata
+    assert {key: text.strip() for key, text in found.items()} == {
+        key: text.strip() for key, text in own.items()
+    }
+
+
+def test_the_judged_bag_carries_the_parameters_it_was_judged_with(short_bag, params, tmp_path):
+    given = tmp_path / 'given.yaml'
+    given.write_text(params.read_text() + '      limits: {rcs: 0.5}\n')
+    bag = Bag(short_bag)
+    bag.metadata = {'ballscrew_monitor.parameters': params.read_text()}
+    report_log(bag, tmp_path / 'out', parameters_for(bag, given, params))
+    again = parameters_for(Bag(tmp_path / 'out' / 'judged'), None, params)
+    assert again.values == read_file(given)
+    assert again.values['x.limits.rcs'] == 0.5
+    assert not again.nominal
 
 
 def test_a_message_that_does_not_decode_is_counted(short_bag, params, tmp_path):

@@ -56,3 +56,54 @@ def test_only_parameters_that_nobody_gave_are_nominal(short_bag, request):
     nominal = request.config.rootpath / 'config' / 'nominal_cycle.yaml'
     assert parameters_for(Bag(short_bag), None, nominal).nominal
     assert not parameters_for(Bag(short_bag), nominal, nominal).nominal
+
+
+def found_with(table, params=None, **changes):
+    """Return the parameters of the table, of whose map some lines are changed."""
+    from ballscrew_monitor.recordings.opener import opened_log
+
+    text = (table / 'map.yaml').read_text()
+    for before, after in changes.values():
+        text = text.replace(before, after)
+    (table / 'map.yaml').write_text(text)
+    with opened_log(table / 'log.csv', mapping=table / 'map.yaml') as bag:
+        return parameters_for(bag, params, table / 'none.yaml')
+
+
+def is_stated(found):
+    return 'temperature_degC' in found.stated_of('x')
+
+
+def test_a_temperature_is_stated_by_the_map_or_by_its_parameters(table):
+    assumed = '  x.temperature_degC: {value: 40.0, reason: usual}\n'
+    assert not is_stated(found_with(table))
+    parameters = 'parameters: {x: {temperature: {default: 35.0}}}\n'
+    found = found_with(table, change=('assumed:', f'{parameters}assumed:'))
+    assert is_stated(found)
+    assert found.values['x.temperature.default'] == 35.0
+    assert 'temperature_degC' not in found.of_axis('x')
+    assert not any('temperature_degC' in sentence for sentence in found.sentences)
+    axis = ('oil: iso_vg_68', 'oil: iso_vg_68, temperature_degC: 45.0')
+    assert is_stated(found_with(table, none=(parameters, ''), map=(assumed, ''), axis=axis))
+
+
+def test_parameters_that_are_given_state_what_they_name_and_no_more(table, tmp_path):
+    text = '/**/ballscrew_monitor:\n  ros__parameters:\n    x:\n      load: {topic: load}\n'
+    (tmp_path / 'params.yaml').write_text(text)
+    found = found_with(table, tmp_path / 'params.yaml')
+    assert not is_stated(found)
+    assert 'temperature_degC' not in found.of_axis('x')  # what the map assumes is not used
+    assert 'lead_mm' in found.of_axis('x')
+    (tmp_path / 'params.yaml').write_text(text + '      temperature: {default: 40.0}\n')
+    assert is_stated(found_with(table, tmp_path / 'params.yaml'))
+
+
+def test_a_bag_without_a_map_has_a_stated_temperature_too(short_bag, tmp_path):
+    from ballscrew_monitor.recordings.bag import Bag
+
+    given = tmp_path / 'params.yaml'
+    given.write_text(
+        '/**/ballscrew_monitor:\n  ros__parameters: {x: {temperature: {default: 50.0}}}\n'
+    )
+    assert is_stated(parameters_for(Bag(short_bag), given, given))
+    assert not is_stated(parameters_for(Bag(short_bag), None, given))

@@ -6,7 +6,7 @@ import csv
 import json
 import math
 
-from ballscrew_monitor.report.log_page import LogCase
+from ballscrew_monitor.report.case import LogCase
 from ballscrew_monitor.report.products import known, write_events, write_summary
 
 
@@ -47,6 +47,10 @@ def test_the_summary_is_strict_json_with_reasons_for_null(judged, tmp_path):
     assert axis['standing'] == 'bad'
     assert axis['torque_residual']['rms_Nm'] is None
     assert axis['torque_residual']['rms_Nm_reason'] == 'no torque was measured in motion'
+    assert record['axes']['y'] is None
+    assert axis['inputs']['load']['lost_reason'] == 'the recording does not tell'
+    assert axis['inputs']['load']['lag_s_reason'] == 'its messages bear no stamp'
+    assert axis['inputs']['load']['gaps'] == {'count': 0, 'time_s': 0.0}
     assert axis['inputs']['torque']['lowest_reason'] == 'the input is not recorded'
     assert len(axis['totals']['events']) == 2
     assert not unexplained(record)

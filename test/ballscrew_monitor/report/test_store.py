@@ -33,7 +33,6 @@ def test_parquet_holds_all_rows_by_axis_and_codes_by_name(judged, tmp_path):
         for block in blocks:
             store.add(block)
         store.write(tmp_path / 'states.parquet')
-        assert store.axes == ['x', 'y']
         assert_same(joined(list(store.blocks('x'))), joined([blocks[0], blocks[2]]))
     found = pl.read_parquet(tmp_path / 'states.parquet')
     assert found.columns == ['axis', *COLUMNS]

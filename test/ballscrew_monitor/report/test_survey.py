@@ -8,8 +8,8 @@ import math
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.core.judgement import Zone
-from ballscrew_monitor.recordings.columns import joined, Reason
-from ballscrew_monitor.report.survey import survey
+from ballscrew_monitor.recordings.columns import COLUMNS, joined, Reason
+from ballscrew_monitor.report.survey import Surveyor
 import numpy as np
 import pytest
 
@@ -17,7 +17,10 @@ GAP = SECOND // 2
 
 
 def survey_of(*blocks):
-    return survey('x', blocks, standstill=0.5, max_gap=GAP)
+    surveyor = Surveyor('x', standstill=0.5, max_gap=GAP)
+    for block in blocks:
+        surveyor.add(block)
+    return surveyor.result()
 
 
 def test_it_does_not_depend_on_the_blocks(judged):
@@ -45,10 +48,24 @@ def test_standstill_costs_no_energy(judged):
 def test_gaps_are_listed_longest_first_and_are_no_time_of_a_reason(judged):
     blocks = [judged.columns(0, 10), judged.columns(110, 10), judged.columns(420, 10)]
     found = survey_of(*blocks)
-    assert found.gap_count == 2
-    assert [length / SECOND for _, length in found.gaps] == pytest.approx([3.01, 1.01])
-    assert found.gap_time == pytest.approx(4.02)
+    speed = found.gaps[Source.SPEED]
+    assert [length / SECOND for _, length in found.speed_gaps] == pytest.approx([3.01, 1.01])
+    assert (speed.count, speed.time) == (2, pytest.approx(4.02))
     assert found.reasons[Reason.JUDGED] == pytest.approx(0.27)
+
+
+def test_gaps_of_another_input_are_stretches_without_a_valid_sample(judged):
+    sources = np.ones(100)
+    sources[40:50] = sources[90:] = 3
+    block = judged.columns(axial_load_source=sources)
+    halves = [
+        dataclasses.replace(block, **{name: getattr(block, name)[part] for name in COLUMNS})
+        for part in (slice(0, 45), slice(45, 100))
+    ]
+    for blocks in ([block], halves):
+        gaps = survey_of(*blocks).gaps
+        assert (gaps[Source.LOAD].count, gaps[Source.LOAD].time) == (2, pytest.approx(0.19))
+        assert gaps[Source.TEMPERATURE].count == 0
 
 
 def test_a_stray_stamp_makes_the_log_the_time_line(judged):

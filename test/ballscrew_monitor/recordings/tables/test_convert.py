@@ -7,7 +7,12 @@ from pathlib import Path
 
 from ballscrew_monitor.node import parameters
 from ballscrew_monitor.recordings.bag import Bag
-from ballscrew_monitor.recordings.log_facts import facts_of, parameters_of, values_for
+from ballscrew_monitor.recordings.log_facts import (
+    facts_of,
+    parameters_of,
+    parameters_text,
+    values_for,
+)
 from ballscrew_monitor.recordings.replay import replay
 from ballscrew_monitor.recordings.tables.convert import convert
 from ballscrew_monitor.recordings.tables.guess import guess
@@ -91,13 +96,29 @@ def test_the_file_alone_says_it_too(mill_bag):
 
 
 def test_parameters_are_those_given_else_its_own_else_the_nominal(mill_bag, short_bag):
-    assert values_for(mill_bag, NOMINAL, NOMINAL)[0]['axes'] == ['x']
-    values, whose = values_for(mill_bag, None, NOMINAL)
-    assert values['axes'] == ['x', 'y', 'z']
-    assert whose == f'those of {mill_bag.path}'
-    values, whose = values_for(Bag(short_bag), None, NOMINAL)
-    assert values == parameters.read_file(NOMINAL)
-    assert whose.endswith('the nominal ones')
+    given = values_for(mill_bag, NOMINAL, NOMINAL)
+    assert (given.values['axes'], given.is_given, given.is_nominal) == (['x'], True, False)
+    own = values_for(mill_bag, None, NOMINAL)
+    assert (own.values['axes'], own.is_given, own.is_nominal) == (['x', 'y', 'z'], False, False)
+    assert own.origin == f'those of {mill_bag.path}'
+    nominal = values_for(Bag(short_bag), None, NOMINAL)
+    assert (nominal.values, nominal.is_nominal) == (parameters.read_file(NOMINAL), True)
+    assert nominal.origin.endswith('the nominal ones')
+
+
+def test_what_somebody_gave_a_value_is_told_from_defaults(mill_bag, short_bag):
+    said = values_for(mill_bag, None, NOMINAL).said
+    assert {'axes', 'y.load.topic', 'x.temperature.default'} <= said
+    assert 'x.limits.rcs' not in said
+    assert not values_for(Bag(short_bag), None, NOMINAL).said
+
+
+def test_the_text_of_parameters_holds_what_is_said_and_what_is_not_usual():
+    values = parameters.defaults(['x']) | {'x.screw': 'y', 'x.max_lag': 3.0}
+    text = parameters_text(values, ['x.temperature.default'])
+    assert parameters.read_text(text, 'text') == values
+    names = parameters.names_in_text(text, 'text')
+    assert names == {'axes', 'x.screw', 'x.max_lag', 'x.temperature.default'}
 
 
 def test_other_programs_read_it(mill_bag):

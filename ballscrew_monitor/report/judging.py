@@ -1,0 +1,151 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+A recording judged in one pass, with all that page and terminal say of it.
+
+Printing asks for no more than the node: nothing here loads what pages and tables are made with.
+
+"""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+import functools
+from typing import Any, Protocol
+
+from ballscrew_monitor.core.conversions import POSITION_UNITS
+from ballscrew_monitor.core.inputs import Source
+from ballscrew_monitor.node.axis import is_configured, load_surface, scalings_of, settings_of
+from ballscrew_monitor.recordings.bag import Bag
+from ballscrew_monitor.recordings.columns import AxisOutcome, JudgedColumns
+from ballscrew_monitor.recordings.own_recording import is_as_recorded
+from ballscrew_monitor.recordings.replay import ignore, replay_columns
+from ballscrew_monitor.report.case import AxisCase, InputSetting, LogCase
+from ballscrew_monitor.report.parameters import LogParameters
+from ballscrew_monitor.report.survey import Surveyor
+
+OnShare = Callable[[float], None]
+"""Told which share of a recording is judged [-]."""
+
+
+class KeptRows(Protocol):
+    """Where judged rows are kept, to be read again by axis."""
+
+    def add(self, block: JudgedColumns) -> None:
+        """Keep a block."""
+
+    def blocks(self, axis: str) -> Iterable[JudgedColumns]:
+        """Return the blocks of an axis in order."""
+
+
+class NoRows:
+    """Keeps nothing: what is only printed needs no row again."""
+
+    def add(self, block: JudgedColumns) -> None:
+        """Let a block go."""
+
+    def blocks(self, axis: str) -> Iterable[JudgedColumns]:
+        """Return none."""
+        return ()
+
+
+class CaseMaker:
+    """Takes the blocks of one axis in order, and makes its case of them."""
+
+    def __init__(self, axis: str, values: Mapping[str, Any]) -> None:
+        """Begin an axis of the parameters `values`; raises InputError without its surface."""
+        self._axis, self._values = axis, values
+        self._surface = load_surface(axis, values)
+        self._settings = settings_of(axis, values, self._surface)
+        self._surveyor = Surveyor(
+            axis,
+            standstill=self._settings.limits.standstill_speed,
+            max_gap=self._settings.timeouts[Source.SPEED],
+        )
+
+    def add(self, block: JudgedColumns) -> None:
+        """Take the next block of rows."""
+        self._surveyor.add(block)
+
+    def case(self, outcome: AxisOutcome, **known: Any) -> AxisCase:
+        """Return the axis as it is after at least one row; `known` are more of its fields."""
+        return AxisCase(
+            axis=self._axis,
+            surface=self._surface,
+            settings=self._settings,
+            inputs={source: self._setting(source) for source in Source if self._has(source)},
+            outcome=outcome,
+            survey=self._surveyor.result(),
+            **known,
+        )
+
+    def _has(self, source: Source) -> bool:
+        return is_configured(self._axis, self._values, source)
+
+    def _setting(self, source: Source) -> InputSetting:
+        prefix, values = f'{self._axis}.{source.name.lower()}', self._values
+        unit = values[f'{prefix}.unit']
+        scalings = scalings_of(self._axis, values, source, self._surface.lead)
+        return InputSetting(
+            topic=values[f'{prefix}.topic'],
+            field=values[f'{prefix}.field'],
+            unit=unit if unit in scalings else next(iter(scalings)),
+            scalings=scalings,
+            from_position=unit in POSITION_UNITS,
+        )
+
+
+def judge_log(
+    bag: Bag,
+    parameters: LogParameters,
+    *,
+    on_share: OnShare = ignore,
+    rows: KeptRows | None = None,
+) -> LogCase:
+    """
+    Judge a recording and return what is said of it; its rows are kept in `rows`, if anywhere.
+
+    Raises InputError when it cannot be read with the parameters.
+
+    """
+    rows = rows or NoRows()
+    makers: dict[str, CaseMaker] = {}
+    outcomes = []
+    for part in replay_columns(bag, parameters.values, on_done=on_share):
+        if isinstance(part, AxisOutcome):
+            outcomes.append(part)
+        elif len(part):
+            if part.axis not in makers:
+                makers[part.axis] = CaseMaker(part.axis, parameters.values)
+            makers[part.axis].add(part)
+            rows.add(part)
+    numbered = is_as_recorded(bag, parameters.values)
+    return LogCase(
+        name=bag.path.name,
+        parameters=parameters.short_origin,
+        axes=[
+            makers[one.axis].case(
+                one,
+                blocks=functools.partial(rows.blocks, one.axis),
+                numbered=numbered,
+                **_known(parameters, one.axis),
+            )
+            for one in outcomes
+            if one.axis in makers
+        ],
+        empty=[one.axis for one in outcomes if one.axis not in makers],
+        assumptions=parameters.assumptions,
+        notes=_notes(parameters, bag),
+    )
+
+
+def _known(parameters: LogParameters, axis: str) -> dict[str, Any]:
+    """Return what is known of an axis beside its rows."""
+    return {
+        'load_from': parameters.load_from.get(axis, ''),
+        'assumed': parameters.of_axis(axis),
+        'stated': parameters.stated_of(axis),
+        'nominal': parameters.nominal,
+    }
+
+
+def _notes(parameters: LogParameters, bag: Bag) -> Sequence[str]:
+    return [*parameters.notes, *bag.notes]

@@ -1,0 +1,81 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What a terminal says of a recording that was judged: the words of its page, and its JSON."""
+
+from collections.abc import Iterator, Mapping
+import math
+from typing import Any
+
+from ballscrew_monitor.recordings.columns import Reason
+from ballscrew_monitor.report.case import AxisCase, LogCase
+from ballscrew_monitor.report.inputs_seen import inputs_seen, InputSeen, NAMES, Trouble
+from ballscrew_monitor.report.verdict import never_moved, verdict_of
+from ballscrew_monitor.report.words import number
+
+HEAD = 12
+"""Width of the column of heads, as that of `Summary.lines`."""
+SAID = {
+    Trouble.GAPS: 'gaps {}',
+    Trouble.SLOW: 'too slow for its timeout',
+    Trouble.LAG: 'stamps {} behind arrival',
+    Trouble.LOST: 'lost on the way {}',
+    Trouble.LEFT_OUT: '{}',
+}
+
+
+def log_lines(log: LogCase) -> Iterator[str]:
+    """Yield the lines about all axes of a recording."""
+    for case in log.axes:
+        still = ', none of them in motion' if never_moved(case) else ''
+        yield f'axis {case.axis}: {case.outcome.judged} speed samples judged{still}'
+        yield from (f'  {line}' for line in axis_lines(case))
+    yield from (f'axis {axis}: no usable sample' for axis in log.empty)
+
+
+def axis_lines(case: AxisCase) -> Iterator[str]:
+    """Yield the lines about an axis that has rows."""
+    verdict, summary = verdict_of(case), case.outcome.summary()
+    yield _line('verdict', f'{verdict.word}: {verdict.sentence}')
+    if verdict.why:
+        yield _line('why', verdict.why)
+    if verdict.remedy:
+        yield _line('what to do', verdict.remedy)
+    yield from [] if summary is None else summary.lines()
+    seen = inputs_seen(case)
+    yield from (_line('input', _input_text(one)) for one in seen)
+    yield from (
+        _line('not judged', f'{number(time, 4)} s: {reason.text}')
+        for reason, time in sorted(case.survey.reasons.items(), key=lambda item: -item[1])
+        if reason is not Reason.JUDGED
+    )
+    yield from (_line('check', hint) for one in seen for hint in one.hints)
+
+
+def _line(head: str, text: str) -> str:
+    return f'{head:{HEAD}}{text}'
+
+
+def _input_text(seen: InputSeen) -> str:
+    """Return source, span, rate and troubles of an input."""
+    parts = [seen.origin]
+    if math.isfinite(seen.low):
+        parts.append(f'{number(seen.low, 4)} to {number(seen.high, 4)} {seen.unit}')
+    if math.isfinite(seen.rate):
+        parts.append(f'{number(seen.rate, 4)} Hz{" assumed" if seen.rate_assumed else ""}')
+    parts += [SAID[trouble].format(text) for trouble, text in seen.troubles.items()]
+    if seen.refused:
+        parts.append(f'refused {seen.refused}')
+    return f'{NAMES[seen.source].lower()}: {", ".join(parts)}'
+
+
+def printed_records(summary: Mapping[str, Any]) -> dict[str, Any]:
+    """Return of the summary of a recording what is printed: its axes, with their totals first."""
+    return {
+        key: _with_totals(one) if isinstance(one, Mapping) else one
+        for key, one in summary['axes'].items()
+    }
+
+
+def _with_totals(record: Mapping[str, Any]) -> dict[str, Any]:
+    rest = {key: value for key, value in record.items() if key != 'totals'}
+    return {**(record['totals'] or {}), **rest}

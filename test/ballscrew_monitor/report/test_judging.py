@@ -1,0 +1,44 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""A recording judged in one pass, for a page or for a terminal on a machine without its tools."""
+
+import subprocess
+import sys
+
+from ballscrew_monitor.recordings.bag import Bag
+from ballscrew_monitor.report.judging import judge_log
+from ballscrew_monitor.report.parameters import parameters_for
+from ballscrew_monitor.report.store import RowStore
+import pytest
+
+
+@pytest.fixture(scope='module')
+def parameters(request, short_bag):
+    """Return the parameters of the nominal cycle."""
+    params = request.config.rootpath / 'config' / 'nominal_cycle.yaml'
+    return parameters_for(Bag(short_bag), params, params)
+
+
+def test_rows_are_kept_where_they_are_asked_for(short_bag, parameters, tmp_path):
+    with RowStore(tmp_path) as store:
+        kept = judge_log(Bag(short_bag), parameters, rows=store).axes[0]
+        assert sum(map(len, kept.blocks())) == kept.survey.rows == kept.outcome.rows
+    printed = judge_log(Bag(short_bag), parameters).axes[0]
+    assert printed.survey == kept.survey
+    assert printed.outcome.totals == kept.outcome.totals
+    assert list(printed.blocks()) == []
+
+
+def test_a_recording_that_no_node_made_numbers_no_messages(short_bag, parameters):
+    assert not judge_log(Bag(short_bag), parameters).axes[0].numbered
+
+
+def test_printing_needs_neither_polars_nor_contourpy():
+    code = (
+        'import ballscrew_monitor.report.command, sys; '
+        'print(*(name for name in ("polars", "contourpy", "scipy") if name in sys.modules))'
+    )
+    loaded = subprocess.run(
+        [sys.executable, '-c', code], check=True, capture_output=True, text=True, timeout=60
+    )
+    assert loaded.stdout.split() == []

@@ -1,0 +1,86 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What a terminal says of a recording: the words of its page."""
+
+from ballscrew_monitor.core.inputs import Source, Why
+from ballscrew_monitor.core.judgement import Zone
+from ballscrew_monitor.core.tally import Totals
+from ballscrew_monitor.recordings.columns import Reason
+from ballscrew_monitor.report.case import LogCase
+from ballscrew_monitor.report.printed import axis_lines, log_lines, printed_records
+from ballscrew_monitor.report.products import summary_record
+import numpy as np
+
+
+def still_case(judged):
+    """Return an axis that stood still, its speed in m/s read as mm/s."""
+    block = judged.columns(
+        speed=0.1 * np.sin(np.arange(100)), zone=Zone.UNKNOWN, reason=Reason.STANDSTILL
+    )
+    values = judged.values(**{'x.speed.unit': 'mm/s'})
+    return judged.case([block], values=values, totals=Totals())
+
+
+def lines_of(case, head):
+    return [line[12:] for line in axis_lines(case) if line.startswith(f'{head} ')]
+
+
+def test_an_axis_that_never_moves_does_not_read_like_all_is_well(judged):
+    case = still_case(judged)
+    first, *rest = log_lines(LogCase(name='log', parameters='', axes=[case]))
+    assert first == 'axis x: 100 speed samples judged, none of them in motion'
+    assert rest[0].startswith('  verdict     Not known: axis x never moved')
+    assert lines_of(case, 'events') == ['none, for no motion was judged']
+    assert lines_of(case, 'not judged') == ['0.99 s: the screw stands still']
+    assert any('x.speed: the axis never moves' in line for line in lines_of(case, 'check'))
+
+
+def test_an_axis_that_is_well_has_no_check(judged):
+    case = judged.case([judged.columns()])
+    assert not lines_of(case, 'check')
+    assert not lines_of(case, 'not judged')
+    assert lines_of(case, 'events') == ['none']
+    assert lines_of(case, 'verdict') == [
+        'Good: axis x stayed in its optimal zone for all 0.99 s of motion that could be judged.'
+    ]
+
+
+def test_why_and_what_to_do_have_their_lines(judged):
+    case = judged.case([judged.columns()], [judged.event(1, 0.1, 0.2)])
+    assert lines_of(case, 'why')[0].startswith('The oil film was too thin')
+    assert 'at this load run at 60 rad/s' in lines_of(case, 'what to do')[0]
+
+
+def test_inputs_tell_source_span_rate_and_troubles(judged):
+    inputs = tuple(
+        judged.health(source, lag=0.5, dropped=9 if source is Source.LOAD else 0)
+        for source in Source
+    )
+    held = np.where(np.arange(100) < 90, 1, 3)
+    refused = {Source.LOAD: {Why.NOT_A_NUMBER: 2}}
+    case = judged.case([judged.columns(axial_load_source=held)], inputs=inputs, refused=refused)
+    speed, load, oil, torque = lines_of(case, 'input')
+    assert speed.startswith('speed: measured, 100 to ')
+    assert speed.endswith(' rad/s, 100 Hz, stamps 0.5 s behind arrival')
+    assert load.endswith(
+        'gaps 1, in all 0.09 s, stamps 0.5 s behind arrival, 7 out of order or of other joints, '
+        'refused 2 not a number'
+    )
+    assert oil.startswith('oil temperature: measured, 40 to 40 degC')
+    assert torque == 'motor torque: not recorded'
+
+
+def test_json_has_totals_and_inputs_of_an_axis_side_by_side(judged):
+    log = LogCase(name='log', parameters='', axes=[judged.case([judged.columns()])], empty=['y'])
+    records = printed_records(summary_record(log))
+    assert records['x']['judged'] == 100
+    assert records['x']['events'] == []
+    assert records['x']['inputs']['speed']['rate_Hz'] == records['x']['inputs']['load']['rate_Hz']
+    assert records['y'] is None
+    assert records['y_reason'] == 'the recording holds no usable sample of axis y.'
+
+
+def test_an_axis_without_rows_is_named(judged):
+    assert list(log_lines(LogCase(name='log', parameters='', axes=[], empty=['y']))) == [
+        'axis y: no usable sample'
+    ]
