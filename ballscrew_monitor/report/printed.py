@@ -71,7 +71,7 @@ def _input_text(seen: InputSeen) -> str:
 def printed_records(summary: Mapping[str, Any]) -> dict[str, Any]:
     """Return of the summary of a recording what is printed: its axes, with their totals first."""
     return {
-        key: _with_totals(one) if isinstance(one, Mapping) else one
+        key: {'axis': key} | _with_totals(one) if isinstance(one, Mapping) else one
         for key, one in summary['axes'].items()
     }
 
