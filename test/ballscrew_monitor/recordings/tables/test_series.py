@@ -3,7 +3,10 @@
 """Columns in SI units and in the order of time, and what is said about those that are not."""
 
 import math
+import types
 
+from ballscrew_monitor.recordings.tables import read as read_module
+from ballscrew_monitor.recordings.tables import times
 from ballscrew_monitor.recordings.tables.mapping import make_map
 from ballscrew_monitor.recordings.tables.series import force_of, read_series
 import numpy as np
@@ -14,14 +17,37 @@ EPOCH = 946_684_800 * 10**9
 AXIS = {'lead_mm': 10.0, 'speed': {'column': 'v', 'unit': 'mm/s'}}
 
 
-@pytest.fixture
-def read(tmp_path, write_csv):
+def joined(series):
+    """Return all rows of a series at once."""
+    blocks = list(series.blocks())
+    axes = [
+        types.SimpleNamespace(
+            speed=np.concatenate([block.axes[number].speed for block in blocks]),
+            **{
+                name: np.concatenate([getattr(block.axes[number], name) for block in blocks])
+                for name in ('load', 'position', 'torque', 'temperature')
+                if getattr(axis, name) is not None
+            },
+        )
+        for number, axis in enumerate(blocks[0].axes)
+    ]
+    stamps = np.concatenate([block.stamps for block in blocks])
+    return types.SimpleNamespace(
+        stamps=stamps, axes=axes, notes=series.notes, usual_period=series.usual_period
+    )
+
+
+@pytest.fixture(params=[1, 2, read_module.BLOCK])
+def read(tmp_path, write_csv, request, monkeypatch):
     """Return a function that reads columns, by the time t unless told otherwise."""
+    monkeypatch.setattr(read_module, 'BLOCK', request.param)
+    monkeypatch.setattr(times, 'BLOCK', request.param)
 
     def make(columns, axis=None, **time):
         time = time or {'column': 't', 'unit': 's', 'epoch': '2000-01-01T00:00:00Z'}
         mapping = make_map({'time': time, 'axes': {'x': axis or AXIS}})
-        return read_series(write_csv(tmp_path / 'log.csv', columns, form='{:.15g}'), mapping)
+        log = write_csv(tmp_path / 'log.csv', columns, form='{:.15g}')
+        return joined(read_series(log, mapping))
 
     return make
 
