@@ -35,7 +35,7 @@ TORQUE_CONSTANT = 0.1  # [N m/A]
 EFFICIENCY = 0.9
 TEMPERATURE = 40.0  # [degC]
 RATE = 100.0  # [Hz]
-NUMBERS = 8_000_000  # of the first rows that are in memory
+NUMBERS = 4_000_000  # of the first rows that are in memory
 EPOCH = '2000-01-01T00:00:00Z'
 FORCE = (
     '2 pi efficiency torque / lead against the torque: friction of guides and seals, and what '
