@@ -73,13 +73,15 @@ def _payload(pages: _Pages, page: bytes, place: int) -> bytes:
     length, place = _varint(page, place)
     _, place = _varint(page, place)  # the number of the row
     local = _local(length, pages.usable)
-    found = bytearray(page[place : place + local])
+    end = place + local
+    found = bytearray(page[place:end])
     if local < length:
-        (following,) = struct.unpack_from('>I', page, place + local)
+        (following,) = struct.unpack_from('>I', page, end)
         while len(found) < length:
             page = pages.read(following)
             (following,) = struct.unpack_from('>I', page)
-            found += page[4 : min(pages.usable, 4 + length - len(found))]
+            end = min(pages.usable, 4 + length - len(found))
+            found += page[4:end]
     if len(found) != length:
         raise EOFError
     return bytes(found)

@@ -108,7 +108,8 @@ class Times:
             if self._back:
                 chosen = chosen[np.argsort(times[chosen], kind='stable')]
             for begin in range(0, len(chosen), BLOCK):
-                part = chosen[begin : begin + BLOCK]
+                end = begin + BLOCK
+                part = chosen[begin:end]
                 yield Rows(
                     stamps=self._stamps(times[part]),
                     columns={name: values[part] for name, values in columns.items()},

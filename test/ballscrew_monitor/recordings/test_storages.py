@@ -177,8 +177,9 @@ def test_a_page_of_a_sqlite3_file_that_is_damaged_is_left_out(messages, short_ba
     path = write(tmp_path / 'bag', messages, types, StoragePlugin.SQLITE3, CompressionMode.NONE)
     file = next(path.glob('*.db3'))
     data = bytearray(file.read_bytes())
-    page = len(data) // 8192 * 4096
-    data[page : page + 4096] = b'\xff' * 4096
+    begin = len(data) // 8192 * 4096
+    end = begin + 4096
+    data[begin:end] = b'\xff' * 4096
     file.write_bytes(data)
     bag = Bag(path, salvage=True)
     found = content(bag)

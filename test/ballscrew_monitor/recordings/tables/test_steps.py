@@ -11,7 +11,8 @@ def counted(stamps, block):
     """Return the steps between stamps that are told in blocks."""
     steps = Steps()
     for begin in range(0, len(stamps), block):
-        steps.add(stamps[begin : begin + block])
+        end = begin + block
+        steps.add(stamps[begin:end])
     return steps
 
 
