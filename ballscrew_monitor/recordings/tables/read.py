@@ -80,10 +80,6 @@ class Table:
             for name in self.readings
         }
 
-    def whole(self) -> dict[str, Array]:
-        """Return all columns at once, for which there must be memory."""
-        return self.head(self.rows)
-
 
 def column_names(path: Path) -> list[str]:
     """Return the names of all columns of a log; raises InputError when it is no table."""

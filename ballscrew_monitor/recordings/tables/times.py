@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The rows of a table in the order of their times, with stamps, in blocks."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 import dataclasses
 import math
 
@@ -28,7 +28,7 @@ class Rows:
     stamps: Stamps
     columns: dict[str, Array]
 
-    def __getitem__(self, part: slice) -> 'Rows':
+    def __getitem__(self, part: slice | NDArray[np.intp]) -> 'Rows':
         """Return some of the rows."""
         columns = {name: values[part] for name, values in self.columns.items()}
         return Rows(stamps=self.stamps[part], columns=columns)
@@ -44,12 +44,30 @@ class Rows:
         )
 
 
+def _in_order(blocks: Iterable[Rows], late: int) -> Iterator[Rows]:
+    """Yield rows by their stamps, of which none comes more than `late` [ns] after a later one."""
+    held: Rows | None = None
+    for rows in blocks:
+        held = rows if held is None else held + rows
+        held = held[np.argsort(held.stamps, kind='stable')]
+        ready = int(np.searchsorted(held.stamps, held.stamps[-1] - late))
+        yield from _cut(held[:ready])
+        held = held[ready:]
+    yield from () if held is None else _cut(held)
+
+
+def _cut(rows: Rows) -> Iterator[Rows]:
+    for begin in range(0, len(rows.stamps), BLOCK):
+        end = begin + BLOCK
+        yield rows[begin:end]
+
+
 class Times:
     """
     The times of a table, looked through once: which rows have one, and whether they rise.
 
-    `count` rows have one. A table whose rows are out of order is sorted in memory, any other is
-    read in blocks.
+    `count` rows have one. Rows out of order are sorted: as many wait in memory as are between the
+    one that comes the latest and its place.
 
     """
 
@@ -57,7 +75,8 @@ class Times:
         """Look through the times; raises InputError when they give no stamps."""
         self._table, self._mapping = table, mapping
         self.count = self._back = 0
-        self._begin, self._end = math.inf, -math.inf
+        self._begin, self._end, self._late = math.inf, -math.inf, 0.0
+        self._last = np.zeros(0)
         self._steps = Steps()
         self._look(shown)
         if self.count < 2:
@@ -99,46 +118,49 @@ class Times:
 
     def rows(self) -> Iterator[Rows]:
         """Yield the rows that have a time in the order of it, in blocks."""
-        blocks = [self._table.whole()] if self._back else self._table.blocks()
+        if not self._back:
+            return self._as_written()
+        coarse = float(np.spacing(max(abs(self._begin), abs(self._end))))
+        return _in_order(self._as_written(), math.ceil((self._late + 4 * coarse) * SECOND))
+
+    def _as_written(self) -> Iterator[Rows]:
         row = 0
-        for columns in blocks:
+        for columns in self._table.blocks():
             times = self._times(columns, row)
             row += len(times)
-            chosen = np.flatnonzero(np.isfinite(times))
-            if self._back:
-                chosen = chosen[np.argsort(times[chosen], kind='stable')]
-            for begin in range(0, len(chosen), BLOCK):
-                end = begin + BLOCK
-                part = chosen[begin:end]
+            known = np.isfinite(times)
+            if known.any():
                 yield Rows(
-                    stamps=self._stamps(times[part]),
-                    columns={name: values[part] for name, values in columns.items()},
+                    stamps=self._stamps(times[known]),
+                    columns={name: values[known] for name, values in columns.items()},
                 )
 
     def _look(self, shown: Shown) -> None:
         """Look through the times of all rows."""
-        time, row, last = self._mapping.time, 0, np.zeros(0)
+        time, row = self._mapping.time, 0
         with shown(self._table.rows, 'times looked through') as show:
             for block in self._table.blocks(
                 [time.name] if time else list(self._table.readings)[:1]
             ):
                 times = self._times(block, row)
                 row += len(times)
-                known = times[np.isfinite(times)]
-                self._count(np.concatenate([last, known]), len(last))
-                last = known[-1:] if len(known) else last
+                self._count(times[np.isfinite(times)])
                 show(row / self._table.rows)
 
-    def _count(self, times: Array, before: int) -> None:
-        """Count further times, of which one may have been there before."""
-        if len(times) == before:
+    def _count(self, times: Array) -> None:
+        """Count further times, all known."""
+        if not len(times):
             return
-        self._back += int((np.diff(times) < 0.0).sum())
-        self.count += len(times) - before
+        before = np.concatenate([self._last, times])
+        self._back += int((np.diff(before) < 0.0).sum())
         self._begin = min(self._begin, float(times.min()))
-        self._end = max(self._end, float(times.max()))
+        latest = np.maximum.accumulate(np.maximum(times, self._end))
+        self._late = max(self._late, float((latest - times).max()))
+        self._end = float(latest[-1])
+        self.count += len(times)
+        self._last = times[-1:]
         with np.errstate(over='ignore'):  # what gives no stamp is refused afterwards
-            self._steps.add(self._nanoseconds(times[before:]))
+            self._steps.add(self._nanoseconds(times))
 
     def _times(self, columns: dict[str, Array], row: int) -> Array:
         """Return the times of rows from `row` on [s], as the log counts them."""
