@@ -41,14 +41,15 @@ def plan(bag: Path, params: Path, out: Path, rate: float) -> Plan:
     """
     Return a checked plan for bag time over wall time `rate` [-].
 
-    Raises InputError before anything is started or written.
+    Of a damaged bag what is whole is played; the notes of the bag say how much that is. Raises
+    InputError before anything is started or written.
 
     """
     if importlib.util.find_spec('matplotlib') is None:  # asked early, imported late: it is slow
         raise ModuleNotFoundError('no picture without matplotlib', name='matplotlib')
     if not 0.0 < rate <= 1000.0:
         raise InputError(f'rate is {rate:g}, allowed is above 0 to 1000')
-    opened = Bag(bag)
+    opened = Bag(bag, salvage=True)
     values = with_types(parameters.read_file(params), opened.types)
     axes = [build_axis(name, values) for name in values['axes']]
     if any(file.resolve() == (out / f'{RECORDING}.mcap').resolve() for file in opened.files):

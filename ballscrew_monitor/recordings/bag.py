@@ -19,13 +19,8 @@ import tempfile
 import weakref
 
 from ballscrew_monitor.recordings.bag_files import kind_of, manifest, OWN, unpack, unpacked, ZSTD
-from ballscrew_monitor.recordings.storages import (
-    damage_is_input,
-    McapStorage,
-    Message,
-    SqliteStorage,
-    TopicInfo,
-)
+from ballscrew_monitor.recordings.sqlite_storage import SqliteStorage
+from ballscrew_monitor.recordings.storages import damage_is_input, McapStorage, Message, TopicInfo
 from mcap.reader import make_reader
 from surrogate.files import InputError
 from zstandard import ZstdError
@@ -166,7 +161,7 @@ class Bag:
         if kind == 'rosbag1':
             raise InputError(f'bag {file} is of ROS 1, it must be converted to rosbag2')
         if kind == 'sqlite3':
-            return SqliteStorage(file)
+            return SqliteStorage(file, salvage=self._salvage)
         return McapStorage(file, salvage=self._salvage)
 
     def _scratch(self) -> Path:

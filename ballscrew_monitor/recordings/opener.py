@@ -9,25 +9,29 @@ import tempfile
 
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_files import ACTIVE, is_bag, is_table
+from ballscrew_monitor.recordings.progress import Shown, shown_progress
 from surrogate.files import InputError
 
 
 @contextlib.contextmanager
-def opened_log(path: Path, *, mapping: Path | None = None) -> Iterator[Bag]:
+def opened_log(
+    path: Path, *, mapping: Path | None = None, shown: Shown = shown_progress
+) -> Iterator[Bag]:
     """
     Yield the log at `path` as a bag; of damaged files what is whole.
 
-    A table is read by the map in the file `mapping` into a bag that goes when the block ends.
+    A table is read by the map in the file `mapping` into a bag that goes when the block ends; how
+    far that is, is shown.
     Raises InputError when there is no log, or a map is missing or too much.
 
     """
     with tempfile.TemporaryDirectory(prefix='ballscrew_log_') as folder:
-        bag = Bag(bag_of(path, mapping, Path(folder)), salvage=True)
+        bag = Bag(bag_of(path, mapping, Path(folder), shown), salvage=True)
         bag.path = path  # what is said is said of the log
         yield bag
 
 
-def bag_of(path: Path, mapping: Path | None, folder: Path) -> Path:
+def bag_of(path: Path, mapping: Path | None, folder: Path, shown: Shown) -> Path:
     """
     Return where the log at `path` is as a bag: itself, or made of a table below `folder`.
 
@@ -52,7 +56,7 @@ def bag_of(path: Path, mapping: Path | None, folder: Path) -> Path:
     from ballscrew_monitor.recordings.tables.mapping import read_map
 
     made = folder / (path.stem or 'log')
-    convert(path, read_map(mapping), made)
+    convert(path, read_map(mapping), made, shown=shown)
     return made
 
 

@@ -30,18 +30,24 @@ class Choice:
 
 
 def playback(path: Path, choice: Choice, *, rate: float, patience: float, loop: bool) -> int:
-    """Play the bag at `path` to whom listens within `patience` [s]; return the exit code."""
-    bag = Bag(path)
+    """
+    Play the bag at `path` to whom listens within `patience` [s]; return the exit code.
+
+    Of a damaged bag it plays what is whole, and says how much that is.
+
+    """
+    bag = Bag(path, salvage=True)
     topics = playable(bag, chosen(bag, choice))
     stop = threading.Event()
     with interrupts(stop) as interrupted:
         rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
         node = rclpy.create_node('ballscrew_player', start_parameter_services=False)
         try:
-            if said := notice():
-                print(f'ballscrew: {said}', file=sys.stderr)
+            told = list(bag.notes)
+            _say(*filter(None, (notice(), *told)))
             player = Player(node, bag, rate=rate, topics=topics)
             code = _play(player, topics, patience, stop, loop)
+            _say(*(note for note in bag.notes if note not in told))
         finally:
             node.destroy_node()
             rclpy.shutdown()
@@ -96,6 +102,11 @@ def _names(topics: Iterable[str]) -> str:
     return ', '.join(topics)
 
 
+def _say(*notes: str) -> None:
+    for note in notes:
+        print(f'ballscrew: {note}', file=sys.stderr)
+
+
 def _play(
     player: Player, topics: Sequence[str], patience: float, stop: threading.Event, loop: bool
 ) -> int:
@@ -103,10 +114,7 @@ def _play(
     if stop.is_set():
         return FAILED
     if set(topics) <= set(missing):
-        print(
-            f'ballscrew: nobody subscribed to {_names(topics)} within {patience:g} s',
-            file=sys.stderr,
-        )
+        _say(f'nobody subscribed to {_names(topics)} within {patience:g} s')
         return FAILED
     if missing:
         print(f'nobody listens to {_names(missing)}', flush=True)

@@ -50,8 +50,8 @@ def speed_messages(bag: Bag, axes: Sequence[Axis]) -> dict[str, int]:
     """
     Return for each axis how many messages of `bag` speak of its speed.
 
-    Reads and so verifies the whole bag; raises InputError when it is damaged, or when it says
-    nothing of an axis.
+    Reads and so verifies the whole bag; raises InputError when it is damaged and was not opened
+    to be salvaged, or when it says nothing of an axis.
 
     """
     speed = {axis.name: axis.inputs[-1] for axis in axes}

@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-The files that a bag is made of, MCAP or sqlite3: topics, time span and messages of each.
+The MCAP files that a bag is made of: topics, time span and messages of each.
 
 A damaged MCAP file is refused, or salvaged when that is asked for: then what is whole is read, and
 `note` says how much it was.
@@ -170,80 +170,40 @@ class McapStorage:
             self._add_topic(channel, schemas.get(channel.schema_id), counts[number])
         if times:
             self.span = (times[0], times[1])
-            self.note = (
-                f'bag {self.file} is truncated or damaged: used are the {counts.total()} messages '
-                f'of {(times[1] - times[0]) * 1e-9:.1f} s that are whole'
-            )
+            self.note = salvage_note(self.file, counts.total(), self.span)
 
     def _whole(self, wanted: Collection[str], *, reorder: bool = True) -> Iterator[Message]:
         """Yield the messages of whole chunks by log time, as far as chunks do not overlap more."""
+        found = self._whole_as_written(wanted)
+        return by_log_time(found) if reorder else found
+
+    def _whole_as_written(self, wanted: Collection[str]) -> Iterator[Message]:
         channels = dict(self._channels)
-        waiting: list[tuple[int, int, Message]] = []
-        number = 0
         for record in whole_records(self.file):
             if isinstance(record, Channel):
                 channels[record.id] = record
             channel = channels.get(record.channel_id) if isinstance(record, McapMessage) else None
-            if channel is None or channel.topic not in wanted:
-                continue
-            if not reorder:
+            if channel is not None and channel.topic in wanted:
                 yield _message(channel, record)
-                continue
-            number += 1
-            heapq.heappush(waiting, (record.log_time, number, _message(channel, record)))
-            while record.log_time - waiting[0][0] > REORDER:
-                yield heapq.heappop(waiting)[2]
-        while waiting:
+
+
+def by_log_time(messages: Iterable[Message]) -> Iterator[Message]:
+    """Yield messages by log time, as far as they are not mixed over more than `REORDER`."""
+    waiting: list[tuple[int, int, Message]] = []
+    for number, message in enumerate(messages):
+        heapq.heappush(waiting, (message.log_time, number, message))
+        while message.log_time - waiting[0][0] > REORDER:
             yield heapq.heappop(waiting)[2]
+    while waiting:
+        yield heapq.heappop(waiting)[2]
 
 
-class SqliteStorage:
-    """One sqlite3 file of rosbag2."""
-
-    def __init__(self, file: Path) -> None:
-        """Read the topics; raises InputError when the file is not readable."""
-        self.file = file
-        self.note = ''
-        with self._opened() as reader:
-            self.topics = {
-                connection.topic: TopicInfo(
-                    type_name=connection.msgtype,
-                    encoding=connection.ext.serialization_format,
-                    count=connection.msgcount,
-                )
-                for connection in reader.connections
-            }
-            self.span = (reader.start_time, reader.end_time - 1) if reader.duration else (0, 0)
-
-    def messages(
-        self, wanted: Collection[str], *, as_written: bool = False
-    ) -> Generator[Message, None, None]:
-        """
-        Yield the messages of the topics `wanted` by log time; raises InputError on damage.
-
-        They were written in that order too.
-
-        """
-        with self._opened() as reader:
-            chosen = [one for one in reader.connections if one.topic in wanted]
-            # An empty choice means all to this reader.
-            for connection, time, data in reader.messages(chosen) if chosen else ():
-                yield Message(topic=connection.topic, data=data, log_time=time, publish_time=time)
-
-    @contextlib.contextmanager
-    def _opened(self) -> Iterator[Any]:
-        import apsw
-        from rosbags.rosbag2 import Reader, ReaderError
-
-        try:
-            with Reader(self.file) as reader:
-                yield reader
-        except (ReaderError, apsw.Error, OSError) as error:
-            reason = ' '.join(str(error).split())
-            raise InputError(
-                f'bag {self.file} is truncated or damaged, it must be a complete sqlite3 file of '
-                f'rosbag2 ({reason})'
-            ) from None
+def salvage_note(file: Path, count: int, span: tuple[int, int]) -> str:
+    """Return how many messages of a damaged file are used, and their first and last time [ns]."""
+    return (
+        f'bag {file} is truncated or damaged: used are the {count} messages of '
+        f'{(span[1] - span[0]) * 1e-9:.1f} s that are whole'
+    )
 
 
 def whole_records(file: Path) -> Iterator[Any]:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ballscrew_monitor.recordings.opener import opened_log
+from ballscrew_monitor.recordings.progress import silent
 from ballscrew_monitor.report.log_report import AxisLine, LogResult, report_log
 from ballscrew_monitor.report.logs import folder_names
 from ballscrew_monitor.report.overview import LogEntry, overview_page
@@ -54,7 +55,7 @@ def report_logs(
 
 def report_task(inputs: Mapping[str, Any]) -> dict[str, Any]:
     """Report one recording in a worker; plain data in, the `LogResult` as plain data out."""
-    with opened_log(Path(inputs['log']), mapping=_path(inputs['map'])) as bag:
+    with opened_log(Path(inputs['log']), mapping=_path(inputs['map']), shown=silent) as bag:
         parameters = parameters_for(bag, _path(inputs['params']), Path(inputs['nominal']))
         result = report_log(bag, Path(inputs['out']), parameters)
     record: dict[str, Any] = to_json(dataclasses.asdict(result))

@@ -7,6 +7,7 @@ from pathlib import Path
 import sys
 
 from ballscrew_monitor.recordings.bag_files import is_bag
+from ballscrew_monitor.recordings.progress import shown_progress
 from ballscrew_monitor.recordings.tables.convert import convert
 from ballscrew_monitor.recordings.tables.guess import guess
 from ballscrew_monitor.recordings.tables.mapping import read_map
@@ -16,7 +17,7 @@ from surrogate.files import InputError
 def print_guess(log: Path) -> None:
     """Print a first map of a log, and to standard error what is to be said about it."""
     _check_log(log)
-    made = guess(log)
+    made = guess(log, shown=shown_progress)
     print(made.text, end='')
     _say(made.notes)
 
@@ -27,7 +28,7 @@ def make_bag(log: Path, config: Path | None, out: Path | None) -> None:
     if config is None or out is None:
         missing = '--config' if config is None else '--out'
         raise InputError(f'{missing} is missing; --guess prints a first map for --config')
-    facts = convert(log, read_map(config), out)
+    facts = convert(log, read_map(config), out, shown=shown_progress)
     _say(facts.notes)
     print(f'{out}: judge it by ballscrew replay {out}')
     for one in facts.assumptions:

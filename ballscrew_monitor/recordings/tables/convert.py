@@ -8,7 +8,7 @@ Topics are `joint_states` with speed, position and torque of each screw, `<axis>
 
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 import itertools
 import math
 from pathlib import Path
@@ -20,10 +20,11 @@ from ballscrew_monitor.node.axis import load_surface, MOTOR_TORQUE
 from ballscrew_monitor.node.topics import absolute
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic, whole_bag
 from ballscrew_monitor.recordings.log_facts import Assumption, LogFacts
+from ballscrew_monitor.recordings.progress import Shown, silent
+from ballscrew_monitor.recordings.tables.cells import Array
 from ballscrew_monitor.recordings.tables.mapping import AxisMap, TableMap
-from ballscrew_monitor.recordings.tables.read import Array
 from ballscrew_monitor.recordings.tables.rows import marks, RowTemplate
-from ballscrew_monitor.recordings.tables.series import read_series, Series
+from ballscrew_monitor.recordings.tables.series import Block, read_series, Series
 from geometry_msgs.msg import WrenchStamped
 import numpy as np
 from sensor_msgs.msg import JointState, Temperature
@@ -40,16 +41,17 @@ SLOW = 0.5  # of the timeout: rows that far apart leave no room for a late one
 SAME = 1e-6  # part by which two leads may differ
 
 
-def convert(path: Path, mapping: TableMap, out: Path) -> LogFacts:
+def convert(path: Path, mapping: TableMap, out: Path, *, shown: Shown = silent) -> LogFacts:
     """
     Write the log at `path` as a bag to the directory `out`; return what the bag says of itself.
 
-    Raises InputError when the log cannot be read by the map, before anything is written.
+    Shows how far it is. Raises InputError when the log cannot be read by the map, before anything
+    is written.
 
     """
     if out.is_file():
         raise InputError(f'output {out} is a file, it must be a directory')
-    series = read_series(path, mapping)
+    series = read_series(path, mapping, shown)
     notes = list(series.notes)
     facts = LogFacts(
         source=path.name,
@@ -60,7 +62,8 @@ def convert(path: Path, mapping: TableMap, out: Path) -> LogFacts:
     )
     with whole_bag(out, out.resolve().name) as writer:
         writer.add_metadata(facts.texts())
-        _write(writer, series)
+        with shown(series.count, 'rows written') as show:
+            _write(writer, series, show)
     return facts
 
 
@@ -137,21 +140,29 @@ def _assumption(key: str, value: str, reason: str) -> Assumption:
     return Assumption(key=key, value=value, reason=reason)
 
 
-def _write(writer: BagWriter, series: Series) -> None:
-    streams = []
-    for name, type_name, message, numbers in _topics(series):
-        topic = Topic(name=absolute(name), type_name=type_name, offer=Offer.RELIABLE)
-        writer.add_topic(topic)
-        rows = RowTemplate(message, len(numbers)).rows(series.stamps, numbers)
-        streams.append((topic.name, rows))
-    for stamp in series.stamps.tolist():
-        for name, rows in streams:
-            writer.write(name, next(rows), log_time=stamp, publish_time=stamp)
+def _write(writer: BagWriter, series: Series, show: Callable[[float], None]) -> None:
+    """Write all rows; the topics are those of the first of them."""
+    templates: dict[str, RowTemplate] = {}
+    done = 0
+    for block in series.blocks():
+        streams = []
+        for name, type_name, message, numbers in _topics(block):
+            topic = Topic(name=absolute(name), type_name=type_name, offer=Offer.RELIABLE)
+            if topic.name not in templates:
+                writer.add_topic(topic)
+                templates[topic.name] = RowTemplate(message, len(numbers))
+            rows = templates[topic.name].rows(block.stamps, numbers)
+            streams.append((topic.name, rows))
+        for stamp in block.stamps.tolist():
+            for name, rows in streams:
+                writer.write(name, next(rows), log_time=stamp, publish_time=stamp)
+        done += len(block.stamps)
+        show(done / series.count)
 
 
-def _topics(series: Series) -> Iterator[tuple[str, str, Any, list[Array]]]:
+def _topics(block: Block) -> Iterator[tuple[str, str, Any, list[Array]]]:
     """Yield name, type, message with marks and numbers of each topic, the joints last."""
-    for axis in series.axes:
+    for axis in block.axes:
         (mark,) = marks(1)
         if axis.temperature is not None:
             warm = Temperature(temperature=mark)
@@ -161,25 +172,25 @@ def _topics(series: Series) -> Iterator[tuple[str, str, Any, list[Array]]]:
             load.header.frame_id = f'{axis.name}_nut'
             load.wrench.force.x = mark
             yield f'{axis.name}/axial_load', WRENCH, load, [axis.load]
-    yield JOINTS, JOINT, *_joints(series)
+    yield JOINTS, JOINT, *_joints(block)
 
 
-def _joints(series: Series) -> tuple[JointState, list[Array]]:
+def _joints(block: Block) -> tuple[JointState, list[Array]]:
     """Return the joints with marks, and the numbers: what no axis has stays an empty list."""
-    found: dict[str, list[Array]] = {'velocity': [axis.speed for axis in series.axes]}
-    found['position'] = _all(series, [axis.position for axis in series.axes])
-    found['effort'] = _all(series, [axis.torque for axis in series.axes])
+    found: dict[str, list[Array]] = {'velocity': [axis.speed for axis in block.axes]}
+    found['position'] = _all(block, [axis.position for axis in block.axes])
+    found['effort'] = _all(block, [axis.torque for axis in block.axes])
     numbers = [values for part in found.values() for values in part]
-    message = JointState(name=[f'{axis.name}_axis' for axis in series.axes])
+    message = JointState(name=[f'{axis.name}_axis' for axis in block.axes])
     left = iter(marks(len(numbers)))
     for field, part in found.items():
         setattr(message, field, list(itertools.islice(left, len(part))))
     return message, numbers
 
 
-def _all(series: Series, found: list[Array | None]) -> list[Array]:
+def _all(block: Block, found: list[Array | None]) -> list[Array]:
     """Return a quantity of all axes, NaN for those without; nothing if none has it."""
     if all(one is None for one in found):
         return []
-    unknown = np.full(len(series.stamps), math.nan)
+    unknown = np.full(len(block.stamps), math.nan)
     return [unknown if one is None else one for one in found]

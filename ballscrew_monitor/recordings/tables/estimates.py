@@ -50,19 +50,21 @@ def usual_rate(time: float) -> float:
     return float(f'{near if abs(near / rate - 1.0) <= NEAR else rate:.3g}')
 
 
-def speed_unit(speed: Array, position: Array | None, step: float) -> tuple[str, str]:
+def speed_unit(speeds: Array, motion: tuple[Array, Array] | None, step: float) -> tuple[str, str]:
     """
-    Return the linear unit of a speed and why it is that.
+    Return the linear unit of speeds and why it is that.
 
-    Positions [m] a `step` [s] apart, if both are known, decide; else the largest amount does.
+    A motion, positions [m] and such speeds a `step` [s] apart, decides if it is known; else the
+    largest amount does.
 
     """
-    if position is not None and math.isfinite(step):
+    if motion is not None and math.isfinite(step):
+        position, speed = motion
         for unit, factor in LINEAR_SPEED_UNITS.items():
             found = period([(position, speed * factor)])
             if step / FACTOR < found < step * FACTOR:
                 return unit, 'it agrees with the position over time'
-    largest = float(np.nanmax(np.abs(speed)))
+    largest = float(np.nanmax(np.abs(speeds)))
     if largest <= FAST:
         return 'm/s', f'its largest amount is {largest:.3g}'
     if largest <= FASTEST:

@@ -18,10 +18,12 @@ from ballscrew_monitor.core.conversions import (
     LINEAR_SPEED_UNITS,
     TIME_UNITS,
 )
+from ballscrew_monitor.recordings.progress import Shown, silent
 from ballscrew_monitor.recordings.tables import estimates
+from ballscrew_monitor.recordings.tables.cells import Array
 from ballscrew_monitor.recordings.tables.mapping import INPUTS, UNITS
 from ballscrew_monitor.recordings.tables.names import axis_names, is_of_the_screw, Named, read_name
-from ballscrew_monitor.recordings.tables.read import Array, column_names, read_table
+from ballscrew_monitor.recordings.tables.read import column_names, open_table
 import numpy as np
 from surrogate.files import InputError
 from surrogate.surface import find_surface, Surface
@@ -33,6 +35,7 @@ TORQUE_CONSTANT = 0.1  # [N m/A]
 EFFICIENCY = 0.9
 TEMPERATURE = 40.0  # [degC]
 RATE = 100.0  # [Hz]
+NUMBERS = 4_000_000  # of the first rows that are in memory
 EPOCH = '2000-01-01T00:00:00Z'
 FORCE = (
     '2 pi efficiency torque / lead against the torque: friction of guides and seals, and what '
@@ -60,15 +63,20 @@ class Guess:
         )
 
 
-def guess(path: Path) -> Guess:
-    """Return a first map of the log at `path`; raises InputError when it has no speed."""
-    return _Guesser(path).result()
+def guess(path: Path, *, shown: Shown = silent) -> Guess:
+    """
+    Return a first map of the log at `path`, and show how far it is read.
+
+    Raises InputError when it has no speed.
+
+    """
+    return _Guesser(path, shown).result()
 
 
 class _Guesser:
     """What is found so far."""
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, shown: Shown) -> None:
         self.path = path
         self.named = [read_name(name) for name in column_names(path)]
         self.assumed: dict[str, dict[str, Any]] = {}
@@ -85,9 +93,15 @@ class _Guesser:
             )
         self.times = [one for one in self.named if one.kind == 'time']
         columns = [one for chosen in self.axes.values() for one in chosen.values()]
-        table = read_table(path, [one.column for one in [*columns, *self.times]], strict=False)
-        self.data = table.columns
+        names = [one.column for one in [*columns, *self.times]]
+        table = open_table(path, names, strict=False, shown=shown)
+        rows = NUMBERS // len(names)
+        # The first rows tell how the speeds go with the positions, all of them the ranges.
+        self.data = table.head(rows)
+        self.extremes = {name: one.extremes for name, one in table.readings.items()}
         self.notes += table.notes
+        if rows < table.rows:
+            self.notes.append(f'rate and units are those of the first {rows} of {table.rows} rows')
         self._forget_texts()
 
     def result(self) -> Guess:
@@ -209,16 +223,14 @@ class _Guesser:
                 f'{name}.temperature_degC', TEMPERATURE, 'the log holds no temperature of the oil'
             )
         if 'speed' in used:
-            speed, unit = (
-                self.data[used['speed']['column']],
-                self._unit(name, 'speed', {name: used}),
-            )
-            self.notes += estimates.oddities(name, speed, unit, LINEAR_SPEED_UNITS)
+            speeds = self.extremes[used['speed']['column']]
+            unit = self._unit(name, 'speed', {name: used})
+            self.notes += estimates.oddities(name, speeds, unit, LINEAR_SPEED_UNITS)
         return used
 
     def _is_used(self, one: Named) -> bool:
         """Tell whether a column says something: a force or current of nothing but 0 is unknown."""
-        silent = estimates.is_silent(self.data[one.column])
+        silent = estimates.is_silent(self.extremes[one.column])
         return one.kind in ('speed', 'position') or not silent
 
     def _set_unit(
@@ -233,11 +245,13 @@ class _Guesser:
         if chosen[kind].unit:
             place['unit'] = chosen[kind].unit
             return
-        values = self.data[place['column']]
+        values = self.extremes[place['column']]
         if kind == 'position':
             unit, why = estimates.position_unit(values)
         elif kind == 'speed':
-            unit, why = estimates.speed_unit(values, self._metres(used, chosen), step)
+            metres, speed = self._metres(used, chosen), self.data[place['column']]
+            motion = None if metres is None else (metres, speed)
+            unit, why = estimates.speed_unit(values, motion, step)
         elif kind == 'temperature' and np.nanmin(values) > TEMPERATURE * 5:
             unit, why = 'K', f'its least is {np.nanmin(values):.3g}'
         else:
@@ -251,7 +265,8 @@ class _Guesser:
         if 'position' not in used:
             return None
         values = self.data[used['position']['column']]
-        unit = chosen['position'].unit or estimates.position_unit(values)[0]
+        extremes = self.extremes[used['position']['column']]
+        unit = chosen['position'].unit or estimates.position_unit(extremes)[0]
         return values * LINEAR_POSITION_UNITS[unit] if unit in LINEAR_POSITION_UNITS else None
 
     def _set_oil(self, name: str, place: dict[str, Any]) -> None:

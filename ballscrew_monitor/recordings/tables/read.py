@@ -1,174 +1,157 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Numbers out of a CSV or Parquet file.
+Numbers out of a CSV or Parquet file, in blocks of rows: a log may be larger than memory.
 
-A cell without a number is NaN and counted; what cannot be read at all is one sentence in an
-InputError.
+A log is looked through once to learn how its cells are numbers. A cell without a number is NaN and
+counted; what cannot be read at all is one sentence in an InputError.
 
 """
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
+import contextlib
 import dataclasses
 from pathlib import Path
 
-from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.recordings.progress import Shown, silent
+from ballscrew_monitor.recordings.tables.cells import Array, Cells, first_line, Reading, UNREADABLE
 import numpy as np
-from numpy.typing import NDArray
 import polars as pl
-from polars.exceptions import PolarsError
 from surrogate.files import InputError
-
-Array = NDArray[np.float64]
 
 SEPARATORS = (',', ';', '\t', '|')
 COMMENT = '#'
 HEAD = 65536  # [bytes] of a file that tell what it is
-UNREADABLE = (PolarsError, pl.exceptions.PanicException)
+BLOCK = 32768  # rows that are read at a time
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class _Source:
+    """A table as it stands in a file, the separator of its cells if it has one, rows about."""
+
+    path: Path
+    frame: pl.LazyFrame
+    separator: str
+    rows: int
+
+    def names(self) -> list[str]:
+        with _readable(self.path):
+            return self.frame.collect_schema().names()
+
+    def blocks(self, names: Collection[str]) -> Iterator[pl.DataFrame]:
+        """Yield the columns `names` in blocks of rows; none is empty."""
+        with _readable(self.path):
+            batches = self.frame.select(list(names)).collect_batches(chunk_size=BLOCK, lazy=True)
+            for batch in batches:
+                yield from batch.iter_slices(BLOCK) if batch.height else ()
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Table:
     """
-    Chosen columns of a log by name, NaN where there is no number, times of day as [s].
+    Chosen columns of a log that was looked through: how each is read, by name.
 
     `notes` says in a sentence each what could not be read.
 
     """
 
     path: Path
-    columns: dict[str, Array]
+    readings: dict[str, Reading]
     rows: int
     notes: tuple[str, ...]
+    _source: _Source
+
+    def blocks(self, names: Collection[str] | None = None) -> Iterator[dict[str, Array]]:
+        """Yield columns (None: all) in blocks of rows, NaN where there is no number, times [s]."""
+        chosen = list(self.readings if names is None else names)
+        for block in self._source.blocks(chosen):
+            yield {name: self.readings[name].numbers(block[name]) for name in chosen}
+
+    def head(self, most: int) -> dict[str, Array]:
+        """Return all columns, `most` of their rows."""
+        blocks, rows = [], 0
+        for block in self.blocks() if self.readings else ():
+            blocks.append(block)
+            rows += len(next(iter(block.values())))
+            if rows >= most:
+                break
+        return {
+            name: np.concatenate([block[name] for block in blocks])[:most]
+            for name in self.readings
+        }
 
 
 def column_names(path: Path) -> list[str]:
     """Return the names of all columns of a log; raises InputError when it is no table."""
-    return _names(path, _frame(path)[0])
+    return _source(path).names()
 
 
-def read_table(path: Path, names: Collection[str], *, strict: bool = True) -> Table:
+def open_table(
+    path: Path, names: Collection[str], *, strict: bool = True, shown: Shown = silent
+) -> Table:
     """
-    Return the columns `names` of a log.
+    Look through the columns `names` of a log, and show how far that is.
 
     Raises InputError when one is missing, or holds no number; unless `strict` such a one is left
     out with a note.
 
     """
-    frame, separator = _frame(path)
-    held = _names(path, frame)
+    source = _source(path)
+    held = source.names()
     for name in names:
         if name not in held:
             raise InputError(
                 f'log {path}: column {name!r} is missing, the log holds {", ".join(held)}'
             )
-    try:
-        data = frame.select(list(dict.fromkeys(names))).collect()
-    except UNREADABLE as error:
-        raise InputError(f'log {path} cannot be read: {_first_line(error)}') from None
-    if not data.height:
-        raise InputError(f'log {path} holds no row, at least two are needed')
     notes: list[str] = []
-    columns: dict[str, Array] = {}
-    for name in data.columns:
-        try:
-            columns[name] = _numbers(path, data[name], separator, notes)
-        except InputError as error:
-            if strict:
-                raise
-            notes.append(f'{error}; it is left out')
-    return Table(path=path, columns=columns, rows=data.height, notes=tuple(notes))
+    found = {name: Cells(path, name, source.separator) for name in names}
+    rows = 0
+    with shown(source.rows, 'rows looked through') as show:
+        for block in source.blocks(list(found)):
+            for name, cells in list(found.items()):
+                with _left_out(name, found, notes, strict=strict):
+                    cells.add(block[name])
+            rows += block.height
+            show(rows / source.rows)
+    if not rows:
+        raise InputError(f'log {path} holds no row, at least two are needed')
+    readings: dict[str, Reading] = {}
+    for name, cells in list(found.items()):
+        with _left_out(name, found, notes, strict=strict):
+            readings[name] = cells.reading()
+            notes += [readings[name].note] if readings[name].note else []
+    return Table(path=path, readings=readings, rows=rows, notes=tuple(notes), _source=source)
 
 
-def _numbers(path: Path, column: pl.Series, separator: str, notes: list[str]) -> Array:
-    """Return a column as numbers, NaN where there is none; add a note about those."""
+@contextlib.contextmanager
+def _left_out(
+    name: str, found: dict[str, Cells], notes: list[str], *, strict: bool
+) -> Iterator[None]:
+    """Leave out a column that cannot be read, with a note, unless that is an error."""
     try:
-        numbers = _converted(column, separator)
-    except UNREADABLE as error:
-        raise InputError(
-            f'log {path}: column {column.name!r} of {column.dtype} cannot be read as numbers: '
-            f'{_first_line(error)}'
-        ) from None
-    if numbers is None:
-        raise InputError(
-            f'log {path}: column {column.name!r} holds {column.dtype}, it must hold numbers'
-        )
-    bad = numbers.is_null()
-    if bad.all():
-        raise InputError(f'log {path}: column {column.name!r} holds no number, but {column[0]!r}')
-    if bad.any():
-        row = bad.arg_max()
-        value = column[row] if row is not None else None
-        what = 'nothing' if value is None else repr(value)
-        notes.append(
-            f'log {path}: column {column.name!r} holds {int(bad.sum())} cells without a number, '
-            f'the first is {what} in row {(row or 0) + 1}; they count as unknown'
-        )
-    return np.asarray(numbers.fill_null(float('nan')).to_numpy(), dtype=np.float64)
+        yield
+    except InputError as error:
+        if strict:
+            raise
+        found.pop(name)
+        notes.append(f'{error}; it is left out')
 
 
-def _converted(column: pl.Series, separator: str) -> pl.Series | None:
-    """Return a column as numbers, times and durations in [s]; None if its type is neither."""
-    if column.dtype == pl.String:
-        return _parsed(column, separator)
-    if column.dtype.is_temporal():
-        if column.dtype != pl.Time:  # which is counted in nanoseconds, whatever wrote it
-            spans = isinstance(column.dtype, pl.Duration)
-            column = column.cast(pl.Duration('ns') if spans else pl.Datetime('ns'))
-        return column.cast(pl.Int64).cast(pl.Float64) / SECOND
-    return column.cast(pl.Float64) if column.dtype.is_numeric() else None
-
-
-def _parsed(texts: pl.Series, separator: str) -> pl.Series:
-    """
-    Return texts as numbers, or as times in [s] if they are no numbers but those.
-
-    The decimal mark is the one that leaves fewer cells without a number. Where commas separate the
-    cells, one within a cell may part thousands too: it counts only if no cell is a number as is.
-
-    """
-    stripped = texts.str.strip_chars()
-    numbers = stripped.cast(pl.Float64, strict=False)
-    commas = _decimal_commas(stripped)
-    if commas.null_count() < numbers.null_count() and (
-        separator != ',' or numbers.null_count() == len(numbers)
-    ):
-        return commas
-    return numbers if numbers.null_count() < len(numbers) else _times(stripped)
-
-
-def _decimal_commas(texts: pl.Series) -> pl.Series:
-    """Return texts as numbers with a decimal comma; one with a point is none."""
-    plain = texts.set(texts.str.contains('.', literal=True), None)
-    return plain.str.replace(',', '.', literal=True).cast(pl.Float64, strict=False)
-
-
-def _times(texts: pl.Series) -> pl.Series:
-    """Return texts of the form of ISO 8601 as times of the universal clock [s]."""
-    plain = texts.str.replace('T', ' ', literal=True).str.strip_suffix('Z')
-    for form in ('%Y-%m-%d %H:%M:%S%.f', '%Y-%m-%d %H:%M:%S%.f%z'):
-        found = plain.str.to_datetime(form, time_unit='ns', strict=False)
-        if found.null_count() < len(found):
-            return found.dt.epoch('ns').cast(pl.Float64) / SECOND
-    return pl.Series(texts.name, [None] * len(texts), dtype=pl.Float64)
-
-
-def _frame(path: Path) -> tuple[pl.LazyFrame, str]:
-    """
-    Return the table in a file, its cells as they stand, and their separator if it has one.
-
-    Raises InputError when the file is no table.
-
-    """
+def _source(path: Path) -> _Source:
+    """Return the table in a file, its cells as they stand; raises InputError when it is none."""
     try:
         with path.open('rb') as stream:
             head = stream.read(HEAD)
+        size = path.stat().st_size
     except OSError as error:
         raise InputError(f'log {path} cannot be read: {error.strerror}') from None
     if not head.strip():
         raise InputError(f'log {path} is empty, it must be a CSV or Parquet file')
     if head.startswith(b'PAR1'):
-        return pl.scan_parquet(path), ''
+        frame = pl.scan_parquet(path)
+        with _readable(path):
+            rows = int(frame.select(pl.len()).collect().item())
+        return _Source(path=path, frame=frame, separator='', rows=max(rows, 1))
     if b'\0' in head:
         raise InputError(f'log {path} is no text, it must be a CSV or Parquet file')
     separator = max(SEPARATORS, key=_header(head).count)
@@ -180,7 +163,8 @@ def _frame(path: Path) -> tuple[pl.LazyFrame, str]:
         comment_prefix=COMMENT,
         truncate_ragged_lines=True,
     )
-    return frame, separator
+    lines = max(head.count(b'\n'), 1) * size // len(head)
+    return _Source(path=path, frame=frame, separator=separator, rows=lines)
 
 
 def _header(head: bytes) -> str:
@@ -189,12 +173,10 @@ def _header(head: bytes) -> str:
     return next((line for line in lines if line.strip() and not line.startswith(COMMENT)), '')
 
 
-def _names(path: Path, frame: pl.LazyFrame) -> list[str]:
+@contextlib.contextmanager
+def _readable(path: Path) -> Iterator[None]:
+    """Raise InputError for whatever the reader of tables raises."""
     try:
-        return frame.collect_schema().names()
+        yield
     except UNREADABLE as error:
-        raise InputError(f'log {path} cannot be read: {_first_line(error)}') from None
-
-
-def _first_line(error: BaseException) -> str:
-    return next(iter(str(error).splitlines()), type(error).__name__)
+        raise InputError(f'log {path} cannot be read: {first_line(error)}') from None

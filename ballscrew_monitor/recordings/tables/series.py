@@ -1,8 +1,10 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""From the columns of a table to stamped quantities in SI units, by the map."""
+"""From the columns of a table to stamped quantities in SI units, by the map, in blocks of rows."""
 
+from collections.abc import Iterable, Iterator
 import dataclasses
+import itertools
 import math
 from pathlib import Path
 
@@ -16,19 +18,14 @@ from ballscrew_monitor.core.conversions import (
     ROTARY_SPEED_UNITS,
     SECOND,
     TEMPERATURE_UNITS,
-    TIME_UNITS,
 )
-from ballscrew_monitor.recordings.tables.mapping import AxisMap, Column, TableMap
-from ballscrew_monitor.recordings.tables.read import Array, read_table, Table
+from ballscrew_monitor.recordings.progress import Shown, silent
+from ballscrew_monitor.recordings.tables.cells import Array
+from ballscrew_monitor.recordings.tables.mapping import AxisMap, TableMap
+from ballscrew_monitor.recordings.tables.read import open_table
+from ballscrew_monitor.recordings.tables.times import line, Rows, Stamps, Times
 import numpy as np
-from numpy.typing import NDArray
-from surrogate.files import InputError
 from surrogate.units import TURN
-
-Stamps = NDArray[np.int64]
-
-LATEST = (1 << 31) * SECOND  # [ns] a stamp holds no later time
-HUGE_GAP = 100  # times the usual time between rows
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -49,69 +46,90 @@ class AxisSeries:
     torque: Array | None
     temperature: Array | None
 
+    def __getitem__(self, part: slice) -> 'AxisSeries':
+        """Return some of the rows."""
+
+        def cut(values: Array | None) -> Array | None:
+            return None if values is None else values[part]
+
+        return AxisSeries(
+            name=self.name,
+            speed=self.speed[part],
+            load=cut(self.load),
+            position=cut(self.position),
+            torque=cut(self.torque),
+            temperature=cut(self.temperature),
+        )
+
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Series:
-    """Rows in the order of their stamps [ns], the axes, and what was wrong with the log."""
+class Block:
+    """Some rows in the order of their stamps [ns], and the axes."""
 
     stamps: Stamps
     axes: tuple[AxisSeries, ...]
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Series:
+    """
+    A log by rows: their number, the usual time between them [s], and what was wrong with it.
+
+    The rows themselves are read when they are asked for.
+
+    """
+
+    count: int
+    usual_period: float
     notes: tuple[str, ...]
+    _times: Times
+    _mapping: TableMap
 
-    @property
-    def usual_period(self) -> float:
-        """Return the time between rows [s] that half of them keep."""
-        return float(np.median(np.diff(self.stamps))) / SECOND
-
-
-def read_series(path: Path, mapping: TableMap) -> Series:
-    """Return the log at `path` read by the map; raises InputError when that is impossible."""
-    table = read_table(path, mapping.columns)
-    notes = list(table.notes)
-    times = _times(table, mapping)
-    rows, stamps = _order(path, times, mapping, notes)
-    if len(rows) < 2:
-        raise InputError(f'log {path} holds {len(rows)} rows with a time, at least two are needed')
-    axes = tuple(_axis(axis, table, rows, stamps) for axis in mapping.axes)
-    _note_gaps(path, stamps, notes)
-    return Series(stamps=stamps, axes=axes, notes=tuple(notes))
+    def blocks(self) -> Iterator[Block]:
+        """Yield the rows in blocks."""
+        for rows, part in _with_neighbours(self._times.rows()):
+            axes = tuple(_axis(axis, rows, self._times.begin)[part] for axis in self._mapping.axes)
+            yield Block(stamps=rows.stamps[part], axes=axes)
 
 
-def _times(table: Table, mapping: TableMap) -> Array:
-    """Return the time of each row [s], as the log counts it."""
-    if mapping.time is None:
-        return np.arange(table.rows) / mapping.rate
-    return _line(table.columns[mapping.time.name], mapping.time, TIME_UNITS[mapping.time.unit])
+def read_series(path: Path, mapping: TableMap, shown: Shown = silent) -> Series:
+    """
+    Return the log at `path` read by the map, and show how far that is.
+
+    Raises InputError when it cannot be read by the map.
+
+    """
+    table = open_table(path, mapping.columns, shown=shown)
+    times = Times(table, mapping, shown)
+    return Series(
+        count=times.count,
+        usual_period=times.usual_period,
+        notes=(*table.notes, *times.notes()),
+        _times=times,
+        _mapping=mapping,
+    )
 
 
-def _order(
-    path: Path, times: Array, mapping: TableMap, notes: list[str]
-) -> tuple[NDArray[np.intp], Stamps]:
-    """Return the rows with a time in the order of it, and their stamps."""
-    known = np.flatnonzero(np.isfinite(times))
-    if len(known) < len(times):
-        notes.append(f'log {path}: {len(times) - len(known)} rows without a time are left out')
-    if not len(known):
-        return known, np.zeros(0, np.int64)
-    back = int((np.diff(times[known]) < 0.0).sum())
-    if back:
-        notes.append(f'log {path}: {back} rows are earlier than the row before, they were sorted')
-    rows = known[np.argsort(times[known], kind='stable')]
-    begin, ordered = times[rows[0]], times[rows]
-    shift = 0 if mapping.epoch is None else mapping.epoch
-    seconds = ordered if mapping.epoch is None else ordered - begin
-    if seconds[-1] * SECOND + shift >= LATEST or seconds[0] * SECOND + shift <= 0:
-        raise InputError(
-            f'log {path}: its times are {ordered[0]:g} to {ordered[-1]:g} s, which give no stamps '
-            'after 1970 and before 2038: correct time.unit, or state a time.epoch'
-        )
-    return rows, np.round(seconds * SECOND).astype(np.int64) + shift
+def _with_neighbours(blocks: Iterable[Rows]) -> Iterator[tuple[Rows, slice]]:
+    """Yield blocks with the row before and the row after, and which rows are those between."""
+    before: Rows | None = None
+    now: Rows | None = None
+    for later in itertools.chain(blocks, [None]):
+        if now is not None:
+            first = 0 if before is None else len(before.stamps)
+            window = now if before is None else before + now
+            window = window if later is None else window + later[:1]
+            yield window, slice(first, first + len(now.stamps))
+            before = now[-1:]
+        now = later
 
 
-def _axis(axis: AxisMap, table: Table, rows: NDArray[np.intp], stamps: Stamps) -> AxisSeries:
+def _axis(axis: AxisMap, rows: Rows, begin: int) -> AxisSeries:
+    """Return an axis by rows of a log that begins at a stamp [ns]."""
+
     def column(kind: str, factor: float) -> Array | None:
         found = axis.columns.get(kind)
-        return None if found is None else _line(table.columns[found.name], found, factor)[rows]
+        return None if found is None else line(rows.columns[found.name], found, factor)
 
     def unit(kind: str) -> str:
         return axis.columns[kind].unit if kind in axis.columns else ''
@@ -126,14 +144,14 @@ def _axis(axis: AxisMap, table: Table, rows: NDArray[np.intp], stamps: Stamps) -
     )
     if speed is None:
         assert position is not None  # the map has one of them
-        speed = _slope(position, stamps)
+        speed = _slope(position, (rows.stamps - begin) / SECOND)
     torque = column('torque', 1.0)
     current = column('current', CURRENT_UNITS.get(unit('current'), 1.0))
     if torque is None and current is not None and math.isfinite(axis.torque_constant):
         torque = current * axis.torque_constant
     load = column('load', LOAD_UNITS.get(unit('load'), 1.0))
     if load is None:
-        load = _load_without_column(axis, torque, len(rows))
+        load = _load_without_column(axis, torque, len(rows.stamps))
     warmth = column('temperature', 1.0)
     zero = TEMPERATURE_UNITS.get(unit('temperature'), 0.0)
     return AxisSeries(
@@ -172,25 +190,8 @@ def _turned(
     return linear[unit] * per_metre if unit in linear else rotary.get(unit, 1.0)
 
 
-def _line(values: Array, column: Column, factor: float) -> Array:
-    return (values * column.scale + column.offset) * factor
-
-
-def _slope(position: Array, stamps: Stamps) -> Array:
-    """Return the speed of positions; rows of one time give none of their own."""
-    seconds = (stamps - stamps[0]) / SECOND
+def _slope(position: Array, seconds: Array) -> Array:
+    """Return the speed of positions at times [s]; rows of one time give none of their own."""
     with np.errstate(divide='ignore', invalid='ignore'):
         slope = np.asarray(np.gradient(position, seconds))
     return np.where(np.isfinite(slope), slope, math.nan)
-
-
-def _note_gaps(path: Path, stamps: Stamps, notes: list[str]) -> None:
-    steps = np.diff(stamps)
-    usual = float(np.median(steps))
-    long = np.flatnonzero(steps > HUGE_GAP * usual) if usual > 0 else np.zeros(0, np.intp)
-    if len(long):
-        longest = int(steps.argmax())
-        notes.append(
-            f'log {path}: {len(long)} gaps are longer than {HUGE_GAP} rows, the longest is '
-            f'{steps[longest] / SECOND:.4g} s, after row {longest + 1}; nothing is judged in them'
-        )

@@ -248,6 +248,16 @@ def test_two_runs_do_not_share_a_directory(short_bag, nominal_bag, tmp_path):
     assert process.returncode == 128 + signal.SIGTERM
 
 
+def test_of_a_damaged_bag_what_is_whole_is_to_be_judged(short_bag, tmp_path):
+    data = (short_bag / 'short.mcap').read_bytes()
+    cut = tmp_path / 'cut.mcap'
+    cut.write_bytes(data[: 3 * len(data) // 4])
+    made, whole = (plan(bag, PARAMS, tmp_path / 'out', 1.0) for bag in (cut, short_bag))
+    assert 0 < made.expected['x'] < whole.expected['x']
+    assert made.expected['x'] == made.bag.topics['/joint_states'].count
+    assert 'is truncated or damaged: used are the ' in made.bag.notes[0]
+
+
 def test_parameters_that_the_node_would_refuse_are_refused_first(short_bag, tmp_path):
     params = tmp_path / 'params.yaml'
     params.write_text("/**/ballscrew_monitor:\n  ros__parameters:\n    x:\n      oil: 'olive'\n")

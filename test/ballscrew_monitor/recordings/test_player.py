@@ -117,6 +117,22 @@ def test_everything_arrives_as_it_was_recorded(domain, listener, short_bag):
     assert len(set(listener.clock)) > 0.5 * sum(info.count for info in bag.topics.values())
 
 
+def test_of_a_damaged_bag_it_plays_what_is_whole(domain, listener, short_bag, tmp_path):
+    data = (short_bag / 'short.mcap').read_bytes()
+    (tmp_path / 'cut.mcap').write_bytes(data[: 3 * len(data) // 4])
+    bag = Bag(tmp_path / 'cut.mcap', salvage=True)
+    with play(domain, tmp_path / 'cut.mcap', '--rate', 20) as player:
+        listener.until(
+            lambda: all(
+                len(found) == bag.topics[topic].count for topic, found in listener.received.items()
+            ),
+            'the last message',
+        )
+        _, err = player.communicate(timeout=DEADLINE)
+    assert (player.returncode, err) == (0, f'ballscrew: {bag.notes[0]}\n')
+    assert 'is truncated or damaged: used are the ' in err
+
+
 def test_without_a_listener_it_gives_up(domain, short_bag):
     with play(domain, short_bag, '--wait', 0.1) as player:
         out, err = player.communicate(timeout=DEADLINE)

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What rosbag2 and rosbags write is read, and of what is damaged all that is whole."""
 
+import dataclasses
 import itertools
 import shutil
 
@@ -129,6 +130,62 @@ def test_a_damaged_chunk_is_left_out(short_bag, messages, tmp_path):
     assert 0 < len(found) < len(messages)
     assert set(found) < set(plain(messages))
     assert bag.notes[0].endswith('what is whole of it is used')
+
+
+@pytest.mark.parametrize('part', [0.5, 0.8, 0.95, 0.999])
+@pytest.mark.parametrize('size', [0, 20_000], ids=['short', 'over several pages'])
+def test_what_is_whole_of_a_truncated_sqlite3_file_is_read_and_counted(
+    size, part, messages, short_bag, tmp_path
+):
+    some = [
+        dataclasses.replace(one, data=one.data + bytes([number % 256]) * size)
+        for number, one in enumerate(messages)
+    ][: 150 if size else None]
+    types = Bag(short_bag).types
+    path = write(tmp_path / 'bag', some, types, StoragePlugin.SQLITE3, CompressionMode.NONE)
+    file = next(path.glob('*.db3'))
+    data = file.read_bytes()
+    file.write_bytes(data[: int(part * len(data))])
+    with pytest.raises(InputError, match='truncated or damaged'):
+        Bag(path)
+    bag = Bag(path, salvage=True)
+    found = content(bag)
+    # The definitions of the messages come first.
+    assert (part - 0.25) * len(some) < len(found) <= len(some)
+    assert found == plain(some)[: len(found)]
+    assert f'used are the {len(found)} messages of ' in bag.notes[0]
+    assert sum(info.count for info in bag.topics.values()) == len(found)
+    assert (bag.start_time, bag.end_time) == (found[0][1], found[-1][1])
+    only = [one for one in found if one[0] == '/axial_load']
+    assert plain(bag.messages(['/axial_load'])) == only
+
+
+@pytest.mark.parametrize('size', [50, 2000, 4096, 20_000])
+def test_a_sqlite3_file_that_ends_before_its_messages_is_one_sentence(
+    size, messages, short_bag, tmp_path
+):
+    types = Bag(short_bag).types
+    path = write(tmp_path / 'bag', messages, types, StoragePlugin.SQLITE3, CompressionMode.NONE)
+    file = next(path.glob('*.db3'))
+    file.write_bytes(file.read_bytes()[:size])
+    with pytest.raises(InputError, match=r'truncated or damaged, it must be a complete sqlite3'):
+        Bag(file, salvage=True)
+
+
+def test_a_page_of_a_sqlite3_file_that_is_damaged_is_left_out(messages, short_bag, tmp_path):
+    types = Bag(short_bag).types
+    path = write(tmp_path / 'bag', messages, types, StoragePlugin.SQLITE3, CompressionMode.NONE)
+    file = next(path.glob('*.db3'))
+    data = bytearray(file.read_bytes())
+    begin = len(data) // 8192 * 4096
+    end = begin + 4096
+    data[begin:end] = b'\xff' * 4096
+    file.write_bytes(data)
+    bag = Bag(path, salvage=True)
+    found = content(bag)
+    assert 0.8 * len(messages) < len(found) < len(messages)
+    assert set(found) < set(plain(messages))
+    assert bag.notes[0].startswith(f'bag {file} is truncated or damaged')
 
 
 def test_nothing_can_be_had_of_an_empty_file(tmp_path):

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """From a table to a bag that is judged: a small log always, the real one where it is."""
 
+import contextlib
 import os
 from pathlib import Path
 
@@ -14,6 +15,7 @@ from ballscrew_monitor.recordings.log_facts import (
     values_for,
 )
 from ballscrew_monitor.recordings.replay import replay
+from ballscrew_monitor.recordings.tables import cells, read
 from ballscrew_monitor.recordings.tables.convert import convert
 from ballscrew_monitor.recordings.tables.guess import guess
 from ballscrew_monitor.recordings.tables.mapping import make_map
@@ -21,6 +23,7 @@ from ballscrew_msgs.msg import InputHealth
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 import numpy as np
+import polars as pl
 import pytest
 from rosbags.highlevel import AnyReader
 from rosbags.typesys import get_typestore, Stores
@@ -196,6 +199,79 @@ def test_nothing_is_written_when_the_log_is_bad(tmp_path, write_csv, mill):
     assert not (tmp_path / 'bag').exists()
     with pytest.raises(InputError, match='is a file, it must be a directory'):
         convert(log, make_map(guess(log).content), log)
+
+
+class Shown:
+    """Keeps what is shown, and may be interrupted at a share of what is written."""
+
+    def __init__(self, until=2.0):
+        self.until, self.shares = until, {}
+
+    @contextlib.contextmanager
+    def __call__(self, total, unit):
+        shares = self.shares[unit, round(total)] = []
+
+        def show(share):
+            shares.append(share)
+            if unit == 'rows written' and share >= self.until:
+                raise KeyboardInterrupt
+
+        yield show
+
+
+@pytest.fixture
+def small_blocks(monkeypatch):
+    """Let tables be read in blocks of 32 rows; return how many were numbers at a time."""
+    monkeypatch.setattr(read, 'BLOCK', 32)
+    lengths, numbers = [], cells.Reading.numbers
+
+    def counted(reading, block):
+        lengths.append(len(block))
+        return numbers(reading, block)
+
+    monkeypatch.setattr(cells.Reading, 'numbers', counted)
+    return lengths
+
+
+@pytest.mark.parametrize('ending', ['csv', 'parquet'])
+def test_a_table_is_made_a_bag_block_by_block(small_blocks, tmp_path, write_csv, mill, ending):
+    log, out = tmp_path / f'mill.{ending}', tmp_path / 'bag'
+    columns = mill(1000)
+    if ending == 'csv':
+        write_csv(log, columns)
+    else:
+        pl.DataFrame(columns).write_parquet(log)
+    mapping, shown = make_map(guess(log).content), Shown()
+    small_blocks.clear()
+    convert(log, mapping, out, shown=shown)
+    assert max(small_blocks) == 32
+    looked, timed, written = shown.shares
+    assert (timed, written) == (('times looked through', 1000), ('rows written', 1000))
+    assert looked[0] == 'rows looked through'
+    for shares in shown.shares.values():
+        assert len(shares) >= 1000 // 32
+        assert shares == sorted(shares)
+        assert shares[-1] == pytest.approx(1.0, rel=0.1)  # of a CSV the rows are estimated
+    assert Bag(out).topics['/joint_states'].count == 1000
+
+
+def test_the_blocks_leave_no_trace_in_the_bag(monkeypatch, tmp_path, write_csv, mill):
+    log, found = write_csv(tmp_path / 'mill.csv', mill(1000)), []
+    mapping = make_map(guess(log).content)
+    for block in (7, 1000):
+        monkeypatch.setattr(read, 'BLOCK', block)
+        convert(log, mapping, tmp_path / str(block))
+        found.append([(one.topic, one.data) for one in Bag(tmp_path / str(block)).messages()])
+    assert found[0] == found[1]
+
+
+def test_an_interrupt_leaves_no_half_bag(small_blocks, tmp_path, write_csv, mill):
+    log = write_csv(tmp_path / 'mill.csv', mill())
+    shown = Shown(until=0.5)
+    with pytest.raises(KeyboardInterrupt):
+        convert(log, make_map(guess(log).content), tmp_path / 'bag', shown=shown)
+    assert shown.shares['rows written', 300][-1] < 1.0
+    assert [path.name for path in tmp_path.iterdir()] == ['mill.csv']
 
 
 @pytest.mark.skipif(

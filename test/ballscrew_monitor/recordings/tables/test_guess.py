@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The first map of a log: by names, ranges and rates, and honest about what is assumed."""
 
+from ballscrew_monitor.recordings.tables import guess as guess_module
 from ballscrew_monitor.recordings.tables.guess import guess
 from ballscrew_monitor.recordings.tables.mapping import make_map
 import numpy as np
@@ -95,6 +96,16 @@ def test_the_rate_cannot_always_be_told(guessed):
     entry = made.content['assumed']['time.rate_Hz']
     assert entry['value'] > 0
     assert 'nothing in it tells the rate' in entry['reason']
+
+
+def test_of_a_long_log_the_first_rows_tell_the_rate_and_all_the_ranges(guessed, monkeypatch):
+    monkeypatch.setattr(guess_module, 'NUMBERS', 300)
+    late = np.where(np.arange(200) < 150, 0.0, 1.0)
+    made = guessed({'t': TIME, 'x_vel': late * SPEED, 'x_force': late})
+    assert made.content['axes']['x']['load'] == {'column': 'x_force'}
+    assert made.content['assumed']['x.speed.unit']['value'] == 'mm/s'
+    assert 'rate and units are those of the first 100 of 200 rows' in made.notes
+    assert not any('never moves' in note for note in made.notes)
 
 
 def test_what_is_odd_is_said(guessed):

@@ -4,8 +4,8 @@
 
 import datetime as dt
 
-from ballscrew_monitor.recordings.tables import read
-from ballscrew_monitor.recordings.tables.read import column_names, read_table
+from ballscrew_monitor.recordings.tables import cells
+from ballscrew_monitor.recordings.tables.read import column_names, open_table
 import numpy as np
 import polars as pl
 import pytest
@@ -19,8 +19,8 @@ def text_log(tmp_path, text):
 
 
 def test_numbers_come_as_they_are(tmp_path):
-    table = read_table(text_log(tmp_path, 'a,b,c\n1,2,x\n3,4e1,y\n'), ['b', 'a'])
-    assert {name: list(values) for name, values in table.columns.items()} == {
+    table = open_table(text_log(tmp_path, 'a,b,c\n1,2,x\n3,4e1,y\n'), ['b', 'a'])
+    assert {name: list(values) for name, values in table.head(99).items()} == {
         'a': [1, 3],
         'b': [2, 40],
     }
@@ -40,9 +40,9 @@ def test_numbers_come_as_they_are(tmp_path):
     ids=['decimal comma', 'tab', 'comment', 'comment of other marks', 'latin'],
 )
 def test_other_forms_are_read_too(text, tmp_path):
-    table = read_table(text_log(tmp_path, text), ['a', 'b'])
-    assert list(table.columns['a']) == [1.5, 2.5]
-    assert list(table.columns['b']) == [2, 3]
+    table = open_table(text_log(tmp_path, text), ['a', 'b'])
+    assert list(table.head(99)['a']) == [1.5, 2.5]
+    assert list(table.head(99)['b']) == [2, 3]
 
 
 @pytest.mark.parametrize(
@@ -56,20 +56,20 @@ def test_other_forms_are_read_too(text, tmp_path):
     ids=['whole number among them', 'points in most', 'thousands', 'in quotes'],
 )
 def test_the_decimal_mark_is_that_of_most_cells(text, expected, tmp_path):
-    values = read_table(text_log(tmp_path, text), ['t']).columns['t']
+    values = open_table(text_log(tmp_path, text), ['t']).head(99)['t']
     np.testing.assert_array_equal(values, expected)
 
 
 def test_times_of_day_become_seconds(tmp_path):
     text = 't\n2026-01-02T03:04:05.5Z\n2026-01-02T03:04:06.5Z\n'
-    values = read_table(text_log(tmp_path, text), ['t']).columns['t']
+    values = open_table(text_log(tmp_path, text), ['t']).head(99)['t']
     assert values[0] == 1767323045.5
     assert values[1] - values[0] == 1.0
 
 
 def test_cells_without_a_number_are_unknown_and_counted(tmp_path):
-    table = read_table(text_log(tmp_path, 'a,b\n1,2\n1,oops\n1,\n1'), ['a', 'b'])
-    assert np.isnan(table.columns['b']).tolist() == [False, True, True, True]
+    table = open_table(text_log(tmp_path, 'a,b\n1,2\n1,oops\n1,\n1'), ['a', 'b'])
+    assert np.isnan(table.head(99)['b']).tolist() == [False, True, True, True]
     assert table.notes[0].endswith(
         "column 'b' holds 3 cells without a number, the first is 'oops' in row 2; "
         'they count as unknown'
@@ -91,7 +91,7 @@ def test_cells_without_a_number_are_unknown_and_counted(tmp_path):
 )
 def test_what_cannot_be_read_is_one_sentence(text, expected, tmp_path):
     with pytest.raises(InputError) as caught:
-        read_table(text_log(tmp_path, text), ['a'])
+        open_table(text_log(tmp_path, text), ['a'])
     assert expected in str(caught.value)
     assert '\n' not in str(caught.value)
 
@@ -110,15 +110,15 @@ def test_parquet_is_read_with_its_types(tmp_path):
         {'t': times, 'n': [1, 2, None], 'text': ['1', '2', 'x'], 'flag': [True, False, True]}
     )
     frame.write_parquet(path)
-    table = read_table(path, ['t', 'n', 'text'])
-    assert list(np.diff(table.columns['t'])) == [1.0, 1.0]
-    assert np.isnan(table.columns['n'][2])
+    table = open_table(path, ['t', 'n', 'text'])
+    assert list(np.diff(table.head(99)['t'])) == [1.0, 1.0]
+    assert np.isnan(table.head(99)['n'][2])
     assert len(table.notes) == 2
     with pytest.raises(InputError, match="column 'flag' holds Boolean, it must hold numbers"):
-        read_table(path, ['flag'])
+        open_table(path, ['flag'])
     path.write_bytes(path.read_bytes()[:-20])
     with pytest.raises(InputError, match='cannot be read'):
-        read_table(path, ['n'])
+        open_table(path, ['n'])
 
 
 @pytest.mark.parametrize('unit', ['ms', 'us', 'ns'])
@@ -132,16 +132,16 @@ def test_times_and_durations_of_parquet_are_seconds(tmp_path, unit):
         }
     )
     frame.write_parquet(path)
-    table = read_table(path, ['span', 'clock'])
-    np.testing.assert_array_equal(table.columns['span'], [1.5, np.nan, 3600.0])
-    np.testing.assert_array_equal(table.columns['clock'], [2.0, 3600.0, np.nan])
+    table = open_table(path, ['span', 'clock'])
+    np.testing.assert_array_equal(table.head(99)['span'], [1.5, np.nan, 3600.0])
+    np.testing.assert_array_equal(table.head(99)['clock'], [2.0, 3600.0, np.nan])
     assert len(table.notes) == 2
 
 
 def test_a_column_that_cannot_be_converted_is_one_sentence(tmp_path, monkeypatch):
-    def fail(column, separator):
+    def fail(texts):
         raise pl.exceptions.InvalidOperationError('conversion failed\nmore of it')
 
-    monkeypatch.setattr(read, '_converted', fail)
+    monkeypatch.setattr(cells, '_points', fail)
     with pytest.raises(InputError, match=r"column 'a' of String cannot .*: conversion failed$"):
-        read_table(text_log(tmp_path, 'a\n1\n'), ['a'])
+        open_table(text_log(tmp_path, 'a\n1\n'), ['a'])

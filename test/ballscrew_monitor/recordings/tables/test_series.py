@@ -3,7 +3,10 @@
 """Columns in SI units and in the order of time, and what is said about those that are not."""
 
 import math
+import types
 
+from ballscrew_monitor.recordings.tables import read as read_module
+from ballscrew_monitor.recordings.tables import times
 from ballscrew_monitor.recordings.tables.mapping import make_map
 from ballscrew_monitor.recordings.tables.series import force_of, read_series
 import numpy as np
@@ -14,16 +17,45 @@ EPOCH = 946_684_800 * 10**9
 AXIS = {'lead_mm': 10.0, 'speed': {'column': 'v', 'unit': 'mm/s'}}
 
 
-@pytest.fixture
-def read(tmp_path, write_csv):
+def joined(series):
+    """Return all rows of a series at once."""
+    blocks = list(series.blocks())
+    axes = [
+        types.SimpleNamespace(
+            speed=np.concatenate([block.axes[number].speed for block in blocks]),
+            **{
+                name: np.concatenate([getattr(block.axes[number], name) for block in blocks])
+                for name in ('load', 'position', 'torque', 'temperature')
+                if getattr(axis, name) is not None
+            },
+        )
+        for number, axis in enumerate(blocks[0].axes)
+    ]
+    stamps = np.concatenate([block.stamps for block in blocks])
+    return types.SimpleNamespace(
+        stamps=stamps, axes=axes, notes=series.notes, usual_period=series.usual_period
+    )
+
+
+@pytest.fixture(params=[1, 2, read_module.BLOCK])
+def read(tmp_path, write_csv, request, monkeypatch):
     """Return a function that reads columns, by the time t unless told otherwise."""
+    monkeypatch.setattr(read_module, 'BLOCK', request.param)
+    monkeypatch.setattr(times, 'BLOCK', request.param)
 
     def make(columns, axis=None, **time):
         time = time or {'column': 't', 'unit': 's', 'epoch': '2000-01-01T00:00:00Z'}
         mapping = make_map({'time': time, 'axes': {'x': axis or AXIS}})
-        return read_series(write_csv(tmp_path / 'log.csv', columns, form='{:.15g}'), mapping)
+        log = write_csv(tmp_path / 'log.csv', columns, form='{:.15g}')
+        return joined(read_series(log, mapping))
 
     return make
+
+
+@pytest.fixture
+def small_reads(monkeypatch):
+    """Let tables be read a hundred rows at a time."""
+    monkeypatch.setattr(read_module, 'BLOCK', 100)
 
 
 def test_quantities_are_those_of_the_screw(read):
@@ -90,6 +122,30 @@ def test_rows_out_of_order_are_sorted_and_counted(read):
     made = read({'t': [0, 2, 1, 3], 'v': [0, 2, 1, 3]})
     assert made.axes[0].speed == pytest.approx(np.arange(4) * 0.2 * math.pi)
     assert made.notes[0].endswith('1 rows are earlier than the row before, they were sorted')
+
+
+@pytest.mark.parametrize('spread', [2, 40, 1000])
+def test_rows_far_out_of_order_are_sorted_too(read, spread):
+    random = np.random.default_rng(spread)
+    # Some times are there more than once: their rows stay as they came.
+    times = np.arange(200) // 3 * 0.1 + random.integers(0, spread, 200) * 0.1
+    made = read({'t': 1.7e9 + times, 'v': np.arange(200.0)}, column='t', unit='s')
+    order = np.argsort(times.round(1), kind='stable')
+    assert made.axes[0].speed == pytest.approx(order * 0.2 * math.pi)
+    assert (np.diff(made.stamps) >= 0).all()
+    assert made.usual_period == pytest.approx(np.median(np.diff(made.stamps)) * 1e-9)
+
+
+def test_few_rows_wait_for_one_that_is_a_little_late(small_reads, tmp_path, write_csv):
+    times = np.arange(3000) * 0.01
+    times[1:-1:7] += 0.05
+    log = write_csv(tmp_path / 'log.csv', {'t': times, 'v': times}, form='{:.15g}')
+    time = {'column': 't', 'unit': 's', 'epoch': '2000-01-01T00:00:00Z'}
+    series = read_series(log, make_map({'time': time, 'axes': {'x': AXIS}}))
+    lengths = [len(block.stamps) for block in series.blocks()]
+    assert sum(lengths) == 3000
+    assert max(lengths) <= 110  # a few that have waited
+    assert len(lengths) >= 30
 
 
 def test_rows_without_a_time_are_left_out_and_counted(read):

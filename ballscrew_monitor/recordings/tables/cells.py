@@ -1,0 +1,188 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Cells of a table as numbers: in which form they are, by all cells of a column, block by block.
+
+Numbers, times and durations of Parquet are read by their type. Texts are numbers with a decimal
+point, numbers with a decimal comma, or times of ISO 8601.
+
+"""
+
+from collections.abc import Callable
+import dataclasses
+import math
+from pathlib import Path
+from typing import Any
+
+from ballscrew_monitor.core.conversions import SECOND
+import numpy as np
+from numpy.typing import NDArray
+import polars as pl
+from polars.exceptions import PolarsError
+from surrogate.files import InputError
+
+Array = NDArray[np.float64]
+Form = Callable[[pl.Series], pl.Series]
+"""Makes cells numbers, null where one is none."""
+UNREADABLE = (PolarsError, pl.exceptions.PanicException)
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Reading:
+    """How the cells of a column are numbers, the least and the most of them, what is not."""
+
+    form: Form
+    extremes: Array
+    note: str
+
+    def numbers(self, cells: pl.Series) -> Array:
+        """Return cells as numbers, NaN where one is none."""
+        return np.asarray(self.form(cells).fill_null(math.nan).to_numpy(), dtype=np.float64)
+
+
+@dataclasses.dataclass(kw_only=True, slots=True)
+class _Count:
+    """What a form has made of the cells so far."""
+
+    form: Form
+    good: int = 0
+    bad: int = 0
+    first: str = ''  # of those that are no number, and its row
+    least: float = math.inf
+    most: float = -math.inf
+
+    def add(self, cells: pl.Series, row: int) -> None:
+        numbers = self.form(cells)
+        bad = numbers.is_null()
+        missing = int(bad.sum())
+        if missing and not self.bad:
+            at = bad.arg_max() or 0
+            what = 'nothing' if cells[at] is None else repr(cells[at])
+            self.first = f'{what} in row {row + at + 1}'
+        self.bad += missing
+        self.good += len(cells) - missing
+        known = np.asarray(numbers.drop_nulls().to_numpy(), dtype=np.float64)
+        known = known[~np.isnan(known)]
+        self.least = float(np.min(known, initial=self.least))
+        self.most = float(np.max(known, initial=self.most))
+
+
+class Cells:
+    """The cells of one column, looked through in the order of their rows."""
+
+    def __init__(self, path: Path, name: str, separator: str) -> None:
+        """Begin with the column `name` of the log at `path`, whose cells have a separator."""
+        self._path, self._name, self._separator = path, name, separator
+        self._rows = 0
+        self._first: Any = None
+        self._type: pl.DataType = pl.Null()
+        self._counts: list[_Count] = []
+
+    def add(self, cells: pl.Series) -> None:
+        """Look through the next cells; raises InputError when their type is that of no number."""
+        if not self._rows:
+            self._first, self._type = cells[0], cells.dtype
+            self._counts = [_Count(form=form) for form in self._forms()]
+        try:
+            self._count(cells)
+        except UNREADABLE as error:
+            raise InputError(
+                f'log {self._path}: column {self._name!r} of {self._type} cannot be read as '
+                f'numbers: {first_line(error)}'
+            ) from None
+        self._rows += len(cells)
+
+    def reading(self) -> Reading:
+        """Return how the column is read; raises InputError when it holds no number."""
+        chosen = self._chosen()
+        where = f'log {self._path}: column {self._name!r}'
+        if not chosen.good:
+            raise InputError(f'{where} holds no number, but {self._first!r}')
+        note = (
+            f'{where} holds {chosen.bad} cells without a number, the first is {chosen.first}; '
+            'they count as unknown'
+        )
+        extremes = np.array([chosen.least, chosen.most])
+        return Reading(
+            form=chosen.form,
+            extremes=extremes if chosen.least <= chosen.most else np.full(2, math.nan),
+            note=note if chosen.bad else '',
+        )
+
+    def _forms(self) -> tuple[Form, ...]:
+        if self._type == pl.String:
+            return (_points, _commas, *_TIMES)
+        if self._type.is_temporal():
+            return (_seconds,)
+        if self._type.is_numeric():
+            return (_plain,)
+        raise InputError(
+            f'log {self._path}: column {self._name!r} holds {self._type}, it must hold numbers'
+        )
+
+    def _count(self, cells: pl.Series) -> None:
+        """Count what each form that may still be chosen makes of cells."""
+        for number, one in enumerate(self._counts):
+            earlier = self._counts[:number]
+            if number == 1 and self._separator == ',' and earlier[0].good:
+                continue  # a comma within a cell may part thousands
+            if number > 1 and any(other.good for other in earlier):
+                continue
+            one.add(cells, self._rows)
+
+    def _chosen(self) -> _Count:
+        """
+        Return the form in which a column is read.
+
+        The decimal mark is the one that leaves fewer cells without a number. Where commas separate
+        the cells, one within a cell may part thousands too: it counts only if no cell is a number
+        as is. Texts are times if they are no numbers but those.
+
+        """
+        if len(self._counts) == 1:
+            return self._counts[0]
+        points, commas, *times = self._counts
+        if commas.good > points.good and (self._separator != ',' or not points.good):
+            return commas
+        return points if points.good else next((one for one in times if one.good), points)
+
+
+def _plain(numbers: pl.Series) -> pl.Series:
+    return numbers.cast(pl.Float64)
+
+
+def _seconds(times: pl.Series) -> pl.Series:
+    """Return times and durations of whatever unit in [s]."""
+    if times.dtype != pl.Time:  # which is counted in nanoseconds, whatever wrote it
+        spans = isinstance(times.dtype, pl.Duration)
+        times = times.cast(pl.Duration('ns') if spans else pl.Datetime('ns'))
+    return times.cast(pl.Int64).cast(pl.Float64) / SECOND
+
+
+def _points(texts: pl.Series) -> pl.Series:
+    return texts.str.strip_chars().cast(pl.Float64, strict=False)
+
+
+def _commas(texts: pl.Series) -> pl.Series:
+    """Return texts as numbers with a decimal comma; one with a point is none."""
+    plain = texts.set(texts.str.contains('.', literal=True), None)
+    return _points(plain.str.replace(',', '.', literal=True))
+
+
+def _iso(form: str) -> Form:
+    """Return what makes texts of a form of ISO 8601 times of the universal clock [s]."""
+
+    def made(texts: pl.Series) -> pl.Series:
+        plain = texts.str.strip_chars().str.replace('T', ' ', literal=True).str.strip_suffix('Z')
+        found = plain.str.to_datetime(form, time_unit='ns', strict=False)
+        return found.dt.epoch('ns').cast(pl.Float64) / SECOND
+
+    return made
+
+
+_TIMES = tuple(map(_iso, ('%Y-%m-%d %H:%M:%S%.f', '%Y-%m-%d %H:%M:%S%.f%z')))
+
+
+def first_line(error: BaseException) -> str:
+    """Return the first line of what an error says."""
+    return next(iter(str(error).splitlines()), type(error).__name__)

@@ -1,0 +1,196 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The rows of a table in the order of their times, with stamps, in blocks."""
+
+from collections.abc import Iterable, Iterator
+import dataclasses
+import math
+
+from ballscrew_monitor.core.conversions import SECOND, TIME_UNITS
+from ballscrew_monitor.recordings.progress import Shown, silent
+from ballscrew_monitor.recordings.tables.cells import Array
+from ballscrew_monitor.recordings.tables.mapping import Column, TableMap
+from ballscrew_monitor.recordings.tables.read import BLOCK, Table
+from ballscrew_monitor.recordings.tables.steps import HUGE_GAP, Steps
+import numpy as np
+from numpy.typing import NDArray
+from surrogate.files import InputError
+
+Stamps = NDArray[np.int64]
+
+LATEST = (1 << 31) * SECOND  # [ns] a stamp holds no later time
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Rows:
+    """Rows that follow each other: their stamps [ns], and the columns of the log by name."""
+
+    stamps: Stamps
+    columns: dict[str, Array]
+
+    def __getitem__(self, part: slice | NDArray[np.intp]) -> 'Rows':
+        """Return some of the rows."""
+        columns = {name: values[part] for name, values in self.columns.items()}
+        return Rows(stamps=self.stamps[part], columns=columns)
+
+    def __add__(self, later: 'Rows') -> 'Rows':
+        """Return these rows and later ones."""
+        return Rows(
+            stamps=np.concatenate([self.stamps, later.stamps]),
+            columns={
+                name: np.concatenate([values, later.columns[name]])
+                for name, values in self.columns.items()
+            },
+        )
+
+
+def _in_order(blocks: Iterable[Rows], late: int) -> Iterator[Rows]:
+    """Yield rows by their stamps, of which none comes more than `late` [ns] after a later one."""
+    held: Rows | None = None
+    for rows in blocks:
+        held = rows if held is None else held + rows
+        held = held[np.argsort(held.stamps, kind='stable')]
+        ready = int(np.searchsorted(held.stamps, held.stamps[-1] - late))
+        yield from _cut(held[:ready])
+        held = held[ready:]
+    yield from () if held is None else _cut(held)
+
+
+def _cut(rows: Rows) -> Iterator[Rows]:
+    for begin in range(0, len(rows.stamps), BLOCK):
+        end = begin + BLOCK
+        yield rows[begin:end]
+
+
+class Times:
+    """
+    The times of a table, looked through once: which rows have one, and whether they rise.
+
+    `count` rows have one. Rows out of order are sorted: as many wait in memory as are between the
+    one that comes the latest and its place.
+
+    """
+
+    def __init__(self, table: Table, mapping: TableMap, shown: Shown = silent) -> None:
+        """Look through the times; raises InputError when they give no stamps."""
+        self._table, self._mapping = table, mapping
+        self.count = self._back = 0
+        self._begin, self._end, self._late = math.inf, -math.inf, 0.0
+        self._last = np.zeros(0)
+        self._steps = Steps()
+        self._look(shown)
+        if self.count < 2:
+            raise InputError(
+                f'log {table.path} holds {self.count} rows with a time, at least two are needed'
+            )
+        self._check()
+        if self._back:
+            self._steps = Steps()
+            for rows in self.rows():
+                self._steps.add((rows.stamps - self.begin).astype(np.float64))
+
+    @property
+    def begin(self) -> int:
+        """Return the stamp of the first row [ns]."""
+        return int(self._stamps(np.array([self._begin]))[0])
+
+    @property
+    def usual_period(self) -> float:
+        """Return the time between rows [s] that half of them keep."""
+        return self._steps.median / SECOND
+
+    def notes(self) -> list[str]:
+        """Return what is odd about the times, a sentence each."""
+        found, log = [], f'log {self._table.path}:'
+        if left_out := self._table.rows - self.count:
+            found.append(f'{log} {left_out} rows without a time are left out')
+        if self._back:
+            found.append(
+                f'{log} {self._back} rows are earlier than the row before, they were sorted'
+            )
+        if gaps := self._steps.gaps():
+            found.append(
+                f'{log} {gaps} gaps are longer than {HUGE_GAP} rows, the longest is '
+                f'{self._steps.longest / SECOND:.4g} s, after row {self._steps.longest_row}; '
+                'nothing is judged in them'
+            )
+        return found
+
+    def rows(self) -> Iterator[Rows]:
+        """Yield the rows that have a time in the order of it, in blocks."""
+        if not self._back:
+            return self._as_written()
+        coarse = float(np.spacing(max(abs(self._begin), abs(self._end))))
+        return _in_order(self._as_written(), math.ceil((self._late + 4 * coarse) * SECOND))
+
+    def _as_written(self) -> Iterator[Rows]:
+        row = 0
+        for columns in self._table.blocks():
+            times = self._times(columns, row)
+            row += len(times)
+            known = np.isfinite(times)
+            if known.any():
+                yield Rows(
+                    stamps=self._stamps(times[known]),
+                    columns={name: values[known] for name, values in columns.items()},
+                )
+
+    def _look(self, shown: Shown) -> None:
+        """Look through the times of all rows."""
+        time, row = self._mapping.time, 0
+        with shown(self._table.rows, 'times looked through') as show:
+            for block in self._table.blocks(
+                [time.name] if time else list(self._table.readings)[:1]
+            ):
+                times = self._times(block, row)
+                row += len(times)
+                self._count(times[np.isfinite(times)])
+                show(row / self._table.rows)
+
+    def _count(self, times: Array) -> None:
+        """Count further times, all known."""
+        if not len(times):
+            return
+        before = np.concatenate([self._last, times])
+        self._back += int((np.diff(before) < 0.0).sum())
+        self._begin = min(self._begin, float(times.min()))
+        latest = np.maximum.accumulate(np.maximum(times, self._end))
+        self._late = max(self._late, float((latest - times).max()))
+        self._end = float(latest[-1])
+        self.count += len(times)
+        self._last = times[-1:]
+        with np.errstate(over='ignore'):  # what gives no stamp is refused afterwards
+            self._steps.add(self._nanoseconds(times))
+
+    def _times(self, columns: dict[str, Array], row: int) -> Array:
+        """Return the times of rows from `row` on [s], as the log counts them."""
+        time = self._mapping.time
+        if time is None:
+            count = len(next(iter(columns.values())))
+            return np.arange(row, row + count) / self._mapping.rate
+        return line(columns[time.name], time, TIME_UNITS[time.unit])
+
+    def _nanoseconds(self, times: Array) -> Array:
+        """Return times [ns] since the first of them, or since 1970 where the log tells it."""
+        begin = 0.0 if self._mapping.epoch is None else self._begin
+        return np.asarray(np.round((times - begin) * SECOND))
+
+    def _stamps(self, times: Array) -> Stamps:
+        return self._nanoseconds(times).astype(np.int64) + (self._mapping.epoch or 0)
+
+    def _check(self) -> None:
+        """Raise InputError unless the first and the last time give stamps."""
+        shift = self._mapping.epoch
+        first = self._begin if shift is None else 0.0
+        last = self._end if shift is None else self._end - self._begin
+        if last * SECOND + (shift or 0) >= LATEST or first * SECOND + (shift or 0) <= 0:
+            raise InputError(
+                f'log {self._table.path}: its times are {self._begin:g} to {self._end:g} s, which '
+                'give no stamps after 1970 and before 2038: correct time.unit, or state a '
+                'time.epoch'
+            )
+
+
+def line(values: Array, column: Column, factor: float) -> Array:
+    """Return a column by its scale and offset, times a factor to SI."""
+    return (values * column.scale + column.offset) * factor

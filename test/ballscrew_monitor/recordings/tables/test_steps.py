@@ -1,0 +1,38 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The usual time between rows, out of bins that do not grow with the rows."""
+
+from ballscrew_monitor.recordings.tables.steps import Steps, WIDTH
+import numpy as np
+import pytest
+
+
+def counted(stamps, block):
+    """Return the steps between stamps that are told in blocks."""
+    steps = Steps()
+    for begin in range(0, len(stamps), block):
+        end = begin + block
+        steps.add(stamps[begin:end])
+    return steps
+
+
+@pytest.mark.parametrize('block', [1, 100, 10_000])
+@pytest.mark.parametrize('count', [1000, 1001])
+def test_the_median_is_right_but_for_the_width_of_a_bin(block, count):
+    steps = np.random.default_rng(1).lognormal(15.0, 3.0, count).round()
+    found = counted(np.concatenate([[0.0], np.cumsum(steps)]), block)
+    assert found.median == pytest.approx(np.median(steps), rel=WIDTH)
+    assert found.longest == steps.max()
+    assert found.longest_row == steps.argmax() + 1
+    assert found.gaps() == (steps > 100 * np.median(steps)).sum()
+
+
+def test_equal_steps_are_told_to_the_last_bit():
+    assert counted(np.arange(10.0) * 12_345_678.0, 3).median == 12_345_678.0
+    assert counted(np.zeros(4), 4).median == 0.0
+    assert counted(np.zeros(4), 4).gaps() == 0
+
+
+def test_a_step_of_exactly_a_hundred_is_no_gap():
+    for last, gaps in ((100.0, 0), (101.0, 1)):
+        assert counted(np.cumsum([0.0, *[7.0] * 9, 7.0 * last]), 4).gaps() == gaps
