@@ -72,6 +72,8 @@ def _payload(pages: _Pages, page: bytes, place: int) -> bytes:
     """Return the bytes of the row at a place of a page, those of further pages included."""
     length, place = _varint(page, place)
     _, place = _varint(page, place)  # the number of the row
+    if length > pages.count * pages.size:  # damaged: pages might lead in a circle
+        raise EOFError
     local = _local(length, pages.usable)
     end = place + local
     found = bytearray(page[place:end])
