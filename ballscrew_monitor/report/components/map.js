@@ -10,7 +10,7 @@ class OperatingMap extends MapFrame {
     super(record);
     this.show = show;
     this.lines = record.lines.map((line) => ({ ...line, points: Format.floats(line.points) }));
-    this.zone = Format.bytes(record.zone.cells);
+    this.zone = Format.packed(record.zone.cells).map(Math.round);
     this.dwell = Format.floats(record.dwell.cells);
     this.path = Format.floats(record.path);
     this.note = Format.element('p', 'readout', OperatingMap.HINT);
