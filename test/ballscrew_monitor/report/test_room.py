@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 MOST_BYTES = 5_000_000
-HOUR, RATE = 3600, 1000  # [s], [Hz]
+HOUR, RATE, SPARSE = 3600, 1000, 100  # [s], [Hz], every so many samples
 
 
 @pytest.fixture
@@ -30,13 +30,13 @@ def axis(judged):
             for n, depth in enumerate(depths.tolist())
         ]
         keep = np.zeros(HOUR * RATE, dtype=bool)
-        keep[:: RATE // 10] = True
+        keep[::SPARSE] = True
         for n in range(gaps):
-            keep[3000 * n + 1 : 3000 * n + 1200] = False
+            keep[slice(3000 * n + 1, 3000 * n + 1200)] = False
         for place in np.argsort(depths)[-10:]:
             for end in (events[place].start, events[place].end):
                 at = (end - judged.begin) * RATE // SECOND
-                keep[max(0, at - RATE) : at + RATE] = True
+                keep[slice(max(0, at - RATE), at + RATE)] = True
         return _case(judged, name, np.flatnonzero(keep), events)
 
     return make
