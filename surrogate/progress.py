@@ -42,7 +42,9 @@ class Progress:
         self._stream = sys.stderr if stream is None else stream
         self._terminal = self._stream.isatty()
         self._begin = self._last = clock()
-        self._done = self._there = self._said = 0
+        self._done = self._there = 0
+        self._said = 0.0
+        self._open = False
         self._share: float | None = None
         self._note = ''
 
@@ -59,26 +61,29 @@ class Progress:
         """
         Show how much is done out of a total; the clock begins when nothing is.
 
-        Where steps differ, `share` says how far the work is [-]; a `note` ends the line.
+        Where steps differ, `share` says how far the work is [-], also before the first is done; a
+        `note` ends the line.
 
         """
         self._done, self._total, self._share, self._note = done, total, share, note
-        if not done:
+        if not done and not share:
             self._begin = self._last = self._clock()
         elif self._terminal:
             self._draw()
         elif self._is_due():
             print(self._text(), file=self._stream, flush=True)
-            self._said, self._last = self._done, self._clock()
+            self._said, self._last = self._part(), self._clock()
 
     def close(self) -> None:
         """End the line of a terminal where the work ended early."""
-        if self._terminal and 0 < self._done < self._total:
+        if self._open:
             print(file=self._stream, flush=True)
+            self._open = False
 
     def _draw(self) -> None:
         drawn = bar(self._part(), WIDTH)
-        end = '\n' if self._done == self._total else ''
+        self._open = self._done < self._total
+        end = '' if self._open else '\n'
         # The end of an older, longer line is wiped.
         print(f'\r[{drawn}] {self._text()}\x1b[K', end=end, file=self._stream, flush=True)
 
@@ -89,7 +94,7 @@ class Progress:
     def _is_due(self) -> bool:
         return (
             self._done == self._total
-            or self._done - self._said >= LOG_SHARE * self._total
+            or round(self._part() - self._said, 9) >= LOG_SHARE
             or self._clock() - self._last >= LOG_PAUSE
         )
 
@@ -102,14 +107,20 @@ class Progress:
     def _rate(self) -> str:
         """Return rate and time left, nothing as long as nothing new is done."""
         new, spent = self._done - self._there, self._clock() - self._begin
-        if not new or spent <= 0:
+        if spent <= 0 or not (new or self._share):
             return ''
-        rate = new / spent
-        speed = f'{rate:.3g} per s' if rate >= 1 else f'{1 / rate:.2g} s each'
-        left = (self._total - self._done) / rate
         if self._share:
             left = spent * (1 - self._share) / self._share
-        return f'{speed}, {_duration(left)} left'
+        else:
+            left = (self._total - self._done) * spent / new
+        return ', '.join(filter(None, (_speed(new / spent), f'{_duration(left)} left')))
+
+
+def _speed(rate: float) -> str:
+    """Return how many come in a second, or how long each takes if that is longer."""
+    if rate >= 1:
+        return f'{rate:.3g} per s'
+    return f'{1 / rate:.2g} s each' if rate else ''
 
 
 def _duration(seconds: float) -> str:

@@ -32,7 +32,12 @@ NUMERICAL = {
     'yaml',
 }
 PLOTTING = {'surrogate.plotting.style'}  # for the pictures of a cycle alone
-TASKS = {'surrogate.tasks.pool', 'surrogate.tasks.table', 'surrogate.tasks.workers'}
+TASKS = {
+    'surrogate.tasks.pool',
+    'surrogate.tasks.table',
+    'surrogate.tasks.worker',
+    'surrogate.tasks.workers',
+}
 LOOKUP = {'surrogate', 'surrogate.files', 'surrogate.surface', 'surrogate.units'}
 
 FLOORS = ('core', 'node', 'clients', 'recordings', 'report', 'cycle')

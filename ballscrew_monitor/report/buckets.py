@@ -14,13 +14,13 @@ from typing import Any
 
 from ballscrew_monitor.report.encoding import codes as encoded_codes
 from ballscrew_monitor.report.encoding import doubles, floats, packed
+from ballscrew_monitor.report.room import BUCKETS
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 Codes = NDArray[np.uint8]
 
-BUCKETS = 3000
 EVEN = 0.05  # [-] of a step, by which samples of an even rate are early or late
 
 
@@ -93,6 +93,12 @@ def between(rows: TimedRows, stretches: Sequence[tuple[float, float]]) -> TimedR
     return _chosen(rows, np.searchsorted(edges, rows.time, side='right') % 2 == 1)
 
 
+def stretch_of(rows: TimedRows, begin: float, end: float) -> TimedRows:
+    """Return the rows between two times [s] of rows that are in order."""
+    first, last = np.searchsorted(rows.time, (begin, end))
+    return _chosen(rows, slice(first, last))
+
+
 def with_breaks(rows: TimedRows, longest: float) -> TimedRows:
     """Return rows with one of no number, code 0, after each that is followed by a longer hole."""
     holes = np.flatnonzero(np.diff(rows.time) > longest)
@@ -106,7 +112,7 @@ def with_breaks(rows: TimedRows, longest: float) -> TimedRows:
     )
 
 
-def _chosen(rows: TimedRows, which: NDArray[Any]) -> TimedRows:
+def _chosen(rows: TimedRows, which: NDArray[Any] | slice) -> TimedRows:
     return TimedRows(
         time=rows.time[which],
         numbers={key: values[which] for key, values in rows.numbers.items()},

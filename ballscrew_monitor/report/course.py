@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The course of an axis over time, as panels of a page: numbers, limits, regimes and warnings."""
 
-from collections.abc import Iterable
 import math
 from typing import Any
 
@@ -19,26 +18,33 @@ from ballscrew_monitor.recordings.columns import (
 )
 from ballscrew_monitor.report.buckets import (
     between,
-    BUCKETS,
     Buckets,
     coarse_record,
     fine_record,
     in_order,
     joined_rows,
+    stretch_of,
     TimedRows,
     with_breaks,
 )
 from ballscrew_monitor.report.case import AxisCase
+from ballscrew_monitor.report.encoding import script_json
 from ballscrew_monitor.report.panels import panels
+from ballscrew_monitor.report.room import AxisRoom, PAGE_BYTES
+from ballscrew_monitor.report.stretches import (
+    AROUND,
+    bytes_per_second,
+    length,
+    STRETCH_BYTES,
+    WORST,
+    worst_stretches,
+)
 import numpy as np
 from surrogate.surface import Regime
 from surrogate.units import RPM
 
-SHORT = 2 * BUCKETS  # rows up to which all are kept
-WORST, AROUND = 50, 1.0  # events of which every sample is kept, and for how long about an end [s]
-SHADED = 1000  # events that are shaded, the worst
-FINE_BYTES = 3_750_000  # of all stretches in the page, in base64
-SAMPLE_BYTES = 8 / 3  # of one number of a stretch in the page
+COARSE_BYTES, EVENT_BYTES = 5000, 60  # of panels and the like in the page, and of an event
+LESS = 0.95  # of what would just fit, where stretches were too large
 # What is drawn of codes: the largest of a bucket, so the worst comes last.
 BARS = (
     ('regime', 'Regime', ('none', 'hydrodynamic', 'mixed', 'boundary')),
@@ -60,12 +66,13 @@ NUMBERS = (
 )
 
 
-def course_record(case: AxisCase, fine_bytes: int = FINE_BYTES) -> dict[str, Any]:
+def course_record(
+    case: AxisCase, fine_bytes: float = PAGE_BYTES, room: AxisRoom | None = None
+) -> dict[str, Any]:
     """Return the course of an axis; `fine_bytes` of the page are for every sample of events."""
-    numbers = _numbers(case)
-    # The temperature changes too seldom to take any room.
-    shown, stretches = _stretches(case, len(numbers) - 1, fine_bytes)
-    coarse, fine, bucket = _columns(case, numbers, stretches)
+    room = room or AxisRoom()
+    coarse, near, bucket = _columns(case, fine_bytes, room.buckets)
+    shown, fine = _fine(case, near, fine_bytes)
     record = coarse_record(coarse)
     codes = record.pop('codes')
     if bucket:  # the times follow from it
@@ -74,20 +81,45 @@ def course_record(case: AxisCase, fine_bytes: int = FINE_BYTES) -> dict[str, Any
         'span': case.survey.span,
         'bucket': bucket,
         'shown': shown,
+        'worst': min(WORST, len(case.outcome.events)),
         'begins': None if math.isnan(case.begins) else case.begins,
-        'fine': [fine_record(part) for part in fine],
+        'fine': fine,
         'bars': [
             {'title': title, 'codes': codes[key], 'colours': colours}
             for key, title, colours in BARS
         ],
         'events': [
             {'begin': case.since_first(event.start), 'end': case.since_first(event.end)}
-            for event in case.worst_first[:SHADED]
+            for event in case.worst_first[: room.events]
         ],
         'panels': [
-            panel for panel in panels(case.settings.limits) if panel['series'][0]['key'] in numbers
+            panel
+            for panel in panels(case.settings.limits)
+            if panel['series'][0]['key'] in coarse.numbers
         ],
     }
+
+
+def coarse_bytes(case: AxisCase, room: AxisRoom) -> float:
+    """Return what a course takes in a page at most, without every sample of events [bytes]."""
+    row = 4 * len(_numbers(case)) + len(BARS)
+    if _is_short(case, room.buckets):  # each row has its time, and there may be a break after it
+        rows, row = 2 * case.survey.rows, row + 8
+    else:
+        rows = 2 * room.buckets
+    return rows * row * 4 / 3 + room.events * EVENT_BYTES + COARSE_BYTES
+
+
+def event_bytes(case: AxisCase, room: AxisRoom) -> float:
+    """Return what every sample about an event takes in a page, at the mean rate [bytes]."""
+    if _is_short(case, room.buckets):
+        return 0.0
+    return 2.0 * (2.0 * AROUND * bytes_per_second(case, _fine_columns(case)) + STRETCH_BYTES)
+
+
+def _is_short(case: AxisCase, buckets: int) -> bool:
+    """Tell whether all samples are kept, because they are no more than the rows of buckets."""
+    return case.survey.rows <= 2 * buckets
 
 
 def _numbers(case: AxisCase) -> tuple[str, ...]:
@@ -96,52 +128,58 @@ def _numbers(case: AxisCase) -> tuple[str, ...]:
     return tuple(key for key in NUMBERS if torque or not key.endswith('torque'))
 
 
-def _stretches(
-    case: AxisCase, columns: int, fine_bytes: int
-) -> tuple[int, list[tuple[float, float]]]:
-    """Return of how many of the worst events every sample is kept about their ends, and where."""
-    rate = case.survey.rows / max(case.survey.span, 1e-9)
-    allowed = fine_bytes / (rate * columns * SAMPLE_BYTES)
-    chosen: list[tuple[float, float]] = []
-    count = 0
-    for event in case.worst_first[:WORST]:
-        ends = case.since_first(event.start), case.since_first(event.end)
-        more = _merged([*chosen, *((at - AROUND, at + AROUND) for at in ends)])
-        if sum(end - begin for begin, end in more) > allowed:
-            break
-        count, chosen = count + 1, more
-    return count, chosen
-
-
-def _merged(stretches: Iterable[tuple[float, float]]) -> list[tuple[float, float]]:
-    """Return stretches in order, those that touch as one."""
-    made: list[tuple[float, float]] = []
-    for begin, end in sorted(stretches):
-        if made and begin <= made[-1][1]:
-            made[-1] = made[-1][0], max(made[-1][1], end)
-        else:
-            made.append((begin, end))
-    return made
+def _fine_columns(case: AxisCase) -> int:
+    """Return how many columns take room; the temperature changes too seldom."""
+    return len(_numbers(case)) - 1
 
 
 def _columns(
-    case: AxisCase, numbers: tuple[str, ...], stretches: list[tuple[float, float]]
-) -> tuple[TimedRows, list[TimedRows], float]:
-    """Return the rows of the whole, those of each stretch, and the width of a bucket [s]."""
-    gap = case.settings.timeouts[Source.SPEED] / SECOND
-    if case.survey.rows <= SHORT:
+    case: AxisCase, fine_bytes: float, buckets: int
+) -> tuple[TimedRows, TimedRows | None, float]:
+    """Return the rows of the whole, those near the worst events, and the width of a bucket [s]."""
+    numbers = _numbers(case)
+    if _is_short(case, buckets):
         rows = joined_rows([rows_of(case, block, numbers) for block in case.blocks()])
-        return with_breaks(in_order(rows), gap), [], 0.0
-    buckets = Buckets(case.survey.span, numbers, [key for key, _, _ in BARS])
+        return with_breaks(in_order(rows), _longest_step(case)), None, 0.0
+    _, stretches = worst_stretches(case, _longest(case, fine_bytes))
+    found = Buckets(case.survey.span, numbers, [key for key, _, _ in BARS], count=buckets)
     kept: list[TimedRows] = []
     for block in case.blocks():
         rows = rows_of(case, block, numbers)
-        buckets.add(rows)
+        found.add(rows)
         kept.append(between(rows, stretches))
-    near = in_order(joined_rows(kept))
-    parts = [between(near, [stretch]) for stretch in stretches]
-    fine = [with_breaks(part, gap) for part in parts if part.time.size > 1]
-    return buckets.rows(), fine, buckets.width
+    return found.rows(), in_order(joined_rows(kept)), found.width
+
+
+def _longest(case: AxisCase, fine_bytes: float) -> float:
+    """Return how long stretches may be in all at the mean rate [s]."""
+    return fine_bytes / bytes_per_second(case, _fine_columns(case))
+
+
+def _longest_step(case: AxisCase) -> float:
+    """Return the time between two rows above which it is a gap [s]."""
+    return case.settings.timeouts[Source.SPEED] / SECOND
+
+
+def _fine(
+    case: AxisCase, near: TimedRows | None, fine_bytes: float
+) -> tuple[int, list[dict[str, Any]]]:
+    """Return of how many of the worst events every sample is kept, and the stretches of those."""
+    longest = _longest(case, fine_bytes)
+    while near is not None:
+        shown, stretches = worst_stretches(case, longest)
+        parts = [stretch_of(near, *stretch) for stretch in stretches]
+        records = [
+            fine_record(with_breaks(part, _longest_step(case)))
+            for part in parts
+            if part.time.size > 1
+        ]
+        size = len(script_json(records))
+        if size <= fine_bytes or not shown:
+            return shown, records
+        # Rates differ, and so do times that are not even.
+        longest = LESS * fine_bytes / size * min(longest, length(stretches))
+    return 0, []
 
 
 def rows_of(case: AxisCase, block: JudgedColumns, numbers: tuple[str, ...]) -> TimedRows:

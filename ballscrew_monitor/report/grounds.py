@@ -11,6 +11,7 @@ from ballscrew_monitor.recordings.columns import Reason
 from ballscrew_monitor.report.case import AxisCase
 from ballscrew_monitor.report.inputs_seen import inputs_seen, InputSeen, NAMES, Trouble
 from ballscrew_monitor.report.markup import element, joined, Markup, table, TableCell, TableRow
+from ballscrew_monitor.report.room import MOST_ROWS
 from ballscrew_monitor.report.words import counted, duration, NONE, number, share
 
 TIERS = {
@@ -129,8 +130,8 @@ def _trouble_table(seen: Sequence[InputSeen]) -> Iterable[Markup]:
         yield table(('Input', *(head.value for head in heads)), rows)
 
 
-def gaps_part(case: AxisCase) -> Markup:
-    """Return how long what could not be judged, and the gaps in the speed."""
+def gaps_part(case: AxisCase, most: int = MOST_ROWS) -> Markup:
+    """Return how long what could not be judged, and the longest gaps in the speed, `most` rows."""
     survey = case.survey
     reasons = sorted(survey.reasons.items(), key=lambda item: -item[1])
     rows = [
@@ -147,7 +148,7 @@ def gaps_part(case: AxisCase) -> Markup:
         [
             element('h3', 'What could be judged'),
             table(('State', 'Time [s]', 'Of the recording'), rows),
-            *_gap_table(case),
+            *_gap_table(case, most),
         ]
     )
 
@@ -159,18 +160,15 @@ def _reason_text(reason: Reason) -> str:
     return reason.text if still else f'not judged: {reason.text}'
 
 
-def _gap_table(case: AxisCase) -> Iterable[Markup]:
+def _gap_table(case: AxisCase, most: int) -> Iterable[Markup]:
     survey = case.survey
+    listed = survey.speed_gaps[:most]
     timeout = case.settings.timeouts[Source.SPEED] * 1e-9
     gaps = survey.gaps[Source.SPEED]
     if not gaps.count:
         yield element('p', f'The speed has no gap longer than its timeout of {timeout:g} s.')
         return
-    cut = (
-        f', the longest {len(survey.speed_gaps)} are listed'
-        if len(survey.speed_gaps) < gaps.count
-        else ''
-    )
+    cut = f', the longest {len(listed)} are listed' if len(listed) < gaps.count else ''
     yield element(
         'p',
         f'The speed has {counted(gaps.count, "gap")} longer than its timeout of '
@@ -185,7 +183,7 @@ def _gap_table(case: AxisCase) -> Iterable[Markup]:
             begin=begin - 1.0,
             end=begin + length + 1.0,
         )
-        for begin, length in ((case.since_first(at), gap * 1e-9) for at, gap in survey.speed_gaps)
+        for begin, length in ((case.since_first(at), gap * 1e-9) for at, gap in listed)
     )
     yield element(
         'details',

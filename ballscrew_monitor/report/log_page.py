@@ -10,24 +10,50 @@ from typing import Any
 from ballscrew_monitor.core.conversions import seconds
 from ballscrew_monitor.report import grounds, parts
 from ballscrew_monitor.report.case import AxisCase, LogCase
-from ballscrew_monitor.report.course import course_record, FINE_BYTES
+from ballscrew_monitor.report.course import coarse_bytes, course_record, event_bytes
 from ballscrew_monitor.report.encoding import script_json
 from ballscrew_monitor.report.map_record import map_record
 from ballscrew_monitor.report.markup import element, joined, Markup, swatch
 from ballscrew_monitor.report.page import CHARTS, page
+from ballscrew_monitor.report.room import axis_rooms, AxisRoom, PAGE_BYTES, shares_of_worst
 from ballscrew_monitor.report.verdict import verdicts_of
 
 
 def report_page(log: LogCase) -> str:
     """Return the page of a recording."""
-    # What lies around the worst warnings is shared by all axes, for the page is to stay small.
-    room = FINE_BYTES // max(1, len(log.axes))
-    maps = [map_record(case) for case in log.axes]
+    rooms = axis_rooms(log.axes)
+    maps = [map_record(case, room.path_points) for case, room in zip(log.axes, rooms, strict=True)]
+    body = _body(log, maps, rooms)
+    bare = _page(log, body, [{'map': chart} for chart in maps])
     records = [
-        {'id': _id(number), 'map': chart, 'course': course_record(case, room)}
-        for number, (case, chart) in enumerate(zip(log.axes, maps, strict=True))
+        {'id': _id(number), 'map': chart, 'course': course}
+        for number, (chart, course) in enumerate(
+            zip(maps, _courses(log, rooms, PAGE_BYTES - len(bare.encode())), strict=True)
+        )
     ]
-    body = element(
+    return _page(log, body, records)
+
+
+def _page(log: LogCase, body: Markup, records: Sequence[Mapping[str, Any]]) -> str:
+    data = script_json({'axes': records})
+    return page(f'Ball screw report: {log.name}', body, scripts=CHARTS, data=data)
+
+
+def _courses(log: LogCase, rooms: Sequence[AxisRoom], spare: float) -> list[dict[str, Any]]:
+    """Return the courses of all axes, which share what is to spare of the page [bytes]."""
+    axes = list(zip(log.axes, rooms, strict=True))
+    spare -= sum(coarse_bytes(*axis) for axis in axes)
+    shares = shares_of_worst(spare, log.axes, [event_bytes(*axis) for axis in axes])
+    made: list[dict[str, Any]] = []
+    left = 0.0  # what an axis did not take is for the next one
+    for (case, room), share in zip(axes, shares, strict=True):
+        made.append(course_record(case, share + left, room))
+        left += share - len(script_json(made[-1]['fine']))
+    return made
+
+
+def _body(log: LogCase, maps: Sequence[Mapping[str, Any]], rooms: Sequence[AxisRoom]) -> Markup:
+    return element(
         'main',
         element('h1', f'Ball screw report: {log.name}'),
         element('p', _when(log), class_='muted'),
@@ -38,12 +64,10 @@ def report_page(log: LogCase) -> str:
             'noscript', element('p', 'The charts need JavaScript; all else is here without it.')
         ),
         *(
-            _axis_part(_id(number), case, chart, log)
-            for number, (case, chart) in enumerate(zip(log.axes, maps, strict=True))
+            _axis_part(_id(number), case, chart, room, log)
+            for number, (case, chart, room) in enumerate(zip(log.axes, maps, rooms, strict=True))
         ),
     )
-    data = script_json({'axes': records})
-    return page(f'Ball screw report: {log.name}', body, scripts=CHARTS, data=data)
 
 
 def _id(number: int) -> str:
@@ -65,7 +89,9 @@ def _date(stamp: int) -> str:
     return f'{moment:%Y-%m-%d %H:%M:%S}'
 
 
-def _axis_part(name: str, case: AxisCase, chart: Mapping[str, Any], log: LogCase) -> Markup:
+def _axis_part(
+    name: str, case: AxisCase, chart: Mapping[str, Any], room: AxisRoom, log: LogCase
+) -> Markup:
     summary = case.outcome.summary()
     known = [] if summary is None else [parts.tiles(case, summary)]
     return element(
@@ -76,7 +102,7 @@ def _axis_part(name: str, case: AxisCase, chart: Mapping[str, Any], log: LogCase
         element('div', class_='map'),
         _map_legend(chart, case),
         *([] if summary is None else [parts.shares(case, summary)]),
-        parts.events_part(case),
+        parts.events_part(case, room.events),
         element('h3', 'Course over time'),
         element(
             'p',
@@ -87,7 +113,7 @@ def _axis_part(name: str, case: AxisCase, chart: Mapping[str, Any], log: LogCase
         _bar_legend(),
         grounds.torque_part(case),
         grounds.inputs_part(case),
-        grounds.gaps_part(case),
+        grounds.gaps_part(case, room.gaps),
         grounds.assumptions_part(case, log.parameters),
         id=name,
     )

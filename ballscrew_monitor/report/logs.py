@@ -54,10 +54,16 @@ def is_one_bag(folder: Path, *, tables: bool = False, out: Path | None = None) -
 
 def _are_parts(files: Sequence[Path]) -> bool:
     """Tell whether files are by their names all parts of one bag that was split."""
-    parts = [_PART.fullmatch(file.name.partition('.')[0]) for file in files]
+    parts = [_PART.fullmatch(_stem(file.name)) for file in files]
     found = [(part[1], int(part[2])) for part in parts if part is not None]
     numbers = sorted(number for _, number in found)
     return len({stem for stem, _ in found}) == 1 and numbers == list(range(len(files)))
+
+
+def _stem(name: str) -> str:
+    """Return the name of a file without its ending; points before that belong to the name."""
+    endings = (ending for ending in (*ENDINGS, ACTIVE, *TABLES) if name.endswith(ending))
+    return name.removesuffix(next(endings, ''))
 
 
 def _inside(folder: Path, tables: bool, out: Path | None) -> list[Path]:
@@ -107,10 +113,7 @@ def folder_names(logs: Sequence[Path]) -> list[str]:
     taken: dict[str, int] = {}
     names = []
     for log in logs:
-        stem = log.absolute().name
-        if stem.endswith((*ENDINGS, *TABLES)):
-            stem = stem.partition('.')[0]
-        name = _UNSAFE.sub('_', stem).strip('.') or 'log'
+        name = _UNSAFE.sub('_', _stem(log.absolute().name)).strip('.') or 'log'
         taken[name] = taken.get(name, 0) + 1
         names.append(name if taken[name] == 1 else f'{name}-{taken[name]}')
     return (

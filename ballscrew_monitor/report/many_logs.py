@@ -5,6 +5,7 @@
 from collections.abc import Mapping, Sequence
 import dataclasses
 from pathlib import Path
+import threading
 from typing import Any
 
 from ballscrew_monitor.recordings.opener import opened_log
@@ -13,12 +14,49 @@ from ballscrew_monitor.report.log_report import AxisLine, LogResult, report_log
 from ballscrew_monitor.report.logs import folder_names
 from ballscrew_monitor.report.overview import LogEntry, overview_page
 from ballscrew_monitor.report.parameters import parameters_for
+from ballscrew_monitor.report.scratch import remove_left
 from surrogate.files import replace_file, to_json
 from surrogate.progress import Progress
 from surrogate.tasks.pool import run_tasks, TaskOutcome
+from surrogate.tasks.worker import tell_share
 from surrogate.tasks.workers import open_pool
 
 INDEX = 'index.html'
+
+
+class LogsProgress:
+    """Shows how far recordings are in all, each by its size, so that a long one is seen to go."""
+
+    def __init__(self, sizes: Mapping[str, int], progress: Progress) -> None:
+        """Begin; `sizes` [bytes] by name."""
+        self._sizes, self._progress = sizes, progress
+        self._shares = dict.fromkeys(sizes, 0.0)
+        self._done = 0
+        self._lock = threading.Lock()
+
+    def tell(self, name: str, share: float) -> None:
+        """Take which share of a recording is done [-], from any thread."""
+        with self._lock:
+            self._shares[name] = max(self._shares[name], share)
+            self._show()
+
+    def done(self, name: str) -> None:
+        """Take that a recording is done."""
+        with self._lock:
+            self._shares[name] = 1.0
+            self._done += 1
+            self._show()
+
+    def _show(self) -> None:
+        whole = sum(self._sizes.values())
+        share = sum(size * self._shares[name] for name, size in self._sizes.items()) / whole
+        self._progress.show(self._done, len(self._sizes), share=share)
+
+
+def size_of(log: Path) -> int:
+    """Return the size of a recording [bytes], at least 1 where it is empty or not there."""
+    files = log.iterdir() if log.is_dir() else [log]
+    return max(1, sum(file.stat().st_size for file in files if file.is_file()))
 
 
 def report_logs(
@@ -42,9 +80,7 @@ def report_logs(
         }
         for log, name in zip(logs, folder_names(logs), strict=True)
     }
-    progress = Progress(len(logs), 'recordings')
-    with open_pool(workers, dask) as pool:
-        outcomes = run_tasks(pool, report_task, inputs, report=lambda outcome: progress.step())
+    outcomes = _outcomes(inputs, workers, dask)
     entries = [
         entry_of(log.name, folder, outcomes[folder])
         for log, folder in zip(logs, inputs, strict=True)
@@ -53,11 +89,28 @@ def report_logs(
     return entries
 
 
+def _outcomes(
+    inputs: Mapping[str, Mapping[str, Any]], workers: int | None, dask: str | None
+) -> dict[str, TaskOutcome]:
+    sizes = {name: size_of(Path(one['log'])) for name, one in inputs.items()}
+    bar = Progress(len(inputs), 'recordings')
+    progress = LogsProgress(sizes, bar)
+    try:
+        with open_pool(workers, dask, on_share=progress.tell) as pool:
+            return run_tasks(
+                pool, report_task, inputs, report=lambda outcome: progress.done(outcome.name)
+            )
+    finally:
+        bar.close()
+        for one in inputs.values():  # a worker that was killed has left it
+            remove_left(Path(one['out']))
+
+
 def report_task(inputs: Mapping[str, Any]) -> dict[str, Any]:
     """Report one recording in a worker; plain data in, the `LogResult` as plain data out."""
     with opened_log(Path(inputs['log']), mapping=_path(inputs['map']), shown=silent) as bag:
         parameters = parameters_for(bag, _path(inputs['params']), Path(inputs['nominal']))
-        result = report_log(bag, Path(inputs['out']), parameters)
+        result = report_log(bag, Path(inputs['out']), parameters, on_share=tell_share)
     record: dict[str, Any] = to_json(dataclasses.asdict(result))
     return record
 

@@ -18,7 +18,8 @@ from ballscrew_monitor.recordings.operating_field import (
     sample,
 )
 from ballscrew_monitor.report.case import AxisCase
-from ballscrew_monitor.report.encoding import codes, floats
+from ballscrew_monitor.report.encoding import floats, packed
+from ballscrew_monitor.report.room import PATH_POINTS
 from ballscrew_monitor.report.survey import opposing_loads, Span
 from contourpy import contour_generator
 import numpy as np
@@ -29,14 +30,13 @@ from surrogate.units import RPM
 Array = NDArray[np.float64]
 
 COLUMNS, ROWS = 72, 48  # cells of the time spent
-PATH_POINTS = 6000
 MARKED = 20  # events that are drawn, the worst
 NAMED_EFFICIENCIES = (0.3, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.97)
 TOP, BELOW_TOP, MIDDLE = 0.96, 0.88, 0.7  # heights of the names of lines, as parts of the map
 OUTSIDE, OPTIMAL, NO_NUMBER = 0, 1, 2  # codes of the cells of the zone
 
 
-def map_record(case: AxisCase) -> dict[str, Any]:
+def map_record(case: AxisCase, path_points: int = PATH_POINTS) -> dict[str, Any]:
     """Return the map of an axis at the mean temperature of its oil in motion."""
     limits, surface, oil = case.settings.limits, case.surface, case.survey.oil
     speeds = judged_speeds(surface, limits.standstill_speed)
@@ -57,7 +57,7 @@ def map_record(case: AxisCase) -> dict[str, Any]:
         'light_load': limits.light_load,
         'zone': _zone(field, limits),
         'lines': lines,
-        **_visited(case, speeds, loads),
+        **_visited(case, speeds, loads, path_points),
     }
 
 
@@ -79,7 +79,7 @@ def _zone(field: Field, limits: Limits) -> dict[str, Any]:
         rcs=limits.rcs, efficiency=limits.efficiency, light_load=limits.light_load
     )
     cells = np.where(np.isnan(middles.rcs), NO_NUMBER, np.where(optimal, OPTIMAL, OUTSIDE))
-    return {'columns': cells.shape[1], 'rows': cells.shape[0], 'cells': codes(cells)}
+    return {'columns': cells.shape[1], 'rows': cells.shape[0], 'cells': packed(cells.ravel())}
 
 
 def _lines(field: Field, limits: Limits, mean: float) -> list[dict[str, Any]]:
@@ -123,11 +123,11 @@ def _line(
 
 
 def _visited(
-    case: AxisCase, speeds: tuple[float, float], loads: tuple[float, float]
+    case: AxisCase, speeds: tuple[float, float], loads: tuple[float, float], path_points: int
 ) -> dict[str, Any]:
     """Return time spent in each cell, path and places of the warnings."""
     dwell = TimeSpent(speeds, loads, max_gap=case.settings.timeouts[Source.SPEED])
-    stride = max(1, case.survey.rows // PATH_POINTS)
+    stride, seen = max(1, case.survey.rows // path_points), 0
     marked = case.worst_first[:MARKED]
     path, places = [], {event.event_id: MeanPlace() for event in marked}
     for block in case.blocks():
@@ -135,14 +135,16 @@ def _visited(
         moving = speed >= case.settings.limits.standstill_speed
         load = np.where(moving, opposing_loads(block), np.nan)
         dwell.add(block, speed, load)
-        path.append(np.stack([speed[::stride] / RPM, load[::stride]], axis=-1))
+        chosen = slice(-seen % stride, None, stride)
+        path.append(np.stack([speed[chosen] / RPM, load[chosen]], axis=-1))
+        seen += len(block)
         outside = moving & (block.zone == Zone.OUTSIDE)
         first, last = block.stamp.min(), block.stamp.max()
         for event in marked:
             if event.end < first or event.start > last:
                 continue
-            chosen = outside & (block.stamp >= event.start) & (block.stamp <= event.end)
-            places[event.event_id].add(speed[chosen] / RPM, load[chosen])
+            inside = outside & (block.stamp >= event.start) & (block.stamp <= event.end)
+            places[event.event_id].add(speed[inside] / RPM, load[inside])
     return {
         'dwell': dwell.record(),
         'path': floats(np.concatenate(path).ravel()),

@@ -19,12 +19,11 @@ from ballscrew_monitor.report.markup import (
     TableCell,
     TableRow,
 )
+from ballscrew_monitor.report.room import MOST_ROWS
 from ballscrew_monitor.report.verdict import AxisVerdict
 from ballscrew_monitor.report.words import duration, number, percent, share
 
 SIGNS = {'>=': '≥'}
-MOST_ROWS = 1000
-"""Rows of a table of which there may be any number; the worst are shown."""
 
 
 def verdict_part(verdict: AxisVerdict) -> Markup:
@@ -114,13 +113,13 @@ def _energy(case: AxisCase, summary: Summary) -> Iterable[Markup]:
     )
 
 
-def events_part(case: AxisCase) -> Markup:
-    """Return the table of warnings, whose rows lead to their moment."""
-    events = case.worst_first[:MOST_ROWS]
+def events_part(case: AxisCase, most: int = MOST_ROWS) -> Markup:
+    """Return the table of the worst warnings, `most` rows, which lead to their moment."""
+    events = case.worst_first[:most]
     if not events:
         return joined([element('h3', 'Warnings'), element('p', 'None.')])
     count = len(case.outcome.events)
-    cut = f' The worst {MOST_ROWS} of {count} are shown.' if count > MOST_ROWS else ''
+    cut = f' The worst {most} of {count} are shown.' if count > most else ''
     worst = events[0].event_id
     rows = (_event_row(case, event, event.event_id == worst) for event in sorted(events, key=_at))
     return joined(

@@ -9,15 +9,16 @@ memory becomes one file, and a report can go through them twice. Codes are store
 """
 
 from collections.abc import Iterator
+import contextlib
 import enum
 from pathlib import Path
-import tempfile
 from typing import Any, Self
 
 from ballscrew_monitor.core.conversions import Direction, Nut
 from ballscrew_monitor.core.estimate import ContactState, PointSource, PointValidity
 from ballscrew_monitor.core.judgement import Level, Zone
 from ballscrew_monitor.recordings.columns import COLUMNS, JudgedColumns, Reason
+from ballscrew_monitor.report.scratch import scratch_folder
 import numpy as np
 import polars as pl
 from surrogate.files import new_file
@@ -71,8 +72,8 @@ class RowStore:
 
     def __init__(self, directory: Path) -> None:
         """Prepare to keep blocks in a directory of their own below `directory`."""
-        directory.mkdir(parents=True, exist_ok=True)
-        self._folder = tempfile.TemporaryDirectory(dir=directory, prefix='.rows-')
+        self._stack = contextlib.ExitStack()
+        self._folder = self._stack.enter_context(scratch_folder(directory))
         self._parts: dict[str, list[Path]] = {}
         self._count = 0
 
@@ -82,12 +83,12 @@ class RowStore:
 
     def __exit__(self, *error: object) -> None:
         """Drop what was kept."""
-        self._folder.cleanup()
+        self._stack.close()
 
     def add(self, block: JudgedColumns) -> None:
         """Keep a block."""
         if len(block):
-            part = Path(self._folder.name) / f'{self._count:06d}.arrow'
+            part = self._folder / f'{self._count:06d}.arrow'
             frame_of(block).write_ipc(part)
             self._parts.setdefault(block.axis, []).append(part)
             self._count += 1

@@ -1,19 +1,26 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Draw concept.png and rooms.png, the two pictures of the documents that show no result.
+Draw concept.png and rooms.png, which show no result, and report.png, a page in a browser.
 
-Usage: python docs/pictures/draw.py. Film and pressure are sketches, not solutions.
+Usage: python docs/pictures/draw.py. Film and pressure are sketches, not solutions. The page is the
+report of bags/nominal_cycle, drawn by Chromium without its bars and tables.
 
 """
 
 from pathlib import Path
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
 
 from matplotlib.axes import Axes
 import matplotlib.pyplot as plt
 import numpy as np
 
-HERE = Path(__file__).parent
+HERE = Path(__file__).resolve().parent
+ROOT = HERE.parents[1]
 METAL, OIL, PUNCTURED, INK = '#9aa5b1', '#f2cf7a', '#d55e00', '#222222'
 OFFLINE, ONLINE, FILE = '#dbe9f6', '#dff1e6', '#fbe3cf'
 STATES = (
@@ -35,6 +42,14 @@ ONLINE_ROOMS = (
     ('core', 'zone, level, advice'),
     ('node', 'state, warning,\ndiagnostics'),
 )
+
+BROWSERS = ('chromium', 'chromium-browser', 'google-chrome')
+PAGE_WIDTH, PAGE_HEIGHT, PAGE_SCALE = 1120, 1750, 0.8  # [px], [-]
+LEFT_OUT = """
+    h3:has(+ .bar), .bar, .bar + .legend, .bar + .legend + p,
+    h3:has(+ p + .wide), h3 + p:has(+ .wide), .wide { display: none; }
+    h3:has(+ p.screen) { border-top: 2px solid var(--grid); padding-top: 1rem; }
+"""
 
 
 def sketch(axes: Axes, film: float, title: str, text: str) -> None:
@@ -117,6 +132,52 @@ def rooms() -> None:
     plt.close(figure)
 
 
+def report() -> None:
+    """Draw the page of the nominal machine cycle, from its verdict to the first charts."""
+    browser = next(filter(None, map(shutil.which, BROWSERS)), None)
+    if browser is None:
+        sys.exit(f'report.png is not drawn: it needs one of {", ".join(BROWSERS)}')
+    with tempfile.TemporaryDirectory() as folder:
+        out = Path(folder) / 'report'
+        bag = ROOT / 'bags' / 'nominal_cycle'
+        command = [
+            sys.executable,
+            '-m',
+            'ballscrew_monitor',
+            'replay',
+            str(bag),
+            '--out',
+            str(out),
+        ]
+        subprocess.run(command, check=True, cwd=ROOT, stdout=subprocess.DEVNULL)
+        page = out / 'report.html'
+        page.write_text(_shortened(page.read_text()))
+        subprocess.run(
+            [
+                browser,
+                '--headless',
+                '--no-sandbox',
+                '--disable-gpu',
+                '--hide-scrollbars',
+                f'--user-data-dir={folder}/profile',
+                '--virtual-time-budget=8000',
+                f'--force-device-scale-factor={PAGE_SCALE}',
+                f'--window-size={PAGE_WIDTH},{PAGE_HEIGHT}',
+                f'--screenshot={HERE / "report.png"}',
+                page.as_uri(),
+            ],
+            check=True,
+            stderr=subprocess.DEVNULL,
+        )
+
+
+def _shortened(page: str) -> str:
+    """Return a page without some parts; its policy, which lets in no other style, goes too."""
+    page = re.sub(r'<meta http-equiv="Content-Security-Policy"[^>]*>', '', page)
+    return page.replace('</head>', f'<style>{LEFT_OUT}</style></head>')
+
+
 if __name__ == '__main__':
     concept()
     rooms()
+    report()

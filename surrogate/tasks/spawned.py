@@ -23,9 +23,10 @@ import queue
 import signal
 import socket
 import threading
+import time
 from typing import Any
 
-from surrogate.tasks.worker import serve
+from surrogate.tasks.worker import serve, UNWIND
 
 ONE_THREAD = ('MKL_NUM_THREADS', 'OMP_NUM_THREADS', 'OPENBLAS_NUM_THREADS')
 Call = tuple[Future[Any], Callable[..., Any], tuple[Any, ...]]
@@ -65,13 +66,25 @@ class SpawnedWorkers(Executor):
     Processes that run calls of functions at the top level of modules.
 
     A call whose process ends fails with LostWorker, and a new process takes its place. The
-    processes end at `shutdown`, also those at work, and when this process dies, however it does.
+    processes end at `shutdown`, also those at work, and when this process dies, however it does:
+    a call may put things in order before, if that takes no longer than `UNWIND`.
 
     """
 
-    def __init__(self, workers: int, began: Callable[[tuple[Any, ...], str], None]) -> None:
-        """Prepare for `workers` processes; `began` is told arguments and worker of each call."""
-        self._began = began
+    def __init__(
+        self,
+        workers: int,
+        began: Callable[[tuple[Any, ...], str], None],
+        told: Callable[[tuple[Any, ...], float], None] = lambda arguments, share: None,
+    ) -> None:
+        """
+        Prepare for `workers` processes.
+
+        `began` is told arguments and worker of each call, `told` the arguments of a call and the
+        share [-] that it says is done; both from any thread.
+
+        """
+        self._began, self._told = began, told
         self._calls: queue.SimpleQueue[Call | None] = queue.SimpleQueue()
         self._lock = threading.Lock()
         self._closed = False
@@ -93,15 +106,32 @@ class SpawnedWorkers(Executor):
         return future
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = True) -> None:
-        """End all processes, also those at work; calls that were not begun are cancelled."""
+        """
+        End all processes, also those at work; calls that were not begun are cancelled.
+
+        Calls end by SystemExit, if one waits for that; what is still there after `UNWIND` is
+        killed.
+
+        """
         with self._lock:
             self._closed = True
-            for process in self._processes:
-                process.kill()
+            for process in self._processes if wait else ():
+                process.terminate()
         for _ in self._threads:
             self._calls.put(None)
+        try:
+            self._join(time.monotonic() + UNWIND if wait else 0.0)
+        finally:  # whatever interrupts the wait
+            with self._lock:
+                for process in self._processes:
+                    process.kill()
         for thread in self._threads if wait else ():
             thread.join()
+
+    def _join(self, deadline: float) -> None:
+        """Wait for the end of all calls until a time [s]."""
+        for thread in self._threads:
+            thread.join(max(0.0, deadline - time.monotonic()))
 
     def _feed(self) -> None:
         """Serve one process with calls, or several, one after another."""
@@ -118,7 +148,9 @@ class SpawnedWorkers(Executor):
                     process, pipe = self._spawn()
                 self._began(args, f'{socket.gethostname()}/{process.pid}')
                 pipe.send((fn, args))
-                result, error = pipe.recv()
+                while isinstance(answer := pipe.recv(), float):
+                    self._told(args, answer)
+                result, error = answer
             except (EOFError, OSError):
                 self._bury(process, pipe)
                 process = pipe = None

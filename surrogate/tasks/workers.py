@@ -13,14 +13,18 @@ from typing import Any, Self
 from surrogate.files import InputError
 from surrogate.tasks.pool import Pool
 from surrogate.tasks.spawned import apart, SpawnedWorkers
-from surrogate.tasks.worker import run_task, Task, worker_name
+from surrogate.tasks.worker import OnShare, run_task, ShareTeller, Task, teller, worker_name
 
 LOCAL = 'local'
 """The word for a Dask cluster on this machine."""
 PATIENCE = 5.0
 """Longest wait for a scheduler, and for its first worker [s]."""
 TOPIC = 'ballscrew'
-"""Topic of Dask's events on which workers say what they begin."""
+"""Topic of Dask's events on which workers say what they begin, and how far they are."""
+
+
+def ignore(name: str, share: float) -> None:
+    """Take no notice of how far a task is."""
 
 
 def usable_cores() -> int:
@@ -28,31 +32,36 @@ def usable_cores() -> int:
     return len(os.sched_getaffinity(0))
 
 
-def open_pool(workers: int | None = None, dask: str | None = None) -> Pool:
+def open_pool(
+    workers: int | None = None, dask: str | None = None, *, on_share: OnShare = ignore
+) -> Pool:
     """
     Return a pool of `workers` processes, or that of the Dask cluster `dask`.
 
     `dask` is the address of a scheduler, such as tcp://host:8786, or `local` for a cluster of
-    `workers` processes here. Workers are as many as cores by default. Raises InputError for a
-    number below 1, a number for a cluster that has its own, and a scheduler that does not answer.
+    `workers` processes here. Workers are as many as cores by default. `on_share` is told how far
+    tasks are that say so. Raises InputError for a number below 1, a number for a cluster that has
+    its own, and a scheduler that does not answer.
 
     """
     if workers is not None and workers < 1:
         raise InputError(f'--workers is {workers}, allowed is 1 or more')
     if dask is None:
-        return ProcessPool(workers or usable_cores())
+        return ProcessPool(workers or usable_cores(), on_share)
     if dask != LOCAL and workers is not None:
         raise InputError(f'--workers does not belong to --dask {dask}: the cluster has its own')
-    return DaskPool(dask, workers or usable_cores())
+    return DaskPool(dask, workers or usable_cores(), on_share)
 
 
 class ProcessPool:
     """Spawned processes of this machine."""
 
-    def __init__(self, workers: int) -> None:
+    def __init__(self, workers: int, on_share: OnShare) -> None:
         """Prepare for `workers` processes; each starts with the first task it is needed for."""
         self._events: deque[tuple[str, str]] = deque()
-        self._executor = SpawnedWorkers(workers, self._note)
+        self._executor = SpawnedWorkers(
+            workers, self._note, lambda arguments, share: on_share(arguments[1], share)
+        )
 
     def __enter__(self) -> Self:
         """Return the pool."""
@@ -77,9 +86,10 @@ class ProcessPool:
 class DaskPool:
     """The workers of a Dask cluster, which itself gives the tasks of lost workers to others."""
 
-    def __init__(self, address: str, workers: int) -> None:
+    def __init__(self, address: str, workers: int, on_share: OnShare) -> None:
         """Connect to a scheduler, or start `workers` processes of this machine."""
         distributed = _distributed()
+        self._on_share = on_share
         self._events: deque[tuple[str, str]] = deque()
         with apart():
             self._cluster = _local_cluster(distributed, workers) if address == LOCAL else None
@@ -106,17 +116,24 @@ class DaskPool:
         """Return names of tasks and workers that have begun them, since the last call."""
         return [self._events.popleft() for _ in range(len(self._events))]
 
-    def _note(self, event: tuple[float, Mapping[str, str]]) -> None:
-        self._events.append((event[1]['task'], event[1]['process']))
+    def _note(self, event: tuple[float, Mapping[str, Any]]) -> None:
+        note = event[1]
+        if 'share' in note:
+            self._on_share(note['task'], note['share'])
+        else:
+            self._events.append((note['task'], note['process']))
 
 
 def run_told(task: Task, name: str, inputs: Mapping[str, Any]) -> dict[str, Any]:
-    """Run a task in a worker of a Dask cluster and tell that it is begun."""
+    """Run a task in a worker of a Dask cluster; tell that it is begun, and how far it is."""
     distributed = _distributed()
     worker = distributed.get_worker()
     note = {'task': name, 'process': worker_name()}
     # Waits until the scheduler has it: a worker that is killed at once has said what it began.
     distributed.utils.sync(worker.loop, worker.scheduler.log_event, topic=TOPIC, msg=note)
+    teller.set(
+        ShareTeller(lambda share: worker.log_event(TOPIC, {'task': name, 'share': float(share)}))
+    )
     return run_task(task, name, inputs)
 
 

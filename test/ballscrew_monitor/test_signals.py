@@ -4,6 +4,7 @@
 
 import os
 from pathlib import Path
+import shutil
 import signal
 import subprocess
 import sys
@@ -131,6 +132,27 @@ def test_a_report_that_is_ended_leaves_nothing_unfinished(
     assert err.splitlines()[-1] == 'ballscrew: interrupted'
     assert 'Traceback' not in err
     assert not [*out.iterdir(), *scratch.iterdir()]
+
+
+@pytest.mark.parametrize(
+    ('number', 'code'), [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGKILL, -9)]
+)
+def test_workers_that_are_ended_leave_nothing_unfinished(
+    domain, tmp_path, short_bag, number, code
+):
+    """Whoever ends them: the program that is interrupted, or they themselves when it is gone."""
+    logs, out, scratch = (tmp_path / name for name in ('logs', 'out', 'scratch'))
+    scratch.mkdir()
+    for name in 'abcd':
+        shutil.copytree(short_bag, logs / name)
+    more = [str(logs), '--out', str(out), '--workers', '2']
+    with start(domain, COMMANDS['replay'], *more, folder=tmp_path, TMPDIR=str(scratch)) as process:
+        until(process, lambda: any(out.glob('*/.rows-*/*')))
+        process.send_signal(number)
+        _, err = process.communicate(timeout=DEADLINE)  # which the workers hold, too
+    assert process.returncode == code
+    assert 'Traceback' not in err
+    assert not [*out.rglob('.*'), *scratch.iterdir()]
 
 
 def test_sigterm_has_its_own_exit_code(domain, tmp_path):

@@ -4,6 +4,7 @@
 
 import io
 
+import pytest
 from surrogate.progress import bar, Progress
 
 
@@ -106,3 +107,23 @@ def test_work_that_ends_early_ends_its_line():
         before = stream.getvalue()
         progress.close()
         assert (stream.getvalue() == before + '\n') is expected
+
+
+@pytest.mark.parametrize(
+    ('stream', 'expected', 'lines'),
+    [
+        (Terminal(), '\r[##########' + 30 * ' ' + '] 0/2 steps, 30 s left\x1b[K', 2),
+        (io.StringIO(), '0/2 steps, 30 s left\n', 1),
+    ],
+)
+def test_the_first_step_shows_how_far_it_is(stream, expected, lines):
+    """A long step before the first is done: the bar grows, and so does a log, by tenths."""
+    now = [0.0]
+    progress = Progress(2, 'steps', stream=stream, clock=lambda: now[0])
+    now[0] = 10.0
+    progress.show(0, 2, share=0.25)
+    assert stream.getvalue() == expected
+    progress.show(0, 2, share=0.3)
+    assert stream.getvalue().count('0/2') == lines
+    progress.close()
+    assert stream.getvalue().endswith('\n')

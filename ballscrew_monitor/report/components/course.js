@@ -82,10 +82,20 @@ class Course {
     if (!this.record.bucket) {
       return 'Every sample is drawn.';
     }
-    const whole = this.fine.some((one) => one.begin <= begin && one.end >= end);
-    return whole
-      ? 'Every sample is drawn.'
-      : `Smallest and largest value of every ${Format.number(this.record.bucket, 2)} s are drawn, `
-        + `every sample around the ${this.record.shown} worst warnings.`;
+    if (this.fine.some((one) => one.begin <= begin && one.end >= end)) {
+      return 'Every sample is drawn.';
+    }
+    const every = Format.number(this.record.bucket, 2);
+    return `Smallest and largest value of every ${every} s are drawn${this.around()}.`;
+  }
+
+  /** Say around how many of the worst warnings every sample is there. */
+  around() {
+    const { shown, worst } = this.record;
+    const short = shown < worst ? ', for more the page has no room' : '';
+    if (!shown) {
+      return short && '; for every sample around warnings the page has no room';
+    }
+    return `, every sample around the ${shown === 1 ? 'worst warning' : `${shown} worst warnings`}${short}`;
   }
 }

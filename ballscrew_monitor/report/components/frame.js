@@ -23,6 +23,7 @@ class MapFrame {
     this.pen = this.canvas.getContext('2d');
     this.pen.setTransform(ratio, 0, 0, ratio, 0, 0);
     this.pen.clearRect(0, 0, width, height);
+    this.labels = [];
   }
 
   x(speed) {
@@ -80,6 +81,7 @@ class MapFrame {
     this.pen.setLineDash([]);
   }
 
+  /** Write on the map, where no label is yet. */
   label(text, x, y, colour) {
     const pen = this.pen;
     pen.font = '11px system-ui, sans-serif';
@@ -89,6 +91,10 @@ class MapFrame {
     const { left, width, top, height } = this.area;
     const at = Math.min(Math.max(x, left + half), left + width - half);
     const up = Math.min(Math.max(y, top + 9), top + height - 9);
+    if (this.labels.some((one) => Math.abs(one.at - at) < one.half + half && Math.abs(one.up - up) < 14)) {
+      return;
+    }
+    this.labels.push({ at, up, half });
     pen.fillStyle = Format.colour('paper');
     pen.globalAlpha = 0.85;
     pen.fillRect(at - half, up - 8, 2 * half, 16);

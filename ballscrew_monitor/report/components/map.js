@@ -10,7 +10,7 @@ class OperatingMap extends MapFrame {
     super(record);
     this.show = show;
     this.lines = record.lines.map((line) => ({ ...line, points: Format.floats(line.points) }));
-    this.zone = Format.bytes(record.zone.cells);
+    this.zone = Format.packed(record.zone.cells).map(Math.round);
     this.dwell = Format.floats(record.dwell.cells);
     this.path = Format.floats(record.path);
     this.note = Format.element('p', 'readout', OperatingMap.HINT);
@@ -30,6 +30,8 @@ class OperatingMap extends MapFrame {
       this.light();
       this.trail();
       this.lines.forEach((line) => this.line(line));
+      // The limits come last and are on top; their names come first and keep their places.
+      [...this.lines].reverse().forEach((line) => this.name(line));
     });
     this.axes();
     this.record.events.forEach((event) => this.mark(event));
@@ -61,13 +63,14 @@ class OperatingMap extends MapFrame {
   line(line) {
     const [colour, width, dash] = OperatingMap.STYLES[line.kind];
     this.stroke(line.points, Format.colour(colour), width, dash);
-    if (line.label && line.points.length) {
-      this.name(line, colour);
-    }
   }
 
   /** Write on a line where it is nearest to its height on the map. */
-  name(line, colour) {
+  name(line) {
+    if (!line.label || !line.points.length) {
+      return;
+    }
+    const [colour] = OperatingMap.STYLES[line.kind];
     const { low, high } = this.record.load;
     const level = low + line.height * (high - low);
     let best = -1;

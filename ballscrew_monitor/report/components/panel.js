@@ -66,14 +66,17 @@ const Panel = (() => {
       ctx.fillStyle = Format.colour(band.colour);
       ctx.fillRect(bbox.left, high, bbox.width, Math.max(0, low - high));
     }
-    ctx.fillStyle = Format.colour('warning-shade');
+    // One path: where events are closer than the pixels, their shades do not add up.
+    ctx.beginPath();
     for (const event of events) {
       const begin = Math.max(bbox.left, plot.valToPos(event.begin, 'x', true));
       const end = Math.min(bbox.left + bbox.width, plot.valToPos(event.end, 'x', true));
       if (end >= bbox.left && begin <= bbox.left + bbox.width) {
-        ctx.fillRect(begin, bbox.top, Math.max(1, end - begin), bbox.height);
+        ctx.rect(begin, bbox.top, Math.max(1, end - begin), bbox.height);
       }
     }
+    ctx.fillStyle = Format.colour('warning-shade');
+    ctx.fill();
   }
 
   function limits(plot, panel) {

@@ -1,23 +1,18 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The course in time: every sample near the worst events, and what a page may weigh."""
+"""The course in time: every sample near the worst events, few of many others."""
 
 import dataclasses
 
 from ballscrew_monitor.core.judgement import Level, Zone
 from ballscrew_monitor.recordings.columns import LIGHT_LOAD, STANDSTILL
-from ballscrew_monitor.report.case import LogCase
-from ballscrew_monitor.report.course import course_record, rows_of, SHADED, SHORT
-from ballscrew_monitor.report.log_page import report_page
+from ballscrew_monitor.report.course import coarse_bytes, course_record, rows_of
+from ballscrew_monitor.report.encoding import script_json
+from ballscrew_monitor.report.room import AxisRoom, BUCKETS, MOST_ROWS
 import numpy as np
 import pytest
 
-MOST_BYTES = 5_000_000
-
-
-def test_a_page_of_an_hour_at_1_khz_is_small(hour):
-    page = report_page(LogCase(name='hour', parameters='my.yaml', axes=[hour]))
-    assert len(page.encode()) < MOST_BYTES
+SHORT = 2 * BUCKETS
 
 
 def test_around_the_50_worst_events_every_sample_is_kept(hour):
@@ -41,6 +36,30 @@ def test_samples_near_events_make_way_where_there_is_no_room(hour):
     )
 
 
+def test_samples_that_come_in_bursts_and_at_uneven_times_fit_too(judged):
+    """The mean rate says nothing of the rate near the events."""
+    noise = np.random.default_rng(1)
+    number = np.unique(np.concatenate([np.arange(0, 400_000, 100), np.arange(9000, 41_000)]))
+    block = judged.columns(count=number.size)
+    stamp = block.stamp[0] + number * 1_000_000 + noise.integers(0, 900_000, number.size)
+    block = dataclasses.replace(
+        block, stamp=stamp, log_time=stamp, speed=noise.normal(100.0, 1.0, number.size)
+    )
+    events = [judged.event(n + 1, 10.0 + 3.0 * n, 1.0) for n in range(10)]
+    record = course_record(judged.case([block], events), 100_000)
+    assert 1 <= record['shown'] < record['worst'] == 10
+    assert 50_000 < len(script_json(record['fine'])) <= 100_000
+
+
+@pytest.mark.parametrize('count', [500, 2000])
+def test_what_a_course_takes_is_known_before(judged, count):
+    room = AxisRoom(buckets=500, events=7)
+    events = [judged.event(n + 1, 0.123456789 * n, 0.07654321) for n in range(10)]
+    case = judged.case([judged.columns(count=count)], events)
+    made = len(script_json(course_record(case, 0, room)))
+    assert 0.3 * coarse_bytes(case, room) < made <= coarse_bytes(case, room)
+
+
 def test_a_short_recording_keeps_every_sample(judged):
     case = judged.case([judged.columns(count=SHORT)], [judged.event(1, 1.0, 2.0)])
     record = course_record(case)
@@ -56,10 +75,10 @@ def test_events_are_on_the_time_line_of_the_page(judged):
 def test_only_the_worst_events_are_shaded(judged):
     events = [
         judged.event(n + 1, 0.01 * n, 0.005, worst_value=0.011 + 1e-5 * n)
-        for n in range(SHADED + 200)
+        for n in range(MOST_ROWS + 200)
     ]
     shaded = course_record(judged.case([judged.columns(count=1000)], events))['events']
-    assert len(shaded) == SHADED
+    assert len(shaded) == MOST_ROWS
     assert min(one['begin'] for one in shaded) == pytest.approx(2.0)
 
 

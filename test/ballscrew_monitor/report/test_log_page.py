@@ -118,7 +118,7 @@ def test_charts_are_drawn_without_an_error(written, tmp_path):
     assert 'data-errors=""' in body
     # A map, the bars and the panels of each axis: six, and one more for the torque.
     assert 'data-charts="17"' in body
-    assert 'every sample around the 1 worst warnings' in dom
+    assert 'every sample around the worst warning.' in dom
 
 
 @browser

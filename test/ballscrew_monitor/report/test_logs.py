@@ -46,6 +46,39 @@ def test_files_whose_numbers_have_a_gap_are_recordings_of_their_own(tmp_path, nu
     assert len(find_logs([tmp_path])) == 2
 
 
+@pytest.mark.parametrize(
+    'pattern', ['press.v2_{}.mcap', 'axis.2026-01-01_{}.mcap', 'a_1.b_{}.db3', 'a.b_{}.mcap.zstd']
+)
+def test_a_point_in_a_name_is_part_of_it(tmp_path, pattern):
+    touch(*(tmp_path / pattern.format(number) for number in range(11)))
+    assert is_one_bag(tmp_path)
+    touch(tmp_path / 'press.v3_0.mcap')
+    assert not is_one_bag(tmp_path)
+    assert len(find_logs([tmp_path])) == 12
+
+
+def test_a_part_that_is_not_finished_is_one_all_the_same(tmp_path):
+    touch(tmp_path / 'press.v2_0.mcap', tmp_path / 'press.v2_1.mcap.active')
+    assert is_one_bag(tmp_path)
+
+
+@pytest.mark.parametrize(
+    'pair',
+    [
+        ('press.v2_0.mcap', 'press.v3_0.mcap'),
+        ('axis.2026-01-01_0.mcap', 'axis.2026-01-02_0.mcap'),
+        ('press.v2_0.mcap', 'press.v3_1.mcap'),
+        ('press_0.v2.mcap', 'press_1.v2.mcap'),
+    ],
+)
+def test_names_that_differ_before_the_ending_are_recordings_of_their_own(tmp_path, pair):
+    touch(*(tmp_path / name for name in pair))
+    assert not is_one_bag(tmp_path)
+    found = find_logs([tmp_path])
+    assert names(found, tmp_path) == sorted(pair)
+    assert folder_names(found) == [name.removesuffix('.mcap') for name in sorted(pair)]
+
+
 def test_tables_count_beside_a_bag_where_they_are_asked_for(tmp_path):
     touch(tmp_path / 'a.mcap', tmp_path / 'b.csv')
     assert find_logs([tmp_path]) == [tmp_path]

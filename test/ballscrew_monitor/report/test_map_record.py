@@ -5,6 +5,7 @@
 import base64
 
 from ballscrew_monitor.core.judgement import Zone
+from ballscrew_monitor.report.encoding import LEVELS
 from ballscrew_monitor.report.map_record import COLUMNS, map_record, OPTIMAL, OUTSIDE, ROWS
 import numpy as np
 import pytest
@@ -12,6 +13,15 @@ import pytest
 
 def floats_of(text):
     return np.frombuffer(base64.b64decode(text), dtype='<f4')
+
+
+def cells_of(column):
+    steps, runs = (
+        np.frombuffer(base64.b64decode(column[key]), dtype=kind)
+        for key, kind in (('data', '<u2'), ('runs', '<u4'))
+    )
+    values = column['low'] + (steps - 1.0) * (column['high'] - column['low']) / LEVELS
+    return np.repeat(np.rint(values), runs)
 
 
 def test_time_spent_is_that_in_motion(judged):
@@ -37,8 +47,7 @@ def test_the_border_is_where_the_surface_has_the_limit(judged):
 def test_the_zone_is_left_and_right_of_the_border(judged):
     record = map_record(judged.case([judged.columns()]))
     zone = record['zone']
-    cells = np.frombuffer(base64.b64decode(zone['cells']), dtype=np.uint8)
-    cells = cells.reshape(zone['rows'], zone['columns'])
+    cells = cells_of(zone['cells']).reshape(zone['rows'], zone['columns'])
     assert (cells[:, 0] == OUTSIDE).all()
     assert (cells[-1, -8:] == OPTIMAL).any()
 

@@ -12,6 +12,7 @@ import threading
 
 import pytest
 from surrogate.files import InputError
+from surrogate.tasks import spawned
 from surrogate.tasks import workers as task_workers
 from surrogate.tasks.pool import MOST_TRIES, run_tasks
 from surrogate.tasks.store import TaskStore
@@ -19,10 +20,16 @@ from surrogate.tasks.worker import worker_name
 from surrogate.tasks.workers import open_pool
 
 DEADLINE = 60.0
-TASKS = """
+HALF_MADE = '.half_made'
+TASKS = (
+    f"""
+HALF_MADE = {HALF_MADE!r}
+"""
+    + """
 import math, os, signal, struct
 from multiprocessing.connection import Connection
 from surrogate.files import InputError
+from surrogate.tasks.worker import tell_share
 
 def root(inputs):
     return {'root': math.sqrt(inputs['x']), 'chain': [math.exp(-inputs['x']), 1]}
@@ -31,11 +38,20 @@ def refuse(inputs):
     raise InputError('x is -1, allowed is 0 or more')
 
 def say_hello_and_wait(inputs):
-    with open(inputs['hello'], 'w') as hello:
-        hello.write(str(os.getpid()))
-    with open(inputs['gate']) as gate:
-        gate.read()
+    half_made = inputs['hello'] + HALF_MADE
+    open(half_made, 'w').close()
+    try:
+        with open(inputs['hello'], 'w') as hello:
+            hello.write(str(os.getpid()))
+        with open(inputs['gate']) as gate:
+            gate.read()
+    finally:
+        os.unlink(half_made)
     return {'done': True}
+
+def say_hello_and_stay(inputs):
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)
+    return say_hello_and_wait(inputs)
 
 def send_half(inputs):
     def send_and_die(pipe, message):
@@ -44,6 +60,11 @@ def send_half(inputs):
     if inputs['cut']:
         Connection._send_bytes = send_and_die
     return {'text': 1000 * 'x'}
+
+def tell(inputs):
+    for share in (0.25, 0.251, 0.5):
+        tell_share(share)
+    return {}
 
 def kill_worker(inputs):
     if inputs['kill']:
@@ -56,6 +77,7 @@ def describe(inputs):
     return {'threads': numba.get_num_threads(), 'blas': os.environ['OMP_NUM_THREADS'],
             'ignores': ignored}
 """
+)
 PARENT = """
 import signal
 import sys
@@ -164,6 +186,16 @@ def test_the_task_of_a_killed_worker_is_done_elsewhere(tasks, pipes, dask):
     assert not any(other.sentence for other in rest.values())
 
 
+def test_tasks_tell_how_far_they_are(tasks):
+    """By their names and in order, and not for every small step."""
+    told: list[tuple[str, float]] = []
+    with open_pool(2, on_share=lambda *share: told.append(share)) as pool:
+        outcomes = run_tasks(pool, tasks.tell, {'a': {}, 'b': {}, 'c': {}})
+    assert [outcome.result for outcome in outcomes.values()] == [{}, {}, {}]
+    for name in 'abc':
+        assert [share for whose, share in told if whose == name] == [0.25, 0.5]
+
+
 def test_a_task_that_kills_its_workers_ends_as_a_sentence(tasks):
     """It is given up after a few tries, and costs no other task its result."""
     inputs = {f'{number}': {'x': number, 'kill': number == 3} for number in range(10)}
@@ -249,7 +281,12 @@ def parent(tmp_path: Path, pipes: dict[str, str]) -> subprocess.Popen[str]:
 
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
 def test_no_worker_outlives_its_parent(tasks, tmp_path: Path, pipes, number):
-    """Ctrl-C reaches the whole group, a kill the parent alone: all are gone, no one chatters."""
+    """
+    Ctrl-C reaches the whole group, a kill the parent alone: all are gone, no one chatters.
+
+    What they had half made is gone, too.
+
+    """
     with parent(tmp_path, pipes) as process:
         workers = [int(read(pipes[name])) for name in ('hello', 'second')]
         endings = [os.pidfd_open(pid) for pid in workers]
@@ -262,8 +299,19 @@ def test_no_worker_outlives_its_parent(tasks, tmp_path: Path, pipes, number):
             os.close(ending)
         errors = process.communicate(timeout=DEADLINE)[1]
     assert process.returncode == -number
+    assert not list(tmp_path.glob(f'*{HALF_MADE}'))
     assert errors.count('Traceback') == (number == signal.SIGINT)
     assert errors.endswith('KeyboardInterrupt\n') == (number == signal.SIGINT)
+
+
+def test_a_worker_that_does_not_leave_is_killed(tasks, pipes, monkeypatch):
+    """It has a bounded time to put things in order, and no more."""
+    monkeypatch.setattr(spawned, 'UNWIND', 0.1)
+    with open_pool(1) as pool:
+        pool.submit(tasks.say_hello_and_stay, 'it', pipes)
+        ending = os.pidfd_open(int(read(pipes['hello'])))
+    assert select.select([ending], [], [], 0.0)[0], 'the worker is still there'
+    os.close(ending)
 
 
 @pytest.mark.parametrize(

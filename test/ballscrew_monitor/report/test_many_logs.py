@@ -1,0 +1,63 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Several recordings: how far they are, and reports of them on a Dask cluster."""
+
+import shutil
+
+from ballscrew_monitor import cli
+from ballscrew_monitor.report.many_logs import LogsProgress, size_of
+import pytest
+
+
+class Shown:
+    """Takes what a bar would show."""
+
+    def __init__(self):
+        self.lines = []
+
+    def show(self, done, total, *, share):
+        self.lines.append((done, total, share))
+
+
+def test_a_long_recording_among_short_ones_is_seen_to_go():
+    shown = Shown()
+    progress = LogsProgress({'long': 900, 'short': 50, 'bad': 50}, shown)
+    progress.done('bad')
+    progress.tell('long', 0.5)
+    progress.tell('long', 0.4)  # a worker was lost, another one began again
+    progress.done('short')
+    progress.done('long')
+    assert shown.lines == [(1, 3, 0.05), (1, 3, 0.5), (1, 3, 0.5), (2, 3, 0.55), (3, 3, 1.0)]
+
+
+def test_a_recording_that_is_not_there_or_empty_has_a_size_too(tmp_path):
+    (tmp_path / 'bag').mkdir()
+    assert size_of(tmp_path / 'gone.mcap') == size_of(tmp_path / 'bag') == 1
+    for name in ('a.mcap', 'b.mcap'):
+        (tmp_path / 'bag' / name).write_bytes(bytes(50))
+    assert size_of(tmp_path / 'bag') == 100
+
+
+def test_a_cluster_makes_the_reports_that_can_be_made(short_bag, tmp_path, capsys):
+    distributed = pytest.importorskip('distributed')
+    for name in ('first', 'second'):
+        shutil.copytree(short_bag, tmp_path / 'logs' / name)
+    (tmp_path / 'logs' / 'broken.mcap').write_bytes(b'no recording')
+    out = tmp_path / 'out'
+    with distributed.LocalCluster(
+        n_workers=1,
+        threads_per_worker=1,
+        processes=False,
+        protocol='tcp',
+        dashboard_address='127.0.0.1:0',
+        silence_logs='ERROR',
+    ) as cluster:
+        arguments = ['replay', str(tmp_path / 'logs'), '--out', str(out)]
+        assert cli.main([*arguments, '--dask', cluster.scheduler_address]) == 1
+    shown = capsys.readouterr()
+    assert 'broken.mcap: bag' in shown.err
+    assert '3/3 recordings' in shown.err
+    assert '3 recordings, 1 bad' in shown.out
+    assert sorted(path.name for path in out.iterdir()) == ['first', 'index.html', 'second']
+    for name in ('first', 'second'):
+        assert {'report.html', 'states.parquet'} <= {p.name for p in (out / name).iterdir()}
