@@ -5,6 +5,7 @@
 from collections.abc import Iterator
 import dataclasses
 from pathlib import Path, PurePath
+import re
 from typing import Any
 
 from surrogate.files import InputError
@@ -66,7 +67,7 @@ def manifest(path: Path, *, salvage: bool) -> Manifest:
     metadata = path / 'metadata.yaml'
     found = _read_metadata(metadata) if metadata.is_file() else None
     files = found.files if found else tuple(_bag_files(path))
-    unfinished = sorted(path.glob(f'*{ACTIVE}'))
+    unfinished = sorted(path.glob(f'*{ACTIVE}'), key=_by_number)
     if not files and salvage:
         files = tuple(unfinished)
     if not files:
@@ -100,7 +101,14 @@ def unpacked(data: bytes) -> bytes:
 
 
 def _bag_files(path: Path) -> Iterator[Path]:
-    return iter(sorted(file for file in path.iterdir() if file.name.endswith(ENDINGS)))
+    files = (file for file in path.iterdir() if file.name.endswith(ENDINGS))
+    return iter(sorted(files, key=_by_number))
+
+
+def _by_number(file: Path) -> list[str | int]:
+    """Return what sorts the parts of a bag: the tenth comes after the second."""
+    pieces = re.split(r'(\d+)', file.name)
+    return [int(piece) if piece.isdecimal() else piece for piece in pieces]
 
 
 def _read_metadata(metadata: Path) -> Manifest:

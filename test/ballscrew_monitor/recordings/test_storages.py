@@ -91,6 +91,17 @@ def test_a_split_bag_is_one(storage, messages, short_bag, tmp_path):
     assert left.notes[0].endswith('it is left out')
 
 
+def test_the_tenth_part_of_a_bag_comes_after_the_second(messages, short_bag, tmp_path):
+    half, whole = len(messages) // 2, tmp_path / 'whole'
+    whole.mkdir()
+    for number, some in ((2, messages[:half]), (10, messages[half:])):
+        part = tmp_path / f'part_{number}'
+        write(part, some, Bag(short_bag).types, StoragePlugin.MCAP, CompressionMode.NONE)
+        shutil.copy(next(part.glob('*.mcap')), whole / f'whole_{number}.mcap')
+    assert [file.name for file in Bag(whole).files] == ['whole_2.mcap', 'whole_10.mcap']
+    assert plain(Bag(whole).as_written()) == plain(messages)
+
+
 def test_a_lone_file_may_be_packed(short_bag, messages, tmp_path):
     packed = tmp_path / 'short.mcap.zstd'
     packed.write_bytes(zstandard.compress((short_bag / 'short.mcap').read_bytes()))
