@@ -10,7 +10,7 @@ are. A product of a command is a `whole_bag`, which appears when it is complete 
 """
 
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 import contextlib
 import dataclasses
 import enum
@@ -21,8 +21,9 @@ import tempfile
 from typing import Any, BinaryIO
 
 from ballscrew_monitor.recordings.bag_files import OWN
+from ballscrew_monitor.recordings.mcap_file import Integers, McapFile
 from ballscrew_monitor.recordings.message_definitions import message_definition, type_hash
-from mcap.writer import CompressionType, Writer
+import numpy as np
 from surrogate.files import InputError, replace_file
 import yaml
 
@@ -89,12 +90,13 @@ class BagWriter:
         self._first = self._last = 0
         self._chunk = 0
         self._file = self._open(directory)
-        self._writer = Writer(
+        self._writer = McapFile(
             self._file,
             chunk_size=CHUNK_SIZE,
-            compression=CompressionType.ZSTD if compress else CompressionType.NONE,
+            compress=compress,
+            profile='ros2',
+            library='ballscrew_monitor',
         )
-        self._writer.start(profile='ros2', library='ballscrew_monitor')
 
     def __enter__(self) -> 'BagWriter':
         """Return the writer itself."""
@@ -108,7 +110,7 @@ class BagWriter:
         """Let the file say `texts` of itself, and the metadata beside it those of this program."""
         if name == OWN:
             self._custom |= texts
-        self._writer.add_metadata(name, dict(texts))
+        self._writer.add_metadata(name, texts)
 
     def add_topic(self, topic: Topic) -> None:
         """Announce a topic; raises InputError when its type is not installed."""
@@ -129,7 +131,6 @@ class BagWriter:
         )
         self._channels[topic.name] = self._writer.register_channel(
             topic=topic.name,
-            message_encoding='cdr',
             schema_id=schema,
             metadata={
                 'offered_qos_profiles': yaml.safe_dump(topic.profiles, sort_keys=False),
@@ -150,19 +151,40 @@ class BagWriter:
         """Append a serialised message of an announced topic, by default numbered; times [ns]."""
         self._writer.add_message(
             self._channels[topic],
+            data,
             log_time=log_time,
-            data=data,
             publish_time=publish_time,
             sequence=self._counts[topic] if sequence is None else sequence,
         )
-        if not self._counts:
-            self._first = self._last = log_time
-        self._first, self._last = min(self._first, log_time), max(self._last, log_time)
-        self._counts[topic] += 1
+        self._note(topic, 1, log_time, log_time)
         self._chunk += len(data)
         if self._chunk >= CHUNK_SIZE:
             self._file.flush()
             self._chunk = 0
+
+    def write_many(
+        self, topics: Sequence[str], which: Integers, contents: Sequence[bytes], times: Integers
+    ) -> None:
+        """
+        Append serialised messages, each of one `which` of the `topics`, and number them.
+
+        `times` [ns] are those at which they were logged and count as published.
+
+        """
+        sequence = np.empty(len(which), np.int64)
+        for number, topic in enumerate(topics):
+            own = np.flatnonzero(which == number)
+            if len(own):
+                sequence[own] = np.arange(self._counts[topic], self._counts[topic] + len(own))
+                self._note(topic, len(own), int(times[own].min()), int(times[own].max()))
+        channels = np.array([self._channels[topic] for topic in topics])
+        self._writer.add_messages(channels[which], contents, log_time=times, sequence=sequence)
+
+    def _note(self, topic: str, count: int, first: int, last: int) -> None:
+        """Count messages and widen the span of log times [ns]."""
+        self._first = min(self._first, first) if self._counts else first
+        self._last = max(self._last, last)
+        self._counts[topic] += count
 
     def count(self, topic: str) -> int:
         """Return the number of messages written of `topic`."""

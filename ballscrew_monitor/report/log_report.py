@@ -10,7 +10,7 @@ from pathlib import Path
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.replay import ignore
 from ballscrew_monitor.report.case import AxisCase, badness, LogCase
-from ballscrew_monitor.report.judged_bag import write_judged_bag
+from ballscrew_monitor.report.judged_bag import judged_bag
 from ballscrew_monitor.report.judging import judge_log, OnShare
 from ballscrew_monitor.report.log_page import report_page
 from ballscrew_monitor.report.logs import EVENTS, JUDGED, PAGE, STATES, SUMMARY
@@ -68,12 +68,12 @@ def report_log(
 
     """
     with RowStore(out) as store:
-        log = judge_log(bag, parameters, on_share=on_share, rows=store)
+        with judged_bag(bag, parameters.values, out / JUDGED, parameters.metadata) as add_state:
+            log = judge_log(bag, parameters, on_share=on_share, rows=store, on_state=add_state)
         store.write(out / STATES)
         write_events(out / EVENTS, log)
         write_summary(out / SUMMARY, log)
         replace_file(out / PAGE, report_page(log).encode())
-        write_judged_bag(bag, parameters.values, out / JUDGED, parameters.metadata)
         return _result(log)
 
 
