@@ -5,7 +5,8 @@ Writes a bag that rosbag2 accepts: one MCAP file and the `metadata.yaml` beside 
 
 The file grows as `<name>.mcap.active`, in small chunks that are flushed, so that a crash costs
 little; it gets its name, and the metadata, when it is closed. Serialised messages go in as they
-are. A product of a command is a `whole_bag`, which appears when it is complete or not at all.
+are. A product of a command is a `whole_bag`, which appears when it is complete or not at all; its
+chunks are larger, so that fewer are to be remembered.
 
 """
 
@@ -28,7 +29,8 @@ from surrogate.files import InputError, replace_file
 import yaml
 
 ACTIVE = '.active'
-CHUNK_SIZE = 64 * 1024  # [bytes]
+CHUNK_SIZE = 64 * 1024  # [bytes] of what grows while others read it
+WHOLE_CHUNK_SIZE = 1024 * 1024  # [bytes] of what is complete or not there
 METADATA, METADATA_VERSION = 'metadata.yaml', 9
 FOREVER = {'sec': 9223372036, 'nsec': 854775807}
 
@@ -80,8 +82,15 @@ class Announced:
 class BagWriter:
     """One growing bag; use it as a context manager or call `close`."""
 
-    def __init__(self, directory: Path, name: str, *, compress: bool = True) -> None:
-        """Begin `directory/name.mcap.active`; raises InputError when that is impossible."""
+    def __init__(
+        self, directory: Path, name: str, *, compress: bool = True, chunk_size: int = CHUNK_SIZE
+    ) -> None:
+        """
+        Begin `directory/name.mcap.active`, in chunks of a size [bytes].
+
+        Raises InputError when that is impossible.
+
+        """
         self.path = directory / f'{name}.mcap'
         self._topics: dict[str, Announced] = {}
         self._channels: dict[str, int] = {}
@@ -92,7 +101,7 @@ class BagWriter:
         self._file = self._open(directory)
         self._writer = McapFile(
             self._file,
-            chunk_size=CHUNK_SIZE,
+            chunk_size=chunk_size,
             compress=compress,
             profile='ros2',
             library='ballscrew_monitor',
@@ -274,7 +283,7 @@ def whole_bag(directory: Path, name: str, *, compress: bool = True) -> Iterator[
     """
     directory = directory.resolve()
     with _growing(directory, name) as folder:
-        writer = BagWriter(Path(folder), name, compress=compress)
+        writer = BagWriter(Path(folder), name, compress=compress, chunk_size=WHOLE_CHUNK_SIZE)
         try:
             yield writer
             writer.close()

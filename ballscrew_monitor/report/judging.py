@@ -26,7 +26,7 @@ from ballscrew_monitor.report.survey import Surveyor
 OnShare = Callable[[float], None]
 """Told which share of a recording is judged [-]."""
 OnState = Callable[[TimedState], None]
-"""Handed a state; it is reused."""
+"""Handed a state that would be published."""
 
 
 class KeptRows(Protocol):
@@ -107,7 +107,8 @@ def judge_log(
     """
     Judge a recording and return what is said of it; its rows are kept in `rows`, if anywhere.
 
-    `on_state` is handed each state that would be published. Raises InputError when it cannot be read with the parameters.
+    `on_state` is handed each state that would be published. Raises InputError when it cannot be
+    read with the parameters.
 
     """
     rows = rows or NoRows()
