@@ -78,6 +78,19 @@ def test_the_judged_bag_holds_inputs_and_what_the_node_would_say(reported, short
     assert [log_time for log_time, _ in found] == speeds
 
 
+def test_the_judged_bag_reads_in_order_each_state_behind_its_cause(reported):
+    _, out = reported
+    found = [(one.log_time, one.topic) for one in Bag(out / 'judged').messages()]
+    assert [time for time, _ in found] == sorted(time for time, _ in found)
+    causes = set()
+    for log_time, topic in found:
+        if topic == '/joint_states':
+            causes.add(log_time)
+        elif topic.endswith('/state'):
+            assert log_time in causes
+    assert causes
+
+
 def test_the_judged_bag_says_of_what_log_it_is(short_bag, params, tmp_path):
     bag = Bag(short_bag)
     own = {'ballscrew_monitor.source': 'log.csv', 'ballscrew_monitor.mapping': '{}'}

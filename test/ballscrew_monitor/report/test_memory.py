@@ -90,8 +90,6 @@ def test_judging_holds_no_more_of_a_longer_recording(bags, small_batches):
 
 
 def test_a_report_holds_no_more_of_a_longer_recording(bags, small_batches, tmp_path):
-    """The page, drawn of a fixed number of parts, is left out: it takes long to trace."""
-
     parameters = LogParameters(values=VALUES, origin='mine')
 
     def report(bag):
