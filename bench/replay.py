@@ -5,7 +5,8 @@ Measure how many times faster than real time recordings are judged, on one core.
 
 Usage: python bench/replay.py [--seconds S] [--long L] [--repeats N]. Makes a recording of one axis
 at 1 kHz of S seconds and one at 100 Hz of L seconds in a temporary folder, and prints duration
-over processor time, which other work on the machine changes little. Beside them the time of one
+over processor time, which other work on the machine changes little: judged alone, and end to end
+as `ballscrew replay --out` does it, with table, page and judged bag. Beside them the time of one
 Python call, measured in the same run, and the lookup of points all over the surface.
 
 """
@@ -23,6 +24,8 @@ from ballscrew_monitor.node import parameters
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
 from ballscrew_monitor.recordings.replay import replay, replay_columns
+from ballscrew_monitor.report.log_report import LogResult, report_log
+from ballscrew_monitor.report.parameters import LogParameters
 from geometry_msgs.msg import WrenchStamped
 import numpy as np
 from rclpy.serialization import serialize_message
@@ -79,6 +82,11 @@ def run_through(items: Iterable[object]) -> None:
         pass
 
 
+def report(bag: Bag, out: Path) -> LogResult:
+    """Write the report of a recording with states each 0.1 s."""
+    return report_log(bag, out, LogParameters(values=values(0.1), origin='the bench'))
+
+
 def lookups(repeats: int) -> float:
     """Return how many points are looked up in a second."""
     surface, drawn = Surface.load(shipped_surface()), np.random.default_rng(1)
@@ -99,6 +107,7 @@ def measure(asked: argparse.Namespace, folder: Path) -> None:
     rows = (
         ('1 kHz, columns', 100, quick, lambda: replay_columns(quick, values(0.1))),
         ('1 kHz, states each 0.1 s', 20, quick, lambda: replay(quick, values(0.1), at_once=True)),
+        ('1 kHz, report, end to end', 60, quick, lambda: [report(quick, folder / 'report')]),
         ('1 kHz, sample by sample', 10, quick, lambda: replay(quick, values(0.1))),
         ('100 Hz, columns', 1000, long, lambda: replay_columns(long, values(0.1))),
     )

@@ -45,6 +45,7 @@ SLOW = (
     'ballscrew_monitor/report/test_command.py',
     'ballscrew_monitor/report/test_course.py',
     'ballscrew_monitor/report/test_log_page.py',
+    'ballscrew_monitor/report/test_memory.py',
     'ballscrew_monitor/report/test_room.py',
     'ballscrew_monitor/test_cli.py',
     'ballscrew_monitor/test_signals.py',

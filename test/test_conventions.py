@@ -99,6 +99,7 @@ THEMES = {
     'ballscrew_monitor/node/test_policy.py',
     'ballscrew_monitor/node/test_solve.py',
     'ballscrew_monitor/recordings/test_compatibility.py',
+    'ballscrew_monitor/report/test_memory.py',
     'ballscrew_monitor/test_signals.py',
     'config/test_deployment.py',
     'config/test_parameter_files.py',

@@ -5,12 +5,13 @@ Writes a bag that rosbag2 accepts: one MCAP file and the `metadata.yaml` beside 
 
 The file grows as `<name>.mcap.active`, in small chunks that are flushed, so that a crash costs
 little; it gets its name, and the metadata, when it is closed. Serialised messages go in as they
-are. A product of a command is a `whole_bag`, which appears when it is complete or not at all.
+are. A product of a command is a `whole_bag`, which appears when it is complete or not at all; its
+chunks are larger, so that fewer are to be remembered.
 
 """
 
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 import contextlib
 import dataclasses
 import enum
@@ -21,13 +22,15 @@ import tempfile
 from typing import Any, BinaryIO
 
 from ballscrew_monitor.recordings.bag_files import OWN
+from ballscrew_monitor.recordings.mcap_file import Integers, McapFile
 from ballscrew_monitor.recordings.message_definitions import message_definition, type_hash
-from mcap.writer import CompressionType, Writer
+import numpy as np
 from surrogate.files import InputError, replace_file
 import yaml
 
 ACTIVE = '.active'
-CHUNK_SIZE = 64 * 1024  # [bytes]
+CHUNK_SIZE = 64 * 1024  # [bytes] of what grows while others read it
+WHOLE_CHUNK_SIZE = 1024 * 1024  # [bytes] of what is complete or not there
 METADATA, METADATA_VERSION = 'metadata.yaml', 9
 FOREVER = {'sec': 9223372036, 'nsec': 854775807}
 
@@ -79,8 +82,15 @@ class Announced:
 class BagWriter:
     """One growing bag; use it as a context manager or call `close`."""
 
-    def __init__(self, directory: Path, name: str, *, compress: bool = True) -> None:
-        """Begin `directory/name.mcap.active`; raises InputError when that is impossible."""
+    def __init__(
+        self, directory: Path, name: str, *, compress: bool = True, chunk_size: int = CHUNK_SIZE
+    ) -> None:
+        """
+        Begin `directory/name.mcap.active`, in chunks of a size [bytes].
+
+        Raises InputError when that is impossible.
+
+        """
         self.path = directory / f'{name}.mcap'
         self._topics: dict[str, Announced] = {}
         self._channels: dict[str, int] = {}
@@ -89,12 +99,13 @@ class BagWriter:
         self._first = self._last = 0
         self._chunk = 0
         self._file = self._open(directory)
-        self._writer = Writer(
+        self._writer = McapFile(
             self._file,
-            chunk_size=CHUNK_SIZE,
-            compression=CompressionType.ZSTD if compress else CompressionType.NONE,
+            chunk_size=chunk_size,
+            compress=compress,
+            profile='ros2',
+            library='ballscrew_monitor',
         )
-        self._writer.start(profile='ros2', library='ballscrew_monitor')
 
     def __enter__(self) -> 'BagWriter':
         """Return the writer itself."""
@@ -108,7 +119,7 @@ class BagWriter:
         """Let the file say `texts` of itself, and the metadata beside it those of this program."""
         if name == OWN:
             self._custom |= texts
-        self._writer.add_metadata(name, dict(texts))
+        self._writer.add_metadata(name, texts)
 
     def add_topic(self, topic: Topic) -> None:
         """Announce a topic; raises InputError when its type is not installed."""
@@ -129,7 +140,6 @@ class BagWriter:
         )
         self._channels[topic.name] = self._writer.register_channel(
             topic=topic.name,
-            message_encoding='cdr',
             schema_id=schema,
             metadata={
                 'offered_qos_profiles': yaml.safe_dump(topic.profiles, sort_keys=False),
@@ -150,19 +160,40 @@ class BagWriter:
         """Append a serialised message of an announced topic, by default numbered; times [ns]."""
         self._writer.add_message(
             self._channels[topic],
+            data,
             log_time=log_time,
-            data=data,
             publish_time=publish_time,
             sequence=self._counts[topic] if sequence is None else sequence,
         )
-        if not self._counts:
-            self._first = self._last = log_time
-        self._first, self._last = min(self._first, log_time), max(self._last, log_time)
-        self._counts[topic] += 1
+        self._note(topic, 1, log_time, log_time)
         self._chunk += len(data)
         if self._chunk >= CHUNK_SIZE:
             self._file.flush()
             self._chunk = 0
+
+    def write_many(
+        self, topics: Sequence[str], which: Integers, contents: Sequence[bytes], times: Integers
+    ) -> None:
+        """
+        Append serialised messages, each of one `which` of the `topics`, and number them.
+
+        `times` [ns] are those at which they were logged and count as published.
+
+        """
+        sequence = np.empty(len(which), np.int64)
+        for number, topic in enumerate(topics):
+            own = np.flatnonzero(which == number)
+            if len(own):
+                sequence[own] = np.arange(self._counts[topic], self._counts[topic] + len(own))
+                self._note(topic, len(own), int(times[own].min()), int(times[own].max()))
+        channels = np.array([self._channels[topic] for topic in topics])
+        self._writer.add_messages(channels[which], contents, log_time=times, sequence=sequence)
+
+    def _note(self, topic: str, count: int, first: int, last: int) -> None:
+        """Count messages and widen the span of log times [ns]."""
+        self._first = min(self._first, first) if self._counts else first
+        self._last = max(self._last, last)
+        self._counts[topic] += count
 
     def count(self, topic: str) -> int:
         """Return the number of messages written of `topic`."""
@@ -252,7 +283,7 @@ def whole_bag(directory: Path, name: str, *, compress: bool = True) -> Iterator[
     """
     directory = directory.resolve()
     with _growing(directory, name) as folder:
-        writer = BagWriter(Path(folder), name, compress=compress)
+        writer = BagWriter(Path(folder), name, compress=compress, chunk_size=WHOLE_CHUNK_SIZE)
         try:
             yield writer
             writer.close()

@@ -30,40 +30,53 @@ class TimedState(NamedTuple):
     event: Event | None
 
 
-def own_states(bag: Bag, on_done: OnDone = None) -> Iterator[TimedState]:
+Part = JudgedColumns | TimedState | AxisOutcome
+"""What comes out of judging: a block of rows, a state that was published, or all of an axis."""
+
+
+def own_parts(bag: Bag, on_done: OnDone = None) -> Iterator[Part]:
     """
-    Yield every state that the node published.
+    Yield every state that the node published, the rows that it judged, and all of each axis last.
 
-    An event that an acknowledgement has ended comes with the state after that.
+    The rows come in blocks. An event that an acknowledgement has ended comes with the state after
+    that.
 
     """
-    ended: dict[str, Event | None] = {}
-    last: dict[str, Event] = {}
-    for step in OwnRecording(bag).steps(on_done):
-        name, monitor = step.axis.name, step.axis.monitor
-        state = _take(step)
-        if step.because and name in last and last[name].active and not monitor.event.active:
-            ended[name] = monitor.event
-        last[name] = monitor.event
-        if state is not None:
-            event = state.event or ended.pop(name, None)
-            yield TimedState(_log_time(step), step.axis, state, event)
-
-
-def own_columns(bag: Bag, on_done: OnDone = None) -> Iterator[JudgedColumns | AxisOutcome]:
-    """Yield every row that the node judged, in blocks, and at last what each axis comes to."""
-    collectors: dict[str, RowCollector] = {}
+    followed: dict[str, _Followed] = {}
     for step in OwnRecording(bag).steps(on_done):
         name = step.axis.name
-        if name not in collectors:
-            collectors[name] = RowCollector(name, step.axis.monitor)
-        elif step.because:
-            collectors[name].observe(step.axis.monitor)
-        _take(step)
-        if len(collectors[name]) >= BLOCK:
-            yield collectors[name].block()
-    yield from (one.block() for one in collectors.values() if len(one))
-    yield from (one.outcome() for one in collectors.values())
+        if name not in followed:
+            followed[name] = _Followed(step.axis)
+        yield from followed[name].take(step)
+    collectors = [one.collector for one in followed.values()]
+    yield from (one.block() for one in collectors if len(one))
+    yield from (one.outcome() for one in collectors)
+
+
+class _Followed:
+    """An axis whose steps are followed: its rows, and an event of which no state has told yet."""
+
+    def __init__(self, axis: Axis) -> None:
+        self.collector = RowCollector(axis.name, axis.monitor)
+        self._last: Event | None = None
+        self._ended: Event | None = None
+
+    def take(self, step: Step) -> Iterator[JudgedColumns | TimedState]:
+        """Let the monitor take a step; yield a state that is due, and rows when they are many."""
+        monitor = step.axis.monitor
+        if step.because:
+            self.collector.observe(monitor)
+            if self._last is not None and self._last.active and not monitor.event.active:
+                self._ended = monitor.event
+        state = _take(step)
+        self._last = monitor.event
+        if state is not None:
+            event = state.event
+            if event is None:
+                event, self._ended = self._ended, None
+            yield TimedState(_log_time(step), step.axis, state, event)
+        if len(self.collector) >= BLOCK:
+            yield self.collector.block()
 
 
 def _log_time(step: Step) -> int:

@@ -29,7 +29,7 @@ from ballscrew_monitor.recordings.bulk.source import OnDone, ordered_entries, pl
 from ballscrew_monitor.recordings.columns import AxisOutcome, JudgedColumns
 from ballscrew_monitor.recordings.decoding import decode, named_instead
 from ballscrew_monitor.recordings.own_recording import is_as_recorded
-from ballscrew_monitor.recordings.own_replay import own_columns, own_states, TimedState
+from ballscrew_monitor.recordings.own_replay import own_parts, Part, TimedState
 from ballscrew_monitor.recordings.rows import RowCollector
 from ballscrew_msgs.msg import BallScrewState, OutOfZone
 from surrogate.files import InputError
@@ -44,6 +44,14 @@ class Judged(NamedTuple):
 
     state: BallScrewState
     event: OutOfZone | None
+
+
+class Due(NamedTuple):
+    """A state, the number of its axis, and the place in a batch of the entry it is due at."""
+
+    place: int
+    axis: int
+    state: State
 
 
 def speed_messages(bag: Bag, axes: Sequence[Axis]) -> dict[str, int]:
@@ -94,7 +102,7 @@ def replay_states(
 ) -> Iterator[TimedState]:
     """Yield what `replay` does before it is made a message."""
     if is_as_recorded(bag, values):
-        return own_states(bag, on_done)
+        return (part for part in own_parts(bag, on_done) if isinstance(part, TimedState))
     axes = axes_for(bag, values)
     return _states(_entries(bag, axes, values, on_done), axes, at_once=at_once)
 
@@ -110,9 +118,19 @@ def replay_columns(
 
     """
     if is_as_recorded(bag, values):
-        return own_columns(bag, on_done)
+        return (part for part in own_parts(bag, on_done) if not isinstance(part, TimedState))
     axes = axes_for(bag, values)
     return _columns(_entries(bag, axes, values, on_done), axes, at_once=at_once)
+
+
+def replay_parts(
+    bag: Bag, values: Mapping[str, Any], *, on_done: OnDone = ignore
+) -> Iterator[Part]:
+    """Yield what `replay_columns` and `replay_states` do, of many samples at once, judged once."""
+    if is_as_recorded(bag, values):
+        return own_parts(bag, on_done)
+    axes = axes_for(bag, values)
+    return _parts(_entries(bag, axes, values, on_done), axes)
 
 
 def axes_for(bag: Bag, values: Mapping[str, Any]) -> list[Axis]:
@@ -150,14 +168,35 @@ def _states(
     judges = [AxisJudge(axis, at_once=at_once) for axis in axes]
     for entries in batches:
         found = [
-            (int(places[at]), number, state)
+            Due(int(places[at]), number, state)
             for number, judge in enumerate(judges)
             for places in [places_of_axis(entries, number)]
             for at, state in judge.states(entries.take(places))
         ]
-        for place, number, state in sorted(found, key=operator.itemgetter(0, 1)):
-            log_time = int(entries.log_time[place])
-            yield TimedState(log_time, axes[number], state, state.event)
+        yield from _in_order(found, entries, axes)
+
+
+def _parts(batches: Iterator[Entries], axes: list[Axis]) -> Iterator[Part]:
+    judges = [AxisJudge(axis) for axis in axes]
+    collectors = [RowCollector(axis.name, axis.monitor) for axis in axes]
+    for entries in batches:
+        found: list[Due] = []
+        for number, (judge, collector) in enumerate(zip(judges, collectors, strict=True)):
+            places = places_of_axis(entries, number)
+            for part in judge.both(entries.take(places), collector):
+                if isinstance(part, JudgedColumns):
+                    yield part
+                else:
+                    found.append(Due(int(places[part[0]]), number, part[1]))
+        yield from _in_order(found, entries, axes)
+    yield from (collector.outcome() for collector in collectors)
+
+
+def _in_order(found: list[Due], entries: Entries, axes: list[Axis]) -> Iterator[TimedState]:
+    """Yield the states of a batch in the order of the entries that they are due at."""
+    for one in sorted(found, key=operator.itemgetter(0, 1)):
+        log_time = int(entries.log_time[one.place])
+        yield TimedState(log_time, axes[one.axis], one.state, one.state.event)
 
 
 def _messages(states: Iterator[TimedState]) -> Iterator[Judged]:

@@ -2,9 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """A judged bag: inputs of a recording with the states, events and diagnostics that they give."""
 
-from collections.abc import Iterator, Mapping
-import heapq
-import operator
+from collections.abc import Callable, Iterator, Mapping
+import contextlib
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -21,11 +20,12 @@ from ballscrew_monitor.node.messages import (
 from ballscrew_monitor.node.parameters import NODE_NAME
 from ballscrew_monitor.node.topics import input_topics, output, with_types
 from ballscrew_monitor.recordings.bag import Bag
-from ballscrew_monitor.recordings.bag_writer import whole_bag
+from ballscrew_monitor.recordings.bag_writer import BagWriter, whole_bag
+from ballscrew_monitor.recordings.bulk.batches import Batch, batches, END
 from ballscrew_monitor.recordings.own_replay import TimedState
 from ballscrew_monitor.recordings.recorded_topics import DIAGNOSTICS, recorded_topics
-from ballscrew_monitor.recordings.replay import replay_states
 from diagnostic_msgs.msg import DiagnosticArray
+import numpy as np
 from rclpy.serialization import serialize_message
 
 NAME = 'judged'
@@ -40,31 +40,63 @@ class Timed(NamedTuple):
     data: bytes
 
 
-def write_judged_bag(
+@contextlib.contextmanager
+def judged_bag(
     bag: Bag, values: Mapping[str, Any], directory: Path, metadata: Mapping[str, str]
-) -> None:
+) -> Iterator[Callable[[TimedState], None]]:
     """
-    Write the judged bag of `bag` with the parameters `values`, on its log times.
+    Give what takes the states of `bag`; its judged bag is in `directory` when the block ends.
 
-    `metadata` are what it says of the log, and of the parameters.
+    It was judged with the parameters `values`. The judged bag is on its log times; `metadata` are
+    what it says of the log, and of the parameters. Raises InputError as `whole_bag` does.
 
     """
     values = with_types(values, bag.types)
-    states = replay_states(bag, values, at_once=True)
     with whole_bag(directory, NAME) as writer:
         if metadata:
             writer.add_metadata(metadata)
         for topic in recorded_topics(values):
             writer.add_topic(topic)
-        for one in heapq.merge(
-            _inputs(bag, values), Answers().messages(states), key=operator.itemgetter(0)
-        ):
-            writer.write(one.topic, one.data, log_time=one.log_time, publish_time=one.log_time)
+        growing = _Growing(bag, values, writer)
+        yield growing.add
+        growing.copy_inputs(END)
 
 
-def _inputs(bag: Bag, values: Mapping[str, Any]) -> Iterator[Timed]:
-    for message in bag.messages(input_topics(values)):
-        yield Timed(message.log_time, message.topic, message.data)
+class _Growing:
+    """A judged bag, to which inputs are added as far as the judging has come."""
+
+    def __init__(self, bag: Bag, values: Mapping[str, Any], writer: BagWriter) -> None:
+        self._inputs = batches(bag, input_topics(values))
+        self._until = 0  # [ns] all inputs logged before that are there
+        self._answers, self._writer = Answers(), writer
+
+    def add(self, state: TimedState) -> None:
+        """Add what the node would say with a state, behind the inputs up to its log time."""
+        self.copy_inputs(state.log_time)
+        for one in self._answers.messages(state):
+            self._writer.write(
+                one.topic, one.data, log_time=one.log_time, publish_time=one.log_time
+            )
+
+    def copy_inputs(self, log_time: int) -> None:
+        """Add all inputs up to a log time [ns]."""
+        while self._until <= log_time and (batch := next(self._inputs, None)) is not None:
+            _copy(batch, self._writer)
+            self._until = batch.until
+
+
+def _copy(batch: Batch, writer: BagWriter) -> None:
+    """Write the messages of a batch in the order of their log times."""
+    found = list(batch.topics.values())
+    if not found:
+        return
+    which = np.repeat(np.arange(len(found)), [len(one) for one in found])
+    times = np.concatenate([one.log_time for one in found])
+    order = np.lexsort((np.concatenate([one.place for one in found]), times))
+    contents = [content for one in found for content in one.contents()]
+    writer.write_many(
+        list(batch.topics), which[order], [contents[at] for at in order.tolist()], times[order]
+    )
 
 
 class Answers:
@@ -76,23 +108,22 @@ class Answers:
         self._events: dict[str, Event] = {}
         self._said: dict[str, tuple[Any, int]] = {}
 
-    def messages(self, states: Iterator[TimedState]) -> Iterator[Timed]:
-        """Yield what the node would say, each message at the log time of its cause."""
-        for one in states:
-            name = one.axis.name
-            if name not in self._writers:
-                self._writers[name] = StateWriter(name, TIERS[one.axis.surface.tier])
-                self._events[name] = Event()
-                yield self._surface_info(one)
-            data = serialize_message(self._writers[name].write(one.state))
-            yield Timed(one.log_time, output(name, 'state'), data)
-            if one.event is not None:
-                self._events[name] = one.event
-                event = serialize_message(
-                    out_of_zone_message(name, one.event, shelved=one.state.shelving.until != 0)
-                )
-                yield Timed(one.log_time, output(name, 'out_of_zone'), event)
-            yield from self._diagnostics(one)
+    def messages(self, one: TimedState) -> Iterator[Timed]:
+        """Yield what the node would say with a state, at the log time of its cause."""
+        name = one.axis.name
+        if name not in self._writers:
+            self._writers[name] = StateWriter(name, TIERS[one.axis.surface.tier])
+            self._events[name] = Event()
+            yield self._surface_info(one)
+        data = serialize_message(self._writers[name].write(one.state))
+        yield Timed(one.log_time, output(name, 'state'), data)
+        if one.event is not None:
+            self._events[name] = one.event
+            event = serialize_message(
+                out_of_zone_message(name, one.event, shelved=one.state.shelving.until != 0)
+            )
+            yield Timed(one.log_time, output(name, 'out_of_zone'), event)
+        yield from self._diagnostics(one)
 
     def _surface_info(self, one: TimedState) -> Timed:
         settings = one.axis.monitor.settings

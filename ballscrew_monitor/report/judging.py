@@ -7,7 +7,7 @@ Printing asks for no more than the node: nothing here loads what pages and table
 
 """
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 import functools
 from typing import Any, Protocol
 
@@ -17,13 +17,16 @@ from ballscrew_monitor.node.axis import is_configured, load_surface, scalings_of
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.columns import AxisOutcome, JudgedColumns
 from ballscrew_monitor.recordings.own_recording import is_as_recorded
-from ballscrew_monitor.recordings.replay import ignore, replay_columns
+from ballscrew_monitor.recordings.own_replay import TimedState
+from ballscrew_monitor.recordings.replay import ignore, replay_columns, replay_parts
 from ballscrew_monitor.report.case import AxisCase, InputSetting, LogCase
 from ballscrew_monitor.report.parameters import LogParameters
 from ballscrew_monitor.report.survey import Surveyor
 
 OnShare = Callable[[float], None]
 """Told which share of a recording is judged [-]."""
+OnState = Callable[[TimedState], None]
+"""Handed a state that would be published."""
 
 
 class KeptRows(Protocol):
@@ -99,17 +102,19 @@ def judge_log(
     *,
     on_share: OnShare = ignore,
     rows: KeptRows | None = None,
+    on_state: OnState | None = None,
 ) -> LogCase:
     """
     Judge a recording and return what is said of it; its rows are kept in `rows`, if anywhere.
 
-    Raises InputError when it cannot be read with the parameters.
+    `on_state` is handed each state that would be published. Raises InputError when it cannot be
+    read with the parameters.
 
     """
     rows = rows or NoRows()
     makers: dict[str, CaseMaker] = {}
     outcomes = []
-    for part in replay_columns(bag, parameters.values, on_done=on_share):
+    for part in _parts(bag, parameters.values, on_share, on_state):
         if isinstance(part, AxisOutcome):
             outcomes.append(part)
         elif len(part):
@@ -135,6 +140,20 @@ def judge_log(
         assumptions=parameters.assumptions,
         notes=_notes(parameters, bag),
     )
+
+
+def _parts(
+    bag: Bag, values: Mapping[str, Any], on_share: OnShare, on_state: OnState | None
+) -> Iterator[JudgedColumns | AxisOutcome]:
+    """Yield rows and outcomes; states, which cost more than these, are made only if wanted."""
+    if on_state is None:
+        yield from replay_columns(bag, values, on_done=on_share)
+        return
+    for part in replay_parts(bag, values, on_done=on_share):
+        if isinstance(part, TimedState):
+            on_state(part)
+        else:
+            yield part
 
 
 def _known(parameters: LogParameters, axis: str) -> dict[str, Any]:

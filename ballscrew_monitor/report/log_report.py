@@ -10,7 +10,7 @@ from pathlib import Path
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.replay import ignore
 from ballscrew_monitor.report.case import AxisCase, badness, LogCase
-from ballscrew_monitor.report.judged_bag import write_judged_bag
+from ballscrew_monitor.report.judged_bag import judged_bag
 from ballscrew_monitor.report.judging import judge_log, OnShare
 from ballscrew_monitor.report.log_page import report_page
 from ballscrew_monitor.report.logs import EVENTS, JUDGED, PAGE, STATES, SUMMARY
@@ -19,6 +19,9 @@ from ballscrew_monitor.report.products import write_events, write_summary
 from ballscrew_monitor.report.store import RowStore
 from ballscrew_monitor.report.verdict import verdicts_of
 from surrogate.files import replace_file
+
+JUDGED_SHARE, STORED_SHARE = 0.92, 0.95
+"""Share of the work [-] that is done when all is judged, and when the rows are one file."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -64,16 +67,26 @@ def report_log(
     """
     Judge a recording; write page, states, events, summary and judged bag into `out`.
 
-    Raises InputError when it cannot be read with the parameters; then nothing is written.
+    `on_share` is told which share of all that is done [-]. What stops it, be it an error or an
+    interrupt, leaves whole files alone. Raises InputError when it cannot be read with the
+    parameters; then nothing is written.
 
     """
     with RowStore(out) as store:
-        log = judge_log(bag, parameters, on_share=on_share, rows=store)
+        with judged_bag(bag, parameters.values, out / JUDGED, parameters.metadata) as add_state:
+            log = judge_log(
+                bag,
+                parameters,
+                on_share=lambda judged: on_share(JUDGED_SHARE * judged),
+                rows=store,
+                on_state=add_state,
+            )
         store.write(out / STATES)
+        on_share(STORED_SHARE)
         write_events(out / EVENTS, log)
         write_summary(out / SUMMARY, log)
         replace_file(out / PAGE, report_page(log).encode())
-        write_judged_bag(bag, parameters.values, out / JUDGED, parameters.metadata)
+        on_share(1.0)
         return _result(log)
 
 

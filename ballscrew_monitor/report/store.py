@@ -63,8 +63,8 @@ def block_of(frame: pl.DataFrame) -> JudgedColumns:
 
 
 def _named(values: Any, kind: type[enum.IntEnum]) -> pl.Series:
-    names = np.array([member.name for member in kind])
-    return pl.Series(names[values], dtype=pl.Enum(names.tolist()))
+    names = [member.name for member in kind]
+    return pl.Series(names, dtype=pl.Enum(names)).gather(values)
 
 
 class RowStore:

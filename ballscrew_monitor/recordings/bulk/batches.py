@@ -124,7 +124,8 @@ def _note(chunk: _Chunk, damage: ChunkDamage) -> None:
     )
     if not storage.salvage:
         raise InputError(text)
-    storage.note = f'{storage.note}; {text}' if storage.note else text
+    if text not in storage.note:  # whoever reads the file again finds the same
+        storage.note = f'{storage.note}; {text}' if storage.note else text
 
 
 def _topics(waiting: Sequence[tuple[_Chunk, Found]]) -> dict[str, Messages]:

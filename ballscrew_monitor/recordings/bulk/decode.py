@@ -53,6 +53,11 @@ class Messages:
             place=self.place[which],
         )
 
+    def contents(self) -> list[bytes]:
+        """Return all messages."""
+        spans = zip(self.begin.tolist(), (self.begin + self.size).tolist(), strict=True)
+        return [self.data[begin:end] for begin, end in spans]
+
     def content(self, at: int) -> bytes:
         """Return one message."""
         begin = int(self.begin[at])

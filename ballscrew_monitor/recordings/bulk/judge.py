@@ -56,17 +56,13 @@ class AxisJudge:
         """Judge entries; yield each state that is due and the place of the entry it is due at."""
         for begin, part in self._parts(entries):
             if isinstance(part, Judging):
-                for at, state in part.states(self._monitor):
-                    yield begin + at, state
-                continue
-            for at in range(len(part)):
-                due = self._take(part, at)
-                if due is not None:
-                    yield begin + at, due
+                yield from ((begin + at, state) for at, state in part.states(self._monitor))
+            else:
+                yield from self._taken(begin, part)
 
     def columns(self, entries: Entries, collector: RowCollector) -> Iterator[JudgedColumns]:
         """Judge entries; yield the rows in blocks; the collector observes the monitor."""
-        for _, part in self._parts(entries):
+        for begin, part in self._parts(entries):
             if isinstance(part, Judging):
                 rows = part.columns()
                 remind(self._monitor, part.finish())
@@ -74,8 +70,24 @@ class AxisJudge:
                     collector.add(rows, part.events.edges.values(), part.last_reason)
                     yield rows
                 continue
-            for at in range(len(part)):
-                self._take(part, at)
+            for _ in self._taken(begin, part):
+                pass
+            if len(collector):
+                yield collector.block()
+
+    def both(
+        self, entries: Entries, collector: RowCollector
+    ) -> Iterator[JudgedColumns | tuple[int, State]]:
+        """Judge entries; yield what `columns` yields and what `states` does."""
+        for begin, part in self._parts(entries):
+            if isinstance(part, Judging):
+                rows = part.columns()
+                yield from ((begin + at, state) for at, state in part.states(self._monitor))
+                if len(rows):
+                    collector.add(rows, part.events.edges.values(), part.last_reason)
+                    yield rows
+                continue
+            yield from self._taken(begin, part)
             if len(collector):
                 yield collector.block()
 
@@ -94,6 +106,13 @@ class AxisJudge:
                 begin, stop = stop, stop + self._turn if self._at_once else len(part)
                 yield at + begin, part.take(slice(begin, stop))
             at += min(stop, len(part))
+
+    def _taken(self, begin: int, part: Entries) -> Iterator[tuple[int, State]]:
+        """Let the monitor judge entries; yield the states that are due, and their places."""
+        for at in range(len(part)):
+            due = self._take(part, at)
+            if due is not None:
+                yield begin + at, due
 
     def _take(self, entries: Entries, at: int) -> State | None:
         """Let the monitor judge an entry."""

@@ -12,6 +12,7 @@ from mcap.exceptions import EndOfFile
 from mcap.reader import make_reader
 from mcap.records import Message
 from mcap.stream_reader import StreamReader
+import numpy as np
 import pytest
 from surrogate.files import InputError
 import yaml
@@ -64,6 +65,31 @@ def test_the_metadata_says_what_is_inside(tmp_path):
         for entry in info['topics_with_message_count']
     }
     assert topics == {'/a': (3, 'volatile'), '/b': (1, 'transient_local')}
+
+
+def test_many_messages_count_as_each_does(tmp_path):
+    times = np.array([700, 500, 900, 600])
+    with BagWriter(tmp_path, 'bag') as writer:
+        writer.add_topic(HEADERS)
+        writer.add_topic(LATCHED)
+        write(writer, 1)
+        writer.write_many(
+            ['/b', '/a'], np.array([1, 1, 0, 1]), [b'one', b'two', b'three', b'four'], times
+        )
+        assert (writer.count('/a'), writer.count('/b'), writer.total) == (4, 1, 5)
+    found = [(one.topic, one.log_time, one.sequence, one.data) for one in Bag(tmp_path).messages()]
+    assert found == [
+        ('/a', 500, 2, b'two'),
+        ('/a', 600, 3, b'four'),
+        ('/a', 700, 1, b'one'),
+        ('/b', 900, 0, b'three'),
+        ('/a', 1000, 0, DATA),
+    ]
+    content = yaml.safe_load((tmp_path / 'metadata.yaml').read_text())
+    info = content['rosbag2_bagfile_information']
+    assert info['message_count'] == 5
+    assert info['starting_time'] == {'nanoseconds_since_epoch': 500}
+    assert info['duration'] == {'nanoseconds': 500}
 
 
 def test_it_gets_its_name_when_it_is_closed(tmp_path):

@@ -10,7 +10,7 @@ from ballscrew_monitor.node.topics import absolute
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
 from ballscrew_monitor.recordings.replay import replay
-from ballscrew_monitor.report.log_report import report_log
+from ballscrew_monitor.report.log_report import JUDGED_SHARE, report_log, STORED_SHARE
 from ballscrew_monitor.report.parameters import LogParameters, parameters_for
 from ballscrew_msgs.msg import BallScrewState
 import polars as pl
@@ -78,6 +78,19 @@ def test_the_judged_bag_holds_inputs_and_what_the_node_would_say(reported, short
     assert [log_time for log_time, _ in found] == speeds
 
 
+def test_the_judged_bag_reads_in_order_each_state_behind_its_cause(reported):
+    _, out = reported
+    found = [(one.log_time, one.topic) for one in Bag(out / 'judged').messages()]
+    assert [time for time, _ in found] == sorted(time for time, _ in found)
+    causes = set()
+    for log_time, topic in found:
+        if topic == '/joint_states':
+            causes.add(log_time)
+        elif topic.endswith('/state'):
+            assert log_time in causes
+    assert causes
+
+
 def test_the_judged_bag_says_of_what_log_it_is(short_bag, params, tmp_path):
     bag = Bag(short_bag)
     own = {'ballscrew_monitor.source': 'log.csv', 'ballscrew_monitor.mapping': '{}'}
@@ -100,6 +113,43 @@ def test_the_judged_bag_carries_the_parameters_it_was_judged_with(short_bag, par
     assert again.values == read_file(given)
     assert again.values['x.limits.rcs'] == 0.5
     assert not again.nominal
+
+
+def test_the_share_that_is_done_rises_to_one_with_all_products(short_bag, params, tmp_path):
+    bag, shares, there = Bag(short_bag), [], []
+
+    def on_share(share):
+        shares.append(share)
+        there.append(sorted(path.name for path in tmp_path.glob('[a-z]*')))
+
+    report_log(bag, tmp_path, parameters_for(bag, None, params), on_share=on_share)
+    assert shares == sorted(shares)
+    assert shares[-3:] == [JUDGED_SHARE, STORED_SHARE, 1.0]
+    assert there[-3] == []
+    assert there[-2] == ['judged', 'states.parquet']
+    assert there[-1] == sorted(path.name for path in tmp_path.iterdir() if path.name[0] != '.')
+
+
+@pytest.mark.parametrize('share', [0.0, JUDGED_SHARE, STORED_SHARE, 1.0])
+def test_an_interrupt_leaves_whole_files_alone(reported, short_bag, params, tmp_path, share):
+    _, whole = reported
+    bag = Bag(short_bag)
+
+    def interrupt(done):
+        if done >= share:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        report_log(bag, tmp_path, parameters_for(bag, None, params), on_share=interrupt)
+    left = {path.relative_to(tmp_path) for path in tmp_path.rglob('*') if path.is_file()}
+    assert (left == set()) == (share <= JUDGED_SHARE)
+    for name in left:
+        if name.suffix == '.mcap':  # what the middleware leaves between fields is not fixed
+            Bag(tmp_path / name).verify()
+            assert Bag(tmp_path / name).topics == Bag(whole / name).topics
+        else:
+            assert (tmp_path / name).read_bytes() == (whole / name).read_bytes()
+    assert not [path for path in tmp_path.iterdir() if path.name.startswith('.')]
 
 
 def test_a_message_that_does_not_decode_is_counted(short_bag, params, tmp_path):

@@ -16,7 +16,7 @@ from ballscrew_monitor.node import parameters
 from ballscrew_monitor.node.axis import build_axis, settings_of
 from ballscrew_monitor.recordings.bulk.entries import entries_of, joined, Kind, made, TICK_SOURCE
 from ballscrew_monitor.recordings.bulk.judge import AxisJudge
-from ballscrew_monitor.recordings.columns import COLUMNS
+from ballscrew_monitor.recordings.columns import COLUMNS, JudgedColumns
 from ballscrew_monitor.recordings.columns import joined as joined_columns
 from ballscrew_monitor.recordings.rows import RowCollector
 from hypothesis import given, settings
@@ -237,3 +237,24 @@ def test_rows_agree_whatever_happens(made_up, turn, delay, period):
 @given(**EXAMPLES)
 def test_states_agree_whatever_happens(made_up, turn, delay, period):
     compare_states(told(made_up), turn, **changed(delay, period))
+
+
+@settings(max_examples=30)
+@given(**EXAMPLES)
+def test_rows_and_states_at_once_are_those_of_each(made_up, turn, delay, period):
+    entries = entries_from(told(made_up))
+    for_rows, for_states, for_both = (axis_of(VALUES | changed(delay, period)) for _ in range(3))
+    rows, both = (RowCollector('x', axis.monitor) for axis in (for_rows, for_both))
+    wanted = [*AxisJudge(for_rows, turn=turn).columns(entries, rows)]
+    states = [(at, plain(state)) for at, state in AxisJudge(for_states, turn=turn).states(entries)]
+    found, found_states = [], []
+    for part in AxisJudge(for_both, turn=turn).both(entries, both):
+        if isinstance(part, JudgedColumns):
+            found.append(part)
+        else:
+            found_states.append((part[0], plain(part[1])))
+    assert repr(found_states) == repr(states)
+    assert repr(plain(both.outcome())) == repr(plain(rows.outcome()))
+    for one, other in zip(found, wanted, strict=True):
+        for name in COLUMNS:
+            np.testing.assert_array_equal(getattr(one, name), getattr(other, name), name)

@@ -253,6 +253,17 @@ def test_a_damaged_chunk_is_named_and_the_rest_is_used(tmp_path, axes, layout):
     assert 0.6 * whole < found < whole
 
 
+def test_damage_that_is_read_twice_is_noted_once(tmp_path, axes):
+    write(tmp_path / 'bag.mcap', steady(400), chunk_size=2000)
+    damaged(tmp_path / 'bag.mcap', 2500)
+    bag = Bag(tmp_path / 'bag.mcap', salvage=True)
+    list(ordered_entries(bag, axes, PERIOD, on_done=print))
+    once = list(bag.notes)
+    list(ordered_entries(bag, axes, PERIOD, on_done=print))
+    assert bag.notes == once
+    assert len(once) == 1
+
+
 def test_damage_is_an_error_unless_it_is_asked_for(tmp_path, axes):
     write(tmp_path / 'bag.mcap', steady(100), chunk_size=2000)
     damaged(tmp_path / 'bag.mcap', 2500)

@@ -1,0 +1,242 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Writes an MCAP file in chunks, message by message or many at once.
+
+Both ways give the bytes that the writer of the package `mcap` gives, which knows only the first.
+The records are those of that package, but for messages and their indexes, of which there are many.
+
+"""
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+import struct
+from typing import BinaryIO
+import zlib
+
+from mcap.data_stream import RecordBuilder
+from mcap.opcode import Opcode
+from mcap.records import (
+    Channel,
+    Chunk,
+    ChunkIndex,
+    DataEnd,
+    Footer,
+    Header,
+    McapRecord,
+    Metadata,
+    MetadataIndex,
+    Schema,
+    Statistics,
+    SummaryOffset,
+)
+from mcap.writer import MCAP0_MAGIC
+import numpy as np
+from numpy.typing import NDArray
+import zstandard
+
+MESSAGE = struct.Struct('<BQHIQQ')  # code, length, channel, number, log time, publish time
+MESSAGE_FIELDS = np.dtype(
+    [
+        ('code', '<u1'),
+        ('length', '<u8'),
+        ('channel', '<u2'),
+        ('sequence', '<u4'),
+        ('log_time', '<u8'),
+        ('publish_time', '<u8'),
+    ]
+)
+"""The same as `MESSAGE`, for arrays."""
+BEFORE_LENGTH = 9  # [bytes] of a record that its length does not count
+INDEX = struct.Struct('<BQHI')  # code, length, channel, length of the pairs
+PAIR = struct.Struct('<QQ')  # log time, offset in the chunk
+Integers = NDArray[np.int64]
+
+
+class McapFile:
+    """One growing MCAP file; times [ns]."""
+
+    def __init__(
+        self, stream: BinaryIO, *, chunk_size: int, compress: bool, profile: str, library: str
+    ) -> None:
+        """Begin a file in `stream`, with chunks that end once they exceed a size [bytes]."""
+        self._stream, self._chunk_size, self._compress = stream, chunk_size, compress
+        self._schemas: list[Schema] = []
+        self._channels: list[Channel] = []
+        self._chunks: list[ChunkIndex] = []
+        self._metadata: list[MetadataIndex] = []
+        self._counts: Counter[int] = Counter()
+        self._begin = self._end = 0  # log times of the messages in the chunk
+        self._clear()
+        stream.write(MCAP0_MAGIC + _bytes(Header(profile, library)))
+
+    def register_schema(self, *, name: str, encoding: str, data: bytes) -> int:
+        """Add a schema; return its number."""
+        schema = Schema(id=len(self._schemas) + 1, data=data, encoding=encoding, name=name)
+        self._schemas.append(schema)
+        self._grow(_bytes(schema))
+        return schema.id
+
+    def register_channel(self, *, topic: str, schema_id: int, metadata: dict[str, str]) -> int:
+        """Add a channel of messages in CDR; return its number."""
+        channel = Channel(
+            id=len(self._channels) + 1,
+            topic=topic,
+            message_encoding='cdr',
+            schema_id=schema_id,
+            metadata=metadata,
+        )
+        self._channels.append(channel)
+        self._grow(_bytes(channel))
+        return channel.id
+
+    def add_metadata(self, name: str, texts: Mapping[str, str]) -> None:
+        """Add metadata, which stand before the chunk that still grows."""
+        raw = _bytes(Metadata(name=name, metadata=dict(texts)))
+        place = MetadataIndex(offset=self._stream.tell(), length=len(raw), name=name)
+        self._metadata.append(place)
+        self._stream.write(raw)
+
+    def add_message(
+        self, channel: int, data: bytes, *, log_time: int, publish_time: int, sequence: int
+    ) -> None:
+        """Append a message."""
+        length = len(data) + MESSAGE.size - BEFORE_LENGTH
+        head = MESSAGE.pack(Opcode.MESSAGE, length, channel, sequence, log_time, publish_time)
+        self._count(channel, 1, PAIR.pack(log_time, len(self._data)), log_time, log_time)
+        self._grow(head + data)
+
+    def add_messages(
+        self,
+        channel: Integers,
+        contents: Sequence[bytes],
+        *,
+        log_time: Integers,
+        sequence: Integers,
+    ) -> None:
+        """Append messages, published when they are logged."""
+        size = np.fromiter(map(len, contents), np.int64, len(contents))
+        heads = np.empty(len(contents), MESSAGE_FIELDS)
+        heads['code'], heads['length'] = Opcode.MESSAGE, size + MESSAGE.size - BEFORE_LENGTH
+        heads['channel'], heads['sequence'] = channel, sequence
+        heads['log_time'] = heads['publish_time'] = log_time
+        ends = np.cumsum(size + MESSAGE.size)
+        first, done = 0, 0
+        while first < len(contents):
+            room = done + self._chunk_size - len(self._data)
+            last = int(np.searchsorted(ends, room, side='right')) + 1  # the one that exceeds it
+            self._add_part(heads[first:last], contents[first:last])
+            first, done = last, int(ends[min(last, len(ends)) - 1])
+
+    def finish(self) -> None:
+        """End the file; what it is made of stands once more behind the data."""
+        self._end_chunk()
+        self._stream.write(_bytes(DataEnd(0)))
+        begin = self._stream.tell()
+        raw, offsets = b'', []
+        for code, records in self._summary():
+            group = b''.join(map(_bytes, records))
+            offsets.append(SummaryOffset(code, begin + len(raw), len(group)))
+            raw += group
+        at = begin + len(raw)
+        raw += b''.join(map(_bytes, offsets))
+        crc = zlib.crc32(struct.pack('<BQQQ', Opcode.FOOTER, 20, begin, at), zlib.crc32(raw))
+        self._stream.write(raw + _bytes(Footer(begin, at, crc)) + MCAP0_MAGIC)
+
+    def _add_part(self, heads: NDArray[np.void], contents: Sequence[bytes]) -> None:
+        """Append messages that the chunk has room for, but for the last of them."""
+        packed, step = heads.tobytes(), MESSAGE.size
+        begin = np.cumsum(heads['length'] + BEFORE_LENGTH) - heads['length'] - BEFORE_LENGTH
+        pairs = np.column_stack((heads['log_time'], begin + len(self._data))).astype('<u8')
+        numbers, places = np.unique(heads['channel'], return_index=True)
+        for number in numbers[np.argsort(places)]:
+            own = pairs[heads['channel'] == number]
+            times = own[:, 0]
+            self._count(int(number), len(own), own.tobytes(), int(times.min()), int(times.max()))
+        parts = [b''] * (2 * len(contents))
+        parts[::2] = [packed[slice(at, at + step)] for at in range(0, len(packed), step)]
+        parts[1::2] = contents
+        self._grow(b''.join(parts))
+
+    def _count(self, channel: int, count: int, pairs: bytes, first: int, last: int) -> None:
+        """Note messages, at the places `pairs`, that go into the chunk."""
+        self._begin = min(self._begin, first) if self._pairs else first
+        self._end = max(self._end, last)
+        self._pairs.setdefault(channel, bytearray()).extend(pairs)
+        self._counts[channel] += count
+
+    def _grow(self, raw: bytes) -> None:
+        self._data += raw
+        if len(self._data) > self._chunk_size:
+            self._end_chunk()
+
+    def _clear(self) -> None:
+        """Begin a chunk."""
+        self._data = bytearray()
+        self._pairs: dict[int, bytearray] = {}
+        self._begin = self._end = 0
+
+    def _end_chunk(self) -> None:
+        """Write the chunk and its indexes; one that holds no message waits for the first."""
+        if not self._pairs:
+            return
+        packed = zstandard.compress(self._data) if self._compress else bytes(self._data)
+        chunk = Chunk(
+            compression='zstd' if self._compress else '',
+            data=packed,
+            message_start_time=self._begin,
+            message_end_time=self._end,
+            uncompressed_crc=zlib.crc32(self._data),
+            uncompressed_size=len(self._data),
+        )
+        raw, begin = _bytes(chunk), self._stream.tell()
+        indexes, places = b'', {}
+        for number, pairs in self._pairs.items():
+            places[number] = begin + len(raw) + len(indexes)
+            length = INDEX.size - BEFORE_LENGTH + len(pairs)
+            indexes += INDEX.pack(Opcode.MESSAGE_INDEX, length, number, len(pairs)) + pairs
+        self._stream.write(raw + indexes)
+        self._chunks.append(
+            ChunkIndex(
+                message_start_time=self._begin,
+                message_end_time=self._end,
+                chunk_start_offset=begin,
+                chunk_length=len(raw),
+                message_index_offsets=places,
+                message_index_length=len(indexes),
+                compression=chunk.compression,
+                compressed_size=len(packed),
+                uncompressed_size=chunk.uncompressed_size,
+            )
+        )
+        self._clear()
+
+    def _summary(self) -> Sequence[tuple[Opcode, Sequence[McapRecord]]]:
+        """Return the groups of records that end the file."""
+        statistics = Statistics(
+            attachment_count=0,
+            channel_count=len(self._channels),
+            channel_message_counts=dict(self._counts),
+            chunk_count=len(self._chunks),
+            message_count=self._counts.total(),
+            message_end_time=max((one.message_end_time for one in self._chunks), default=0),
+            message_start_time=min((one.message_start_time for one in self._chunks), default=0),
+            metadata_count=len(self._metadata),
+            schema_count=len(self._schemas),
+        )
+        return (
+            (Opcode.SCHEMA, self._schemas),
+            (Opcode.CHANNEL, self._channels),
+            (Opcode.STATISTICS, [statistics]),
+            (Opcode.CHUNK_INDEX, self._chunks),
+            (Opcode.ATTACHMENT_INDEX, []),
+            (Opcode.METADATA_INDEX, self._metadata),
+        )
+
+
+def _bytes(record: McapRecord) -> bytes:
+    """Return a record as it stands in a file."""
+    builder = RecordBuilder()
+    record.write(builder)
+    raw: bytes = builder.end()
+    return raw

@@ -1,0 +1,104 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The MCAP file that is written: byte by byte that of the writer of the package `mcap`."""
+
+import io
+
+from ballscrew_monitor.recordings.mcap_file import McapFile, MESSAGE, MESSAGE_FIELDS
+from mcap.reader import make_reader
+from mcap.writer import CompressionType, Writer
+import numpy as np
+import pytest
+
+CHUNK_SIZE = 4096
+RNG = np.random.default_rng(1)
+COUNT = 500
+NUMBERS = RNG.integers(1, 4, COUNT)
+TIMES = np.sort(RNG.integers(10**18, 10**18 + 10**9, COUNT))
+CONTENTS = [RNG.bytes(int(size)) for size in RNG.integers(0, 300, COUNT)]
+SEQUENCE = np.arange(COUNT)
+TOPICS = ('/a', '/b', '/c')
+
+
+def theirs(compress, *, count=COUNT):
+    stream = io.BytesIO()
+    writer = Writer(
+        stream,
+        chunk_size=CHUNK_SIZE,
+        compression=CompressionType.ZSTD if compress else CompressionType.NONE,
+    )
+    writer.start(profile='ros2', library='own')
+    writer.add_metadata('before', {'a': 'b', 'ü': 'ö'})
+    for topic in TOPICS:
+        schema = writer.register_schema(name='Kind', encoding='ros2msg', data=bytes(800))
+        writer.register_channel(topic, 'cdr', schema, {'of': topic})
+    for number, time, content, sequence in list(zip(NUMBERS, TIMES, CONTENTS, SEQUENCE))[:count]:
+        writer.add_message(int(number), int(time), content, int(time), int(sequence))
+    writer.add_metadata('behind', {})
+    writer.finish()
+    return stream.getvalue()
+
+
+def ours(compress, add):
+    stream = io.BytesIO()
+    file = McapFile(
+        stream, chunk_size=CHUNK_SIZE, compress=compress, profile='ros2', library='own'
+    )
+    file.add_metadata('before', {'a': 'b', 'ü': 'ö'})
+    for topic in TOPICS:
+        schema = file.register_schema(name='Kind', encoding='ros2msg', data=bytes(800))
+        file.register_channel(topic=topic, schema_id=schema, metadata={'of': topic})
+    add(file)
+    file.add_metadata('behind', {})
+    file.finish()
+    return stream.getvalue()
+
+
+def one_by_one(file, part=slice(None)):
+    for number, time, content, sequence in zip(
+        NUMBERS[part], TIMES[part], CONTENTS[part], SEQUENCE[part]
+    ):
+        file.add_message(
+            int(number),
+            content,
+            log_time=int(time),
+            publish_time=int(time),
+            sequence=int(sequence),
+        )
+
+
+def at_once(file, part=slice(None)):
+    file.add_messages(NUMBERS[part], CONTENTS[part], log_time=TIMES[part], sequence=SEQUENCE[part])
+
+
+def taking_turns(file):
+    for begin in range(0, COUNT, 70):
+        one_by_one(file, slice(begin, begin + 35))
+        at_once(file, slice(begin + 35, begin + 70))
+
+
+def test_both_ways_know_one_layout():
+    assert MESSAGE_FIELDS.itemsize == MESSAGE.size
+
+
+@pytest.mark.parametrize('compress', [True, False])
+@pytest.mark.parametrize('add', [one_by_one, at_once, taking_turns])
+def test_each_way_gives_the_bytes_of_the_package(add, compress):
+    assert ours(compress, add) == theirs(compress)
+
+
+def test_a_file_without_a_message_is_that_of_the_package():
+    assert ours(True, lambda file: None) == theirs(True, count=0)
+
+
+def test_it_reads_back():
+    reader = make_reader(io.BytesIO(ours(True, at_once)), validate_crcs=True)
+    found = [(channel.topic, one.data) for _, channel, one in reader.iter_messages()]
+    assert len(found) == COUNT
+    assert sorted(found) == sorted(
+        (TOPICS[number - 1], content) for number, content in zip(NUMBERS, CONTENTS)
+    )
+    statistics = reader.get_summary().statistics
+    assert statistics.channel_message_counts == {
+        number: int((NUMBERS == number).sum()) for number in (1, 2, 3)
+    }
