@@ -7,6 +7,7 @@ import contextlib
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from ballscrew_monitor.core.cdr import serialized
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.state import Event
 from ballscrew_monitor.node.diagnostics import statuses, summaries
@@ -26,7 +27,6 @@ from ballscrew_monitor.recordings.own_replay import TimedState
 from ballscrew_monitor.recordings.recorded_topics import DIAGNOSTICS, recorded_topics
 from diagnostic_msgs.msg import DiagnosticArray
 import numpy as np
-from rclpy.serialization import serialize_message
 
 NAME = 'judged'
 PERIOD = SECOND  # [ns] of log time after which diagnostics come again
@@ -115,11 +115,11 @@ class Answers:
             self._writers[name] = StateWriter(name, TIERS[one.axis.surface.tier])
             self._events[name] = Event()
             yield self._surface_info(one)
-        data = serialize_message(self._writers[name].write(one.state))
+        data = serialized(self._writers[name].write(one.state))
         yield Timed(one.log_time, output(name, 'state'), data)
         if one.event is not None:
             self._events[name] = one.event
-            event = serialize_message(
+            event = serialized(
                 out_of_zone_message(name, one.event, shelved=one.state.shelving.until != 0)
             )
             yield Timed(one.log_time, output(name, 'out_of_zone'), event)
@@ -135,7 +135,7 @@ class Answers:
             default_temperature=settings.default_temperature,
         )
         topic = output(one.axis.name, 'surface_info')
-        return Timed(one.log_time, topic, serialize_message(message))
+        return Timed(one.log_time, topic, serialized(message))
 
     def _diagnostics(self, one: TimedState) -> Iterator[Timed]:
         """Yield diagnostics of an axis where they change or the last are old."""
@@ -148,4 +148,4 @@ class Answers:
             status=statuses(f'/{NODE_NAME}', axis.name, one.state, event, axis.surface, links={})
         )
         fill_time(array.header.stamp, one.log_time)
-        yield Timed(one.log_time, DIAGNOSTICS.name, serialize_message(array))
+        yield Timed(one.log_time, DIAGNOSTICS.name, serialized(array))

@@ -144,11 +144,7 @@ def test_an_interrupt_leaves_whole_files_alone(reported, short_bag, params, tmp_
     left = {path.relative_to(tmp_path) for path in tmp_path.rglob('*') if path.is_file()}
     assert (left == set()) == (share <= JUDGED_SHARE)
     for name in left:
-        if name.suffix == '.mcap':  # what the middleware leaves between fields is not fixed
-            Bag(tmp_path / name).verify()
-            assert Bag(tmp_path / name).topics == Bag(whole / name).topics
-        else:
-            assert (tmp_path / name).read_bytes() == (whole / name).read_bytes()
+        assert (tmp_path / name).read_bytes() == (whole / name).read_bytes()
     assert not [path for path in tmp_path.iterdir() if path.name.startswith('.')]
 
 
