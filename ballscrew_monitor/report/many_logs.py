@@ -2,14 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Many recordings: one report each, in parallel, and one page over all of them."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+import contextlib
 import dataclasses
 from pathlib import Path
 import threading
 from typing import Any
 
 from ballscrew_monitor.recordings.opener import opened_log
-from ballscrew_monitor.recordings.progress import silent
+from ballscrew_monitor.recordings.tables.convert import PASSES
 from ballscrew_monitor.report.log_report import AxisLine, LogResult, report_log
 from ballscrew_monitor.report.logs import folder_names
 from ballscrew_monitor.report.overview import LogEntry, overview_page
@@ -22,6 +23,7 @@ from surrogate.tasks.worker import tell_share
 from surrogate.tasks.workers import open_pool
 
 INDEX = 'index.html'
+READING = 0.5  # of the work on a table, before it is judged
 
 
 class LogsProgress:
@@ -51,6 +53,26 @@ class LogsProgress:
         whole = sum(self._sizes.values())
         share = sum(size * self._shares[name] for name, size in self._sizes.items()) / whole
         self._progress.show(self._done, len(self._sizes), share=share)
+
+
+class ReadingShare:
+    """Tells from a worker how far a recording is, of which a table is first read in passes."""
+
+    def __init__(self) -> None:
+        """Begin with a recording that need not be read first."""
+        self._passes = 0
+
+    @contextlib.contextmanager
+    def __call__(self, total: float, unit: str) -> Iterator[Callable[[float], None]]:
+        """Give what is told how far a pass is [-]."""
+        before = self._passes
+        self._passes += 1
+        yield lambda share: tell_share(READING * (before + share) / PASSES)
+
+    def tell_judged(self, share: float) -> None:
+        """Tell which share is judged [-]."""
+        first = READING if self._passes else 0.0
+        tell_share(first + (1.0 - first) * share)
 
 
 def size_of(log: Path) -> int:
@@ -108,9 +130,10 @@ def _outcomes(
 
 def report_task(inputs: Mapping[str, Any]) -> dict[str, Any]:
     """Report one recording in a worker; plain data in, the `LogResult` as plain data out."""
-    with opened_log(Path(inputs['log']), mapping=_path(inputs['map']), shown=silent) as bag:
+    reading = ReadingShare()
+    with opened_log(Path(inputs['log']), mapping=_path(inputs['map']), shown=reading) as bag:
         parameters = parameters_for(bag, _path(inputs['params']), Path(inputs['nominal']))
-        result = report_log(bag, Path(inputs['out']), parameters, on_share=tell_share)
+        result = report_log(bag, Path(inputs['out']), parameters, on_share=reading.tell_judged)
     record: dict[str, Any] = to_json(dataclasses.asdict(result))
     return record
 

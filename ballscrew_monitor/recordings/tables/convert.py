@@ -38,6 +38,7 @@ JOINT, WRENCH, TEMPERATURE = (
     'sensor_msgs/msg/Temperature',
 )
 SLOW = 0.5  # of the timeout: rows that far apart leave no room for a late one
+PASSES = 3  # over a table, at most, of which each is shown
 SAME = 1e-6  # part by which two leads may differ
 
 

@@ -5,8 +5,19 @@
 import shutil
 
 from ballscrew_monitor import cli
+from ballscrew_monitor.report import many_logs
 from ballscrew_monitor.report.many_logs import LogsProgress, size_of
 import pytest
+
+TABLE_MAP = """
+log: log.csv
+time: {column: t, unit: s, epoch: '2026-01-01T00:00:00Z'}
+axes:
+  x:
+    speed: {column: v, unit: rad/s}
+    load: {column: f, unit: N}
+    lead_mm: 10.0
+"""
 
 
 class Shown:
@@ -28,6 +39,38 @@ def test_a_long_recording_among_short_ones_is_seen_to_go():
     progress.done('short')
     progress.done('long')
     assert shown.lines == [(1, 3, 0.05), (1, 3, 0.5), (1, 3, 0.5), (2, 3, 0.55), (3, 3, 1.0)]
+
+
+def test_the_passes_over_a_table_count_for_half_of_it(monkeypatch):
+    told = []
+    monkeypatch.setattr(many_logs, 'tell_share', told.append)
+    table, bag = many_logs.ReadingShare(), many_logs.ReadingShare()
+    for unit in ('rows looked through', 'times looked through', 'rows written'):
+        with table(1000, unit) as show:
+            show(0.5)
+            show(1.0)
+    table.tell_judged(0.5)
+    bag.tell_judged(0.5)
+    assert told == pytest.approx([1 / 12, 2 / 12, 3 / 12, 4 / 12, 5 / 12, 0.5, 0.75, 0.5])
+
+
+def test_a_table_among_many_recordings_tells_how_far_it_is(monkeypatch, tmp_path):
+    told = []
+    monkeypatch.setattr(many_logs, 'tell_share', told.append)
+    rows = (f'{0.01 * row:.2f},{10.0 + row % 7},-500\n' for row in range(200))
+    (tmp_path / 'log.csv').write_text('t,v,f\n' + ''.join(rows))
+    (tmp_path / 'map.yaml').write_text(TABLE_MAP)
+    inputs = {
+        'log': str(tmp_path / 'log.csv'),
+        'out': str(tmp_path / 'out'),
+        'params': None,
+        'map': str(tmp_path / 'map.yaml'),
+        'nominal': '',
+    }
+    assert many_logs.report_task(inputs)['unjudged'] == []
+    assert told == sorted(told)
+    assert {0.5, 1.0} <= set(told)
+    assert told[0] < 0.5
 
 
 def test_a_recording_that_is_not_there_or_empty_has_a_size_too(tmp_path):
