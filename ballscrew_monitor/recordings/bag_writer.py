@@ -22,6 +22,7 @@ import tempfile
 from typing import Any, BinaryIO
 
 from ballscrew_monitor.recordings.bag_files import OWN
+from ballscrew_monitor.recordings.bag_metadata import METADATA, metadata_text
 from ballscrew_monitor.recordings.mcap_file import Integers, McapFile
 from ballscrew_monitor.recordings.message_definitions import message_definition, type_hash
 import numpy as np
@@ -31,7 +32,6 @@ import yaml
 ACTIVE = '.active'
 CHUNK_SIZE = 64 * 1024  # [bytes] of what grows while others read it
 WHOLE_CHUNK_SIZE = 1024 * 1024  # [bytes] of what is complete or not there
-METADATA, METADATA_VERSION = 'metadata.yaml', 9
 FOREVER = {'sec': 9223372036, 'nsec': 854775807}
 
 
@@ -77,6 +77,17 @@ class Announced:
     definition: bytes
     type_hash: str
     profiles: list[dict[str, Any]]
+
+    @property
+    def metadata(self) -> dict[str, Any]:
+        """Return the topic in the words of rosbag2, metadata version 9."""
+        return {
+            'name': self.name,
+            'type': self.type_name,
+            'serialization_format': 'cdr',
+            'offered_qos_profiles': self.profiles,
+            'type_description_hash': self.type_hash,
+        }
 
 
 class BagWriter:
@@ -211,7 +222,13 @@ class BagWriter:
         self._writer.finish()
         self._file.close()
         Path(f'{self.path}{ACTIVE}').replace(self.path)
-        text = yaml.safe_dump({'rosbag2_bagfile_information': self._metadata()}, sort_keys=False)
+        text = metadata_text(
+            self.path.name,
+            [(self._counts[one.name], one.metadata) for one in self._topics.values()],
+            first=self._first,
+            last=self._last,
+            custom=self._custom,
+        )
         replace_file(self.path.with_name(METADATA), text.encode())
 
     def sync(self) -> None:
@@ -235,41 +252,6 @@ class BagWriter:
             return open(f'{self.path}{ACTIVE}', 'wb')
         except OSError as error:
             raise _unwritable(directory, error) from None
-
-    def _metadata(self) -> dict[str, Any]:
-        topics = [
-            {
-                'topic_metadata': {
-                    'name': topic.name,
-                    'type': topic.type_name,
-                    'serialization_format': 'cdr',
-                    'offered_qos_profiles': topic.profiles,
-                    'type_description_hash': topic.type_hash,
-                },
-                'message_count': self._counts[topic.name],
-            }
-            for topic in self._topics.values()
-        ]
-        return {
-            'version': METADATA_VERSION,
-            'storage_identifier': 'mcap',
-            **self._span(),
-            'message_count': self.total,
-            'topics_with_message_count': topics,
-            'compression_format': '',
-            'compression_mode': '',
-            'relative_file_paths': [self.path.name],
-            'files': [{'path': self.path.name, **self._span(), 'message_count': self.total}],
-            'custom_data': self._custom or None,
-            'ros_distro': 'jazzy',
-        }
-
-    def _span(self) -> dict[str, Any]:
-        """Return duration and begin; made anew each time, or YAML refers to the first one."""
-        return {
-            'duration': {'nanoseconds': self._last - self._first},
-            'starting_time': {'nanoseconds_since_epoch': self._first},
-        }
 
 
 @contextlib.contextmanager
