@@ -14,6 +14,7 @@ from rosidl_parser.definition import BasicType, NamespacedType
 
 CONFIG = Path(__file__).resolve().parents[2] / 'config'
 STATE = '/ballscrew_monitor/x/state'
+FOXGLOVE = CONFIG / 'layouts' / 'foxglove_axis_x.json'
 
 
 def unit():
@@ -46,9 +47,8 @@ def is_a_number_of_the_state(path):
 
 def drawn_by_foxglove():
     """Return the paths that the layout of Foxglove draws, and check that each panel is placed."""
-    text = (CONFIG / 'layouts' / 'foxglove_axis_x.json').read_text()
-    layout = json.loads(text)
-    panels = layout['configById']
+    text = FOXGLOVE.read_text()
+    panels = json.loads(text)['configById']
     assert set(re.findall(r'"((?:\w+)!x\d*)"(?!:)', text)) == set(panels)
     paths = [path['value'] for panel in panels.values() for path in panel.get('paths', [])]
     return {tuple(path.removeprefix(f'{STATE}.').split('.')) for path in paths}
@@ -67,3 +67,15 @@ def test_layouts_draw_the_same_numbers_of_the_state():
     assert {('result', 'efficiency'), ('result', 'rcs'), ('level',)} <= drawn
     assert all(is_a_number_of_the_state(path) for path in drawn)
     assert not is_a_number_of_the_state(('result', 'efficency'))
+
+
+def test_plots_of_foxglove_show_a_whole_recording_under_titles_and_labels():
+    panels = json.loads(FOXGLOVE.read_text())['configById']
+    plots = [panel for name, panel in panels.items() if name.startswith('Plot!')]
+    assert len(plots) == 5
+    for plot in plots:
+        # Foxglove and its open fork read a title under different names, and neither as `title`.
+        assert plot['foxglovePanelTitle'] == plot['lichtblickPanelTitle'] != ''
+        assert all(path['label'] for path in plot['paths'])
+        # A width that follows the playhead leaves a recording empty until it is played.
+        assert 'followingViewWidth' not in plot
