@@ -25,7 +25,7 @@ from ballscrew_monitor.recordings.bag_writer import BagWriter, whole_bag
 from ballscrew_monitor.recordings.bulk.batches import Batch, batches, END
 from ballscrew_monitor.recordings.own_replay import TimedState
 from ballscrew_monitor.recordings.recorded_topics import DIAGNOSTICS, recorded_topics
-from diagnostic_msgs.msg import DiagnosticArray
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 import numpy as np
 
 NAME = 'judged'
@@ -106,7 +106,9 @@ class Answers:
         """Begin with no axis known."""
         self._writers: dict[str, StateWriter] = {}
         self._events: dict[str, Event] = {}
-        self._said: dict[str, tuple[Any, int]] = {}
+        self._latest: dict[str, TimedState] = {}
+        self._said: dict[str, Any] = {}
+        self._said_at = 0  # [ns]
 
     def messages(self, one: TimedState) -> Iterator[Timed]:
         """Yield what the node would say with a state, at the log time of its cause."""
@@ -138,14 +140,21 @@ class Answers:
         return Timed(one.log_time, topic, serialized(message))
 
     def _diagnostics(self, one: TimedState) -> Iterator[Timed]:
-        """Yield diagnostics of an axis where they change or the last are old."""
-        axis, event = one.axis, self._events[one.axis.name]
-        summary, said = summaries(one.state, event, {}), self._said.get(axis.name)
-        if said is not None and said[0] == summary and one.log_time - said[1] < PERIOD:
+        """Yield diagnostics of all axes where those of one change, or the last are old."""
+        name = one.axis.name
+        summary = summaries(one.state, self._events[name], {})
+        self._latest[name] = one
+        if summary == self._said.get(name) and one.log_time - self._said_at < PERIOD:
             return
-        self._said[axis.name] = summary, one.log_time
+        self._said[name], self._said_at = summary, one.log_time
+        # A viewer shows the last message of a topic alone: it is to tell of every axis.
         array = DiagnosticArray(
-            status=statuses(f'/{NODE_NAME}', axis.name, one.state, event, axis.surface, links={})
+            status=[each for latest in self._latest.values() for each in self._statuses(latest)]
         )
         fill_time(array.header.stamp, one.log_time)
         yield Timed(one.log_time, DIAGNOSTICS.name, serialized(array))
+
+    def _statuses(self, one: TimedState) -> list[DiagnosticStatus]:
+        axis = one.axis
+        event = self._events[axis.name]
+        return statuses(f'/{NODE_NAME}', axis.name, one.state, event, axis.surface, links={})

@@ -13,6 +13,7 @@ from ballscrew_monitor.recordings.replay import replay
 from ballscrew_monitor.report.log_report import JUDGED_SHARE, report_log, STORED_SHARE
 from ballscrew_monitor.report.parameters import LogParameters, parameters_for
 from ballscrew_msgs.msg import BallScrewState
+from diagnostic_msgs.msg import DiagnosticArray
 import polars as pl
 import pytest
 from rclpy.serialization import deserialize_message
@@ -76,6 +77,19 @@ def test_the_judged_bag_holds_inputs_and_what_the_node_would_say(reported, short
     assert [(stamp_of(state), state.zone, state.judged) for _, state in found] == wanted
     speeds = [message.log_time for message in original.messages(['/joint_states'])]
     assert [log_time for log_time, _ in found] == speeds
+
+
+def test_each_diagnostics_tell_of_every_axis(short_bag, params, tmp_path):
+    values = read_file(params)
+    values |= {name.replace('x.', 'y.', 1): one for name, one in values.items() if name[0] == 'x'}
+    parameters = LogParameters(values=values | {'axes': ['x', 'y']}, origin='mine')
+    report_log(Bag(short_bag), tmp_path, parameters)
+    told = list(Bag(tmp_path / 'judged').messages(['/diagnostics']))
+    for message in told[1:]:  # the first one is of the axis that was judged first
+        names = [one.name for one in deserialize_message(message.data, DiagnosticArray).status]
+        assert {name.split(': ')[1] for name in names} == {'x', 'y'}
+        assert len(names) == len(set(names))
+    assert 3 <= len(told) <= 13
 
 
 def test_the_judged_bag_reads_in_order_each_state_behind_its_cause(reported):
