@@ -302,7 +302,7 @@ class Monitor:
         gaps = {'max_gap': self._max_gap, 'period': self._inputs[Source.SPEED].slow_period}
         self._hold = hold(before, verdict, stamp, self.settings.limits, **gaps)
         self._stamp = stamp
-        self._stays.follow(self._hold, verdict, result, stamp)
+        self._stays.follow(self._hold, verdict, stamp)
         edge = self._stays.edge(
             before.level,
             self._hold.level,

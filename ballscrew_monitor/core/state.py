@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a monitor is told and what it says: settings, events and states."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 import dataclasses
 import math
 
@@ -71,12 +71,11 @@ class Event:
         """Return where the warning would clear."""
         return Advice() if self.advisor is None else self.advisor.advice
 
-    def worsened(self, estimate: PointEstimate) -> 'Event':
-        """Return the event with its worst value after one more sample outside."""
-        if self.cause.code is Code.RCS_HIGH:
-            worst = max(self.worst_value, estimate.rcs)
-        else:
-            worst = min(self.worst_value, estimate.efficiency)
+    def worsened(self, findings: Sequence[Finding]) -> 'Event':
+        """Return the event with its worst value after what was found in one more sample."""
+        worse = max if self.cause.code is Code.RCS_HIGH else min
+        found = (one.value for one in findings if one.code is self.cause.code)
+        worst = worse([self.worst_value, *found])
         return self if worst == self.worst_value else dataclasses.replace(self, worst_value=worst)
 
 

@@ -5,7 +5,7 @@
 import dataclasses
 
 from ballscrew_monitor.core.advice import Advisor
-from ballscrew_monitor.core.estimate import MachinePoint, PointEstimate
+from ballscrew_monitor.core.estimate import MachinePoint
 from ballscrew_monitor.core.judgement import Hold, Level, Limits, Verdict, Zone
 from ballscrew_monitor.core.state import Event
 from surrogate.surface import Surface
@@ -19,20 +19,20 @@ class Stays:
         self.event = Event()
         self._pending: Event | None = None  # an event that is not raised yet
 
-    def follow(self, held: Hold, verdict: Verdict, result: PointEstimate, stamp: int) -> None:
+    def follow(self, held: Hold, verdict: Verdict, stamp: int) -> None:
         """Keep the worst value of the event that is active, or of the one that may follow."""
         if verdict.zone is Zone.OPTIMAL and held.level is not Level.WARN:
             self._pending = None
         if verdict.zone is not Zone.OUTSIDE:
             return
         if self.event.active:
-            self.event = self.event.worsened(result)
+            self.event = self.event.worsened(verdict.findings)
             return
         if self._pending is None or (held.raising is not None and held.raising.start == stamp):
             self._pending = Event(
                 start=stamp, cause=verdict.findings[0], worst_value=verdict.findings[0].value
             )
-        self._pending = self._pending.worsened(result)
+        self._pending = self._pending.worsened(verdict.findings)
 
     def edge(
         self,

@@ -16,6 +16,7 @@ from ballscrew_monitor.core.remembered import Remembered
 from ballscrew_monitor.core.state import Event
 from ballscrew_monitor.recordings.bulk.estimates import Judgements
 from ballscrew_monitor.recordings.bulk.levels import Levels, Sign
+from ballscrew_monitor.recordings.columns import LIGHT_LOAD
 import numpy as np
 from numpy.typing import NDArray
 
@@ -42,12 +43,11 @@ class _Outside:
         """Return an event with its worst value up to the rows from `begin` to before `end`."""
         rows = self.levels.outside.rows
         rows = rows[slice(*np.searchsorted(rows, [begin, end]))]
-        if not len(rows):
-            return event
         if event.cause.code is Code.RCS_HIGH:
-            worst = max(event.worst_value, float(self.judged.rcs[rows].max()))
+            worst = float(self.judged.rcs[rows].max(initial=event.worst_value))
         else:
-            worst = min(event.worst_value, float(self.judged.efficiency[rows].min()))
+            judged = rows[self.judged.gates[rows] & LIGHT_LOAD == 0]
+            worst = float(self.judged.efficiency[judged].min(initial=event.worst_value))
         return dataclasses.replace(event, worst_value=worst)
 
 

@@ -253,6 +253,20 @@ def test_the_state_that_raises_does_not_wait_for_the_advice(core):
     assert len(monitor.surface.asked) == asked
 
 
+def test_an_efficiency_that_is_not_judged_is_no_worst_one(core):
+    surface = core.surface(
+        rcs=lambda speed, load: 0.5 if speed < 30.0 else 0.0,
+        efficiency=lambda speed, load: 0.1 if load < 100.0 else 0.7,
+    )
+    monitor = core.monitor(surface)
+    feed(monitor, motion(40.0, count=60))
+    assert (monitor.event.cause.code, monitor.event.worst_value) == (Code.EFFICIENCY_LOW, 0.7)
+    light = feed(monitor, motion(10.0, start=START + 60 * STEP, force=-50.0))[-1]
+    assert (light.verdict.zone, light.estimate.efficiency) == (Zone.OUTSIDE, 0.1)
+    assert monitor.event.active
+    assert monitor.event.worst_value == 0.7
+
+
 def test_the_worst_value_counts_from_the_first_sample_outside(core):
     rcs = iter([0.5, 0.9, 0.4, 0.3] + [0.3] * 100)
     monitor = core.monitor(
