@@ -49,6 +49,7 @@ class Journal:
         self._unknown_loss: set[str] = set()  # topics whose loss was last said to be unknown
         self._burst = 0
         self._pause = RESTART
+        self._begun = False  # an axis has been described
         self._hole = False  # frames were dropped: all must be said anew
         self._hole_shown = False
         self._hole_over = -HOLE_SHOWN  # on the steady clock
@@ -114,11 +115,13 @@ class Journal:
         """
         Say all about an axis: its parameters, the full names of its topics, what it remembers.
 
-        `because` is what has changed it, `time` if nothing has.
+        `because` is what has changed it, `time` if nothing has. Until the first `/clock` simulated
+        time stands at 0, which is no time: a recording begins after that.
 
         """
-        if self._process is None:
+        if self._process is None or not now:
             return
+        self._begun = True
         entry = {
             'kind': 'axis',
             'version': VERSION,
@@ -137,7 +140,7 @@ class Journal:
 
     def due(self, axes: Iterable[str], steady: int, now: int) -> list[str]:
         """Return which axes are to be described again at `steady` [ns]: one; all after a hole."""
-        if self._process is None:
+        if self._process is None or not now:
             return []
         if self._process.lost:
             self._lost_at = steady if self._lost_at is None else self._lost_at
@@ -186,7 +189,7 @@ class Journal:
         sequence: int,
     ) -> None:
         assert self._process is not None
-        if self._hole:  # what comes after it means nothing before all is said anew
+        if self._hole or not self._begun:  # means nothing before all is said of an axis
             return
         number = self._topics.get(topic)
         if number is None:

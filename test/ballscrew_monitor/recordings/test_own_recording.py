@@ -60,7 +60,7 @@ class KeptFrames:
 class SmallNode:
     """Does with two axes what the node does with messages and ticks, and says states."""
 
-    def __init__(self, folder, settings=ALWAYS, **changes):
+    def __init__(self, folder, settings=ALWAYS, *, now=BEGIN, **changes):
         self.values = parameters.defaults(['x', 'z']) | {
             'x.publish_period': 0.0,
             'z.publish_period': 0.25,
@@ -73,7 +73,7 @@ class SmallNode:
         self.process = KeptFrames(folder, settings)
         self.journal = Journal('/mill/ballscrew_monitor/journal', lambda: self.process)
         self.said = []
-        self.now = BEGIN
+        self.now = now
         self.describe('begin')
 
     def describe(self, because, names=('x', 'z')):
@@ -182,6 +182,22 @@ def test_every_state_comes_again_bit_for_bit_and_is_proven(tmp_path):
     assert len(states) > 1000
     assert sum('event=Event' in state for state in states) == 10
     assert (own.proven, own.refuted) == (8, 0)
+
+
+def test_a_recording_begins_when_simulated_time_does(tmp_path):
+    node = SmallNode(tmp_path, now=0)
+    node.hear(joints(BEGIN, 60.0, 3.0), force(BEGIN, -800.0))
+    node.tick()
+    live(node, seconds=25)
+    node.close()
+    bag = bag_in(tmp_path)
+    assert bag.path.name == '20231114T221320Z'
+    assert bag.start_time == BEGIN
+    states, own = again(bag)
+    assert masked(states) == masked(node.said)[-len(states) :]
+    assert len(states) > 500
+    assert own.proven
+    assert not own.refuted
 
 
 def test_changes_of_parameters_and_acknowledgements_are_followed(tmp_path):
