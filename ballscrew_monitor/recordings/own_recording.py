@@ -123,8 +123,11 @@ class OwnRecording:
         """Return how often the replay was held against what the node remembered."""
         held = self.proven + self.refuted
         if self.refuted:
-            return f'the replay differs from what the node remembered in {self.refuted} of {held}'
-        return f'the replay is what the node did, proven {held} times'
+            return (
+                f'the replay differs from what the node said of itself at {self.refuted} of '
+                f'{held} times that it did'
+            )
+        return f'the replay is what the node judged: it agrees with all {held} notes of the node'
 
     def _take_lost(self, topic: str) -> int | None:
         """Return how many messages were lost; a number counts once, that it is unknown stays."""
