@@ -117,7 +117,8 @@ class OwnRecording:
             elif message.topic in self._readers:
                 self._burst.append((message, self._take_lost(message.topic)))
         yield from self._take_burst()
-        self._bag.remarks.append(self._proof())
+        if self.proven + self.refuted:
+            self._bag.remarks.append(self._proof())
 
     def _proof(self) -> str:
         """Return how often the replay was held against what the node remembered."""
