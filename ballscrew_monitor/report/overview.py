@@ -45,7 +45,7 @@ def overview_page(entries: Sequence[LogEntry], notes: Sequence[str] = ()) -> str
         'main',
         element('h1', f'Ball screw reports: {counted(len(entries), "recording")}'),
         _verdict(entries, listed),
-        *(element('p', note) for note in notes),
+        *(element('p', f'{note[:1].upper()}{note[1:]}.') for note in notes),
         *_failures(bad),
         *_trends(listed),
         element('h2', 'Recordings'),

@@ -131,7 +131,7 @@ class _Guesser:
 
     def _time_column(self) -> tuple[dict[str, Any], float]:
         """Return what the map says of the time, and the step between rows [s], NaN: not known."""
-        for one in self.times:
+        for one in sorted(self.times, key=lambda one: -one.rank):  # by name, then by unit
             values = self.data[one.column]
             if estimates.is_rising(values):
                 return self._time_of(one, values)

@@ -118,7 +118,7 @@ def test_a_folder_of_bags_and_tables_is_judged_with_a_map_and_without(logs, tmp_
     assert cli.main(['replay', str(logs), '--out', str(out), '--workers', '1']) == 0
     sentence = f'left out, as tables are judged by a --map: {table}'
     assert sentence in capsys.readouterr().err
-    assert sentence in (out / 'index.html').read_text()
+    assert f'<p>L{sentence[1:]}.</p>' in (out / 'index.html').read_text()
     mapping.write_text(
         'time: {column: t, unit: s, epoch: 2000-01-01}\n'
         'axes: {x: {lead_mm: 10.0, speed: {column: v, unit: mm/s}, '

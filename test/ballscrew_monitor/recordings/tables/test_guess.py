@@ -178,6 +178,13 @@ def test_two_readings_of_one_speed_are_one_axis(guessed):
     assert list(made.content['axes']) == ['x']
 
 
+def test_a_time_by_name_comes_before_one_by_unit(guessed):
+    columns = {'served_ms': TIME * 1e3, 'time_s': TIME, 'x_vel': SPEED, 'x_force': SPEED}
+    assert guessed(columns).content['time']['column'] == 'time_s'
+    del columns['time_s']
+    assert guessed(columns).content['time'] == {'column': 'served_ms', 'unit': 'ms'}
+
+
 def test_a_time_that_does_not_rise_is_said(guessed):
     made = guessed({'Zeit_ms': 0 * TIME, 'x_vel': SPEED, 'x_force': SPEED})
     reason = made.content['assumed']['time.rate_Hz']['reason']
