@@ -13,13 +13,14 @@ from typing import Any, TYPE_CHECKING
 from ballscrew_monitor.node.interrupts import DONE, FAILED
 from ballscrew_monitor.node.topics import with_types
 from ballscrew_monitor.recordings.bag import Bag
+from ballscrew_monitor.recordings.bag_files import is_table
 from ballscrew_monitor.recordings.decoding import silence
 from ballscrew_monitor.recordings.opener import opened_log
 from ballscrew_monitor.recordings.progress import shown_progress
 from ballscrew_monitor.recordings.replay import axes_for
 from ballscrew_monitor.report.case import AxisCase, LogCase
 from ballscrew_monitor.report.judging import judge_log
-from ballscrew_monitor.report.logs import find_logs, PAGE, SUMMARY
+from ballscrew_monitor.report.logs import find_logs, left_out, map_for, PAGE, SUMMARY
 from ballscrew_monitor.report.parameters import LogParameters, parameters_for
 from ballscrew_monitor.report.printed import log_lines, printed_records
 from ballscrew_monitor.report.products import summary_record, without
@@ -38,12 +39,23 @@ Records = dict[str, Any]
 def replay_command(args: argparse.Namespace, nominal: Path) -> int:
     """Do what the command line asks for; return the exit code."""
     logs = find_logs(args.logs, tables=args.map is not None, out=args.out)
+    _check_map(logs, args.map)
+    _say(*left_out(args.logs, logs, args.out))
     # With --json, standard output is JSON alone.
     with contextlib.redirect_stdout(sys.stderr if args.json else sys.stdout):
         records, code = _replay(logs, args, nominal)
     if args.json:
         print(json_text(records))
     return code
+
+
+def _check_map(logs: Sequence[Path], mapping: Path | None) -> None:
+    """Raise InputError for a map where none of several recordings is a table."""
+    if mapping is not None and len(logs) > 1 and not any(is_table(log) for log in logs):
+        raise InputError(
+            f'map {mapping} is for tables, none of the {len(logs)} recordings is one: leave out '
+            '--map'
+        )
 
 
 def _replay(logs: Sequence[Path], args: argparse.Namespace, nominal: Path) -> tuple[Records, int]:
@@ -53,7 +65,7 @@ def _replay(logs: Sequence[Path], args: argparse.Namespace, nominal: Path) -> tu
     if args.out is not None:
         return _report_one(args, nominal, logs[0])
     if len(logs) == 1:
-        return _print_one(args, nominal, logs[0])
+        return _print_one(args, nominal, logs[0], args.map)
     return _print_many(logs, args, nominal)
 
 
@@ -66,7 +78,8 @@ def _print_many(
         if not args.json:
             print(log)
         try:
-            records[str(log)], code = _print_one(args, nominal, log)
+            mapping = map_for(log, args.map, alone=False)
+            records[str(log)], code = _print_one(args, nominal, log, mapping)
         except (InputError, SurfaceError) as error:
             _say(f'{log}: {error}')
             records |= without(str(log), str(error))
@@ -75,9 +88,11 @@ def _print_many(
     return records, max(codes)
 
 
-def _print_one(args: argparse.Namespace, nominal: Path, log: Path) -> tuple[Records, int]:
+def _print_one(
+    args: argparse.Namespace, nominal: Path, log: Path, mapping: Path | None
+) -> tuple[Records, int]:
     """Judge a recording and print what it comes to, unless that is to be JSON."""
-    with opened_log(log, mapping=args.map) as bag:
+    with opened_log(log, mapping=mapping) as bag:
         parameters = parameters_for(bag, args.params, nominal)
         _say_origin(parameters)
         with shown_progress(bag.duration) as on_done:
@@ -119,6 +134,7 @@ def _report_many(
         params=args.params,
         mapping=args.map,
         nominal=nominal,
+        notes=left_out(args.logs, logs, args.out),
         workers=args.workers,
         dask=args.dask,
     )

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 import re
 
-from ballscrew_monitor.recordings.bag_files import ACTIVE, ENDINGS, TABLES
+from ballscrew_monitor.recordings.bag_files import ACTIVE, ENDINGS, is_table, TABLES
 from surrogate.files import InputError
 
 _PART = re.compile(r'(.*)_(\d+)')  # file of a bag that was split
@@ -14,6 +14,7 @@ PAGE, STATES, EVENTS, JUDGED = 'report.html', 'states.parquet', 'events.csv', 'j
 SUMMARY = 'summary.json'
 PRODUCTS = (JUDGED, STATES, EVENTS)
 """How a folder with a report is known, and what is no recording in it."""
+MOST_NAMED = 5  # tables that are left out
 _UNSAFE = re.compile(r'[^\w.-]+')
 
 
@@ -33,6 +34,26 @@ def find_logs(
         whole = not path.is_dir() or is_one_bag(path, tables=tables, out=out)
         found += [path] if whole else _inside(path, tables, out)
     return list(dict.fromkeys(found))
+
+
+def left_out(paths: Sequence[Path], logs: Sequence[Path], out: Path | None = None) -> list[str]:
+    """Return a sentence about tables in folders that are not among the recordings, if any."""
+    held = find_logs([path for path in paths if path.is_dir()], tables=True, out=out)
+    tables = [str(path) for path in held if is_table(path) and path not in logs]
+    more = f' and {len(tables) - MOST_NAMED} more' if len(tables) > MOST_NAMED else ''
+    names = ', '.join(tables[:MOST_NAMED]) + more
+    return [f'left out, as tables are judged by a --map: {names}'] if tables else []
+
+
+def map_for(log: Path, mapping: Path | None, *, alone: bool) -> Path | None:
+    """
+    Return the map that a recording is opened with.
+
+    Of several recordings it is for the tables alone; one that is `alone` has it for certain, so
+    that it is told where that is a bag.
+
+    """
+    return mapping if alone or is_table(log) else None
 
 
 def is_one_bag(folder: Path, *, tables: bool = False, out: Path | None = None) -> bool:
@@ -76,9 +97,19 @@ def _inside(folder: Path, tables: bool, out: Path | None) -> list[Path]:
     if not logs:
         raise InputError(
             f'folder {folder} holds no recording, it must hold bags or files of '
-            f'{" or ".join(endings)}'
+            f'{" or ".join(endings)}{_hint(folder)}'
         )
     return logs
+
+
+def _hint(folder: Path) -> str:
+    """Return what else is to be said of a folder without a recording that holds tables."""
+    tables = _files(folder, TABLES)
+    if not tables:
+        return ''
+    return (
+        f'; for its tables: ballscrew import {tables[0]} --guess > map.yaml, then --map map.yaml'
+    )
 
 
 def _below(folder: Path, tables: bool, out: Path | None) -> list[Path]:

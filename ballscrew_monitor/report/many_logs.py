@@ -12,7 +12,7 @@ from typing import Any
 from ballscrew_monitor.recordings.opener import opened_log
 from ballscrew_monitor.recordings.tables.convert import PASSES
 from ballscrew_monitor.report.log_report import AxisLine, LogResult, report_log
-from ballscrew_monitor.report.logs import folder_names
+from ballscrew_monitor.report.logs import folder_names, map_for
 from ballscrew_monitor.report.overview import LogEntry, overview_page
 from ballscrew_monitor.report.parameters import parameters_for
 from ballscrew_monitor.report.scratch import remove_left
@@ -88,16 +88,22 @@ def report_logs(
     params: Path | None,
     mapping: Path | None,
     nominal: Path,
+    notes: Sequence[str],
     workers: int | None,
     dask: str | None,
 ) -> list[LogEntry]:
-    """Write a report of each of several recordings and the page over all; return their entries."""
+    """
+    Write a report of each of several recordings and the page over all; return their entries.
+
+    The map is for tables alone; `notes` are sentences for the page.
+
+    """
     inputs = {
         name: {
             'log': str(log.resolve()),
             'out': str((out / name).resolve()),
             'params': _text(params),
-            'map': _text(mapping),
+            'map': _text(map_for(log, mapping, alone=len(logs) == 1)),
             'nominal': str(nominal),
         }
         for log, name in zip(logs, folder_names(logs), strict=True)
@@ -107,7 +113,7 @@ def report_logs(
         entry_of(log.name, folder, outcomes[folder])
         for log, folder in zip(logs, inputs, strict=True)
     ]
-    replace_file(out / INDEX, overview_page(entries).encode())
+    replace_file(out / INDEX, overview_page(entries, notes).encode())
     return entries
 
 

@@ -36,8 +36,8 @@ class LogEntry:
 Listed = tuple[LogEntry, AxisLine]
 
 
-def overview_page(entries: Sequence[LogEntry]) -> str:
-    """Return the page over recordings."""
+def overview_page(entries: Sequence[LogEntry], notes: Sequence[str] = ()) -> str:
+    """Return the page over recordings, with sentences about what is not among them."""
     listed = [(one, line) for one in entries if one.result for line in one.result.lines]
     listed.sort(key=lambda pair: _date_key(pair[1].begins))
     bad = [one for one in entries if one.result is None]
@@ -45,6 +45,7 @@ def overview_page(entries: Sequence[LogEntry]) -> str:
         'main',
         element('h1', f'Ball screw reports: {counted(len(entries), "recording")}'),
         _verdict(entries, listed),
+        *(element('p', f'{note[:1].upper()}{note[1:]}.') for note in notes),
         *_failures(bad),
         *_trends(listed),
         element('h2', 'Recordings'),

@@ -9,6 +9,7 @@ Topics are `joint_states` with speed, position and torque of each screw, `<axis>
 """
 
 from collections.abc import Callable, Iterator
+import dataclasses
 import itertools
 import math
 from pathlib import Path
@@ -21,6 +22,7 @@ from ballscrew_monitor.node.topics import absolute
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic, whole_bag
 from ballscrew_monitor.recordings.log_facts import Assumption, LogFacts
 from ballscrew_monitor.recordings.progress import Shown, silent
+from ballscrew_monitor.recordings.tables.agreement import Agreement
 from ballscrew_monitor.recordings.tables.cells import Array
 from ballscrew_monitor.recordings.tables.mapping import AxisMap, TableMap
 from ballscrew_monitor.recordings.tables.rows import marks, RowTemplate
@@ -63,8 +65,12 @@ def convert(path: Path, mapping: TableMap, out: Path, *, shown: Shown = silent) 
     )
     with whole_bag(out, out.resolve().name) as writer:
         writer.add_metadata(facts.texts())
+        agreement = Agreement(mapping, series.usual_period)
         with shown(series.count, 'rows written') as show:
-            _write(writer, series, show)
+            _write(writer, series, agreement, show)
+        if found := agreement.notes():
+            facts = dataclasses.replace(facts, notes=(*facts.notes, *found))
+            writer.add_metadata(facts.texts())
     return facts
 
 
@@ -141,11 +147,14 @@ def _assumption(key: str, value: str, reason: str) -> Assumption:
     return Assumption(key=key, value=value, reason=reason)
 
 
-def _write(writer: BagWriter, series: Series, show: Callable[[float], None]) -> None:
-    """Write all rows; the topics are those of the first of them."""
+def _write(
+    writer: BagWriter, series: Series, agreement: Agreement, show: Callable[[float], None]
+) -> None:
+    """Write all rows and compare them; the topics are those of the first of them."""
     templates: dict[str, RowTemplate] = {}
     done = 0
     for block in series.blocks():
+        agreement.add(block)
         streams = []
         for name, type_name, message, numbers in _topics(block):
             topic = Topic(name=absolute(name), type_name=type_name, offer=Offer.RELIABLE)

@@ -7,7 +7,7 @@ What nothing in the log tells stands under `assumed` with a value and a reason.
 
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 import dataclasses
 import math
 from pathlib import Path
@@ -21,8 +21,9 @@ from ballscrew_monitor.core.conversions import (
 from ballscrew_monitor.recordings.progress import Shown, silent
 from ballscrew_monitor.recordings.tables import estimates
 from ballscrew_monitor.recordings.tables.cells import Array
+from ballscrew_monitor.recordings.tables.groups import best, by_axis, left_out, told_by_words
 from ballscrew_monitor.recordings.tables.mapping import INPUTS, UNITS
-from ballscrew_monitor.recordings.tables.names import axis_names, is_of_the_screw, Named, read_name
+from ballscrew_monitor.recordings.tables.names import is_of_the_screw, Named, read_name
 from ballscrew_monitor.recordings.tables.read import column_names, open_table
 import numpy as np
 from surrogate.files import InputError
@@ -83,8 +84,8 @@ class _Guesser:
         self.notes: list[str] = []
         self.axes = {
             name: chosen
-            for name, found in self._by_axis().items()
-            if {'speed', 'position'} & set(chosen := _best(found))
+            for name, found in by_axis(self.named).items()
+            if {'speed', 'position'} & set(chosen := best(found))
         }
         if not self.axes:
             raise InputError(
@@ -99,7 +100,7 @@ class _Guesser:
         # The first rows tell how the speeds go with the positions, all of them the ranges.
         self.data = table.head(rows)
         self.extremes = {name: one.extremes for name, one in table.readings.items()}
-        self.notes += table.notes
+        self.notes += [*table.notes, *told_by_words(self.named)]
         if rows < table.rows:
             self.notes.append(f'rate and units are those of the first {rows} of {table.rows} rows')
         self._forget_texts()
@@ -110,10 +111,9 @@ class _Guesser:
         if not time:
             self._assume_rate(axes)
         self._say_what_is_left_out(axes, time)
-        content = {'log': self.path.name} | ({'time': time} if time else {})
-        return Guess(
-            content=content | {'axes': axes, 'assumed': self.assumed}, notes=tuple(self.notes)
-        )
+        content: dict[str, Any] = {'log': self.path.name} | ({'time': time} if time else {})
+        content |= {'axes': axes, 'assumed': self.assumed}
+        return Guess(content=content, notes=tuple(self.notes))
 
     def _assume(self, key: str, value: Any, reason: str) -> None:
         self.assumed[key] = {'value': value, 'reason': reason}
@@ -129,21 +129,9 @@ class _Guesser:
         if not self.axes:
             raise InputError(f'log {self.path}: {"; ".join(self.notes)}')
 
-    def _by_axis(self) -> dict[str, list[Named]]:
-        """Return the columns of each axis; those of the machine are its only one's, if it has."""
-        names = axis_names(self.named)
-        general = [one for one in self.named if one.place == 'machine']
-        if not names:
-            return {'x': general}
-        oil = [one for one in general if one.kind == 'temperature']
-        return {
-            name: [one for one in self.named if one.axis == axis] + oil
-            for axis, name in names.items()
-        }
-
     def _time_column(self) -> tuple[dict[str, Any], float]:
         """Return what the map says of the time, and the step between rows [s], NaN: not known."""
-        for one in self.times:
+        for one in sorted(self.times, key=lambda one: -one.rank):  # by name, then by unit
             values = self.data[one.column]
             if estimates.is_rising(values):
                 return self._time_of(one, values)
@@ -154,7 +142,9 @@ class _Guesser:
         if one.unit and not absolute:
             unit = one.unit
         elif not absolute:
-            self._assume('time.unit', unit, f'column {one.column} states none; {why}')
+            self._assume(
+                'time.unit', unit, f'column {one.column} states none that is known; {why}'
+            )
         if not absolute:
             self._assume_epoch(f'column {one.column} does not count from a known time')
         step = float(np.nanmedian(np.diff(values))) * TIME_UNITS[unit]
@@ -177,13 +167,18 @@ class _Guesser:
             rate = estimates.usual_rate(found)
             axes_used = ', '.join(name for name, _, _ in motions)
             why = (
-                f'the log has no time; at {1.0 / found:.3g} Hz the speeds of axes {axes_used} '
+                f'{self._no_time()}; at {1.0 / found:.3g} Hz the speeds of axes {axes_used} '
                 'make their positions best'
             )
         else:
-            rate, why = RATE, 'the log has no time, and nothing in it tells the rate'
+            rate, why = RATE, f'{self._no_time()}, and nothing in it tells the rate'
         self._assume('time.rate_Hz', rate, why)
-        self._assume_epoch('the log has no time')
+        self._assume_epoch(self._no_time())
+
+    def _no_time(self) -> str:
+        """Say why the log has no time: no column is one, or those that are do not rise."""
+        names = ', '.join(one.column for one in self.named if one.kind == 'time')
+        return f'the log has no time that rises ({names})' if names else 'the log has no time'
 
     def _motion(self, name: str, chosen: Mapping[str, Named]) -> tuple[str, Array, Array]:
         return name, self.data[chosen['position'].column], self.data[chosen['speed'].column]
@@ -212,15 +207,16 @@ class _Guesser:
         lead = Surface.load(find_surface('', SCREW, OIL), screw=SCREW, oil=OIL).lead * MILLI
         for key, value in (('screw', SCREW), ('oil', OIL)):
             self._assume(f'{name}.{key}', value, 'the log does not say it; the shipped one')
-        self._assume(
-            f'{name}.lead_mm', float(f'{lead:.6g}'), f'the log does not say it; that of {SCREW}'
-        )
+        why = f'the log does not say it; that of {SCREW}'
+        self._assume(f'{name}.lead_mm', float(f'{lead:.6g}'), why)
         self._set_load(name, used, chosen)
         if 'temperature' in used:
             self._set_oil(name, used['temperature'])
         else:
             self._assume(
-                f'{name}.temperature_degC', TEMPERATURE, 'the log holds no temperature of the oil'
+                f'{name}.temperature_degC',
+                TEMPERATURE,
+                'no column is the oil temperature of this axis',
             )
         if 'speed' in used:
             speeds = self.extremes[used['speed']['column']]
@@ -256,7 +252,9 @@ class _Guesser:
             unit, why = 'K', f'its least is {np.nanmin(values):.3g}'
         else:
             unit, why = next(iter(UNITS[kind])), 'the usual one'
-        self._assume(f'{name}.{kind}.unit', unit, f'{place["column"]} states none; {why}')
+        self._assume(
+            f'{name}.{kind}.unit', unit, f'{place["column"]} states none that is known; {why}'
+        )
 
     def _metres(
         self, used: Mapping[str, dict[str, Any]], chosen: Mapping[str, Named]
@@ -298,21 +296,5 @@ class _Guesser:
 
     def _say_what_is_left_out(self, axes: Mapping[str, Any], time: Mapping[str, Any]) -> None:
         used = {part.get('column') for axis in axes.values() for part in axis.values()}
-        used |= {entry['value'] for entry in self.assumed.values()}
-        left = [one for one in self.named if one.column not in used | {time.get('column', '')}]
-        spindle = sum(one.place == 'spindle' for one in left)
-        if spindle:
-            self.notes.append(f'{spindle} columns are of the spindle, which is no ball-screw axis')
-        others = [one.column for one in left if one.place != 'spindle']
-        if others:
-            self.notes.append(f'not used: {", ".join(others)}')
-
-
-def _best(found: Sequence[Named]) -> dict[str, Named]:
-    """Return for each kind the column that is most likely the measured quantity."""
-    ranked = sorted(found, key=lambda one: -one.rank)
-    best: dict[str, Named] = {}
-    for one in ranked:
-        if one.kind in INPUTS:
-            best.setdefault(one.kind, one)
-    return best
+        used |= {entry['value'] for entry in self.assumed.values()} | {time.get('column', '')}
+        self.notes += left_out([one for one in self.named if one.column not in used])

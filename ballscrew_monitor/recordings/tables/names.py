@@ -2,52 +2,49 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the name of a column says: which axis, which quantity, which unit."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 import dataclasses
-import re
 
-from ballscrew_monitor.recordings.tables.mapping import UNITS
+from ballscrew_monitor.recordings.tables.spelt_units import (
+    BRACKETS,
+    kind_by_unit,
+    unit_of,
+    words_of,
+    words_without_unit,
+)
 
-_WORD = re.compile(r'[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+')
-_BRACKETS = re.compile(r'[\[(]([^\])]+)[\])]')
 LINEAR = frozenset('xyz')
 SECONDARY = frozenset('uvw')  # with a number: alone they mean other things, too
 ROTARY = frozenset('abc')
 SPINDLES = frozenset({'s', 'sp', 'spindle'})
 KINDS = {
-    'speed': {'velocity', 'vel', 'speed', 'rpm', 'omega'},
-    'position': {'position', 'pos'},
-    'load': {'force', 'load', 'thrust'},
-    'torque': {'torque', 'trq', 'moment'},
-    'current': {'current', 'amps', 'amp', 'iq'},
-    'temperature': {'temperature', 'temp'},
-    'time': {'time', 'timestamp', 'stamp', 't', 'datetime', 'date', 'seconds', 'elapsed'},
+    'speed': frozenset('velocity vel speed rpm omega feed geschwindigkeit drehzahl'.split()),
+    'position': frozenset('position pos'.split()),
+    'load': frozenset('force load thrust kraft axialkraft'.split()),
+    'torque': frozenset('torque trq moment drehmoment'.split()),
+    'current': frozenset('current amps amp iq strom'.split()),
+    'temperature': frozenset('temperature temp temperatur'.split()),
+    'time': frozenset(
+        'time timestamp stamp t datetime date seconds elapsed clock ticks '
+        'zeit zeitstempel messzeit laufzeit uhrzeit datum'.split()
+    ),
 }
 # Words that make a column something else, whatever else its name says.
 OTHERS = frozenset(
-    'acceleration accel acc jerk voltage volt volts power error deviation feedrate override '
+    'acceleration accel acc jerk voltage volt volts power error deviation feedrate rate override '
     'program sequence number line block inertia bus count index status limit percent pct'.split()
 )
 ELSEWHERE = frozenset('motor drive ambient cabinet winding room air coolant'.split())
-MEASURED = frozenset('actual act feedback fb measured meas encoder real'.split())
+MEASURED = frozenset('actual act feedback fb measured meas encoder real ist'.split())
 WANTED = frozenset(
-    'command commanded cmd set setpoint target reference ref demand desired nominal'.split()
+    'command commanded cmd set setpoint target reference ref demand desired nominal soll'.split()
 )
-OF_THE_SCREW = frozenset('oil nut screw lubricant ballscrew'.split())
-_ALIASES = {
-    'mm/s': ('mm_s', 'mmps', 'mm/sec'),
-    'm/s': ('m_s', 'mps', 'm/sec'),
-    'mm/min': ('mm_min', 'mmpm'),
-    'm/min': ('m_min',),
-    'rev/min': ('rpm', '1/min', 'r/min', 'u/min', 'min-1'),
-    'rad/s': ('rad_s', 'radps', 'rad/sec'),
-    'N m': ('nm', 'n.m', 'n*m', 'n_m'),
-    'degC': ('c', '°c', 'deg_c', 'celsius'),
-    'A': ('a', 'amp', 'amps'),
-    's': ('sec', 'seconds'),
-    'ms': ('msec', 'millis'),
-    'us': ('usec', 'µs'),
-}
+QUALIFIERS = frozenset('filtered smoothed mean average avg rms value'.split())
+PROCESSED = frozenset('output raw'.split())
+OF_THE_SCREW = frozenset('oil nut screw lubricant ballscrew öl oel'.split())
+TELLS_NOTHING = MEASURED | WANTED | PROCESSED | OF_THE_SCREW | {'axis'}
+BY_UNIT = -4  # rank of a column of which the unit alone tells the quantity
+TIMES_BY_UNIT = frozenset({'ms', 'us', 'ns', 's'})  # of a column that names no quantity
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -70,19 +67,22 @@ class Named:
 
 def read_name(column: str) -> Named:
     """Return what the name of a column says."""
-    words = [word.lower() for word in _WORD.findall(_BRACKETS.sub(' ', column))]
+    words = words_of(column)
     place, axis = _place(words)
-    kind = _kind(words)
-    unit = _unit(column, kind)
+    kind, rank = _kind(words), _rank(words)
+    if not kind and not OTHERS & set(words):
+        kind = _kind_by_unit(column, place)
+        rank += 0 if is_of_the_screw(column) else BY_UNIT
+    unit = unit_of(column, kind)
     # In another unit than those of the quantity it is another quantity, such as a load in percent.
-    if _BRACKETS.search(column) and not unit:
+    if BRACKETS.search(column) and not unit:
         kind = ''
-    return Named(column=column, place=place, axis=axis, kind=kind, unit=unit, rank=_rank(words))
+    return Named(column=column, place=place, axis=axis, kind=kind, unit=unit, rank=rank)
 
 
 def is_of_the_screw(column: str) -> bool:
     """Tell whether the name of a column says that it is about the screw or its oil."""
-    return bool(OF_THE_SCREW & {word.lower() for word in _WORD.findall(column)})
+    return bool(OF_THE_SCREW & set(words_of(column)))
 
 
 def axis_names(named: Sequence[Named]) -> dict[str, str]:
@@ -117,29 +117,28 @@ def _kind(words: Sequence[str]) -> str:
     return found[-1]
 
 
+def _kind_by_unit(column: str, place: str) -> str:
+    """Return the quantity that the unit of a column tells, where no other word may deny it."""
+    kind, before = kind_by_unit(column)
+    if kind == 'time':
+        told = place == 'machine' and unit_of(column, kind) in TIMES_BY_UNIT
+    else:
+        told = all(len(word) == 1 or word in TELLS_NOTHING for word in words_of(before))
+    return kind if told else ''
+
+
 def _rank(words: Sequence[str]) -> int:
     present = set(words)
     return (
         2 * bool(MEASURED & present)
         + bool(OF_THE_SCREW & present)
         - 3 * bool(WANTED & present)
-        - bool({'output', 'raw'} & present)
+        - bool(PROCESSED & present)
     )
 
 
-def _unit(column: str, kind: str) -> str:
-    """Return the unit in brackets or at the end of a name, if it is one of the quantity."""
-    allowed = _spellings(UNITS.get(kind, {}))
-    brackets = _BRACKETS.findall(column)
-    parts = column.split('_')
-    ends = ['_'.join(parts[-number:]) for number in (2, 1) if len(parts) > number]
-    words = [word.lower() for word in _WORD.findall(column)]
-    for text in [*brackets, *ends, *(word for word in words if word == 'rpm')]:
-        if text.strip().lower() in allowed:
-            return allowed[text.strip().lower()]
-    return ''
-
-
-def _spellings(units: Mapping[str, float]) -> dict[str, str]:
-    spelt = {unit.lower(): unit for unit in units}
-    return spelt | {alias: unit for unit in units for alias in _ALIASES.get(unit, ())}
+def word_of_the_axis(named: Named) -> str:
+    """Return the words of a name that say neither quantity nor unit: which axis is left."""
+    words = words_without_unit(named.column, named.kind)
+    dull = TELLS_NOTHING | QUALIFIERS | ELSEWHERE | KINDS.get(named.kind, frozenset())
+    return '_'.join(word for word in words if word not in dull)

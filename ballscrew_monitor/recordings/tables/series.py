@@ -139,9 +139,7 @@ def _axis(axis: AxisMap, rows: Rows, begin: int) -> AxisSeries:
         'position',
         _turned(unit('position'), LINEAR_POSITION_UNITS, ROTARY_POSITION_UNITS, per_metre),
     )
-    speed = column(
-        'speed', _turned(unit('speed'), LINEAR_SPEED_UNITS, ROTARY_SPEED_UNITS, per_metre)
-    )
+    speed = column('speed', speed_factor(unit('speed'), axis.lead))
     if speed is None:
         assert position is not None  # the map has one of them
         speed = _slope(position, (rows.stamps - begin) / SECOND)
@@ -181,6 +179,11 @@ def force_of(torque: Array, *, lead: float, efficiency: float) -> Array:
 
     """
     return 0.0 - TURN * efficiency * torque / lead
+
+
+def speed_factor(unit: str, lead: float) -> float:
+    """Return the factor from a unit of speed to that of a screw of a lead [m] in [rad/s]."""
+    return _turned(unit, LINEAR_SPEED_UNITS, ROTARY_SPEED_UNITS, TURN / lead)
 
 
 def _turned(

@@ -111,6 +111,30 @@ def test_a_folder_without_recordings_is_bad_input(tmp_path, capsys):
     assert 'holds no recording' in capsys.readouterr().err
 
 
+def test_a_folder_of_bags_and_tables_is_judged_with_a_map_and_without(logs, tmp_path, capsys):
+    (logs / 'broken.mcap').unlink()
+    table, mapping, out = logs / 'log.csv', tmp_path / 'map.yaml', tmp_path / 'out'
+    table.write_text('t,v,f\n' + ''.join(f'{0.01 * i:.2f},100,1\n' for i in range(50)))
+    assert cli.main(['replay', str(logs), '--out', str(out), '--workers', '1']) == 0
+    sentence = f'left out, as tables are judged by a --map: {table}'
+    assert sentence in capsys.readouterr().err
+    assert f'<p>L{sentence[1:]}.</p>' in (out / 'index.html').read_text()
+    mapping.write_text(
+        'time: {column: t, unit: s, epoch: 2000-01-01}\n'
+        'axes: {x: {lead_mm: 10.0, speed: {column: v, unit: mm/s}, '
+        'load: {column: f, unit: N}, temperature_degC: 40.0}}\n'
+    )
+    assert cli.main(['replay', str(logs), '--map', str(mapping), '--json']) == 0
+    shown = capsys.readouterr()
+    assert [one['x']['judged'] for one in json.loads(shown.out).values()] == [50, 300, 300]
+    assert 'left out' not in shown.err
+
+
+def test_a_map_without_a_table_is_bad_input(logs, tmp_path, capsys):
+    assert cli.main(['replay', str(logs), '--map', str(tmp_path / 'map.yaml')]) == 2
+    assert 'is for tables, none of the 3 recordings is one' in capsys.readouterr().err
+
+
 @pytest.mark.skipif(
     'BALLSCREW_RECORDINGS' not in os.environ, reason='BALLSCREW_RECORDINGS names no recordings'
 )

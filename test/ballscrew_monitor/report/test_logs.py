@@ -5,7 +5,7 @@
 from pathlib import Path
 
 from ballscrew_monitor.report import log_report
-from ballscrew_monitor.report.logs import find_logs, folder_names, is_one_bag
+from ballscrew_monitor.report.logs import find_logs, folder_names, is_one_bag, left_out, map_for
 import pytest
 from surrogate.files import InputError
 
@@ -111,6 +111,29 @@ def test_a_folder_without_a_recording_is_a_sentence(tmp_path):
         InputError, match='holds no recording, it must hold bags or files of .mcap'
     ):
         find_logs([tmp_path])
+
+
+def test_tables_that_are_left_out_are_named(tmp_path):
+    touch(tmp_path / 'a.mcap', *(tmp_path / f't{number}.csv' for number in range(7)))
+    (sentence,) = left_out([tmp_path], find_logs([tmp_path]))
+    assert 'left out' in sentence
+    assert f'{tmp_path / "t4.csv"} and 2 more' in sentence
+    assert not left_out([tmp_path], find_logs([tmp_path], tables=True))
+    assert not left_out([tmp_path / 'a.mcap', tmp_path / 't1.csv'], [])
+
+
+def test_a_folder_of_tables_alone_says_what_they_need(tmp_path):
+    touch(tmp_path / 'one.csv')
+    with pytest.raises(InputError, match=r'import .*one\.csv --guess > map.yaml, then --map'):
+        find_logs([tmp_path])
+
+
+def test_a_map_is_for_the_tables_among_several_recordings(tmp_path):
+    touch(tmp_path / 'a.mcap', tmp_path / 'b.csv')
+    mapping = tmp_path / 'map.yaml'
+    assert map_for(tmp_path / 'a.mcap', mapping, alone=False) is None
+    assert map_for(tmp_path / 'a.mcap', mapping, alone=True) == mapping
+    assert map_for(tmp_path / 'b.csv', mapping, alone=False) == mapping
 
 
 def test_each_report_has_a_folder_of_its_own():

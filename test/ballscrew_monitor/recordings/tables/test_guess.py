@@ -144,3 +144,54 @@ def test_what_another_unit_or_place_is_of_is_left_out(guessed):
     assert assumed['x.temperature.column']['value'] == 'x temperature [C]'
     assert made.notes[-1] == 'not used: x load [%], x motor temperature [C]'
     assert 'temperature' in make_map(made.content).axes[0].columns
+
+
+def test_axes_are_told_by_the_words_in_which_names_differ(guessed):
+    made = guessed(
+        {
+            'Zeit_ms': 1.7676e12 + TIME * 1e3,
+            'a_speed_m_per_min': SPEED,
+            'a_force_kN': SPEED,
+            'a_oil [°C]': TIME + 40,
+            'left_speed_mm_s': SPEED,
+            'left_force_N': SPEED,
+            'oil_temp_degC': TIME + 30,
+        },
+        separator=';',
+        form='{:.13g}',
+    )
+    axes = made.content['axes']
+    assert made.content['time'] == {'column': 'Zeit_ms', 'unit': 'ms'}
+    assert axes['a'] == {
+        'speed': {'column': 'a_speed_m_per_min', 'unit': 'm/min'},
+        'load': {'column': 'a_force_kN', 'unit': 'kN'},
+        'temperature': {'column': 'a_oil [°C]', 'unit': 'degC'},
+    }
+    assert axes['left']['load'] == {'column': 'left_force_N', 'unit': 'N'}
+    assert axes['left']['temperature'] == {'column': 'oil_temp_degC', 'unit': 'degC'}
+    assert 'axes a, left are told by words: are all of them ball screws?' in made.notes
+    assert list(make_map(made.content).axes[0].columns) == ['speed', 'load', 'temperature']
+
+
+def test_two_readings_of_one_speed_are_one_axis(guessed):
+    made = guessed({'t': TIME, 'motor_rpm': SPEED, 'nut_speed': SPEED, 'slide_force': SPEED})
+    assert list(made.content['axes']) == ['x']
+
+
+def test_a_time_by_name_comes_before_one_by_unit(guessed):
+    columns = {'served_ms': TIME * 1e3, 'time_s': TIME, 'x_vel': SPEED, 'x_force': SPEED}
+    assert guessed(columns).content['time']['column'] == 'time_s'
+    del columns['time_s']
+    assert guessed(columns).content['time'] == {'column': 'served_ms', 'unit': 'ms'}
+
+
+def test_a_time_that_does_not_rise_is_said(guessed):
+    made = guessed({'Zeit_ms': 0 * TIME, 'x_vel': SPEED, 'x_force': SPEED})
+    reason = made.content['assumed']['time.rate_Hz']['reason']
+    assert reason.startswith('the log has no time that rises (Zeit_ms)')
+
+
+def test_a_unit_that_is_not_known_is_not_said_to_be_missing(guessed):
+    made = guessed({'t': TIME, 'x_speed_furlong': SPEED, 'x_force': SPEED})
+    reason = made.content['assumed']['x.speed.unit']['reason']
+    assert reason.startswith('x_speed_furlong states none that is known')

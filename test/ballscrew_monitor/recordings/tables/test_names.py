@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What names of columns say, in the ways in which controls write them."""
 
-from ballscrew_monitor.recordings.tables.names import axis_names, read_name
+from ballscrew_monitor.recordings.tables.names import axis_names, read_name, word_of_the_axis
 import pytest
 
 
@@ -25,11 +25,28 @@ import pytest
         ('x load [%]', 'axis', 'x', '', ''),
         ('X1_ActualAcceleration', 'axis', 'x1', '', ''),
         ('M1_CURRENT_FEEDRATE', 'other', '', '', ''),
+        ('x_feed_m_min', 'axis', 'x', 'speed', 'm/min'),
+        ('x_feed_rate_m_min', 'axis', 'x', '', ''),
+        ('Zeit_ms', 'machine', '', 'time', 'ms'),
+        ('counter_ms', 'machine', '', 'time', 'ms'),
+        ('x_delay_ms', 'axis', 'x', '', ''),
+        ('X oil [°C]', 'axis', 'x', 'temperature', 'degC'),
+        ('y_oil_degC', 'axis', 'y', 'temperature', 'degC'),
+        ('y_motor_degC', 'axis', 'y', '', ''),
+        ('x [mm]', 'axis', 'x', 'position', 'mm'),
+        ('x_preload_kN', 'axis', 'x', '', ''),
+        ('x_min', 'axis', 'x', '', ''),
     ],
 )
 def test_a_name_says_axis_quantity_and_unit(column, place, axis, kind, unit):
     named = read_name(column)
     assert (named.place, named.axis, named.kind, named.unit) == (place, axis, kind, unit)
+
+
+def test_the_word_of_an_axis_is_what_says_neither_quantity_nor_unit():
+    names = ('a_speed_m_per_min', 'left actual force [N]', 'Speed 2', 'oil_temp_degC')
+    words = [word_of_the_axis(read_name(name)) for name in names]
+    assert words == ['a', 'left', '2', '']
 
 
 def test_what_is_measured_comes_before_what_is_asked_for():
