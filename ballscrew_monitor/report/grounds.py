@@ -12,7 +12,7 @@ from ballscrew_monitor.report.case import AxisCase
 from ballscrew_monitor.report.inputs_seen import inputs_seen, InputSeen, NAMES, Trouble
 from ballscrew_monitor.report.markup import element, joined, Markup, table, TableCell, TableRow
 from ballscrew_monitor.report.room import MOST_ROWS
-from ballscrew_monitor.report.words import counted, duration, NONE, number, share
+from ballscrew_monitor.report.words import counted, duration, NONE, number, share, shown_unit
 
 TIERS = {
     'full': 'full model (solved contacts, roughness that rolls)',
@@ -102,12 +102,12 @@ def _input_row(seen: InputSeen) -> TableRow:
     return TableRow(
         cells=(
             TableCell(text=NAMES[seen.source]),
-            TableCell(text=tag),
+            TableCell(text=tag, kind='place'),
             TableCell(text=number(seen.low, 4), kind='short'),
             TableCell(text=number(seen.high, 4), kind='short'),
-            TableCell(text=seen.unit, kind='short'),
+            TableCell(text=shown_unit(seen.unit), kind='short'),
             TableCell(text=rate, kind='number'),
-            TableCell(text=seen.place),
+            TableCell(text=seen.place, kind='place'),
             TableCell(text=seen.refused or 'none' if seen.place else ''),
         )
     )
