@@ -21,9 +21,13 @@ from ballscrew_monitor.report.markup import (
 )
 from ballscrew_monitor.report.room import MOST_ROWS
 from ballscrew_monitor.report.verdict import AxisVerdict
-from ballscrew_monitor.report.words import duration, number, percent, share
+from ballscrew_monitor.report.words import duration, number, share
 
 SIGNS = {'>=': '≥'}
+LASTING = (
+    'A warning lasts until a motion is judged as clear of the limit: standstill and time that '
+    'could not be judged count, so it may last longer than the motion outside the zone.'
+)
 
 
 def verdict_part(verdict: AxisVerdict) -> Markup:
@@ -130,6 +134,7 @@ def events_part(case: AxisCase, most: int = MOST_ROWS) -> Markup:
                 'A click on a row shows that moment in the charts. The worst one is marked.' + cut,
                 class_='muted',
             ),
+            element('p', LASTING, class_='muted'),
             table(
                 ('No.', 'Begins at [s]', 'Lasts [s]', 'Cause', 'Worst', 'Limit', 'What to do'),
                 rows,
@@ -148,7 +153,6 @@ def _event_row(case: AxisCase, event: EventRecord, worst: bool) -> TableRow:
     margin = max(1.0, 0.2 * (end - begin))
     metal = event.quantity == RCS
     cause = 'oil film too thin (RCS)' if metal else f'too much friction ({event.quantity})'
-    show = number if metal else percent
     lasts = number(event.duration, 4) + (' and still on' if event.active else '')
     return TableRow(
         cells=(
@@ -156,9 +160,9 @@ def _event_row(case: AxisCase, event: EventRecord, worst: bool) -> TableRow:
             TableCell(text=f'{begin:.2f}', kind='number', value=begin),
             TableCell(text=lasts, kind='number', value=event.duration),
             TableCell(text=cause),
-            TableCell(text=show(event.worst_value), kind='short', value=badness(event)[0]),
+            TableCell(text=event.shown(event.worst_value), kind='short', value=badness(event)[0]),
             TableCell(
-                text=f'{SIGNS.get(event.relation, event.relation)} {show(event.limit)}',
+                text=f'{SIGNS.get(event.relation, event.relation)} {event.shown(event.limit)}',
                 kind='short',
             ),
             TableCell(text=event.advice or 'no better speed or load within the surface'),
