@@ -25,7 +25,7 @@ from ballscrew_monitor.report.words import duration, number, share
 
 SIGNS = {'>=': '≥'}
 LASTING = (
-    'A warning lasts until a motion is judged as clear of the limit: standstill and time that '
+    ' A warning lasts until a motion is judged as clear of the limit: standstill and time that '
     'could not be judged count, so it may last longer than the motion outside the zone.'
 )
 
@@ -131,10 +131,11 @@ def events_part(case: AxisCase, most: int = MOST_ROWS) -> Markup:
             element('h3', f'Warnings: {count}'),
             element(
                 'p',
-                'A click on a row shows that moment in the charts. The worst one is marked.' + cut,
+                'A click on a row shows that moment in the charts. The worst one is marked.'
+                + cut
+                + LASTING,
                 class_='muted',
             ),
-            element('p', LASTING, class_='muted'),
             table(
                 ('No.', 'Begins at [s]', 'Lasts [s]', 'Cause', 'Worst', 'Limit', 'What to do'),
                 rows,
