@@ -8,9 +8,7 @@ import html
 import math
 
 LEADING = 'leading'  # kind of a table whose rows lead to moments, of which there may be many
-WHOLE = (0, 0, 26, 12)
-DOTS = tuple((x, y, 2, 2) for x in range(2, 26, 7) for y in (1, 8))
-"""Left, top, width and height of the areas of a sample in a legend."""
+DOTS = 'M0 3H26M0 9H26'  # two rows of a sample in a legend
 VOID = frozenset({'meta', 'rect', 'line', 'path', 'br', 'polyline'})
 
 
@@ -123,25 +121,21 @@ def share_bar(parts: Sequence[tuple[float, str]], title: str) -> Markup:
 
 def swatch(kind: str, shape: str = 'fill', dash: str | None = None) -> Markup:
     """Return a sample of a colour, as an area, as dots or as a line, for a legend."""
-    if shape == 'line':
-        pieces = [
-            element(
-                'line',
-                x1='0',
-                x2='26',
-                y1='6',
-                y2='6',
-                class_=f'line-{kind}',
-                stroke_width='2',
-                stroke_dasharray=dash,
-            )
-        ]
+    if shape == 'fill':
+        piece = element('rect', width='26', height='12', class_=f'fill-{kind}')
+    elif shape == 'dots':
+        piece = element(
+            'path', d=DOTS, class_=f'line-{kind}', stroke_width='2', stroke_dasharray='2 5'
+        )
     else:
-        pieces = [_area(kind, *place) for place in (DOTS if shape == 'dots' else [WHOLE])]
-    return element('svg', *pieces, viewBox='0 0 26 12', aria_hidden='true')
-
-
-def _area(kind: str, x: int, y: int, width: int, height: int) -> Markup:
-    return element(
-        'rect', x=str(x), y=str(y), width=str(width), height=str(height), class_=f'fill-{kind}'
-    )
+        piece = element(
+            'line',
+            x1='0',
+            x2='26',
+            y1='6',
+            y2='6',
+            class_=f'line-{kind}',
+            stroke_width='2',
+            stroke_dasharray=dash,
+        )
+    return element('svg', piece, viewBox='0 0 26 12', aria_hidden='true')

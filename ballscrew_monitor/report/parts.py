@@ -24,10 +24,7 @@ from ballscrew_monitor.report.verdict import AxisVerdict
 from ballscrew_monitor.report.words import duration, number, share
 
 SIGNS = {'>=': '≥'}
-LASTING = (
-    ' A warning lasts until a motion is judged as clear of the limit: standstill and time that '
-    'could not be judged count, so it may last longer than the motion outside the zone.'
-)
+LASTING = ' A warning goes on over standstill and over what could not be judged.'
 
 
 def verdict_part(verdict: AxisVerdict) -> Markup:
