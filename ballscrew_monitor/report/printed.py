@@ -9,7 +9,7 @@ from typing import Any
 from ballscrew_monitor.recordings.columns import Reason
 from ballscrew_monitor.report.case import AxisCase, LogCase
 from ballscrew_monitor.report.inputs_seen import inputs_seen, InputSeen, NAMES, Trouble
-from ballscrew_monitor.report.verdict import never_moved, verdict_of
+from ballscrew_monitor.report.verdict import verdict_of
 from ballscrew_monitor.report.words import number
 
 HEAD = 12
@@ -26,7 +26,7 @@ SAID = {
 def log_lines(log: LogCase) -> Iterator[str]:
     """Yield the lines about all axes of a recording."""
     for case in log.axes:
-        still = ', none of them in motion' if never_moved(case) else ''
+        still = ', none of them in motion' if case.outcome.judged and case.is_silent else ''
         yield f'axis {case.axis}: {case.outcome.judged} speed samples judged{still}'
         yield from (f'  {line}' for line in axis_lines(case))
     yield from (f'axis {axis}: no usable sample' for axis in log.empty)

@@ -35,6 +35,21 @@ def test_an_axis_that_never_moves_does_not_read_like_all_is_well(judged):
     assert any('x.speed: the axis never moves' in line for line in lines_of(case, 'check'))
 
 
+def test_an_axis_of_which_only_standstill_was_judged_says_so(judged):
+    zeros = {'zone': Zone.UNKNOWN, 'axial_load': np.nan, 'axial_load_source': 0}
+    speeds, reasons = [9.0] * 20 + [0.0] * 80, [Reason.NO_LOAD] * 20 + [Reason.STANDSTILL] * 80
+    block = judged.columns(speed=speeds, reason=reasons, **zeros)
+    moved = Totals(running_time=200_000_000, unjudged_time=200_000_000)
+    case = judged.case([block], totals=moved, judged=80)
+    first, verdict, *_ = log_lines(LogCase(name='log', parameters='', axes=[case]))
+    assert first == 'axis x: 80 speed samples judged, none of them in motion'
+    assert verdict.endswith('0.2 s (100 %) of its motion: no valid sample of the load.')
+    assert lines_of(case, 'not judged') == [
+        '0.79 s: the screw stands still',
+        '0.2 s: no valid sample of the load',
+    ]
+
+
 def test_an_axis_that_is_well_has_no_check(judged):
     case = judged.case([judged.columns()])
     assert not lines_of(case, 'check')
