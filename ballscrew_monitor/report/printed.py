@@ -9,6 +9,7 @@ from typing import Any
 from ballscrew_monitor.recordings.columns import Reason
 from ballscrew_monitor.report.case import AxisCase, LogCase
 from ballscrew_monitor.report.inputs_seen import inputs_seen, InputSeen, NAMES, Trouble
+from ballscrew_monitor.report.survey import REST
 from ballscrew_monitor.report.verdict import verdict_of
 from ballscrew_monitor.report.words import number
 
@@ -48,6 +49,8 @@ def axis_lines(case: AxisCase) -> Iterator[str]:
         for reason, time in sorted(case.survey.reasons.items(), key=lambda item: -item[1])
         if reason is not Reason.JUDGED
     )
+    if case.survey.rest:
+        yield _line('not judged', f'{number(case.survey.rest, 4)} s: {REST}')
     yield from (_line('check', hint) for one in seen for hint in one.hints)
 
 

@@ -107,6 +107,7 @@ def axis_record(case: AxisCase, verdict: AxisVerdict) -> dict[str, Any]:
             zone.name.lower(): energy for zone, energy in survey.energy.items()
         },
         'time_by_reason_s': {reason.name.lower(): time for reason, time in survey.reasons.items()},
+        'time_without_rows_s': survey.rest,
         'torque_residual': known(
             {f'mean_{name}_Nm': value for name, value in one_way.items()}
             | {'rms_Nm': survey.torque.spread},

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The verdict on an axis in one sentence: how long outside the zone, why, and what to do."""
 
+from collections.abc import Mapping
 import dataclasses
 import enum
-import math
 
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.recordings.columns import Reason
@@ -89,7 +89,7 @@ def verdict_of(case: AxisCase) -> AxisVerdict:
 
 def _unmoved(case: AxisCase) -> AxisVerdict:
     """Return that nothing can be said of an axis for which no motion is known."""
-    reason = _main_reason(case)
+    reason = _longest(case.survey.reasons)
     if never_moved(case):
         limit = case.settings.limits.standstill_speed
         return AxisVerdict(
@@ -109,16 +109,17 @@ def _unmoved(case: AxisCase) -> AxisVerdict:
 
 
 def never_moved(case: AxisCase) -> bool:
-    """Tell whether the speed of an axis is known and the screw stood still all the time."""
+    """Tell whether the speed is known for most of the time and the screw always stood still."""
     summary = case.outcome.summary()
     if summary is not None and summary.running_time:
         return False
-    known = math.isfinite(case.survey.inputs[Source.SPEED].high)
-    return known and _main_reason(case) in (None, Reason.STANDSTILL, Reason.NO_DIRECTION)
+    speed, limit = case.survey.inputs[Source.SPEED], case.settings.limits.standstill_speed
+    still = -limit < speed.low <= speed.high < limit  # NaN where it is not known
+    return still and _longest(case.survey.reasons) in (None, Reason.STANDSTILL)
 
 
 def _unjudged(case: AxisCase, summary: Summary, part: float) -> AxisVerdict:
-    reason = _main_reason(case)
+    reason = _longest(case.survey.moving)
     why = reason.text if reason else 'the reason is not known'
     return AxisVerdict(
         standing=VerdictKind.UNKNOWN,
@@ -184,19 +185,15 @@ def _advice(case: AxisCase) -> str:
 
 
 def _unjudged_part(case: AxisCase, summary: Summary) -> str:
-    reason = _main_reason(case)
+    reason = _longest(case.survey.moving)
     why = f', {reason.text}' if reason else ''
     part = share(summary.unjudged_time, summary.running_time)
     return f'; {duration(summary.unjudged_time)} ({part}) could not be judged{why}'
 
 
-def _main_reason(case: AxisCase) -> Reason | None:
-    """Return for what most time could not be judged; standstill only where there is no other."""
-    reasons = {
-        reason: time for reason, time in case.survey.reasons.items() if reason is not Reason.JUDGED
-    }
-    moving = {reason: time for reason, time in reasons.items() if reason is not Reason.STANDSTILL}
-    chosen = moving or reasons
+def _longest(reasons: Mapping[Reason, float]) -> Reason | None:
+    """Return for what most time [s] could not be judged."""
+    chosen = {reason: time for reason, time in reasons.items() if reason is not Reason.JUDGED}
     return max(chosen, key=lambda reason: chosen[reason]) if chosen else None
 
 

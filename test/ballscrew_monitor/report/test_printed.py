@@ -60,6 +60,11 @@ def test_an_axis_that_is_well_has_no_check(judged):
     ]
 
 
+def test_the_time_without_rows_has_a_line(judged):
+    case = judged.case([judged.columns(0, 51), judged.columns(250, 51)])
+    assert lines_of(case, 'not judged') == ['2 s: gaps in the speed, up to its timeout']
+
+
 def test_why_and_what_to_do_have_their_lines(judged):
     case = judged.case([judged.columns()], [judged.event(1, 0.1, 0.2)])
     assert lines_of(case, 'why')[0].startswith('The oil film was too thin')

@@ -5,6 +5,7 @@
 import math
 
 from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.core.estimate import PointSource
 from ballscrew_monitor.core.judgement import Zone
 from ballscrew_monitor.core.tally import Totals
 from ballscrew_monitor.recordings.columns import Reason
@@ -99,6 +100,30 @@ def test_an_axis_that_never_moved(judged):
     assert verdict.standing is VerdictKind.UNKNOWN
     assert 'axis x never moved' in verdict.sentence
     assert 'Check the unit of the speed' in verdict.remedy
+
+
+def test_a_gap_does_not_hide_that_an_axis_never_moved(judged):
+    still = {'speed': 0.1, 'zone': Zone.UNKNOWN}
+    gap = {'reason': Reason.NO_INPUTS, 'speed_source': PointSource.HELD, 'tick': True}
+    blocks = [
+        judged.columns(0, 90, reason=Reason.STANDSTILL, **still),
+        judged.columns(90, 10, **still, **gap),
+    ]
+    verdict = verdict_of(judged.case(blocks, totals=Totals()))
+    assert 'axis x never moved' in verdict.sentence
+    blocks = [blocks[0], judged.columns(90, 200, **still, **gap)]
+    verdict = verdict_of(judged.case(blocks, totals=Totals()))
+    assert verdict.sentence.endswith('axis x: no valid sample of several inputs.')
+
+
+def test_why_a_motion_was_not_judged_does_not_count_gaps(judged):
+    gap = {'reason': Reason.NO_INPUTS, 'speed_source': PointSource.HELD, 'tick': True}
+    blocks = [
+        judged.columns(0, 10, reason=Reason.NO_LOAD, zone=Zone.UNKNOWN),
+        judged.columns(10, 90, zone=Zone.UNKNOWN, **gap),
+    ]
+    verdict = verdict_of(judged.case(blocks, totals=totals(0.1, 0.0)))
+    assert verdict.sentence.endswith('of its motion: no valid sample of the load.')
 
 
 def test_a_speed_that_never_came(judged):
