@@ -21,7 +21,7 @@ from ballscrew_monitor.report.markup import (
 )
 from ballscrew_monitor.report.room import MOST_ROWS
 from ballscrew_monitor.report.verdict import AxisVerdict
-from ballscrew_monitor.report.words import duration, number, percent, share
+from ballscrew_monitor.report.words import duration, NONE, number, percent, share
 
 SIGNS = {'>=': '≥'}
 
@@ -149,6 +149,7 @@ def _event_row(case: AxisCase, event: EventRecord, worst: bool) -> TableRow:
     metal = event.quantity == RCS
     cause = 'oil film too thin (RCS)' if metal else f'too much friction ({event.quantity})'
     show = number if metal else percent
+    todo = event.what_to_do
     lasts = number(event.duration, 4) + (' and still on' if event.active else '')
     return TableRow(
         cells=(
@@ -161,7 +162,7 @@ def _event_row(case: AxisCase, event: EventRecord, worst: bool) -> TableRow:
                 text=f'{SIGNS.get(event.relation, event.relation)} {show(event.limit)}',
                 kind='short',
             ),
-            TableCell(text=event.advice or 'no better speed or load within the surface'),
+            TableCell(text=f'raised at {event.place}: {todo}' if event.place else todo or NONE),
         ),
         begin=begin - margin,
         end=end + margin,

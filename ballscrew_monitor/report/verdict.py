@@ -2,9 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """The verdict on an axis in one sentence: how long outside the zone, why, and what to do."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 import dataclasses
 import enum
+import math
 
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.recordings.columns import Reason
@@ -172,16 +173,38 @@ def _why(events: tuple[EventRecord, ...]) -> str:
 
 
 def _advice(case: AxisCase) -> str:
-    """Return the advice on the worst event of each cause for which there is one."""
-    found: dict[str, str] = {}
-    for event in case.worst_first:
-        if event.advice and event.quantity not in found:
-            found[event.quantity] = f'as in warning {event.event_id}, {event.advice}'
-    if not found:
-        return (
-            'No speed or load within the surface would have helped; look at oil and temperature.'
-        )
-    return f'{list_of(list(found.values()))}.'
+    """Return the strictest advice for each cause, and what there is none for."""
+    events = case.worst_first
+    parts = []
+    for quantity in dict.fromkeys(event.quantity for event in events):
+        advised = [event for event in events if event.quantity == quantity and event.advice]
+        by_speed = [event for event in advised if math.isfinite(event.target_speed)]
+        parts += [f'as {_of(group, "strictest")}' for group in _by_strictness(by_speed) if group]
+        by_load = [event for event in advised if event not in by_speed]
+        parts += [f'as {_of(by_load, "worst")}'] if by_load else []
+    helpless = [event for event in events if not event.advice and event.place]
+    if helpless:
+        parts.append(f'{_of(helpless, "worst")}: change both, or look at oil and temperature')
+    return f'{list_of(parts)}.' if parts else ''
+
+
+def _by_strictness(events: Sequence[EventRecord]) -> tuple[list[EventRecord], list[EventRecord]]:
+    """Return those to run faster in and those to run slower in, the strictest first."""
+    slower = [event for event in events if abs(event.target_speed) < abs(event.speed)]
+    faster = [event for event in events if event not in slower]
+    return sorted(faster, key=_target, reverse=True), sorted(slower, key=_target)
+
+
+def _target(event: EventRecord) -> float:
+    return abs(event.target_speed)
+
+
+def _of(events: Sequence[EventRecord], rank: str) -> str:
+    """Return what to do about the first of some events, and what it is among them."""
+    first = events[0]
+    others = f', the {rank} of {len(events)}' if len(events) > 1 else ''
+    place = f' (raised at {first.place})' if first.place else ''
+    return f'in warning {first.event_id}{others}{place}, {first.what_to_do}'
 
 
 def _unjudged_part(case: AxisCase, summary: Summary) -> str:

@@ -71,6 +71,12 @@ def test_the_outcome_is_that_of_the_states(nominal_bag, judged, values):
     columns, outcome = judged
     summary, expected = outcome.summary(), summarizer.result()
     assert summary.events == expected.events
+    for event, told in zip(summary.events, expected.events, strict=True):
+        np.testing.assert_equal(
+            (event.target_speed, event.target_load), (told.target_speed, told.target_load)
+        )
+        assert event.place.endswith(' N')
+        assert told.place == ''  # a message does not tell
     assert summary.states == expected.states < outcome.rows
     # The last state comes before the last sample, up to which the totals go.
     assert expected.running_time <= summary.running_time <= expected.running_time + 0.1
