@@ -9,6 +9,7 @@ from typing import Any
 from ballscrew_monitor.core.conversions import SECOND, seconds
 from ballscrew_monitor.core.fields import stamp_of
 from ballscrew_monitor.core.state import Event
+from ballscrew_monitor.recordings.words import number, share
 from ballscrew_msgs.msg import BallScrewState, Finding, OutOfZone
 from surrogate.surface import REGIMES
 from surrogate.units import RPM
@@ -132,7 +133,8 @@ class Summary:
         span = self.since_first(self.last)
         return [
             f'in motion   {self.running_time:.1f} s of {span:.1f} s, '
-            f'{self.revolutions:.0f} revolutions, {self.energy_lost:.0f} J lost to friction',
+            f'{self.revolutions:.0f} revolutions, '
+            f'{number(self.energy_lost, 4)} J lost to friction',
             'regime      ' + self._shares(*(regime.word for regime in REGIMES)),
             'zone        ' + self._shares('optimal', 'outside', 'unjudged'),
             f'events      {len(self.events) or self._no_events}',
@@ -147,8 +149,7 @@ class Summary:
         parts = []
         for name in names:
             time = getattr(self, f'{name}_time')
-            share = 100.0 * time / self.running_time if self.running_time else 0.0
-            parts.append(f'{name} {time:.1f} s ({share:.0f} %)')
+            parts.append(f'{name} {time:.1f} s ({share(time, self.running_time)})')
         return ', '.join(parts)
 
     def _event_line(self, event: EventRecord) -> str:

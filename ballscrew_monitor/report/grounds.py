@@ -8,12 +8,12 @@ import math
 from ballscrew_monitor.core.conversions import celsius
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.recordings.columns import Reason
+from ballscrew_monitor.recordings.words import counted, duration, NONE, number, share
 from ballscrew_monitor.report.case import AxisCase
 from ballscrew_monitor.report.inputs_seen import inputs_seen, InputSeen, NAMES, Trouble
 from ballscrew_monitor.report.markup import element, joined, Markup, table, TableCell, TableRow
 from ballscrew_monitor.report.room import MOST_ROWS
 from ballscrew_monitor.report.survey import REST
-from ballscrew_monitor.report.words import counted, duration, NONE, number, share
 
 TIERS = {
     'full': 'full model (solved contacts, roughness that rolls)',

@@ -14,9 +14,9 @@ from ballscrew_monitor.core.health import Health
 from ballscrew_monitor.core.inputs import Source, Why, YEAR
 from ballscrew_monitor.core.links import Link
 from ballscrew_monitor.core.reasons import slow_reason
+from ballscrew_monitor.recordings.words import duration, number
 from ballscrew_monitor.report.case import AxisCase, InputSetting
 from ballscrew_monitor.report.survey import Gaps, Span
-from ballscrew_monitor.report.words import duration, number
 from surrogate.units import RPM, TURN
 
 MEASURED = 'measured'

@@ -7,11 +7,11 @@ import math
 from typing import Any
 
 from ballscrew_monitor.recordings.columns import Reason
+from ballscrew_monitor.recordings.words import number
 from ballscrew_monitor.report.case import AxisCase, LogCase
 from ballscrew_monitor.report.inputs_seen import inputs_seen, InputSeen, NAMES, Trouble
 from ballscrew_monitor.report.survey import REST
 from ballscrew_monitor.report.verdict import verdict_of
-from ballscrew_monitor.report.words import number
 
 HEAD = 12
 """Width of the column of heads, as that of `Summary.lines`."""

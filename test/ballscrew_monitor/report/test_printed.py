@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a terminal says of a recording: the words of its page."""
 
+import math
+
 from ballscrew_monitor.core.inputs import Source, Why
 from ballscrew_monitor.core.judgement import Zone
 from ballscrew_monitor.core.tally import Totals
@@ -41,6 +43,7 @@ def test_an_axis_of_which_only_standstill_was_judged_says_so(judged):
     block = judged.columns(speed=speeds, reason=reasons, **zeros)
     moved = Totals(running_time=200_000_000, unjudged_time=200_000_000)
     case = judged.case([block], totals=moved, judged=80)
+    assert math.isnan(case.outside_time)  # 0 would read as well done
     first, verdict, *_ = log_lines(LogCase(name='log', parameters='', axes=[case]))
     assert first == 'axis x: 80 speed samples judged, none of them in motion'
     assert verdict.endswith('0.2 s (100 %) of its motion: no valid sample of the load.')
