@@ -100,6 +100,12 @@ class AxisCase:
         return summary is None or summary.says_nothing
 
     @property
+    def outside_time(self) -> float:
+        """Return the time outside the zone [s], NaN where nothing of what moved was judged."""
+        summary = self.outcome.summary()
+        return math.nan if summary is None or summary.says_nothing else summary.outside_time
+
+    @property
     def worst_first(self) -> list[EventRecord]:
         """Return the events, the worst first."""
         return sorted(self.outcome.events, key=badness, reverse=True)

@@ -14,13 +14,14 @@ from ballscrew_monitor.core.health import Health
 from ballscrew_monitor.core.inputs import Source, Why, YEAR
 from ballscrew_monitor.core.links import Link
 from ballscrew_monitor.core.reasons import slow_reason
+from ballscrew_monitor.recordings.words import duration, number
 from ballscrew_monitor.report.case import AxisCase, InputSetting
 from ballscrew_monitor.report.survey import Gaps, Span
-from ballscrew_monitor.report.words import duration, number
 from surrogate.units import RPM, TURN
 
 MEASURED = 'measured'
 LAG_TOLD = 0.01  # [s] between stamp and arrival from which on it is told
+SAME_RATE = 0.01  # between numbers of messages [-] up to which two inputs came together
 FASTEST_FEED = 2.0  # [m/s] hardly any ball screw feeds faster
 SHOWN = (Source.SPEED, Source.LOAD, Source.TEMPERATURE, Source.TORQUE)
 NAMES = {
@@ -57,12 +58,12 @@ class InputSeen:
     """
     One input as it was recorded.
 
-    Lowest and highest number in its `unit`, NaN without any; `rate` [Hz], and whether that is
-    assumed; its `origin` in words, whether that is a measurement or at least stated; what was
-    refused, by why; how many messages were `left_out` as out of order or of other joints, and
-    how many were `lost` on the way, None if that is not known, as in all recordings that are not
-    `numbered`. In the end its stamps lay `lag` [s] behind their arrival, NaN without stamps, and
-    it came too seldom for its timeout if `slow`. `hints` say what looks wrong.
+    Lowest and highest number in its `unit`, NaN without any; `rate` [Hz] outside of gaps, and
+    whether that is assumed; its `origin` in words, whether that is a measurement or at least
+    stated; what was refused, by why; how many messages were `left_out` as out of order or of other
+    joints, and how many were `lost` on the way, None if that is not known, as in all recordings
+    that are not `numbered`. In the end its stamps lay `lag` [s] behind their arrival, NaN without
+    stamps, and it came too seldom for its timeout if `slow`. `hints` say what looks wrong.
 
     """
 
@@ -127,7 +128,6 @@ def _seen(case: AxisCase, source: Source) -> InputSeen:
     refused = sum(case.outcome.refused.get(source, {}).values())
     if health.received == refused:
         origin = 'never valid' if refused else 'never received'
-    span = case.survey.span
     return InputSeen(
         source=source,
         origin=origin,
@@ -136,7 +136,7 @@ def _seen(case: AxisCase, source: Source) -> InputSeen:
         unit=setting.unit,
         low=heard.low,
         high=heard.high,
-        rate=(health.received - 1) / span if health.received > 1 and span else math.nan,
+        rate=_rate(case, source),
         rate_assumed='time.rate_Hz' in case.assumed,
         received=health.received,
         refused=_refused(case, source),
@@ -148,6 +148,25 @@ def _seen(case: AxisCase, source: Source) -> InputSeen:
         gaps=case.survey.gaps[source],
         hints=tuple(_hints(case, source, setting, heard)),
     )
+
+
+def _rate(case: AxisCase, source: Source) -> float:
+    """Return how many messages came in a second [Hz] outside of gaps, NaN where none can tell."""
+    received = {one.source: one.received for one in case.outcome.inputs}
+    steps, span = received[source] - 1, case.survey.span
+    if steps < 1 or not span:
+        return math.nan
+    # What came as often as the speed came with it; a long timeout does not see all gaps.
+    if math.isclose(received[source], received[Source.SPEED], rel_tol=SAME_RATE):
+        source = Source.SPEED
+    gaps, silent = case.survey.gaps[source], 0.0
+    if source is not Source.SPEED:
+        silent = seconds(case.settings.timeouts[source]) * gaps.count
+        if case.outcome.refused.get(source):
+            return steps / span  # of these gaps some are no silence
+    rest = span - gaps.time - silent
+    usual = 2 * gaps.count < steps and rest > 0.0
+    return (steps - gaps.count) / rest if usual else steps / span
 
 
 def _origin(case: AxisCase, source: Source) -> str:
