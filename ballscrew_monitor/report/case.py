@@ -65,6 +65,11 @@ class AxisCase:
     numbered: bool = False
 
     @property
+    def is_mapped(self) -> bool:
+        """Tell whether its inputs are columns of a table, as a map says."""
+        return 'lead_mm' in self.stated or 'lead_mm' in self.assumed  # no map is without it
+
+    @property
     def load_origin(self) -> str:
         """Return in words what its load is worked out from, empty where it is measured."""
         if self.load_from:

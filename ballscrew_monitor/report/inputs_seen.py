@@ -22,6 +22,7 @@ from surrogate.units import RPM, TURN
 MEASURED = 'measured'
 LAG_TOLD = 0.01  # [s] between stamp and arrival from which on it is told
 SAME_RATE = 0.01  # between numbers of messages [-] up to which two inputs came together
+IN_THE_MAP = 'check its unit, its scale and the lead in the map'
 FASTEST_FEED = 2.0  # [m/s] hardly any ball screw feeds faster
 SHOWN = (Source.SPEED, Source.LOAD, Source.TEMPERATURE, Source.TORQUE)
 NAMES = {
@@ -222,14 +223,14 @@ def _hints(case: AxisCase, source: Source, setting: InputSetting, heard: Heard) 
         known=known_range(case.surface, source, setting.unit),
     )
     hints = unit_doubts(facts, heard)
+    if hints and case.is_mapped:  # the units that it names are those of the bag
+        hints = [f'{facts.parameter}: its numbers are far outside the surface: {IN_THE_MAP}']
+    cure = IN_THE_MAP if case.is_mapped else f'check {facts.parameter}.unit and scale'
     if case.outcome.refused.get(source, {}).get(Why.IMPLAUSIBLE):
-        hints.append(
-            f'{facts.parameter}: samples beyond what is plausible were refused: '
-            f'check {facts.parameter}.unit and scale'
-        )
+        hints.append(f'{facts.parameter}: samples beyond what is plausible were refused: {cure}')
     hints += _of_time(heard.health, facts.parameter)
     if source is Source.SPEED:
-        hints += _of_speed(case, setting, heard, facts.parameter)
+        hints += _of_speed(case, setting, heard, facts.parameter, cure)
     elif source is not Source.TEMPERATURE and heard.low == heard.high:
         hints.append(f'{facts.parameter}: it never changes, is it connected?')
     return hints
@@ -251,7 +252,7 @@ def _of_time(health: Health, parameter: str) -> Sequence[str]:
 
 
 def _of_speed(
-    case: AxisCase, setting: InputSetting, heard: Heard, parameter: str
+    case: AxisCase, setting: InputSetting, heard: Heard, parameter: str, cure: str
 ) -> Sequence[str]:
     """Return that the axis never moves or moves too fast to be true."""
     if math.isnan(heard.high):
@@ -261,7 +262,7 @@ def _of_speed(
     if fastest * feed > FASTEST_FEED:
         return [
             f'{parameter}: it feeds with up to {fastest * feed:.3g} m/s, hardly any ball screw '
-            f'does: check {parameter}.unit and scale'
+            f'does: {cure}'
         ]
     if fastest >= limit:
         return []
@@ -275,6 +276,8 @@ def _of_speed(
     ]
     if not others:
         return [said]
+    if case.is_mapped:
+        return [f'{said}: {cure}']
     return [f'{said}, which may be {" or ".join(others)}: then set {parameter}.unit']
 
 

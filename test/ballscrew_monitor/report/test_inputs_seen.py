@@ -145,6 +145,18 @@ def test_a_feed_of_more_than_2_metres_a_second_is_doubted(judged):
     assert any('it feeds with up to 3.18 m/s' in hint for hint in hints)
 
 
+@pytest.mark.parametrize('place', ['stated', 'assumed'])
+@pytest.mark.parametrize('speed', [2000.0, 0.1])
+def test_of_a_table_the_map_is_to_be_checked(judged, speed, place):
+    known = {'stated': {'stated': frozenset(['lead_mm'])}, 'assumed': {'assumed': {'lead_mm': {}}}}
+    block = judged.columns(speed=speed)
+    hints = seen_of(judged.case([block], known=known[place]), Source.SPEED).hints
+    assert hints
+    for hint in hints:
+        assert hint.endswith('check its unit, its scale and the lead in the map')
+        assert 'x.speed.unit' not in hint
+
+
 def test_a_load_that_never_changes_is_doubted(judged):
     hints = seen_of(judged.case([judged.columns(axial_load=0.0)]), Source.LOAD).hints
     assert hints == ('x.load: it never changes, is it connected?',)
