@@ -152,11 +152,13 @@ def reason_of(point: MachinePoint, result: PointEstimate, verdict: Verdict) -> R
     """Return why the zone is unknown, if it is."""
     if verdict.zone is not Zone.UNKNOWN:
         return Reason.JUDGED
+    if Gate.STANDSTILL in verdict.gates:  # whatever else is missing, there is nothing to judge
+        return Reason.STANDSTILL
     if result.validity is PointValidity.NO_INPUT:
         return _lost(point)
     if point.derived is not None and result.validity is PointValidity.UNKNOWN:
         return Reason.NO_DERIVED_LOAD
-    return Reason.STANDSTILL if Gate.STANDSTILL in verdict.gates else BY_VALIDITY[result.validity]
+    return BY_VALIDITY[result.validity]
 
 
 def _lost(point: MachinePoint) -> Reason:

@@ -9,9 +9,15 @@ from typing import Any
 from ballscrew_monitor.core.conversions import SECOND, seconds
 from ballscrew_monitor.core.fields import stamp_of
 from ballscrew_monitor.core.state import Event
+from ballscrew_monitor.recordings.words import number, share
 from ballscrew_msgs.msg import BallScrewState, Finding, OutOfZone
 from surrogate.surface import REGIMES
+from surrogate.units import RPM
 
+NO_ADVICE = (
+    'neither another speed at this load nor another load at this speed within the surface would '
+    'clear it'
+)
 RELATIONS = {
     Finding.CODE_RCS_HIGH: ('RCS', '>='),
     Finding.CODE_EFFICIENCY_LOW: ('efficiency', '<'),
@@ -20,7 +26,13 @@ RELATIONS = {
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class EventRecord:
-    """One stay outside the optimal zone; start [ns], duration [s], worst value and limit [-]."""
+    """
+    One stay outside the optimal zone; start [ns], duration [s], worst value and limit [-].
+
+    `speed` [rad/s] and `axial_load` [N] are those that raised the warning, NaN where only its
+    message is known; `target_speed` and `target_load` those of the advice, NaN if there is none.
+
+    """
 
     event_id: int
     start: int
@@ -31,6 +43,22 @@ class EventRecord:
     worst_value: float
     limit: float
     advice: str
+    speed: float = dataclasses.field(default=math.nan, compare=False)
+    axial_load: float = dataclasses.field(default=math.nan, compare=False)
+    target_speed: float = dataclasses.field(default=math.nan, compare=False)
+    target_load: float = dataclasses.field(default=math.nan, compare=False)
+
+    @property
+    def place(self) -> str:
+        """Return in words where it was raised, empty where that is not known."""
+        if not math.isfinite(self.speed + self.axial_load):
+            return ''
+        return f'{_rounded(self.speed / RPM)} rev/min and {_rounded(self.axial_load)} N'
+
+    @property
+    def what_to_do(self) -> str:
+        """Return the advice, or that there is none; empty where that is not known."""
+        return self.advice or (NO_ADVICE if self.place else '')
 
     @property
     def end(self) -> int:
@@ -111,7 +139,8 @@ class Summary:
         span = self.since_first(self.last)
         return [
             f'in motion   {self.running_time:.1f} s of {span:.1f} s, '
-            f'{self.revolutions:.0f} revolutions, {self.energy_lost:.0f} J lost to friction',
+            f'{self.revolutions:.0f} revolutions, '
+            f'{number(self.energy_lost, 4)} J lost to friction',
             'regime      ' + self._shares(*(regime.word for regime in REGIMES)),
             'zone        ' + self._shares('optimal', 'outside', 'unjudged'),
             f'events      {len(self.events) or self._no_events}',
@@ -126,17 +155,17 @@ class Summary:
         parts = []
         for name in names:
             time = getattr(self, f'{name}_time')
-            share = 100.0 * time / self.running_time if self.running_time else 0.0
-            parts.append(f'{name} {time:.1f} s ({share:.0f} %)')
+            parts.append(f'{name} {time:.1f} s ({share(time, self.running_time)})')
         return ', '.join(parts)
 
     def _event_line(self, event: EventRecord) -> str:
         end = 'still on' if event.active else f'{self.since_first(event.end):5.1f} s'
-        advice = f'; {event.advice}' if event.advice else ''
+        place = f'; raised at {event.place}' if event.place else ''
+        advice = f': {event.what_to_do}' if place else f'; {event.advice}' if event.advice else ''
         return (
             f'  {event.event_id:2d}  {self.since_first(event.start):5.1f} s to {end}  '
             f'{event.quantity} {event.relation} {event.shown(event.limit)}, '
-            f'worst {event.shown(event.worst_value)}{advice}'
+            f'worst {event.shown(event.worst_value)}{place}{advice}'
         )
 
 
@@ -184,6 +213,7 @@ class Summarizer:
 def event_record(event: Event, *, until: int) -> EventRecord:
     """Return an event as it stands at the stamp `until` [ns]."""
     quantity, relation = RELATIONS.get(event.cause.code, ('other', 'beyond'))
+    point = None if event.advisor is None else event.advisor.point
     return EventRecord(
         event_id=event.number,
         start=event.start,
@@ -194,6 +224,10 @@ def event_record(event: Event, *, until: int) -> EventRecord:
         worst_value=event.worst_value,
         limit=event.cause.limit,
         advice=event.advice.text,
+        speed=math.nan if point is None else point.speed,
+        axial_load=math.nan if point is None else point.axial_load,
+        target_speed=event.advice.target_speed,
+        target_load=event.advice.target_load,
     )
 
 
@@ -209,7 +243,13 @@ def _event_record(message: OutOfZone) -> EventRecord:
         worst_value=message.worst_value,
         limit=message.cause.limit,
         advice=message.advice,
+        target_speed=message.cause.target_speed,
+        target_load=message.cause.target_load,
     )
+
+
+def _rounded(value: float) -> str:
+    return f'{value:.0f}' if abs(value) >= 100.0 else f'{value:.3g}'
 
 
 def _with_unit(name: str) -> str:

@@ -68,6 +68,11 @@ class AxisCase:
     numbered: bool = False
 
     @property
+    def is_mapped(self) -> bool:
+        """Tell whether its inputs are columns of a table, as a map says."""
+        return 'lead_mm' in self.stated or 'lead_mm' in self.assumed  # no map is without it
+
+    @property
     def load_origin(self) -> str:
         """Return in words what its load is worked out from, empty where it is measured."""
         if self.load_from:
@@ -101,6 +106,12 @@ class AxisCase:
         """Tell whether nothing was judged, or nothing of what moved."""
         summary = self.outcome.summary()
         return summary is None or summary.says_nothing
+
+    @property
+    def outside_time(self) -> float:
+        """Return the time outside the zone [s], NaN where nothing of what moved was judged."""
+        summary = self.outcome.summary()
+        return math.nan if summary is None or summary.says_nothing else summary.outside_time
 
     @property
     def worst_first(self) -> list[EventRecord]:

@@ -18,6 +18,7 @@ from ballscrew_monitor.recordings.decoding import silence
 from ballscrew_monitor.recordings.opener import opened_log
 from ballscrew_monitor.recordings.progress import shown_progress
 from ballscrew_monitor.recordings.replay import axes_for
+from ballscrew_monitor.recordings.words import counted
 from ballscrew_monitor.report.case import AxisCase, LogCase
 from ballscrew_monitor.report.judging import judge_log
 from ballscrew_monitor.report.logs import find_logs, left_out, map_for, PAGE, SUMMARY
@@ -25,7 +26,6 @@ from ballscrew_monitor.report.parameters import LogParameters, parameters_for
 from ballscrew_monitor.report.printed import log_lines, printed_records
 from ballscrew_monitor.report.products import summary_record, without
 from ballscrew_monitor.report.verdict import never_moved
-from ballscrew_monitor.report.words import counted
 from surrogate.files import InputError, json_text
 from surrogate.surface import SurfaceError
 

@@ -9,11 +9,12 @@ from ballscrew_monitor.core.conversions import celsius
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.recordings.columns import Reason
 from ballscrew_monitor.recordings.log_facts import grouped
+from ballscrew_monitor.recordings.words import counted, duration, NONE, number, share, shown_unit
 from ballscrew_monitor.report.case import AxisCase
 from ballscrew_monitor.report.inputs_seen import inputs_seen, InputSeen, NAMES, Trouble
 from ballscrew_monitor.report.markup import element, joined, Markup, table, TableCell, TableRow
 from ballscrew_monitor.report.room import MOST_ROWS
-from ballscrew_monitor.report.words import counted, duration, NONE, number, share, shown_unit
+from ballscrew_monitor.report.survey import REST
 from surrogate.units import MILLI
 
 TIERS = {
@@ -140,16 +141,18 @@ def _trouble_table(seen: Sequence[InputSeen]) -> Iterable[Markup]:
 def gaps_part(case: AxisCase, most: int = MOST_ROWS) -> Markup:
     """Return how long what could not be judged, and the longest gaps in the speed, `most` rows."""
     survey = case.survey
-    reasons = sorted(survey.reasons.items(), key=lambda item: -item[1])
+    times = [(_reason_text(reason), time) for reason, time in survey.reasons.items()]
+    if survey.rest:
+        times.append((f'not judged: {REST}', survey.rest))
     rows = [
         TableRow(
             cells=(
-                TableCell(text=_reason_text(reason)),
+                TableCell(text=text),
                 TableCell(text=number(time, 4), kind='number', value=time),
                 TableCell(text=share(time, survey.span), kind='short'),
             )
         )
-        for reason, time in reasons
+        for text, time in sorted(times, key=lambda row: -row[1])
     ]
     return joined(
         [

@@ -14,13 +14,15 @@ from ballscrew_monitor.core.health import Health
 from ballscrew_monitor.core.inputs import Source, Why, YEAR
 from ballscrew_monitor.core.links import Link
 from ballscrew_monitor.core.reasons import slow_reason
+from ballscrew_monitor.recordings.words import duration, number
 from ballscrew_monitor.report.case import AxisCase, InputSetting
 from ballscrew_monitor.report.survey import Gaps, Span
-from ballscrew_monitor.report.words import duration, number
 from surrogate.units import RPM, TURN
 
 MEASURED = 'measured'
 LAG_TOLD = 0.01  # [s] between stamp and arrival from which on it is told
+SAME_RATE = 0.01  # between numbers of messages [-] up to which two inputs came together
+IN_THE_MAP = 'check its unit, its scale and the lead in the map'
 FASTEST_FEED = 2.0  # [m/s] hardly any ball screw feeds faster
 SHOWN = (Source.SPEED, Source.LOAD, Source.TEMPERATURE, Source.TORQUE)
 NAMES = {
@@ -57,12 +59,12 @@ class InputSeen:
     """
     One input as it was recorded.
 
-    Lowest and highest number in its `unit`, NaN without any; `rate` [Hz], and whether that is
-    assumed; its `origin` in words, whether that is a measurement or at least stated; what was
-    refused, by why; how many messages were `left_out` as out of order or of other joints, and
-    how many were `lost` on the way, None if that is not known, as in all recordings that are not
-    `numbered`. In the end its stamps lay `lag` [s] behind their arrival, NaN without stamps, and
-    it came too seldom for its timeout if `slow`. `hints` say what looks wrong.
+    Lowest and highest number in its `unit`, NaN without any; `rate` [Hz] outside of gaps, and
+    whether that is assumed; its `origin` in words, whether that is a measurement or at least
+    stated; what was refused, by why; how many messages were `left_out` as out of order or of other
+    joints, and how many were `lost` on the way, None if that is not known, as in all recordings
+    that are not `numbered`. In the end its stamps lay `lag` [s] behind their arrival, NaN without
+    stamps, and it came too seldom for its timeout if `slow`. `hints` say what looks wrong.
 
     """
 
@@ -127,7 +129,6 @@ def _seen(case: AxisCase, source: Source) -> InputSeen:
     refused = sum(case.outcome.refused.get(source, {}).values())
     if health.received == refused:
         origin = 'never valid' if refused else 'never received'
-    span = case.survey.span
     return InputSeen(
         source=source,
         origin=origin,
@@ -136,7 +137,7 @@ def _seen(case: AxisCase, source: Source) -> InputSeen:
         unit=setting.unit,
         low=heard.low,
         high=heard.high,
-        rate=(health.received - 1) / span if health.received > 1 and span else math.nan,
+        rate=_rate(case, source),
         rate_assumed='time.rate_Hz' in case.assumed,
         received=health.received,
         refused=_refused(case, source),
@@ -148,6 +149,25 @@ def _seen(case: AxisCase, source: Source) -> InputSeen:
         gaps=case.survey.gaps[source],
         hints=tuple(_hints(case, source, setting, heard)),
     )
+
+
+def _rate(case: AxisCase, source: Source) -> float:
+    """Return how many messages came in a second [Hz] outside of gaps, NaN where none can tell."""
+    received = {one.source: one.received for one in case.outcome.inputs}
+    steps, span = received[source] - 1, case.survey.span
+    if steps < 1 or not span:
+        return math.nan
+    # What came as often as the speed came with it; a long timeout does not see all gaps.
+    if math.isclose(received[source], received[Source.SPEED], rel_tol=SAME_RATE):
+        source = Source.SPEED
+    gaps, silent = case.survey.gaps[source], 0.0
+    if source is not Source.SPEED:
+        silent = seconds(case.settings.timeouts[source]) * gaps.count
+        if case.outcome.refused.get(source):
+            return steps / span  # of these gaps some are no silence
+    rest = span - gaps.time - silent
+    usual = 2 * gaps.count < steps and rest > 0.0
+    return (steps - gaps.count) / rest if usual else steps / span
 
 
 def _origin(case: AxisCase, source: Source) -> str:
@@ -203,14 +223,14 @@ def _hints(case: AxisCase, source: Source, setting: InputSetting, heard: Heard) 
         known=known_range(case.surface, source, setting.unit),
     )
     hints = unit_doubts(facts, heard)
+    if hints and case.is_mapped:  # the units that it names are those of the bag
+        hints = [f'{facts.parameter}: its numbers are far outside the surface: {IN_THE_MAP}']
+    cure = IN_THE_MAP if case.is_mapped else f'check {facts.parameter}.unit and scale'
     if case.outcome.refused.get(source, {}).get(Why.IMPLAUSIBLE):
-        hints.append(
-            f'{facts.parameter}: samples beyond what is plausible were refused: '
-            f'check {facts.parameter}.unit and scale'
-        )
+        hints.append(f'{facts.parameter}: samples beyond what is plausible were refused: {cure}')
     hints += _of_time(heard.health, facts.parameter)
     if source is Source.SPEED:
-        hints += _of_speed(case, setting, heard, facts.parameter)
+        hints += _of_speed(case, setting, heard, facts.parameter, cure)
     elif source is not Source.TEMPERATURE and heard.low == heard.high:
         hints.append(f'{facts.parameter}: it never changes, is it connected?')
     return hints
@@ -232,7 +252,7 @@ def _of_time(health: Health, parameter: str) -> Sequence[str]:
 
 
 def _of_speed(
-    case: AxisCase, setting: InputSetting, heard: Heard, parameter: str
+    case: AxisCase, setting: InputSetting, heard: Heard, parameter: str, cure: str
 ) -> Sequence[str]:
     """Return that the axis never moves or moves too fast to be true."""
     if math.isnan(heard.high):
@@ -242,7 +262,7 @@ def _of_speed(
     if fastest * feed > FASTEST_FEED:
         return [
             f'{parameter}: it feeds with up to {fastest * feed:.3g} m/s, hardly any ball screw '
-            f'does: check {parameter}.unit and scale'
+            f'does: {cure}'
         ]
     if fastest >= limit:
         return []
@@ -256,6 +276,8 @@ def _of_speed(
     ]
     if not others:
         return [said]
+    if case.is_mapped:
+        return [f'{said}: {cure}']
     return [f'{said}, which may be {" or ".join(others)}: then set {parameter}.unit']
 
 

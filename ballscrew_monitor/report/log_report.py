@@ -116,7 +116,7 @@ def _axis_line(case: AxisCase, standing: str, verdict: str) -> AxisLine:
         begins=case.begins,
         recorded=case.survey.span,
         running_time=math.nan if summary is None else summary.running_time,
-        outside_time=math.nan if summary is None else summary.outside_time,
+        outside_time=case.outside_time,
         warnings=len(case.outcome.events),
         worst='' if worst is None else f'{worst.quantity} {worst.shown(worst.worst_value)}',
         depth=math.nan if worst is None else badness(worst)[0],

@@ -8,10 +8,10 @@ import datetime
 import math
 from urllib.parse import quote
 
+from ballscrew_monitor.recordings.words import counted, duration, NONE, percent
 from ballscrew_monitor.report.log_report import AxisLine, LogResult, PAGE
 from ballscrew_monitor.report.markup import element, joined, Markup, table, TableCell, TableRow
 from ballscrew_monitor.report.page import page
-from ballscrew_monitor.report.words import counted, duration, NONE, number, percent
 
 SCRIPTS = ('format.js', 'table.js', 'overview.js')
 WIDTH, HEIGHT, EDGE = 720.0, 110.0, 8.0  # of the picture of a trend [px]
@@ -109,7 +109,7 @@ def _row(one: LogEntry, line: AxisLine) -> TableRow:
             TableCell(text=_date(line.begins), kind='short'),
             _time(line.recorded),
             _time(line.running_time),
-            TableCell(text=number(100.0 * part), kind='number', value=part),
+            TableCell(text=percent(part).removesuffix(' %'), kind='number', value=part),
             TableCell(text=str(line.warnings), kind='short', value=line.warnings),
             TableCell(text=line.worst or NONE, kind='short', value=line.depth),
         ),
@@ -141,7 +141,7 @@ def _trend(axis: str, listed: Sequence[Listed]) -> Markup:
     points = [
         (line.begins, line.outside_time / line.running_time, one, line)
         for one, line in listed
-        if math.isfinite(line.begins) and line.running_time > 0.0
+        if math.isfinite(line.begins + line.outside_time) and line.running_time > 0.0
     ]
     if len(points) < 2 or points[0][0] == points[-1][0]:
         return Markup()

@@ -8,6 +8,7 @@ from typing import Any
 
 from ballscrew_monitor.core.judgement import Zone
 from ballscrew_monitor.recordings.summary import EventRecord, Summary
+from ballscrew_monitor.recordings.words import duration, NONE, number, share
 from ballscrew_monitor.report.case import AxisCase, badness, RCS
 from ballscrew_monitor.report.markup import (
     element,
@@ -21,7 +22,6 @@ from ballscrew_monitor.report.markup import (
 )
 from ballscrew_monitor.report.room import MOST_ROWS
 from ballscrew_monitor.report.verdict import AxisVerdict
-from ballscrew_monitor.report.words import duration, number, share
 
 SIGNS = {'>=': '≥'}
 LASTING = ' A warning goes on over standstill and over what could not be judged.'
@@ -48,9 +48,12 @@ def tiles(case: AxisCase, summary: Summary) -> Markup:
     facts = (
         (duration(case.survey.span), 'recorded'),
         (duration(running), f'in motion ({share(running, case.survey.span)})'),
-        (share(summary.outside_time, running), 'of the motion outside the optimal zone'),
+        (
+            NONE if summary.says_nothing else share(summary.outside_time, running),
+            'of the motion outside the optimal zone',
+        ),
         (str(len(summary.events)), 'warning' if len(summary.events) == 1 else 'warnings'),
-        (f'{number(summary.energy_lost)} J', 'lost to friction in the screw'),
+        (f'{number(summary.energy_lost, 4)} J', 'lost to friction in the screw'),
         (number(summary.revolutions, 4), 'revolutions'),
     )
     made = (
@@ -99,13 +102,13 @@ def _energy(case: AxisCase, summary: Summary) -> Iterable[Markup]:
         return
     power = total / summary.running_time
     yield element(
-        'h3', f'Energy lost to friction: {number(total)} J, {number(power)} W on average'
+        'h3', f'Energy lost to friction: {number(total, 4)} J, {number(power)} W on average'
     )
     parts = [
         (energy[Zone.OPTIMAL], 'optimal', 'while optimal'),
         (energy[Zone.OUTSIDE], 'outside', 'while outside the zone'),
     ]
-    yield _bar(parts, math.fsum(energy.values()), lambda joules: f'{number(joules)} J')
+    yield _bar(parts, math.fsum(energy.values()), lambda joules: f'{number(joules, 4)} J')
     yield element(
         'p',
         'Losses in the screw as the model works them out, while it knows them; bearings, guides '
@@ -151,6 +154,7 @@ def _event_row(case: AxisCase, event: EventRecord, worst: bool) -> TableRow:
     margin = max(1.0, 0.2 * (end - begin))
     metal = event.quantity == RCS
     cause = 'oil film too thin (RCS)' if metal else f'too much friction ({event.quantity})'
+    todo = event.what_to_do
     lasts = number(event.duration, 4) + (' and still on' if event.active else '')
     return TableRow(
         cells=(
@@ -163,7 +167,7 @@ def _event_row(case: AxisCase, event: EventRecord, worst: bool) -> TableRow:
                 text=f'{SIGNS.get(event.relation, event.relation)} {event.shown(event.limit)}',
                 kind='short',
             ),
-            TableCell(text=event.advice or 'no better speed or load within the surface'),
+            TableCell(text=f'raised at {event.place}: {todo}' if event.place else todo or NONE),
         ),
         begin=begin - margin,
         end=end + margin,

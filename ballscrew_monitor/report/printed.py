@@ -7,10 +7,11 @@ import math
 from typing import Any
 
 from ballscrew_monitor.recordings.columns import Reason
+from ballscrew_monitor.recordings.words import number, shown_unit
 from ballscrew_monitor.report.case import AxisCase, LogCase
 from ballscrew_monitor.report.inputs_seen import inputs_seen, InputSeen, NAMES, Trouble
-from ballscrew_monitor.report.verdict import never_moved, verdict_of
-from ballscrew_monitor.report.words import number, shown_unit
+from ballscrew_monitor.report.survey import REST
+from ballscrew_monitor.report.verdict import verdict_of
 
 HEAD = 12
 """Width of the column of heads, as that of `Summary.lines`."""
@@ -26,7 +27,7 @@ SAID = {
 def log_lines(log: LogCase) -> Iterator[str]:
     """Yield the lines about all axes of a recording."""
     for case in log.axes:
-        still = ', none of them in motion' if never_moved(case) else ''
+        still = ', none of them in motion' if case.outcome.judged and case.is_silent else ''
         yield f'axis {case.axis}: {case.outcome.judged} speed samples judged{still}'
         yield from (f'  {line}' for line in axis_lines(case))
     yield from (f'axis {axis}: no usable sample' for axis in log.empty)
@@ -48,6 +49,8 @@ def axis_lines(case: AxisCase) -> Iterator[str]:
         for reason, time in sorted(case.survey.reasons.items(), key=lambda item: -item[1])
         if reason is not Reason.JUDGED
     )
+    if case.survey.rest:
+        yield _line('not judged', f'{number(case.survey.rest, 4)} s: {REST}')
     yield from (_line('check', hint) for one in seen for hint in one.hints)
 
 

@@ -17,7 +17,12 @@ from surrogate.tasks.table import write_table
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class EventRow:
-    """An event as a line of a table: start [ns] and [s], duration [s], values [-]."""
+    """
+    An event as a line of a table: start [ns] and [s], duration [s], values [-].
+
+    Speed [rad/s] and axial load [N] that raised it, and those that the advice names, nan for none.
+
+    """
 
     axis: str
     event_id: int
@@ -29,6 +34,10 @@ class EventRow:
     relation: str
     limit: float
     worst_value: float
+    speed_rad_s: float
+    axial_load_N: float
+    target_speed_rad_s: float
+    target_load_N: float
     advice: str
 
 
@@ -52,6 +61,10 @@ def event_rows(log: LogCase) -> Iterable[EventRow]:
                 relation=event.relation,
                 limit=event.limit,
                 worst_value=event.worst_value,
+                speed_rad_s=event.speed,
+                axial_load_N=event.axial_load,
+                target_speed_rad_s=event.target_speed,
+                target_load_N=event.target_load,
                 advice=event.advice,
             )
 
@@ -107,6 +120,7 @@ def axis_record(case: AxisCase, verdict: AxisVerdict) -> dict[str, Any]:
             zone.name.lower(): energy for zone, energy in survey.energy.items()
         },
         'time_by_reason_s': {reason.name.lower(): time for reason, time in survey.reasons.items()},
+        'time_without_rows_s': survey.rest,
         'torque_residual': known(
             {f'mean_{name}_Nm': value for name, value in one_way.items()}
             | {'rms_Nm': survey.torque.spread},

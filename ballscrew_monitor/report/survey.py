@@ -11,6 +11,7 @@ then it is a gap. Rows come in blocks, so that a long recording need not fit int
 import dataclasses
 import heapq
 import math
+from typing import Any
 
 from ballscrew_monitor.core.conversions import Direction, SECOND
 from ballscrew_monitor.core.estimate import PointSource
@@ -19,6 +20,8 @@ from ballscrew_monitor.core.judgement import Zone
 from ballscrew_monitor.recordings.columns import Flags, Floats, JudgedColumns, Reason, Times
 import numpy as np
 
+REST = 'gaps in the speed, up to its timeout'
+"""The time without rows in words."""
 MOST_GAPS = 1000  # of the longest that are kept
 STRAY = 1.5  # times the span of log times from which on stamps are no time line
 STRAY_MARGIN = 60 * SECOND  # [ns]
@@ -65,9 +68,10 @@ class Survey:
 
     `first` and `last` [ns] on the time line, of the stamps or, `by_stamp` false, of the log, and
     `shift` [ns] from stamps to it. Spans of measured inputs in SI; of load that opposes motion [N]
-    and temperature [K] in motion. `reasons` [s]; `gaps` of all inputs, that of the speed between
-    two samples, that of any other from its timeout on; `speed_gaps`, the longest of them first, as
-    start and length [ns]. `energy` [J] by zone.
+    and temperature [K] in motion. `reasons` [s] of all rows, `moving` [s] of the samples in motion
+    alone; `uncounted` [s] before the next row where that came after the timeout of the speed.
+    `gaps` of all inputs, that of the speed between two samples, that of any other from its timeout
+    on; `speed_gaps`, the longest of them first, as start and length [ns]. `energy` [J] by zone.
 
     """
 
@@ -82,10 +86,17 @@ class Survey:
     opposing: Span
     oil: Span
     reasons: dict[Reason, float]
+    moving: dict[Reason, float]
+    uncounted: float
     gaps: dict[Source, Gaps]
     speed_gaps: tuple[tuple[int, int], ...]
     energy: dict[Zone, float]
     torque: TorqueFit
+
+    @property
+    def rest(self) -> float:
+        """Return the time without rows [s], 0 where stamps are no time line."""
+        return self.uncounted if self.by_stamp else 0.0
 
     @property
     def span(self) -> float:
@@ -160,7 +171,8 @@ class Surveyor:
         self._inputs = {source: _Running() for source in COLUMN_OF}
         self._sources: dict[Source, set[int]] = {source: set() for source in COLUMN_OF}
         self._opposing, self._oil = _Running(), _Running()
-        self._reasons = np.zeros(len(Reason))
+        self._reasons, self._moving = np.zeros(len(Reason)), np.zeros(len(Reason))
+        self._uncounted = 0.0
         self._energy = np.zeros(len(Zone))
         self._gaps: list[tuple[int, int]] = []
         self._gap_count, self._gap_time = 0, 0
@@ -169,7 +181,7 @@ class Surveyor:
         self._residual, self._measured = _Running(), _Running()
         self._stamps = [math.inf, -math.inf]
         self._logs = [math.inf, -math.inf]
-        self._before: tuple[int, int, float, int] | None = None
+        self._before: tuple[Any, ...] | None = None
         self._last_sample: int | None = None
 
     def add(self, block: JudgedColumns) -> None:
@@ -183,7 +195,7 @@ class Surveyor:
         self._add_inputs(block)
         self._opposing.add(opposing_loads(block)[moving])
         self._oil.add(block.temperature[moving])
-        self._add_sums(block)
+        self._add_sums(block, moving)
         self._add_gaps(block.stamp[~block.tick])
         self._add_torque(block, moving)
 
@@ -205,9 +217,9 @@ class Surveyor:
             },
             opposing=self._opposing.span(),
             oil=self._oil.span(),
-            reasons={
-                reason: float(time) for reason, time in zip(Reason, self._reasons) if time > 0
-            },
+            reasons=_by_reason(self._reasons),
+            moving=_by_reason(self._moving),
+            uncounted=self._uncounted,
             gaps={source: stale.gaps() for source, stale in self._stale.items()}
             | {Source.SPEED: Gaps(count=self._gap_count, time=self._gap_time / SECOND)},
             speed_gaps=tuple(sorted(((at, length) for length, at in self._gaps), key=_by_length)),
@@ -222,20 +234,21 @@ class Surveyor:
             known = (origin == PointSource.MEASURED) | (origin == PointSource.DERIVED)
             self._inputs[source].add(getattr(block, name)[known])
 
-    def _add_sums(self, block: JudgedColumns) -> None:
+    def _add_sums(self, block: JudgedColumns, moving: Flags) -> None:
         """Add the time and the energy of each row up to the next one."""
         power = np.nan_to_num(block.friction_torque * np.abs(block.speed))
-        stamps, reasons, zones = block.stamp, block.reason, block.zone
         power[np.abs(block.speed) < self._standstill] = 0.0
+        moved = moving & ~block.tick
+        columns: list[np.ndarray] = [block.stamp, block.reason, moved, power, block.zone]
         if self._before is not None:
-            stamp, reason, watts, zone = self._before
-            stamps = np.insert(stamps, 0, stamp)
-            reasons, zones = np.insert(reasons, 0, reason), np.insert(zones, 0, zone)
-            power = np.insert(power, 0, watts)
-        self._before = int(stamps[-1]), int(reasons[-1]), float(power[-1]), int(zones[-1])
+            columns = list(map(_after, self._before, columns))
+        self._before = tuple(column[-1].item() for column in columns)
+        stamps, reasons, moved, power, zones = columns
         steps = np.diff(stamps)
+        self._uncounted += float(steps[steps > self._max_gap].sum()) / SECOND
         steps = np.where((steps > 0) & (steps <= self._max_gap), steps, 0) / SECOND
         self._reasons += np.bincount(reasons[:-1], steps, len(Reason))
+        self._moving += np.bincount(reasons[:-1], steps * moved[:-1], len(Reason))
         self._energy += np.bincount(zones[:-1], steps * power[:-1], len(Zone))
         for source, stale in self._stale.items():
             stale.add(getattr(block, f'{COLUMN_OF[source]}_source') == PointSource.HELD, steps)
@@ -269,6 +282,14 @@ class Surveyor:
             spread=self._residual.rms,
             measured=self._measured.rms,
         )
+
+
+def _after(first: float, column: np.ndarray) -> np.ndarray:
+    return np.insert(column, 0, first)
+
+
+def _by_reason(times: Floats) -> dict[Reason, float]:
+    return {reason: float(time) for reason, time in zip(Reason, times) if time > 0}
 
 
 def _widen(line: list[float], times: Times) -> None:

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The verdict on an axis in one sentence: how long outside the zone, why, and what to do."""
 
+from collections.abc import Mapping, Sequence
 import dataclasses
 import enum
 import math
@@ -9,8 +10,8 @@ import math
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.recordings.columns import Reason
 from ballscrew_monitor.recordings.summary import EventRecord, Summary
+from ballscrew_monitor.recordings.words import counted, duration, list_of, percent, share
 from ballscrew_monitor.report.case import AxisCase, LogCase, RCS
-from ballscrew_monitor.report.words import counted, duration, list_of, percent, share
 
 UNKNOWN_PART = 0.5  # of the motion that is not judged, from which on there is no verdict
 TOLD_PART = 0.01  # of the motion that is not judged, from which on the verdict says so
@@ -89,7 +90,7 @@ def verdict_of(case: AxisCase) -> AxisVerdict:
 
 def _unmoved(case: AxisCase) -> AxisVerdict:
     """Return that nothing can be said of an axis for which no motion is known."""
-    reason = _main_reason(case)
+    reason = _longest(case.survey.reasons)
     if never_moved(case):
         limit = case.settings.limits.standstill_speed
         return AxisVerdict(
@@ -109,16 +110,17 @@ def _unmoved(case: AxisCase) -> AxisVerdict:
 
 
 def never_moved(case: AxisCase) -> bool:
-    """Tell whether the speed of an axis is known and the screw stood still all the time."""
+    """Tell whether the speed is known for most of the time and the screw always stood still."""
     summary = case.outcome.summary()
     if summary is not None and summary.running_time:
         return False
-    known = math.isfinite(case.survey.inputs[Source.SPEED].high)
-    return known and _main_reason(case) in (None, Reason.STANDSTILL, Reason.NO_DIRECTION)
+    speed, limit = case.survey.inputs[Source.SPEED], case.settings.limits.standstill_speed
+    still = -limit < speed.low <= speed.high < limit  # NaN where it is not known
+    return still and _longest(case.survey.reasons) in (None, Reason.STANDSTILL)
 
 
 def _unjudged(case: AxisCase, summary: Summary, part: float) -> AxisVerdict:
-    reason = _main_reason(case)
+    reason = _longest(case.survey.moving)
     why = reason.text if reason else 'the reason is not known'
     return AxisVerdict(
         standing=VerdictKind.UNKNOWN,
@@ -171,32 +173,50 @@ def _why(events: tuple[EventRecord, ...]) -> str:
 
 
 def _advice(case: AxisCase) -> str:
-    """Return the advice on the worst event of each cause for which there is one."""
-    found: dict[str, str] = {}
-    for event in case.worst_first:
-        if event.advice and event.quantity not in found:
-            found[event.quantity] = f'as in warning {event.event_id}, {event.advice}'
-    if not found:
-        return (
-            'No speed or load within the surface would have helped; look at oil and temperature.'
-        )
-    return f'{list_of(list(found.values()))}.'
+    """Return the strictest advice for each cause, and what there is none for."""
+    events = case.worst_first
+    parts = []
+    for quantity in dict.fromkeys(event.quantity for event in events):
+        advised = [event for event in events if event.quantity == quantity and event.advice]
+        by_speed = [event for event in advised if math.isfinite(event.target_speed)]
+        parts += [f'as {_of(group, "strictest")}' for group in _by_strictness(by_speed) if group]
+        by_load = [event for event in advised if event not in by_speed]
+        parts += [f'as {_of(by_load, "worst")}'] if by_load else []
+    helpless = [event for event in events if not event.advice and event.place]
+    if helpless:
+        parts.append(f'{_of(helpless, "worst")}: change both, or look at oil and temperature')
+    return f'{list_of(parts)}.' if parts else ''
+
+
+def _by_strictness(events: Sequence[EventRecord]) -> tuple[list[EventRecord], list[EventRecord]]:
+    """Return those to run faster in and those to run slower in, the strictest first."""
+    slower = [event for event in events if abs(event.target_speed) < abs(event.speed)]
+    faster = [event for event in events if event not in slower]
+    return sorted(faster, key=_target, reverse=True), sorted(slower, key=_target)
+
+
+def _target(event: EventRecord) -> float:
+    return abs(event.target_speed)
+
+
+def _of(events: Sequence[EventRecord], rank: str) -> str:
+    """Return what to do about the first of some events, and what it is among them."""
+    first = events[0]
+    others = f', the {rank} of {len(events)}' if len(events) > 1 else ''
+    place = f' (raised at {first.place})' if first.place else ''
+    return f'in warning {first.event_id}{others}{place}, {first.what_to_do}'
 
 
 def _unjudged_part(case: AxisCase, summary: Summary) -> str:
-    reason = _main_reason(case)
+    reason = _longest(case.survey.moving)
     why = f', {reason.text}' if reason else ''
     part = share(summary.unjudged_time, summary.running_time)
     return f'; {duration(summary.unjudged_time)} ({part}) could not be judged{why}'
 
 
-def _main_reason(case: AxisCase) -> Reason | None:
-    """Return for what most time could not be judged; standstill only where there is no other."""
-    reasons = {
-        reason: time for reason, time in case.survey.reasons.items() if reason is not Reason.JUDGED
-    }
-    moving = {reason: time for reason, time in reasons.items() if reason is not Reason.STANDSTILL}
-    chosen = moving or reasons
+def _longest(reasons: Mapping[Reason, float]) -> Reason | None:
+    """Return for what most time [s] could not be judged."""
+    chosen = {reason: time for reason, time in reasons.items() if reason is not Reason.JUDGED}
     return max(chosen, key=lambda reason: chosen[reason]) if chosen else None
 
 

@@ -206,7 +206,7 @@ class Estimator:
         clear &= light | (efficiency >= limits.efficiency_to_clear)
         sign = np.where(outside, Sign.OUTSIDE, np.where(clear, Sign.CLEAR, Sign.OPTIMAL))
         reason = np.where(still, Reason.STANDSTILL, _REASONS[validity])
-        absent = validity == PointValidity.NO_INPUT
+        absent = (validity == PointValidity.NO_INPUT) & ~still
         if absent.any():
             reason[absent] = _lost_reasons(lost[:, absent])
         return {

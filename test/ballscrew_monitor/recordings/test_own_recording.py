@@ -194,7 +194,7 @@ def test_a_recording_begins_when_simulated_time_does(tmp_path):
     assert bag.path.name == '20231114T221320Z'
     assert bag.start_time == BEGIN
     states, own = again(bag)
-    assert masked(states) == masked(node.said)[-len(states) :]
+    assert masked(states) == masked(node.said)[slice(-len(states), None)]
     assert len(states) > 500
     assert own.proven
     assert not own.refuted

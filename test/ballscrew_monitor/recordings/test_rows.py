@@ -71,6 +71,12 @@ def test_the_outcome_is_that_of_the_states(nominal_bag, judged, values):
     columns, outcome = judged
     summary, expected = outcome.summary(), summarizer.result()
     assert summary.events == expected.events
+    for event, told in zip(summary.events, expected.events, strict=True):
+        np.testing.assert_equal(
+            (event.target_speed, event.target_load), (told.target_speed, told.target_load)
+        )
+        assert event.place.endswith(' N')
+        assert told.place == ''  # a message does not tell
     assert summary.states == expected.states < outcome.rows
     # The last state comes before the last sample, up to which the totals go.
     assert expected.running_time <= summary.running_time <= expected.running_time + 0.1
@@ -129,3 +135,27 @@ def test_a_derived_load_has_its_range_and_no_residual(derived):
     assert np.isnan(columns.torque_residual).all()
     assert set(columns.reason[150:]) == {Reason.NO_TORQUE}
     assert outcome.refused[Source.TORQUE] == {Why.NOT_A_NUMBER: 50}
+
+
+@pytest.mark.parametrize('at_once', [True, False])
+def test_a_screw_that_stands_stands_whether_or_not_its_load_is_known(tmp_path, at_once):
+    topic = Topic(name='/joint_states', type_name=JOINT, offer=Offer.SENSOR)
+    with BagWriter(tmp_path, 'bag') as writer:
+        writer.add_topic(topic)
+        for number in range(200):
+            stamp = 10**9 + number * 5_000_000
+            speed = 60.0 if number < 50 else 0.0
+            message = JointState(name=['x_axis'], velocity=[speed], effort=[math.nan])
+            message.header.stamp.sec, message.header.stamp.nanosec = divmod(stamp, 10**9)
+            data = serialize_message(message)
+            writer.write(topic.name, data, log_time=stamp, publish_time=stamp)
+    values = parameters.defaults(['x']) | {
+        'x.load.topic': 'joint_states',
+        'x.load.type': JOINT,
+        'x.load.field': 'effort[x_axis]',
+    }
+    *blocks, _ = replay_columns(Bag(tmp_path), values, at_once=at_once)
+    columns = joined(blocks)
+    samples = columns.reason[~columns.tick]
+    assert set(samples[:50]) == {Reason.NO_LOAD}
+    assert set(samples[50:]) == {Reason.STANDSTILL}

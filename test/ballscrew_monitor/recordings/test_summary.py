@@ -33,7 +33,7 @@ def test_totals_are_those_of_the_last_state():
     summary = make_summary()
     assert (summary.states, summary.judged, summary.running_time) == (2, 1000, 8.0)
     assert summary.lines()[:3] == [
-        'in motion   8.0 s of 10.0 s, 0 revolutions, 123 J lost to friction',
+        'in motion   8.0 s of 10.0 s, 0 revolutions, 123.4 J lost to friction',
         'regime      boundary 0.0 s (0 %), mixed 8.0 s (100 %), hydrodynamic 0.0 s (0 %)',
         'zone        optimal 6.0 s (75 %), outside 2.0 s (25 %), unjudged 0.0 s (0 %)',
     ]
@@ -90,6 +90,11 @@ def test_no_event_reads_well_only_where_a_motion_was_judged():
     for still in (summary_of(), summary_of(running_time=9.0, unjudged_time=9.0)):
         assert still.says_nothing
         assert still.lines()[-1] == 'events      none, for no motion was judged'
+
+
+def test_shares_are_rounded_as_in_a_verdict():
+    said = summary_of(running_time=75.6, optimal_time=0.4, outside_time=75.2).lines()[2]
+    assert said.startswith('zone        optimal 0.4 s (0.53 %), outside 75.2 s (99.5 %)')
 
 
 def test_without_a_state_there_is_none():

@@ -118,3 +118,12 @@ def test_gaps_lead_to_their_moment(judged):
     part = gaps_part(judged.case([judged.columns(0, 10), judged.columns(310, 10)]))
     assert 'The speed has 1 gap longer than its timeout of 0.5 s, in all 3.01 s.' in part
     assert 'data-begin="-0.9100" data-end="4.1000"' in part
+
+
+def test_what_could_be_judged_adds_up_to_the_recording(judged):
+    blocks = [judged.columns(0, 51), judged.columns(250, 51)]
+    rows = gaps_part(judged.case(blocks)).partition('</table>')[0].split('<tr')[2:]
+    rest, known = rows
+    assert 'not judged: gaps in the speed, up to its timeout</td>' in rest
+    assert 'data-value="2.0"' in rest
+    assert ('judged</td>' in known, '>1</td>' in known) == (True, True)

@@ -4,6 +4,7 @@
 
 import math
 
+from ballscrew_monitor.core.estimate import PointSource
 from ballscrew_monitor.core.health import InputState
 from ballscrew_monitor.core.inputs import Source, Why
 from ballscrew_monitor.report.inputs_seen import inputs_seen, REFUSALS, Trouble
@@ -21,6 +22,43 @@ def test_an_input_is_shown_in_its_unit(judged):
     assert speed.low == pytest.approx(100.0 * 30.0 / math.pi, rel=0.01)
     assert (speed.origin, speed.unit, speed.hints) == ('measured', 'rev/min', ())
     assert speed.rate == pytest.approx(100.0)
+
+
+@pytest.mark.parametrize(
+    ('source', 'received', 'rate'),
+    [
+        (Source.SPEED, 100, 100.0),
+        (Source.LOAD, 100, 100.0),
+        (Source.TEMPERATURE, 100, 100.0),
+        (Source.TEMPERATURE, 8, 7 / 5.99),
+    ],
+)
+def test_a_rate_leaves_gaps_out(judged, source, received, rate):
+    blocks = [judged.columns(0, 50), judged.columns(550, 50)]
+    inputs = tuple(
+        judged.health(one, received=received if one is source else 100) for one in Source
+    )
+    assert seen_of(judged.case(blocks, inputs=inputs), source).rate == pytest.approx(rate)
+
+
+@pytest.mark.parametrize(
+    ('refused', 'rate'), [({}, 49 / 0.69), ({Source.LOAD: {Why.NOT_A_NUMBER: 9}}, 50 / 0.99)]
+)
+def test_a_gap_of_an_input_of_its_own_rate_is_left_out_with_its_timeout(judged, refused, rate):
+    sources = np.where((np.arange(100) >= 40) & (np.arange(100) < 60), PointSource.HELD, 1)
+    inputs = tuple(
+        judged.health(one, received=51 if one is Source.LOAD else 100) for one in Source
+    )
+    values = judged.values(**{'x.load.timeout': 0.1})
+    block = judged.columns(axial_load_source=sources)
+    case = judged.case([block], values=values, inputs=inputs, refused=refused)
+    assert seen_of(case, Source.LOAD).rate == pytest.approx(rate)
+
+
+def test_of_an_input_that_is_always_late_the_whole_counts(judged):
+    blocks = [judged.columns(place, 1) for place in range(0, 1000, 100)]
+    inputs = tuple(judged.health(one, received=10) for one in Source)
+    assert seen_of(judged.case(blocks, inputs=inputs), Source.SPEED).rate == pytest.approx(1.0)
 
 
 def test_a_default_temperature_is_not_called_measured(judged):
@@ -105,6 +143,18 @@ def test_a_feed_of_more_than_2_metres_a_second_is_doubted(judged):
     block = judged.columns(speed=2000.0)
     hints = seen_of(judged.case([block], values=values), Source.SPEED).hints
     assert any('it feeds with up to 3.18 m/s' in hint for hint in hints)
+
+
+@pytest.mark.parametrize('place', ['stated', 'assumed'])
+@pytest.mark.parametrize('speed', [2000.0, 0.1])
+def test_of_a_table_the_map_is_to_be_checked(judged, speed, place):
+    known = {'stated': {'stated': frozenset(['lead_mm'])}, 'assumed': {'assumed': {'lead_mm': {}}}}
+    block = judged.columns(speed=speed)
+    hints = seen_of(judged.case([block], known=known[place]), Source.SPEED).hints
+    assert hints
+    for hint in hints:
+        assert hint.endswith('check its unit, its scale and the lead in the map')
+        assert 'x.speed.unit' not in hint
 
 
 def test_a_load_that_never_changes_is_doubted(judged):

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The page over recordings: rows by date, a trend where there is one, bad ones named."""
 
+import math
 import re
 
 from ballscrew_monitor.report.log_report import AxisLine, LogResult
@@ -43,6 +44,14 @@ def test_times_are_in_units_that_a_person_would_use():
     assert '<td class="short" data-value="3600.0">60 min</td>' in page
     assert '<td class="short" data-value="1800.0">30 min</td>' in page
     assert '[-]' not in page
+
+
+def test_a_share_is_that_of_the_verdict_and_a_dash_where_nothing_was_judged():
+    entries = [make_entry('a', 0, 1790.46), make_entry('b', 1, math.nan)]
+    page = overview_page(entries)
+    assert '>99.5</td>' in page
+    assert '>–</td>' in page
+    assert page.count('<circle') == 0
 
 
 def test_a_trend_has_a_point_for_each_date():

@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a terminal says of a recording: the words of its page."""
 
+import math
+
 from ballscrew_monitor.core.inputs import Source, Why
 from ballscrew_monitor.core.judgement import Zone
 from ballscrew_monitor.core.tally import Totals
@@ -35,6 +37,22 @@ def test_an_axis_that_never_moves_does_not_read_like_all_is_well(judged):
     assert any('x.speed: the axis never moves' in line for line in lines_of(case, 'check'))
 
 
+def test_an_axis_of_which_only_standstill_was_judged_says_so(judged):
+    zeros = {'zone': Zone.UNKNOWN, 'axial_load': np.nan, 'axial_load_source': 0}
+    speeds, reasons = [9.0] * 20 + [0.0] * 80, [Reason.NO_LOAD] * 20 + [Reason.STANDSTILL] * 80
+    block = judged.columns(speed=speeds, reason=reasons, **zeros)
+    moved = Totals(running_time=200_000_000, unjudged_time=200_000_000)
+    case = judged.case([block], totals=moved, judged=80)
+    assert math.isnan(case.outside_time)  # 0 would read as well done
+    first, verdict, *_ = log_lines(LogCase(name='log', parameters='', axes=[case]))
+    assert first == 'axis x: 80 speed samples judged, none of them in motion'
+    assert verdict.endswith('0.2 s (100 %) of its motion: no valid sample of the load.')
+    assert lines_of(case, 'not judged') == [
+        '0.79 s: the screw stands still',
+        '0.2 s: no valid sample of the load',
+    ]
+
+
 def test_an_axis_that_is_well_has_no_check(judged):
     case = judged.case([judged.columns()])
     assert not lines_of(case, 'check')
@@ -45,10 +63,16 @@ def test_an_axis_that_is_well_has_no_check(judged):
     ]
 
 
+def test_the_time_without_rows_has_a_line(judged):
+    case = judged.case([judged.columns(0, 51), judged.columns(250, 51)])
+    assert lines_of(case, 'not judged') == ['2 s: gaps in the speed, up to its timeout']
+
+
 def test_why_and_what_to_do_have_their_lines(judged):
     case = judged.case([judged.columns()], [judged.event(1, 0.1, 0.2)])
     assert lines_of(case, 'why')[0].startswith('The oil film was too thin')
     assert 'at this load run at 60 rad/s' in lines_of(case, 'what to do')[0]
+    assert any('raised at 430 rev/min and -1200 N: at this' in line for line in axis_lines(case))
 
 
 def test_inputs_tell_source_span_rate_and_troubles(judged):

@@ -25,6 +25,8 @@ def test_events_are_a_line_each(judged, tmp_path):
         ('x', '2', 'True'),
     ]
     assert float(rows[1]['start_s']) == 0.5
+    assert [float(rows[0][name]) for name in ('speed_rad_s', 'axial_load_N')] == [45.0, -1200.0]
+    assert (rows[0]['target_speed_rad_s'], rows[0]['target_load_N']) == ('60.0', 'nan')
     assert int(rows[0]['start_stamp_ns']) == judged.begin + 100_000_000
 
 

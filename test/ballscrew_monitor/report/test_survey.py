@@ -52,6 +52,7 @@ def test_gaps_are_listed_longest_first_and_are_no_time_of_a_reason(judged):
     assert [length / SECOND for _, length in found.speed_gaps] == pytest.approx([3.01, 1.01])
     assert (speed.count, speed.time) == (2, pytest.approx(4.02))
     assert found.reasons[Reason.JUDGED] == pytest.approx(0.27)
+    assert sum(found.reasons.values()) + found.uncounted == pytest.approx(found.span)
 
 
 def test_gaps_of_another_input_are_stretches_without_a_valid_sample(judged):

@@ -5,6 +5,7 @@
 import math
 
 from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.core.estimate import PointSource
 from ballscrew_monitor.core.judgement import Zone
 from ballscrew_monitor.core.tally import Totals
 from ballscrew_monitor.recordings.columns import Reason
@@ -46,6 +47,7 @@ def test_outside_says_how_long_why_and_what_to_do(judged):
             worst_value=0.6,
             limit=0.85,
             advice='at this speed load with -1500 N',
+            target_speed=math.nan,
         ),
     ]
     verdict = verdict_of(judged.case([judged.columns()], events, totals=totals(60.0, 45.0, 15.0)))
@@ -58,13 +60,53 @@ def test_outside_says_how_long_why_and_what_to_do(judged):
         in verdict.why
     )
     assert 'the efficiency fell to 60 %, the limit is 85 %' in verdict.why
-    assert 'as in warning 1, at this load run at 60 rad/s (573 rev/min)' in verdict.remedy
-    assert 'as in warning 2, at this speed load with -1500 N' in verdict.remedy
+    assert (
+        'as in warning 1 (raised at 430 rev/min and -1200 N), at this load run at 60 rad/s'
+        in verdict.remedy
+    )
+    assert 'at this speed load with -1500 N' in verdict.remedy
 
 
-def test_without_advice_there_is_none(judged):
-    case = judged.case([judged.columns()], [judged.event(1, 0.1, 0.2, advice='')])
-    assert verdict_of(case).remedy.startswith('No speed or load within the surface would')
+def remedy(judged, *events):
+    return verdict_of(judged.case([judged.columns()], events)).remedy
+
+
+def advised(judged, number, speed, target, **changes):
+    """Return an event raised at a speed [rad/s], with another one as advice."""
+    advice = f'run at {target:g} rad/s'
+    return judged.event(
+        number, 0.1 * number, 0.05, speed=speed, target_speed=target, advice=advice, **changes
+    )
+
+
+def test_the_strictest_advice_of_a_cause_stands_for_the_others(judged):
+    mild = advised(judged, 1, 10.0, 44.0, worst_value=0.98)
+    strict = advised(judged, 2, -47.0, -98.0, axial_load=1600.0)
+    assert remedy(judged, mild, strict) == (
+        'as in warning 2, the strictest of 2 (raised at -449 rev/min and 1600 N), '
+        'run at -98 rad/s.'
+    )
+
+
+def test_advice_to_run_faster_and_advice_to_run_slower_stand_apart(judged):
+    events = [
+        advised(judged, number, speed, target, quantity='efficiency', worst_value=0.005)
+        for number, speed, target in ((1, 90.0, 70.0), (2, 100.0, 50.0), (3, 10.0, 20.0))
+    ]
+    faster, slower = remedy(judged, *events).split('; and ')
+    assert faster.endswith('run at 20 rad/s')
+    assert 'in warning 2, the strictest of 2' in slower
+    assert slower.endswith('run at 50 rad/s.')
+
+
+def test_without_advice_no_more_is_said_than_was_looked_for(judged):
+    helpless = {'advice': '', 'target_speed': math.nan}
+    assert remedy(judged, judged.event(1, 0.1, 0.2, **helpless)) == (
+        'in warning 1 (raised at 430 rev/min and -1200 N), neither another speed at this load nor '
+        'another load at this speed within the surface would clear it: change both, or look at '
+        'oil and temperature.'
+    )
+    assert remedy(judged, judged.event(1, 0.1, 0.2, speed=math.nan, **helpless)) == ''
 
 
 def test_short_excursions_are_no_warning(judged):
@@ -99,6 +141,30 @@ def test_an_axis_that_never_moved(judged):
     assert verdict.standing is VerdictKind.UNKNOWN
     assert 'axis x never moved' in verdict.sentence
     assert 'Check the unit of the speed' in verdict.remedy
+
+
+def test_a_gap_does_not_hide_that_an_axis_never_moved(judged):
+    still = {'speed': 0.1, 'zone': Zone.UNKNOWN}
+    gap = {'reason': Reason.NO_INPUTS, 'speed_source': PointSource.HELD, 'tick': True}
+    blocks = [
+        judged.columns(0, 90, reason=Reason.STANDSTILL, **still),
+        judged.columns(90, 10, **still, **gap),
+    ]
+    verdict = verdict_of(judged.case(blocks, totals=Totals()))
+    assert 'axis x never moved' in verdict.sentence
+    blocks = [blocks[0], judged.columns(90, 200, **still, **gap)]
+    verdict = verdict_of(judged.case(blocks, totals=Totals()))
+    assert verdict.sentence.endswith('axis x: no valid sample of several inputs.')
+
+
+def test_why_a_motion_was_not_judged_does_not_count_gaps(judged):
+    gap = {'reason': Reason.NO_INPUTS, 'speed_source': PointSource.HELD, 'tick': True}
+    blocks = [
+        judged.columns(0, 10, reason=Reason.NO_LOAD, zone=Zone.UNKNOWN),
+        judged.columns(10, 90, zone=Zone.UNKNOWN, **gap),
+    ]
+    verdict = verdict_of(judged.case(blocks, totals=totals(0.1, 0.0)))
+    assert verdict.sentence.endswith('of its motion: no valid sample of the load.')
 
 
 def test_a_speed_that_never_came(judged):

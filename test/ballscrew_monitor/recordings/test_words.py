@@ -2,7 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Times and shares in the words of a person."""
 
-from ballscrew_monitor.report.words import duration, list_of, number, percent, share, shown_unit
+from ballscrew_monitor.recordings.words import (
+    duration,
+    list_of,
+    number,
+    percent,
+    share,
+    shown_unit,
+)
 import pytest
 
 
@@ -22,6 +29,7 @@ def test_durations(seconds, text):
         (0.0656, '6.6 %'),
         (0.25, '25 %'),
         (0.98, '98 %'),
+        (0.9947, '99.5 %'),
         (0.9999, '99.9 %'),
         (1.0, '100 %'),
         (float('nan'), '–'),

@@ -34,7 +34,7 @@ def percent(part: float) -> str:
     if 0.0 < part < 0.001:
         return 'less than 0.1 %'
     if 0.99 < part < 1.0:
-        return f'{math.floor(1000.0 * part) / 10.0:.1f} %'
+        return f'{min(100.0 * part, 99.9):.1f} %'
     return f'{100.0 * part:.2g} %' if part < 0.995 else f'{100.0 * part:.0f} %'
 
 
