@@ -11,6 +11,7 @@ import sys
 from typing import Any, TYPE_CHECKING
 
 from ballscrew_monitor.node.interrupts import DONE, FAILED
+from ballscrew_monitor.node.parameters import read_file
 from ballscrew_monitor.node.topics import with_types
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_files import is_table
@@ -18,6 +19,7 @@ from ballscrew_monitor.recordings.decoding import silence
 from ballscrew_monitor.recordings.opener import opened_log
 from ballscrew_monitor.recordings.progress import shown_progress
 from ballscrew_monitor.recordings.replay import axes_for
+from ballscrew_monitor.recordings.tables.mapping import read_map
 from ballscrew_monitor.recordings.words import counted
 from ballscrew_monitor.report.case import AxisCase, LogCase
 from ballscrew_monitor.report.judging import judge_log
@@ -39,7 +41,7 @@ Records = dict[str, Any]
 def replay_command(args: argparse.Namespace, nominal: Path) -> int:
     """Do what the command line asks for; return the exit code."""
     logs = find_logs(args.logs, tables=args.map is not None, out=args.out)
-    _check_map(logs, args.map)
+    _check(logs, args)
     _say(*left_out(args.logs, logs, args.out))
     # With --json, standard output is JSON alone.
     with contextlib.redirect_stdout(sys.stderr if args.json else sys.stdout):
@@ -49,24 +51,29 @@ def replay_command(args: argparse.Namespace, nominal: Path) -> int:
     return code
 
 
-def _check_map(logs: Sequence[Path], mapping: Path | None) -> None:
-    """Raise InputError for a map where none of several recordings is a table."""
-    if mapping is not None and len(logs) > 1 and not any(is_table(log) for log in logs):
-        raise InputError(
-            f'map {mapping} is for tables, none of the {len(logs)} recordings is one: leave out '
-            '--map'
-        )
+def _check(logs: Sequence[Path], args: argparse.Namespace) -> None:
+    """Raise InputError for what no recording can be judged with, and for no place of reports."""
+    if args.map is not None:
+        if len(logs) > 1 and not any(is_table(log) for log in logs):
+            raise InputError(
+                f'map {args.map} is for tables, none of the {len(logs)} recordings is one: leave '
+                'out --map'
+            )
+        read_map(args.map)
+    if args.params is not None:
+        read_file(args.params)
+    if args.out is not None and args.out.exists() and not args.out.is_dir():
+        raise InputError(f'output {args.out} is a file, it must be a directory')
 
 
 def _replay(logs: Sequence[Path], args: argparse.Namespace, nominal: Path) -> tuple[Records, int]:
     """Judge recordings; return what JSON holds of them, and the exit code."""
-    if args.out is not None and (len(logs) > 1 or logs != args.logs):
-        return _report_many(logs, args, nominal)
+    if logs != args.logs or len(logs) > 1:  # a folder may hold one
+        many = _print_many if args.out is None else _report_many
+        return many(logs, args, nominal)
     if args.out is not None:
         return _report_one(args, nominal, logs[0])
-    if len(logs) == 1:
-        return _print_one(args, nominal, logs[0], args.map)
-    return _print_many(logs, args, nominal)
+    return _print_one(args, nominal, logs[0], args.map)
 
 
 def _print_many(

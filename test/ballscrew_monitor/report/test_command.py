@@ -111,6 +111,24 @@ def test_a_folder_without_recordings_is_bad_input(tmp_path, capsys):
     assert 'holds no recording' in capsys.readouterr().err
 
 
+@pytest.mark.parametrize('option', ['--params', '--map', '--out'])
+def test_what_serves_no_recording_is_bad_input_at_once(logs, option, tmp_path, capsys):
+    (logs / 'table.csv').write_text('v\n1\n')
+    (tmp_path / 'file').write_text('neither: parameters nor a map')
+    assert cli.main(['replay', str(logs), option, str(tmp_path / 'file')]) == 2
+    said = capsys.readouterr().err
+    assert said.count(str(tmp_path / 'file')) == 1
+
+
+@pytest.mark.parametrize('more', [[], ['--out']])
+def test_a_folder_of_one_recording_is_json_by_recording(short_bag, more, tmp_path, capsys):
+    folder = tmp_path / 'folder'
+    shutil.copytree(short_bag, folder / 'bag')
+    more = [*more, str(tmp_path / 'out')] if more else []
+    assert cli.main(['replay', str(folder), '--json', *more]) == 0
+    assert list(json.loads(capsys.readouterr().out)) == [str(folder / 'bag')]
+
+
 def test_a_folder_of_bags_and_tables_is_judged_with_a_map_and_without(logs, tmp_path, capsys):
     (logs / 'broken.mcap').unlink()
     table, mapping, out = logs / 'log.csv', tmp_path / 'map.yaml', tmp_path / 'out'
