@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a bag made of a log says of itself in its metadata: parameters, map, assumptions, notes."""
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 import dataclasses
 from pathlib import Path
 import re
@@ -66,8 +66,24 @@ class LogFacts:
 
     def sentences(self) -> list[str]:
         """Return what is to be said wherever the log is judged."""
-        assumed = ', '.join(f'{one.key} = {one.value}' for one in self.assumptions)
-        return [*self.notes, *([f'assumed of {self.source}: {assumed}'] if assumed else [])]
+        groups = grouped(self._assumed_by_axis())
+        return [
+            *self.notes,
+            *(f'assumed of {self.source}, {whose}: {", ".join(told)}' for whose, told in groups),
+        ]
+
+    def _assumed_by_axis(self) -> dict[str, list[str]]:
+        """Return by axis what is assumed, that about no axis with each of them."""
+        axes = list(self.mapping.get('axes', {}))
+        return {
+            axis: [
+                f'{place if whose else one.key} = {one.value}'
+                for one in self.assumptions
+                for whose, place in [_split(one.key, axes)]
+                if whose in ('', axis)
+            ]
+            for axis in axes
+        }
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -85,6 +101,27 @@ class ChosenValues:
     said: frozenset[str] = frozenset()
     is_given: bool = False
     is_nominal: bool = False
+
+
+def grouped(said: Mapping[str, Sequence[str]]) -> list[tuple[str, list[str]]]:
+    """Return what is said of axes: first of all of them, then of axes of which the same is."""
+    first = next(iter(said.values()), [])
+    common = [one for one in first if all(one in own for own in said.values())]
+    groups: dict[tuple[str, ...], list[str]] = {}
+    for axis, own in said.items():
+        groups.setdefault(tuple(one for one in own if one not in common), []).append(axis)
+    whole = 'all axes' if len(said) > 1 else ''.join(f'axis {axis}' for axis in said)
+    told = [(whole, common)] if common else []
+    for rest, axes in groups.items():
+        if rest:
+            told.append((f'{"axis" if len(axes) == 1 else "axes"} {", ".join(axes)}', list(rest)))
+    return told
+
+
+def _split(key: str, axes: Collection[str]) -> tuple[str, str]:
+    """Return axis and place of what is assumed, no axis where it is about all."""
+    axis, _, place = key.partition('.')
+    return (axis, place) if axis in axes else ('', key)
 
 
 def facts_of(bag: Bag) -> LogFacts | None:

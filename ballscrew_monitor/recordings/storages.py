@@ -18,6 +18,7 @@ from pathlib import Path
 import struct
 from typing import Any
 
+from ballscrew_monitor.recordings.bag_files import MAGIC
 from mcap.exceptions import McapError
 from mcap.reader import make_reader
 from mcap.records import Channel, Chunk, Schema
@@ -41,6 +42,7 @@ DAMAGE = (
     RuntimeError,
     ZstdError,
 )
+MCAP = next(magic for magic, kind in MAGIC.items() if kind == 'mcap')
 REORDER = 1_000_000_000  # [ns] log time over which messages of different chunks may be mixed
 
 
@@ -75,6 +77,8 @@ class McapStorage:
         self.note = ''
         self._channels: dict[int, Channel] = {}  # a damaged chunk may have told of them
         self.has_summary = True
+        with damage_is_input(file):
+            _check_head(file)
         try:
             with damage_is_input(file):
                 self._read_summary()
@@ -185,6 +189,14 @@ class McapStorage:
             channel = channels.get(record.channel_id) if isinstance(record, McapMessage) else None
             if channel is not None and channel.topic in wanted:
                 yield _message(channel, record)
+
+
+def _check_head(file: Path) -> None:
+    """Raise InputError for a file that begins as no MCAP file does; an empty one is cut short."""
+    with file.open('rb') as stream:
+        head = stream.read(len(MCAP))
+    if not MCAP.startswith(head):
+        raise InputError(f'bag {file} is neither an MCAP nor a sqlite3 file by its first bytes')
 
 
 def by_log_time(messages: Iterable[Message]) -> Iterator[Message]:

@@ -65,6 +65,12 @@ class EventRecord:
         """Return when it ended, or how far it is known [ns]."""
         return self.start + round(self.duration * SECOND)
 
+    def shown(self, value: float) -> str:
+        """Return a worst value or a limit as people read it: an efficiency in percent."""
+        if math.isnan(value):
+            return '–'
+        return f'{value:.3g}' if self.quantity == 'RCS' else f'{round(100.0 * value, 1):g} %'
+
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Summary:
@@ -158,8 +164,8 @@ class Summary:
         advice = f': {event.what_to_do}' if place else f'; {event.advice}' if event.advice else ''
         return (
             f'  {event.event_id:2d}  {self.since_first(event.start):5.1f} s to {end}  '
-            f'{event.quantity} {event.relation} {event.limit:g}, '
-            f'worst {event.worst_value:.3g}{place}{advice}'
+            f'{event.quantity} {event.relation} {event.shown(event.limit)}, '
+            f'worst {event.shown(event.worst_value)}{place}{advice}'
         )
 
 

@@ -38,6 +38,11 @@ def percent(part: float) -> str:
     return f'{100.0 * part:.2g} %' if part < 0.995 else f'{100.0 * part:.0f} %'
 
 
+def shown_unit(unit: str) -> str:
+    """Return the sign of a unit that parameters write without it."""
+    return '°C' if unit == 'degC' else unit
+
+
 def share(part: float, whole: float) -> str:
     """Return a part of a whole as percent, a dash where there is no whole."""
     return percent(part / whole) if whole > 0.0 else NONE

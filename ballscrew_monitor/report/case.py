@@ -46,7 +46,8 @@ class AxisCase:
 
     `load_from` is the input that its load is worked out from, empty where the load is measured;
     `assumed` says by name what else is not known, each with value and reason; `stated` names what
-    somebody states, by its place in a map. `nominal`: the parameters are those taken where nobody
+    somebody states, by its place in a map, `defaulted` what stands at its default there; `lead`
+    [m] is that of the map, NaN without one. `nominal`: the parameters are those taken where nobody
     gave any; `numbered`: the recording tells how many messages were lost on their way to it.
 
     """
@@ -61,6 +62,8 @@ class AxisCase:
     load_from: str = ''
     assumed: Mapping[str, Mapping[str, Any]] = dataclasses.field(default_factory=dict)
     stated: frozenset[str] = frozenset()
+    defaulted: frozenset[str] = frozenset()
+    lead: float = math.nan
     nominal: bool = False
     numbered: bool = False
 

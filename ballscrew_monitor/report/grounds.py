@@ -8,12 +8,14 @@ import math
 from ballscrew_monitor.core.conversions import celsius
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.recordings.columns import Reason
-from ballscrew_monitor.recordings.words import counted, duration, NONE, number, share
+from ballscrew_monitor.recordings.log_facts import grouped
+from ballscrew_monitor.recordings.words import counted, duration, NONE, number, share, shown_unit
 from ballscrew_monitor.report.case import AxisCase
 from ballscrew_monitor.report.inputs_seen import inputs_seen, InputSeen, NAMES, Trouble
 from ballscrew_monitor.report.markup import element, joined, Markup, table, TableCell, TableRow
 from ballscrew_monitor.report.room import MOST_ROWS
 from ballscrew_monitor.report.survey import REST
+from surrogate.units import MILLI
 
 TIERS = {
     'full': 'full model (solved contacts, roughness that rolls)',
@@ -23,14 +25,19 @@ TIERS = {
 KEYS = {
     'screw': 'the screw',
     'oil': 'the oil',
-    'lead_mm': 'its lead',
-    'efficiency': 'efficiency used for the load',
-    'torque_constant_Nm_per_A': 'torque constant of the motor',
-    'time.rate_Hz': 'rate of the samples',
+    'lead_mm': 'lead of {} mm',
+    'efficiency': 'efficiency of {} used for the load',
+    'torque_constant_Nm_per_A': 'torque constant of the motor of {} N m/A',
+    'time.rate_Hz': 'rate of the samples of {} Hz',
     'time.epoch': 'date',
 }
-"""Words for what a log may leave to be assumed."""
-TAGS = {'measured': 'tag measured', 'stated': 'tag', 'assumed': 'tag assumed'}
+"""Words for what a log may leave to be assumed, with a place for its value."""
+TAGS = {
+    'measured': 'tag measured',
+    'stated': 'tag',
+    'assumed': 'tag assumed',
+    'contradiction': 'tag bad',
+}
 
 
 def torque_part(case: AxisCase) -> Markup:
@@ -103,12 +110,12 @@ def _input_row(seen: InputSeen) -> TableRow:
     return TableRow(
         cells=(
             TableCell(text=NAMES[seen.source]),
-            TableCell(text=tag),
+            TableCell(text=tag, kind='place'),
             TableCell(text=number(seen.low, 4), kind='short'),
             TableCell(text=number(seen.high, 4), kind='short'),
-            TableCell(text=seen.unit, kind='short'),
+            TableCell(text=shown_unit(seen.unit), kind='short'),
             TableCell(text=rate, kind='number'),
-            TableCell(text=seen.place),
+            TableCell(text=seen.place, kind='place'),
             TableCell(text=seen.refused or 'none' if seen.place else ''),
         )
     )
@@ -197,14 +204,18 @@ def _gap_table(case: AxisCase, most: int) -> Iterable[Markup]:
 
 def caution(cases: Sequence[AxisCase]) -> Iterable[Markup]:
     """Yield what the verdicts rest on that is neither measured nor stated, if anything."""
-    assumed = dict.fromkeys(name for case in cases for name in _assumed_names(case))
-    if assumed:
-        yield element(
-            'p',
-            f'Assumed, neither measured nor stated: {", ".join(assumed)}. '
-            'The verdict holds as far as these do.',
-            class_='hint',
-        )
+    groups = grouped({case.axis: list(_assumed_names(case)) for case in cases})
+    head, tail = 'Assumed, neither measured nor stated:', 'The verdict holds as far as these do.'
+    if not groups:
+        return
+    if len(cases) == 1:
+        names = ', '.join(groups[0][1])
+        yield element('p', f'{head} {names}. {tail}', class_='hint')
+        return
+    items = (element('li', f'{whose}: {", ".join(names)}') for whose, names in groups)
+    yield element(
+        'div', element('p', head), element('ul', *items), element('p', tail), class_='hint'
+    )
 
 
 def _assumed_names(case: AxisCase) -> Iterable[str]:
@@ -215,9 +226,21 @@ def _assumed_names(case: AxisCase) -> Iterable[str]:
         yield f'axial load, {case.load_origin}'
     if Source.TEMPERATURE not in case.inputs and case.default_temperature_known == 'assumed':
         yield f'oil temperature of {celsius(case.settings.default_temperature):g} °C'
-    for key in case.assumed:
+    for key, one in case.assumed.items():
         if key not in ('load.from', 'load', 'temperature_degC'):
-            yield KEYS.get(key, key.replace('.', ' ').replace('_', ' '))
+            yield _assumed_name(key, one.get('value'))
+
+
+def _assumed_name(key: str, value: object) -> str:
+    """Return in words what is assumed by its place in a map."""
+    shown = f'{value:g}' if isinstance(value, float) else str(value)
+    if key == 'efficiency' and isinstance(value, float):
+        shown = f'{100.0 * value:g} %'
+    what, dot, part = key.rpartition('.')
+    if dot and part == 'unit':
+        return f'{what} in {shown_unit(shown)}'
+    words = KEYS.get(key)
+    return words.format(shown) if words else key.replace('.', ' ').replace('_', ' ')
 
 
 def assumptions_part(case: AxisCase, parameters: str) -> Markup:
@@ -226,7 +249,7 @@ def assumptions_part(case: AxisCase, parameters: str) -> Markup:
     facts = [
         ('Model', TIERS.get(surface.tier, surface.tier), _stated(case, 'surface')),
         ('Screw', surface.screw_name, _stated(case, 'screw')),
-        ('Lead', f'{1e3 * surface.lead:g} mm', _stated(case, 'lead_mm')),
+        *_leads(case),
         ('Preload', f'{surface.preload:g} N', _stated(case, 'screw')),
         ('Oil', surface.oil_name, _stated(case, 'oil')),
         *_conditions(case),
@@ -258,7 +281,20 @@ def assumptions_part(case: AxisCase, parameters: str) -> Markup:
 
 
 def _stated(case: AxisCase, key: str) -> str:
-    return 'assumed' if case.nominal or key in case.assumed else 'stated'
+    unsaid = case.nominal or key in case.assumed or key in case.defaulted
+    return 'assumed' if unsaid else 'stated'
+
+
+def _leads(case: AxisCase) -> list[tuple[str, str, str]]:
+    """Return the lead, and that of the surface where it is another."""
+    used, known = case.surface.lead, _stated(case, 'lead_mm')
+    if math.isnan(case.lead) or math.isclose(case.lead, used, rel_tol=1e-6):
+        return [('Lead', f'{MILLI * used:g} mm', known)]
+    text = f'{MILLI * used:g} mm, not that of the axis: build the surface of this screw'
+    return [
+        ('Lead', f'{MILLI * case.lead:g} mm', known),
+        ('Lead of the surface', text, 'contradiction'),
+    ]
 
 
 def _conditions(case: AxisCase) -> list[tuple[str, str, str]]:

@@ -9,6 +9,7 @@ Printing asks for no more than the node: nothing here loads what pages and table
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 import functools
+import math
 from typing import Any, Protocol
 
 from ballscrew_monitor.core.conversions import POSITION_UNITS
@@ -162,6 +163,8 @@ def _known(parameters: LogParameters, axis: str) -> dict[str, Any]:
         'load_from': parameters.load_from.get(axis, ''),
         'assumed': parameters.of_axis(axis),
         'stated': parameters.stated_of(axis),
+        'defaulted': parameters.defaulted_of(axis),
+        'lead': parameters.leads.get(axis, math.nan),
         'nominal': parameters.nominal,
     }
 

@@ -127,7 +127,7 @@ def _map_legend(chart: Mapping[str, Any], case: AxisCase) -> Markup:
         (swatch('path', 'line'), 'path'),
         (swatch('rcs', 'line'), f'RCS {limits.rcs:g}: left of it metal pierces the oil film'),
         (swatch('efficiency', 'line'), f'efficiency {100 * limits.efficiency:g} %'),
-        (swatch('hatch'), 'light load: efficiency is not judged'),
+        (swatch('hatch', 'dots'), 'light load: efficiency is not judged'),
         (swatch('film', 'line', '2 3'), 'film ratio Λ 1 and 3'),
     ]
     if chart['others']:
@@ -148,6 +148,7 @@ def _bar_legend() -> Markup:
             (swatch('boundary'), 'boundary'),
             (swatch('mixed'), 'mixed'),
             (swatch('hydrodynamic'), 'hydrodynamic'),
+            (swatch('warning-shade'), 'during a warning; over the film ratio a bar'),
         ]
     )
 

@@ -118,6 +118,6 @@ def _axis_line(case: AxisCase, standing: str, verdict: str) -> AxisLine:
         running_time=math.nan if summary is None else summary.running_time,
         outside_time=case.outside_time,
         warnings=len(case.outcome.events),
-        worst='' if worst is None else f'{worst.quantity} {worst.worst_value:.3g}',
+        worst='' if worst is None else f'{worst.quantity} {worst.shown(worst.worst_value)}',
         depth=math.nan if worst is None else badness(worst)[0],
     )

@@ -8,6 +8,7 @@ import html
 import math
 
 LEADING = 'leading'  # kind of a table whose rows lead to moments, of which there may be many
+DOTS = 'M0 3H26M0 9H26'  # two rows of a sample in a legend
 VOID = frozenset({'meta', 'rect', 'line', 'path', 'br', 'polyline'})
 
 
@@ -119,9 +120,13 @@ def share_bar(parts: Sequence[tuple[float, str]], title: str) -> Markup:
 
 
 def swatch(kind: str, shape: str = 'fill', dash: str | None = None) -> Markup:
-    """Return a sample of a colour, as an area or as a line, for a legend."""
+    """Return a sample of a colour, as an area, as dots or as a line, for a legend."""
     if shape == 'fill':
         piece = element('rect', width='26', height='12', class_=f'fill-{kind}')
+    elif shape == 'dots':
+        piece = element(
+            'path', d=DOTS, class_=f'line-{kind}', stroke_width='2', stroke_dasharray='2 5'
+        )
     else:
         piece = element(
             'line',

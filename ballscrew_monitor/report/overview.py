@@ -8,12 +8,12 @@ import datetime
 import math
 from urllib.parse import quote
 
-from ballscrew_monitor.recordings.words import counted, duration, NONE, number, percent
+from ballscrew_monitor.recordings.words import counted, duration, NONE, percent
 from ballscrew_monitor.report.log_report import AxisLine, LogResult, PAGE
 from ballscrew_monitor.report.markup import element, joined, Markup, table, TableCell, TableRow
 from ballscrew_monitor.report.page import page
 
-SCRIPTS = ('table.js', 'overview.js')
+SCRIPTS = ('format.js', 'table.js', 'overview.js')
 WIDTH, HEIGHT, EDGE = 720.0, 110.0, 8.0  # of the picture of a trend [px]
 MARKS = {'good': 'optimal', 'bad': 'outside', 'unknown': 'unjudged'}
 
@@ -53,13 +53,13 @@ def overview_page(entries: Sequence[LogEntry], notes: Sequence[str] = ()) -> str
             (
                 'Recording',
                 'Axis',
-                'Begins (UTC)',
-                'Recorded [h]',
-                'In motion [h]',
-                'Outside [%]',
-                'Warnings [-]',
-                'Worst warning',
                 'Verdict',
+                'Begins (UTC)',
+                'Recorded',
+                'In motion',
+                'Outside [%]',
+                'Warnings',
+                'Worst warning',
             ),
             (_row(one, line) for one, line in listed),
             kind='sortable',
@@ -98,24 +98,27 @@ def _row(one: LogEntry, line: AxisLine) -> TableRow:
     link = element('a', one.name, href=f'{quote(one.folder)}/{PAGE}')
     return TableRow(
         cells=(
-            TableCell(text=link),
+            TableCell(text=link, kind='place'),
             TableCell(text=line.axis),
-            TableCell(text=_date(line.begins), kind='short'),
-            _hours(line.recorded),
-            _hours(line.running_time),
-            TableCell(text=percent(part).removesuffix(' %'), kind='number', value=part),
-            TableCell(text=str(line.warnings), kind='number', value=line.warnings),
-            TableCell(text=line.worst or NONE, value=line.depth),
             TableCell(
-                text=element('span', line.verdict.partition(':')[0], class_=f'tag {line.standing}')
+                text=element(
+                    'span', line.verdict.partition(':')[0], class_=f'tag {line.standing}'
+                ),
+                kind='short',
             ),
+            TableCell(text=_date(line.begins), kind='short'),
+            _time(line.recorded),
+            _time(line.running_time),
+            TableCell(text=percent(part).removesuffix(' %'), kind='number', value=part),
+            TableCell(text=str(line.warnings), kind='short', value=line.warnings),
+            TableCell(text=line.worst or NONE, kind='short', value=line.depth),
         ),
         kind='bad' if line.standing == 'bad' else '',
     )
 
 
-def _hours(seconds: float) -> TableCell:
-    return TableCell(text=number(seconds / 3600.0), kind='number', value=seconds)
+def _time(seconds: float) -> TableCell:
+    return TableCell(text=duration(seconds), kind='short', value=seconds)
 
 
 def _date(begins: float) -> str:

@@ -18,6 +18,7 @@ from ballscrew_monitor.recordings.log_facts import (
     PREFIX,
     values_for,
 )
+from surrogate.units import MILLI
 
 TEMPERATURE = 'temperature_degC'
 OF_NODE = {
@@ -36,8 +37,9 @@ class LogParameters:
 
     `notes` are about the log, `sentences` all that is to be said of it in a terminal;
     `load_from` says of axes what their load is worked out from, where it is not measured, and
-    `stated` what somebody states of them, by its place in a map. `nominal`: nobody said with what
-    to judge. `metadata` are those of a bag that is to be judged alike.
+    `stated` what somebody states of them, by its place in a map, `defaulted` what stands at its
+    default there. `leads` [m] are those that the map gives. `nominal`: nobody said with what to
+    judge. `metadata` are those of a bag that is to be judged alike.
 
     """
 
@@ -48,6 +50,8 @@ class LogParameters:
     sentences: Sequence[str] = ()
     load_from: Mapping[str, str] = dataclasses.field(default_factory=dict)
     stated: frozenset[str] = frozenset()
+    defaulted: frozenset[str] = frozenset()
+    leads: Mapping[str, float] = dataclasses.field(default_factory=dict)
     nominal: bool = False
     metadata: Mapping[str, str] = dataclasses.field(default_factory=dict)
 
@@ -58,8 +62,11 @@ class LogParameters:
 
     def stated_of(self, axis: str) -> frozenset[str]:
         """Return the places that the map states of an axis, without its name."""
-        own = f'{axis}.'
-        return frozenset(one.removeprefix(own) for one in self.stated if one.startswith(own))
+        return _own(axis, self.stated)
+
+    def defaulted_of(self, axis: str) -> frozenset[str]:
+        """Return the places of an axis that stand at their default, without its name."""
+        return _own(axis, self.defaulted)
 
     def of_axis(self, axis: str) -> dict[str, Mapping[str, Any]]:
         """Return the assumptions about an axis, without its name, and those about all axes."""
@@ -72,6 +79,12 @@ class LogParameters:
         return own | {
             key: one for key, one in self.assumptions.items() if key.partition('.')[0] not in axes
         }
+
+
+def _own(axis: str, names: frozenset[str]) -> frozenset[str]:
+    """Return the names of an axis, without it."""
+    own = f'{axis}.'
+    return frozenset(one.removeprefix(own) for one in names if one.startswith(own))
 
 
 def parameters_for(bag: Bag, given: Path | None, nominal: Path) -> LogParameters:
@@ -101,6 +114,8 @@ def parameters_for(bag: Bag, given: Path | None, nominal: Path) -> LogParameters
         },
         notes=facts.notes,
         sentences=facts.sentences(),
+        defaulted=frozenset(_defaulted(facts, chosen)),
+        leads=dict(_leads(facts, chosen)),
         load_from={
             axis: source
             for axis in chosen.values['axes']
@@ -131,6 +146,30 @@ def _stated(facts: LogFacts | None, chosen: ChosenValues) -> Iterator[str]:
     for name, axis in temperatures.items():
         if f'{axis}.{OF_NODE[TEMPERATURE]}' in chosen.said and name not in assumed:
             yield name
+
+
+def _defaulted(facts: LogFacts, chosen: ChosenValues) -> Iterator[str]:
+    """Yield of the axes of a log what is judged with as nobody said it: model, limits, and all."""
+    if chosen.is_given:
+        return
+    said = chosen.said - {one.key for one in facts.assumptions}
+    for axis in chosen.values['axes']:
+        model = not {f'{axis}.surface', f'{axis}.screw'} & said
+        limits = not any(name.startswith(f'{axis}.limits.') for name in said)
+        yield from [f'{axis}.surface'] if model else []
+        yield from [f'{axis}.limits'] if limits else []
+        if model and limits and not facts.mapping.get('parameters'):
+            yield f'{axis}.parameters'
+
+
+def _leads(facts: LogFacts, chosen: ChosenValues) -> Iterator[tuple[str, float]]:
+    """Yield axis and lead [m] as the map gives it, be it stated or assumed."""
+    assumed = {one.key: one.value for one in facts.assumptions}
+    for axis in chosen.values['axes']:
+        stated = facts.mapping.get('axes', {}).get(axis, {}).get('lead_mm')
+        lead = assumed.get(f'{axis}.lead_mm', stated)
+        if isinstance(lead, int | float):
+            yield axis, lead / MILLI
 
 
 def _metadata(bag: Bag, facts: LogFacts | None, chosen: ChosenValues) -> dict[str, str]:

@@ -8,7 +8,7 @@ from typing import Any
 
 from ballscrew_monitor.core.judgement import Zone
 from ballscrew_monitor.recordings.summary import EventRecord, Summary
-from ballscrew_monitor.recordings.words import duration, NONE, number, percent, share
+from ballscrew_monitor.recordings.words import duration, NONE, number, share
 from ballscrew_monitor.report.case import AxisCase, badness, RCS
 from ballscrew_monitor.report.markup import (
     element,
@@ -24,6 +24,7 @@ from ballscrew_monitor.report.room import MOST_ROWS
 from ballscrew_monitor.report.verdict import AxisVerdict
 
 SIGNS = {'>=': '≥'}
+LASTING = ' A warning goes on over standstill and over what could not be judged.'
 
 
 def verdict_part(verdict: AxisVerdict) -> Markup:
@@ -130,7 +131,9 @@ def events_part(case: AxisCase, most: int = MOST_ROWS) -> Markup:
             element('h3', f'Warnings: {count}'),
             element(
                 'p',
-                'A click on a row shows that moment in the charts. The worst one is marked.' + cut,
+                'A click on a row shows that moment in the charts. The worst one is marked.'
+                + cut
+                + LASTING,
                 class_='muted',
             ),
             table(
@@ -151,7 +154,6 @@ def _event_row(case: AxisCase, event: EventRecord, worst: bool) -> TableRow:
     margin = max(1.0, 0.2 * (end - begin))
     metal = event.quantity == RCS
     cause = 'oil film too thin (RCS)' if metal else f'too much friction ({event.quantity})'
-    show = number if metal else percent
     todo = event.what_to_do
     lasts = number(event.duration, 4) + (' and still on' if event.active else '')
     return TableRow(
@@ -160,9 +162,9 @@ def _event_row(case: AxisCase, event: EventRecord, worst: bool) -> TableRow:
             TableCell(text=f'{begin:.2f}', kind='number', value=begin),
             TableCell(text=lasts, kind='number', value=event.duration),
             TableCell(text=cause),
-            TableCell(text=show(event.worst_value), kind='short', value=badness(event)[0]),
+            TableCell(text=event.shown(event.worst_value), kind='short', value=badness(event)[0]),
             TableCell(
-                text=f'{SIGNS.get(event.relation, event.relation)} {show(event.limit)}',
+                text=f'{SIGNS.get(event.relation, event.relation)} {event.shown(event.limit)}',
                 kind='short',
             ),
             TableCell(text=f'raised at {event.place}: {todo}' if event.place else todo or NONE),

@@ -7,7 +7,7 @@ import math
 from typing import Any
 
 from ballscrew_monitor.recordings.columns import Reason
-from ballscrew_monitor.recordings.words import number
+from ballscrew_monitor.recordings.words import number, shown_unit
 from ballscrew_monitor.report.case import AxisCase, LogCase
 from ballscrew_monitor.report.inputs_seen import inputs_seen, InputSeen, NAMES, Trouble
 from ballscrew_monitor.report.survey import REST
@@ -62,7 +62,7 @@ def _input_text(seen: InputSeen) -> str:
     """Return source, span, rate and troubles of an input."""
     parts = [seen.origin]
     if math.isfinite(seen.low):
-        parts.append(f'{number(seen.low, 4)} to {number(seen.high, 4)} {seen.unit}')
+        parts.append(f'{number(seen.low, 4)} to {number(seen.high, 4)} {shown_unit(seen.unit)}')
     if math.isfinite(seen.rate):
         parts.append(f'{number(seen.rate, 4)} Hz{" assumed" if seen.rate_assumed else ""}')
     parts += [SAID[trouble].format(text) for trouble, text in seen.troubles.items()]

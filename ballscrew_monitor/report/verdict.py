@@ -166,8 +166,8 @@ def _why(events: tuple[EventRecord, ...]) -> str:
     if loss:
         worst = min(event.worst_value for event in loss)
         parts.append(
-            f'friction took too much: the efficiency fell to {percent(worst)}, '
-            f'the limit is {percent(loss[0].limit)} ({counted(len(loss), "warning")})'
+            f'friction took too much: the efficiency fell to {loss[0].shown(worst)}, '
+            f'the limit is {loss[0].shown(loss[0].limit)} ({counted(len(loss), "warning")})'
         )
     return f'{list_of(parts).capitalize()}.' if parts else ''
 

@@ -109,8 +109,9 @@ class Times:
                 f'{log} {self._back} rows are earlier than the row before, they were sorted'
             )
         if gaps := self._steps.gaps():
+            which = 'gap is' if gaps == 1 else 'gaps are'
             found.append(
-                f'{log} {gaps} gaps are longer than {HUGE_GAP} rows, the longest is '
+                f'{log} {gaps} {which} longer than {HUGE_GAP} rows, the longest is '
                 f'{self._steps.longest / SECOND:.4g} s, after row {self._steps.longest_row}; '
                 'nothing is judged in them'
             )

@@ -5,4 +5,5 @@
 'use strict';
 
 document.querySelectorAll('table.sortable').forEach(Table.sortable);
+Table.tellWidth();
 document.body.dataset.ready = 'true';

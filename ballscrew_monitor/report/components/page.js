@@ -26,6 +26,7 @@
       views.push(() => { series.redraw(); map.draw(); });
     }
     document.querySelectorAll('table.sortable').forEach(Table.sortable);
+    Table.tellWidth();
     follow(() => views.forEach((redraw) => redraw()));
     document.body.dataset.charts = String(document.querySelectorAll('canvas').length);
   }

@@ -66,16 +66,18 @@ const Panel = (() => {
       ctx.fillStyle = Format.colour(band.colour);
       ctx.fillRect(bbox.left, high, bbox.width, Math.max(0, low - high));
     }
+    // A shade would change the colours of bands: over these, warnings are a bar at the top.
+    const height = panel.bands.length ? 5 * uPlot.pxRatio : bbox.height;
     // One path: where events are closer than the pixels, their shades do not add up.
     ctx.beginPath();
     for (const event of events) {
       const begin = Math.max(bbox.left, plot.valToPos(event.begin, 'x', true));
       const end = Math.min(bbox.left + bbox.width, plot.valToPos(event.end, 'x', true));
       if (end >= bbox.left && begin <= bbox.left + bbox.width) {
-        ctx.rect(begin, bbox.top, Math.max(1, end - begin), bbox.height);
+        ctx.rect(begin, bbox.top, Math.max(1, end - begin), height);
       }
     }
-    ctx.fillStyle = Format.colour('warning-shade');
+    ctx.fillStyle = Format.colour(panel.bands.length ? 'outside' : 'warning-shade');
     ctx.fill();
   }
 

@@ -61,5 +61,16 @@ const Table = (() => {
     }
   }
 
-  return { sortable, leading };
+  /** Say of each table on the page that is wider than its place that it can be scrolled. */
+  function tellWidth() {
+    for (const holder of document.querySelectorAll('.wide')) {
+      const note = Format.element('p', 'beyond muted', 'Scroll sideways to see all columns →');
+      holder.prepend(note);
+      const look = () => holder.classList.toggle('cut', holder.scrollWidth > holder.clientWidth + 1);
+      new ResizeObserver(look).observe(holder);
+      look();
+    }
+  }
+
+  return { sortable, leading, tellWidth };
 })();

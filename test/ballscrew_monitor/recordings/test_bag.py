@@ -101,7 +101,7 @@ def test_a_truncated_file_is_refused_when_it_is_opened(copy, part):
 
 def test_something_else_is_refused(tmp_path):
     (tmp_path / 'text.mcap').write_text('speed, load\n1, 2\n' * 100)
-    assert 'is truncated or damaged' in sentence(lambda: Bag(tmp_path / 'text.mcap'))
+    assert 'is neither an MCAP nor a sqlite3 file' in sentence(lambda: Bag(tmp_path / 'text.mcap'))
 
 
 @pytest.mark.parametrize('part', [0.05, 0.2, 0.4])

@@ -203,6 +203,11 @@ def test_nothing_can_be_had_of_an_empty_file(tmp_path):
     (tmp_path / 'empty.mcap').touch()
     with pytest.raises(InputError, match='truncated or damaged'):
         Bag(tmp_path / 'empty.mcap', salvage=True)
-    (tmp_path / 'text.db3').write_text('no database')
-    with pytest.raises(InputError, match='truncated or damaged'):
-        Bag(tmp_path / 'text.db3')
+
+
+@pytest.mark.parametrize('name', ['text.mcap', 'text.db3'])
+@pytest.mark.parametrize('salvage', [True, False])
+def test_a_text_is_no_damaged_bag(name, salvage, tmp_path):
+    (tmp_path / name).write_text('rubbish\n')
+    with pytest.raises(InputError, match='neither an MCAP nor a sqlite3 file by its first bytes$'):
+        Bag(tmp_path / name, salvage=salvage)

@@ -48,6 +48,17 @@ def test_an_event_is_listed_once_with_its_last_word():
     ]
 
 
+def test_an_efficiency_is_told_in_percent():
+    event = OutOfZone(event_id=1, worst_value=0.0656)
+    event.cause = Finding(code=Finding.CODE_EFFICIENCY_LOW, limit=0.85)
+    summarizer = Summarizer()
+    summarizer.add_state(BallScrewState(axis='x', judged=1))
+    summarizer.add_event(event)
+    found = summarizer.result()
+    assert found.lines()[-1].endswith('efficiency < 85 %, worst 6.6 %')
+    assert found.events[0].shown(math.nan) == '–'
+
+
 def test_an_event_that_is_still_on_lasts_to_the_last_state():
     summary = make_summary()
     assert [summary.span(event) for event in summary.events] == [(3.0, 5.0), (6.0, 10.0)]

@@ -2,7 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Times and shares in the words of a person."""
 
-from ballscrew_monitor.recordings.words import duration, list_of, number, percent, share
+from ballscrew_monitor.recordings.words import (
+    duration,
+    list_of,
+    number,
+    percent,
+    share,
+    shown_unit,
+)
 import pytest
 
 
@@ -48,3 +55,8 @@ def test_a_share_of_nothing_is_not_known():
 def test_lists():
     assert list_of(['a']) == 'a'
     assert list_of(['a', 'b', 'c']) == 'a; b; and c'
+
+
+def test_a_unit_is_shown_with_its_sign():
+    assert shown_unit('degC') == '°C'
+    assert shown_unit('mm/s') == 'mm/s'

@@ -54,7 +54,7 @@ def test_one_bad_recording_does_not_stop_the_rest(logs, tmp_path, capsys):
     record = json.loads(shown.out)
     assert record[str(logs / 'first')]['x']['judged'] == 300
     assert record[str(logs / 'broken.mcap')] is None
-    assert 'truncated or damaged' in record[f'{logs / "broken.mcap"}_reason']
+    assert 'neither an MCAP nor a sqlite3 file' in record[f'{logs / "broken.mcap"}_reason']
     assert sorted(path.name for path in out.iterdir()) == ['first', 'index.html', 'second_script_']
     index = (out / 'index.html').read_text()
     assert 'href="first/report.html"' in index
@@ -67,7 +67,7 @@ def test_several_recordings_are_printed_one_after_the_other(logs, capsys):
     assert cli.main(['replay', *paths]) == 1
     shown = capsys.readouterr()
     assert 'axis x: 300 speed samples judged' in shown.out
-    assert 'broken.mcap is truncated or damaged' in shown.err
+    assert 'broken.mcap is neither an MCAP nor a sqlite3 file' in shown.err
 
 
 def test_several_recordings_are_one_json(logs, capsys):
@@ -81,7 +81,7 @@ def test_a_recording_that_cannot_be_read_is_null_with_a_reason(logs, capsys):
     assert cli.main(['replay', broken, str(logs / 'first'), '--json']) == 1
     record = json.loads(capsys.readouterr().out)
     assert record[broken] is None
-    assert 'broken.mcap is truncated or damaged' in record[f'{broken}_reason']
+    assert 'broken.mcap is neither an MCAP nor a sqlite3 file' in record[f'{broken}_reason']
 
 
 def test_one_report_is_the_same_json(short_bag, tmp_path, capsys):

@@ -149,6 +149,16 @@ def test_a_click_on_a_warning_leads_to_it_and_one_on_a_head_sorts(judged, tmp_pa
 
 
 @browser
+def test_a_table_that_is_wider_than_the_screen_says_that_it_scrolls(written, tmp_path):
+    def told(width):
+        window = f'--window-size={width},900'
+        return browse(written[0], tmp_path / 'profile', '--dump-dom', window).count('wide cut')
+
+    assert told(500)
+    assert not told(1200)
+
+
+@browser
 def test_it_prints(written, tmp_path):
     paper = tmp_path / 'report.pdf'
     browse(written[0], tmp_path / 'profile', f'--print-to-pdf={paper}')

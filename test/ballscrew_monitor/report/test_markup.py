@@ -90,3 +90,4 @@ def test_a_bar_of_nothing_is_empty():
 def test_swatches():
     assert 'line-rcs' in swatch('rcs', 'line')
     assert 'fill-zone' in swatch('zone')
+    assert 'line-hatch' in swatch('hatch', 'dots')

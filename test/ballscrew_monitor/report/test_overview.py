@@ -29,7 +29,7 @@ def make_entry(name, day, outside, *, axis='x'):
 
 
 def rows_of(page):
-    return re.findall(r'<td><a href="([^"]*)">', page)
+    return re.findall(r'<td[^>]*><a href="([^"]*)">', page)
 
 
 def test_rows_are_in_the_order_of_their_dates():
@@ -37,6 +37,13 @@ def test_rows_are_in_the_order_of_their_dates():
     assert rows_of(page) == ['early/report.html', 'late/report.html']
     assert '1 of 2 axis recordings ran outside' in page
     assert '2026-01-14' in page
+
+
+def test_times_are_in_units_that_a_person_would_use():
+    page = overview_page([make_entry('a', 1, 0.0)])
+    assert '<td class="short" data-value="3600.0">60 min</td>' in page
+    assert '<td class="short" data-value="1800.0">30 min</td>' in page
+    assert '[-]' not in page
 
 
 def test_a_share_is_that_of_the_verdict_and_a_dash_where_nothing_was_judged():

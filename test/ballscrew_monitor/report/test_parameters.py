@@ -87,6 +87,23 @@ def test_a_temperature_is_stated_by_the_map_or_by_its_parameters(table):
     assert is_stated(found_with(table, none=(parameters, ''), map=(assumed, ''), axis=axis))
 
 
+def test_a_map_that_names_no_limits_leaves_them_assumed(table, tmp_path):
+    found = found_with(table)
+    assert found.defaulted_of('x') == {'limits'}  # the screw is stated, and its model with it
+    assert found.leads == {'x': 0.01}
+    guessed = found_with(
+        table,
+        screw=('screw: nominal, oil', 'oil'),
+        why=('assumed:', 'assumed:\n  x.screw: {value: nominal, reason: usual}'),
+    )
+    assert guessed.defaulted_of('x') == {'surface', 'limits', 'parameters'}
+    limits = ('assumed:', 'parameters: {x: {limits: {efficiency: 0.8}}}\nassumed:')
+    assert found_with(table, limits=limits).defaulted_of('x') == {'surface'}
+    text = '/**/ballscrew_monitor:\n  ros__parameters: {x: {limits: {efficiency: 0.9}}}\n'
+    (tmp_path / 'params.yaml').write_text(text)
+    assert not found_with(table, tmp_path / 'params.yaml').defaulted
+
+
 def test_parameters_that_are_given_state_what_they_name_and_no_more(table, tmp_path):
     text = '/**/ballscrew_monitor:\n  ros__parameters:\n    x:\n      load: {topic: load}\n'
     (tmp_path / 'params.yaml').write_text(text)

@@ -90,7 +90,7 @@ def test_inputs_tell_source_span_rate_and_troubles(judged):
         'gaps 1, in all 0.09 s, stamps 0.5 s behind arrival, 7 out of order or of other joints, '
         'refused 2 not a number'
     )
-    assert oil.startswith('oil temperature: measured, 40 to 40 degC')
+    assert oil.startswith('oil temperature: measured, 40 to 40 °C')
     assert torque == 'motor torque: not recorded'
 
 

@@ -26,7 +26,7 @@ def test_a_guess_is_a_map_that_works_unedited(mill_log, tmp_path, capsys):
     by_bag = json.loads(captured.out)
     assert set(by_bag) == {'x', 'y', 'z'}
     assert f'parameters: those of {bag}' in captured.err
-    assert 'assumed of mill.csv: ' in captured.err
+    assert 'assumed of mill.csv, axis z: load = unknown' in captured.err
     assert 'nothing was judged on axis z: no valid sample of load' in captured.err
     assert cli.main(['replay', str(mill_log), '--map', str(mapping), '--json']) == 0
     captured = capsys.readouterr()

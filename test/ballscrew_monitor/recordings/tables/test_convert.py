@@ -91,7 +91,11 @@ def test_the_bag_says_what_it_was_made_of(mill_bag):
     assert assumed['z.load'] == 'unknown'
     assert facts.parameters['axes'] == ['x', 'y', 'z']
     assert facts.parameters['y.load.topic'] == 'y/axial_load'
-    assert 'x.lead_mm = 10.0' in facts.sentences()[-1]
+    said = facts.sentences()
+    assert 'assumed of mill.csv, axis z: load = unknown' in said
+    together = next(one for one in said if one.startswith('assumed of mill.csv, all axes: '))
+    assert 'lead_mm = 10.0' in together
+    assert 'time.rate_Hz = 10.0' in together
 
 
 def test_the_file_alone_says_it_too(mill_bag):

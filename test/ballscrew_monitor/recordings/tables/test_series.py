@@ -158,4 +158,4 @@ def test_rows_without_a_time_are_left_out_and_counted(read):
 
 def test_huge_gaps_are_said(read):
     made = read({'t': [0, 0.1, 0.2, 3600, 3600.1], 'v': [1] * 5})
-    assert '1 gaps are longer than 100 rows, the longest is 3600 s, after row 3' in made.notes[0]
+    assert '1 gap is longer than 100 rows, the longest is 3600 s, after row 3' in made.notes[0]
