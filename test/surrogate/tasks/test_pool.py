@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tasks on real processes: same results for any workers, and none lost with its worker."""
 
+from collections.abc import Iterator
+import contextlib
 import os
 from pathlib import Path
 import select
@@ -88,6 +90,7 @@ import pool_tasks
 if __name__ == '__main__':
     # A shell may have started the tests deaf to Ctrl-C.
     signal.signal(signal.SIGINT, signal.default_int_handler)
+    import polars  # takes Ctrl-C over, and lets the system resume the wait that it interrupts
     *hellos, gate = sys.argv[1:]
     inputs = {hello: {'hello': hello, 'gate': gate} for hello in hellos}
     with open_pool(2) as pool:
@@ -265,18 +268,23 @@ def test_a_worker_has_one_thread_and_ignores_ctrl_c(tasks):
     assert found.result == {'threads': 1, 'blas': '1', 'ignores': True}
 
 
-def parent(tmp_path: Path, pipes: dict[str, str]) -> subprocess.Popen[str]:
+@contextlib.contextmanager
+def parent(tmp_path: Path, pipes: dict[str, str]) -> Iterator[subprocess.Popen[str]]:
     """Start a program with two workers at work, in a session of its own."""
     script = tmp_path / 'parent.py'
     script.write_text(PARENT)
     path = os.pathsep.join([str(tmp_path), str(Path(task_workers.__file__).parents[2])])
-    return subprocess.Popen(
+    with subprocess.Popen(
         [sys.executable, str(script), *pipes.values()],
         env={**os.environ, 'PYTHONPATH': path},
         start_new_session=True,
         stderr=subprocess.PIPE,
         text=True,
-    )
+    ) as process:
+        try:
+            yield process
+        finally:
+            process.kill()
 
 
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
