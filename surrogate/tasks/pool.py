@@ -111,7 +111,8 @@ class _Run:
             future = self._next()
             name, error = self._names.pop(future), _error(future)
             for begun, worker in self._pool.begun():
-                self._begun[begun].append(worker)
+                if begun in self._begun:  # not told late by an earlier run on this pool
+                    self._begun[begun].append(worker)
             if isinstance(error, BrokenExecutor) and len(self._begun[name]) < MOST_TRIES:
                 self._submit(name)
             else:

@@ -199,6 +199,38 @@ def test_tasks_tell_how_far_they_are(tasks):
         assert [share for whose, share in told if whose == name] == [0.25, 0.5]
 
 
+def test_users_of_one_cluster_do_not_hear_of_each_others_tasks(tasks):
+    """What the scheduler tells comes in order: the tasks of others before these are done."""
+    distributed = pytest.importorskip('distributed')
+    told: list[str] = []
+    with (
+        distributed.LocalCluster(
+            n_workers=1,
+            threads_per_worker=1,
+            processes=False,
+            protocol='tcp',
+            dashboard_address='127.0.0.1:0',
+            silence_logs='ERROR',
+        ) as cluster,
+        open_pool(
+            dask=cluster.scheduler_address, on_share=lambda name, _: told.append(name)
+        ) as one,
+        open_pool(dask=cluster.scheduler_address) as other,
+    ):
+        assert run_tasks(other, tasks.tell, {'of another': {}})['of another'].result == {}
+        assert run_tasks(one, tasks.tell, {'own': {}})['own'].result == {}
+        assert one.begun() == []
+    assert 'of another' not in told
+
+
+def test_what_an_earlier_run_tells_late_is_not_heard(tasks, monkeypatch):
+    """Names that are not of this run count for none of its tasks."""
+    with open_pool(1) as pool:
+        monkeypatch.setattr(pool, 'begun', lambda: [('of another', 'host/1')])
+        outcome = run_tasks(pool, tasks.root, numbers(1))['task 0']
+    assert outcome.lost == ()
+
+
 def test_a_task_that_kills_its_workers_ends_as_a_sentence(tasks):
     """It is given up after a few tries, and costs no other task its result."""
     inputs = {f'{number}': {'x': number, 'kill': number == 3} for number in range(10)}
