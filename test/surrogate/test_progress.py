@@ -130,15 +130,17 @@ def test_the_first_step_shows_how_far_it_is(stream, expected, lines):
     assert stream.getvalue().endswith('\n')
 
 
+def refuse(text):
+    """Write to nobody."""
+    raise BrokenPipeError
+
+
 @pytest.mark.parametrize('kind', [Terminal, io.StringIO])
 def test_what_nobody_can_see_does_not_end_the_work(monkeypatch, kind):
     """Whoever reads has gone, or was never there; nothing is shown in another place."""
-
-    class Broken(kind):
-        def write(self, text):
-            raise BrokenPipeError
-
-    progress = Progress(4, 'steps', stream=Broken())
+    stream = kind()
+    monkeypatch.setattr(stream, 'write', refuse)
+    progress = Progress(4, 'steps', stream=stream)
     progress.step()
     progress.close()
     monkeypatch.setattr(sys, 'stderr', None)
