@@ -25,7 +25,8 @@ class Progress:
     """
     Counts what is done out of a total, with the rate and the time that is left.
 
-    What was there before, such as kept results, counts as done but not for the rate.
+    What was there before, such as kept results, counts as done but not for the rate. Where nobody
+    can see it, such as in a closed stream, nothing is shown and the work goes on.
 
     """
 
@@ -39,8 +40,9 @@ class Progress:
     ) -> None:
         """Begin; `clock` returns seconds, `stream` is stderr by default."""
         self._total, self._unit, self._clock = total, unit, clock
-        self._stream = sys.stderr if stream is None else stream
-        self._terminal = self._stream.isatty()
+        # Python itself has no stderr where that was closed from the start.
+        self._stream: TextIO | None = sys.stderr if stream is None else stream
+        self._terminal = self._stream is not None and self._stream.isatty()
         self._begin = self._last = clock()
         self._done = self._there = 0
         self._said = 0.0
@@ -71,21 +73,29 @@ class Progress:
         elif self._terminal:
             self._draw()
         elif self._is_due():
-            print(self._text(), file=self._stream, flush=True)
+            self._print(self._text())
             self._said, self._last = self._part(), self._clock()
 
     def close(self) -> None:
         """End the line of a terminal where the work ended early."""
         if self._open:
-            print(file=self._stream, flush=True)
+            self._print('')
             self._open = False
+
+    def _print(self, text: str, end: str = '\n') -> None:
+        """Print, until whoever reads has gone."""
+        if self._stream is not None:
+            try:
+                print(text, end=end, file=self._stream, flush=True)
+            except OSError:
+                self._stream = None
 
     def _draw(self) -> None:
         drawn = bar(self._part(), WIDTH)
         self._open = self._done < self._total
         end = '' if self._open else '\n'
         # The end of an older, longer line is wiped.
-        print(f'\r[{drawn}] {self._text()}\x1b[K', end=end, file=self._stream, flush=True)
+        self._print(f'\r[{drawn}] {self._text()}\x1b[K', end)
 
     def _part(self) -> float:
         """Return how far the work is [-]."""

@@ -15,13 +15,15 @@ from ballscrew_monitor.report.judging import judge_log, OnShare
 from ballscrew_monitor.report.log_page import report_page
 from ballscrew_monitor.report.logs import EVENTS, JUDGED, PAGE, STATES, SUMMARY
 from ballscrew_monitor.report.parameters import LogParameters
-from ballscrew_monitor.report.products import write_events, write_summary
+from ballscrew_monitor.report.products import replace_report, write_events, write_summary
 from ballscrew_monitor.report.store import RowStore
 from ballscrew_monitor.report.verdict import verdicts_of
 from surrogate.files import replace_file
 
 JUDGED_SHARE, STORED_SHARE = 0.92, 0.95
 """Share of the work [-] that is done when all is judged, and when the rows are one file."""
+MADE = 'made'
+"""Folder in which a report is made, within the one of its rows."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -67,13 +69,14 @@ def report_log(
     """
     Judge a recording; write page, states, events, summary and judged bag into `out`.
 
-    `on_share` is told which share of all that is done [-]. What stops it, be it an error or an
-    interrupt, leaves whole files alone. Raises InputError when it cannot be read with the
-    parameters; then nothing is written.
+    `on_share` is told which share of all that is done [-]. All is made in a hidden folder first:
+    what stops it, be it an error or an interrupt, leaves what was in `out` before. Raises
+    InputError when it cannot be read with the parameters.
 
     """
     with RowStore(out) as store:
-        with judged_bag(bag, parameters.values, out / JUDGED, parameters.metadata) as add_state:
+        made = store.folder / MADE
+        with judged_bag(bag, parameters.values, made / JUDGED, parameters.metadata) as add_state:
             log = judge_log(
                 bag,
                 parameters,
@@ -81,11 +84,12 @@ def report_log(
                 rows=store,
                 on_state=add_state,
             )
-        store.write(out / STATES)
+        store.write(made / STATES)
         on_share(STORED_SHARE)
-        write_events(out / EVENTS, log)
-        write_summary(out / SUMMARY, log)
-        replace_file(out / PAGE, report_page(log).encode())
+        write_events(made / EVENTS, log)
+        write_summary(made / SUMMARY, log)
+        replace_file(made / PAGE, report_page(log).encode())
+        replace_report(made, out)
         on_share(1.0)
         return _result(log)
 

@@ -38,6 +38,8 @@ class LogsProgress:
 
     def tell(self, name: str, share: float) -> None:
         """Take which share of a recording is done [-], from any thread."""
+        if name not in self._shares:  # told late by an earlier run on the same pool
+            return
         with self._lock:
             self._shares[name] = max(self._shares[name], share)
             self._show()

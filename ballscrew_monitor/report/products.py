@@ -10,6 +10,7 @@ from typing import Any
 
 from ballscrew_monitor.report.case import AxisCase, LogCase
 from ballscrew_monitor.report.inputs_seen import inputs_seen, InputSeen
+from ballscrew_monitor.report.logs import PAGE
 from ballscrew_monitor.report.verdict import AxisVerdict, verdicts_of
 from surrogate.files import json_text, replace_file
 from surrogate.tasks.table import write_table
@@ -39,6 +40,25 @@ class EventRow:
     target_speed_rad_s: float
     target_load_N: float
     advice: str
+
+
+def replace_report(made: Path, out: Path) -> None:
+    """
+    Let the page and the products in `made` take the place of those in `out`.
+
+    Products without a page look like recordings: the old ones go before the page is replaced, the
+    new ones come after it. So whatever stops it, none is beside a page that is not its own.
+
+    """
+    products = {path.relative_to(made) for path in made.rglob('*') if path.is_file()} - {
+        Path(PAGE)
+    }
+    for name in products:
+        (out / name).unlink(missing_ok=True)
+    (made / PAGE).replace(out / PAGE)
+    for name in products:
+        (out / name).parent.mkdir(exist_ok=True)
+        (made / name).replace(out / name)
 
 
 def write_events(path: Path, log: LogCase) -> None:

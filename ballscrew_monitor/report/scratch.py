@@ -13,7 +13,7 @@ import contextlib
 import fcntl
 from pathlib import Path
 import shutil
-import tempfile
+import uuid
 
 PREFIX, LOCK = '.rows-', 'lock'
 
@@ -23,13 +23,16 @@ def scratch_folder(directory: Path) -> Iterator[Path]:
     """Give a folder in `directory` until the block ends, and remove what was left of others."""
     directory.mkdir(parents=True, exist_ok=True)
     remove_left(directory)
-    with (
-        tempfile.TemporaryDirectory(dir=directory, prefix=PREFIX) as name,
-        (Path(name) / LOCK).open('w') as lock,
-    ):
-        with contextlib.suppress(OSError):  # without locks there, nobody removes what is left
-            fcntl.flock(lock, fcntl.LOCK_EX)
-        yield Path(name)
+    # Named before it is there, so that no interrupt comes between its making and the `try`.
+    folder = directory / f'{PREFIX}{uuid.uuid4().hex}'
+    try:
+        folder.mkdir(mode=0o700)
+        with (folder / LOCK).open('w') as lock:
+            with contextlib.suppress(OSError):  # without locks there, nobody removes what is left
+                fcntl.flock(lock, fcntl.LOCK_EX)
+            yield folder
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
 
 
 def remove_left(directory: Path) -> None:

@@ -68,12 +68,17 @@ def _named(values: Any, kind: type[enum.IntEnum]) -> pl.Series:
 
 
 class RowStore:
-    """Keeps blocks of rows on disk, by axis; use it as a context manager."""
+    """
+    Keeps blocks of rows on disk, by axis; use it as a context manager.
+
+    Its `folder` goes with it, and what else is put there.
+
+    """
 
     def __init__(self, directory: Path) -> None:
         """Prepare to keep blocks in a directory of their own below `directory`."""
         self._stack = contextlib.ExitStack()
-        self._folder = self._stack.enter_context(scratch_folder(directory))
+        self.folder = self._stack.enter_context(scratch_folder(directory))
         self._parts: dict[str, list[Path]] = {}
         self._count = 0
 
@@ -88,7 +93,7 @@ class RowStore:
     def add(self, block: JudgedColumns) -> None:
         """Keep a block."""
         if len(block):
-            part = self._folder / f'{self._count:06d}.arrow'
+            part = self.folder / f'{self._count:06d}.arrow'
             frame_of(block).write_ipc(part)
             self._parts.setdefault(block.axis, []).append(part)
             self._count += 1

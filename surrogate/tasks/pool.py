@@ -12,6 +12,7 @@ by another.
 
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import BrokenExecutor, CancelledError, Future
+import contextlib
 from dataclasses import dataclass
 import queue
 from typing import Any, Protocol, Self
@@ -22,6 +23,8 @@ from surrogate.tasks.worker import describe_failure, Task
 
 MOST_TRIES = 3
 """How often a task is begun whose worker is lost each time [-]."""
+ATTENTION = 0.2
+"""Time after which a wait heeds Ctrl-C [s]: libraries let the system resume waits instead."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -105,14 +108,21 @@ class _Run:
         for name in self._left:
             self._submit(name)
         while self._left:
-            future = self._done.get()
+            future = self._next()
             name, error = self._names.pop(future), _error(future)
             for begun, worker in self._pool.begun():
-                self._begun[begun].append(worker)
+                if begun in self._begun:  # not told late by an earlier run on this pool
+                    self._begun[begun].append(worker)
             if isinstance(error, BrokenExecutor) and len(self._begun[name]) < MOST_TRIES:
                 self._submit(name)
             else:
                 yield self._finish(name, future, error)
+
+    def _next(self) -> Future[dict[str, Any]]:
+        """Return the next that is done; an endless wait may be one that Ctrl-C does not end."""
+        while True:
+            with contextlib.suppress(queue.Empty):
+                return self._done.get(timeout=ATTENTION)
 
     def _kept(self) -> Iterator[TaskOutcome]:
         if self._store is None:

@@ -81,7 +81,8 @@ class SpawnedWorkers(Executor):
         Prepare for `workers` processes.
 
         `began` is told arguments and worker of each call, `told` the arguments of a call and the
-        share [-] that it says is done; both from any thread.
+        share [-] that it says is done; both from any thread. What they raise is raised by the
+        call when it is done.
 
         """
         self._began, self._told = began, told
@@ -146,11 +147,12 @@ class SpawnedWorkers(Executor):
             try:
                 if process is None or pipe is None:
                     process, pipe = self._spawn()
-                self._began(args, f'{socket.gethostname()}/{process.pid}')
+                heard = [_error_of(self._began, args, f'{socket.gethostname()}/{process.pid}')]
                 pipe.send((fn, args))
                 while isinstance(answer := pipe.recv(), float):
-                    self._told(args, answer)
+                    heard.append(_error_of(self._told, args, answer))
                 result, error = answer
+                error = next(filter(None, (error, *heard)), None)
             except (EOFError, OSError):
                 self._bury(process, pipe)
                 process = pipe = None
@@ -189,3 +191,12 @@ class SpawnedWorkers(Executor):
         process.join()
         with self._lock:
             self._processes.discard(process)
+
+
+def _error_of(listener: Callable[..., None], *told: Any) -> Exception | None:
+    """Return what a listener raises: an OSError of its own is no sign of a lost process."""
+    try:
+        listener(*told)
+    except Exception as error:  # handed to the caller
+        return error
+    return None

@@ -9,6 +9,7 @@ from concurrent.futures import Future
 import os
 from types import ModuleType
 from typing import Any, Self
+import uuid
 
 from surrogate.files import InputError
 from surrogate.tasks.pool import Pool
@@ -20,7 +21,12 @@ LOCAL = 'local'
 PATIENCE = 5.0
 """Longest wait for a scheduler, and for its first worker [s]."""
 TOPIC = 'ballscrew'
-"""Topic of Dask's events on which workers say what they begin, and how far they are."""
+"""
+Of Dask's events: on one that begins so workers say what they begin, and how far they are.
+
+Each pool has a topic of its own: a topic is heard by all clients of a scheduler.
+
+"""
 
 
 def ignore(name: str, share: float) -> None:
@@ -94,7 +100,8 @@ class DaskPool:
         with apart():
             self._cluster = _local_cluster(distributed, workers) if address == LOCAL else None
             self._client = _client(distributed, self._cluster or address)
-        self._client.subscribe_topic(TOPIC, self._note)
+        self._topic = f'{TOPIC}-{uuid.uuid4()}'
+        self._client.subscribe_topic(self._topic, self._note)
         self._executor = self._client.get_executor()
 
     def __enter__(self) -> Self:
@@ -110,7 +117,7 @@ class DaskPool:
 
     def submit(self, task: Task, name: str, inputs: Mapping[str, Any]) -> Future[dict[str, Any]]:
         """Hand a task over."""
-        return self._executor.submit(run_told, task, name, inputs)
+        return self._executor.submit(run_told, self._topic, task, name, inputs)
 
     def begun(self) -> list[tuple[str, str]]:
         """Return names of tasks and workers that have begun them, since the last call."""
@@ -124,15 +131,15 @@ class DaskPool:
             self._events.append((note['task'], note['process']))
 
 
-def run_told(task: Task, name: str, inputs: Mapping[str, Any]) -> dict[str, Any]:
-    """Run a task in a worker of a Dask cluster; tell that it is begun, and how far it is."""
+def run_told(topic: str, task: Task, name: str, inputs: Mapping[str, Any]) -> dict[str, Any]:
+    """Run a task in a worker of a Dask cluster; tell a topic that it is begun, and how far."""
     distributed = _distributed()
     worker = distributed.get_worker()
     note = {'task': name, 'process': worker_name()}
     # Waits until the scheduler has it: a worker that is killed at once has said what it began.
-    distributed.utils.sync(worker.loop, worker.scheduler.log_event, topic=TOPIC, msg=note)
+    distributed.utils.sync(worker.loop, worker.scheduler.log_event, topic=topic, msg=note)
     teller.set(
-        ShareTeller(lambda share: worker.log_event(TOPIC, {'task': name, 'share': float(share)}))
+        ShareTeller(lambda share: worker.log_event(topic, {'task': name, 'share': float(share)}))
     )
     return run_task(task, name, inputs)
 

@@ -3,6 +3,7 @@
 """Progress: rate, time left, a bar on a terminal and few lines elsewhere."""
 
 import io
+import sys
 
 import pytest
 from surrogate.progress import bar, Progress
@@ -127,3 +128,24 @@ def test_the_first_step_shows_how_far_it_is(stream, expected, lines):
     assert stream.getvalue().count('0/2') == lines
     progress.close()
     assert stream.getvalue().endswith('\n')
+
+
+def refuse(text):
+    """Write to nobody."""
+    raise BrokenPipeError
+
+
+@pytest.mark.parametrize('kind', [Terminal, io.StringIO])
+def test_what_nobody_can_see_does_not_end_the_work(monkeypatch, kind):
+    """Whoever reads has gone, or was never there; nothing is shown in another place."""
+    stream = kind()
+    monkeypatch.setattr(stream, 'write', refuse)
+    progress = Progress(4, 'steps', stream=stream)
+    progress.step()
+    progress.close()
+    monkeypatch.setattr(sys, 'stderr', None)
+    monkeypatch.setattr(sys, 'stdout', io.StringIO())
+    progress = Progress(1, 'steps')
+    progress.step()
+    progress.close()
+    assert sys.stdout.getvalue() == ''

@@ -3,6 +3,7 @@
 """One recording from a bag to all that is left of it."""
 
 import json
+import shutil
 
 from ballscrew_monitor.core.fields import stamp_of
 from ballscrew_monitor.node.parameters import read_file
@@ -12,6 +13,7 @@ from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
 from ballscrew_monitor.recordings.replay import replay
 from ballscrew_monitor.report.log_report import JUDGED_SHARE, report_log, STORED_SHARE
 from ballscrew_monitor.report.parameters import LogParameters, parameters_for
+from ballscrew_monitor.report.scratch import remove_left
 from ballscrew_msgs.msg import BallScrewState
 from diagnostic_msgs.msg import DiagnosticArray
 import polars as pl
@@ -139,14 +141,17 @@ def test_the_share_that_is_done_rises_to_one_with_all_products(short_bag, params
     report_log(bag, tmp_path, parameters_for(bag, None, params), on_share=on_share)
     assert shares == sorted(shares)
     assert shares[-3:] == [JUDGED_SHARE, STORED_SHARE, 1.0]
-    assert there[-3] == []
-    assert there[-2] == ['judged', 'states.parquet']
+    assert there[-3] == there[-2] == []
     assert there[-1] == sorted(path.name for path in tmp_path.iterdir() if path.name[0] != '.')
 
 
-@pytest.mark.parametrize('share', [0.0, JUDGED_SHARE, STORED_SHARE, 1.0])
-def test_an_interrupt_leaves_whole_files_alone(reported, short_bag, params, tmp_path, share):
+@pytest.mark.parametrize('share', [0.0, JUDGED_SHARE, STORED_SHARE])
+def test_an_interrupt_leaves_what_was_there(reported, short_bag, params, tmp_path, share):
     _, whole = reported
+    names = files(whole)
+    for name in names:
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text('older')
     bag = Bag(short_bag)
 
     def interrupt(done):
@@ -155,11 +160,30 @@ def test_an_interrupt_leaves_whole_files_alone(reported, short_bag, params, tmp_
 
     with pytest.raises(KeyboardInterrupt):
         report_log(bag, tmp_path, parameters_for(bag, None, params), on_share=interrupt)
-    left = {path.relative_to(tmp_path) for path in tmp_path.rglob('*') if path.is_file()}
-    assert (left == set()) == (share <= JUDGED_SHARE)
-    for name in left:
-        assert (tmp_path / name).read_bytes() == (whole / name).read_bytes()
-    assert not [path for path in tmp_path.iterdir() if path.name.startswith('.')]
+    assert files(tmp_path) == names
+    assert {(tmp_path / name).read_text() for name in names} == {'older'}
+
+
+def test_what_a_kill_leaves_goes_with_the_next_report(short_bag, params, tmp_path):
+    """A copy is what a process that is killed leaves: nothing there is locked any more."""
+    bag, out, left = Bag(short_bag), tmp_path / 'out', []
+
+    def copy(share):
+        if share < 1.0:
+            left.append(tmp_path / str(len(left)))
+            shutil.copytree(out, left[-1])
+
+    report_log(bag, out, parameters_for(bag, None, params), on_share=copy)
+    assert len(left) >= 2
+    for folder in left:
+        assert files(folder)
+        remove_left(folder)
+        assert not list(folder.iterdir())
+
+
+def files(folder):
+    """Return the files in a folder and below, from there."""
+    return sorted(path.relative_to(folder) for path in folder.rglob('*') if path.is_file())
 
 
 def test_a_message_that_does_not_decode_is_counted(short_bag, params, tmp_path):

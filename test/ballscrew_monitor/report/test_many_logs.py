@@ -36,6 +36,7 @@ def test_a_long_recording_among_short_ones_is_seen_to_go():
     progress.done('bad')
     progress.tell('long', 0.5)
     progress.tell('long', 0.4)  # a worker was lost, another one began again
+    progress.tell('of another run', 0.5)
     progress.done('short')
     progress.done('long')
     assert shown.lines == [(1, 3, 0.05), (1, 3, 0.5), (1, 3, 0.5), (2, 3, 0.55), (3, 3, 1.0)]

@@ -2,12 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """The tables beside the page: every event, and a reason for every number that is missing."""
 
+import contextlib
 import csv
 import json
 import math
+from pathlib import Path
 
 from ballscrew_monitor.report.case import LogCase
-from ballscrew_monitor.report.products import known, write_events, write_summary
+from ballscrew_monitor.report.products import known, replace_report, write_events, write_summary
+import pytest
 
 
 def make_log(judged, **changes):
@@ -72,3 +75,40 @@ def unexplained(record, path=''):
 def test_known_numbers_have_no_reason():
     assert known({'a': 1.0}, 'why') == {'a': 1.0}
     assert math.isnan(known({'a': math.nan}, 'why')['a'])
+
+
+NAMES = ('report.html', 'summary.json', 'states.parquet', 'judged/judged.mcap')
+
+
+@pytest.mark.parametrize('there', [False, True])
+@pytest.mark.parametrize('steps', range(2 * len(NAMES)))
+def test_products_are_never_beside_a_page_that_is_not_their_own(
+    tmp_path, monkeypatch, there, steps
+):
+    made, out = tmp_path / 'made', tmp_path / 'out'
+    for folder in (made, out):
+        (folder / 'judged').mkdir(parents=True)
+        for name in NAMES if there or folder == made else ():
+            (folder / name).write_text(folder.name)
+    (out / 'judged' / 'notes.txt').write_text('of a user')
+    left = iter(range(steps))
+    for name in ('replace', 'unlink'):
+        monkeypatch.setattr(Path, name, interrupted(getattr(Path, name), left))
+    with contextlib.suppress(KeyboardInterrupt):
+        replace_report(made, out)
+    found = {name: (out / name).read_text() for name in NAMES if (out / name).exists()}
+    assert len(set(found.values())) <= 1
+    assert not found or 'report.html' in found
+    assert (len(found) == len(NAMES) and 'made' in found.values()) == (steps == 2 * len(NAMES) - 1)
+    assert (out / 'judged' / 'notes.txt').exists()
+
+
+def interrupted(change, left):
+    """Return a change of a file that is interrupted when no more are left."""
+
+    def changed(*arguments, **options):
+        if next(left, None) is None:
+            raise KeyboardInterrupt
+        return change(*arguments, **options)
+
+    return changed

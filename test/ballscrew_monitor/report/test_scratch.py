@@ -8,6 +8,7 @@ import sys
 
 from ballscrew_monitor.report import scratch
 from ballscrew_monitor.report.scratch import scratch_folder
+import pytest
 
 KILLED = """
 import os
@@ -38,3 +39,16 @@ def test_where_there_are_no_locks_nothing_is_taken_away(tmp_path, monkeypatch):
     monkeypatch.setattr(scratch.fcntl, 'flock', refuse)
     with scratch_folder(tmp_path) as first, scratch_folder(tmp_path) as second:
         assert set(tmp_path.iterdir()) == {first, second}
+
+
+def test_an_interrupt_as_soon_as_a_folder_is_there_leaves_nothing(tmp_path, monkeypatch):
+    make = os.mkdir
+
+    def make_and_interrupt(*arguments):
+        make(*arguments)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(os, 'mkdir', make_and_interrupt)
+    with pytest.raises(KeyboardInterrupt), scratch_folder(tmp_path):
+        raise AssertionError
+    assert not list(tmp_path.iterdir())

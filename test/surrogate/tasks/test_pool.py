@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tasks on real processes: same results for any workers, and none lost with its worker."""
 
+from collections.abc import Iterator
+import contextlib
 import os
 from pathlib import Path
 import select
@@ -88,6 +90,7 @@ import pool_tasks
 if __name__ == '__main__':
     # A shell may have started the tests deaf to Ctrl-C.
     signal.signal(signal.SIGINT, signal.default_int_handler)
+    import polars  # takes Ctrl-C over, and lets the system resume the wait that it interrupts
     *hellos, gate = sys.argv[1:]
     inputs = {hello: {'hello': hello, 'gate': gate} for hello in hellos}
     with open_pool(2) as pool:
@@ -196,6 +199,38 @@ def test_tasks_tell_how_far_they_are(tasks):
         assert [share for whose, share in told if whose == name] == [0.25, 0.5]
 
 
+def test_users_of_one_cluster_do_not_hear_of_each_others_tasks(tasks):
+    """What the scheduler tells comes in order: the tasks of others before these are done."""
+    distributed = pytest.importorskip('distributed')
+    told: list[str] = []
+    with (
+        distributed.LocalCluster(
+            n_workers=1,
+            threads_per_worker=1,
+            processes=False,
+            protocol='tcp',
+            dashboard_address='127.0.0.1:0',
+            silence_logs='ERROR',
+        ) as cluster,
+        open_pool(
+            dask=cluster.scheduler_address, on_share=lambda name, _: told.append(name)
+        ) as one,
+        open_pool(dask=cluster.scheduler_address) as other,
+    ):
+        assert run_tasks(other, tasks.tell, {'of another': {}})['of another'].result == {}
+        assert run_tasks(one, tasks.tell, {'own': {}})['own'].result == {}
+        assert one.begun() == []
+    assert 'of another' not in told
+
+
+def test_what_an_earlier_run_tells_late_is_not_heard(tasks, monkeypatch):
+    """Names that are not of this run count for none of its tasks."""
+    with open_pool(1) as pool:
+        monkeypatch.setattr(pool, 'begun', lambda: [('of another', 'host/1')])
+        outcome = run_tasks(pool, tasks.root, numbers(1))['task 0']
+    assert outcome.lost == ()
+
+
 def test_a_task_that_kills_its_workers_ends_as_a_sentence(tasks):
     """It is given up after a few tries, and costs no other task its result."""
     inputs = {f'{number}': {'x': number, 'kill': number == 3} for number in range(10)}
@@ -265,18 +300,23 @@ def test_a_worker_has_one_thread_and_ignores_ctrl_c(tasks):
     assert found.result == {'threads': 1, 'blas': '1', 'ignores': True}
 
 
-def parent(tmp_path: Path, pipes: dict[str, str]) -> subprocess.Popen[str]:
+@contextlib.contextmanager
+def parent(tmp_path: Path, pipes: dict[str, str]) -> Iterator[subprocess.Popen[str]]:
     """Start a program with two workers at work, in a session of its own."""
     script = tmp_path / 'parent.py'
     script.write_text(PARENT)
     path = os.pathsep.join([str(tmp_path), str(Path(task_workers.__file__).parents[2])])
-    return subprocess.Popen(
+    with subprocess.Popen(
         [sys.executable, str(script), *pipes.values()],
         env={**os.environ, 'PYTHONPATH': path},
         start_new_session=True,
         stderr=subprocess.PIPE,
         text=True,
-    )
+    ) as process:
+        try:
+            yield process
+        finally:
+            process.kill()
 
 
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])

@@ -8,6 +8,7 @@ import os
 
 import pytest
 from surrogate.tasks.spawned import apart, LostWorker, SpawnedWorkers
+from surrogate.tasks.worker import tell_share
 
 DEADLINE = 60.0
 
@@ -43,6 +44,22 @@ def test_a_lost_process_is_the_loss_of_its_call(workers):
     with pytest.raises(LostWorker):
         workers.submit(os._exit, 3).result(DEADLINE)
     assert workers.submit(abs, -1).result(DEADLINE) == 1
+
+
+def refuse(arguments, _):
+    """Raise what the loss of a process raises, too."""
+    if arguments:
+        raise BrokenPipeError('nobody reads')
+
+
+@pytest.mark.parametrize('listeners', [(refuse,), (lambda *_: None, refuse)])
+def test_what_a_listener_raises_is_no_lost_process(listeners):
+    """The call has its error, the same process goes on with the next."""
+    with SpawnedWorkers(1, *listeners) as pool:
+        before = pool.submit(os.getpid).result(DEADLINE)
+        with pytest.raises(BrokenPipeError, match='nobody reads'):
+            pool.submit(tell_share, 0.5).result(DEADLINE)
+        assert pool.submit(os.getpid).result(DEADLINE) == before
 
 
 def test_what_cannot_be_handed_over_is_that_call_alone(workers):
