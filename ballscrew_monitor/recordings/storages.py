@@ -9,17 +9,18 @@ A damaged MCAP file is refused, or salvaged when that is asked for: then what is
 """
 
 from collections import Counter
-from collections.abc import Collection, Generator, Iterable, Iterator
+from collections.abc import Collection, Container, Generator, Iterable, Iterator
 import contextlib
 import dataclasses
 import heapq
 import itertools
 from pathlib import Path
 import struct
-from typing import Any
+from typing import Any, BinaryIO
 
+from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
-from mcap.reader import make_reader
+from mcap.reader import make_reader, McapReader
 from mcap.records import Channel, Chunk, Schema
 from mcap.records import Message as McapMessage
 from mcap.stream_reader import breakup_chunk, StreamReader
@@ -41,6 +42,7 @@ DAMAGE = (
     RuntimeError,
     ZstdError,
 )
+CHUNK_BODY = 9  # [bytes] of a record before its content
 REORDER = 1_000_000_000  # [ns] log time over which messages of different chunks may be mixed
 
 
@@ -74,6 +76,7 @@ class McapStorage:
         self.span = (0, 0)
         self.note = ''
         self._channels: dict[int, Channel] = {}  # a damaged chunk may have told of them
+        self._lost: frozenset[int] = frozenset()  # where damaged chunks begin [bytes]
         self.has_summary = True
         try:
             with damage_is_input(file):
@@ -95,38 +98,32 @@ class McapStorage:
         Those of the recording of a node are wanted `as_written`.
 
         """
+        reorder = not as_written
         if not self.has_summary:
-            yield from self._whole(wanted, reorder=not as_written)
+            yield from self._whole(wanted, reorder=reorder)
             return
-        if as_written:
-            yield from self._as_written(wanted)
-            return
-        last = -1
-        try:
-            for message in self._indexed(wanted):
-                yield message
-                last = message.log_time
-        except InputError as error:
-            if not self.salvage:
-                raise
-            self.note = f'{error}; what is whole of it is used'
-            yield from (late for late in self._whole(wanted) if late.log_time > last)
-
-    def _as_written(self, wanted: Collection[str]) -> Iterator[Message]:
         count = 0
         try:
-            for message in self._indexed(wanted, reorder=False):
+            for message in self._indexed(wanted, reorder=reorder):
                 yield message
                 count += 1
         except InputError as error:
             if not self.salvage:
                 raise
             self.note = f'{error}; what is whole of it is used'
-            yield from itertools.islice(self._whole(wanted, reorder=False), count, None)
+            self._lost = damaged_chunks(self.file)
+            # What came before the damage comes first here too.
+            yield from itertools.islice(self._rest(wanted, reorder=reorder), count, None)
 
-    def _indexed(self, wanted: Collection[str], *, reorder: bool = True) -> Iterator[Message]:
+    def _rest(self, wanted: Collection[str], *, reorder: bool) -> Iterator[Message]:
+        """Return all that can be had; a file without chunks has no index to go on by."""
+        return (self._indexed if self._lost else self._whole)(wanted, reorder=reorder)
+
+    def _indexed(self, wanted: Collection[str], *, reorder: bool) -> Iterator[Message]:
         with damage_is_input(self.file), self.file.open('rb') as stream:
             reader = make_reader(stream, validate_crcs=True)
+            if self._lost and not _without(reader, self._lost):
+                return
             for _, channel, message in reader.iter_messages(
                 topics=list(wanted), log_time_order=reorder
             ):
@@ -172,7 +169,7 @@ class McapStorage:
             self.span = (times[0], times[1])
             self.note = salvage_note(self.file, counts.total(), self.span)
 
-    def _whole(self, wanted: Collection[str], *, reorder: bool = True) -> Iterator[Message]:
+    def _whole(self, wanted: Collection[str], *, reorder: bool) -> Iterator[Message]:
         """Yield the messages of whole chunks by log time, as far as chunks do not overlap more."""
         found = self._whole_as_written(wanted)
         return by_log_time(found) if reorder else found
@@ -211,6 +208,36 @@ def whole_records(file: Path) -> Iterator[Any]:
     with file.open('rb') as stream, contextlib.suppress(*DAMAGE):
         for record in StreamReader(stream, emit_chunks=True).records:
             yield from _inside(record) if isinstance(record, Chunk) else [record]
+
+
+def damaged_chunks(file: Path) -> frozenset[int]:
+    """Return where the chunks begin [bytes] that the summary of a file names and that are lost."""
+    with file.open('rb') as stream:
+        summary = make_reader(stream).get_summary()
+        if summary is None:
+            return frozenset()
+        begins = [index.chunk_start_offset for index in summary.chunk_indexes]
+        return frozenset(at for at in begins if not _is_whole(stream, at, summary.channels))
+
+
+def _is_whole(stream: BinaryIO, offset: int, channels: Container[int]) -> bool:
+    """Tell whether a chunk can be read, and its messages are of known channels."""
+    try:
+        stream.seek(offset + CHUNK_BODY)
+        records = breakup_chunk(Chunk.read(ReadDataStream(stream)), validate_crc=True)
+    except DAMAGE:
+        return False
+    return all(one.channel_id in channels for one in records if isinstance(one, McapMessage))
+
+
+def _without(reader: McapReader, lost: Collection[int]) -> bool:
+    """Make a reader pass over chunks; tell if others are left."""
+    summary = reader.get_summary()
+    assert summary is not None  # there is one where chunks are known
+    summary.chunk_indexes = [
+        one for one in summary.chunk_indexes if one.chunk_start_offset not in lost
+    ]
+    return bool(summary.chunk_indexes)
 
 
 def _message(channel: Channel, message: McapMessage) -> Message:

@@ -7,6 +7,8 @@ import itertools
 import shutil
 
 from ballscrew_monitor.recordings.bag import Bag
+from mcap.reader import make_reader
+from mcap.writer import Writer as McapWriter
 import pytest
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
 from rosbags.typesys import get_typestore, Stores
@@ -141,6 +143,53 @@ def test_a_damaged_chunk_is_left_out(short_bag, messages, tmp_path):
     assert 0 < len(found) < len(messages)
     assert set(found) < set(plain(messages))
     assert bag.notes[0].endswith('what is whole of it is used')
+
+
+def chunks(path, content):
+    """Write messages in small chunks; return where these begin [bytes]."""
+    with path.open('wb') as stream:
+        writer = McapWriter(stream, chunk_size=2000)
+        writer.start('ros2', 'test')
+        numbers = {}
+        for topic, log_time, data in content:
+            if topic not in numbers:
+                numbers[topic] = writer.register_channel(topic, 'cdr', 0)
+            writer.add_message(numbers[topic], log_time, data, log_time)
+        writer.finish()
+    with path.open('rb') as stream:
+        indexes = make_reader(stream).get_summary().chunk_indexes
+    return [index.chunk_start_offset for index in indexes]
+
+
+def test_what_follows_damage_over_the_border_of_chunks_is_read(messages, tmp_path):
+    path, written = tmp_path / 'bad.mcap', plain(messages)
+    begins = chunks(path, written)
+    assert len(begins) > 5
+    data = bytearray(path.read_bytes())
+    begin, end = begins[2] - 100, begins[2] + 100
+    data[begin:end] = b'\xff' * 200
+    path.write_bytes(data)
+    bag = Bag(path, salvage=True)
+    found = content(bag)
+    assert len(written) * (1 - 2 / len(begins)) - 5 < len(found) < len(written)
+    assert found == [one for one in written if one in set(found)]
+    assert content(bag) == found
+    assert plain(bag.as_written()) == found
+    (note,) = bag.notes
+    assert note.endswith('what is whole of it is used')
+
+
+def test_a_message_of_the_time_before_the_damage_is_read(messages, tmp_path):
+    path = tmp_path / 'bad.mcap'
+    same = [(topic, 10**18, data) for topic, _, data in plain(messages)]
+    begins = chunks(path, same)
+    data = bytearray(path.read_bytes())
+    data[begins[3] + 100] ^= 0x55
+    path.write_bytes(data)
+    bag = Bag(path, salvage=True)
+    found = content(bag)
+    assert len(same) * (1 - 1 / len(begins)) - 5 < len(found) < len(same)
+    assert content(bag) == found
 
 
 @pytest.mark.parametrize('part', [0.5, 0.8, 0.95, 0.999])
