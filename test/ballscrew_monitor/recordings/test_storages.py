@@ -7,8 +7,10 @@ import itertools
 import shutil
 
 from ballscrew_monitor.recordings.bag import Bag
+from ballscrew_monitor.recordings.sqlite_storage import strays
 from mcap.reader import make_reader
 from mcap.writer import Writer as McapWriter
+import numpy as np
 import pytest
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
 from rosbags.typesys import get_typestore, Stores
@@ -246,6 +248,49 @@ def test_a_page_of_a_sqlite3_file_that_is_damaged_is_left_out(messages, short_ba
     assert 0.8 * len(messages) < len(found) < len(messages)
     assert set(found) < set(plain(messages))
     assert bag.notes[0].startswith(f'bag {file} is truncated or damaged')
+
+
+@pytest.mark.parametrize('at', [0.5, 0.55, 0.6])
+@pytest.mark.parametrize('kind', ['zeros', 'noise'])
+def test_a_sqlite3_file_damaged_within_gives_true_messages_whenever_it_is_read(
+    at, kind, messages, short_bag, tmp_path
+):
+    types = Bag(short_bag).types
+    path = write(tmp_path / 'bag', messages, types, StoragePlugin.SQLITE3, CompressionMode.NONE)
+    file = next(path.glob('*.db3'))
+    data = bytearray(file.read_bytes())
+    begin = int(at * len(data))
+    if kind == 'zeros':
+        end = begin + 500
+        data[begin:end] = bytes(500)
+    else:
+        for number in range(20):
+            data[begin + 150 * number] ^= 0x55
+    file.write_bytes(data)
+    bag = Bag(path, salvage=True)
+    found = content(bag)
+    assert content(bag) == found
+    assert 0.8 * len(messages) < len(found) <= len(messages)
+    assert found == sorted(found, key=lambda one: one[1])
+    assert f'used are the {len(found)} messages of ' in bag.notes[0]
+    assert messages[0].log_time <= bag.start_time < bag.end_time <= messages[-1].log_time
+
+
+def test_a_garbled_time_is_none_but_a_clock_may_be_set():
+    second = 1e9
+    for times, places in (
+        ([50, 51, 52, 7, 53, 54], {3}),
+        ([50, 51, 52, 90, 53, 54], {3}),
+        ([50, 51, 52, 7, 8, 9], set()),
+        ([50, 51, 52, 90, 91, 92], set()),
+        ([50], set()),
+        ([50, 7], set()),
+        ([], set()),
+    ):
+        rows = np.array([[1, time * second] for time in times]).reshape(-1, 2)
+        assert strays(rows) == places
+    mixed = np.array([[1, 50], [2, 9], [1, 50], [2, 9], [1, 51], [2, 10], [1, 52], [2, 11]])
+    assert not strays(mixed * [1, second]) - {1, 6}
 
 
 def test_nothing_can_be_had_of_an_empty_file(tmp_path):
