@@ -37,7 +37,7 @@ class Reading:
 
     def numbers(self, cells: pl.Series) -> Array:
         """Return cells as numbers, NaN where one is none."""
-        return np.asarray(self.form(cells).fill_null(math.nan).to_numpy(), dtype=np.float64)
+        return _finite(self.form, cells)
 
 
 @dataclasses.dataclass(kw_only=True, slots=True)
@@ -52,19 +52,17 @@ class _Count:
     most: float = -math.inf
 
     def add(self, cells: pl.Series, row: int) -> None:
-        numbers = self.form(cells)
-        bad = numbers.is_null()
+        numbers = _finite(self.form, cells)
+        bad = np.isnan(numbers)
         missing = int(bad.sum())
         if missing and not self.bad:
-            at = bad.arg_max() or 0
+            at = int(bad.argmax())
             what = 'nothing' if cells[at] is None else repr(cells[at])
             self.first = f'{what} in row {row + at + 1}'
         self.bad += missing
         self.good += len(cells) - missing
-        known = np.asarray(numbers.drop_nulls().to_numpy(), dtype=np.float64)
-        known = known[~np.isnan(known)]
-        self.least = float(np.min(known, initial=self.least))
-        self.most = float(np.max(known, initial=self.most))
+        self.least = float(np.min(numbers[~bad], initial=self.least))
+        self.most = float(np.max(numbers[~bad], initial=self.most))
 
 
 class Cells:
@@ -145,6 +143,13 @@ class Cells:
         if commas.good > points.good and (self._separator != ',' or not points.good):
             return commas
         return points if points.good else next((one for one in times if one.good), points)
+
+
+def _finite(form: Form, cells: pl.Series) -> Array:
+    """Return cells as numbers, NaN where a form makes none or no finite one of them."""
+    numbers = np.array(form(cells).fill_null(math.nan).to_numpy(), dtype=np.float64)
+    numbers[~np.isfinite(numbers)] = math.nan
+    return numbers
 
 
 def _plain(numbers: pl.Series) -> pl.Series:

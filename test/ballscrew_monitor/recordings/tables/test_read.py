@@ -76,6 +76,20 @@ def test_cells_without_a_number_are_unknown_and_counted(tmp_path):
     )
 
 
+def test_cells_that_are_no_finite_number_are_unknown_and_counted(tmp_path):
+    table = open_table(text_log(tmp_path, 'a\n1\nNaN\ninf\n4\n'), ['a'])
+    np.testing.assert_array_equal(table.head(99)['a'], [1, np.nan, np.nan, 4])
+    np.testing.assert_array_equal(table.readings['a'].extremes, [1, 4])
+    assert "2 cells without a number, the first is 'NaN' in row 2" in table.notes[0]
+    path = tmp_path / 'log.parquet'
+    pl.DataFrame({'a': [1.0, np.nan, None], 'b': [np.nan] * 3}).write_parquet(path)
+    assert (
+        '2 cells without a number, the first is nan in row 2' in open_table(path, ['a']).notes[0]
+    )
+    with pytest.raises(InputError, match="column 'b' holds no number, but nan"):
+        open_table(path, ['b'])
+
+
 @pytest.mark.parametrize(
     ('text', 'expected'),
     [
@@ -83,6 +97,7 @@ def test_cells_without_a_number_are_unknown_and_counted(tmp_path):
         ('  \n', 'is empty'),
         ('a,b\n', 'holds no row'),
         ('a,b\nx,1\ny,2\n', "column 'a' holds no number, but 'x'"),
+        ('a,b\nNaN,1\nNaN,2\n', "column 'a' holds no number, but 'NaN'"),
         ('b,c\n1,2\n', "column 'a' is missing, the log holds b, c"),
         (b'\x00\x01\x02' * 50, 'is no text'),
         (b'PAR1 and no more', 'cannot be read'),
