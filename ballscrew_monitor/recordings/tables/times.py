@@ -11,7 +11,7 @@ from ballscrew_monitor.recordings.progress import Shown, silent
 from ballscrew_monitor.recordings.tables.cells import Array
 from ballscrew_monitor.recordings.tables.mapping import Column, TableMap
 from ballscrew_monitor.recordings.tables.read import BLOCK, Table
-from ballscrew_monitor.recordings.tables.steps import HUGE_GAP, Steps
+from ballscrew_monitor.recordings.tables.steps import HUGE_GAP, LARGEST, Steps
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.files import InputError
@@ -152,15 +152,15 @@ class Times:
         if not len(times):
             return
         before = np.concatenate([self._last, times])
-        self._back += int((np.diff(before) < 0.0).sum())
-        self._begin = min(self._begin, float(times.min()))
         latest = np.maximum.accumulate(np.maximum(times, self._end))
-        self._late = max(self._late, float((latest - times).max()))
-        self._end = float(latest[-1])
+        with np.errstate(over='ignore'):  # what gives no stamp is refused afterwards
+            self._back += int((np.diff(before) < 0.0).sum())
+            self._begin = min(self._begin, float(times.min()))
+            self._late = max(self._late, float((latest - times).max()))
+            self._end = float(latest[-1])
+            self._steps.add(np.clip(self._nanoseconds(times), -LARGEST, LARGEST))
         self.count += len(times)
         self._last = times[-1:]
-        with np.errstate(over='ignore'):  # what gives no stamp is refused afterwards
-            self._steps.add(self._nanoseconds(times))
 
     def _times(self, columns: dict[str, Array], row: int) -> Array:
         """Return the times of rows from `row` on [s], as the log counts them."""

@@ -118,6 +118,14 @@ def test_times_that_make_no_stamps_are_refused(times, read):
         read({'t': times, 'v': [1, 2]}, column='t', unit='s')
 
 
+@pytest.mark.parametrize('times', [[1e303, 1.1e303], [0, 1e303], [-1.7e308, 1.7e308]])
+@pytest.mark.parametrize('epoch', [{}, {'epoch': '2000-01-01T00:00:00Z'}])
+def test_huge_times_are_refused_in_one_sentence(times, epoch, read):
+    times = [*times, times[-1]]
+    with pytest.raises(InputError, match='which give no stamps after 1970 and before 2038'):
+        read({'t': times, 'v': [1, 2, 3]}, column='t', unit='s', **epoch)
+
+
 def test_rows_out_of_order_are_sorted_and_counted(read):
     made = read({'t': [0, 2, 1, 3], 'v': [0, 2, 1, 3]})
     assert made.axes[0].speed == pytest.approx(np.arange(4) * 0.2 * math.pi)
