@@ -8,6 +8,7 @@ import types
 from ballscrew_monitor.recordings.tables import read as read_module
 from ballscrew_monitor.recordings.tables import times
 from ballscrew_monitor.recordings.tables.mapping import make_map
+from ballscrew_monitor.recordings.tables.read import open_table
 from ballscrew_monitor.recordings.tables.series import force_of, read_series
 import numpy as np
 import pytest
@@ -154,6 +155,26 @@ def test_few_rows_wait_for_one_that_is_a_little_late(small_reads, tmp_path, writ
     assert sum(lengths) == 3000
     assert max(lengths) <= 110  # a few that have waited
     assert len(lengths) >= 30
+
+
+def test_rows_in_reverse_are_joined_once(small_reads, tmp_path, write_csv, monkeypatch):
+    moved = []
+    plain = times.joined
+
+    def counted(parts):
+        moved.append(sum(len(part.stamps) for part in parts))
+        return plain(parts)
+
+    monkeypatch.setattr(times, 'joined', counted)
+    seconds = np.arange(5000)[::-1] * 0.01
+    log = write_csv(tmp_path / 'log.csv', {'t': seconds, 'v': seconds}, form='{:.15g}')
+    time = {'column': 't', 'unit': 's', 'epoch': '2000-01-01T00:00:00Z'}
+    mapping = make_map({'time': time, 'axes': {'x': AXIS}})
+    rows = times.Times(open_table(log, ['t', 'v']), mapping)
+    moved.clear()
+    found = np.concatenate([block.columns['v'] for block in rows.rows()])
+    np.testing.assert_allclose(found, seconds[::-1], rtol=1e-12)
+    assert sum(moved) <= 3 * 5000  # not once per block
 
 
 def test_rows_without_a_time_are_left_out_and_counted(read):
