@@ -4,7 +4,7 @@
 
 import datetime as dt
 
-from ballscrew_monitor.recordings.tables import cells
+from ballscrew_monitor.recordings.tables import cells, read
 from ballscrew_monitor.recordings.tables.read import column_names, open_table
 import numpy as np
 import polars as pl
@@ -36,8 +36,20 @@ def test_numbers_come_as_they_are(tmp_path):
         '# a comment\na,b\n1.5,2,surplus\n2.5,3\n',
         '# of axis x, drive 3, in the night, at the mill\na;b\n1.5;2\n2.5;3\n',
         b'a,b,\xb5\n1.5,2,1\n2.5,3,1\n',
+        'a;b;"c, d, e, f"\n1,5;2;1\n2,5;3;1\n',
+        '\ufeffa;b\n1,5;2\n2,5;3\n',
+        '\ufeff# of axis x, drive 3, in the night\na;b\n1.5;2\n2.5;3\n',
     ],
-    ids=['decimal comma', 'tab', 'comment', 'comment of other marks', 'latin'],
+    ids=[
+        'decimal comma',
+        'tab',
+        'comment',
+        'comment of other marks',
+        'latin',
+        'quoted separators',
+        'byte order mark',
+        'byte order mark before a comment',
+    ],
 )
 def test_other_forms_are_read_too(text, tmp_path):
     table = open_table(text_log(tmp_path, text), ['a', 'b'])
@@ -65,6 +77,19 @@ def test_times_of_day_become_seconds(tmp_path):
     values = open_table(text_log(tmp_path, text), ['t']).head(99)['t']
     assert values[0] == 1767323045.5
     assert values[1] - values[0] == 1.0
+
+
+@pytest.mark.parametrize('block', [1, 2, 99])
+def test_a_column_is_read_in_the_form_of_most_cells(tmp_path, monkeypatch, block):
+    monkeypatch.setattr(read, 'BLOCK', block)
+    text = 't\n7\n2026-01-02T03:04:05\n8\n2026-01-02T03:04:06\n2026-01-02T03:04:07\n'
+    table = open_table(text_log(tmp_path, text), ['t'])
+    values = table.head(99)['t']
+    assert np.isnan(values).tolist() == [True, False, True, False, False]
+    assert values[3] - values[1] == 1.0
+    assert "2 cells without a number, the first is '7' in row 1" in table.notes[0]
+    table = open_table(text_log(tmp_path, 't\n1\n2026-01-02T03:04:05\n3\n'), ['t'])
+    np.testing.assert_array_equal(table.head(99)['t'], [1, np.nan, 3])
 
 
 def test_cells_without_a_number_are_unknown_and_counted(tmp_path):
