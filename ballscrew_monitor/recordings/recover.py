@@ -10,7 +10,7 @@ The file itself is left as it is. Nothing is decoded, so the types need not be i
 from pathlib import Path
 
 from ballscrew_monitor.recordings.bag_writer import ACTIVE, Announced, BagWriter, whole_bag
-from ballscrew_monitor.recordings.storages import whole_records
+from ballscrew_monitor.recordings.mcap_damage import whole_records
 from mcap.records import Channel, Metadata, Schema
 from mcap.records import Message as McapMessage
 from surrogate.files import InputError

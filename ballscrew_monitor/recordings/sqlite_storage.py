@@ -15,7 +15,15 @@ from pathlib import Path
 from typing import Any
 
 from ballscrew_monitor.recordings.sqlite_pages import ends_with_a_page, whole_messages
-from ballscrew_monitor.recordings.storages import by_log_time, Message, salvage_note, TopicInfo
+from ballscrew_monitor.recordings.storages import (
+    by_log_time,
+    Message,
+    REORDER,
+    salvage_note,
+    TopicInfo,
+)
+import numpy as np
+from numpy.typing import NDArray
 from surrogate.files import InputError
 
 
@@ -28,6 +36,7 @@ class SqliteStorage:
         self.topics: dict[str, TopicInfo] = {}
         self.span = (0, 0)
         self.note = ''
+        self._strays: frozenset[int] = frozenset()  # places of rows with a garbled time
         try:
             self._read_topics()
         except InputError:
@@ -43,21 +52,13 @@ class SqliteStorage:
         They were written in that order too.
 
         """
-        last = -1
-        try:
-            for message in () if self.note else self._indexed(wanted):
-                yield message
-                last = message.log_time
-        except InputError as error:
-            if not self.salvage:
-                raise
-            self.note = f'{error}; what is whole of it is used'
-        if self.note:
-            whole = by_log_time(self._whole())
-            yield from (one for one in whole if one.log_time > last and one.topic in wanted)
+        found = by_log_time(self._whole()) if self.note else self._indexed(wanted)
+        yield from (one for one in found if one.topic in wanted)
 
     def _read_topics(self) -> None:
         with self._opened() as reader:
+            if self.salvage:
+                self._check()
             self.topics = {
                 connection.topic: TopicInfo(
                     type_name=connection.msgtype,
@@ -68,6 +69,15 @@ class SqliteStorage:
             }
             self.span = (reader.start_time, reader.end_time - 1) if reader.duration else (0, 0)
 
+    def _check(self) -> None:
+        """Raise apsw.Error unless rows and index agree: damage may look like a message."""
+        import apsw
+
+        with self._database() as database:
+            ((fault,),) = database.execute('PRAGMA integrity_check(1)')
+        if fault != 'ok':
+            raise apsw.CorruptError(fault)
+
     def _indexed(self, wanted: Collection[str]) -> Iterator[Message]:
         with self._opened() as reader:
             chosen = [one for one in reader.connections if one.topic in wanted]
@@ -77,6 +87,8 @@ class SqliteStorage:
 
     def _read_whole(self) -> bool:
         """Read all that is whole once, for topics, span and the note; tell if there is some."""
+        rows = [row[:2] for row in whole_messages(self.file)]
+        self._strays = strays(np.array(rows, dtype=np.float64).reshape(-1, 2))
         counts: Counter[str] = Counter()
         begin = end = 0
         for message in self._whole():
@@ -95,25 +107,29 @@ class SqliteStorage:
     def _whole(self) -> Iterator[Message]:
         """Yield the messages that are whole, as written."""
         topics = self._topic_rows()
-        for number, time, data in whole_messages(self.file) if topics else ():
-            if number in topics:
+        for place, (number, time, data) in enumerate(whole_messages(self.file) if topics else ()):
+            if number in topics and place not in self._strays:
                 yield Message(topic=topics[number][0], data=data, log_time=time, publish_time=time)
 
     def _topic_rows(self) -> dict[int, tuple[str, str, str]]:
         """Return name, type and encoding of the topics by number, none of a file without."""
         import apsw
 
-        flags = apsw.SQLITE_OPEN_READONLY | apsw.SQLITE_OPEN_URI
         try:
-            with contextlib.closing(
-                apsw.Connection(f'{self.file.resolve().as_uri()}?immutable=1', flags=flags)
-            ) as database:
+            with self._database() as database:
                 # Or a file that is shorter than it says is not opened at all.
                 database.execute('PRAGMA writable_schema=ON')
                 rows = database.execute('SELECT id, name, type, serialization_format FROM topics')
                 return {number: (name, kind, form) for number, name, kind, form in rows}
         except apsw.Error:
             return {}
+
+    def _database(self) -> contextlib.closing[Any]:
+        import apsw
+
+        flags = apsw.SQLITE_OPEN_READONLY | apsw.SQLITE_OPEN_URI
+        name = f'{self.file.resolve().as_uri()}?immutable=1'
+        return contextlib.closing(apsw.Connection(name, flags=flags))
 
     @contextlib.contextmanager
     def _opened(self) -> Iterator[Any]:
@@ -132,3 +148,26 @@ class SqliteStorage:
                 f'bag {self.file} is truncated or damaged, it must be a complete sqlite3 file of '
                 f'rosbag2 ({reason})'
             ) from None
+
+
+def strays(rows: NDArray[np.float64]) -> frozenset[int]:
+    """
+    Return the places of rows, of topic number and time [ns], whose time is out of place.
+
+    A clock may be set, so that a time is believed if it lies between those before and after, by
+    `REORDER` at most. Those are times of the same topic, at its ends of any.
+
+    """
+    found = _outside(rows[:, 1])
+    for number in np.unique(rows[:, 0]):
+        places = np.flatnonzero(rows[:, 0] == number)
+        found[places[1:-1]] = _outside(rows[places, 1])[1:-1]
+    return frozenset(np.flatnonzero(found).tolist())
+
+
+def _outside(times: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Tell which times are outside of their neighbours; the first and the last count as inside."""
+    found = np.zeros(len(times), dtype=np.bool_)
+    low, high = np.minimum(times[:-2], times[2:]), np.maximum(times[:-2], times[2:])
+    found[1:-1] = (times[1:-1] < low - REORDER) | (times[1:-1] > high + REORDER)
+    return found

@@ -15,33 +15,15 @@ import dataclasses
 import heapq
 import itertools
 from pathlib import Path
-import struct
-from typing import Any
 
 from ballscrew_monitor.recordings.bag_files import MAGIC
+from ballscrew_monitor.recordings.mcap_damage import DAMAGE, damaged_chunks, whole_records
 from mcap.exceptions import McapError
-from mcap.reader import make_reader
-from mcap.records import Channel, Chunk, Schema
+from mcap.reader import make_reader, McapReader
+from mcap.records import Channel, Schema
 from mcap.records import Message as McapMessage
-from mcap.stream_reader import breakup_chunk, StreamReader
 from surrogate.files import InputError
-from zstandard import ZstdError
 
-# What the reader is known to raise for a file that is not as it should be.
-DAMAGE = (
-    McapError,
-    ValueError,
-    KeyError,
-    IndexError,
-    TypeError,
-    AttributeError,
-    EOFError,
-    struct.error,
-    MemoryError,
-    OverflowError,
-    RuntimeError,
-    ZstdError,
-)
 MCAP = next(magic for magic, kind in MAGIC.items() if kind == 'mcap')
 REORDER = 1_000_000_000  # [ns] log time over which messages of different chunks may be mixed
 
@@ -76,6 +58,7 @@ class McapStorage:
         self.span = (0, 0)
         self.note = ''
         self._channels: dict[int, Channel] = {}  # a damaged chunk may have told of them
+        self._lost: frozenset[int] = frozenset()  # where damaged chunks begin [bytes]
         self.has_summary = True
         with damage_is_input(file):
             _check_head(file)
@@ -99,38 +82,32 @@ class McapStorage:
         Those of the recording of a node are wanted `as_written`.
 
         """
+        reorder = not as_written
         if not self.has_summary:
-            yield from self._whole(wanted, reorder=not as_written)
+            yield from self._whole(wanted, reorder=reorder)
             return
-        if as_written:
-            yield from self._as_written(wanted)
-            return
-        last = -1
-        try:
-            for message in self._indexed(wanted):
-                yield message
-                last = message.log_time
-        except InputError as error:
-            if not self.salvage:
-                raise
-            self.note = f'{error}; what is whole of it is used'
-            yield from (late for late in self._whole(wanted) if late.log_time > last)
-
-    def _as_written(self, wanted: Collection[str]) -> Iterator[Message]:
         count = 0
         try:
-            for message in self._indexed(wanted, reorder=False):
+            for message in self._indexed(wanted, reorder=reorder):
                 yield message
                 count += 1
         except InputError as error:
             if not self.salvage:
                 raise
             self.note = f'{error}; what is whole of it is used'
-            yield from itertools.islice(self._whole(wanted, reorder=False), count, None)
+            self._lost = damaged_chunks(self.file)
+            # What came before the damage comes first here too.
+            yield from itertools.islice(self._rest(wanted, reorder=reorder), count, None)
 
-    def _indexed(self, wanted: Collection[str], *, reorder: bool = True) -> Iterator[Message]:
+    def _rest(self, wanted: Collection[str], *, reorder: bool) -> Iterator[Message]:
+        """Return all that can be had; a file without chunks has no index to go on by."""
+        return (self._indexed if self._lost else self._whole)(wanted, reorder=reorder)
+
+    def _indexed(self, wanted: Collection[str], *, reorder: bool) -> Iterator[Message]:
         with damage_is_input(self.file), self.file.open('rb') as stream:
             reader = make_reader(stream, validate_crcs=True)
+            if self._lost and not _without(reader, self._lost):
+                return
             for _, channel, message in reader.iter_messages(
                 topics=list(wanted), log_time_order=reorder
             ):
@@ -176,7 +153,7 @@ class McapStorage:
             self.span = (times[0], times[1])
             self.note = salvage_note(self.file, counts.total(), self.span)
 
-    def _whole(self, wanted: Collection[str], *, reorder: bool = True) -> Iterator[Message]:
+    def _whole(self, wanted: Collection[str], *, reorder: bool) -> Iterator[Message]:
         """Yield the messages of whole chunks by log time, as far as chunks do not overlap more."""
         found = self._whole_as_written(wanted)
         return by_log_time(found) if reorder else found
@@ -218,11 +195,14 @@ def salvage_note(file: Path, count: int, span: tuple[int, int]) -> str:
     )
 
 
-def whole_records(file: Path) -> Iterator[Any]:
-    """Yield the records of an MCAP file that are whole, those of a chunk in its place."""
-    with file.open('rb') as stream, contextlib.suppress(*DAMAGE):
-        for record in StreamReader(stream, emit_chunks=True).records:
-            yield from _inside(record) if isinstance(record, Chunk) else [record]
+def _without(reader: McapReader, lost: Collection[int]) -> bool:
+    """Make a reader pass over chunks; tell if others are left."""
+    summary = reader.get_summary()
+    assert summary is not None  # there is one where chunks are known
+    summary.chunk_indexes = [
+        one for one in summary.chunk_indexes if one.chunk_start_offset not in lost
+    ]
+    return bool(summary.chunk_indexes)
 
 
 def _message(channel: Channel, message: McapMessage) -> Message:
@@ -233,14 +213,6 @@ def _message(channel: Channel, message: McapMessage) -> Message:
         publish_time=message.publish_time,
         sequence=message.sequence,
     )
-
-
-def _inside(chunk: Chunk) -> Iterable[Any]:
-    """Return the records of a chunk, none of a damaged one."""
-    try:
-        return breakup_chunk(chunk, validate_crc=True)
-    except DAMAGE:
-        return ()
 
 
 @contextlib.contextmanager

@@ -37,7 +37,7 @@ class Reading:
 
     def numbers(self, cells: pl.Series) -> Array:
         """Return cells as numbers, NaN where one is none."""
-        return np.asarray(self.form(cells).fill_null(math.nan).to_numpy(), dtype=np.float64)
+        return _finite(self.form, cells)
 
 
 @dataclasses.dataclass(kw_only=True, slots=True)
@@ -51,20 +51,27 @@ class _Count:
     least: float = math.inf
     most: float = -math.inf
 
-    def add(self, cells: pl.Series, row: int) -> None:
-        numbers = self.form(cells)
-        bad = numbers.is_null()
+    def add(self, cells: pl.Series, row: int) -> bool:
+        """Count cells from `row` on; tell if all are numbers."""
+        numbers = _finite(self.form, cells)
+        bad = np.isnan(numbers)
         missing = int(bad.sum())
-        if missing and not self.bad:
-            at = bad.arg_max() or 0
+        if missing:
+            self._miss(cells, int(bad.argmax()), missing, row)
+        self.good += len(cells) - missing
+        self.least = float(np.min(numbers[~bad], initial=self.least))
+        self.most = float(np.max(numbers[~bad], initial=self.most))
+        return not missing
+
+    def pass_over(self, cells: pl.Series, row: int) -> None:
+        """Count cells from `row` on as no numbers, without a look at them."""
+        self._miss(cells, 0, len(cells), row)
+
+    def _miss(self, cells: pl.Series, at: int, missing: int, row: int) -> None:
+        if not self.bad:
             what = 'nothing' if cells[at] is None else repr(cells[at])
             self.first = f'{what} in row {row + at + 1}'
         self.bad += missing
-        self.good += len(cells) - missing
-        known = np.asarray(numbers.drop_nulls().to_numpy(), dtype=np.float64)
-        known = known[~np.isnan(known)]
-        self.least = float(np.min(known, initial=self.least))
-        self.most = float(np.max(known, initial=self.most))
 
 
 class Cells:
@@ -122,29 +129,36 @@ class Cells:
 
     def _count(self, cells: pl.Series) -> None:
         """Count what each form that may still be chosen makes of cells."""
+        read = False  # all of these by an earlier form: then they are no texts of a time
         for number, one in enumerate(self._counts):
-            earlier = self._counts[:number]
-            if number == 1 and self._separator == ',' and earlier[0].good:
+            if number == 1 and self._separator == ',' and self._counts[0].good:
                 continue  # a comma within a cell may part thousands
-            if number > 1 and any(other.good for other in earlier):
-                continue
-            one.add(cells, self._rows)
+            if number > 1 and read:
+                one.pass_over(cells, self._rows)
+            else:
+                read |= one.add(cells, self._rows)
 
     def _chosen(self) -> _Count:
         """
-        Return the form in which a column is read.
+        Return the form in which a column is read: the one that leaves the fewest without a number.
 
-        The decimal mark is the one that leaves fewer cells without a number. Where commas separate
-        the cells, one within a cell may part thousands too: it counts only if no cell is a number
-        as is. Texts are times if they are no numbers but those.
+        Where commas separate the cells, one within a cell may part thousands too: it is a decimal
+        mark only if no cell is a number as is.
 
         """
         if len(self._counts) == 1:
             return self._counts[0]
         points, commas, *times = self._counts
-        if commas.good > points.good and (self._separator != ',' or not points.good):
-            return commas
-        return points if points.good else next((one for one in times if one.good), points)
+        if self._separator == ',' and points.good:
+            commas = points
+        return max(points, commas, *times, key=lambda one: one.good)
+
+
+def _finite(form: Form, cells: pl.Series) -> Array:
+    """Return cells as numbers, NaN where a form makes none or no finite one of them."""
+    numbers = np.array(form(cells).fill_null(math.nan).to_numpy(), dtype=np.float64)
+    numbers[~np.isfinite(numbers)] = math.nan
+    return numbers
 
 
 def _plain(numbers: pl.Series) -> pl.Series:

@@ -12,6 +12,7 @@ from collections.abc import Collection, Iterator
 import contextlib
 import dataclasses
 from pathlib import Path
+import re
 
 from ballscrew_monitor.recordings.progress import Shown, silent
 from ballscrew_monitor.recordings.tables.cells import Array, Cells, first_line, Reading, UNREADABLE
@@ -21,6 +22,7 @@ from surrogate.files import InputError
 
 SEPARATORS = (',', ';', '\t', '|')
 COMMENT = '#'
+QUOTED = re.compile('"[^"]*"')
 HEAD = 65536  # [bytes] of a file that tell what it is
 BLOCK = 32768  # rows that are read at a time
 
@@ -168,9 +170,10 @@ def _source(path: Path) -> _Source:
 
 
 def _header(head: bytes) -> str:
-    """Return the first line that is no comment, of what a file begins with; empty if none."""
-    lines = head.decode('utf-8', 'replace').splitlines()
-    return next((line for line in lines if line.strip() and not line.startswith(COMMENT)), '')
+    """Return the first line that is no comment, without what is quoted in it; empty if none."""
+    lines = head.decode('utf-8-sig', 'replace').splitlines()
+    header = next((line for line in lines if line.strip() and not line.startswith(COMMENT)), '')
+    return QUOTED.sub('', header)
 
 
 @contextlib.contextmanager

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The rows of a table in the order of their times, with stamps, in blocks."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 import dataclasses
 import math
 
@@ -11,7 +11,7 @@ from ballscrew_monitor.recordings.progress import Shown, silent
 from ballscrew_monitor.recordings.tables.cells import Array
 from ballscrew_monitor.recordings.tables.mapping import Column, TableMap
 from ballscrew_monitor.recordings.tables.read import BLOCK, Table
-from ballscrew_monitor.recordings.tables.steps import HUGE_GAP, Steps
+from ballscrew_monitor.recordings.tables.steps import HUGE_GAP, LARGEST, Steps
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.files import InputError
@@ -35,25 +35,43 @@ class Rows:
 
     def __add__(self, later: 'Rows') -> 'Rows':
         """Return these rows and later ones."""
-        return Rows(
-            stamps=np.concatenate([self.stamps, later.stamps]),
-            columns={
-                name: np.concatenate([values, later.columns[name]])
-                for name, values in self.columns.items()
-            },
-        )
+        return joined([self, later])
+
+
+def joined(parts: Sequence[Rows]) -> Rows:
+    """Return all rows of `parts`, one part after the other."""
+    columns = {
+        name: np.concatenate([part.columns[name] for part in parts]) for name in parts[0].columns
+    }
+    return Rows(stamps=np.concatenate([part.stamps for part in parts]), columns=columns)
+
+
+def _sorted(parts: Sequence[Rows]) -> Rows:
+    """Return all rows of `parts` by their stamps; those of equal stamp stay as they came."""
+    rows = joined(parts)
+    return rows[np.argsort(rows.stamps, kind='stable')]
 
 
 def _in_order(blocks: Iterable[Rows], late: int) -> Iterator[Rows]:
     """Yield rows by their stamps, of which none comes more than `late` [ns] after a later one."""
-    held: Rows | None = None
+    held: list[Rows] = []  # each in order, as they came
+    latest = 0  # [ns]
     for rows in blocks:
-        held = rows if held is None else held + rows
-        held = held[np.argsort(held.stamps, kind='stable')]
-        ready = int(np.searchsorted(held.stamps, held.stamps[-1] - late))
-        yield from _cut(held[:ready])
-        held = held[ready:]
-    yield from () if held is None else _cut(held)
+        held.append(_sorted([rows]))
+        latest = max(latest, int(held[-1].stamps[-1]))
+        ready, held = _parted(held, latest - late)
+        yield from _cut(_sorted(ready)) if ready else ()
+    yield from _cut(_sorted(held)) if held else ()
+
+
+def _parted(blocks: Iterable[Rows], stamp: int) -> tuple[list[Rows], list[Rows]]:
+    """Return the rows of blocks before a stamp [ns], and the others."""
+    before, others = [], []
+    for rows in blocks:
+        ready = int(np.searchsorted(rows.stamps, stamp)) if rows.stamps[0] < stamp else 0
+        before += [rows[:ready]] if ready else []
+        others += [rows[ready:]] if ready < len(rows.stamps) else []
+    return before, others
 
 
 def _cut(rows: Rows) -> Iterator[Rows]:
@@ -153,15 +171,15 @@ class Times:
         if not len(times):
             return
         before = np.concatenate([self._last, times])
-        self._back += int((np.diff(before) < 0.0).sum())
-        self._begin = min(self._begin, float(times.min()))
         latest = np.maximum.accumulate(np.maximum(times, self._end))
-        self._late = max(self._late, float((latest - times).max()))
-        self._end = float(latest[-1])
+        with np.errstate(over='ignore'):  # what gives no stamp is refused afterwards
+            self._back += int((np.diff(before) < 0.0).sum())
+            self._begin = min(self._begin, float(times.min()))
+            self._late = max(self._late, float((latest - times).max()))
+            self._end = float(latest[-1])
+            self._steps.add(np.clip(self._nanoseconds(times), -LARGEST, LARGEST))
         self.count += len(times)
         self._last = times[-1:]
-        with np.errstate(over='ignore'):  # what gives no stamp is refused afterwards
-            self._steps.add(self._nanoseconds(times))
 
     def _times(self, columns: dict[str, Array], row: int) -> Array:
         """Return the times of rows from `row` on [s], as the log counts them."""

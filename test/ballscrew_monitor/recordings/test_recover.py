@@ -71,6 +71,21 @@ def test_a_file_that_was_cut_gives_what_lies_before_the_cut(whole, share):
     assert count >= int(100 * share) - 9
 
 
+def test_what_follows_damage_over_the_border_of_chunks_is_recovered(whole):
+    with whole.open('rb') as stream:
+        begins = [
+            one.chunk_start_offset for one in make_reader(stream).get_summary().chunk_indexes
+        ]
+    data = bytearray(whole.read_bytes())
+    begin, end = begins[1] - 100, begins[1] + 100
+    data[begin:end] = b'\xff' * 200
+    whole.write_bytes(data)
+    path, count, _ = recover(whole)
+    assert 100 * (1 - 2 / len(begins)) - 5 < count < 100
+    assert numbers(path.parent)[-1] == (99, 7, 99)
+    assert Bag(path).metadata == Bag(whole, salvage=True).metadata
+
+
 @pytest.mark.parametrize('content', [b'', b'\x89MCAP0\r\n', b'not a recording at all'])
 def test_where_nothing_is_whole_a_sentence_says_so(tmp_path, content):
     file = tmp_path / 'a.mcap.active'

@@ -7,6 +7,10 @@ import itertools
 import shutil
 
 from ballscrew_monitor.recordings.bag import Bag
+from ballscrew_monitor.recordings.sqlite_storage import strays
+from mcap.reader import make_reader
+from mcap.writer import Writer as McapWriter
+import numpy as np
 import pytest
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
 from rosbags.typesys import get_typestore, Stores
@@ -143,6 +147,53 @@ def test_a_damaged_chunk_is_left_out(short_bag, messages, tmp_path):
     assert bag.notes[0].endswith('what is whole of it is used')
 
 
+def chunks(path, content):
+    """Write messages in small chunks; return where these begin [bytes]."""
+    with path.open('wb') as stream:
+        writer = McapWriter(stream, chunk_size=2000)
+        writer.start('ros2', 'test')
+        numbers = {}
+        for topic, log_time, data in content:
+            if topic not in numbers:
+                numbers[topic] = writer.register_channel(topic, 'cdr', 0)
+            writer.add_message(numbers[topic], log_time, data, log_time)
+        writer.finish()
+    with path.open('rb') as stream:
+        indexes = make_reader(stream).get_summary().chunk_indexes
+    return [index.chunk_start_offset for index in indexes]
+
+
+def test_what_follows_damage_over_the_border_of_chunks_is_read(messages, tmp_path):
+    path, written = tmp_path / 'bad.mcap', plain(messages)
+    begins = chunks(path, written)
+    assert len(begins) > 5
+    data = bytearray(path.read_bytes())
+    begin, end = begins[2] - 100, begins[2] + 100
+    data[begin:end] = b'\xff' * 200
+    path.write_bytes(data)
+    bag = Bag(path, salvage=True)
+    found = content(bag)
+    assert len(written) * (1 - 2 / len(begins)) - 5 < len(found) < len(written)
+    assert found == [one for one in written if one in set(found)]
+    assert content(bag) == found
+    assert plain(bag.as_written()) == found
+    (note,) = bag.notes
+    assert note.endswith('what is whole of it is used')
+
+
+def test_a_message_of_the_time_before_the_damage_is_read(messages, tmp_path):
+    path = tmp_path / 'bad.mcap'
+    same = [(topic, 10**18, data) for topic, _, data in plain(messages)]
+    begins = chunks(path, same)
+    data = bytearray(path.read_bytes())
+    data[begins[3] + 100] ^= 0x55
+    path.write_bytes(data)
+    bag = Bag(path, salvage=True)
+    found = content(bag)
+    assert len(same) * (1 - 1 / len(begins)) - 5 < len(found) < len(same)
+    assert content(bag) == found
+
+
 @pytest.mark.parametrize('part', [0.5, 0.8, 0.95, 0.999])
 @pytest.mark.parametrize('size', [0, 20_000], ids=['short', 'over several pages'])
 def test_what_is_whole_of_a_truncated_sqlite3_file_is_read_and_counted(
@@ -197,6 +248,49 @@ def test_a_page_of_a_sqlite3_file_that_is_damaged_is_left_out(messages, short_ba
     assert 0.8 * len(messages) < len(found) < len(messages)
     assert set(found) < set(plain(messages))
     assert bag.notes[0].startswith(f'bag {file} is truncated or damaged')
+
+
+@pytest.mark.parametrize('at', [0.5, 0.55, 0.6])
+@pytest.mark.parametrize('kind', ['zeros', 'noise'])
+def test_a_sqlite3_file_damaged_within_gives_true_messages_whenever_it_is_read(
+    at, kind, messages, short_bag, tmp_path
+):
+    types = Bag(short_bag).types
+    path = write(tmp_path / 'bag', messages, types, StoragePlugin.SQLITE3, CompressionMode.NONE)
+    file = next(path.glob('*.db3'))
+    data = bytearray(file.read_bytes())
+    begin = int(at * len(data))
+    if kind == 'zeros':
+        end = begin + 500
+        data[begin:end] = bytes(500)
+    else:
+        for number in range(20):
+            data[begin + 150 * number] ^= 0x55
+    file.write_bytes(data)
+    bag = Bag(path, salvage=True)
+    found = content(bag)
+    assert content(bag) == found
+    assert 0.8 * len(messages) < len(found) <= len(messages)
+    assert found == sorted(found, key=lambda one: one[1])
+    assert f'used are the {len(found)} messages of ' in bag.notes[0]
+    assert messages[0].log_time <= bag.start_time < bag.end_time <= messages[-1].log_time
+
+
+def test_a_garbled_time_is_none_but_a_clock_may_be_set():
+    second = 1e9
+    for times, places in (
+        ([50, 51, 52, 7, 53, 54], {3}),
+        ([50, 51, 52, 90, 53, 54], {3}),
+        ([50, 51, 52, 7, 8, 9], set()),
+        ([50, 51, 52, 90, 91, 92], set()),
+        ([50], set()),
+        ([50, 7], set()),
+        ([], set()),
+    ):
+        rows = np.array([[1, time * second] for time in times]).reshape(-1, 2)
+        assert strays(rows) == places
+    mixed = np.array([[1, 50], [2, 9], [1, 50], [2, 9], [1, 51], [2, 10], [1, 52], [2, 11]])
+    assert not strays(mixed * [1, second]) - {1, 6}
 
 
 def test_nothing_can_be_had_of_an_empty_file(tmp_path):

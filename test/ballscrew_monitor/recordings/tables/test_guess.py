@@ -195,3 +195,11 @@ def test_a_unit_that_is_not_known_is_not_said_to_be_missing(guessed):
     made = guessed({'t': TIME, 'x_speed_furlong': SPEED, 'x_force': SPEED})
     reason = made.content['assumed']['x.speed.unit']['reason']
     assert reason.startswith('x_speed_furlong states none that is known')
+
+
+def test_a_speed_without_a_number_is_none_and_the_position_is_used(guessed):
+    made = guessed({'time_s': TIME, 'x_speed_mm_s': ['NaN'] * 200, 'x_position_mm': SPEED})
+    assert made.content['axes']['x']['position'] == {'column': 'x_position_mm', 'unit': 'mm'}
+    assert 'speed' not in made.content['axes']['x']
+    assert "column 'x_speed_mm_s' holds no number, but 'NaN'; it is left out" in made.notes[0]
+    assert not any('never moves' in note for note in made.notes)

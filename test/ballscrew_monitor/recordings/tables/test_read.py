@@ -4,7 +4,7 @@
 
 import datetime as dt
 
-from ballscrew_monitor.recordings.tables import cells
+from ballscrew_monitor.recordings.tables import cells, read
 from ballscrew_monitor.recordings.tables.read import column_names, open_table
 import numpy as np
 import polars as pl
@@ -36,8 +36,20 @@ def test_numbers_come_as_they_are(tmp_path):
         '# a comment\na,b\n1.5,2,surplus\n2.5,3\n',
         '# of axis x, drive 3, in the night, at the mill\na;b\n1.5;2\n2.5;3\n',
         b'a,b,\xb5\n1.5,2,1\n2.5,3,1\n',
+        'a;b;"c, d, e, f"\n1,5;2;1\n2,5;3;1\n',
+        '\ufeffa;b\n1,5;2\n2,5;3\n',
+        '\ufeff# of axis x, drive 3, in the night\na;b\n1.5;2\n2.5;3\n',
     ],
-    ids=['decimal comma', 'tab', 'comment', 'comment of other marks', 'latin'],
+    ids=[
+        'decimal comma',
+        'tab',
+        'comment',
+        'comment of other marks',
+        'latin',
+        'quoted separators',
+        'byte order mark',
+        'byte order mark before a comment',
+    ],
 )
 def test_other_forms_are_read_too(text, tmp_path):
     table = open_table(text_log(tmp_path, text), ['a', 'b'])
@@ -67,6 +79,19 @@ def test_times_of_day_become_seconds(tmp_path):
     assert values[1] - values[0] == 1.0
 
 
+@pytest.mark.parametrize('block', [1, 2, 99])
+def test_a_column_is_read_in_the_form_of_most_cells(tmp_path, monkeypatch, block):
+    monkeypatch.setattr(read, 'BLOCK', block)
+    text = 't\n7\n2026-01-02T03:04:05\n8\n2026-01-02T03:04:06\n2026-01-02T03:04:07\n'
+    table = open_table(text_log(tmp_path, text), ['t'])
+    values = table.head(99)['t']
+    assert np.isnan(values).tolist() == [True, False, True, False, False]
+    assert values[3] - values[1] == 1.0
+    assert "2 cells without a number, the first is '7' in row 1" in table.notes[0]
+    table = open_table(text_log(tmp_path, 't\n1\n2026-01-02T03:04:05\n3\n'), ['t'])
+    np.testing.assert_array_equal(table.head(99)['t'], [1, np.nan, 3])
+
+
 def test_cells_without_a_number_are_unknown_and_counted(tmp_path):
     table = open_table(text_log(tmp_path, 'a,b\n1,2\n1,oops\n1,\n1'), ['a', 'b'])
     assert np.isnan(table.head(99)['b']).tolist() == [False, True, True, True]
@@ -76,6 +101,20 @@ def test_cells_without_a_number_are_unknown_and_counted(tmp_path):
     )
 
 
+def test_cells_that_are_no_finite_number_are_unknown_and_counted(tmp_path):
+    table = open_table(text_log(tmp_path, 'a\n1\nNaN\ninf\n4\n'), ['a'])
+    np.testing.assert_array_equal(table.head(99)['a'], [1, np.nan, np.nan, 4])
+    np.testing.assert_array_equal(table.readings['a'].extremes, [1, 4])
+    assert "2 cells without a number, the first is 'NaN' in row 2" in table.notes[0]
+    path = tmp_path / 'log.parquet'
+    pl.DataFrame({'a': [1.0, np.nan, None], 'b': [np.nan] * 3}).write_parquet(path)
+    assert (
+        '2 cells without a number, the first is nan in row 2' in open_table(path, ['a']).notes[0]
+    )
+    with pytest.raises(InputError, match="column 'b' holds no number, but nan"):
+        open_table(path, ['b'])
+
+
 @pytest.mark.parametrize(
     ('text', 'expected'),
     [
@@ -83,6 +122,7 @@ def test_cells_without_a_number_are_unknown_and_counted(tmp_path):
         ('  \n', 'is empty'),
         ('a,b\n', 'holds no row'),
         ('a,b\nx,1\ny,2\n', "column 'a' holds no number, but 'x'"),
+        ('a,b\nNaN,1\nNaN,2\n', "column 'a' holds no number, but 'NaN'"),
         ('b,c\n1,2\n', "column 'a' is missing, the log holds b, c"),
         (b'\x00\x01\x02' * 50, 'is no text'),
         (b'PAR1 and no more', 'cannot be read'),

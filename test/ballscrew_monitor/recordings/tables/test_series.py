@@ -8,6 +8,7 @@ import types
 from ballscrew_monitor.recordings.tables import read as read_module
 from ballscrew_monitor.recordings.tables import times
 from ballscrew_monitor.recordings.tables.mapping import make_map
+from ballscrew_monitor.recordings.tables.read import open_table
 from ballscrew_monitor.recordings.tables.series import force_of, read_series
 import numpy as np
 import pytest
@@ -118,6 +119,14 @@ def test_times_that_make_no_stamps_are_refused(times, read):
         read({'t': times, 'v': [1, 2]}, column='t', unit='s')
 
 
+@pytest.mark.parametrize('times', [[1e303, 1.1e303], [0, 1e303], [-1.7e308, 1.7e308]])
+@pytest.mark.parametrize('epoch', [{}, {'epoch': '2000-01-01T00:00:00Z'}])
+def test_huge_times_are_refused_in_one_sentence(times, epoch, read):
+    times = [*times, times[-1]]
+    with pytest.raises(InputError, match='which give no stamps after 1970 and before 2038'):
+        read({'t': times, 'v': [1, 2, 3]}, column='t', unit='s', **epoch)
+
+
 def test_rows_out_of_order_are_sorted_and_counted(read):
     made = read({'t': [0, 2, 1, 3], 'v': [0, 2, 1, 3]})
     assert made.axes[0].speed == pytest.approx(np.arange(4) * 0.2 * math.pi)
@@ -146,6 +155,26 @@ def test_few_rows_wait_for_one_that_is_a_little_late(small_reads, tmp_path, writ
     assert sum(lengths) == 3000
     assert max(lengths) <= 110  # a few that have waited
     assert len(lengths) >= 30
+
+
+def test_rows_in_reverse_are_joined_once(small_reads, tmp_path, write_csv, monkeypatch):
+    moved = []
+    plain = times.joined
+
+    def counted(parts):
+        moved.append(sum(len(part.stamps) for part in parts))
+        return plain(parts)
+
+    monkeypatch.setattr(times, 'joined', counted)
+    seconds = np.arange(5000)[::-1] * 0.01
+    log = write_csv(tmp_path / 'log.csv', {'t': seconds, 'v': seconds}, form='{:.15g}')
+    time = {'column': 't', 'unit': 's', 'epoch': '2000-01-01T00:00:00Z'}
+    mapping = make_map({'time': time, 'axes': {'x': AXIS}})
+    rows = times.Times(open_table(log, ['t', 'v']), mapping)
+    moved.clear()
+    found = np.concatenate([block.columns['v'] for block in rows.rows()])
+    np.testing.assert_allclose(found, seconds[::-1], rtol=1e-12)
+    assert sum(moved) <= 3 * 5000  # not once per block
 
 
 def test_rows_without_a_time_are_left_out_and_counted(read):
