@@ -181,12 +181,18 @@ class Bag:
 
     def _own_metadata(self) -> dict[str, str]:
         """Return the record of this program in the first MCAP file, if it is whole."""
+        first = self._storages[0]
+        if not isinstance(first, McapStorage) or first.note:
+            return {}
         found: dict[str, str] = {}
-        for one in self._storages[:1]:
-            if isinstance(one, McapStorage) and not one.note:
-                with damage_is_input(one.file), one.file.open('rb') as stream:
-                    for record in make_reader(stream).iter_metadata():
-                        found |= record.metadata if record.name == OWN else {}
+        try:
+            with damage_is_input(first.file), first.file.open('rb') as stream:
+                for record in make_reader(stream).iter_metadata():
+                    found |= record.metadata if record.name == OWN else {}
+        except InputError as error:
+            if not self._salvage:
+                raise
+            self._missing.append(f'{error}; what it says of itself is left out')
         return found
 
 

@@ -7,6 +7,7 @@ import itertools
 import shutil
 
 from ballscrew_monitor.recordings.bag import Bag
+from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
 from ballscrew_monitor.recordings.sqlite_storage import strays
 from mcap.reader import make_reader
 from mcap.writer import Writer as McapWriter
@@ -118,6 +119,27 @@ def test_a_lone_file_may_be_packed(short_bag, messages, tmp_path):
     packed.write_bytes(packed.read_bytes()[:4] + bytes(20))
     with pytest.raises(InputError, match='truncated or damaged'):
         Bag(packed)
+
+
+def test_what_a_bag_says_of_itself_may_be_damaged(short_bag, messages, tmp_path):
+    with BagWriter(tmp_path, 'own') as writer:
+        writer.add_metadata({'source': 'mill.csv'})
+        for name, info in Bag(short_bag).topics.items():
+            writer.add_topic(Topic(name=name, type_name=info.type_name, offer=Offer.SENSOR))
+        for one in messages:
+            writer.write(one.topic, one.data, log_time=one.log_time, publish_time=one.log_time)
+    path = tmp_path / 'own.mcap'
+    assert Bag(path).metadata == {'source': 'mill.csv'}
+    data = bytearray(path.read_bytes())
+    at = data.index(b'source') - 8  # the length of all texts
+    data[slice(at, at + 4)] = b'\xff' * 4
+    path.write_bytes(data)
+    with pytest.raises(InputError, match='truncated or damaged'):
+        Bag(path)
+    bag = Bag(path, salvage=True)
+    assert bag.metadata == {}
+    assert content(bag) == plain(messages)
+    assert bag.notes[0].endswith('what it says of itself is left out')
 
 
 @pytest.mark.parametrize('part', [0.6, 0.8, 0.95])

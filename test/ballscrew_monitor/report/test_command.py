@@ -165,7 +165,8 @@ def test_the_real_log_ends_in_a_page_that_says_what_was_assumed(tmp_path, capsys
     assert cli.main(arguments) == 0
     assert 'nothing was judged on axis z' in capsys.readouterr().err
     page = (out / 'report.html').read_text()
-    assert 'Assumed, neither measured nor stated: axial load, worked out from the motor ' in page
+    assert 'Assumed, neither measured nor stated:' in page
+    assert 'axes x, y: axial load, worked out from the motor current' in page
     assert 'without a date' in page
     assert 'M1_CURRENT' not in page  # nor any other column of the part program
     record = json.loads((out / 'summary.json').read_text())
