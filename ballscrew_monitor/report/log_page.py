@@ -8,7 +8,7 @@ import math
 from typing import Any
 
 from ballscrew_monitor.core.conversions import seconds
-from ballscrew_monitor.report import grounds, parts
+from ballscrew_monitor.report import grounds, observed, parts
 from ballscrew_monitor.report.case import AxisCase, LogCase
 from ballscrew_monitor.report.course import coarse_bytes, course_record, event_bytes
 from ballscrew_monitor.report.encoding import script_json
@@ -111,9 +111,9 @@ def _axis_part(
         ),
         element('div', class_='series'),
         _bar_legend(),
-        grounds.torque_part(case),
-        grounds.inputs_part(case),
-        grounds.gaps_part(case, room.gaps),
+        observed.torque_part(case),
+        observed.inputs_part(case),
+        observed.gaps_part(case, room.gaps),
         grounds.assumptions_part(case, log.parameters),
         id=name,
     )
