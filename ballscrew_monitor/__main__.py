@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """`python -m ballscrew_monitor`, and the executable `ballscrew`."""
 
+import io
 import signal
 import sys
 
@@ -11,6 +12,9 @@ from ballscrew_monitor.node.interrupts import end_at_once
 def main() -> int:
     """Run the command line; return the exit code."""
     end_at_once()  # before the imports that take long
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):  # not every terminal has all characters
+            stream.reconfigure(errors='replace')
     from ballscrew_monitor import cli
 
     code = cli.main()

@@ -31,6 +31,18 @@ def test_a_replay_prints_json(short_bag, capsys):
     assert record['x']['events'][0]['cause'] == 'RCS >= limit'
 
 
+def test_a_terminal_that_lacks_a_character_shows_a_mark(short_bag):
+    done = subprocess.run(
+        [sys.executable, '-m', 'ballscrew_monitor', 'replay', str(short_bag)],
+        cwd=ROOT,
+        env=child_environment(0) | {'PYTHONIOENCODING': 'ascii'},
+        capture_output=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    assert b' ?C, ' in done.stdout
+
+
 def test_a_replay_that_judges_nothing_is_a_failure(short_bag, tmp_path, capsys):
     params = tmp_path / 'params.yaml'
     text = PARAMS.read_text(encoding='utf-8')
