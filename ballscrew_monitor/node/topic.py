@@ -156,8 +156,14 @@ def link_of(node: Node, name: str, topic: Topic | None, *, problem: str = '') ->
 
 
 def _count(loss: LossCounter, event: Any) -> None:
-    """Note how many publishers a topic has now."""
-    loss.match(event.current_count)
+    """
+    Note how many publishers a topic has now.
+
+    That the first one of all has come may be told after its first messages: its count goes on.
+
+    """
+    if event.total_count > 1 or event.current_count != loss.publishers:
+        loss.match(event.current_count)
 
 
 def _never_called(message: Any) -> None:

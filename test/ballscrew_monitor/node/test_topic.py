@@ -6,7 +6,7 @@ import contextlib
 import types
 
 from ballscrew_monitor.core.loss import LossCounter
-from ballscrew_monitor.node.topic import Topic
+from ballscrew_monitor.node.topic import _count, Topic
 import pytest
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
@@ -35,6 +35,14 @@ def test_what_waits_while_the_publishers_change_has_no_number(before, after):
     assert topic.loss.publishers == before  # until there is a message to count
     assert losses(3, 41) == [None, None]
     assert losses(42, 44) == ([None, None] if after > 1 else [0, 1])
+
+
+@pytest.mark.parametrize(('current', 'total', 'lost'), [(1, 1, 520), (1, 2, 0), (2, 2, None)])
+def test_the_first_publisher_of_all_is_no_change_however_late_it_is_told(current, total, lost):
+    counter = LossCounter()
+    assert counter.take(2) == 0
+    _count(counter, types.SimpleNamespace(current_count=current, total_count=total))
+    assert counter.take(523) == lost
 
 
 def test_bytes_that_do_not_decode_are_a_message_that_is_none():
