@@ -129,6 +129,21 @@ def short_bag(nominal_bag, tmp_path_factory):
     return directory
 
 
+@pytest.fixture
+def dask_address():
+    """Return the address of a Dask scheduler with one worker, a thread of this process."""
+    distributed = pytest.importorskip('distributed')
+    with distributed.LocalCluster(
+        n_workers=1,
+        threads_per_worker=1,
+        processes=False,
+        protocol='tcp',
+        dashboard_address='127.0.0.1:0',
+        silence_logs='ERROR',
+    ) as cluster:
+        yield cluster.scheduler_address
+
+
 def cut(bag, directory, begin, end, *, topics=None):
     """Write the messages of `bag` from `begin` to `end` [s] to a bag of their own."""
     from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic

@@ -74,7 +74,8 @@ def test_a_surface_that_cannot_be_is_not_taken_and_told_in_one_sentence(node, tm
     def said():
         found = [
             (status.level, status.message)
-            for status in told[-1].status
+            for message in told[-1:]  # none may have come yet
+            for status in message.status
             if status.name.endswith(': Surface')
         ]
         return found[0] if found else None

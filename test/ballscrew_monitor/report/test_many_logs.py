@@ -82,22 +82,13 @@ def test_a_recording_that_is_not_there_or_empty_has_a_size_too(tmp_path):
     assert size_of(tmp_path / 'bag') == 100
 
 
-def test_a_cluster_makes_the_reports_that_can_be_made(short_bag, tmp_path, capsys):
-    distributed = pytest.importorskip('distributed')
+def test_a_cluster_makes_the_reports_that_can_be_made(short_bag, dask_address, tmp_path, capsys):
     for name in ('first', 'second'):
         shutil.copytree(short_bag, tmp_path / 'logs' / name)
     (tmp_path / 'logs' / 'broken.mcap').write_bytes(b'no recording')
     out = tmp_path / 'out'
-    with distributed.LocalCluster(
-        n_workers=1,
-        threads_per_worker=1,
-        processes=False,
-        protocol='tcp',
-        dashboard_address='127.0.0.1:0',
-        silence_logs='ERROR',
-    ) as cluster:
-        arguments = ['replay', str(tmp_path / 'logs'), '--out', str(out)]
-        assert cli.main([*arguments, '--dask', cluster.scheduler_address]) == 1
+    arguments = ['replay', str(tmp_path / 'logs'), '--out', str(out)]
+    assert cli.main([*arguments, '--dask', dask_address]) == 1
     shown = capsys.readouterr()
     assert 'broken.mcap: bag' in shown.err
     assert '3/3 recordings' in shown.err

@@ -199,23 +199,12 @@ def test_tasks_tell_how_far_they_are(tasks):
         assert [share for whose, share in told if whose == name] == [0.25, 0.5]
 
 
-def test_users_of_one_cluster_do_not_hear_of_each_others_tasks(tasks):
+def test_users_of_one_cluster_do_not_hear_of_each_others_tasks(tasks, dask_address):
     """What the scheduler tells comes in order: the tasks of others before these are done."""
-    distributed = pytest.importorskip('distributed')
     told: list[str] = []
     with (
-        distributed.LocalCluster(
-            n_workers=1,
-            threads_per_worker=1,
-            processes=False,
-            protocol='tcp',
-            dashboard_address='127.0.0.1:0',
-            silence_logs='ERROR',
-        ) as cluster,
-        open_pool(
-            dask=cluster.scheduler_address, on_share=lambda name, _: told.append(name)
-        ) as one,
-        open_pool(dask=cluster.scheduler_address) as other,
+        open_pool(dask=dask_address, on_share=lambda name, _: told.append(name)) as one,
+        open_pool(dask=dask_address) as other,
     ):
         assert run_tasks(other, tasks.tell, {'of another': {}})['of another'].result == {}
         assert run_tasks(one, tasks.tell, {'own': {}})['own'].result == {}
