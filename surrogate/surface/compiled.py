@@ -1,0 +1,68 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Compilation of plain Python functions that also run interpreted: one source, the same numbers.
+
+A function and all that it calls are compiled by numba where many rows wait. They keep to a subset:
+numbers, records and flat sequences; powers are written out, logarithms, roots and exponentials
+are guarded, calls go by the bare names of functions, and nothing is cleverer than the order in
+which it is written (no fastmath).
+
+"""
+
+from collections.abc import Callable
+import hashlib
+import inspect
+import types
+from typing import Any
+
+_REGISTERED: set[types.FunctionType] = set()
+
+
+def called_by(function: Callable[..., Any]) -> list[types.FunctionType]:
+    """Return a function and all plain functions that it calls, each once."""
+    found: list[types.FunctionType] = []
+    waiting: list[Any] = [function]
+    while waiting:
+        one = waiting.pop()
+        if isinstance(one, types.FunctionType) and one not in found:
+            found.append(one)
+            waiting += [one.__globals__.get(name) for name in one.__code__.co_names]
+    return found
+
+
+def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
+    """
+    Return a function compiled, on first call or out of numba's cache.
+
+    Raises ImportError without numba.
+
+    """
+    import numba
+    from numba.extending import register_jitable
+
+    parts = called_by(function)
+    for part in parts:
+        if part not in _REGISTERED:
+            register_jitable(part)
+            _REGISTERED.add(part)
+    digest = _digest(parts)
+
+    def entry(*arguments):  # type: ignore[no-untyped-def]
+        _ = digest  # the cache tells closures apart: other sources are compiled again
+        return function(*arguments)
+
+    made: Callable[..., Any] = numba.njit(cache=True)(entry)
+    return made
+
+
+def _digest(parts: list[types.FunctionType]) -> str:
+    """Return a hash of the sources of functions and of the constants that they name."""
+    content = hashlib.sha256()
+    for part in parts:
+        content.update(inspect.getsource(part).encode())
+        for name in part.__code__.co_names:
+            value = part.__globals__.get(name)
+            if isinstance(value, (bool, int, float, str, tuple)):
+                content.update(f'{name}={value!r}'.encode())
+    return content.hexdigest()

@@ -1,0 +1,52 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Records of numbers with one declaration for plain Python and for arrays.
+
+A record is a slotted dataclass whose fields are an int, a float, a bool, or a list of ints or
+floats of fixed length, declared by `many`. Plain Python works on the object, compiled code on an
+element of a structured array of the same fields: both read and write `record.field` alike.
+
+"""
+
+import dataclasses
+from typing import Any, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+Record = TypeVar('Record')
+_KINDS = {'int': np.int64, 'float': np.float64, 'bool': np.bool_}
+
+
+def many(count: int, start: float) -> Any:
+    """Return the declaration of a field of `count` numbers that begin as `start`."""
+    return dataclasses.field(
+        default_factory=lambda: [start] * count, metadata={'count': count, 'start': start}
+    )
+
+
+def dtype_of(kind: type[Any]) -> np.dtype[Any]:
+    """Return the type of an array of records."""
+    parts: list[Any] = []
+    for field in dataclasses.fields(kind):
+        count = field.metadata.get('count')
+        name = str(getattr(field.type, '__name__', field.type))
+        if count is None:
+            parts.append((field.name, _KINDS[name]))
+        else:
+            parts.append((field.name, _KINDS[type(field.metadata['start']).__name__], (count,)))
+    return np.dtype(parts, align=True)
+
+
+def as_array(record: object) -> NDArray[Any]:
+    """Return an array of one record."""
+    made = np.zeros(1, dtype=dtype_of(type(record)))
+    for name in made.dtype.names or ():
+        made[name][0] = getattr(record, name)
+    return made
+
+
+def from_array(kind: type[Record], element: Any) -> Record:
+    """Return the record that an element of an array holds."""
+    return kind(**{name: element[name].tolist() for name in element.dtype.names})
