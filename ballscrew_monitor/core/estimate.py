@@ -14,10 +14,10 @@ from ballscrew_monitor.core.conversions import (
     Nut,
     opposing_load,
 )
-from ballscrew_monitor.core.derived_load import DerivedLoad
-from surrogate.surface import Regime, regime_of, Surface, SurfacePoint, Validity
+from surrogate.surface import Found, Regime, regime_of, Surface
 
 NAN = math.nan
+NO_DIRECTION = 'the direction of motion is unknown, the screw has not moved yet'
 DOMINANT_RCS = 0.5  # [-] from here on asperities carry the larger part of the load
 
 
@@ -59,8 +59,9 @@ class MachinePoint:
     """
     Where the screw is operated, in the machine frame.
 
-    speed [rad/s], axial_load [N], temperature [K], motor_torque [N m]; NaN is unknown. `derived`
-    is how a load from the motor torque came out, None where the load is an input.
+    speed [rad/s], axial_load and its uncertainty [N], temperature [K], motor_torque [N m]; NaN is
+    unknown. `derived` tells that the load follows from the motor torque; the uncertainty is the
+    half width of the range of such a load, NaN for any other.
 
     """
 
@@ -74,14 +75,8 @@ class MachinePoint:
     motor_torque_source: PointSource = PointSource.UNKNOWN
     direction: Direction = Direction.UNKNOWN
     direction_held: bool = False
-    derived: DerivedLoad | None = None
-
-    @property
-    def axial_load_uncertainty(self) -> float:
-        """Return the half width of the range of a derived load [N], NaN for any other."""
-        if self.derived is None or self.axial_load_source is not PointSource.DERIVED:
-            return NAN
-        return self.derived.uncertainty
+    derived: bool = False
+    axial_load_uncertainty: float = NAN
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -97,7 +92,7 @@ class PointEstimate:
 
     validity: PointValidity
     reason: str = ''
-    numbers: SurfacePoint | None = None
+    numbers: Found | None = None
     rcs: float = NAN
     efficiency: float = NAN
     machine_torque: float = NAN
@@ -128,28 +123,19 @@ def contact_state_of(rcs: float, *, limit: float) -> ContactState:
 
 def estimate(point: MachinePoint, surface: Surface, *, rcs_limit: float) -> PointEstimate:
     """Return what `surface` says of `point`; `rcs_limit` [-] names the contact state."""
-    if not _complete(point):
-        return PointEstimate(validity=PointValidity.NO_INPUT, reason=_missing(point))
+    if not math.isfinite(point.speed + point.axial_load + point.temperature):
+        return PointEstimate(validity=PointValidity.NO_INPUT, reason=missing_text(point))
     if point.direction is Direction.UNKNOWN:
-        return PointEstimate(
-            validity=PointValidity.UNKNOWN,
-            reason='the direction of motion is unknown, the screw has not moved yet',
-        )
-    load = opposing_load(point.axial_load, point.direction)
-    derived = point.derived
-    if derived is not None and derived.validity != Validity.VALID:
-        validity = PointValidity(int(derived.validity))
-        reason = derived.reason or _outside(validity, point, load, surface)
-        return PointEstimate(validity=validity, reason=reason)
-    numbers = surface.lookup(abs(point.speed), load, point.temperature)
+        return PointEstimate(validity=PointValidity.UNKNOWN, reason=NO_DIRECTION)
+    numbers = surface.lookup(abs(point.speed), opposing_load_of(point), point.temperature)
     validity = PointValidity(int(numbers.validity))
     if validity is not PointValidity.VALID:
-        return PointEstimate(validity=validity, reason=_outside(validity, point, load, surface))
+        return PointEstimate(validity=validity, reason=outside_text(validity, point, surface))
     return estimate_from(point, numbers, rcs_limit=rcs_limit)
 
 
 def estimate_from(
-    point: MachinePoint, numbers: SurfacePoint, *, rcs_limit: float
+    point: MachinePoint, numbers: Found, *, rcs_limit: float
 ) -> PointEstimate:
     """Return what valid `numbers` say of `point`, in the machine frame."""
     return PointEstimate(
@@ -174,24 +160,18 @@ def _inputs(point: MachinePoint) -> tuple[tuple[str, float, PointSource], ...]:
 
 def _loading(point: MachinePoint) -> tuple[str, float, PointSource]:
     """Return the input that the load rests on."""
-    if point.derived is not None:
+    if point.derived:
         return 'torque', point.motor_torque, point.motor_torque_source
     return 'load', point.axial_load, point.axial_load_source
 
 
-def _complete(point: MachinePoint) -> bool:
-    """Tell whether every number is there and none is only held; a held one is never judged."""
-    held = PointSource.HELD
-    _, loading, source = _loading(point)
-    return (
-        math.isfinite(point.speed + loading + point.temperature)
-        and point.speed_source is not held
-        and source is not held
-        and point.temperature_source is not held
-    )
+def opposing_load_of(point: MachinePoint) -> float:
+    """Return the load [N] of a point that opposes its motion."""
+    return opposing_load(point.axial_load, point.direction)
 
 
-def _missing(point: MachinePoint) -> str:
+def missing_text(point: MachinePoint) -> str:
+    """Return which inputs of a point are missing, as a sentence."""
     lost = [
         name
         for name, value, source in _inputs(point)
@@ -202,7 +182,7 @@ def _missing(point: MachinePoint) -> str:
     return f'no valid sample of {" and ".join(lost)}'
 
 
-def _outside(validity: PointValidity, point: MachinePoint, load: float, surface: Surface) -> str:
+def outside_text(validity: PointValidity, point: MachinePoint, surface: Surface) -> str:
     """Return why a lookup gave nothing, as a sentence."""
     slowest, fastest = surface.speed_range
     if validity is PointValidity.SPEED_BELOW_RANGE:
@@ -211,6 +191,7 @@ def _outside(validity: PointValidity, point: MachinePoint, load: float, surface:
         return f'speed {abs(point.speed):.4g} rad/s is above the surface, to {fastest:.4g} rad/s'
     if validity is PointValidity.LOAD_OUT_OF_RANGE:
         low, high = surface.load_range
+        load = opposing_load_of(point)
         return f'opposing load {load:.4g} N is outside the surface, {low:.4g} to {high:.4g} N'
     if validity is PointValidity.TEMPERATURE_OUT_OF_RANGE:
         low, high = (celsius(limit) for limit in surface.temperature_range)

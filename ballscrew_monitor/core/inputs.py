@@ -197,14 +197,28 @@ def make_input(
     )
 
 
-def implausible(sample: InputSample, most: float) -> Refusal:
-    """Return the refusal of a sample whose amount is above `most` [SI]."""
-    name, unit = sample.source.name.lower(), _UNITS[sample.source]
-    text = (
-        f'{name} {sample.value:.4g} {unit} is beyond the plausible {most:.4g} {unit}: mend the '
+def implausible_text(source: Source, value: float, most: float) -> str:
+    """Return why a sample [SI] whose amount is above `most` [SI] is refused, and the cure."""
+    name, unit = source.name.lower(), _UNITS[source]
+    return (
+        f'{name} {value:.4g} {unit} is beyond the plausible {most:.4g} {unit}: mend the '
         f'source, its unit or scale, or raise limits.plausible_{name}'
     )
-    return Refusal(source=sample.source, why=Why.IMPLAUSIBLE, text=text, arrival=sample.arrival)
+
+
+def jump_text(change: float, gap: float, most: float) -> str:
+    """Return why a position [rad] that has changed so far in a time [s] is refused."""
+    return (
+        f'the position jumps by {change:.4g} rad of the screw within {gap:.3g} s, '
+        f'plausible is a speed of {most:.4g} rad/s: mend the source, or set speed.wrap to the '
+        'position at which it begins anew'
+    )
+
+
+def hole_text(gap: float) -> str:
+    """Return why no speed follows from a position that comes after a gap [s]."""
+    text = f'no position for {gap:.3g} s, so no speed follows'
+    return f'{text}: send more, or raise speed.timeout'
 
 
 def short_text(found: TooShort) -> str:

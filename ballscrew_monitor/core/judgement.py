@@ -1,19 +1,12 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""
-From an estimate to a judgement: gates, zone, findings, and the level held over time.
-
-Equality has one side: rcs == limit is outside, efficiency == limit is optimal, speed at the
-standstill limit moves, load at the light limit is judged, a delay that is exactly over is over.
-Time is an argument.
-
-"""
+"""The words of a judgement: levels, zones, gates, limits and findings."""
 
 import dataclasses
 import enum
 import math
 
-from ballscrew_monitor.core.estimate import MachinePoint, PointEstimate, PointSource, PointValidity
+from ballscrew_monitor.core.estimate import PointEstimate, PointValidity
 from surrogate.files import InputError
 from surrogate.surface import SurfacePoint
 
@@ -54,6 +47,50 @@ class Code(enum.IntEnum):
     OUT_OF_RANGE = 3
     INPUT_LOST = 4
     MODEL_RANGE = 5  # reserved by the message; no surface says so yet
+
+
+class Reason(enum.IntEnum):
+    """Why an instant has no zone; JUDGED where it has one."""
+
+    JUDGED = 0
+    STANDSTILL = 1
+    NO_DIRECTION = 2
+    SPEED_BELOW_RANGE = 3
+    SPEED_ABOVE_RANGE = 4
+    LOAD_OUT_OF_RANGE = 5
+    TEMPERATURE_OUT_OF_RANGE = 6
+    MASKED = 7
+    NO_NUMBER = 8
+    NO_SPEED = 9
+    NO_LOAD = 10
+    NO_TEMPERATURE = 11
+    NO_INPUTS = 12
+    NO_TORQUE = 13
+    NO_DERIVED_LOAD = 14
+
+    @property
+    def text(self) -> str:
+        """Return the reason in words."""
+        return _REASON_TEXTS[self]
+
+
+_REASON_TEXTS = {
+    Reason.JUDGED: 'judged',
+    Reason.STANDSTILL: 'the screw stands still',
+    Reason.NO_DIRECTION: 'the screw has not moved yet, its direction is unknown',
+    Reason.SPEED_BELOW_RANGE: 'the speed is below the surface',
+    Reason.SPEED_ABOVE_RANGE: 'the speed is above the surface',
+    Reason.LOAD_OUT_OF_RANGE: 'the load is outside the surface',
+    Reason.TEMPERATURE_OUT_OF_RANGE: 'the oil temperature is outside the surface',
+    Reason.MASKED: 'the model did not converge near this point',
+    Reason.NO_NUMBER: 'the surface holds no number here',
+    Reason.NO_SPEED: 'no valid sample of the speed',
+    Reason.NO_LOAD: 'no valid sample of the load',
+    Reason.NO_TEMPERATURE: 'no valid sample of the temperature',
+    Reason.NO_INPUTS: 'no valid sample of several inputs',
+    Reason.NO_TORQUE: 'no valid sample of the motor torque, which the load is derived from',
+    Reason.NO_DERIVED_LOAD: 'the motor torque does not tell the load',
+}
 
 
 class Severity(enum.IntEnum):
@@ -137,48 +174,6 @@ class Verdict:
     clear: bool = False
 
 
-def gates_of(point: MachinePoint, limits: Limits) -> tuple[Gate, ...]:
-    """Return the gates that are shut at a point; numbers that are unknown or held shut none."""
-    gates = []
-    if abs(point.speed) < limits.standstill_speed and point.speed_source is not PointSource.HELD:
-        gates.append(Gate.STANDSTILL)
-    if (
-        abs(point.axial_load) < limits.light_load
-        and point.axial_load_source is not PointSource.HELD
-    ):
-        gates.append(Gate.LIGHT_LOAD)
-    return tuple(gates)
-
-
-def judge(point: MachinePoint, estimate: PointEstimate, limits: Limits) -> Verdict:
-    """
-    Return the judgement of one instant.
-
-    UNKNOWN without a VALID estimate and at standstill; OPTIMAL when every criterion that applies
-    is met, OUTSIDE when one is not. Under a light load only RCS applies.
-
-    """
-    gates = gates_of(point, limits)
-    if estimate.validity is PointValidity.NO_INPUT:
-        return Verdict(zone=Zone.UNKNOWN, gates=gates, findings=(_unjudged(estimate),))
-    if Gate.STANDSTILL in gates:
-        return Verdict(zone=Zone.UNKNOWN, gates=gates)
-    if estimate.validity is not PointValidity.VALID or math.isnan(
-        estimate.rcs + estimate.efficiency
-    ):
-        return Verdict(zone=Zone.UNKNOWN, gates=gates, findings=(_unjudged(estimate),))
-    light = Gate.LIGHT_LOAD in gates
-    findings = violations(estimate, limits, light=light, derived=point.derived is not None)
-    if findings:
-        return Verdict(zone=Zone.OUTSIDE, gates=gates, findings=findings)
-    return Verdict(zone=Zone.OPTIMAL, gates=gates, clear=clears(estimate, limits, light=light))
-
-
-def is_judged(verdict: Verdict) -> bool:
-    """Tell whether a verdict was possible; that nothing applies at standstill is one too."""
-    return verdict.zone is not Zone.UNKNOWN or Gate.STANDSTILL in verdict.gates
-
-
 def clears(estimate: PointEstimate | SurfacePoint, limits: Limits, *, light: bool) -> bool:
     """Tell whether an estimate counts towards clearing; efficiency is left out if `light`."""
     return estimate.rcs < limits.rcs_to_clear and (
@@ -186,42 +181,20 @@ def clears(estimate: PointEstimate | SurfacePoint, limits: Limits, *, light: boo
     )
 
 
-def violations(
-    estimate: PointEstimate, limits: Limits, *, light: bool, derived: bool = False
-) -> tuple[Finding, ...]:
-    """
-    Return a finding for each criterion that is not met; efficiency is left out if `light`.
-
-    Under a `derived` load the finding about efficiency says so.
-
-    """
-    findings = []
-    if estimate.rcs >= limits.rcs:
-        findings.append(
-            Finding(
-                code=Code.RCS_HIGH,
-                severity=Severity.WARN,
-                value=estimate.rcs,
-                limit=limits.rcs,
-                text=f'asperities carry too much: RCS {estimate.rcs:.3g}, limit {limits.rcs:.3g}',
-            )
-        )
-    if not light and estimate.efficiency < limits.efficiency:
-        findings.append(
-            Finding(
-                code=Code.EFFICIENCY_LOW,
-                severity=Severity.WARN,
-                value=estimate.efficiency,
-                limit=limits.efficiency,
-                text='too much power is lost: efficiency '
-                f'{estimate.efficiency:.3g}, limit {limits.efficiency:.3g}'
-                f'{FROM_TORQUE if derived else ""}',
-            )
-        )
-    return tuple(findings)
+def violation(code: Code, value: float, limit: float, *, derived: bool = False) -> Finding:
+    """Return the finding that a criterion is not met; a `derived` load is named."""
+    if code is Code.UNKNOWN:
+        return Finding(code=code, severity=Severity.UNKNOWN)
+    if code is Code.RCS_HIGH:
+        text = f'asperities carry too much: RCS {value:.3g}, limit {limit:.3g}'
+    else:
+        text = f'too much power is lost: efficiency {value:.3g}, limit {limit:.3g}'
+        text += FROM_TORQUE if derived else ''
+    return Finding(code=code, severity=Severity.WARN, value=value, limit=limit, text=text)
 
 
-def _unjudged(estimate: PointEstimate) -> Finding:
+def unjudged(estimate: PointEstimate) -> Finding:
+    """Return why a point has no zone."""
     if estimate.validity is PointValidity.NO_INPUT:
         return Finding(code=Code.INPUT_LOST, severity=Severity.ERROR, text=estimate.reason)
     return Finding(
@@ -229,66 +202,3 @@ def _unjudged(estimate: PointEstimate) -> Finding:
         severity=Severity.WARN,
         text=estimate.reason or 'the surface holds no number here',
     )
-
-
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class UnbrokenRun:
-    """Stamps [ns] of the first and the last sample of an unbroken run."""
-
-    start: int
-    last: int
-
-
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Hold:
-    """The held level, since when [ns], and the runs that may change it."""
-
-    level: Level = Level.UNKNOWN
-    since: int = 0
-    raising: UnbrokenRun | None = None
-    clearing: UnbrokenRun | None = None
-
-
-def hold(
-    memory: Hold, verdict: Verdict, stamp: int, limits: Limits, *, max_gap: int, period: int = 0
-) -> Hold:
-    """
-    Return the held level after one more verdict at `stamp` [ns].
-
-    WARN is raised by samples outside for `raise_delay` without an optimal one between them; a
-    sample that cannot be judged neither adds nor takes away, a hole of more than `max_gap` [ns]
-    and of more than the `period` [ns] of a slow input starts anew. OK needs samples that count
-    towards clearing for `clear_delay` and nothing else between them: a sample that cannot be
-    judged and any hole start that anew. So an unknown never brings OK nearer and never sends a
-    warning away.
-
-    """
-    if verdict.zone is Zone.OUTSIDE:
-        if memory.level is Level.WARN:
-            return memory if memory.clearing is None else _drop_runs(memory)
-        run = _extend(memory.raising, stamp, max(max_gap, period))
-        if stamp - run.start >= limits.raise_delay:
-            return Hold(level=Level.WARN, since=stamp)
-        return Hold(level=memory.level, since=memory.since, raising=run)
-    if verdict.zone is Zone.OPTIMAL:
-        return _towards_ok(memory, verdict, stamp, limits, max_gap)
-    return memory if memory.clearing is None else dataclasses.replace(memory, clearing=None)
-
-
-def _towards_ok(memory: Hold, verdict: Verdict, stamp: int, limits: Limits, max_gap: int) -> Hold:
-    if memory.level is Level.OK or (memory.level is Level.WARN and not verdict.clear):
-        return memory if memory.raising is memory.clearing is None else _drop_runs(memory)
-    run = _extend(memory.clearing, stamp, max_gap)
-    if stamp - run.start >= limits.clear_delay:
-        return Hold(level=Level.OK, since=stamp)
-    return Hold(level=memory.level, since=memory.since, clearing=run)
-
-
-def _extend(run: UnbrokenRun | None, stamp: int, max_gap: int) -> UnbrokenRun:
-    if run is None or stamp - run.last > max_gap:
-        return UnbrokenRun(start=stamp, last=stamp)
-    return UnbrokenRun(start=run.start, last=stamp)
-
-
-def _drop_runs(memory: Hold) -> Hold:
-    return Hold(level=memory.level, since=memory.since)

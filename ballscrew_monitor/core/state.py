@@ -2,13 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a monitor is told and what it says: settings, events and states."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 import dataclasses
 import math
 
 from ballscrew_monitor.core.advice import Advice, Advisor
-from ballscrew_monitor.core.derived_load import LoadDerivation
-from ballscrew_monitor.core.differentiation import PositionSettings
 from ballscrew_monitor.core.estimate import MachinePoint, PointEstimate
 from ballscrew_monitor.core.health import Health
 from ballscrew_monitor.core.inputs import Source, YEAR
@@ -17,6 +15,33 @@ from ballscrew_monitor.core.shelving import NOT_SHELVED, Shelving
 from ballscrew_monitor.core.tally import Totals, WindowStatistics
 
 NAN = math.nan
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class LoadDerivation:
+    """
+    How a load is derived from the torque.
+
+    `inertia` [kg m2] of what turns, at the screw; `window` [ns] of the
+    acceleration; `torque_uncertainty` [N m] at the screw, a half width; `parts_uncertainty` [-]
+    that of inertia torque and drag over themselves; `largest_share` [-] of inertia torque and drag
+    in the measured torque up to which a load is derived.
+
+    """
+
+    inertia: float
+    window: int
+    torque_uncertainty: float
+    parts_uncertainty: float
+    largest_share: float
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class PositionSettings:
+    """How speeds follow from positions: window [ns], and the turn at which angles wrap [rad]."""
+
+    window: int
+    wrap: float = 0.0  # none
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -71,13 +96,6 @@ class Event:
         """Return where the warning would clear."""
         return Advice() if self.advisor is None else self.advisor.advice
 
-    def worsened(self, findings: Sequence[Finding]) -> 'Event':
-        """Return the event with its worst value after what was found in one more sample."""
-        worse = max if self.cause.code is Code.RCS_HIGH else min
-        found = (one.value for one in findings if one.code is self.cause.code)
-        worst = worse([self.worst_value, *found])
-        return self if worst == self.worst_value else dataclasses.replace(self, worst_value=worst)
-
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class State:
@@ -108,24 +126,3 @@ class State:
     torque_residual: float
     surface_id: str
     shelving: Shelving = NOT_SHELVED
-
-
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Instant:
-    """
-    What came of one speed sample or of a tick without speed, whether or not a state is due.
-
-    `stamp` and `now`, the clock of the node, in [ns]; a `tick` has no sample of its own.
-
-    """
-
-    stamp: int
-    now: int
-    point: MachinePoint
-    estimate: PointEstimate
-    verdict: Verdict
-    level: Level
-    event: Event
-    edge: Event | None
-    tick: bool
-    published: bool

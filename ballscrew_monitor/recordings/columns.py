@@ -10,11 +10,10 @@ of some rows only. A long recording is many blocks of rows, so that it need not 
 
 from collections.abc import Mapping, Sequence
 import dataclasses
-import enum
 from typing import Any
 
 from ballscrew_monitor.core.conversions import seconds
-from ballscrew_monitor.core.estimate import PointSource, PointValidity
+from ballscrew_monitor.core.estimate import PointSource
 from ballscrew_monitor.core.health import Health
 from ballscrew_monitor.core.inputs import Source, Why
 from ballscrew_monitor.core.judgement import Limits, Zone
@@ -30,62 +29,6 @@ Flags = NDArray[np.bool_]
 
 STANDSTILL, LIGHT_LOAD = 1, 2
 """Bits of the column `gates`."""
-
-
-class Reason(enum.IntEnum):
-    """Why a row has no zone; JUDGED where it has one."""
-
-    JUDGED = 0
-    STANDSTILL = 1
-    NO_DIRECTION = 2
-    SPEED_BELOW_RANGE = 3
-    SPEED_ABOVE_RANGE = 4
-    LOAD_OUT_OF_RANGE = 5
-    TEMPERATURE_OUT_OF_RANGE = 6
-    MASKED = 7
-    NO_NUMBER = 8
-    NO_SPEED = 9
-    NO_LOAD = 10
-    NO_TEMPERATURE = 11
-    NO_INPUTS = 12
-    NO_TORQUE = 13
-    NO_DERIVED_LOAD = 14
-
-    @property
-    def text(self) -> str:
-        """Return the reason in words."""
-        return _REASON_TEXTS[self]
-
-
-_REASON_TEXTS = {
-    Reason.JUDGED: 'judged',
-    Reason.STANDSTILL: 'the screw stands still',
-    Reason.NO_DIRECTION: 'the screw has not moved yet, its direction is unknown',
-    Reason.SPEED_BELOW_RANGE: 'the speed is below the surface',
-    Reason.SPEED_ABOVE_RANGE: 'the speed is above the surface',
-    Reason.LOAD_OUT_OF_RANGE: 'the load is outside the surface',
-    Reason.TEMPERATURE_OUT_OF_RANGE: 'the oil temperature is outside the surface',
-    Reason.MASKED: 'the model did not converge near this point',
-    Reason.NO_NUMBER: 'the surface holds no number here',
-    Reason.NO_SPEED: 'no valid sample of the speed',
-    Reason.NO_LOAD: 'no valid sample of the load',
-    Reason.NO_TEMPERATURE: 'no valid sample of the temperature',
-    Reason.NO_INPUTS: 'no valid sample of several inputs',
-    Reason.NO_TORQUE: 'no valid sample of the motor torque, which the load is derived from',
-    Reason.NO_DERIVED_LOAD: 'the motor torque does not tell the load',
-}
-BY_VALIDITY = {
-    PointValidity.UNKNOWN: Reason.NO_DIRECTION,
-    PointValidity.VALID: Reason.NO_NUMBER,
-    PointValidity.SPEED_BELOW_RANGE: Reason.SPEED_BELOW_RANGE,
-    PointValidity.SPEED_ABOVE_RANGE: Reason.SPEED_ABOVE_RANGE,
-    PointValidity.LOAD_OUT_OF_RANGE: Reason.LOAD_OUT_OF_RANGE,
-    PointValidity.TEMPERATURE_OUT_OF_RANGE: Reason.TEMPERATURE_OUT_OF_RANGE,
-    PointValidity.MASKED: Reason.MASKED,
-    PointValidity.NO_INPUT: Reason.NO_INPUTS,
-    PointValidity.NO_SURFACE: Reason.NO_NUMBER,
-}
-"""The reason of a validity, where the screw moves and the zone is unknown."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)

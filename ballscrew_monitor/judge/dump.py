@@ -1,0 +1,76 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""All that a monitor remembers as JSON and back, bit for bit, for recordings."""
+
+import base64
+import binascii
+from collections.abc import Mapping
+from typing import Any
+
+from ballscrew_monitor.core.fields import OtherJoints
+from ballscrew_monitor.core.inputs import Source
+from ballscrew_monitor.core.state import MonitorSettings
+from ballscrew_monitor.judge.monitor import Monitor
+from ballscrew_monitor.judge.records import Memory, MEMORY_VERSION
+from ballscrew_monitor.judge.slopes import SlopeRing
+import numpy as np
+from surrogate.files import InputError
+from surrogate.surface import Surface
+from surrogate.surface.records import as_array, dtype_of, from_array
+
+
+def dump(monitor: Monitor) -> dict[str, Any]:
+    """Return all that a monitor remembers, as JSON takes it; every bit of a number is kept."""
+    parts = {'memory': monitor.memory, 'speeds': monitor.speeds}
+    parts['positions'] = monitor.positions
+    return {
+        'version': MEMORY_VERSION,
+        'records': {
+            name: base64.b64encode(as_array(part).tobytes()).decode()
+            for name, part in parts.items()
+            if not isinstance(part, SlopeRing) or part.count
+        },
+        'texts': {source.name: text for source, text in monitor.words.texts.items() if text},
+        'joints': {
+            source.name: [[one.array, one.joint, *one.names] for one in heard]
+            for source, heard in monitor.words.joints.items()
+            if heard
+        },
+        'shelve_reason': monitor.shelve_reason,
+        'ending': monitor.ending,
+    }
+
+
+def restored(dumped: Mapping[str, Any], surface: Surface, settings: MonitorSettings) -> Monitor:
+    """
+    Return the monitor that remembers what was dumped.
+
+    Raises InputError for another version, and for what no monitor has dumped.
+
+    """
+    version = dumped.get('version')
+    if version != MEMORY_VERSION:
+        raise InputError(f'the memory is of version {version!r}, known is {MEMORY_VERSION}')
+    monitor = Monitor(surface, settings)
+    try:
+        records = dumped['records']
+        monitor.memory = _record(Memory, records['memory'])
+        if 'speeds' in records:
+            monitor.speeds = _record(SlopeRing, records['speeds'])
+        if 'positions' in records:
+            monitor.positions = _record(SlopeRing, records['positions'])
+        monitor.words.texts = {Source[name]: str(text) for name, text in dumped['texts'].items()}
+        for name, heard in dumped['joints'].items():
+            others = (OtherJoints(array, joint, tuple(names)) for array, joint, *names in heard)
+            monitor.words.joints[Source[name]] = dict.fromkeys(others)
+        monitor.shelve_reason = str(dumped['shelve_reason'])
+        monitor.ending = str(dumped['ending'])
+    except (AttributeError, KeyError, TypeError, ValueError, binascii.Error) as error:
+        raise InputError(f'the memory is damaged: {error}') from None
+    return monitor
+
+
+def _record(kind: type[Any], text: str) -> Any:
+    """Return a record out of its bytes; raises ValueError for another length."""
+    (element,) = np.frombuffer(base64.b64decode(text, validate=True), dtype=dtype_of(kind))
+    return from_array(kind, element)

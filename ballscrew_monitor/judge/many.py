@@ -1,0 +1,87 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Many events of one axis judged at once: the step of `step`, compiled."""
+
+from collections.abc import Callable, Iterator
+import functools
+from typing import Any, NamedTuple
+
+from ballscrew_monitor.judge.derived_load import Derived
+from ballscrew_monitor.judge.monitor import Monitor
+from ballscrew_monitor.judge.records import Event, Memory, Row
+from ballscrew_monitor.judge.slopes import SlopeRing
+from ballscrew_monitor.judge.step import step_many
+import numpy as np
+from numpy.typing import NDArray
+from surrogate.surface.compiled import compiled
+from surrogate.surface.records import as_array, dtype_of, from_array
+
+EVENT, MEMORY, ROW = dtype_of(Event), dtype_of(Memory), dtype_of(Row)
+AT_ONCE = 16384
+"""Events that are judged in one go."""
+MOST_STATES = 2048
+"""States that are kept in one go, each with the whole memory."""
+
+
+class Judged(NamedTuple):
+    """
+    Rows, the places of their events, and the memory after each row of which a state is published.
+
+    `memories` is empty unless states are asked for.
+
+    """
+
+    rows: NDArray[Any]
+    places: NDArray[np.int64]
+    memories: NDArray[Any]
+
+
+@functools.cache
+def compiled_step() -> Callable[..., tuple[int, int, int]]:
+    """Return `step_many` compiled; raises ImportError without numba."""
+    return compiled(step_many)
+
+
+class ManyJudge:
+    """Judges arrays of events in the place of a monitor."""
+
+    def __init__(self, monitor: Monitor) -> None:
+        """Begin with what the monitor remembers."""
+        self._monitor = monitor
+        self.take_over()
+
+    def take_over(self) -> None:
+        """Go on with what the monitor remembers now, its settings and its surface."""
+        monitor = self._monitor
+        self._tables = monitor.surface.array_tables
+        self._arrays = tuple(
+            as_array(part)
+            for part in (
+                monitor.numbers,
+                monitor.memory,
+                monitor.speeds,
+                monitor.positions,
+                Derived(),
+            )
+        )
+
+    def give_back(self) -> None:
+        """Let the monitor remember what is remembered here."""
+        _, memory, speeds, positions, _ = self._arrays
+        self._monitor.memory = from_array(Memory, memory[0])
+        self._monitor.speeds = from_array(SlopeRing, speeds[0])
+        self._monitor.positions = from_array(SlopeRing, positions[0])
+
+    def judge(self, events: NDArray[Any], *, states: bool = False) -> Iterator[Judged]:
+        """Judge events, an array of EVENT; the memory of each state comes if `states` are."""
+        memories = np.empty(MOST_STATES if states else 0, dtype=MEMORY)
+        at = 0
+        while at < len(events):
+            some = events[at : at + AT_ONCE]
+            rows = np.empty(len(some), dtype=ROW)
+            places = np.empty(len(some), dtype=np.int64)
+            taken, made, told = compiled_step()(
+                self._tables, *self._arrays, some, rows, places, memories
+            )
+            yield Judged(rows[:made], places[:made] + at, memories[:told])
+            at += taken

@@ -1,0 +1,261 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+One axis, judged event by event: the step, its memory, and the words beside it.
+
+Names of joints, sentences and advice stay out of the step; they are kept here.
+
+"""
+
+import dataclasses
+import math
+
+from ballscrew_monitor.core.estimate import MachinePoint, PointSource, PointValidity
+from ballscrew_monitor.core.health import Health
+from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, Why
+from ballscrew_monitor.core.judgement import Level
+from ballscrew_monitor.core.memory import Memory as Kept
+from ballscrew_monitor.core.memory import NOTHING as NOTHING_KEPT
+from ballscrew_monitor.core.shelving import NOT_SHELVED, Shelving
+from ballscrew_monitor.core.state import Event, MonitorSettings, State
+from ballscrew_monitor.core.tally import Totals
+from ballscrew_monitor.judge import views
+from ballscrew_monitor.judge.derived_load import Derived
+from ballscrew_monitor.judge.point import set_answer, set_point
+from ballscrew_monitor.judge.records import Event as EventRecord
+from ballscrew_monitor.judge.records import Memory, Row, Settings, TICK
+from ballscrew_monitor.judge.slopes import SlopeRing
+from ballscrew_monitor.judge.step import STATE, step
+from ballscrew_monitor.judge.words import fill, InputWords, within
+from ballscrew_monitor.judge.zone import end_excursion
+from surrogate.surface import Surface
+
+NAN = math.nan
+
+def settings_record(settings: MonitorSettings) -> Settings:
+    """Return settings as numbers."""
+    limits, made = settings.limits, Settings()
+    for name in ('rcs', 'efficiency', 'light_load', 'standstill_speed', 'hysteresis'):
+        setattr(made, name, float(getattr(limits, name)))
+    made.raise_delay, made.clear_delay = limits.raise_delay, limits.clear_delay
+    made.default_temperature = float(settings.default_temperature)
+    for name in ('publish_period', 'max_future', 'max_lag', 'tick_period'):
+        setattr(made, name, getattr(settings, name))
+    for source, timeout in settings.timeouts.items():
+        made.configured[source], made.timeout[source] = 1, timeout
+    for source, most in settings.plausible.items():
+        made.plausible[source] = float(most)
+    if settings.derivation is not None:
+        made.derives, made.acceleration_window = True, settings.derivation.window
+        for name in ('inertia', 'torque_uncertainty', 'parts_uncertainty', 'largest_share'):
+            setattr(made, name, float(getattr(settings.derivation, name)))
+    if settings.positions is not None:
+        made.positions, made.position_window = True, settings.positions.window
+        made.wrap = float(settings.positions.wrap)
+    return made
+
+
+class Monitor:
+    """Judges one axis; feed it events in order."""
+
+    def __init__(
+        self, surface: Surface, settings: MonitorSettings, memory: Kept = NOTHING_KEPT
+    ) -> None:
+        """Begin with nothing received, the level UNKNOWN, and what `memory` holds from before."""
+        self.settings = settings
+        self.use_surface(surface)
+        self.memory = Memory()
+        self.speeds, self.positions = SlopeRing(), SlopeRing()
+        self.shelve_reason = ''
+        self.ending = ''
+        self.words = InputWords()
+        self._event = EventRecord()
+        self._derived = Derived()
+        self._row = Row()
+        self._told = Event()
+        self.take_up(memory)
+
+    @property
+    def settings(self) -> MonitorSettings:
+        """Return limits and parameters in force."""
+        return self._settings
+
+    @settings.setter
+    def settings(self, settings: MonitorSettings) -> None:
+        self._settings = settings
+        self.numbers = settings_record(settings)
+
+    def use_surface(self, surface: Surface) -> None:
+        """Judge with `surface` from now on."""
+        self.surface = surface
+        self._tables = surface.tables
+        self._surface_id = surface.sha256[:16]
+
+    def update(self, event: InputSample | Refusal) -> State | None:
+        """Take one sample or refusal; return the state when one is due."""
+        if isinstance(event, Refusal):
+            self.words.hear(event, self.memory)
+        fill(self._event, event)
+        return self._step()
+
+    def tick(self, now: int) -> State | None:
+        """Return a state at the grid stamp `now` [ns] if the speed is missing or stale."""
+        self._event.kind, self._event.stamp = TICK, within(now)
+        return self._step()
+
+    def _step(self) -> State | None:
+        number = self.memory.event_number
+        found = step(
+            self._tables,
+            self.numbers,
+            self.memory,
+            self.speeds,
+            self.positions,
+            self._derived,
+            self._event,
+            self._row,
+        )
+        if self.memory.event_number != number:
+            self.ending = ''
+        if found != STATE:
+            return None
+        row, self._row = self._row, Row()
+        return self.state(row)
+
+    def state(self, row: Row) -> State:
+        """Return the state that a row is published as, the memory being that after the row."""
+        memory, settings = self.memory, self._settings
+        point = views.point_of(row)
+        estimate = views.estimate_of(row, point, self.surface)
+        torque = point.motor_torque
+        if point.motor_torque_source is not PointSource.MEASURED:
+            torque = NAN
+        return State(
+            axis=settings.axis,
+            stamp=int(row.stamp),
+            point=point,
+            estimate=estimate,
+            verdict=views.verdict_of(row, estimate, settings.limits),
+            level=Level(int(row.level)),
+            level_since=int(row.level_since),
+            event_id=int(row.event_id),
+            event=self.event if row.edge else None,
+            limits=settings.limits,
+            window=views.window_of(memory),
+            inputs=self.health(int(row.now)),
+            totals=views.totals_of(memory),
+            judged=int(memory.judged),
+            measured_torque=torque,
+            # Of a load derived from it, the torque of the model says nothing new.
+            torque_residual=NAN if point.derived else torque - estimate.machine_torque,
+            surface_id=self._surface_id,
+            shelving=self.shelving.at(int(row.now)),
+        )
+
+    @property
+    def level(self) -> Level:
+        """Return the held level."""
+        return Level(int(self.memory.level))
+
+    @property
+    def event(self) -> Event:
+        """Return the event that is active, or the last one."""
+        made = views.event_of(
+            self.memory, self.surface, self._settings.limits, self.ending
+        )
+        if made != self._told:  # the advice of one event is worked out once
+            self._told = made
+        return self._told
+
+    @property
+    def shelving(self) -> Shelving:
+        """Return until when the warning is shelved, and why."""
+        until = int(self.memory.shelved_until)
+        return Shelving(until=until, reason=self.shelve_reason) if until else NOT_SHELVED
+
+    @shelving.setter
+    def shelving(self, shelving: Shelving) -> None:
+        self.memory.shelved_until = shelving.until
+        self.shelve_reason = shelving.reason
+
+    @property
+    def kept(self) -> Kept:
+        """Return what is to be kept over a restart."""
+        event = self.event
+        if event.active:
+            event = dataclasses.replace(event, stamp=int(self.memory.stamp))
+        return Kept(totals=self.totals, event=event, shelving=self.shelving)
+
+    def take_up(self, kept: Kept) -> None:
+        """Go on with what was kept; what has been added up meanwhile counts too."""
+        memory = self.memory
+        views.add_totals(memory, kept.totals)
+        if memory.event_number:
+            memory.event_number += kept.event.number
+        else:
+            views.keep_event(memory, kept.event)
+            self.ending = kept.event.ending
+        if not memory.shelved_until:
+            self.shelving = kept.shelving
+
+    def acknowledge(self, now: int, ending: str = '') -> Event | None:
+        """
+        Set the level back to UNKNOWN; return the event that this ends, if any.
+
+        Stamps may run ahead of the clock, and events follow the stamps: it ends with the last one
+        at the earliest. What is still outside is raised again as a new event.
+
+        """
+        memory = self.memory
+        stamp = within(now)
+        if memory.known[Source.SPEED]:
+            stamp = max(stamp, memory.sample_stamp[Source.SPEED])
+        memory.level, memory.level_since = int(Level.UNKNOWN), stamp
+        memory.raising = memory.clearing = memory.pending = False
+        if not end_excursion(memory, max(stamp, self.event.start)):
+            return None
+        self.ending = ending
+        return self.event
+
+    def current_point(self, now: int) -> MachinePoint | str:
+        """Return the operating point at `now` [ns], or in a sentence why it is not known."""
+        row = Row(now=within(now))
+        memory = dataclasses.replace(self.memory)
+        set_point(self._tables, self.numbers, memory, self.speeds, self._derived, row)
+        set_answer(self._tables, self.numbers, self._derived, row)
+        point = views.point_of(row)
+        reason = views.reason_of(row, point, self.surface)
+        if math.isnan(row.axial_load) or row.validity in (
+            PointValidity.NO_INPUT,
+            PointValidity.UNKNOWN,
+        ):
+            return reason
+        if abs(point.speed) < self._settings.limits.standstill_speed:
+            return 'the screw stands still'
+        return point
+
+    @property
+    def judged(self) -> int:
+        """Return the number of speed samples that could be judged."""
+        return int(self.memory.judged)
+
+    @property
+    def totals(self) -> Totals:
+        """Return the totals."""
+        return views.totals_of(self.memory)
+
+    def reset_totals(self) -> None:
+        """Set the totals to zero."""
+        views.clear_totals(self.memory)
+
+    def health(self, now: int) -> tuple[Health, ...]:
+        """Return how well the inputs do at `now` [ns]."""
+        return tuple(
+            self.words.health(self.memory, self.numbers, source, now)
+            for source in views.SOURCES
+        )
+
+    @property
+    def refused(self) -> dict[Source, dict[Why, int]]:
+        """Return how many messages of each input were refused, by why."""
+        return views.refused_of(self.memory)

@@ -1,0 +1,180 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+The operating point of one instant out of the last samples, and what the surface says of it.
+
+Functions of the subset that numba compiles: `tables` are those of the surface, `speeds` the slope
+of the speeds, `derived` a record of `derived_load`, the other arguments as in `zone`.
+
+"""
+
+import math
+from typing import Any
+
+from ballscrew_monitor.core.conversions import Direction, Nut
+from ballscrew_monitor.core.estimate import ContactState, DOMINANT_RCS, PointSource
+from ballscrew_monitor.judge.derived_load import AT_STANDSTILL, derive_load, NOTHING_DERIVED
+from ballscrew_monitor.judge.inputs import (
+    DEFAULT,
+    HELD,
+    LOAD,
+    MEASURED,
+    SPEED,
+    standing_of,
+    TEMPERATURE,
+    TORQUE,
+    UNKNOWN,
+    value_of,
+)
+from ballscrew_monitor.judge.slopes import slope_change, slope_of
+from ballscrew_monitor.judge.zone import NO_INPUT, VALID
+from surrogate.surface import FILM_RATIO_LIMITS, look_up, Regime
+
+DERIVED = int(PointSource.DERIVED)
+NO_DIRECTION, POSITIVE, NEGATIVE = (
+    int(Direction.UNKNOWN),
+    int(Direction.POSITIVE),
+    int(Direction.NEGATIVE),
+)
+POSITIVE_NUT, NEGATIVE_NUT = int(Nut.POSITIVE), int(Nut.NEGATIVE)
+NO_REGIME, BOUNDARY = int(Regime.UNKNOWN), int(Regime.BOUNDARY)
+MIXED, HYDRODYNAMIC = int(Regime.MIXED), int(Regime.HYDRODYNAMIC)
+MIXED_FROM, HYDRODYNAMIC_FROM = FILM_RATIO_LIMITS
+NO_CONTACT, PARTIAL, DOMINANT = (
+    int(ContactState.NONE),
+    int(ContactState.PARTIAL),
+    int(ContactState.DOMINANT),
+)
+
+
+def set_point(
+    tables: Any, settings: Any, memory: Any, speeds: Any, derived: Any, row: Any
+) -> None:
+    """Set the operating point of a row: what has arrived by its `now`."""
+    now = row.now
+    row.speed = value_of(memory, settings, SPEED)
+    row.speed_source = standing_of(memory, settings, SPEED, now)
+    row.temperature = value_of(memory, settings, TEMPERATURE)
+    row.temperature_source = standing_of(memory, settings, TEMPERATURE, now)
+    if row.temperature_source == DEFAULT:
+        row.temperature = settings.default_temperature
+    row.motor_torque = value_of(memory, settings, TORQUE)
+    row.motor_torque_source = standing_of(memory, settings, TORQUE, now)
+    moving = abs(row.speed) >= settings.standstill_speed
+    if moving and row.speed_source == MEASURED:
+        memory.direction = POSITIVE if row.speed > 0.0 else NEGATIVE
+    row.direction = memory.direction
+    row.direction_held = not moving and memory.direction != NO_DIRECTION
+    row.axial_load_uncertainty = math.nan
+    row.derived, row.derived_first, row.derived_second = 0, math.nan, math.nan
+    if settings.derives:
+        _set_derived_load(tables, settings, memory, speeds, derived, row, moving)
+        return
+    row.axial_load = value_of(memory, settings, LOAD)
+    row.axial_load_source = standing_of(memory, settings, LOAD, now)
+
+
+def _set_derived_load(
+    tables: Any, settings: Any, memory: Any, speeds: Any, derived: Any, row: Any, moving: bool
+) -> None:
+    """Set the load that follows from the motor torque; it is held while an input is not fresh."""
+    row.axial_load_source = UNKNOWN
+    if (
+        row.speed_source != MEASURED
+        or row.motor_torque_source != MEASURED
+        or (row.temperature_source != MEASURED and row.temperature_source != DEFAULT)
+    ):
+        row.derived, derived.validity = NOTHING_DERIVED, 0
+        row.axial_load = memory.held_load
+        if math.isfinite(memory.held_load):
+            row.axial_load_source = HELD
+        return
+    if moving:
+        acceleration, change = math.nan, math.nan
+        if settings.inertia != 0.0:
+            acceleration = slope_of(speeds)
+            change = slope_change(speeds, settings.acceleration_window)
+        derive_load(
+            tables,
+            settings,
+            row.speed,
+            acceleration,
+            change,
+            row.motor_torque,
+            row.temperature,
+            memory.direction,
+            derived,
+            row,
+        )
+    else:
+        derived.validity, derived.code = 0, AT_STANDSTILL
+        derived.axial_load, derived.uncertainty = math.nan, math.nan
+        derived.first, derived.second = math.nan, math.nan
+    row.derived = derived.code
+    row.derived_first, row.derived_second = derived.first, derived.second
+    row.axial_load = memory.held_load = derived.axial_load
+    if math.isfinite(derived.axial_load):
+        row.axial_load_source = DERIVED
+        row.axial_load_uncertainty = derived.uncertainty
+
+
+def set_answer(tables: Any, settings: Any, derived: Any, row: Any) -> None:
+    """Set what the surface says of the operating point of a row."""
+    if not _is_complete(row):
+        _blank(row, NO_INPUT)
+    elif row.direction == NO_DIRECTION:
+        _blank(row, 0)
+    elif row.derived != 0 and derived.validity != VALID:
+        _blank(row, derived.validity)
+    else:
+        # Subtracted from zero: a zero load must not become -0.0.
+        load = 0.0 - row.axial_load if row.direction == POSITIVE else row.axial_load
+        look_up(tables, abs(row.speed), load, row.temperature, row)
+    _set_words(settings, row)
+
+
+def _is_complete(row: Any) -> bool:
+    """Tell whether every number is there and none is only held; a held one is never judged."""
+    loading, source = row.axial_load, row.axial_load_source
+    if row.derived != 0:
+        loading, source = row.motor_torque, row.motor_torque_source
+    return (
+        math.isfinite(row.speed + loading + row.temperature)
+        and row.speed_source != HELD
+        and source != HELD
+        and row.temperature_source != HELD
+    )
+
+
+def _blank(row: Any, validity: int) -> None:
+    """Leave a row without an answer of the surface."""
+    row.validity, row.corrected, row.worst_contact = validity, False, -1
+    row.friction_torque = row.rcs = row.film_ratio = math.nan
+    row.efficiency = row.driving_torque = math.nan
+
+
+def _set_words(settings: Any, row: Any) -> None:
+    """Set torque and nut in the machine frame, regime and contact state of a row."""
+    row.machine_torque, row.worst_nut = math.nan, 0
+    row.regime, row.contact_state = NO_REGIME, 0
+    if row.validity != VALID:
+        return
+    row.machine_torque = row.driving_torque
+    if row.direction == NEGATIVE:
+        row.machine_torque = 0.0 - row.driving_torque
+    # Nut 1 of the surface is the one that the load presses, whichever way the screw turns.
+    if row.worst_contact >= 0 and abs(row.axial_load) > 0.0:
+        pressed = row.worst_contact // 2 == 0
+        row.worst_nut = POSITIVE_NUT if pressed == (row.axial_load > 0.0) else NEGATIVE_NUT
+    if row.film_ratio >= HYDRODYNAMIC_FROM:
+        row.regime = HYDRODYNAMIC
+    elif row.film_ratio >= MIXED_FROM:
+        row.regime = MIXED
+    elif row.film_ratio < MIXED_FROM:
+        row.regime = BOUNDARY
+    if row.rcs < settings.rcs:
+        row.contact_state = NO_CONTACT
+    elif row.rcs >= DOMINANT_RCS:
+        row.contact_state = DOMINANT
+    elif row.rcs >= settings.rcs:
+        row.contact_state = PARTIAL

@@ -1,0 +1,320 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+The judgement of one axis, event by event: the only place that judges.
+
+A speed sample is judged when it arrives, with the last sample of every other input: no delay is
+added. Ticks lie on a fixed grid of stamps and give a row only while the speed is missing or
+stale. There is no clock in here, so the same list of events gives the same list of rows, bit for
+bit, interpreted as well as compiled. The arguments are as in `point`; `positions` is the slope of
+the positions.
+
+"""
+
+import math
+from typing import Any
+
+from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.core.inputs import StampSource, Why
+from ballscrew_monitor.judge.inputs import (
+    accept,
+    drop,
+    forget,
+    is_ahead,
+    is_lagging,
+    least_lag,
+    lose,
+    rebase,
+    refuse,
+    slow_period,
+    SPEED,
+)
+from ballscrew_monitor.judge.point import NO_DIRECTION, set_answer, set_point
+from ballscrew_monitor.judge.records import INPUTS, REFUSAL, TICK
+from ballscrew_monitor.judge.slopes import (
+    last_stamp,
+    last_value,
+    slope_of,
+    slope_restart,
+    slope_shift,
+    slope_take,
+)
+from ballscrew_monitor.judge.sums import add_to_totals, add_to_window, clear_window
+from ballscrew_monitor.judge.zone import (
+    ACTIVE,
+    follow_excursion,
+    hold_level,
+    is_judged,
+    set_reason,
+    set_zone,
+    shut_gates,
+)
+from surrogate.surface import look_up_rest
+
+NOTHING, ROW, STATE = 0, 1, 2
+"""What an event gives: nothing, a row, or a row of which a state is published."""
+BACKWARD_JUMP = SECOND
+"""Longest step back of one input that is no clock set back [ns]."""
+MOST_TURNS = 1e9
+"""Jump of a position over the position at which it begins again that is no such turn [-]."""
+OTHER_JOINTS, NOT_A_NUMBER = int(Why.OTHER_JOINTS), int(Why.NOT_A_NUMBER)
+IMPLAUSIBLE, HOLE = int(Why.IMPLAUSIBLE), int(Why.HOLE)
+HEADER = int(StampSource.HEADER)
+
+
+def step(
+    tables: Any,
+    settings: Any,
+    memory: Any,
+    speeds: Any,
+    positions: Any,
+    derived: Any,
+    event: Any,
+    row: Any,
+) -> int:
+    """Take one event; return NOTHING, or that `row` is a ROW or the row of a STATE."""
+    if event.kind == TICK:
+        if not _is_tick_due(settings, memory, event.stamp):
+            return NOTHING
+        row.now, row.tick = event.stamp, True
+        row.stamp = event.stamp
+        if is_lagging(memory, settings, SPEED):
+            # The time line of the stamps, which a tick must not leave.
+            row.stamp -= least_lag(memory, SPEED)
+    else:
+        if not _take(settings, memory, positions, event):
+            return NOTHING
+        if settings.derives and settings.inertia != 0.0:
+            window, gap = settings.acceleration_window, settings.timeout[SPEED]
+            slope_take(speeds, window, gap, event.stamp, memory.value[SPEED])
+        row.stamp, row.now, row.tick = event.stamp, event.arrival, False
+    return _judge(tables, settings, memory, speeds, derived, row)
+
+
+def step_many(
+    tables: Any,
+    settings: Any,
+    memory: Any,
+    speeds: Any,
+    positions: Any,
+    derived: Any,
+    events: Any,
+    rows: Any,
+    places: Any,
+    states: Any,
+) -> tuple[int, int, int]:
+    """
+    Take events until there is no room left for a state; return numbers of events, rows and states.
+
+    `memory`, `speeds`, `positions` and `derived` are arrays of one record. `rows` has room for
+    a row of every event, `places` tells the event of each. `states` takes the memory as it is at
+    each state, none if it is empty.
+
+    """
+    made = told = 0
+    for at in range(len(events)):
+        if len(states) and told == len(states):
+            return at, made, told
+        found = step(
+            tables,
+            settings[0],
+            memory[0],
+            speeds[0],
+            positions[0],
+            derived[0],
+            events[at],
+            rows[made],
+        )
+        if found == NOTHING:
+            continue
+        places[made] = at
+        made += 1
+        if found == STATE and len(states):
+            states[told] = memory[0]
+            told += 1
+    return len(events), made, told
+
+
+def _take(settings: Any, memory: Any, positions: Any, event: Any) -> bool:
+    """Take a sample or a refusal; tell whether it is a speed to judge."""
+    source = event.source
+    lose(memory, source, event.lost, event.arrival)
+    if event.kind == REFUSAL:
+        if event.why == OTHER_JOINTS:
+            drop(memory, source)
+            memory.others[source] += 1
+        else:
+            refuse(memory, source, event.why, event.first, event.second, event.arrival)
+        return False
+    if not _is_usable(settings, memory, event):
+        return False
+    if memory.known[source] != 0 and event.stamp < memory.sample_stamp[source]:
+        if memory.sample_stamp[source] - event.stamp <= BACKWARD_JUMP:
+            drop(memory, source)
+            return False
+        if source == SPEED:
+            _jump_back(memory, event.stamp)
+        forget(memory, source)
+    if source != SPEED or not settings.positions:
+        accept(memory, settings, event, event.value)
+        return source == SPEED
+    return _take_position(settings, memory, positions, event)
+
+
+def _is_usable(settings: Any, memory: Any, event: Any) -> bool:
+    """Tell whether the value of a sample can be used, and refuse it if not."""
+    if not math.isfinite(event.value):
+        refuse(memory, event.source, NOT_A_NUMBER, event.value, math.nan, event.arrival)
+        return False
+    # Of a position: plausible or not is the speed that follows from it.
+    if event.source == SPEED and settings.positions:
+        return True
+    return _is_plausible(settings, memory, event, event.value)
+
+
+def _is_plausible(settings: Any, memory: Any, event: Any, value: float) -> bool:
+    if abs(value) <= settings.plausible[event.source]:
+        return True
+    refuse(memory, event.source, IMPLAUSIBLE, value, math.nan, event.arrival)
+    return False
+
+
+def _take_position(settings: Any, memory: Any, positions: Any, event: Any) -> bool:
+    """
+    Take the speed at the stamp of a position; tell whether there is one.
+
+    A position that asks for more than the plausible speed is refused, and so is the first one
+    after a hole: no speed is known there. Both begin a new window.
+
+    """
+    value = event.value
+    if positions.count > 0:
+        why, first, second = _odd_position(settings, positions, event)
+        if why != 0:
+            slope_restart(positions, event.stamp, value)
+            refuse(memory, SPEED, why, first, second, event.arrival)
+            return False
+    gap = settings.timeout[SPEED]
+    slope_take(positions, settings.position_window, gap, event.stamp, value)
+    speed = slope_of(positions)
+    if math.isnan(speed):
+        drop(memory, SPEED)
+        return False
+    if not _is_plausible(settings, memory, event, speed):
+        return False
+    accept(memory, settings, event, speed)
+    return True
+
+
+def _odd_position(settings: Any, positions: Any, event: Any) -> tuple[int, float, float]:
+    """Return why no speed follows from a position and the one before, 0 if one does."""
+    change = event.value - last_value(positions)
+    if settings.wrap != 0.0 and abs(change) <= MOST_TURNS * settings.wrap:
+        # The way to the new position is the shorter one.
+        turns = settings.wrap * round(change / settings.wrap)
+        slope_shift(positions, turns)
+        change -= turns
+    gap, change = event.stamp - last_stamp(positions), abs(change)
+    if gap > settings.timeout[SPEED]:
+        return HOLE, gap / SECOND, math.nan
+    if event.stamp_source != HEADER:  # a burst of messages is no jump
+        gap = max(gap, settings.position_window)
+    if gap <= 0 or change <= settings.plausible[SPEED] * (gap / SECOND):
+        return 0, math.nan, math.nan
+    return IMPLAUSIBLE, change, gap / SECOND
+
+
+def _is_tick_due(settings: Any, memory: Any, now: int) -> bool:
+    """Take the grid stamp `now` [ns]; tell whether the speed is missing or stale there."""
+    # Both the clock and the speed: stamps may run ahead of the clock, as far as is allowed.
+    if memory.last_tick - now > BACKWARD_JUMP:
+        if is_ahead(memory, SPEED, now + BACKWARD_JUMP):
+            _jump_back(memory, now)
+        rebase(memory, now)
+    memory.last_tick = now
+    _forget_the_future(settings, memory, now)
+    timeout = settings.timeout[SPEED]
+    return memory.known[SPEED] == 0 or now - memory.arrival[SPEED] > timeout
+
+
+def _judge(
+    tables: Any, settings: Any, memory: Any, speeds: Any, derived: Any, row: Any
+) -> int:
+    """Judge the instant of a row, hold the level, follow the excursion."""
+    set_point(tables, settings, memory, speeds, derived, row)
+    set_answer(tables, settings, derived, row)
+    shut_gates(settings, memory, row)
+    set_zone(settings, row)
+    set_reason(row)
+    clear_window(memory)
+    max_gap = settings.timeout[SPEED]
+    if not row.tick:
+        if is_judged(row):
+            memory.judged += 1
+        add_to_totals(memory, row, max_gap)
+        add_to_window(memory, row)
+    before = memory.level
+    hold_level(settings, memory, row, max_gap, slow_period(memory, SPEED))
+    memory.stamp = row.stamp
+    follow_excursion(settings, memory, row, before)
+    row.level, row.level_since = memory.level, memory.level_since
+    row.event_id = memory.event_number
+    row.published = row.edge != 0 or memory.level != before or _is_state_due(settings, memory)
+    if not row.published:
+        return ROW
+    look_up_rest(tables, row)
+    memory.published, memory.last_published, memory.window_told = True, row.stamp, True
+    return STATE
+
+
+def _is_state_due(settings: Any, memory: Any) -> bool:
+    """Tell whether the row is the first one in its period."""
+    period = settings.publish_period
+    if period == 0 or not memory.published:
+        return True
+    return memory.stamp // period != memory.last_published // period
+
+
+def _forget_the_future(settings: Any, memory: Any, now: int) -> None:
+    """
+    Forget samples that lie further ahead of `now` [ns] than is allowed.
+
+    They were taken while the clock stood at zero, and would not go stale for as long.
+
+    """
+    if now == 0:
+        return
+    limit = now + settings.tick_period + settings.max_future + BACKWARD_JUMP
+    for source in range(INPUTS):
+        if is_ahead(memory, source, limit):
+            if source == SPEED:
+                _jump_back(memory, now)
+            forget(memory, source)
+
+
+def _jump_back(memory: Any, stamp: int) -> None:
+    """
+    Begin a new time line at `stamp` [ns], which is that of a speed sample or of a tick.
+
+    Samples in its future are forgotten and the filters start over; level, event and totals stand,
+    with their times moved so that they have lasted as long as before.
+
+    """
+    if memory.known[SPEED] != 0:
+        _move_times(memory, stamp - memory.sample_stamp[SPEED])
+    memory.stamp = stamp
+    memory.moment = memory.pending = memory.published = False
+    memory.direction, memory.light = NO_DIRECTION, False
+    for source in range(INPUTS):
+        if is_ahead(memory, source, stamp + BACKWARD_JUMP):
+            forget(memory, source)
+
+
+def _move_times(memory: Any, shift: int) -> None:
+    """Move the times that have begun by `shift` [ns] with the clock."""
+    memory.level_since = max(0, memory.level_since + shift)
+    memory.raising = memory.clearing = False
+    if memory.event_active:
+        memory.event_start[ACTIVE] = max(0, memory.event_start[ACTIVE] + shift)
+    if memory.since != 0:
+        memory.since = max(0, memory.since + shift)

@@ -1,0 +1,326 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Rows and memory as the typed values and sentences that messages and reports are made of."""
+
+from collections.abc import Mapping
+import math
+from typing import Any
+
+from ballscrew_monitor.core.advice import Advisor
+from ballscrew_monitor.core.conversions import Direction, Nut, seconds
+from ballscrew_monitor.core.estimate import (
+    ContactState,
+    MachinePoint,
+    missing_text,
+    NO_DIRECTION,
+    outside_text,
+    PointEstimate,
+    PointSource,
+    PointValidity,
+)
+from ballscrew_monitor.core.health import Health, InputState
+from ballscrew_monitor.core.inputs import (
+    hole_text,
+    implausible_text,
+    jump_text,
+    Source,
+    StampSource,
+    Why,
+)
+from ballscrew_monitor.core.judgement import (
+    Code,
+    Gate,
+    Limits,
+    unjudged,
+    Verdict,
+    violation,
+    Zone,
+)
+from ballscrew_monitor.core.state import Event
+from ballscrew_monitor.core.tally import Extremes, Totals, WindowStatistics
+from ballscrew_monitor.judge.derived_load import derived_text
+from ballscrew_monitor.judge.inputs import is_fresh, is_lagging, least_lag, SLOW_GAPS
+from ballscrew_monitor.judge.records import (
+    LIGHT_LOAD,
+    NOT_KNOWN,
+    RATE_SAMPLES,
+    SHOWN,
+    STANDSTILL,
+    WHYS,
+)
+from ballscrew_monitor.judge.sums import AXIAL_LOAD, EFFICIENCY, FILM_RATIO, RCS, SPEED
+from ballscrew_monitor.judge.zone import ACTIVE, OUTSIDE
+from surrogate.surface import Regime, Surface
+
+NAN = math.nan
+
+SOURCES = (Source.SPEED, Source.LOAD, Source.TEMPERATURE, Source.TORQUE)
+"""Inputs in the order of a state."""
+Texts = Mapping[Source, str]
+"""Sentences of the last refused messages."""
+
+
+def point_of(row: Any) -> MachinePoint:
+    """Return the operating point of a row."""
+    return MachinePoint(
+        speed=float(row.speed),
+        axial_load=float(row.axial_load),
+        temperature=float(row.temperature),
+        motor_torque=float(row.motor_torque),
+        speed_source=PointSource(int(row.speed_source)),
+        axial_load_source=PointSource(int(row.axial_load_source)),
+        temperature_source=PointSource(int(row.temperature_source)),
+        motor_torque_source=PointSource(int(row.motor_torque_source)),
+        direction=Direction(int(row.direction)),
+        direction_held=bool(row.direction_held),
+        derived=bool(row.derived),
+        axial_load_uncertainty=float(row.axial_load_uncertainty),
+    )
+
+
+def estimate_of(row: Any, point: MachinePoint, surface: Surface) -> PointEstimate:
+    """Return what the model says of the point of a row; the row itself holds the numbers."""
+    validity = PointValidity(int(row.validity))
+    if validity is not PointValidity.VALID:
+        return PointEstimate(validity=validity, reason=reason_of(row, point, surface))
+    return PointEstimate(
+        validity=validity,
+        numbers=row,
+        rcs=float(row.rcs),
+        efficiency=float(row.efficiency),
+        machine_torque=float(row.machine_torque),
+        worst_nut=Nut(int(row.worst_nut)),
+        regime=Regime(int(row.regime)),
+        contact_state=ContactState(int(row.contact_state)),
+    )
+
+
+def reason_of(row: Any, point: MachinePoint, surface: Surface) -> str:
+    """Return why a row has no answer of the surface, empty if it has one."""
+    validity = PointValidity(int(row.validity))
+    if validity is PointValidity.VALID:
+        return ''
+    if validity is PointValidity.NO_INPUT:
+        return missing_text(point)
+    if point.direction is Direction.UNKNOWN:
+        return NO_DIRECTION
+    if point.derived:
+        said = derived_text(
+            int(row.derived), float(row.derived_first), float(row.derived_second), surface
+        )
+        if said or validity is PointValidity.UNKNOWN:
+            return said
+    return outside_text(validity, point, surface)
+
+
+def verdict_of(row: Any, estimate: PointEstimate, limits: Limits) -> Verdict:
+    """Return the zone of a row, the gates that are shut, and what was found."""
+    gates = gates_of(int(row.gates))
+    zone, findings = Zone(int(row.zone)), ()
+    light = Gate.LIGHT_LOAD in gates
+    if row.zone == OUTSIDE:
+        findings = tuple(
+            violation(code, float(value), limit, derived=bool(row.derived))
+            for code, value, limit, met in (
+                (Code.RCS_HIGH, row.rcs, limits.rcs, row.rcs < limits.rcs),
+                (
+                    Code.EFFICIENCY_LOW,
+                    row.efficiency,
+                    limits.efficiency,
+                    light or row.efficiency >= limits.efficiency,
+                ),
+            )
+            if not met
+        )
+    elif zone is Zone.UNKNOWN and (
+        Gate.STANDSTILL not in gates or estimate.validity is PointValidity.NO_INPUT
+    ):
+        findings = (unjudged(estimate),)
+    return Verdict(zone=zone, gates=gates, findings=findings, clear=bool(row.clears))
+
+
+def gates_of(bits: int) -> tuple[Gate, ...]:
+    """Return the gates that are shut."""
+    pairs = ((STANDSTILL, Gate.STANDSTILL), (LIGHT_LOAD, Gate.LIGHT_LOAD))
+    return tuple(gate for bit, gate in pairs if bits & bit)
+
+
+def event_of(memory: Any, surface: Surface, limits: Limits, ending: str = '') -> Event:
+    """Return the excursion that is active, or the last one; `ending` says why the node ended it."""
+    if not memory.event_number:
+        return Event()
+    code = Code(int(memory.event_code[ACTIVE]))
+    worst, limit = float(memory.event_worst[ACTIVE]), float(memory.event_limit[ACTIVE])
+    cause = violation(code, worst, limit, derived=bool(memory.event_derived[ACTIVE]))
+    point = MachinePoint(
+        speed=float(memory.event_speed[ACTIVE]),
+        axial_load=float(memory.event_load[ACTIVE]),
+        temperature=float(memory.event_temperature[ACTIVE]),
+        direction=Direction(int(memory.event_direction[ACTIVE])),
+    )
+    known = math.isfinite(point.speed + point.axial_load + point.temperature)
+    return Event(
+        number=int(memory.event_number),
+        active=bool(memory.event_active),
+        stamp=int(memory.event_stamp),
+        start=int(memory.event_start[ACTIVE]),
+        worst_value=worst,
+        cause=cause,
+        advisor=Advisor(point=point, surface=surface, limits=limits) if known else None,
+        ending=ending,
+    )
+
+
+def keep_event(memory: Any, event: Event) -> None:
+    """Put an excursion that was kept over a restart into a memory."""
+    memory.event_number, memory.event_active = event.number, event.active
+    memory.event_stamp, memory.event_start[ACTIVE] = event.stamp, event.start
+    memory.event_code[ACTIVE] = int(event.cause.code)
+    memory.event_worst[ACTIVE], memory.event_limit[ACTIVE] = event.worst_value, event.cause.limit
+
+
+def totals_of(memory: Any) -> Totals:
+    """Return the totals."""
+    return Totals(
+        running_time=int(memory.running_time),
+        unjudged_time=int(memory.unjudged_time),
+        boundary_time=int(memory.regime_time[Regime.BOUNDARY]),
+        mixed_time=int(memory.regime_time[Regime.MIXED]),
+        hydrodynamic_time=int(memory.regime_time[Regime.HYDRODYNAMIC]),
+        optimal_time=int(memory.zone_time[Zone.OPTIMAL]),
+        outside_time=int(memory.zone_time[Zone.OUTSIDE]),
+        angle=float(memory.angle),
+        energy_lost=float(memory.energy_lost),
+        since=int(memory.since),
+    )
+
+
+def add_totals(memory: Any, kept: Totals) -> None:
+    """Add totals that were kept over a restart."""
+    memory.running_time += kept.running_time
+    memory.unjudged_time += kept.unjudged_time
+    memory.regime_time[Regime.BOUNDARY] += kept.boundary_time
+    memory.regime_time[Regime.MIXED] += kept.mixed_time
+    memory.regime_time[Regime.HYDRODYNAMIC] += kept.hydrodynamic_time
+    memory.zone_time[Zone.OPTIMAL] += kept.optimal_time
+    memory.zone_time[Zone.OUTSIDE] += kept.outside_time
+    memory.angle += kept.angle
+    memory.energy_lost += kept.energy_lost
+    memory.since = kept.since or memory.since
+
+
+def clear_totals(memory: Any) -> None:
+    """Set the totals to zero."""
+    memory.running_time = memory.unjudged_time = memory.since = 0
+    memory.angle = memory.energy_lost = 0.0
+    for times in (memory.regime_time, memory.zone_time):
+        times[:] = [0] * len(times)
+
+
+def window_of(memory: Any) -> WindowStatistics:
+    """Return the statistics of the window of the last state."""
+    return WindowStatistics(
+        count=int(memory.window_count[SPEED]),
+        speed=_extremes(memory, SPEED),
+        axial_load=_extremes(memory, AXIAL_LOAD),
+        efficiency=_extremes(memory, EFFICIENCY),
+        rcs=_extremes(memory, RCS),
+        film_ratio=_extremes(memory, FILM_RATIO),
+    )
+
+
+def _extremes(memory: Any, column: int) -> Extremes:
+    count = int(memory.window_count[column])
+    if not count:
+        return Extremes()
+    return Extremes(
+        low=float(memory.window_low[column]),
+        mean=float(memory.window_total[column]) / count,
+        high=float(memory.window_high[column]),
+    )
+
+
+def input_state_of(memory: Any, settings: Any, source: Source, now: int) -> InputState:
+    """
+    Return the state of an input at `now` [ns] of the clock that arrivals are timed by.
+
+    A sample that arrived exactly the timeout ago is still good.
+
+    """
+    if not settings.configured[source]:
+        derived = source is Source.LOAD and settings.derives
+        return InputState.DERIVED if derived else InputState.NOT_CONFIGURED
+    if memory.refusal[source] != NOT_KNOWN:
+        return InputState.BAD
+    if not memory.known[source]:
+        return InputState.MISSING
+    return InputState.OK if is_fresh(memory, settings, source, now) else InputState.STALE
+
+
+def health_of(
+    memory: Any, settings: Any, source: Source, now: int, texts: Texts, joints: Any = None
+) -> Health:
+    """Return how well an input does at `now` [ns]; `joints` are those of other messages."""
+    why = int(memory.refusal[source])
+    slow = bool(memory.long_gaps[source] >= SLOW_GAPS)
+    lag_known = bool(memory.lags_taken[source])
+    known = bool(memory.known[source])
+    return Health(
+        source=source,
+        state=input_state_of(memory, settings, source, now),
+        rate=_rate(memory, source),
+        stamp_source=StampSource(int(memory.stamp_source[source]) if known else 0),
+        age=max(0.0, seconds(now - int(memory.arrival[source]))) if known else NAN,
+        received=int(memory.received[source]),
+        dropped=int(memory.dropped[source]),
+        slow=slow,
+        longest_gap=seconds(int(memory.longest_gap[source])) if slow else NAN,
+        lag=seconds(int(least_lag(memory, source))) if lag_known else NAN,
+        lagging=bool(is_lagging(memory, settings, source)),
+        lost=int(memory.lost[source]) if memory.lost_known[source] else None,
+        losing=bool(0 <= now - memory.lost_last[source] < SHOWN),
+        implausible=int(memory.implausible[source]),
+        glitching=bool(0 <= now - memory.implausible_last[source] < SHOWN),
+        why=None if why == NOT_KNOWN else Why(why),
+        refusal='' if why == NOT_KNOWN else refusal_text(memory, settings, source, texts),
+        joints=joints if memory.others[source] else None,
+    )
+
+
+def refusal_text(memory: Any, settings: Any, source: Source, texts: Texts) -> str:
+    """Return why the last message of an input was refused."""
+    first, second = float(memory.refusal_first[source]), float(memory.refusal_second[source])
+    if memory.refusal[source] == Why.HOLE:
+        return hole_text(first)
+    if memory.refusal[source] == Why.IMPLAUSIBLE:
+        most = float(settings.plausible[source])
+        if math.isnan(second):
+            return implausible_text(source, first, most)
+        return jump_text(first, second, most)
+    return texts.get(source, '')
+
+
+def _rate(memory: Any, source: Source) -> float:
+    taken = int(memory.stamps_taken[source])
+    count = min(taken, RATE_SAMPLES)
+    if count < 2:
+        return NAN
+    first, last = (
+        int(memory.stamps[source * RATE_SAMPLES + at % RATE_SAMPLES])
+        for at in (taken - count, taken - 1)
+    )
+    return (count - 1) / seconds(last - first) if last > first else NAN
+
+
+def refused_of(memory: Any) -> dict[Source, dict[Why, int]]:
+    """Return how many messages of each input were refused, by why."""
+    return {
+        source: {
+            why: int(memory.refused[source * WHYS + why])
+            for why in Why
+            if memory.refused[source * WHYS + why]
+        }
+        for source in SOURCES
+    }
+
+
