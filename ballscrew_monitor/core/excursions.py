@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The stays of an axis outside its zone, one after the other: a number and a course each."""
+"""Excursions of an axis out of its zone, one after the other, each with its number."""
 
 import dataclasses
 
@@ -11,7 +11,7 @@ from ballscrew_monitor.core.state import Event
 from surrogate.surface import Surface
 
 
-class Stays:
+class Excursions:
     """Follows the held level; `event` is that which is active, or the last one."""
 
     def __init__(self) -> None:

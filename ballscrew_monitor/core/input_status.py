@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""How well an input does: what has come of it, what is wrong with it, and how fresh it is."""
+"""Status of an input: what was received, what is wrong with it, and how fresh it is."""
 
 import collections
 import dataclasses
@@ -31,7 +31,7 @@ class InputState(enum.IntEnum):
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Health:
+class InputStatus:
     """
     State of one input at one instant.
 
@@ -190,10 +190,10 @@ class Tracker:
             return InputState.MISSING
         return InputState.OK if now - self.last.arrival <= self.timeout else InputState.STALE
 
-    def health(self, now: int) -> Health:
-        """Return the health at `now` [ns]."""
+    def status(self, now: int) -> InputStatus:
+        """Return the status at `now` [ns]."""
         last, lag, refusal = self.last, self.lag, self.refusal
-        return Health(
+        return InputStatus(
             source=self.source,
             state=self.state(now),
             rate=self._rate(),

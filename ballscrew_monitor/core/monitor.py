@@ -23,14 +23,14 @@ from ballscrew_monitor.core.estimate import (
     PointSource,
     PointValidity,
 )
-from ballscrew_monitor.core.health import Health, Tracker
+from ballscrew_monitor.core.excursions import Excursions
+from ballscrew_monitor.core.input_status import InputStatus, Tracker
 from ballscrew_monitor.core.inputs import implausible, InputSample, Refusal, Source, Why
 from ballscrew_monitor.core.judgement import Hold, hold, is_judged, judge, Level, Verdict
 from ballscrew_monitor.core.memory import Memory, NOTHING
 from ballscrew_monitor.core.point_reader import PointReader
 from ballscrew_monitor.core.shelving import NOT_SHELVED
 from ballscrew_monitor.core.state import Event, Instant, MonitorSettings, State
-from ballscrew_monitor.core.stays import Stays
 from ballscrew_monitor.core.tally import Account, moment, Totals, WindowTally
 from surrogate.surface import Surface
 
@@ -53,7 +53,7 @@ class Monitor:
         self.shelving = NOT_SHELVED
         self._judged = 0
         self._hold = Hold()
-        self._stays = Stays()
+        self._stays = Excursions()
         self._stamp = 0  # of the last verdict
         self._last_tick = 0
         self._last_published: int | None = None
@@ -188,9 +188,9 @@ class Monitor:
         """Return the totals."""
         return self._account.totals()
 
-    def health(self, now: int) -> tuple[Health, ...]:
-        """Return the health of the inputs at `now` [ns]."""
-        return tuple(tracker.health(now) for tracker in self._inputs.values())
+    def input_status(self, now: int) -> tuple[InputStatus, ...]:
+        """Return the status of the inputs at `now` [ns]."""
+        return tuple(tracker.status(now) for tracker in self._inputs.values())
 
     @property
     def refused(self) -> dict[Source, dict[Why, int]]:
@@ -228,7 +228,7 @@ class Monitor:
             event=edge,
             limits=self.settings.limits,
             window=self._window.take(),
-            inputs=self.health(now),
+            inputs=self.input_status(now),
             totals=self._account.totals(),
             judged=self._judged,
             measured_torque=torque,
@@ -295,7 +295,7 @@ class Monitor:
         """
         Hold the level, follow the event, and return the state when it is due.
 
-        Levels and events follow the stamps [ns], the health of the inputs the clock `now` [ns].
+        Levels and events follow the stamps [ns], the status of the inputs the clock `now` [ns].
 
         """
         before = self._hold

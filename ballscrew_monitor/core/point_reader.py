@@ -9,7 +9,7 @@ from ballscrew_monitor.core.conversions import Direction, direction_of
 from ballscrew_monitor.core.derived_load import derive_load, DerivedLoad, Running, STANDSTILL
 from ballscrew_monitor.core.differentiation import SlopeFilter
 from ballscrew_monitor.core.estimate import MachinePoint, PointSource
-from ballscrew_monitor.core.health import InputState, Tracker
+from ballscrew_monitor.core.input_status import InputState, Tracker
 from ballscrew_monitor.core.inputs import InputSample, Source
 from ballscrew_monitor.core.state import MonitorSettings
 from surrogate.surface import Surface

@@ -10,7 +10,7 @@ Of a monitor whose load is an input and whose speed is one: what derives these i
 import dataclasses
 
 from ballscrew_monitor.core.conversions import Direction
-from ballscrew_monitor.core.health import Tracker
+from ballscrew_monitor.core.input_status import Tracker
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.core.judgement import Hold
 from ballscrew_monitor.core.monitor import Monitor

@@ -22,13 +22,13 @@ from ballscrew_monitor.core import (
     derived_load,
     differentiation,
     estimate,
+    excursions,
     fields,
-    health,
+    input_status,
     inputs,
     judgement,
     point_reader,
     shelving,
-    stays,
     tally,
 )
 from ballscrew_monitor.core import state as states
@@ -43,7 +43,7 @@ ENUMS: dict[str, type[enum.Enum]] = {
     for kind in (
         conversions.Direction,
         estimate.PointSource,
-        health.InputState,
+        input_status.InputState,
         inputs.Source,
         inputs.StampSource,
         inputs.Why,
@@ -64,7 +64,7 @@ CLASSES: dict[str, type[Any]] = {
         differentiation.SpeedFromPosition,
         estimate.MachinePoint,
         fields.OtherJoints,
-        health.Tracker,
+        input_status.Tracker,
         inputs.InputSample,
         inputs.Refusal,
         judgement.Finding,
@@ -74,13 +74,13 @@ CLASSES: dict[str, type[Any]] = {
         point_reader.PointReader,
         shelving.Shelving,
         states.Event,
-        stays.Stays,
+        excursions.Excursions,
         tally.Account,
         tally.Column,
         tally.Moment,
         tally.WindowTally,
     )
-}
+} | {'Stays': excursions.Excursions}  # its name in recordings of version 1
 
 
 def freeze_monitor(monitor: Monitor) -> dict[str, Any]:

@@ -9,7 +9,7 @@ stand; `steady` [ns] only ever runs on. Both are handed in.
 """
 
 
-class Pulse:
+class TickGrid:
     """Gives each stamp of a grid at most once."""
 
     def __init__(self, period: int) -> None:

@@ -11,15 +11,15 @@ publishing; numbers are values, with the unit in brackets.
 
 from collections.abc import Mapping
 
-from ballscrew_monitor.core import reasons
 from ballscrew_monitor.core.conversions import celsius, clock_text, seconds
 from ballscrew_monitor.core.estimate import PointValidity
-from ballscrew_monitor.core.health import Health
+from ballscrew_monitor.core.input_status import InputStatus
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.core.judgement import Code, Gate, Level
 from ballscrew_monitor.core.links import Link
-from ballscrew_monitor.core.reasons import Standing
 from ballscrew_monitor.core.state import Event, State
+from ballscrew_monitor.messages import reasons
+from ballscrew_monitor.messages.reasons import Standing
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 from surrogate.surface import Surface
 
@@ -205,21 +205,21 @@ def _lubrication_values(state: State) -> list[tuple[str, object]]:
     ]
 
 
-def _input_values(inputs: tuple[Health, ...]) -> list[tuple[str, object]]:
+def _input_values(inputs: tuple[InputStatus, ...]) -> list[tuple[str, object]]:
     values: list[tuple[str, object]] = []
-    for health in inputs:
-        name = health.source.name.capitalize()
+    for status in inputs:
+        name = status.source.name.capitalize()
         values += [
-            (f'{name} state', health.state.name),
-            (f'{name} age [s]', health.age),
-            (f'{name} rate [Hz]', health.rate),
-            (f'{name} received [-]', health.received),
-            (f'{name} dropped [-]', health.dropped),
-            (f'{name} lost [-]', 'unknown' if health.lost is None else health.lost),
-            (f'{name} implausible [-]', health.implausible),
-            (f'{name} stamps', health.stamp_source.name),
-            (f'{name} lag [s]', health.lag),
-            (f'{name} refused', health.refusal),
+            (f'{name} state', status.state.name),
+            (f'{name} age [s]', status.age),
+            (f'{name} rate [Hz]', status.rate),
+            (f'{name} received [-]', status.received),
+            (f'{name} dropped [-]', status.dropped),
+            (f'{name} lost [-]', 'unknown' if status.lost is None else status.lost),
+            (f'{name} implausible [-]', status.implausible),
+            (f'{name} stamps', status.stamp_source.name),
+            (f'{name} lag [s]', status.lag),
+            (f'{name} refused', status.refusal),
         ]
     return values
 

@@ -13,10 +13,10 @@ import difflib
 import math
 
 from ballscrew_monitor.core.conversions import celsius, POSITION_UNITS, Scaling
-from ballscrew_monitor.core.health import Health, InputState
+from ballscrew_monitor.core.input_status import InputState, InputStatus
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.core.links import Link, link_reason
-from ballscrew_monitor.core.reasons import slow_reason, Standing, summary
+from ballscrew_monitor.messages.reasons import slow_reason, Standing, summary
 from surrogate.surface import Surface
 
 SAFE_RATE = 3200.0  # [1/s] messages of speed and load that one core takes
@@ -36,7 +36,7 @@ class Heard:
 
     """
 
-    health: Health
+    status: InputStatus
     low: float = math.nan
     high: float = math.nan
     longest_gap: float = math.nan
@@ -166,13 +166,13 @@ def near_topic(link: Link, topics: Mapping[str, tuple[str, ...]]) -> str:
 
 def _of_health(facts: InputFacts, heard: Heard, seconds: float) -> list[str]:
     topic = facts.link.topic
-    if not heard.health.received:
+    if not heard.status.received:
         text = f'{facts.parameter}: the publisher on {topic} has sent nothing within {seconds:g} s'
         return [f'{text}: start it'] if facts.timeout < seconds else []
-    fine = heard.health.state in (InputState.OK, InputState.STALE)
+    fine = heard.status.state in (InputState.OK, InputState.STALE)
     if fine and heard.longest_gap > facts.timeout:
         return [f'{facts.parameter}: it {slow_reason(heard.longest_gap, facts.parameter)}']
-    standing, text = summary(facts.axis, (heard.health,), {facts.source: facts.link})
+    standing, text = summary(facts.axis, (heard.status,), {facts.source: facts.link})
     return [] if standing is Standing.GOOD else [f'{facts.parameter}: {text}']
 
 
@@ -229,7 +229,7 @@ def _range_text(facts: InputFacts) -> str:
 
 def _of_rates(inputs: tuple[InputFacts, ...]) -> list[str]:
     rates = [
-        facts.heard.health.rate
+        facts.heard.status.rate
         for facts in inputs
         if facts.heard is not None and facts.source in (Source.SPEED, Source.LOAD)
     ]

@@ -15,7 +15,7 @@ import math
 
 from ballscrew_monitor.core.conversions import seconds
 from ballscrew_monitor.core.fields import OtherJoints
-from ballscrew_monitor.core.health import Health, InputState
+from ballscrew_monitor.core.input_status import InputState, InputStatus
 from ballscrew_monitor.core.inputs import Source, Why, YEAR
 from ballscrew_monitor.core.links import Link, link_reason
 
@@ -36,27 +36,27 @@ _REFUSED = {
     Why.NEGATIVE: 'its stamps are negative, mend the clock of its source',
     Why.HOLE: 'its positions come less often than its timeout allows, raise speed.timeout',
 }
-_TROUBLES: tuple[tuple[Callable[[Health], bool], str], ...] = (
+_TROUBLES: tuple[tuple[Callable[[InputStatus], bool], str], ...] = (
     (
-        lambda health: health.glitching,
+        lambda status: status.glitching,
         f'samples beyond the plausible range were refused: {_PLAUSIBLE}',
     ),
     (
-        lambda health: health.losing,
+        lambda status: status.losing,
         'messages are lost on the way: lower their rate, raise publish_period, or give the node '
         'fewer axes or more of the processor',
     ),
     (
-        lambda health: health.lag > seconds(YEAR),
+        lambda status: status.lag > seconds(YEAR),
         'stamps are of simulated time and the node runs on the wall clock: set use_sim_time',
     ),
     (
-        lambda health: health.lagging,
+        lambda status: status.lagging,
         'stamps lag behind their arrival: set the clocks alike, or raise max_lag',
     ),
-    (lambda health: health.slow, ''),
+    (lambda status: status.slow, ''),
     (
-        lambda health: health.lost is None,
+        lambda status: status.lost is None,
         'loss is unknown: let the topic have one publisher that numbers its messages',
     ),
 )
@@ -71,18 +71,18 @@ class Standing(enum.Enum):
 
 
 def summary(
-    axis: str, inputs: tuple[Health, ...], links: Mapping[Source, Link]
+    axis: str, inputs: tuple[InputStatus, ...], links: Mapping[Source, Link]
 ) -> tuple[Standing, str]:
     """Return a sentence for each fault, with what mends it; the worst kind of fault alone."""
     faults = [
-        fault(health, links.get(health.source), _parameter(axis, health.source))
-        for health in inputs
-        if health.state in _FAULTS
+        fault(status, links.get(status.source), _parameter(axis, status.source))
+        for status in inputs
+        if status.state in _FAULTS
     ]
     if faults:
         return Standing.LOST, '; '.join(faults)
     for happens, text in _TROUBLES:
-        found = [health for health in inputs if happens(health)]
+        found = [status for status in inputs if happens(status)]
         if found:
             return Standing.DEGRADED, _trouble(axis, found, text)
     return Standing.GOOD, Standing.GOOD.value
@@ -92,30 +92,30 @@ def _parameter(axis: str, source: Source) -> str:
     return f'{axis}.{source.name.lower()}'
 
 
-def _trouble(axis: str, found: list[Health], text: str) -> str:
-    names = [health.source.name.lower() for health in found]
+def _trouble(axis: str, found: list[InputStatus], text: str) -> str:
+    names = [status.source.name.lower() for status in found]
     if text:
         return f'{" and ".join(names)} {text}'
     return '; '.join(
-        f'{name} {slow_reason(health.longest_gap, _parameter(axis, health.source))}'
-        for name, health in zip(names, found, strict=True)
+        f'{name} {slow_reason(status.longest_gap, _parameter(axis, status.source))}'
+        for name, status in zip(names, found, strict=True)
     )
 
 
-def fault(health: Health, link: Link | None, parameter: str) -> str:
+def fault(status: InputStatus, link: Link | None, parameter: str) -> str:
     """Return what is wrong with an input that is not well, `parameter` being `axis.input`."""
-    name = health.source.name.lower()
-    if health.state is InputState.BAD:
-        why = _REFUSED.get(health.why, health.refusal) if health.why else ''
+    name = status.source.name.lower()
+    if status.state is InputState.BAD:
+        why = _REFUSED.get(status.why, status.refusal) if status.why else ''
         return _with(f'{name} is not usable', why)
-    seen = health.state is InputState.STALE
-    if health.joints is not None:
-        return _with(f'{name} has no sample', joint_reason(health.joints, parameter))
+    seen = status.state is InputState.STALE
+    if status.joints is not None:
+        return _with(f'{name} has no sample', joint_reason(status.joints, parameter))
     reason = link_reason(link, parameter, seen=seen) if link else ''
     if seen:
-        slow = f'it {slow_reason(health.longest_gap, parameter)}' if health.slow else ''
+        slow = f'it {slow_reason(status.longest_gap, parameter)}' if status.slow else ''
         return _with(f'{name} is stale', slow or reason)
-    if health.state is InputState.UNKNOWN:
+    if status.state is InputState.UNKNOWN:
         return f'{name} is unknown'
     if link and not reason:
         reason = f'the publisher on {link.topic} has sent nothing yet'

@@ -16,7 +16,7 @@ from ballscrew_monitor.core.estimate import (
 )
 from ballscrew_monitor.core.full_point import compare, Comparison, solved_at
 from ballscrew_monitor.core.solver import Done, End, Step
-from ballscrew_monitor.node.messages import fill_result, read_point, TIERS
+from ballscrew_monitor.messages.state_messages import fill_result, read_point, TIERS
 from ballscrew_msgs.action import SolveOperatingPoint
 from ballscrew_msgs.msg import PointResult
 from surrogate.surface import solved_point, Surface, SurfacePoint

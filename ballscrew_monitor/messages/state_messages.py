@@ -11,7 +11,6 @@ anything else as garbage when their checks are off.
 import math
 from typing import Any
 
-from ballscrew_monitor.core import health as input_health
 from ballscrew_monitor.core import judgement, tally
 from ballscrew_monitor.core.advice import Advice
 from ballscrew_monitor.core.conversions import (
@@ -23,6 +22,7 @@ from ballscrew_monitor.core.conversions import (
     seconds,
 )
 from ballscrew_monitor.core.estimate import MachinePoint, PointEstimate
+from ballscrew_monitor.core.input_status import InputStatus
 from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.core.monitor import SHOWN
 from ballscrew_monitor.core.state import Event, State
@@ -140,19 +140,19 @@ def fill_window(message: WindowStatistics, window: tally.WindowStatistics) -> No
         setattr(message, f'{name}_max', float(extremes.high))
 
 
-def fill_health(message: InputHealth, health: input_health.Health) -> None:
-    """Fill in the health of one input."""
-    message.name = health.source.name.lower()
-    message.state = int(health.state)
-    message.stamp_source = int(health.stamp_source)
-    message.age = float(health.age)
-    message.rate = float(health.rate)
-    message.received = health.received
-    message.dropped = health.dropped
-    message.lost = health.lost or 0
-    message.lost_known = health.lost is not None
-    message.lag = float(health.lag)
-    message.refusal = health.refusal
+def fill_input(message: InputHealth, status: InputStatus) -> None:
+    """Fill in the status of one input."""
+    message.name = status.source.name.lower()
+    message.state = int(status.state)
+    message.stamp_source = int(status.stamp_source)
+    message.age = float(status.age)
+    message.rate = float(status.rate)
+    message.received = status.received
+    message.dropped = status.dropped
+    message.lost = status.lost or 0
+    message.lost_known = status.lost is not None
+    message.lag = float(status.lag)
+    message.refusal = status.refusal
 
 
 def fill_totals(message: Any, totals: tally.Totals) -> None:
@@ -190,8 +190,8 @@ class StateWriter:
         fill_result(message.result, state.estimate, self.tier)
         fill_window(message.window, state.window)
         fill_totals(message.totals, state.totals)
-        for part, health in zip(message.inputs, state.inputs):
-            fill_health(part, health)
+        for part, status in zip(message.inputs, state.inputs):
+            fill_input(part, status)
         _fill_judgement(message, state)
         message.measured_torque = float(state.measured_torque)
         message.torque_residual = float(state.torque_residual)
@@ -213,6 +213,18 @@ def _fill_judgement(message: BallScrewState, state: State) -> None:
     message.light_load_limit = float(state.limits.light_load)
     message.standstill_limit = float(state.limits.standstill_speed)
     message.judged = state.judged
+
+
+def plain_values(state: State) -> dict[str, float | str | bool]:
+    """Return what each plain topic says of a state; numbers that are not known are NaN."""
+    result = state.estimate
+    return {
+        'efficiency': float(result.efficiency),
+        'rcs': float(result.rcs),
+        'film_ratio': float(result.film_ratio),
+        'regime': result.regime.name,
+        'out_of_zone': state.level is judgement.Level.WARN and not state.shelving.until,
+    }
 
 
 def out_of_zone_message(axis: str, event: Event, *, shelved: bool) -> OutOfZone:

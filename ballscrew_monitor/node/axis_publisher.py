@@ -14,22 +14,21 @@ from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.core.links import Link
 from ballscrew_monitor.core.shelving import Shelving
 from ballscrew_monitor.core.state import State
-from ballscrew_monitor.node import diagnostics
-from ballscrew_monitor.node.alarm import Alarm
-from ballscrew_monitor.node.axis import Axis
-from ballscrew_monitor.node.correction_store import CorrectionStore
-from ballscrew_monitor.node.event_log import Kind, point_facts
-from ballscrew_monitor.node.keeping import Keeping
-from ballscrew_monitor.node.latched_topics import LatchedTopics, quiet_publishers
-from ballscrew_monitor.node.messages import (
+from ballscrew_monitor.messages import diagnostics
+from ballscrew_monitor.messages.state_messages import (
     fill_result,
     read_point,
     StateWriter,
     surface_info_message,
     TIERS,
 )
-from ballscrew_monitor.node.plain_topics import PlainTopics
-from ballscrew_monitor.node.qos import state_qos
+from ballscrew_monitor.node.alarm import Alarm
+from ballscrew_monitor.node.correction_store import CorrectionStore
+from ballscrew_monitor.node.event_log import Kind, point_facts
+from ballscrew_monitor.node.keeping import Keeping
+from ballscrew_monitor.node.output_topics import LatchedTopics, PlainTopics, quiet_publishers
+from ballscrew_monitor.settings.axis import Axis
+from ballscrew_monitor.settings.qos import state_qos
 from ballscrew_msgs.msg import BallScrewState, OperatingPoint, PointResult
 from ballscrew_msgs.srv import EvaluateOperatingPoint
 from diagnostic_msgs.msg import DiagnosticStatus
@@ -43,7 +42,7 @@ LOG_INTERVAL = nanoseconds(1.0)  # [ns] shortest time between two lines about th
 NEWS_INTERVAL = nanoseconds(0.1)  # [ns] shortest time between two diagnostics sent for a change
 
 
-class Station:
+class AxisPublisher:
     """One axis and what the node needs to speak for it."""
 
     def __init__(

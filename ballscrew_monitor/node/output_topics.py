@@ -1,13 +1,17 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The few numbers of a state that most consumers want, each as a topic of a standard type."""
+"""Publishers of an axis beside its state: plain numbers, and topics whose last message stays."""
 
 from collections.abc import Callable
+import functools
 from typing import Any
 
-from ballscrew_monitor.core.judgement import Level
 from ballscrew_monitor.core.state import State
+from ballscrew_monitor.messages.state_messages import plain_values
+from ballscrew_msgs.msg import OutOfZone, SurfaceInfo
+from rclpy.event_handler import PublisherEventCallbacks
 from rclpy.lifecycle import LifecycleNode
+from rclpy.qos import QoSDurabilityPolicy, QoSProfile, QoSReliabilityPolicy
 from std_msgs.msg import Bool, Float64, String
 
 TYPES = {
@@ -17,18 +21,33 @@ TYPES = {
     'regime': String,
     'out_of_zone': Bool,
 }
+LATCHED_QOS = QoSProfile(
+    depth=1,
+    reliability=QoSReliabilityPolicy.RELIABLE,
+    durability=QoSDurabilityPolicy.TRANSIENT_LOCAL,
+)
 
 
-def plain_values(state: State) -> dict[str, float | str | bool]:
-    """Return what each plain topic says of a state; numbers that are not known are NaN."""
-    result = state.estimate
-    return {
-        'efficiency': float(result.efficiency),
-        'rcs': float(result.rcs),
-        'film_ratio': float(result.film_ratio),
-        'regime': result.regime.name,
-        'out_of_zone': state.level is Level.WARN and not state.shelving.until,
-    }
+def quiet_publishers(node: LifecycleNode) -> functools.partial[Any]:
+    """
+    Return what makes publishers without events.
+
+    rclpy looks at every event of every publisher in every round. What these would warn of, a
+    subscriber with QoS that does not fit, its own node warns of too.
+
+    """
+    quiet = PublisherEventCallbacks(use_default_callbacks=False)
+    return functools.partial(node.create_lifecycle_publisher, event_callbacks=quiet)
+
+
+class LatchedTopics:
+    """Publishers that live as long as the node, so that the end of an event outlives its axis."""
+
+    def __init__(self, node: LifecycleNode, axis: str) -> None:
+        """Make them; they stay silent until the node is active."""
+        make = quiet_publishers(node)
+        self.event = make(OutOfZone, f'~/{axis}/out_of_zone', LATCHED_QOS)
+        self.info = make(SurfaceInfo, f'~/{axis}/surface_info', LATCHED_QOS)
 
 
 class PlainTopics:

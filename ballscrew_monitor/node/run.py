@@ -1,15 +1,15 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The life of the node process, from its arguments to its exit code."""
+"""The run of the node process, from its arguments to its exit code."""
 
 from collections.abc import Sequence
 import signal
 import sys
 
-from ballscrew_monitor.node import middleware, parameters
 from ballscrew_monitor.node.arguments import wants_localhost
 from ballscrew_monitor.node.node import BallscrewMonitor
 from ballscrew_monitor.node.solve_server import MOST_SOLVES
+from ballscrew_monitor.settings import middleware, parameters
 import rclpy
 from rclpy.exceptions import ParameterException
 from rclpy.executors import SingleThreadedExecutor
@@ -20,7 +20,7 @@ BAD_INPUT = 2
 POLL = 0.2  # [s] longest wait before a signal is noticed
 
 
-def live(args: list[str] | None, stop: Sequence[int]) -> int:
+def run(args: list[str] | None, stop: Sequence[int]) -> int:
     """Run the node until `stop` holds a signal; return 0, or 2 after bad input."""
     try:
         node = _make_node(args)

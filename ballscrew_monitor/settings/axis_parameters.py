@@ -13,7 +13,7 @@ from ballscrew_monitor.core.conversions import (
     TORQUE_UNITS,
 )
 from ballscrew_monitor.core.fields import check_path
-from ballscrew_monitor.node.parameter_row import Change, ParameterRow
+from ballscrew_monitor.settings.parameter_row import Change, ParameterRow
 from surrogate.surface import EFFICIENCY_LIMIT, LIGHT_LOAD, RCS_LIMIT
 
 LOAD_SOURCES = ('topic', 'motor_torque')

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The parameters of the node itself; those of its axes are in `axis_parameters`."""
 
-from ballscrew_monitor.node.parameter_row import Change, ParameterRow
+from ballscrew_monitor.settings.parameter_row import Change, ParameterRow
 
 RECORD_ROWS = (
     ParameterRow(

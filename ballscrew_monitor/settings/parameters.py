@@ -12,8 +12,9 @@ import pathlib
 import re
 from typing import Any
 
-from ballscrew_monitor.node.parameter_row import BARE_LETTERS, BARE_WORDS, ParameterRow
-from ballscrew_monitor.node.parameter_table import AXIS_ROWS, NODE_ROWS
+from ballscrew_monitor.settings.axis_parameters import AXIS_ROWS
+from ballscrew_monitor.settings.node_parameters import NODE_ROWS
+from ballscrew_monitor.settings.parameter_row import BARE_LETTERS, BARE_WORDS, ParameterRow
 from surrogate.files import InputError
 
 NODE_NAME = 'ballscrew_monitor'
@@ -213,7 +214,7 @@ def example_yaml() -> str:
     """Return the example parameter file: every parameter of one axis, with its comment."""
     lines = [
         '# Every parameter of ballscrew_monitor with its default, made from the table in',
-        '# ballscrew_monitor/node/parameters.py. Numbers need a decimal point.',
+        '# ballscrew_monitor/settings/parameters.py. Numbers need a decimal point.',
         f'/**/{NODE_NAME}:',
         '  ros__parameters:',
     ]

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from ballscrew_monitor.core.inputs import Source
-from ballscrew_monitor.node.axis import is_configured
-from ballscrew_monitor.node.parameters import NODE_NAME
+from ballscrew_monitor.settings.axis import is_configured
+from ballscrew_monitor.settings.parameters import NODE_NAME
 
 
 def absolute(topic: str) -> str:

@@ -1,12 +1,12 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The health of an input: freshness, rate, lag, losses, and what else its topic carries."""
+"""The status of an input: freshness, rate, lag, losses, and what else its topic carries."""
 
 import math
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.fields import OtherJoints
-from ballscrew_monitor.core.health import InputState, LOSS_SHOWN, MOST_OTHERS, Tracker
+from ballscrew_monitor.core.input_status import InputState, LOSS_SHOWN, MOST_OTHERS, Tracker
 from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, StampSource, Why
 from ballscrew_msgs.msg import InputHealth
 
@@ -28,22 +28,22 @@ def test_a_sample_exactly_as_old_as_the_timeout_is_good():
     load.accept(sample(100))
     assert load.state(110) is InputState.OK
     assert load.state(111) is InputState.STALE
-    assert load.health(111).age == 11e-9
+    assert load.status(111).age == 11e-9
 
 
 def test_a_sample_newer_than_the_judged_instant_has_no_negative_age():
     load = tracker()
     load.accept(sample(100))
-    assert load.health(90).age == 0.0
+    assert load.status(90).age == 0.0
 
 
 def test_an_input_begins_missing_and_goes_bad_until_the_next_good_sample():
     load = tracker()
     assert load.state(0) is InputState.MISSING
-    assert math.isnan(load.health(0).age)
+    assert math.isnan(load.status(0).age)
     load.refuse(refusal())
     assert load.state(0) is InputState.BAD
-    assert (load.health(0).why, load.health(0).refusal) == (Why.NOT_A_NUMBER, 'because')
+    assert (load.status(0).why, load.status(0).refusal) == (Why.NOT_A_NUMBER, 'because')
     load.accept(sample(1))
     assert load.state(1) is InputState.OK
     assert (load.received, load.dropped) == (2, 1)
@@ -63,12 +63,12 @@ def test_an_input_without_a_topic_says_so():
 
 def test_rate_is_the_mean_over_the_last_samples():
     load = tracker()
-    assert math.isnan(load.health(0).rate)
+    assert math.isnan(load.status(0).rate)
     for i in range(100):
         load.accept(sample(i * SECOND // 50))
-    assert load.health(2 * SECOND).rate == 50.0
+    assert load.status(2 * SECOND).rate == 50.0
     load.forget()
-    assert math.isnan(load.health(0).rate)
+    assert math.isnan(load.status(0).rate)
 
 
 def test_states_have_the_numbers_of_the_messages():
@@ -81,7 +81,7 @@ def test_how_fresh_an_input_is_counts_from_its_arrival():
     load.accept(sample(100, arrival=700))
     assert load.state(710) is InputState.OK
     assert load.state(711) is InputState.STALE
-    assert load.health(711).age == 11e-9
+    assert load.status(711).age == 11e-9
 
 
 def test_the_lag_is_the_least_of_the_last_samples():
@@ -93,13 +93,13 @@ def test_the_lag_is_the_least_of_the_last_samples():
     assert not load.lagging
     load = tracker(max_lag=599)
     load.accept(sample(200, arrival=800))
-    assert load.health(800).lagging
+    assert load.status(800).lagging
 
 
 def test_stamps_of_reception_have_no_lag():
     load = tracker(max_lag=1)
     load.accept(sample(100, arrival=100, stamp_source=StampSource.RECEIVE))
-    assert math.isnan(load.health(100).lag)
+    assert math.isnan(load.status(100).lag)
     assert not load.lagging
 
 
@@ -114,21 +114,21 @@ def test_what_arrived_in_the_future_of_a_clock_that_was_set_back_has_arrived_now
 def test_losses_add_up_and_are_shown_for_a_while():
     load = tracker()
     load.lose(0, SECOND)
-    assert (load.health(SECOND).lost, load.health(SECOND).losing) == (0, False)
+    assert (load.status(SECOND).lost, load.status(SECOND).losing) == (0, False)
     load.lose(3, 2 * SECOND)
     load.lose(4, 3 * SECOND)
-    assert load.health(3 * SECOND).lost == 7
-    assert load.health(3 * SECOND + LOSS_SHOWN - 1).losing
-    assert not load.health(3 * SECOND + LOSS_SHOWN).losing
+    assert load.status(3 * SECOND).lost == 7
+    assert load.status(3 * SECOND + LOSS_SHOWN - 1).losing
+    assert not load.status(3 * SECOND + LOSS_SHOWN).losing
 
 
 def test_a_loss_that_cannot_be_known_is_unknown_and_keeps_what_was_counted():
     load = tracker()
     load.lose(3, SECOND)
     load.lose(None, SECOND)
-    assert load.health(SECOND).lost is None
+    assert load.status(SECOND).lost is None
     load.lose(0, SECOND)
-    assert load.health(SECOND).lost == 3
+    assert load.status(SECOND).lost == 3
 
 
 def others(*names):
@@ -137,28 +137,28 @@ def others(*names):
 
 def test_joints_of_messages_about_others_are_collected_until_a_sample_comes():
     load = tracker()
-    assert load.health(0).joints is None
+    assert load.status(0).joints is None
     for names in (('c', 'a'), ('b',), ('c', 'a')):
         load.drop(others(*names))
-    assert load.health(0).joints == others('a', 'b', 'c')
+    assert load.status(0).joints == others('a', 'b', 'c')
     load.accept(sample(1))
-    assert load.health(1).joints is None
+    assert load.status(1).joints is None
 
 
 def test_of_joints_without_end_a_part_is_kept():
     load = tracker()
     for i in range(3 * MOST_OTHERS):
         load.drop(others(f'joint{i}'))
-    assert len(load.health(0).joints.names) == MOST_OTHERS
+    assert len(load.status(0).joints.names) == MOST_OTHERS
 
 
 def test_a_slow_input_tells_its_longest_gap():
     load = tracker(timeout=SECOND)
     for stamp in (1, 2, 4):
         load.accept(sample(stamp * SECOND))
-    assert math.isnan(load.health(0).longest_gap)  # one gap is an interruption
+    assert math.isnan(load.status(0).longest_gap)  # one gap is an interruption
     load.accept(sample(7 * SECOND))
     load.accept(sample(9 * SECOND))
-    assert load.health(0).longest_gap == 3.0
+    assert load.status(0).longest_gap == 3.0
     load.accept(sample(10 * SECOND))
-    assert not load.health(0).slow
+    assert not load.status(0).slow

@@ -7,7 +7,6 @@ import math
 from pathlib import Path
 import re
 
-from ballscrew_monitor.core import reasons
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.derived_load import LoadDerivation
 from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, Why
@@ -15,9 +14,10 @@ from ballscrew_monitor.core.judgement import Level
 from ballscrew_monitor.core.links import Link
 from ballscrew_monitor.core.shelving import shelve
 from ballscrew_monitor.core.state import Event
-from ballscrew_monitor.node import diagnostics, state_folder
-from ballscrew_monitor.node.diagnostics import ERROR, OK, STALE, WARN
-from ballscrew_monitor.node.plain_topics import plain_values
+from ballscrew_monitor.messages import diagnostics, reasons
+from ballscrew_monitor.messages.diagnostics import ERROR, OK, STALE, WARN
+from ballscrew_monitor.messages.state_messages import plain_values
+from ballscrew_monitor.node import state_folder
 import pytest
 
 START = 1000 * SECOND

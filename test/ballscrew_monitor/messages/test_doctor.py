@@ -12,10 +12,10 @@ from ballscrew_monitor.core.conversions import (
     temperature_scaling,
     TEMPERATURE_UNITS,
 )
-from ballscrew_monitor.core.doctor import findings, Heard, InputFacts, near_topic, Surroundings
-from ballscrew_monitor.core.health import Health, InputState
+from ballscrew_monitor.core.input_status import InputState, InputStatus
 from ballscrew_monitor.core.inputs import Source, StampSource
 from ballscrew_monitor.core.links import Link, Publisher
+from ballscrew_monitor.messages.doctor import findings, Heard, InputFacts, near_topic, Surroundings
 import pytest
 
 JOINTS, FLOAT = 'sensor_msgs/msg/JointState', 'std_msgs/msg/Float64'
@@ -51,7 +51,7 @@ def around(**changes):
 
 
 def heard(low=1.0, high=2.0, gap=0.01, **changes):
-    health = {
+    status = {
         'source': Source.SPEED,
         'state': InputState.OK,
         'stamp_source': StampSource.HEADER,
@@ -60,7 +60,7 @@ def heard(low=1.0, high=2.0, gap=0.01, **changes):
         'received': 100,
         'dropped': 0,
     }
-    return Heard(health=Health(**(health | changes)), low=low, high=high, longest_gap=gap)
+    return Heard(status=InputStatus(**(status | changes)), low=low, high=high, longest_gap=gap)
 
 
 def facts(source=Source.SPEED, unit='rad/s', **changes):

@@ -5,10 +5,10 @@
 import math
 
 from ballscrew_monitor.core.fields import OtherJoints
-from ballscrew_monitor.core.health import Health, InputState
+from ballscrew_monitor.core.input_status import InputState, InputStatus
 from ballscrew_monitor.core.inputs import Source, StampSource, Why
 from ballscrew_monitor.core.links import Link
-from ballscrew_monitor.core.reasons import (
+from ballscrew_monitor.messages.reasons import (
     enough_timeout,
     fault,
     joint_reason,
@@ -24,7 +24,7 @@ ALONE = Link(topic='/t', type_name='a/msg/B')
 JOINTS = OtherJoints('velocity', 'x_axis', ('gripper', 'x_joint'))
 
 
-def health(state, **changes):
+def status(state, **changes):
     values = {
         'source': Source.SPEED,
         'state': state,
@@ -34,7 +34,7 @@ def health(state, **changes):
         'received': 1,
         'dropped': 0,
     }
-    return Health(**(values | changes))
+    return InputStatus(**(values | changes))
 
 
 @pytest.mark.parametrize(
@@ -88,7 +88,7 @@ def health(state, **changes):
     ],
 )
 def test_each_fault_has_its_sentence(state, changes, link, text):
-    assert fault(health(state, **changes), link, 'x.speed') == text
+    assert fault(status(state, **changes), link, 'x.speed') == text
 
 
 def test_messages_without_joints_are_read_by_index():
@@ -113,14 +113,14 @@ def test_a_timeout_that_would_do_is_round_and_at_least_twice_the_gap(gap, timeou
 
 
 def test_the_worst_kind_of_fault_is_told_alone():
-    good, slow = health(InputState.OK), health(InputState.OK, slow=True, longest_gap=1.0)
-    lost = health(InputState.OK, source=Source.LOAD, losing=True, lag=math.nan)
+    good, slow = status(InputState.OK), status(InputState.OK, slow=True, longest_gap=1.0)
+    lost = status(InputState.OK, source=Source.LOAD, losing=True, lag=math.nan)
     assert summary('x', (good,), {}) == (Standing.GOOD, 'all inputs arrive')
     assert summary('x', (slow, good), {}) == (
         Standing.DEGRADED,
         'speed comes less often than its timeout allows: set x.speed.timeout to 2.0 or more',
     )
     assert summary('x', (slow, lost), {})[1].startswith('load messages are lost on the way')
-    standing, text = summary('x', (lost, health(InputState.MISSING)), {Source.SPEED: MATCHED})
+    standing, text = summary('x', (lost, status(InputState.MISSING)), {Source.SPEED: MATCHED})
     assert standing is Standing.LOST
     assert text == 'speed was never received: the publisher on /t has sent nothing yet'

@@ -8,7 +8,7 @@ from ballscrew_monitor.core.conversions import Direction, SECOND
 from ballscrew_monitor.core.estimate import estimate
 from ballscrew_monitor.core.inputs import InputSample, Source
 from ballscrew_monitor.core.state import Event
-from ballscrew_monitor.node.messages import (
+from ballscrew_monitor.messages.state_messages import (
     fill_result,
     NUMBERS,
     out_of_zone_message,

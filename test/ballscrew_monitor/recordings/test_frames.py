@@ -5,7 +5,7 @@
 import io
 import os
 
-from ballscrew_monitor.node.frames import Frame, FrameKind, FrameSender, read_frames
+from ballscrew_monitor.recordings.frames import Frame, FrameKind, FrameSender, read_frames
 from hypothesis import given
 from hypothesis import strategies as st
 import pytest

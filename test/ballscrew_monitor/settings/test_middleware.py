@@ -8,8 +8,8 @@ import subprocess
 import sys
 
 from ballscrew_monitor.cycle.node_process import child_environment, ros_environment
-from ballscrew_monitor.node import middleware
-from ballscrew_monitor.node.middleware import check_middleware, loopback, notice, stay_local
+from ballscrew_monitor.settings import middleware
+from ballscrew_monitor.settings.middleware import check_middleware, loopback, notice, stay_local
 from diagnostic_msgs.msg import DiagnosticArray
 import pytest
 from surrogate.files import InputError

@@ -6,9 +6,9 @@ import math
 import pathlib
 import re
 
-from ballscrew_monitor.node import parameters
-from ballscrew_monitor.node.parameter_row import Change
-from ballscrew_monitor.node.parameter_table import AXIS_ROWS
+from ballscrew_monitor.settings import parameters
+from ballscrew_monitor.settings.axis_parameters import AXIS_ROWS
+from ballscrew_monitor.settings.parameter_row import Change
 import pytest
 from surrogate.files import InputError
 import yaml

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What may be written of the QoS of the inputs."""
 
-from ballscrew_monitor.node.qos import check_overrides, input_qos, overridden
+from ballscrew_monitor.settings.qos import check_overrides, input_qos, overridden
 import pytest
 from surrogate.files import InputError
 

@@ -4,8 +4,8 @@
 
 from pathlib import Path
 
-from ballscrew_monitor.node.parameters import read_file
-from ballscrew_monitor.node.topics import absolute, input_topics, output, with_types
+from ballscrew_monitor.settings.parameters import read_file
+from ballscrew_monitor.settings.topics import absolute, input_topics, output, with_types
 
 CONFIG = Path(__file__).resolve().parents[3] / 'config' / 'nominal_cycle.yaml'
 
