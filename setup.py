@@ -60,7 +60,7 @@ setup(
     package_data={
         'ballscrew_monitor': [
             'py.typed',
-            'node/*.xml',
+            'settings/*.xml',
             'report/components/*.css',
             'report/components/*.js',
             'report/components/uplot/*',

@@ -6,7 +6,7 @@ import io
 import signal
 import sys
 
-from ballscrew_monitor.node.interrupts import end_at_once
+from ballscrew_monitor.core.interrupts import end_at_once
 
 
 def main() -> int:

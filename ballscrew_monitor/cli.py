@@ -14,8 +14,7 @@ import signal
 import sys
 from typing import Any
 
-from ballscrew_monitor.node.interrupts import FAILED, leave_to_python, raise_signals, SIGNALLED
-from ballscrew_monitor.node.middleware import check_middleware
+from ballscrew_monitor.core.interrupts import FAILED, leave_to_python, raise_signals, SIGNALLED
 from ballscrew_monitor.options import (
     add_doctor,
     add_import,
@@ -26,6 +25,7 @@ from ballscrew_monitor.options import (
     add_solve,
     PARAMS,
 )
+from ballscrew_monitor.settings.middleware import check_middleware
 from surrogate.cli import add_commands
 from surrogate.files import InputError
 from surrogate.surface import SurfaceError

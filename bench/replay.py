@@ -20,12 +20,12 @@ import tempfile
 import time
 import timeit
 
-from ballscrew_monitor.node import parameters
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
 from ballscrew_monitor.recordings.replay import replay, replay_columns
 from ballscrew_monitor.report.log_report import LogResult, report_log
 from ballscrew_monitor.report.parameters import LogParameters
+from ballscrew_monitor.settings import parameters
 from geometry_msgs.msg import WrenchStamped
 import numpy as np
 from rclpy.serialization import serialize_message

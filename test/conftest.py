@@ -36,7 +36,7 @@ SLOW = (
     'ballscrew_monitor/node/test_motor_torque.py',
     'ballscrew_monitor/node/test_faults.py',
     'ballscrew_monitor/node/test_loss.py',
-    'ballscrew_monitor/node/test_middleware.py',
+    'ballscrew_monitor/settings/test_middleware.py',
     'ballscrew_monitor/node/test_node.py',
     'ballscrew_monitor/node/test_solve.py',
     'ballscrew_monitor/recordings/test_black_box.py',

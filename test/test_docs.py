@@ -6,7 +6,7 @@ from pathlib import Path
 import re
 
 from ballscrew_monitor.cli import main
-from ballscrew_monitor.node.parameters import markdown_table
+from ballscrew_monitor.settings.parameters import markdown_table
 import pytest
 
 ROOT = Path(__file__).parents[1]

@@ -40,8 +40,15 @@ TASKS = {
 }
 LOOKUP = {'surrogate', 'surrogate.files', 'surrogate.surface', 'surrogate.units'}
 
-FLOORS = ('core', 'node', 'clients', 'recordings', 'report', 'cycle')
-"""Folders of the online half, the lowest first."""
+FLOORS = (
+    ('core',),
+    ('settings',),
+    ('messages',),
+    ('recordings',),
+    ('node', 'report'),
+    ('clients', 'cycle'),
+)
+"""Folders of the online half, the lowest first; those beside each other do not meet."""
 OFFLINE_FLOORS = (
     ('units', 'files', 'progress'),
     ('datasheet', 'plotting'),
@@ -68,6 +75,11 @@ def name_of(path: Path) -> str:
     """Return the dotted name of a module."""
     parts = path.relative_to(TREE).with_suffix('').parts
     return '.'.join(part for part in parts if part != '__init__')
+
+
+def room(name: str) -> str:
+    """Return the folder or single module of a half that holds a module."""
+    return f'{name}.'.split('.')[1]
 
 
 def imports(path: Path) -> Iterator[str]:
@@ -121,40 +133,41 @@ def test_online_half_imports_the_lookup_alone(path: Path) -> None:
 
 @pytest.mark.parametrize('path', MODULES['ballscrew_monitor'], ids=name_of)
 def test_online_half_imports_downward(path: Path) -> None:
-    """A folder imports itself and the folders below it; no folder imports the command line."""
-    own = path.parent.name
-    above = {
-        folder for folder in FLOORS if own in FLOORS and FLOORS.index(folder) > FLOORS.index(own)
-    }
-    parts = [name.split('.') for name in imports(path) if name.startswith('ballscrew_monitor.')]
+    """A folder imports itself and the floors below it; no folder imports the command line."""
+    own = room(name_of(path))
+    floor = next((at for at, rooms in enumerate(FLOORS) if own in rooms), len(FLOORS))
+    above = {other for rooms in FLOORS[floor:] for other in rooms if other != own}
+    named = {room(name) for name in imports(path) if name.startswith('ballscrew_monitor.')}
     # The command line is for the executable alone, and its options for the command line.
     upper = {'__main__.py': set(), 'cli.py': {'cli'}}.get(path.name, {'cli', 'options'})
-    assert not {part[1] for part in parts} & {*above, *upper}
+    assert not named & {*above, *upper}
 
 
-def offline_room(name: str) -> str:
-    """Return the folder or single module of the offline half that holds a module."""
-    return f'{name}.'.split('.')[1]
-
-
-def test_every_room_of_the_offline_half_has_a_floor() -> None:
+@pytest.mark.parametrize(
+    ('half', 'floors'),
+    [
+        ('surrogate', OFFLINE_FLOORS),
+        ('ballscrew_monitor', (*FLOORS, ('cli', 'options', '__main__'))),
+    ],
+)
+def test_every_room_has_a_floor(half: str, floors: tuple[tuple[str, ...], ...]) -> None:
     """No folder and no single module is forgotten, and none is named that is gone."""
-    rooms = {offline_room(name_of(path)) for path in MODULES['surrogate']} - {''}
-    assert rooms == {room for floor in OFFLINE_FLOORS for room in floor}
+    rooms = {room(name_of(path)) for path in MODULES[half]} - {''}
+    assert rooms == {one for floor in floors for one in floor}
 
 
 @pytest.mark.parametrize('path', MODULES['surrogate'], ids=name_of)
 def test_offline_half_imports_downward(path: Path) -> None:
     """A folder imports itself and the floors below it; two import a few modules alone."""
-    own = offline_room(name_of(path))
+    own = room(name_of(path))
     named = {name for name in imports(path) if name.startswith('surrogate.')}
-    others = {name for name in named if offline_room(name) != own}
+    others = {name for name in named if room(name) != own}
     if own in STANDS_ON:
         assert others <= STANDS_ON[own]
         return
     floor = next((at for at, rooms in enumerate(OFFLINE_FLOORS) if own in rooms), 0)
     below = {room for rooms in OFFLINE_FLOORS[:floor] for room in rooms}
-    assert {offline_room(name) for name in others} <= below
+    assert {room(name) for name in others} <= below
 
 
 def test_surrogate_loads_no_ros() -> None:
@@ -174,6 +187,6 @@ def test_lookup_loads_numpy_alone() -> None:
 def test_node_loads_of_surrogate_what_the_lookup_needs() -> None:
     """The process that watches the machine holds nothing of the solver, plots or recordings."""
     needed = loaded_by('import surrogate.surface, surrogate.units')
-    loaded = loaded_by('import ballscrew_monitor.node.life')
+    loaded = loaded_by('import ballscrew_monitor.node.run')
     assert not {name for name in loaded - needed if name.split('.')[0] == 'surrogate'}
     assert not loaded & {'matplotlib', 'mcap', 'scipy'}

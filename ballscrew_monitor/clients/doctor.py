@@ -19,22 +19,22 @@ from typing import Any
 from ballscrew_monitor.clients.hearing import Hearing
 from ballscrew_monitor.clients.surroundings import surroundings
 from ballscrew_monitor.core.conversions import nanoseconds
-from ballscrew_monitor.core.doctor import findings, InputFacts, known_range, Surroundings
 from ballscrew_monitor.core.fields import message_class, number_fields
 from ballscrew_monitor.core.inputs import Input, make_input, Source
+from ballscrew_monitor.core.interrupts import interrupts, SIGNALLED
 from ballscrew_monitor.core.links import Link, types_of
-from ballscrew_monitor.node import parameters
-from ballscrew_monitor.node.axis import (
+from ballscrew_monitor.messages.doctor import findings, InputFacts, known_range, Surroundings
+from ballscrew_monitor.settings import parameters
+from ballscrew_monitor.settings.axis import (
     derivation_of,
     is_configured,
     load_surface,
     scaling_of,
     scalings_of,
 )
-from ballscrew_monitor.node.interrupts import interrupts, SIGNALLED
-from ballscrew_monitor.node.middleware import notice
-from ballscrew_monitor.node.qos import check_overrides, input_qos, overridden, publishers_on
-from ballscrew_monitor.node.topics import absolute
+from ballscrew_monitor.settings.middleware import notice
+from ballscrew_monitor.settings.qos import check_overrides, input_qos, overridden, publishers_on
+from ballscrew_monitor.settings.topics import absolute
 import rclpy
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
@@ -262,10 +262,10 @@ def _line(facts: InputFacts) -> str:
     head = f'{facts.parameter}: {facts.link.topic} ({types})'
     if facts.heard is None:
         return head
-    heard, health = facts.heard, facts.heard.health
-    parts = [f'{head}: {health.received} messages']
-    parts += [f'{health.rate:.4g} Hz'] if math.isfinite(health.rate) else []
-    parts += [f'stamps {1e3 * health.lag:.2g} ms behind'] if math.isfinite(health.lag) else []
+    heard, status = facts.heard, facts.heard.status
+    parts = [f'{head}: {status.received} messages']
+    parts += [f'{status.rate:.4g} Hz'] if math.isfinite(status.rate) else []
+    parts += [f'stamps {1e3 * status.lag:.2g} ms behind'] if math.isfinite(status.lag) else []
     if math.isfinite(heard.low):
         parts.append(f'{heard.low:.4g} to {heard.high:.4g} {facts.unit}')
     return ', '.join(parts)
@@ -277,9 +277,9 @@ def _record(found: list[str], facts: list[InputFacts]) -> str:
         one.parameter: {
             'topic': one.link.topic,
             'types': types_of(one.link),
-            'received': one.heard.health.received if one.heard else 0,
-            'rate_Hz': one.heard.health.rate if one.heard else None,
-            'lag_s': one.heard.health.lag if one.heard else None,
+            'received': one.heard.status.received if one.heard else 0,
+            'rate_Hz': one.heard.status.rate if one.heard else None,
+            'lag_s': one.heard.status.lag if one.heard else None,
         }
         for one in facts
     }

@@ -6,14 +6,14 @@ import math
 from typing import Any
 
 from ballscrew_monitor.core.conversions import seconds
-from ballscrew_monitor.core.doctor import Heard
-from ballscrew_monitor.core.health import Tracker
+from ballscrew_monitor.core.input_status import Tracker
 from ballscrew_monitor.core.inputs import Input, InputSample, Why
+from ballscrew_monitor.messages.doctor import Heard
 from rclpy.clock import Clock
 
 
 class Hearing:
-    """The messages of one input: their health, their numbers, and the time between them."""
+    """The messages of one input: their status, their numbers, and the time between them."""
 
     def __init__(
         self, source: Input, clock: Clock, *, timeout: int, max_future: int, max_lag: int
@@ -53,7 +53,7 @@ class Hearing:
         """Return what has come until now."""
         now = self._clock.now().nanoseconds
         return Heard(
-            health=self._tracker.health(now),
+            status=self._tracker.status(now),
             low=min(self._numbers, default=math.nan),
             high=max(self._numbers, default=math.nan),
             longest_gap=seconds(max(self._longest_gap, self._silence(now))),

@@ -18,8 +18,8 @@ import time
 from typing import Any
 
 from ballscrew_monitor.core.conversions import axial_load, direction_of
-from ballscrew_monitor.node.interrupts import interrupts, SIGNALLED
-from ballscrew_monitor.node.middleware import notice
+from ballscrew_monitor.core.interrupts import interrupts, SIGNALLED
+from ballscrew_monitor.settings.middleware import notice
 from ballscrew_msgs.action import SolveOperatingPoint
 from ballscrew_msgs.msg import OperatingPoint, PointResult
 import rclpy

@@ -5,7 +5,7 @@
 import os
 from pathlib import Path
 
-from ballscrew_monitor.core.doctor import Surroundings
+from ballscrew_monitor.messages.doctor import Surroundings
 from rclpy.node import Node
 
 UDP = Path('/proc/net/udp')

@@ -53,6 +53,16 @@ class Solve(HasOperatingPoint, Protocol):
         """Return the fields that were solved [SI]."""
 
 
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class KeptSolve:
+    """A solve that corrects: speed [rad/s], opposing load [N], temperature [K], fields [SI]."""
+
+    speed: float
+    opposing_load: float
+    temperature: float
+    solved: dict[str, float]
+
+
 def solved_at(point: MachinePoint) -> SolvedAt:
     """Return the place on the surface of a point in the machine frame."""
     return SolvedAt(

@@ -2,10 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """From messages to samples in the machine frame, or why a message gives none."""
 
+from collections.abc import Sequence
 import dataclasses
 import enum
 import math
-from typing import Any
+from typing import Any, TypeVar
 
 from ballscrew_monitor.core.conversions import Scaling, SECOND, seconds
 from ballscrew_monitor.core.fields import (
@@ -18,6 +19,7 @@ from ballscrew_monitor.core.fields import (
     TooShort,
 )
 
+Axis = TypeVar('Axis')
 UNSTATED = -1
 UNDECODED = 'the message does not decode: it is truncated, or of another definition of its type'
 YEAR = (
@@ -238,3 +240,21 @@ def _future_text(ahead: int, allowed: int) -> str:
         f'the stamp is {seconds(ahead):.3g} s ahead of the clock, allowed is max_future, '
         f'{seconds(allowed):.3g} s: set the clocks of both machines alike, or raise max_future'
     )
+
+
+def ordered(
+    events: Sequence[tuple[Axis, InputSample | Refusal]],
+) -> list[tuple[Axis, InputSample | Refusal]]:
+    """
+    Return events, each with its axis, in the order in which they came.
+
+    Those of equal stamps follow their sources: the speed is the last of them, so that it is judged
+    with what was measured with it.
+
+    """
+    first: dict[int, int] = {}
+    keys = []
+    for place, (_, event) in enumerate(events):
+        stamp = event.arrival if isinstance(event, Refusal) else event.stamp
+        keys.append((first.setdefault(stamp, place), event.source, place))
+    return [events[place] for _, _, place in sorted(keys)]

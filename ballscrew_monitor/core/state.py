@@ -8,7 +8,7 @@ import math
 
 from ballscrew_monitor.core.advice import Advice, Advisor
 from ballscrew_monitor.core.estimate import MachinePoint, PointEstimate
-from ballscrew_monitor.core.health import Health
+from ballscrew_monitor.core.input_status import InputStatus
 from ballscrew_monitor.core.inputs import Source, YEAR
 from ballscrew_monitor.core.judgement import Code, Finding, Level, Limits, Severity, Verdict
 from ballscrew_monitor.core.shelving import NOT_SHELVED, Shelving
@@ -119,7 +119,7 @@ class State:
     event: Event | None
     limits: Limits
     window: WindowStatistics
-    inputs: tuple[Health, ...]
+    inputs: tuple[InputStatus, ...]
     totals: Totals
     judged: int
     measured_torque: float

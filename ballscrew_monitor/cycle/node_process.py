@@ -11,8 +11,8 @@ import subprocess
 import sys
 from typing import Any
 
-from ballscrew_monitor.node.middleware import loopback
 from ballscrew_monitor.node.solver_process import WHEEL_VARIABLES
+from ballscrew_monitor.settings.middleware import loopback
 
 PATIENCE = ((signal.SIGINT, 8.0), (signal.SIGTERM, 3.0), (signal.SIGKILL, 5.0))  # [s] after each
 PR_SET_PDEATHSIG = 1

@@ -8,11 +8,11 @@ import importlib.util
 from pathlib import Path
 from typing import Any
 
-from ballscrew_monitor.node import parameters
-from ballscrew_monitor.node.axis import Axis, build_axis
-from ballscrew_monitor.node.topics import input_topics, with_types
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.replay import speed_messages
+from ballscrew_monitor.settings import parameters
+from ballscrew_monitor.settings.axis import Axis, build_axis
+from ballscrew_monitor.settings.topics import input_topics, with_types
 from surrogate.files import InputError
 
 RECORDING = 'cycle'

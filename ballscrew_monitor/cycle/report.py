@@ -8,10 +8,10 @@ from pathlib import Path
 from ballscrew_monitor.cycle.outcome import loss, Outcome, unjudged
 from ballscrew_monitor.cycle.plan import Plan
 from ballscrew_monitor.cycle.state_trace import Trace, Tracer
-from ballscrew_monitor.node.axis import Axis
-from ballscrew_monitor.node.topics import absolute, output
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.summary import Summarizer, Summary
+from ballscrew_monitor.settings.axis import Axis
+from ballscrew_monitor.settings.topics import absolute, output
 from ballscrew_msgs.msg import BallScrewState, OutOfZone
 from rclpy.serialization import deserialize_message
 

@@ -17,6 +17,7 @@ from pathlib import Path
 import sys
 import threading
 
+from ballscrew_monitor.core.interrupts import DONE, FAILED, interrupts, SIGNALLED
 from ballscrew_monitor.cycle.domain import free_domain, is_free
 from ballscrew_monitor.cycle.node_process import confined, NodeProcess, ros_environment
 from ballscrew_monitor.cycle.outcome import Outcome
@@ -24,7 +25,6 @@ from ballscrew_monitor.cycle.plan import Plan, RECORDING
 from ballscrew_monitor.cycle.report import LOG, losses, picture, report
 from ballscrew_monitor.cycle.shared_memory import remove_stale
 from ballscrew_monitor.cycle.supervision import RunFailure, Supervision
-from ballscrew_monitor.node.interrupts import DONE, FAILED, interrupts, SIGNALLED
 from ballscrew_monitor.recordings.bag_writer import BagWriter
 from surrogate.files import InputError
 

@@ -18,11 +18,11 @@ from ballscrew_monitor.cycle.node_process import NodeProcess
 from ballscrew_monitor.cycle.outcome import Outcome, speed_health
 from ballscrew_monitor.cycle.plan import Plan
 from ballscrew_monitor.cycle.status import progress_bar, state_cells, StatusLine
-from ballscrew_monitor.node.topics import absolute, input_topics, output
 from ballscrew_monitor.recordings.bag_writer import BagWriter
 from ballscrew_monitor.recordings.player import Played, Player
 from ballscrew_monitor.recordings.recorded_topics import recorded_topics
 from ballscrew_monitor.recordings.recorder import Recorder
+from ballscrew_monitor.settings.topics import absolute, input_topics, output
 from ballscrew_msgs.msg import BallScrewState
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 import rclpy

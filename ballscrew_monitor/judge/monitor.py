@@ -11,7 +11,7 @@ import dataclasses
 import math
 
 from ballscrew_monitor.core.estimate import MachinePoint, PointSource, PointValidity
-from ballscrew_monitor.core.health import Health
+from ballscrew_monitor.core.input_status import InputStatus
 from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, Why
 from ballscrew_monitor.core.judgement import Level
 from ballscrew_monitor.core.memory import Memory as Kept
@@ -142,7 +142,7 @@ class Monitor:
             event=self.event if row.edge else None,
             limits=settings.limits,
             window=views.window_of(memory),
-            inputs=self.health(int(row.now)),
+            inputs=self.input_status(int(row.now)),
             totals=views.totals_of(memory),
             judged=int(memory.judged),
             measured_torque=torque,
@@ -248,10 +248,10 @@ class Monitor:
         """Set the totals to zero."""
         views.clear_totals(self.memory)
 
-    def health(self, now: int) -> tuple[Health, ...]:
+    def input_status(self, now: int) -> tuple[InputStatus, ...]:
         """Return how well the inputs do at `now` [ns]."""
         return tuple(
-            self.words.health(self.memory, self.numbers, source, now)
+            self.words.status(self.memory, self.numbers, source, now)
             for source in views.SOURCES
         )
 

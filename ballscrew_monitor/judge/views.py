@@ -18,7 +18,7 @@ from ballscrew_monitor.core.estimate import (
     PointSource,
     PointValidity,
 )
-from ballscrew_monitor.core.health import Health, InputState
+from ballscrew_monitor.core.input_status import InputState, InputStatus
 from ballscrew_monitor.core.inputs import (
     hole_text,
     implausible_text,
@@ -257,15 +257,15 @@ def input_state_of(memory: Any, settings: Any, source: Source, now: int) -> Inpu
     return InputState.OK if is_fresh(memory, settings, source, now) else InputState.STALE
 
 
-def health_of(
+def input_status_of(
     memory: Any, settings: Any, source: Source, now: int, texts: Texts, joints: Any = None
-) -> Health:
+) -> InputStatus:
     """Return how well an input does at `now` [ns]; `joints` are those of other messages."""
     why = int(memory.refusal[source])
     slow = bool(memory.long_gaps[source] >= SLOW_GAPS)
     lag_known = bool(memory.lags_taken[source])
     known = bool(memory.known[source])
-    return Health(
+    return InputStatus(
         source=source,
         state=input_state_of(memory, settings, source, now),
         rate=_rate(memory, source),

@@ -6,10 +6,10 @@ import dataclasses
 from typing import Any
 
 from ballscrew_monitor.core.fields import OtherJoints
-from ballscrew_monitor.core.health import Health
+from ballscrew_monitor.core.input_status import InputStatus
 from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, Why
 from ballscrew_monitor.judge.records import Event, NOT_KNOWN, REFUSAL, SAMPLE
-from ballscrew_monitor.judge.views import health_of
+from ballscrew_monitor.judge.views import input_status_of
 
 EARLIEST, LATEST = -(2**61), 2**61
 """Stamps that are judged [ns]; stamps beyond count as these."""
@@ -52,10 +52,10 @@ class InputWords:
             if len(heard) < MOST_OTHERS:
                 heard[refusal.joints] = None
 
-    def health(self, memory: Any, settings: Any, source: Source, now: int) -> Health:
+    def status(self, memory: Any, settings: Any, source: Source, now: int) -> InputStatus:
         """Return how well an input does at `now` [ns]."""
         joints = self._named(source)
-        return health_of(memory, settings, source, now, self.texts, joints)
+        return input_status_of(memory, settings, source, now, self.texts, joints)
 
     def _named(self, source: Source) -> OtherJoints | None:
         """Return the joints of all messages about others, of however many publishers."""

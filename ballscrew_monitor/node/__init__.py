@@ -1,3 +1,3 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The lifecycle node of one axis or many, and what makes it up from parameters and messages."""
+"""The lifecycle node of one axis or many: intake, publishers, services and action."""

@@ -12,7 +12,7 @@ def main(args: list[str] | None = None) -> int:
     stop: list[int] = []
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda received, frame: stop.append(received))
-    from ballscrew_monitor.node.middleware import check_middleware
+    from ballscrew_monitor.settings.middleware import check_middleware
     from surrogate.files import InputError
 
     try:
@@ -20,9 +20,9 @@ def main(args: list[str] | None = None) -> int:
     except InputError as error:
         print(f'ballscrew_monitor: {error}', file=sys.stderr)
         return 2
-    from ballscrew_monitor.node.life import live
+    from ballscrew_monitor.node.run import run
 
-    return live(args, stop)
+    return run(args, stop)
 
 
 if __name__ == '__main__':

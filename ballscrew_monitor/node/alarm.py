@@ -10,10 +10,10 @@ from ballscrew_monitor.core.conversions import clock_text, seconds
 from ballscrew_monitor.core.judgement import Level
 from ballscrew_monitor.core.shelving import NOT_SHELVED, Shelving
 from ballscrew_monitor.core.state import State
-from ballscrew_monitor.node.axis import Axis
+from ballscrew_monitor.messages.state_messages import out_of_zone_message
 from ballscrew_monitor.node.event_log import event_facts, Kind, point_facts, totals_facts
 from ballscrew_monitor.node.keeping import Keeping
-from ballscrew_monitor.node.messages import out_of_zone_message
+from ballscrew_monitor.settings.axis import Axis
 from ballscrew_msgs.msg import OutOfZone
 from rclpy.clock import Clock
 from rclpy.duration import Duration

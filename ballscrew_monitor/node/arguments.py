@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping, Sequence
 import re
 from typing import Any
 
-from ballscrew_monitor.node import parameters
+from ballscrew_monitor.settings import parameters
 from surrogate.files import InputError
 import yaml
 

@@ -4,8 +4,8 @@
 
 from collections.abc import Callable, Mapping
 
+from ballscrew_monitor.node.axis_publisher import AxisPublisher
 from ballscrew_monitor.node.keeping import Keeping
-from ballscrew_monitor.node.station import Station
 from rclpy.clock import Clock
 from rclpy.node import Node
 
@@ -20,7 +20,7 @@ class Caretaker:
         self,
         node: Node,
         keeping: Keeping,
-        find: Callable[[], Mapping[str, Station]],
+        find: Callable[[], Mapping[str, AxisPublisher]],
         say: Callable[[list[str]], None],
         *,
         clock: Clock,

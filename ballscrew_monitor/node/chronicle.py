@@ -6,15 +6,15 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from ballscrew_monitor.node import diagnostics
+from ballscrew_monitor.messages import diagnostics
+from ballscrew_monitor.node.axis_publisher import AxisPublisher
 from ballscrew_monitor.node.journal import Journal, SILENT
 from ballscrew_monitor.node.recording_process import recording, RecordingProcess
-from ballscrew_monitor.node.station import Station
 from ballscrew_msgs.msg import OutOfZone
 from diagnostic_msgs.msg import DiagnosticStatus
 from rclpy.node import Node
 
-Stations = Mapping[str, Station]
+Stations = Mapping[str, AxisPublisher]
 
 
 class Chronicle:

@@ -8,21 +8,11 @@ A file holds what was solved, not what became of the surface.
 """
 
 from collections.abc import Sequence
-import dataclasses
 from typing import Any
 
+from ballscrew_monitor.core.full_point import KeptSolve
 from ballscrew_monitor.node.state_folder import StateFolder
 from surrogate.surface import Correction, FIELDS
-
-
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class KeptSolve:
-    """A solve that corrects: speed [rad/s], opposing load [N], temperature [K], fields [SI]."""
-
-    speed: float
-    opposing_load: float
-    temperature: float
-    solved: dict[str, float]
 
 
 class CorrectionStore:

@@ -11,19 +11,19 @@ once for all of them. Simulated time is read in the same order: a message arrive
 
 """
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 import contextlib
 import operator
 import time
 from typing import Any
 
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.core.inputs import Input, InputSample, OpenInput, Refusal, Source
+from ballscrew_monitor.core.inputs import Input, InputSample, OpenInput, ordered, Refusal, Source
 from ballscrew_monitor.core.links import Link
-from ballscrew_monitor.node.axis import Axis
 from ballscrew_monitor.node.journal import Heard, Journal, SILENT
-from ballscrew_monitor.node.qos import publishers_on
 from ballscrew_monitor.node.topic import Apart, Arrival, link_of, open_topic, Topic
+from ballscrew_monitor.settings.axis import Axis
+from ballscrew_monitor.settings.qos import publishers_on
 from rclpy.event_handler import EventHandler
 from rclpy.node import Node
 from rclpy.waitable import NumberOfEntities, Waitable
@@ -222,18 +222,3 @@ def _events(arrival: Arrival, now: int, lost: int | None) -> list[AxisEvent]:
         (axis, source.read(message, now=now, max_future=axis.max_future, lost=lost))
         for axis, source in readers
     ]
-
-
-def ordered(events: Sequence[AxisEvent]) -> list[AxisEvent]:
-    """
-    Return events in the order in which they came, but those of equal stamps by their sources.
-
-    The speed is the last of them, so that it is judged with what was measured with it.
-
-    """
-    first: dict[int, int] = {}
-    keys = []
-    for place, (_, event) in enumerate(events):
-        stamp = event.arrival if isinstance(event, Refusal) else event.stamp
-        keys.append((first.setdefault(stamp, place), event.source, place))
-    return [events[place] for _, _, place in sorted(keys)]

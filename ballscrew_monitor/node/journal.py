@@ -18,15 +18,13 @@ from typing import Any
 from ballscrew_monitor.core.cdr import serialized
 from ballscrew_monitor.core.conversions import nanoseconds
 from ballscrew_monitor.core.snapshot import freeze_monitor
-from ballscrew_monitor.node.axis import Axis
-from ballscrew_monitor.node.frames import Frame, FrameKind, MOST_SEQUENCE
 from ballscrew_monitor.node.recording_process import RecordingProcess
 from ballscrew_monitor.node.topic import Arrival
+from ballscrew_monitor.recordings.frames import Frame, FrameKind, MOST_SEQUENCE, STRING, VERSION
+from ballscrew_monitor.settings.axis import Axis
 from std_msgs.msg import String
 
-VERSION = 1
 LATCHED = ('OutOfZone', 'SurfaceInfo')
-STRING = 'std_msgs/msg/String'
 AXIS_PERIOD = nanoseconds(10.0)  # [ns] after which all is said of an axis again
 RESTART = nanoseconds(2.0)  # [ns] after which a lost process is started again, then twice as long
 LONGEST_RESTART = nanoseconds(60.0)  # [ns]

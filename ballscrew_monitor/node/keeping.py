@@ -9,7 +9,7 @@ from typing import Any
 from ballscrew_monitor.core.memory import after_restart, Memory, NOTHING
 from ballscrew_monitor.core.monitor import Monitor
 from ballscrew_monitor.core.state import Event
-from ballscrew_monitor.node import diagnostics
+from ballscrew_monitor.messages import diagnostics
 from ballscrew_monitor.node.event_log import event_facts, EventLog, Kind, line_of
 from ballscrew_monitor.node.ledger import Ledger, Scribe
 from ballscrew_monitor.node.memory_store import memory_record, MemoryStore

@@ -2,32 +2,34 @@
 # SPDX-License-Identifier: Apache-2.0
 """The lifecycle node: declare, subscribe, call the monitor, publish. It decides nothing itself."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+import functools
+import traceback
 from typing import Any
 
 from ballscrew_monitor.core.conversions import nanoseconds
 from ballscrew_monitor.core.inputs import InputSample, Refusal
-from ballscrew_monitor.core.pulse import Pulse
 from ballscrew_monitor.core.state import State
-from ballscrew_monitor.node import diagnostics, parameters
+from ballscrew_monitor.core.tick_grid import TickGrid
+from ballscrew_monitor.messages import diagnostics
 from ballscrew_monitor.node.alarm import end_all
-from ballscrew_monitor.node.axis import Axis, build_axes, named_topics
+from ballscrew_monitor.node.axis_publisher import AxisPublisher, STATE_QOS
 from ballscrew_monitor.node.caretaker import Caretaker
 from ballscrew_monitor.node.chronicle import Chronicle
 from ballscrew_monitor.node.correction_store import CorrectionStore
 from ballscrew_monitor.node.event_log import Kind
 from ballscrew_monitor.node.intake import Intake
 from ballscrew_monitor.node.keeping import Keeping
-from ballscrew_monitor.node.latched_topics import LatchedTopics
+from ballscrew_monitor.node.output_topics import LatchedTopics
 from ballscrew_monitor.node.parameter_store import ParameterStore
-from ballscrew_monitor.node.qos import check_overrides, longest_period
-from ballscrew_monitor.node.reported import reported
 from ballscrew_monitor.node.shelve_service import ShelveService
 from ballscrew_monitor.node.solve_server import SolveServer
 from ballscrew_monitor.node.solver_process import SolverProcess
 from ballscrew_monitor.node.state_folder import state_directory, StateFolder
-from ballscrew_monitor.node.station import STATE_QOS, Station
 from ballscrew_monitor.node.trigger_services import not_built, TriggerServices
+from ballscrew_monitor.settings import parameters
+from ballscrew_monitor.settings.axis import Axis, build_axes, named_topics
+from ballscrew_monitor.settings.qos import check_overrides, longest_period
 from ballscrew_msgs.srv import EvaluateOperatingPoint
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from rclpy.clock import Clock, ClockType
@@ -38,13 +40,27 @@ SUCCESS, FAILURE = TransitionCallbackReturn.SUCCESS, TransitionCallbackReturn.FA
 MEGABYTE = 1e6  # [B]
 
 
+def _reported(transition: Callable[..., Any]) -> Callable[..., Any]:
+    """Log an exception in a transition; rclpy swallows it and goes to error processing."""
+
+    @functools.wraps(transition)
+    def report(self: LifecycleNode, state: LifecycleState) -> Any:
+        try:
+            return transition(self, state)
+        except Exception:
+            self.get_logger().error(traceback.format_exc())
+            raise
+
+    return report
+
+
 class BallscrewMonitor(LifecycleNode):
     """Lifecycle node that judges the lubrication and efficiency of one or more axes."""
 
     def __init__(self, **kwargs: Any) -> None:
         """Declare everything; raises InputError for a bad parameter."""
         super().__init__(parameters.NODE_NAME, **kwargs)
-        self._stations: dict[str, Station] = {}
+        self._axis_publishers: dict[str, AxisPublisher] = {}
         self._active = False
         self._finalized = False
         self._reason = 'not configured'
@@ -54,8 +70,8 @@ class BallscrewMonitor(LifecycleNode):
         self._steady = Clock(clock_type=ClockType.STEADY_TIME)
         self._store = ParameterStore(self, self._on_parameters)
         self._values = self._store.values
-        self._chronicle = Chronicle(self, self._values, lambda: self._stations)
-        self._pulse = Pulse(nanoseconds(self._values['tick_period']))
+        self._chronicle = Chronicle(self, self._values, lambda: self._axis_publishers)
+        self._grid = TickGrid(nanoseconds(self._values['tick_period']))
         self._diagnostics = self.create_publisher(DiagnosticArray, '/diagnostics', STATE_QOS)
         # On the steady clock: it speaks while a simulated one stands.
         self.create_timer(
@@ -71,13 +87,17 @@ class BallscrewMonitor(LifecycleNode):
         self._keeping = Keeping(self, self._folder)
         self._keeping.note(Kind.NODE_START)
         self._caretaker = Caretaker(
-            self, self._keeping, lambda: self._stations, self._on_kept, clock=self._steady
+            self, self._keeping, lambda: self._axis_publishers, self._on_kept, clock=self._steady
         )
-        self._solves = SolveServer(self, SolverProcess, self._find_station)
+        self._solves = SolveServer(self, SolverProcess, self._find_publisher)
         TriggerServices(
-            self, self._values, lambda: self._stations, lambda: self._failed, self._on_service
+            self,
+            self._values,
+            lambda: self._axis_publishers,
+            lambda: self._failed,
+            self._on_service,
         )
-        ShelveService(self, lambda: self._stations, self._unknown, self._on_service)
+        ShelveService(self, lambda: self._axis_publishers, self._unknown, self._on_service)
 
     def start(self) -> None:
         """Configure and activate, if the node is to do so itself."""
@@ -90,12 +110,12 @@ class BallscrewMonitor(LifecycleNode):
             self.trigger_shutdown()
 
     def _on_parameters(self, groups: set[str]) -> None:
-        for name in groups & self._stations.keys():
-            self._stations[name].axis.adapt(self._values)
-            self._stations[name].publish_info()
+        for name in groups & self._axis_publishers.keys():
+            self._axis_publishers[name].axis.adapt(self._values)
+            self._axis_publishers[name].publish_info()
             self._chronicle.describe([name], 'parameters')
 
-    @reported
+    @_reported
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Load the surfaces, compile the inputs; without one axis that works stay unconfigured."""
         try:
@@ -111,8 +131,8 @@ class BallscrewMonitor(LifecycleNode):
         if not axes:
             self._publish_diagnostics()
             return FAILURE
-        self._stations = {
-            axis.name: Station(
+        self._axis_publishers = {
+            axis.name: AxisPublisher(
                 self,
                 axis,
                 self._values,
@@ -132,29 +152,33 @@ class BallscrewMonitor(LifecycleNode):
         self._publish_diagnostics()
         return super().on_configure(state)
 
-    def _find_station(self, axis: str) -> Station | str:
+    def _find_publisher(self, axis: str) -> AxisPublisher | str:
         """Return what a solve of an axis needs, or why there is none."""
-        if axis not in self._stations:
+        if axis not in self._axis_publishers:
             return self._unknown(axis)
-        return self._stations[axis] if self._active else 'the node is inactive, activate it first'
+        return (
+            self._axis_publishers[axis]
+            if self._active
+            else 'the node is inactive, activate it first'
+        )
 
     def _unknown(self, axis: str) -> str:
         if axis in self._failed:
             return not_built(axis, self._failed[axis])
-        known = ', '.join(self._stations) or 'none, the node is not configured'
+        known = ', '.join(self._axis_publishers) or 'none, the node is not configured'
         return f'axis {axis!r} is unknown, known are: {known}'
 
-    @reported
+    @_reported
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Subscribe and begin to judge."""
         result = super().on_activate(state)
         self._active = True
         self._chronicle.begin()
-        for station in self._stations.values():
-            station.publish_info()
-            station.alarm.publish()
-        axes = [station.axis for station in self._stations.values()]
-        self._chronicle.describe(self._stations, 'begin')
+        for publisher in self._axis_publishers.values():
+            publisher.publish_info()
+            publisher.alarm.publish()
+        axes = [publisher.axis for publisher in self._axis_publishers.values()]
+        self._chronicle.describe(self._axis_publishers, 'begin')
         self._intake = Intake(self, axes, self._on_event, self._chronicle.journal)
         self._tick_timer = self.create_timer(
             self._values['tick_period'], self._on_tick, clock=self._tick_clock()
@@ -171,7 +195,7 @@ class BallscrewMonitor(LifecycleNode):
         """
         return self.get_clock() if self.get_parameter('use_sim_time').value else self._steady
 
-    @reported
+    @_reported
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Stop to judge; levels, events and totals stand."""
         self._stop()
@@ -181,13 +205,13 @@ class BallscrewMonitor(LifecycleNode):
         self._publish_diagnostics()
         return result
 
-    @reported
+    @_reported
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Forget the axes."""
         self._clear('not configured')
         return SUCCESS
 
-    @reported
+    @_reported
     def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Stop and forget the axes."""
         self._finalized = True
@@ -220,7 +244,7 @@ class BallscrewMonitor(LifecycleNode):
             self._intake.close()
             self._intake = None
         if reason:
-            alarms = [station.alarm for station in self._stations.values()]
+            alarms = [publisher.alarm for publisher in self._axis_publishers.values()]
             end_all(alarms, reason, self._steady)
         self._chronicle.close()
         if self._tick_timer is not None:
@@ -229,9 +253,9 @@ class BallscrewMonitor(LifecycleNode):
 
     def _clear(self, reason: str) -> None:
         self._stop(reason)
-        for station in self._stations.values():
-            station.close()
-        self._stations, self._failed = {}, {}
+        for publisher in self._axis_publishers.values():
+            publisher.close()
+        self._axis_publishers, self._failed = {}, {}
         self._keeping.flush()
         self._keeping.forget_damage()
         self._store.locked = False
@@ -239,42 +263,42 @@ class BallscrewMonitor(LifecycleNode):
         self._publish_diagnostics()
 
     def _on_event(self, axis: Axis, event: InputSample | Refusal) -> None:
-        self._publish(self._stations[axis.name], axis.monitor.update(event))
+        self._publish(self._axis_publishers[axis.name], axis.monitor.update(event))
 
     def _on_tick(self) -> None:
         """Tick on the grid of stamps, when that is due; what has arrived by then comes first."""
-        grid = self._pulse.tick(self.get_clock().now().nanoseconds)
+        grid = self._grid.tick(self.get_clock().now().nanoseconds)
         if grid is None or self._intake is None:
             return
         self._intake.discover()
         self._intake.drain()
         journal = self._chronicle.journal
         journal.tick(grid, self.get_clock().now().nanoseconds)
-        for station in self._stations.values():
-            self._publish(station, station.axis.monitor.tick(grid))
+        for publisher in self._axis_publishers.values():
+            self._publish(publisher, publisher.axis.monitor.tick(grid))
         steady, now = self._steady.now().nanoseconds, self.get_clock().now().nanoseconds
-        due = journal.due(self._stations, steady, now)
+        due = journal.due(self._axis_publishers, steady, now)
         self._chronicle.describe(due, 'time')
 
-    def _publish(self, station: Station, state: State | None) -> None:
+    def _publish(self, publisher: AxisPublisher, state: State | None) -> None:
         """Publish a state, and diagnostics for what it changes, though these not in a flood."""
         if state is None:
             return
-        station.publish_state(state)
-        if station.is_dwelling(state) and not self._solves.busy:
-            self.get_logger().info(f'axis {station.name}: solving the point where it dwells')
-            self._solves.solve(station, state.point)
+        publisher.publish_state(state)
+        if publisher.is_dwelling(state) and not self._solves.busy:
+            self.get_logger().info(f'axis {publisher.name}: solving the point where it dwells')
+            self._solves.solve(publisher, state.point)
         now = self._steady.now().nanoseconds
-        if station.has_news(now):  # what comes too soon is sent with the next state or the timer
-            station.say_news(now)
-            self._publish_diagnostics([station.name])
+        if publisher.has_news(now):  # what comes too soon is sent with the next state or the timer
+            publisher.say_news(now)
+            self._publish_diagnostics([publisher.name])
 
     def _publish_diagnostics(self, axes: Sequence[str] | None = None) -> None:
         """Publish the diagnostics of some axes, or of all."""
         now = self.get_clock().now()
-        for station in self._stations.values():
-            station.log_inputs(self._steady.now().nanoseconds)
-        stood = self._pulse.stood(now.nanoseconds, self._steady.now().nanoseconds)
+        for publisher in self._axis_publishers.values():
+            publisher.log_inputs(self._steady.now().nanoseconds)
+        stood = self._grid.stood(now.nanoseconds, self._steady.now().nanoseconds)
         statuses = self._statuses(self._values['axes'] if axes is None else axes, stood)
         if axes is None:
             statuses += self._keeping.statuses()
@@ -286,19 +310,19 @@ class BallscrewMonitor(LifecycleNode):
     def _statuses(self, axes: Sequence[str], stood: int) -> list[DiagnosticStatus]:
         made, node = [], self.get_fully_qualified_name()
         for name in axes:
-            if name in self._stations:
-                station = self._stations[name]
-                links = self._intake.links(station.axis) if self._intake else None
-                made += station.statuses(links=links, stood=stood)
+            if name in self._axis_publishers:
+                publisher = self._axis_publishers[name]
+                links = self._intake.links(publisher.axis) if self._intake else None
+                made += publisher.statuses(links=links, stood=stood)
             else:
                 made += diagnostics.failed(node, name, self._failed.get(name, self._reason))
         return made + self._chronicle.statuses()
 
     def _on_evaluate(self, request: Any, response: Any) -> Any:
         """Answer what the surface says of the points; nothing is judged meanwhile."""
-        station = self._stations.get(request.axis)
-        if station is None:
+        publisher = self._axis_publishers.get(request.axis)
+        if publisher is None:
             response.message = self._unknown(request.axis)
         else:
-            station.evaluate(request.points, response)
+            publisher.evaluate(request.points, response)
         return response

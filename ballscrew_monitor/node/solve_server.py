@@ -18,7 +18,7 @@ from typing import Any
 from ballscrew_monitor.core.estimate import MachinePoint
 from ballscrew_monitor.core.full_point import request_of
 from ballscrew_monitor.core.solver import Done, End, Job, MOST_WAITING, Process, Solver
-from ballscrew_monitor.node.solve_messages import (
+from ballscrew_monitor.messages.solve_messages import (
     empty_result,
     feedback_message,
     requested_point,

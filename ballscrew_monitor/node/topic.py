@@ -9,18 +9,47 @@ from typing import Any
 
 from ballscrew_monitor.core.inputs import Input
 from ballscrew_monitor.core.links import Link
-from ballscrew_monitor.core.loss import LossCounter, NO_NUMBER
-from ballscrew_monitor.node.axis import Axis
-from ballscrew_monitor.node.qos import DEPTH, input_qos, overriding_options, publishers_on
+from ballscrew_monitor.settings.axis import Axis
+from ballscrew_monitor.settings.qos import DEPTH, input_qos, overriding_options, publishers_on
 from rclpy.callback_groups import CallbackGroup
 from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.node import Node
 from rclpy.serialization import deserialize_message
 from rclpy.subscription import Subscription
 
+NO_NUMBER = 0
+"""What a middleware without publication numbers says; the first real one is 1."""
 MOST = 2 * DEPTH  # messages of one topic that are taken before anything else has a turn
 
 Reader = tuple[Axis, Input]
+
+
+class LossCounter:
+    """Counts the gaps in the publication numbers of one topic with one publisher."""
+
+    def __init__(self) -> None:
+        """Begin before the first message."""
+        self._last: int | None = None
+        self.publishers = 1
+
+    def match(self, publishers: int) -> None:
+        """Note how many publishers there are now; the count of each of them begins anew."""
+        self.publishers = publishers
+        self._last = None
+
+    def take(self, number: int) -> int | None:
+        """
+        Return how many messages were lost just before the one of this publication number.
+
+        None when that cannot be known: the numbers of several publishers are mixed, or there are
+        none. A number that falls back belongs to a publisher that has begun anew.
+
+        """
+        if self.publishers > 1 or number == NO_NUMBER:
+            self._last = None
+            return None
+        last, self._last = self._last, number
+        return 0 if last is None or number <= last else number - last - 1
 
 
 @dataclasses.dataclass(frozen=True, slots=True)

@@ -6,15 +6,15 @@ from collections.abc import Callable, Mapping
 import functools
 from typing import Any
 
-from ballscrew_monitor.node.axis import reload_surface
-from ballscrew_monitor.node.station import Station
+from ballscrew_monitor.node.axis_publisher import AxisPublisher
+from ballscrew_monitor.settings.axis import reload_surface
 from rclpy.node import Node
 from std_srvs.srv import Trigger
 from surrogate.files import InputError
 from surrogate.surface import Surface
 
-Stations = Mapping[str, Station]
-Act = Callable[[Stations], str]
+Publishers = Mapping[str, AxisPublisher]
+Act = Callable[[Publishers], str]
 
 
 class TriggerServices:
@@ -24,16 +24,16 @@ class TriggerServices:
         self,
         node: Node,
         values: Mapping[str, Any],
-        find: Callable[[], Stations],
+        find: Callable[[], Publishers],
         find_failed: Callable[[], Mapping[str, str]],
-        changed: Callable[[Stations, str], str],
+        changed: Callable[[Publishers, str], str],
     ) -> None:
         """
         Make the services.
 
-        `find` returns the stations, none while the node is unconfigured, and `find_failed` why
-        other axes have none. `changed` is told which stations a service has changed, and its name;
-        it keeps them and returns why that failed, or nothing.
+        `find` returns the publishers, none while the node is unconfigured, and `find_failed` why
+        other axes have none. `changed` takes the publishers that a service has changed, and its
+        name; it keeps them and returns why that failed, or nothing.
 
         """
         self._node = node
@@ -55,16 +55,16 @@ class TriggerServices:
         self._node.create_service(Trigger, name, functools.partial(self._serve, act, axes))
 
     def _serve(self, act: Act, axes: list[str], request: Any, response: Any) -> Any:
-        stations = {name: one for name, one in self._find().items() if name in axes}
+        publishers = {name: one for name, one in self._find().items() if name in axes}
         failed = [
             not_built(name, why) for name, why in self._find_failed().items() if name in axes
         ]
-        if not stations:
+        if not publishers:
             response.message = '; '.join(failed) or 'the node is not configured'
             return response
         try:
-            done = act(stations)
-            problem = self._changed(stations, act.__name__.strip('_'))
+            done = act(publishers)
+            problem = self._changed(publishers, act.__name__.strip('_'))
             done += f', not kept: {problem}' if problem else ''
             response.message = '; '.join([done, *failed])
             response.success = True
@@ -73,31 +73,31 @@ class TriggerServices:
             self._node.get_logger().error(response.message)
         return response
 
-    def _reload(self, stations: Stations) -> str:
+    def _reload(self, publishers: Publishers) -> str:
         """Swap the surfaces for the files as they are now, if all of them verify."""
-        surfaces = {name: self._load(station) for name, station in stations.items()}
-        said = [station.reload(surfaces[name]) for name, station in stations.items()]
-        return ', '.join(filter(None, (f'reloaded the surface of {_names(stations)}', *said)))
+        surfaces = {name: self._load(publisher) for name, publisher in publishers.items()}
+        said = [publisher.reload(surfaces[name]) for name, publisher in publishers.items()]
+        return ', '.join(filter(None, (f'reloaded the surface of {_names(publishers)}', *said)))
 
-    def _load(self, station: Station) -> Surface:
+    def _load(self, publisher: AxisPublisher) -> Surface:
         """Return the surface of the file as it is now; a refusal stays in the diagnostics."""
         try:
-            return reload_surface(station.axis, self._values)
+            return reload_surface(publisher.axis, self._values)
         except InputError as error:
-            station.refused = str(error)
+            publisher.refused = str(error)
             raise
 
-    def _reset(self, stations: Stations) -> str:
+    def _reset(self, publishers: Publishers) -> str:
         """Set the totals to zero."""
-        for station in stations.values():
-            station.alarm.reset_totals()
-        return f'set the totals to zero of {_names(stations)}'
+        for publisher in publishers.values():
+            publisher.alarm.reset_totals()
+        return f'set the totals to zero of {_names(publishers)}'
 
-    def _acknowledge(self, stations: Stations) -> str:
+    def _acknowledge(self, publishers: Publishers) -> str:
         """Set the levels back to UNKNOWN and end the events."""
-        for station in stations.values():
-            station.alarm.acknowledge()
-        return f'acknowledged of {_names(stations)}'
+        for publisher in publishers.values():
+            publisher.alarm.acknowledge()
+        return f'acknowledged of {_names(publishers)}'
 
 
 def not_built(axis: str, reason: str) -> str:
@@ -105,5 +105,5 @@ def not_built(axis: str, reason: str) -> str:
     return f'axis {axis} is {reason}; mend it and configure the node again'
 
 
-def _names(stations: Stations) -> str:
-    return ', '.join(stations)
+def _names(publishers: Publishers) -> str:
+    return ', '.join(publishers)

@@ -17,7 +17,7 @@ import signal
 import sys
 import time
 
-from ballscrew_monitor.node.frames import read_frames
+from ballscrew_monitor.recordings.frames import read_frames
 from ballscrew_monitor.recordings.keeper import Keeper, KeepSettings
 
 NICENESS = 5

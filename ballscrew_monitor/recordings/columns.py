@@ -14,7 +14,7 @@ from typing import Any
 
 from ballscrew_monitor.core.conversions import seconds
 from ballscrew_monitor.core.estimate import PointSource
-from ballscrew_monitor.core.health import Health
+from ballscrew_monitor.core.input_status import InputStatus
 from ballscrew_monitor.core.inputs import Source, Why
 from ballscrew_monitor.core.judgement import Limits, Zone
 from ballscrew_monitor.core.tally import Totals
@@ -166,7 +166,7 @@ class AxisOutcome:
     judged: int
     totals: Totals
     events: tuple[EventRecord, ...]
-    inputs: tuple[Health, ...]
+    inputs: tuple[InputStatus, ...]
     refused: Mapping[Source, Mapping[Why, int]]
     limits: Limits
     reason: str = ''

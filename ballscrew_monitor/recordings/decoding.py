@@ -9,10 +9,10 @@ from typing import Any
 from ballscrew_monitor.core.conversions import seconds
 from ballscrew_monitor.core.fields import OtherJoints, TooShort
 from ballscrew_monitor.core.inputs import Input, short_text
-from ballscrew_monitor.core.reasons import joint_reason, slow_reason
-from ballscrew_monitor.node.axis import Axis
-from ballscrew_monitor.node.topics import absolute
+from ballscrew_monitor.messages.reasons import joint_reason, slow_reason
 from ballscrew_monitor.recordings.bag import Bag, Message
+from ballscrew_monitor.settings.axis import Axis
+from ballscrew_monitor.settings.topics import absolute
 from rclpy.serialization import deserialize_message
 
 # What deserialising is known to raise; that of the middleware is a RuntimeError.

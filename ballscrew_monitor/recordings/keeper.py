@@ -18,8 +18,8 @@ from pathlib import Path
 import re
 
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.node.frames import Frame, FrameKind
 from ballscrew_monitor.recordings.bag_writer import ACTIVE, BagWriter, Offer, Topic
+from ballscrew_monitor.recordings.frames import Frame, FrameKind
 from surrogate.files import InputError
 
 NAME = re.compile(r'\d{8}T\d{6}Z(?:_\d+)?')

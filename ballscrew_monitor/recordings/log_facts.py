@@ -8,10 +8,10 @@ from pathlib import Path
 import re
 from typing import Any
 
-from ballscrew_monitor.node import parameters
-from ballscrew_monitor.node.parameter_row import BARE_LETTERS
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.own_recording import journal_of, recorded_values
+from ballscrew_monitor.settings import parameters
+from ballscrew_monitor.settings.parameter_row import BARE_LETTERS
 from surrogate.files import InputError
 import yaml
 

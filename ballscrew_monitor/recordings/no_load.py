@@ -23,9 +23,9 @@ from ballscrew_monitor.core.conversions import (
     torque_scaling,
 )
 from ballscrew_monitor.core.inputs import Input, InputSample, make_input, Source, Why
-from ballscrew_monitor.node.topics import absolute
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.decoding import decode, named_instead
+from ballscrew_monitor.settings.topics import absolute
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.files import InputError

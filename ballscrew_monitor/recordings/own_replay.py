@@ -6,11 +6,11 @@ from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
 from ballscrew_monitor.core.state import Event, State
-from ballscrew_monitor.node.axis import Axis
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.columns import AxisOutcome, JudgedColumns
 from ballscrew_monitor.recordings.own_recording import OwnRecording, Step
 from ballscrew_monitor.recordings.rows import RowCollector
+from ballscrew_monitor.settings.axis import Axis
 
 OnDone = Callable[[float], None] | None
 BLOCK = 65536  # rows of an axis that are handed on at once

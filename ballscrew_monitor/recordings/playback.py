@@ -9,12 +9,12 @@ import sys
 import threading
 
 from ballscrew_monitor.core.fields import message_class
-from ballscrew_monitor.node import parameters
-from ballscrew_monitor.node.interrupts import DONE, FAILED, interrupts, SIGNALLED
-from ballscrew_monitor.node.middleware import notice
-from ballscrew_monitor.node.topics import absolute, input_topics
+from ballscrew_monitor.core.interrupts import DONE, FAILED, interrupts, SIGNALLED
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.player import CLOCK, Player
+from ballscrew_monitor.settings import parameters
+from ballscrew_monitor.settings.middleware import notice
+from ballscrew_monitor.settings.topics import absolute, input_topics
 import rclpy
 from rclpy.signals import SignalHandlerOptions
 from surrogate.files import InputError

@@ -5,8 +5,8 @@
 from collections.abc import Mapping
 from typing import Any
 
-from ballscrew_monitor.node.topics import input_topics, output
 from ballscrew_monitor.recordings.bag_writer import Offer, Topic
+from ballscrew_monitor.settings.topics import input_topics, output
 
 DIAGNOSTICS = Topic(
     name='/diagnostics', type_name='diagnostic_msgs/msg/DiagnosticArray', offer=Offer.RELIABLE

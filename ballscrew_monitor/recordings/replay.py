@@ -19,9 +19,7 @@ from ballscrew_monitor.core.conversions import nanoseconds
 from ballscrew_monitor.core.fields import OtherJoints
 from ballscrew_monitor.core.inputs import Input
 from ballscrew_monitor.core.state import Event, State
-from ballscrew_monitor.node.axis import Axis, build_axis
-from ballscrew_monitor.node.messages import out_of_zone_message, StateWriter, TIERS
-from ballscrew_monitor.node.topics import absolute, input_topics, with_types
+from ballscrew_monitor.messages.state_messages import out_of_zone_message, StateWriter, TIERS
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bulk.entries import Entries
 from ballscrew_monitor.recordings.bulk.judge import AxisJudge
@@ -31,6 +29,8 @@ from ballscrew_monitor.recordings.decoding import decode, named_instead
 from ballscrew_monitor.recordings.own_recording import is_as_recorded
 from ballscrew_monitor.recordings.own_replay import own_parts, Part, TimedState
 from ballscrew_monitor.recordings.rows import RowCollector
+from ballscrew_monitor.settings.axis import Axis, build_axis
+from ballscrew_monitor.settings.topics import absolute, input_topics, with_types
 from ballscrew_msgs.msg import BallScrewState, OutOfZone
 from surrogate.files import InputError
 

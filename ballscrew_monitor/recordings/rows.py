@@ -78,7 +78,7 @@ class RowCollector:
             judged=monitor.judged,
             totals=monitor.totals,
             events=tuple(self._events[number] for number in sorted(self._events)),
-            inputs=monitor.health(self._now),
+            inputs=monitor.input_status(self._now),
             refused=monitor.refused,
             limits=monitor.settings.limits,
             reason=self._reason,

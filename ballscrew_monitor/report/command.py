@@ -10,9 +10,7 @@ from pathlib import Path
 import sys
 from typing import Any, TYPE_CHECKING
 
-from ballscrew_monitor.node.interrupts import DONE, FAILED
-from ballscrew_monitor.node.parameters import read_file
-from ballscrew_monitor.node.topics import with_types
+from ballscrew_monitor.core.interrupts import DONE, FAILED
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_files import is_table
 from ballscrew_monitor.recordings.decoding import silence
@@ -28,6 +26,8 @@ from ballscrew_monitor.report.parameters import LogParameters, parameters_for
 from ballscrew_monitor.report.printed import log_lines, printed_records
 from ballscrew_monitor.report.products import summary_record, without
 from ballscrew_monitor.report.verdict import never_moved
+from ballscrew_monitor.settings.parameters import read_file
+from ballscrew_monitor.settings.topics import with_types
 from surrogate.files import InputError, json_text
 from surrogate.surface import SurfaceError
 

@@ -8,12 +8,12 @@ import enum
 import math
 
 from ballscrew_monitor.core.conversions import celsius, seconds
-from ballscrew_monitor.core.doctor import Heard, InputFacts, known_range, unit_doubts
 from ballscrew_monitor.core.estimate import PointSource
-from ballscrew_monitor.core.health import Health
+from ballscrew_monitor.core.input_status import InputStatus
 from ballscrew_monitor.core.inputs import Source, Why, YEAR
 from ballscrew_monitor.core.links import Link
-from ballscrew_monitor.core.reasons import slow_reason
+from ballscrew_monitor.messages.doctor import Heard, InputFacts, known_range, unit_doubts
+from ballscrew_monitor.messages.reasons import slow_reason
 from ballscrew_monitor.recordings.words import duration, number
 from ballscrew_monitor.report.case import AxisCase, InputSetting
 from ballscrew_monitor.report.survey import Gaps, Span
@@ -123,11 +123,11 @@ def _seen(case: AxisCase, source: Source) -> InputSeen:
     setting, sources = case.inputs.get(source), case.survey.sources[source]
     if setting is None:
         return _without_topic(case, source, sources)
-    health = next(one for one in case.outcome.inputs if one.source is source)
-    heard = _heard(setting, case.survey.inputs[source], health)
+    status = next(one for one in case.outcome.inputs if one.source is source)
+    heard = _heard(setting, case.survey.inputs[source], status)
     origin = _origin(case, source)
     refused = sum(case.outcome.refused.get(source, {}).values())
-    if health.received == refused:
+    if status.received == refused:
         origin = 'never valid' if refused else 'never received'
     return InputSeen(
         source=source,
@@ -139,13 +139,13 @@ def _seen(case: AxisCase, source: Source) -> InputSeen:
         high=heard.high,
         rate=_rate(case, source),
         rate_assumed='time.rate_Hz' in case.assumed,
-        received=health.received,
+        received=status.received,
         refused=_refused(case, source),
-        left_out=health.dropped - refused,
-        lost=health.lost if case.numbered else None,
+        left_out=status.dropped - refused,
+        lost=status.lost if case.numbered else None,
         numbered=case.numbered,
-        lag=health.lag,
-        slow=health.slow,
+        lag=status.lag,
+        slow=status.slow,
         gaps=case.survey.gaps[source],
         hints=tuple(_hints(case, source, setting, heard)),
     )
@@ -200,11 +200,11 @@ def _without_topic(case: AxisCase, source: Source, sources: frozenset[PointSourc
     return InputSeen(source=source, origin='not recorded', measured=False)
 
 
-def _heard(setting: InputSetting, span: Span, health: Health) -> Heard:
+def _heard(setting: InputSetting, span: Span, status: InputStatus) -> Heard:
     """Return the span of an input [SI] in its unit."""
     scaling = setting.scalings[setting.unit]
     ends = [(value - scaling.shift) / scaling.factor for value in (span.low, span.high)]
-    return Heard(health=health, low=min(ends), high=max(ends))
+    return Heard(status=status, low=min(ends), high=max(ends))
 
 
 def _refused(case: AxisCase, source: Source) -> str:
@@ -228,7 +228,7 @@ def _hints(case: AxisCase, source: Source, setting: InputSetting, heard: Heard) 
     cure = IN_THE_MAP if case.is_mapped else f'check {facts.parameter}.unit and scale'
     if case.outcome.refused.get(source, {}).get(Why.IMPLAUSIBLE):
         hints.append(f'{facts.parameter}: samples beyond what is plausible were refused: {cure}')
-    hints += _of_time(heard.health, facts.parameter)
+    hints += _of_time(heard.status, facts.parameter)
     if source is Source.SPEED:
         hints += _of_speed(case, setting, heard, facts.parameter, cure)
     elif source is not Source.TEMPERATURE and heard.low == heard.high:
@@ -236,16 +236,16 @@ def _hints(case: AxisCase, source: Source, setting: InputSetting, heard: Heard) 
     return hints
 
 
-def _of_time(health: Health, parameter: str) -> Sequence[str]:
+def _of_time(status: InputStatus, parameter: str) -> Sequence[str]:
     """Return that an input comes too seldom, or with stamps of another clock."""
     hints = []
-    if health.slow:
-        hints.append(f'{parameter}: it {slow_reason(health.longest_gap, parameter)}')
-    if abs(health.lag) > seconds(YEAR):
+    if status.slow:
+        hints.append(f'{parameter}: it {slow_reason(status.longest_gap, parameter)}')
+    if abs(status.lag) > seconds(YEAR):
         hints.append(f'{parameter}: its stamps are of another clock than those of its arrival')
-    elif health.lagging:
+    elif status.lagging:
         hints.append(
-            f'{parameter}: its stamps lie {duration(health.lag)} behind their arrival: set the '
+            f'{parameter}: its stamps lie {duration(status.lag)} behind their arrival: set the '
             'clocks alike'
         )
     return hints

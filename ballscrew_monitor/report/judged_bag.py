@@ -10,21 +10,21 @@ from typing import Any, NamedTuple
 from ballscrew_monitor.core.cdr import serialized
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.state import Event
-from ballscrew_monitor.node.diagnostics import statuses, summaries
-from ballscrew_monitor.node.messages import (
+from ballscrew_monitor.messages.diagnostics import statuses, summaries
+from ballscrew_monitor.messages.state_messages import (
     fill_time,
     out_of_zone_message,
     StateWriter,
     surface_info_message,
     TIERS,
 )
-from ballscrew_monitor.node.parameters import NODE_NAME
-from ballscrew_monitor.node.topics import input_topics, output, with_types
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter, whole_bag
 from ballscrew_monitor.recordings.bulk.batches import Batch, batches, END
 from ballscrew_monitor.recordings.own_replay import TimedState
 from ballscrew_monitor.recordings.recorded_topics import DIAGNOSTICS, recorded_topics
+from ballscrew_monitor.settings.parameters import NODE_NAME
+from ballscrew_monitor.settings.topics import input_topics, output, with_types
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 import numpy as np
 

@@ -14,7 +14,6 @@ from typing import Any, Protocol
 
 from ballscrew_monitor.core.conversions import POSITION_UNITS
 from ballscrew_monitor.core.inputs import Source
-from ballscrew_monitor.node.axis import is_configured, load_surface, scalings_of, settings_of
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.columns import AxisOutcome, JudgedColumns
 from ballscrew_monitor.recordings.own_recording import is_as_recorded
@@ -23,6 +22,7 @@ from ballscrew_monitor.recordings.replay import ignore, replay_columns, replay_p
 from ballscrew_monitor.report.case import AxisCase, InputSetting, LogCase
 from ballscrew_monitor.report.parameters import LogParameters
 from ballscrew_monitor.report.survey import Surveyor
+from ballscrew_monitor.settings.axis import is_configured, load_surface, scalings_of, settings_of
 
 OnShare = Callable[[float], None]
 """Told which share of a recording is judged [-]."""

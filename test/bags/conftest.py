@@ -8,10 +8,10 @@ from ballscrew_monitor.core.conversions import Direction
 from ballscrew_monitor.core.estimate import PointValidity
 from ballscrew_monitor.core.fields import stamp_of
 from ballscrew_monitor.core.judgement import Code, Gate, Level, Zone
-from ballscrew_monitor.node.parameters import read_file
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.replay import replay
 from ballscrew_monitor.recordings.summary import Summarizer, Summary
+from ballscrew_monitor.settings.parameters import read_file
 import pytest
 
 REGIMES = ('UNKNOWN', 'BOUNDARY', 'MIXED', 'HYDRODYNAMIC')

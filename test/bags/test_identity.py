@@ -9,15 +9,15 @@ import re
 import types
 
 from ballscrew_monitor.core.conversions import nanoseconds, SECOND
-from ballscrew_monitor.node.axis import build_axis
 from ballscrew_monitor.node.intake import ordered
 from ballscrew_monitor.node.journal import Journal
-from ballscrew_monitor.node.parameters import read_file
 from ballscrew_monitor.node.topic import Arrival
-from ballscrew_monitor.node.topics import absolute, input_topics
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.keeper import Keeper, KeepSettings
 from ballscrew_monitor.recordings.own_recording import OwnRecording
+from ballscrew_monitor.settings.axis import build_axis
+from ballscrew_monitor.settings.parameters import read_file
+from ballscrew_monitor.settings.topics import absolute, input_topics
 import pytest
 from rclpy.serialization import deserialize_message
 from scenario import generate, PARAMETERS

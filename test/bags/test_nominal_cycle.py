@@ -8,9 +8,9 @@ import subprocess
 import sys
 
 from ballscrew_monitor.core.fields import stamp_of
-from ballscrew_monitor.node.axis import load_surface
-from ballscrew_monitor.node.parameters import read_file
 from ballscrew_monitor.recordings.bag import Bag
+from ballscrew_monitor.settings.axis import load_surface
+from ballscrew_monitor.settings.parameters import read_file
 from geometry_msgs.msg import WrenchStamped
 import numpy as np
 import pytest

@@ -6,8 +6,8 @@ import math
 from pathlib import Path
 
 from ballscrew_monitor.core.conversions import kelvin, SECOND
-from ballscrew_monitor.node.axis import load_surface
-from ballscrew_monitor.node.parameters import read_file
+from ballscrew_monitor.settings.axis import load_surface
+from ballscrew_monitor.settings.parameters import read_file
 import pytest
 from recording import BEGIN
 from scenario import generate, PARAMETERS, PERIOD

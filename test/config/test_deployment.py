@@ -8,7 +8,7 @@ from pathlib import Path
 import re
 import xml.etree.ElementTree as ElementTree
 
-from ballscrew_monitor.node import parameters
+from ballscrew_monitor.settings import parameters
 from ballscrew_msgs.msg import BallScrewState
 from rosidl_parser.definition import BasicType, NamespacedType
 

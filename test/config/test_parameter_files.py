@@ -6,8 +6,8 @@ from pathlib import Path
 
 from ballscrew_monitor.core.conversions import TURN
 from ballscrew_monitor.core.inputs import Source
-from ballscrew_monitor.node import parameters
-from ballscrew_monitor.node.axis import build_axes
+from ballscrew_monitor.settings import parameters
+from ballscrew_monitor.settings.axis import build_axes
 import pytest
 
 CONFIG = Path(__file__).resolve().parents[2] / 'config'

@@ -12,13 +12,13 @@ from typing import Any
 
 from ballscrew_monitor.core.fields import OtherJoints
 from ballscrew_monitor.core.inputs import Input, InputSample, Refusal, Source, Why
-from ballscrew_monitor.node.axis import Axis
-from ballscrew_monitor.node.topics import absolute
 from ballscrew_monitor.recordings.bag import Bag, Message
 from ballscrew_monitor.recordings.bulk.chunks import Integers
 from ballscrew_monitor.recordings.bulk.entries import Entries, entries_of, joined, Kind, made, Told
 from ballscrew_monitor.recordings.bulk.layout import Layout, NoLayout, reads_alike
 from ballscrew_monitor.recordings.decoding import decode, UNDECODABLE
+from ballscrew_monitor.settings.axis import Axis
+from ballscrew_monitor.settings.topics import absolute
 import numpy as np
 from numpy.typing import NDArray
 from rclpy.serialization import deserialize_message

@@ -3,7 +3,7 @@
 """
 The stays outside the zone over a stretch, from where its level changed.
 
-What `Stays` does sample by sample.
+What `Excursions` does sample by sample.
 
 """
 

@@ -19,7 +19,6 @@ from ballscrew_monitor.core.judgement import Finding, Hold, Level, Zone
 from ballscrew_monitor.core.monitor import Monitor
 from ballscrew_monitor.core.remembered import recall, Remembered, remind
 from ballscrew_monitor.core.state import MonitorSettings, State
-from ballscrew_monitor.node.axis import Axis
 from ballscrew_monitor.recordings.bulk.entries import Entries, Kind
 from ballscrew_monitor.recordings.bulk.estimates import Estimator, Judgements, Points
 from ballscrew_monitor.recordings.bulk.events import Events, follow
@@ -28,6 +27,7 @@ from ballscrew_monitor.recordings.bulk.stretch import make_stretch, points_of, S
 from ballscrew_monitor.recordings.bulk.sums import add_moments, add_to_window, Moments, moments
 from ballscrew_monitor.recordings.columns import JudgedColumns, STANDSTILL
 from ballscrew_monitor.recordings.rows import RowCollector
+from ballscrew_monitor.settings.axis import Axis
 import numpy as np
 from numpy.typing import NDArray
 

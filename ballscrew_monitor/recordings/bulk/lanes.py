@@ -12,7 +12,7 @@ import dataclasses
 from typing import Any
 
 from ballscrew_monitor.core.estimate import PointSource
-from ballscrew_monitor.core.health import RATE_SAMPLES, Tracker
+from ballscrew_monitor.core.input_status import RATE_SAMPLES, Tracker
 from ballscrew_monitor.core.inputs import implausible, InputSample, Refusal
 from ballscrew_monitor.core.monitor import BACKWARD_JUMP
 from ballscrew_monitor.recordings.bulk.entries import Entries, Kind

@@ -4,13 +4,13 @@
 
 from collections.abc import Callable, Iterator
 
-from ballscrew_monitor.node.axis import Axis
-from ballscrew_monitor.node.topics import absolute
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bulk.batches import batches
 from ballscrew_monitor.recordings.bulk.decode import Reader, TopicDecoder
 from ballscrew_monitor.recordings.bulk.entries import Entries, joined
 from ballscrew_monitor.recordings.bulk.order import ALL_AXES, Arrivals, StampOrder
+from ballscrew_monitor.settings.axis import Axis
+from ballscrew_monitor.settings.topics import absolute
 import numpy as np
 from numpy.typing import NDArray
 

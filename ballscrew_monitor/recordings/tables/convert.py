@@ -15,10 +15,7 @@ import math
 from pathlib import Path
 from typing import Any
 
-from ballscrew_monitor.core.reasons import enough_timeout
-from ballscrew_monitor.node import parameters
-from ballscrew_monitor.node.axis import load_surface, MOTOR_TORQUE
-from ballscrew_monitor.node.topics import absolute
+from ballscrew_monitor.messages.reasons import enough_timeout
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic, whole_bag
 from ballscrew_monitor.recordings.log_facts import Assumption, LogFacts
 from ballscrew_monitor.recordings.progress import Shown, silent
@@ -27,6 +24,9 @@ from ballscrew_monitor.recordings.tables.cells import Array
 from ballscrew_monitor.recordings.tables.mapping import AxisMap, TableMap
 from ballscrew_monitor.recordings.tables.rows import marks, RowTemplate
 from ballscrew_monitor.recordings.tables.series import Block, read_series, Series
+from ballscrew_monitor.settings import parameters
+from ballscrew_monitor.settings.axis import load_surface, MOTOR_TORQUE
+from ballscrew_monitor.settings.topics import absolute
 from geometry_msgs.msg import WrenchStamped
 import numpy as np
 from sensor_msgs.msg import JointState, Temperature

@@ -27,8 +27,8 @@ from ballscrew_monitor.core.conversions import (
     TEMPERATURE_UNITS,
     TIME_UNITS,
 )
-from ballscrew_monitor.node.parameters import check_axes
 from ballscrew_monitor.recordings.log_facts import Assumption
+from ballscrew_monitor.settings.parameters import check_axes
 from surrogate.files import InputError
 from surrogate.units import MICRO, MILLI
 import yaml

@@ -10,6 +10,7 @@ from ballscrew_monitor.core.inputs import (
     InputSample,
     make_input,
     OpenInput,
+    ordered,
     Refusal,
     Source,
     StampSource,
@@ -153,3 +154,23 @@ def test_an_open_input_is_closed_by_a_type():
 def test_stamp_sources_have_the_numbers_of_the_messages():
     for member in StampSource:
         assert getattr(InputHealth, f'STAMP_{member.name}') == member
+
+
+def test_of_equal_stamps_the_speed_is_last_and_all_else_stays_in_order():
+    """Whatever order a burst arrived in, also across a clock that was set back."""
+
+    def event(source, stamp):
+        return ('x', InputSample(source=source, value=1.0, stamp=stamp))
+
+    speed, load, heat = Source.SPEED, Source.LOAD, Source.TEMPERATURE
+    came = [(speed, 50), (load, 40), (speed, 60), (load, 60), (heat, 60), (speed, 1), (load, 1)]
+    taken = [(one.source, one.stamp) for _, one in ordered([event(*pair) for pair in came])]
+    assert taken == [
+        (speed, 50),
+        (load, 40),
+        (heat, 60),
+        (load, 60),
+        (speed, 60),
+        (load, 1),
+        (speed, 1),
+    ]

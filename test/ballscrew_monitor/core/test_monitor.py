@@ -7,7 +7,7 @@ import math
 
 from ballscrew_monitor.core.conversions import Direction, SECOND
 from ballscrew_monitor.core.estimate import PointSource, PointValidity
-from ballscrew_monitor.core.health import InputState
+from ballscrew_monitor.core.input_status import InputState
 from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, Why
 from ballscrew_monitor.core.judgement import Code, Gate, Level, Zone
 from ballscrew_monitor.core.monitor import BACKWARD_JUMP, Monitor

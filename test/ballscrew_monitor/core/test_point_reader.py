@@ -9,7 +9,7 @@ from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.derived_load import LoadDerivation, STANDSTILL
 from ballscrew_monitor.core.differentiation import PositionSettings
 from ballscrew_monitor.core.estimate import PointSource, PointValidity
-from ballscrew_monitor.core.health import InputState
+from ballscrew_monitor.core.input_status import InputState
 from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, Why
 from ballscrew_monitor.core.judgement import Gate, Zone
 import pytest

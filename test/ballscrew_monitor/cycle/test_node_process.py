@@ -13,7 +13,7 @@ import time
 from ballscrew_monitor.cycle import node_process
 from ballscrew_monitor.cycle.domain import free_domain
 from ballscrew_monitor.cycle.node_process import child_environment, NodeProcess, path_to_this_code
-from ballscrew_monitor.node.middleware import loopback
+from ballscrew_monitor.settings.middleware import loopback
 from diagnostic_msgs.msg import DiagnosticArray
 import pytest
 import rclpy

@@ -7,11 +7,11 @@ import struct
 
 from ballscrew_monitor.cycle import plot as cycle_plot
 from ballscrew_monitor.cycle.state_trace import Tracer
-from ballscrew_monitor.node.axis import load_surface
-from ballscrew_monitor.node.parameters import defaults
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.replay import replay
 from ballscrew_monitor.recordings.summary import EventRecord, Summarizer
+from ballscrew_monitor.settings.axis import load_surface
+from ballscrew_monitor.settings.parameters import defaults
 from ballscrew_msgs.msg import BallScrewState
 from matplotlib.figure import Figure
 import numpy as np

@@ -17,9 +17,9 @@ from ballscrew_monitor.cycle import node_process
 from ballscrew_monitor.cycle.node_process import child_environment, ros_environment
 from ballscrew_monitor.cycle.plan import plan
 from ballscrew_monitor.cycle.run import run
-from ballscrew_monitor.node.parameters import read_file
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.replay import replay
+from ballscrew_monitor.settings.parameters import read_file
 from ballscrew_msgs.msg import BallScrewState
 import pytest
 from rclpy.serialization import deserialize_message

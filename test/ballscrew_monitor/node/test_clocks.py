@@ -10,7 +10,7 @@ is that the lag is longer than the timeout.
 
 import time
 
-from ballscrew_monitor.node import diagnostics
+from ballscrew_monitor.messages import diagnostics
 from ballscrew_msgs.msg import BallScrewState, InputHealth, PointResult
 from diagnostic_msgs.msg import DiagnosticArray
 import pytest

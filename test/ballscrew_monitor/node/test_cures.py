@@ -4,7 +4,7 @@
 
 import math
 
-from ballscrew_monitor.node import diagnostics
+from ballscrew_monitor.messages import diagnostics
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import WrenchStamped
 from rcl_interfaces.srv import GetParameters

@@ -4,8 +4,8 @@
 
 from ballscrew_monitor.core.conversions import nanoseconds, SECOND
 from ballscrew_monitor.core.inputs import InputSample, Source
-from ballscrew_monitor.node import parameters
-from ballscrew_monitor.node.qos import state_qos
+from ballscrew_monitor.settings import parameters
+from ballscrew_monitor.settings.qos import state_qos
 from ballscrew_msgs.msg import BallScrewState
 from hypothesis import given
 from hypothesis import strategies as st

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What `ros2 param dump` writes of a running node is a parameter file like any other."""
 
-from ballscrew_monitor.node import parameters
+from ballscrew_monitor.settings import parameters
 import pytest
 from rcl_interfaces.srv import GetParameters, ListParameters
 from rclpy.parameter import parameter_value_to_python

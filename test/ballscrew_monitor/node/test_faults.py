@@ -6,8 +6,8 @@ import zipfile
 
 from ballscrew_monitor.cycle.domain import free_domain
 from ballscrew_monitor.cycle.node_process import confined
-from ballscrew_monitor.node import parameters
-from ballscrew_monitor.node.life import live
+from ballscrew_monitor.node.run import live
+from ballscrew_monitor.settings import parameters
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 import pytest
 from rcl_interfaces.srv import SetParametersAtomically

@@ -7,10 +7,10 @@ import time
 import types
 
 from ballscrew_monitor.core.conversions import Scaling
-from ballscrew_monitor.core.inputs import InputSample, make_input, OpenInput, Source
+from ballscrew_monitor.core.inputs import make_input, OpenInput, Source
 from ballscrew_monitor.cycle.domain import free_domain
 from ballscrew_monitor.node import intake as intake_module
-from ballscrew_monitor.node.intake import Intake, ordered, PAUSE, QUIET, STAY
+from ballscrew_monitor.node.intake import Intake, PAUSE, QUIET, STAY
 import pytest
 import rclpy
 from rclpy.clock import Clock, ClockType
@@ -299,26 +299,6 @@ def test_messages_without_end_leave_the_others_their_turn(bench, monkeypatch):
     bench.node.create_timer(1e-3, lambda: ticks.append(len(taken)), clock=steady)
     bench.until(lambda: len(ticks) == 3)
     assert watch.now < 7 * (STAY + 2 * PAUSE)  # two turns before each tick at most
-
-
-def test_of_equal_stamps_the_speed_is_last_and_all_else_stays_in_order():
-    """Whatever order a burst arrived in, also across a clock that was set back."""
-
-    def event(source, stamp):
-        return ('x', InputSample(source=source, value=1.0, stamp=stamp))
-
-    speed, load, heat = Source.SPEED, Source.LOAD, Source.TEMPERATURE
-    came = [(speed, 50), (load, 40), (speed, 60), (load, 60), (heat, 60), (speed, 1), (load, 1)]
-    taken = [(one.source, one.stamp) for _, one in ordered([event(*pair) for pair in came])]
-    assert taken == [
-        (speed, 50),
-        (load, 40),
-        (heat, 60),
-        (load, 60),
-        (speed, 60),
-        (load, 1),
-        (speed, 1),
-    ]
 
 
 def open_bench(bench, *fields):

@@ -15,11 +15,11 @@ from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.inputs import InputSample, Source
 from ballscrew_monitor.core.monitor import Monitor
 from ballscrew_monitor.node.alarm import Alarm
+from ballscrew_monitor.node.axis_publisher import AxisPublisher
 from ballscrew_monitor.node.correction_store import CorrectionStore
 from ballscrew_monitor.node.keeping import Keeping
 from ballscrew_monitor.node.ledger import Scribe
 from ballscrew_monitor.node.state_folder import StateFolder
-from ballscrew_monitor.node.station import Station
 
 STEP = SECOND // 10
 CALLS = ('open', 'fsync', 'rename', 'replace', 'unlink', 'chmod', 'write')
@@ -125,14 +125,14 @@ def test_corrections_that_cannot_be_kept_are_told(tmp_path):
     folder = StateFolder(tmp_path, limit=20)
     keeping = Keeping(None, folder)
     surface = types.SimpleNamespace(base_sha256='abc', corrections=[])
-    station = types.SimpleNamespace(
+    publisher = types.SimpleNamespace(
         name='x', surface=surface, _store=CorrectionStore(folder), _keeping=keeping
     )
     full = f'{tmp_path} is at its state_limit of 2e-05 MB'
-    assert Station._save(station) == full
+    assert AxisPublisher._save(publisher) == full
     assert keeping.problem == f'corrections of x are not kept, {full}'
     folder.limit = 1000
-    assert Station._save(station) == keeping.problem == ''
+    assert AxisPublisher._save(publisher) == keeping.problem == ''
     folder.close()
 
 

@@ -4,10 +4,10 @@
 
 import math
 
-from ballscrew_monitor.node import parameters
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
 from ballscrew_monitor.recordings.replay import replay
+from ballscrew_monitor.settings import parameters
 from ballscrew_msgs.msg import InputHealth, OperatingPoint, PointResult
 import pytest
 from rclpy.serialization import serialize_message

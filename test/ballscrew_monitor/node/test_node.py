@@ -10,9 +10,9 @@ from types import SimpleNamespace
 from ballscrew_monitor.core.conversions import nanoseconds
 from ballscrew_monitor.core.inputs import InputSample, Source
 from ballscrew_monitor.cycle.domain import free_domain
-from ballscrew_monitor.node import diagnostics
+from ballscrew_monitor.messages import diagnostics
+from ballscrew_monitor.node.axis_publisher import NEWS_INTERVAL
 from ballscrew_monitor.node.node import BallscrewMonitor
-from ballscrew_monitor.node.station import NEWS_INTERVAL
 from ballscrew_msgs.msg import BallScrewState, OperatingPoint, OutOfZone, PointResult, SurfaceInfo
 from ballscrew_msgs.srv import EvaluateOperatingPoint
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
@@ -394,7 +394,7 @@ def test_axes_that_change_together_are_all_told_at_once(monkeypatch):
         for steady.nanoseconds in (0, NEWS_INTERVAL - 1, NEWS_INTERVAL):
             for name, source in itertools.product(('x', 'y'), inputs):
                 sample = InputSample(source=source, value=FAST, stamp=stamp)
-                node._on_event(node._stations[name].axis, sample)
+                node._on_event(node._axis_publishers[name].axis, sample)
             stamp, inputs = stamp + nanoseconds(0.2), [Source.LOAD, Source.SPEED]
         assert told == [['x'], ['y']] * 2
         node.finish()

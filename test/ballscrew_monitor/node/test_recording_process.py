@@ -7,9 +7,10 @@ from pathlib import Path
 import signal
 import subprocess
 
-from ballscrew_monitor.node import parameters, recording_process
-from ballscrew_monitor.node.frames import Frame, FrameKind
+from ballscrew_monitor.node import recording_process
 from ballscrew_monitor.node.recording_process import recording, RecordingProcess
+from ballscrew_monitor.recordings.frames import Frame, FrameKind
+from ballscrew_monitor.settings import parameters
 import pytest
 from surrogate.files import InputError
 

@@ -11,7 +11,7 @@ import time
 
 from action_msgs.msg import GoalStatus
 from ballscrew_monitor.core.full_point import request_of
-from ballscrew_monitor.node.messages import read_point
+from ballscrew_monitor.messages.state_messages import read_point
 from ballscrew_monitor.node.solve_server import SERVICE_QOS
 from ballscrew_msgs.action import SolveOperatingPoint
 from ballscrew_msgs.msg import OperatingPoint, PointResult, SurfaceInfo

@@ -5,7 +5,7 @@
 import os
 import signal
 
-from ballscrew_monitor.node.messages import StateWriter, TIERS
+from ballscrew_monitor.messages.state_messages import StateWriter, TIERS
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.own_recording import OwnRecording
 from ballscrew_monitor.recordings.recover import recover

@@ -7,8 +7,8 @@ import json
 import os
 
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.node.frames import Frame, FrameKind
 from ballscrew_monitor.recordings.bag import Bag
+from ballscrew_monitor.recordings.frames import Frame, FrameKind
 from ballscrew_monitor.recordings.keeper import Keeper, KeepSettings
 import pytest
 from rclpy.serialization import serialize_message

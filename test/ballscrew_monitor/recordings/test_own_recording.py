@@ -10,8 +10,6 @@ import types
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.full_point import SolvedAt
-from ballscrew_monitor.node import parameters
-from ballscrew_monitor.node.axis import build_axis
 from ballscrew_monitor.node.intake import _events, ordered
 from ballscrew_monitor.node.journal import Journal
 from ballscrew_monitor.node.topic import Arrival
@@ -23,6 +21,8 @@ from ballscrew_monitor.recordings.replay import replay, replay_columns
 from ballscrew_monitor.report.inputs_seen import inputs_seen
 from ballscrew_monitor.report.judging import judge_log
 from ballscrew_monitor.report.parameters import LogParameters
+from ballscrew_monitor.settings import parameters
+from ballscrew_monitor.settings.axis import build_axis
 from geometry_msgs.msg import WrenchStamped
 import pytest
 from rclpy.serialization import deserialize_message, serialize_message
@@ -318,7 +318,7 @@ def test_a_replay_takes_the_parameters_of_the_recording_and_follows_it(tmp_path)
     )
     log = judge_log(bag_in(tmp_path), LogParameters(values=values, origin='own'))
     assert all(case.numbered for case in log.axes)
-    lost = {one.source: one.lost for one in node.axes['x'].monitor.health(node.now)}
+    lost = {one.source: one.lost for one in node.axes['x'].monitor.input_status(node.now)}
     told = {one.source: one.lost for one in inputs_seen(log.axes[0]) if one.place}
     assert told == {source: lost[source] for source in told}
     assert any(told.values())

@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """The topics of a run."""
 
-from ballscrew_monitor.node.parameters import defaults
-from ballscrew_monitor.node.topics import output
 from ballscrew_monitor.recordings.bag_writer import Offer
 from ballscrew_monitor.recordings.recorded_topics import recorded_topics
+from ballscrew_monitor.settings.parameters import defaults
+from ballscrew_monitor.settings.topics import output
 
 
 def test_the_latched_topics_come_last():

@@ -6,14 +6,14 @@ import itertools
 from pathlib import Path
 
 from ballscrew_monitor.core.fields import stamp_of
-from ballscrew_monitor.core.health import InputState
-from ballscrew_monitor.node import parameters
-from ballscrew_monitor.node.axis import build_axis
+from ballscrew_monitor.core.input_status import InputState
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
 from ballscrew_monitor.recordings.bulk.order import LONGEST_HOLE
 from ballscrew_monitor.recordings.decoding import silence
 from ballscrew_monitor.recordings.replay import replay, speed_messages
+from ballscrew_monitor.settings import parameters
+from ballscrew_monitor.settings.axis import build_axis
 from geometry_msgs.msg import WrenchStamped
 import pytest
 from rclpy.serialization import serialize_message

@@ -9,12 +9,12 @@ from ballscrew_monitor.core.conversions import seconds
 from ballscrew_monitor.core.estimate import PointSource
 from ballscrew_monitor.core.fields import stamp_of
 from ballscrew_monitor.core.inputs import Source, Why
-from ballscrew_monitor.node import parameters
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
 from ballscrew_monitor.recordings.columns import AxisOutcome, COLUMNS, joined, Reason
 from ballscrew_monitor.recordings.replay import replay, replay_columns
 from ballscrew_monitor.recordings.summary import Summarizer
+from ballscrew_monitor.settings import parameters
 import numpy as np
 import pytest
 from rclpy.serialization import serialize_message

@@ -7,15 +7,15 @@ import types
 
 from ballscrew_monitor.core.conversions import Direction, SECOND
 from ballscrew_monitor.core.estimate import PointSource, PointValidity
-from ballscrew_monitor.core.health import Health, InputState
+from ballscrew_monitor.core.input_status import InputState, InputStatus
 from ballscrew_monitor.core.inputs import Source, StampSource
 from ballscrew_monitor.core.judgement import Level, Zone
 from ballscrew_monitor.core.tally import Totals
-from ballscrew_monitor.node.axis import build_axis
-from ballscrew_monitor.node.parameters import defaults
 from ballscrew_monitor.recordings.columns import AxisOutcome, COLUMNS, JudgedColumns, Reason
 from ballscrew_monitor.recordings.summary import EventRecord
 from ballscrew_monitor.report.judging import CaseMaker
+from ballscrew_monitor.settings.axis import build_axis
+from ballscrew_monitor.settings.parameters import defaults
 import numpy as np
 import pytest
 from surrogate.surface import Regime
@@ -77,8 +77,8 @@ def make_event(number, start, duration, **changes):
     return EventRecord(**values | changes)
 
 
-def make_health(source, **changes):
-    """Return the health of an input that does well."""
+def make_status(source, **changes):
+    """Return the status of an input that does well."""
     values = {
         'source': source,
         'state': InputState.OK,
@@ -88,7 +88,7 @@ def make_health(source, **changes):
         'received': 100,
         'dropped': 0,
     }
-    return Health(**values | changes)
+    return InputStatus(**values | changes)
 
 
 def make_case(blocks, events=(), *, totals=None, values=None, known=None, **changes):
@@ -115,7 +115,7 @@ def make_case(blocks, events=(), *, totals=None, values=None, known=None, **chan
         'judged': rows,
         'totals': totals,
         'events': tuple(events),
-        'inputs': tuple(make_health(source) for source in Source),
+        'inputs': tuple(make_status(source) for source in Source),
         'refused': {},
         'limits': build_axis(axis, values).monitor.settings.limits,
     }
@@ -138,7 +138,7 @@ def judged():
         begin=BEGIN,
         columns=make_columns,
         event=make_event,
-        health=make_health,
+        status=make_status,
         case=make_case,
         values=make_values,
     )

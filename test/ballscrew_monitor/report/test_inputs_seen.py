@@ -5,7 +5,7 @@
 import math
 
 from ballscrew_monitor.core.estimate import PointSource
-from ballscrew_monitor.core.health import InputState
+from ballscrew_monitor.core.input_status import InputState
 from ballscrew_monitor.core.inputs import Source, Why
 from ballscrew_monitor.report.inputs_seen import inputs_seen, REFUSALS, Trouble
 import numpy as np
@@ -36,7 +36,7 @@ def test_an_input_is_shown_in_its_unit(judged):
 def test_a_rate_leaves_gaps_out(judged, source, received, rate):
     blocks = [judged.columns(0, 50), judged.columns(550, 50)]
     inputs = tuple(
-        judged.health(one, received=received if one is source else 100) for one in Source
+        judged.status(one, received=received if one is source else 100) for one in Source
     )
     assert seen_of(judged.case(blocks, inputs=inputs), source).rate == pytest.approx(rate)
 
@@ -47,7 +47,7 @@ def test_a_rate_leaves_gaps_out(judged, source, received, rate):
 def test_a_gap_of_an_input_of_its_own_rate_is_left_out_with_its_timeout(judged, refused, rate):
     sources = np.where((np.arange(100) >= 40) & (np.arange(100) < 60), PointSource.HELD, 1)
     inputs = tuple(
-        judged.health(one, received=51 if one is Source.LOAD else 100) for one in Source
+        judged.status(one, received=51 if one is Source.LOAD else 100) for one in Source
     )
     values = judged.values(**{'x.load.timeout': 0.1})
     block = judged.columns(axial_load_source=sources)
@@ -57,7 +57,7 @@ def test_a_gap_of_an_input_of_its_own_rate_is_left_out_with_its_timeout(judged, 
 
 def test_of_an_input_that_is_always_late_the_whole_counts(judged):
     blocks = [judged.columns(place, 1) for place in range(0, 1000, 100)]
-    inputs = tuple(judged.health(one, received=10) for one in Source)
+    inputs = tuple(judged.status(one, received=10) for one in Source)
     assert seen_of(judged.case(blocks, inputs=inputs), Source.SPEED).rate == pytest.approx(1.0)
 
 
@@ -175,7 +175,7 @@ def test_every_reason_of_a_refusal_has_words():
 
 def load_with(judged, known=None, **changes):
     inputs = tuple(
-        judged.health(source, **(changes if source is Source.LOAD else {})) for source in Source
+        judged.status(source, **(changes if source is Source.LOAD else {})) for source in Source
     )
     return seen_of(judged.case([judged.columns()], inputs=inputs, known=known), Source.LOAD)
 
@@ -228,7 +228,7 @@ def test_an_input_that_was_never_valid_is_not_called_measured(judged):
 
 def test_an_input_that_never_came(judged):
     inputs = tuple(
-        judged.health(source, received=0, state=InputState.MISSING) for source in Source
+        judged.status(source, received=0, state=InputState.MISSING) for source in Source
     )
     block = judged.columns(axial_load=math.nan, axial_load_source=0)
     load = seen_of(judged.case([block], inputs=inputs), Source.LOAD)

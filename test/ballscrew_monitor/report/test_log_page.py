@@ -167,7 +167,7 @@ def test_it_prints(written, tmp_path):
 
 def test_columns_of_inputs_are_those_that_say_something(judged):
     def page_of(**changes):
-        inputs = tuple(judged.health(source, **changes) for source in Source)
+        inputs = tuple(judged.status(source, **changes) for source in Source)
         case = judged.case([judged.columns()], inputs=inputs)
         return report_page(LogCase(name='log', parameters='', axes=[case]))
 

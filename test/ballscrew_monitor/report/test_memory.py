@@ -5,7 +5,6 @@
 import tracemalloc
 
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.node.parameters import defaults
 from ballscrew_monitor.recordings import bag_writer
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
@@ -13,6 +12,7 @@ from ballscrew_monitor.recordings.bulk import batches
 from ballscrew_monitor.recordings.replay import replay_columns
 from ballscrew_monitor.report.log_report import report_log, STORED_SHARE
 from ballscrew_monitor.report.parameters import LogParameters
+from ballscrew_monitor.settings.parameters import defaults
 from geometry_msgs.msg import WrenchStamped
 import numpy as np
 import pytest

@@ -77,7 +77,7 @@ def test_why_and_what_to_do_have_their_lines(judged):
 
 def test_inputs_tell_source_span_rate_and_troubles(judged):
     inputs = tuple(
-        judged.health(source, lag=0.5, dropped=9 if source is Source.LOAD else 0)
+        judged.status(source, lag=0.5, dropped=9 if source is Source.LOAD else 0)
         for source in Source
     )
     held = np.where(np.arange(100) < 90, 1, 3)

@@ -12,13 +12,13 @@ from ballscrew_monitor.core.fields import OtherJoints
 from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, StampSource, Why
 from ballscrew_monitor.core.monitor import Monitor
 from ballscrew_monitor.core.remembered import NAMES, recall
-from ballscrew_monitor.node import parameters
-from ballscrew_monitor.node.axis import build_axis, settings_of
 from ballscrew_monitor.recordings.bulk.entries import entries_of, joined, Kind, made, TICK_SOURCE
 from ballscrew_monitor.recordings.bulk.judge import AxisJudge
 from ballscrew_monitor.recordings.columns import COLUMNS, JudgedColumns
 from ballscrew_monitor.recordings.columns import joined as joined_columns
 from ballscrew_monitor.recordings.rows import RowCollector
+from ballscrew_monitor.settings import parameters
+from ballscrew_monitor.settings.axis import build_axis, settings_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
 import numpy as np

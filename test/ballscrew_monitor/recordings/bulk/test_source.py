@@ -8,9 +8,6 @@ import shutil
 
 from ballscrew_monitor.core.inputs import InputSample
 from ballscrew_monitor.core.monitor import BACKWARD_JUMP
-from ballscrew_monitor.node import parameters
-from ballscrew_monitor.node.axis import build_axis
-from ballscrew_monitor.node.topics import absolute
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bulk import batches as batches_module
 from ballscrew_monitor.recordings.bulk.decode import not_decoded
@@ -19,6 +16,9 @@ from ballscrew_monitor.recordings.bulk.order import LONGEST_HOLE, REORDER
 from ballscrew_monitor.recordings.bulk.source import ordered_entries, places_of_axis
 from ballscrew_monitor.recordings.decoding import decode
 from ballscrew_monitor.recordings.message_definitions import message_definition
+from ballscrew_monitor.settings import parameters
+from ballscrew_monitor.settings.axis import build_axis
+from ballscrew_monitor.settings.topics import absolute
 from geometry_msgs.msg import WrenchStamped
 from mcap.writer import CompressionType, IndexType, Writer
 import numpy as np

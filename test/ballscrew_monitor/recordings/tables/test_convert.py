@@ -6,7 +6,6 @@ import contextlib
 import os
 from pathlib import Path
 
-from ballscrew_monitor.node import parameters
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.log_facts import (
     facts_of,
@@ -19,6 +18,7 @@ from ballscrew_monitor.recordings.tables import cells, read
 from ballscrew_monitor.recordings.tables.convert import convert
 from ballscrew_monitor.recordings.tables.guess import guess
 from ballscrew_monitor.recordings.tables.mapping import make_map
+from ballscrew_monitor.settings import parameters
 from ballscrew_msgs.msg import InputHealth
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory

@@ -1,0 +1,242 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+What is wrong between a parameter file and a running ROS graph: facts in, findings out.
+
+A finding is a sentence that says what to write instead. Nothing here asks the graph.
+
+"""
+
+from collections.abc import Iterable, Mapping
+import dataclasses
+import difflib
+import math
+
+from ballscrew_monitor.core.conversions import celsius, POSITION_UNITS, Scaling
+from ballscrew_monitor.core.input_status import InputState, InputStatus
+from ballscrew_monitor.core.inputs import Source
+from ballscrew_monitor.core.links import Link, link_reason
+from ballscrew_monitor.messages.reasons import slow_reason, Standing, summary
+from surrogate.surface import Surface
+
+SAFE_RATE = 3200.0  # [1/s] messages of speed and load that one core takes
+PLAUSIBLE = 1.5  # times the range of the surface
+TEMPERATURE_MARGIN = 40.0  # [K] about the range of the surface
+NEAR = 0.6  # likeness of two names from which on one may be meant by the other
+SI_UNITS = {Source.SPEED: 'rad/s', Source.LOAD: 'N', Source.TEMPERATURE: 'degC'}
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Heard:
+    """
+    What came of an input while it was listened to.
+
+    Lowest and highest number as the messages hold them, NaN without any, and the longest time
+    [s] without a message.
+
+    """
+
+    status: InputStatus
+    low: float = math.nan
+    high: float = math.nan
+    longest_gap: float = math.nan
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class InputFacts:
+    """
+    One configured input: its link, timeout [s] and unit, and what was heard of it.
+
+    `scalings` hold the lines to SI units by unit, and `known` is the range of the surface [SI];
+    both are empty where the surface is not known. `problem` is why the field cannot be read, and
+    `numbers` are the fields that could.
+
+    """
+
+    axis: str
+    source: Source
+    link: Link
+    timeout: float
+    unit: str
+    scalings: Mapping[str, Scaling]
+    known: tuple[float, float] | None = None
+    heard: Heard | None = None
+    problem: str = ''
+    numbers: tuple[str, ...] = ()
+
+    @property
+    def parameter(self) -> str:
+        """Return the name that the parameters of the input begin with."""
+        return f'{self.axis}.{self.source.name.lower()}'
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Surroundings:
+    """
+    Where the doctor listens: domain, discovery range, and who is there.
+
+    `topics` holds the types of each topic that is published, `domains` the other domains that
+    processes of this machine are in.
+
+    """
+
+    domain: int
+    discovery: str
+    localhost_only: bool
+    nodes: tuple[str, ...]
+    topics: Mapping[str, tuple[str, ...]]
+    domains: tuple[int, ...]
+    use_sim_time: bool
+
+
+def findings(
+    surroundings: Surroundings, inputs: Iterable[InputFacts], seconds: float
+) -> list[str]:
+    """Return a sentence for all that is wrong, after listening for `seconds` [s]."""
+    inputs = tuple(inputs)
+    found = [*_of_surroundings(surroundings)]
+    for facts in inputs:
+        found += _of_input(facts, surroundings, seconds)
+    return found + _of_rates(inputs)
+
+
+def _of_surroundings(around: Surroundings) -> list[str]:
+    found = []
+    if not around.nodes:
+        found.append(f'nobody else is seen in ROS domain {around.domain}: {_elsewhere(around)}')
+    if around.use_sim_time and '/clock' not in around.topics:
+        found.append(
+            'use_sim_time is true and nobody publishes /clock: play /clock, or set it to false'
+        )
+    return found
+
+
+def _elsewhere(around: Surroundings) -> str:
+    """Return where the machine may be instead."""
+    if around.domains:
+        return (
+            f'processes of this machine are in domain {", ".join(map(str, around.domains))}, '
+            f'set ROS_DOMAIN_ID={around.domains[0]}'
+        )
+    if around.localhost_only:
+        return 'ROS_LOCALHOST_ONLY hides other machines, unset it'
+    if around.discovery in ('LOCALHOST', 'OFF'):
+        return (
+            f'ROS_AUTOMATIC_DISCOVERY_RANGE={around.discovery} hides other machines, '
+            'set it to SUBNET'
+        )
+    return 'start the machine, or set ROS_DOMAIN_ID to its domain'
+
+
+def _of_input(facts: InputFacts, around: Surroundings, seconds: float) -> list[str]:
+    found = []
+    reason = link_reason(facts.link, facts.parameter)
+    if reason:
+        found.append(f'{facts.parameter}: {reason}{_instead(facts, around)}')
+    if facts.problem and not (reason and facts.link.publishers):
+        found.append(f'{facts.parameter}: {facts.problem}: {_readable(facts)}')
+    if facts.heard is not None:
+        found += [*_of_health(facts, facts.heard, seconds), *unit_doubts(facts, facts.heard)]
+    return found
+
+
+def _readable(facts: InputFacts) -> str:
+    """Return what to write instead of a field that cannot be read."""
+    if not facts.numbers:
+        return f'set {facts.parameter}.type, or {facts.parameter}.field'
+    return f'set {facts.parameter}.field, numbers are {", ".join(facts.numbers)}'
+
+
+def _instead(facts: InputFacts, around: Surroundings) -> str:
+    """Return a topic that may be meant instead of one that nobody publishes."""
+    if facts.link.publishers:
+        return ''
+    topic = near_topic(facts.link, around.topics)
+    return f' to {topic} ({" and ".join(around.topics[topic])})' if topic else ''
+
+
+def near_topic(link: Link, topics: Mapping[str, tuple[str, ...]]) -> str:
+    """Return the topic that is most like that of a link: by last name, likeness or type."""
+    last = link.topic.rpartition('/')[2]
+    same = [name for name in topics if name.rpartition('/')[2] == last]
+    like = difflib.get_close_matches(link.topic, topics, n=1, cutoff=NEAR)
+    of_type = [name for name, types in topics.items() if link.type_name in types]
+    return next(iter([*same, *like, *of_type]), '')
+
+
+def _of_health(facts: InputFacts, heard: Heard, seconds: float) -> list[str]:
+    topic = facts.link.topic
+    if not heard.status.received:
+        text = f'{facts.parameter}: the publisher on {topic} has sent nothing within {seconds:g} s'
+        return [f'{text}: start it'] if facts.timeout < seconds else []
+    fine = heard.status.state in (InputState.OK, InputState.STALE)
+    if fine and heard.longest_gap > facts.timeout:
+        return [f'{facts.parameter}: it {slow_reason(heard.longest_gap, facts.parameter)}']
+    standing, text = summary(facts.axis, (heard.status,), {facts.source: facts.link})
+    return [] if standing is Standing.GOOD else [f'{facts.parameter}: {text}']
+
+
+def known_range(surface: Surface | None, source: Source, unit: str) -> tuple[float, float] | None:
+    """Return the range of a surface [SI] in what an input measures; a position has none."""
+    if surface is None or source is Source.TORQUE or unit in POSITION_UNITS:
+        return None
+    ranges = {
+        Source.SPEED: surface.speed_range,
+        Source.LOAD: surface.load_range,
+        Source.TEMPERATURE: surface.temperature_range,
+    }
+    return ranges[source]
+
+
+def unit_doubts(facts: InputFacts, heard: Heard) -> list[str]:
+    """Return that the numbers are too large for the surface, with units that would suit them."""
+    if math.isnan(heard.high) or facts.known is None or facts.unit not in facts.scalings:
+        return []
+    if _suits(facts, heard, facts.unit):
+        return []
+    others = [unit for unit in facts.scalings if unit != facts.unit and _suits(facts, heard, unit)]
+    numbers = (
+        f'{heard.low:.4g} to {heard.high:.4g}' if heard.low < heard.high else f'{heard.low:.4g}'
+    )
+    said = (
+        f'{facts.parameter}: {numbers} {facts.unit} is far outside the surface '
+        f'({_range_text(facts)})'
+    )
+    if not others:
+        return [f'{said}: set {facts.parameter}.scale, or build a wider surface']
+    more = f' (or {", ".join(others[1:])})' if others[1:] else ''
+    return [f'{said}, it looks like {others[0]}{more}: set {facts.parameter}.unit to {others[0]}']
+
+
+def _suits(facts: InputFacts, heard: Heard, unit: str) -> bool:
+    """Tell whether what was heard would be near the range of the surface in a unit."""
+    assert facts.known is not None
+    values = [facts.scalings[unit](number) for number in (heard.low, heard.high)]
+    if facts.source is Source.TEMPERATURE:
+        low, high = (facts.known[0] - TEMPERATURE_MARGIN, facts.known[1] + TEMPERATURE_MARGIN)
+        return all(low <= value <= high for value in values)
+    most = PLAUSIBLE * max(map(abs, facts.known))
+    return all(abs(value) <= most for value in values)
+
+
+def _range_text(facts: InputFacts) -> str:
+    assert facts.known is not None
+    low, high = facts.known
+    if facts.source is Source.TEMPERATURE:
+        low, high = celsius(low), celsius(high)
+    return f'{low:.4g} to {high:.4g} {SI_UNITS[facts.source]}'
+
+
+def _of_rates(inputs: tuple[InputFacts, ...]) -> list[str]:
+    rates = [
+        facts.heard.status.rate
+        for facts in inputs
+        if facts.heard is not None and facts.source in (Source.SPEED, Source.LOAD)
+    ]
+    total = math.fsum(rate for rate in rates if math.isfinite(rate))
+    if total <= SAFE_RATE:
+        return []
+    return [
+        f'speed and load come {total:.0f} times a second in all, safe are {SAFE_RATE:g}: lower '
+        'their rates, or give some axes a node of their own'
+    ]

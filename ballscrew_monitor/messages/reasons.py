@@ -1,0 +1,155 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+What is wrong with an input and what mends it: one sentence each, the same wherever it is said.
+
+A sentence changes with the fault alone: it names parameters, topics and joints, and of numbers
+only those to be written.
+
+"""
+
+from collections.abc import Callable, Mapping
+import difflib
+import enum
+import math
+
+from ballscrew_monitor.core.conversions import seconds
+from ballscrew_monitor.core.fields import OtherJoints
+from ballscrew_monitor.core.input_status import InputState, InputStatus
+from ballscrew_monitor.core.inputs import Source, Why, YEAR
+from ballscrew_monitor.core.links import Link, link_reason
+
+SHOWN_JOINTS = 8  # names that a sentence lists
+ROUND = (1.0, 2.0, 5.0, 10.0)  # leading digits of a timeout that is proposed
+MOST_TIMEOUT = 3600.0  # [s] as the parameter allows it
+_FAULTS = (InputState.STALE, InputState.MISSING, InputState.BAD, InputState.UNKNOWN)
+_PLAUSIBLE = (
+    'mend the source, its unit or scale, or raise limits.plausible_speed or limits.plausible_load'
+)
+_REFUSED = {
+    Why.NOT_A_NUMBER: 'it is not a finite number, mend its source or read another field',
+    Why.FUTURE: 'its stamps lie ahead of the clock, set the clocks alike or raise max_future',
+    Why.OTHER_CLOCK: 'its stamps are of the wall clock and the node runs on simulated time, '
+    'stamp with /clock or unset use_sim_time',
+    Why.NOT_DECODED: 'its messages do not decode, record them with the type of their publisher',
+    Why.IMPLAUSIBLE: f'it is beyond the plausible range, {_PLAUSIBLE}',
+    Why.NEGATIVE: 'its stamps are negative, mend the clock of its source',
+    Why.HOLE: 'its positions come less often than its timeout allows, raise speed.timeout',
+}
+_TROUBLES: tuple[tuple[Callable[[InputStatus], bool], str], ...] = (
+    (
+        lambda status: status.glitching,
+        f'samples beyond the plausible range were refused: {_PLAUSIBLE}',
+    ),
+    (
+        lambda status: status.losing,
+        'messages are lost on the way: lower their rate, raise publish_period, or give the node '
+        'fewer axes or more of the processor',
+    ),
+    (
+        lambda status: status.lag > seconds(YEAR),
+        'stamps are of simulated time and the node runs on the wall clock: set use_sim_time',
+    ),
+    (
+        lambda status: status.lagging,
+        'stamps lag behind their arrival: set the clocks alike, or raise max_lag',
+    ),
+    (lambda status: status.slow, ''),
+    (
+        lambda status: status.lost is None,
+        'loss is unknown: let the topic have one publisher that numbers its messages',
+    ),
+)
+
+
+class Standing(enum.Enum):
+    """How the inputs of an axis stand, as the worst of them does."""
+
+    GOOD = 'all inputs arrive'
+    DEGRADED = 'judged, but something is to be mended'
+    LOST = 'an input is missing'
+
+
+def summary(
+    axis: str, inputs: tuple[InputStatus, ...], links: Mapping[Source, Link]
+) -> tuple[Standing, str]:
+    """Return a sentence for each fault, with what mends it; the worst kind of fault alone."""
+    faults = [
+        fault(status, links.get(status.source), _parameter(axis, status.source))
+        for status in inputs
+        if status.state in _FAULTS
+    ]
+    if faults:
+        return Standing.LOST, '; '.join(faults)
+    for happens, text in _TROUBLES:
+        found = [status for status in inputs if happens(status)]
+        if found:
+            return Standing.DEGRADED, _trouble(axis, found, text)
+    return Standing.GOOD, Standing.GOOD.value
+
+
+def _parameter(axis: str, source: Source) -> str:
+    return f'{axis}.{source.name.lower()}'
+
+
+def _trouble(axis: str, found: list[InputStatus], text: str) -> str:
+    names = [status.source.name.lower() for status in found]
+    if text:
+        return f'{" and ".join(names)} {text}'
+    return '; '.join(
+        f'{name} {slow_reason(status.longest_gap, _parameter(axis, status.source))}'
+        for name, status in zip(names, found, strict=True)
+    )
+
+
+def fault(status: InputStatus, link: Link | None, parameter: str) -> str:
+    """Return what is wrong with an input that is not well, `parameter` being `axis.input`."""
+    name = status.source.name.lower()
+    if status.state is InputState.BAD:
+        why = _REFUSED.get(status.why, status.refusal) if status.why else ''
+        return _with(f'{name} is not usable', why)
+    seen = status.state is InputState.STALE
+    if status.joints is not None:
+        return _with(f'{name} has no sample', joint_reason(status.joints, parameter))
+    reason = link_reason(link, parameter, seen=seen) if link else ''
+    if seen:
+        slow = f'it {slow_reason(status.longest_gap, parameter)}' if status.slow else ''
+        return _with(f'{name} is stale', slow or reason)
+    if status.state is InputState.UNKNOWN:
+        return f'{name} is unknown'
+    if link and not reason:
+        reason = f'the publisher on {link.topic} has sent nothing yet'
+    return _with(f'{name} was never received', reason)
+
+
+def _with(what: str, why: str) -> str:
+    return f'{what}: {why}' if why else what
+
+
+def joint_reason(found: OtherJoints, parameter: str) -> str:
+    """Return which joints the messages name instead of the one asked for, and what to write."""
+    if not found.names:
+        return f'the messages name no joints at all, set {parameter}.field to {found.array}[0]'
+    names = ', '.join(found.names[:SHOWN_JOINTS])
+    more = ', ...' if len(found.names) > SHOWN_JOINTS else ''
+    near = difflib.get_close_matches(found.joint, found.names, n=1, cutoff=0.0)
+    return (
+        f'the messages name {names}{more} and no joint {found.joint}, '
+        f'set {parameter}.field to {found.array}[{near[0]}] or another of them'
+    )
+
+
+def slow_reason(gap: float, parameter: str) -> str:
+    """Return that gaps of `gap` [s] are too long for the timeout, with one that would do."""
+    return (
+        'comes less often than its timeout allows: '
+        f'set {parameter}.timeout to {enough_timeout(gap)} or more'
+    )
+
+
+def enough_timeout(gap: float) -> float:
+    """Return a round timeout [s] of at least twice a `gap` [s] between messages."""
+    wanted = min(2.0 * gap, MOST_TIMEOUT)
+    decade = 10.0 ** math.floor(math.log10(wanted))
+    digit = next(digit for digit in ROUND if digit * decade >= wanted * (1.0 - 1e-9))
+    return min(float(f'{digit * decade:.3g}'), MOST_TIMEOUT)

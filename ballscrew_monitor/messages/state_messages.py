@@ -1,0 +1,280 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+From states, events and surfaces to messages.
+
+A number that goes into a message is always passed through float(): the generated classes store
+anything else as garbage when their checks are off.
+
+"""
+
+import math
+from typing import Any
+
+from ballscrew_monitor.core import judgement, tally
+from ballscrew_monitor.core.advice import Advice
+from ballscrew_monitor.core.conversions import (
+    celsius,
+    Direction,
+    direction_of,
+    kelvin,
+    SECOND,
+    seconds,
+)
+from ballscrew_monitor.core.estimate import MachinePoint, PointEstimate
+from ballscrew_monitor.core.input_status import InputStatus
+from ballscrew_monitor.core.judgement import Limits
+from ballscrew_monitor.core.monitor import SHOWN
+from ballscrew_monitor.core.state import Event, State
+from ballscrew_msgs.msg import (
+    BallScrewState,
+    Finding,
+    InputHealth,
+    OperatingPoint,
+    OutOfZone,
+    PointResult,
+    SurfaceInfo,
+    WindowStatistics,
+)
+from builtin_interfaces.msg import Time
+from surrogate.surface import Surface
+
+TIERS = {'closed_form': PointResult.TIER_CLOSED_FORM, 'full': PointResult.TIER_FULL}
+NAN = math.nan
+NO_ADVICE = Advice()
+# The numbers of a surface that a PointResult repeats under the same name.
+NUMBERS = (
+    'friction_torque',
+    'driving_torque',
+    'asperity_share',
+    'film_ratio',
+    'central_film',
+    'minimum_film',
+    'friction_coefficient',
+    'max_pressure',
+    'efficiency_error',
+    'rcs_error',
+    'efficiency_std',
+    'rcs_std',
+)
+
+
+def fill_time(message: Time, stamp: int) -> None:
+    """Fill in a stamp [ns]."""
+    message.sec, message.nanosec = divmod(stamp, SECOND)
+
+
+def fill_point(message: OperatingPoint, point: MachinePoint) -> None:
+    """Fill in an operating point."""
+    message.speed = float(point.speed)
+    message.axial_load = float(point.axial_load)
+    message.temperature = celsius(float(point.temperature))
+    message.motor_torque = float(point.motor_torque)
+    message.speed_source = int(point.speed_source)
+    message.axial_load_source = int(point.axial_load_source)
+    message.temperature_source = int(point.temperature_source)
+    message.motor_torque_source = int(point.motor_torque_source)
+    message.direction = int(point.direction)
+    message.direction_held = point.direction_held
+    message.axial_load_uncertainty = float(point.axial_load_uncertainty)
+
+
+def read_point(message: OperatingPoint, *, default_temperature: float) -> MachinePoint:
+    """
+    Return the point of an evaluation request, its direction that of the speed.
+
+    A NaN temperature means `default_temperature` [K]; at zero speed the stated direction counts.
+
+    """
+    direction = direction_of(message.speed)
+    if message.speed == 0.0 and message.direction in tuple(Direction):
+        direction = Direction(message.direction)
+    missing = math.isnan(message.temperature)
+    return MachinePoint(
+        speed=message.speed,
+        axial_load=message.axial_load,
+        direction=direction,
+        temperature=default_temperature if missing else kelvin(message.temperature),
+    )
+
+
+def fill_result(message: PointResult, result: PointEstimate, tier: int) -> None:
+    """Fill in what the model says, `tier` a TIER_ constant."""
+    numbers = result.numbers
+    message.validity = int(result.validity)
+    message.tier = tier
+    message.reason = result.reason
+    message.efficiency = float(result.efficiency)
+    message.rcs = float(result.rcs)
+    for name in NUMBERS:
+        setattr(message, name, NAN if numbers is None else float(getattr(numbers, name)))
+    message.back_driving = numbers is not None and bool(numbers.back_driving)
+    message.corrected = numbers is not None and bool(numbers.corrected)
+    message.worst_side = 0 if numbers is None else int(numbers.worst_side)
+    message.worst_nut = int(result.worst_nut)
+    message.regime = int(result.regime)
+    message.contact_state = int(result.contact_state)
+
+
+def finding_message(finding: judgement.Finding, advice: Advice = NO_ADVICE) -> Finding:
+    """Return a finding as a message, with the advice on it."""
+    return Finding(
+        code=int(finding.code),
+        severity=int(finding.severity),
+        value=float(finding.value),
+        limit=float(finding.limit),
+        unit=finding.unit,
+        text=finding.text,
+        target_speed=float(advice.target_speed),
+        target_load=float(advice.target_load),
+    )
+
+
+def fill_window(message: WindowStatistics, window: tally.WindowStatistics) -> None:
+    """Fill in the statistics of a window."""
+    message.count = window.count
+    for name in ('speed', 'axial_load', 'efficiency', 'rcs', 'film_ratio'):
+        extremes = getattr(window, name)
+        setattr(message, f'{name}_min', float(extremes.low))
+        setattr(message, f'{name}_mean', float(extremes.mean))
+        setattr(message, f'{name}_max', float(extremes.high))
+
+
+def fill_input(message: InputHealth, status: InputStatus) -> None:
+    """Fill in the status of one input."""
+    message.name = status.source.name.lower()
+    message.state = int(status.state)
+    message.stamp_source = int(status.stamp_source)
+    message.age = float(status.age)
+    message.rate = float(status.rate)
+    message.received = status.received
+    message.dropped = status.dropped
+    message.lost = status.lost or 0
+    message.lost_known = status.lost is not None
+    message.lag = float(status.lag)
+    message.refusal = status.refusal
+
+
+def fill_totals(message: Any, totals: tally.Totals) -> None:
+    """Fill in the totals."""
+    for name in (
+        'running_time',
+        'unjudged_time',
+        'boundary_time',
+        'mixed_time',
+        'hydrodynamic_time',
+        'optimal_time',
+        'outside_time',
+    ):
+        setattr(message, name, seconds(getattr(totals, name)))
+    message.revolutions = float(totals.revolutions)
+    message.energy_lost = float(totals.energy_lost)
+    fill_time(message.since, totals.since)
+
+
+class StateWriter:
+    """Writes states of one axis into one message that is used again and again."""
+
+    def __init__(self, axis: str, tier: int) -> None:
+        """Begin with an empty message, `tier` a TIER_ constant."""
+        self.tier = tier
+        self._message = BallScrewState(axis=axis, inputs=[InputHealth() for _ in SHOWN])
+        self._message.header.frame_id = axis
+
+    def write(self, state: State) -> BallScrewState:
+        """Return the message of `state`; it is good until the next call."""
+        message = self._message
+        fill_time(message.header.stamp, state.stamp)
+        fill_time(message.level_since, state.level_since)
+        fill_point(message.point, state.point)
+        fill_result(message.result, state.estimate, self.tier)
+        fill_window(message.window, state.window)
+        fill_totals(message.totals, state.totals)
+        for part, status in zip(message.inputs, state.inputs):
+            fill_input(part, status)
+        _fill_judgement(message, state)
+        message.measured_torque = float(state.measured_torque)
+        message.torque_residual = float(state.torque_residual)
+        message.surface_id = state.surface_id
+        message.shelved = state.shelving.until != 0
+        fill_time(message.shelved_until, state.shelving.until)
+        message.shelve_reason = state.shelving.reason
+        return message
+
+
+def _fill_judgement(message: BallScrewState, state: State) -> None:
+    message.level = int(state.level)
+    message.event_id = state.event_id
+    message.zone = int(state.verdict.zone)
+    message.findings = [finding_message(finding) for finding in state.verdict.findings]
+    message.active_gates = [int(gate) for gate in state.verdict.gates]
+    message.rcs_limit = float(state.limits.rcs)
+    message.efficiency_limit = float(state.limits.efficiency)
+    message.light_load_limit = float(state.limits.light_load)
+    message.standstill_limit = float(state.limits.standstill_speed)
+    message.judged = state.judged
+
+
+def plain_values(state: State) -> dict[str, float | str | bool]:
+    """Return what each plain topic says of a state; numbers that are not known are NaN."""
+    result = state.estimate
+    return {
+        'efficiency': float(result.efficiency),
+        'rcs': float(result.rcs),
+        'film_ratio': float(result.film_ratio),
+        'regime': result.regime.name,
+        'out_of_zone': state.level is judgement.Level.WARN and not state.shelving.until,
+    }
+
+
+def out_of_zone_message(axis: str, event: Event, *, shelved: bool) -> OutOfZone:
+    """Return an event as a message; event 0 is inactive and says that there has been none."""
+    message = OutOfZone(
+        axis=axis,
+        event_id=event.number,
+        active=event.active,
+        duration=seconds(event.stamp - event.start),
+        worst_value=float(event.worst_value),
+        cause=finding_message(event.cause, event.advice),
+        advice=event.ending or event.advice.text,
+        shelved=shelved,
+    )
+    message.header.frame_id = axis
+    fill_time(message.header.stamp, event.stamp)
+    fill_time(message.start, event.start)
+    return message
+
+
+def surface_info_message(
+    axis: str, surface: Surface, limits: Limits, *, stamp: int, default_temperature: float
+) -> SurfaceInfo:
+    """Return what a surface is, `stamp` [ns], `default_temperature` [K]."""
+    errors = surface.errors
+    message = SurfaceInfo(
+        axis=axis,
+        screw=surface.screw_name,
+        oil=surface.oil_name,
+        tier=TIERS[surface.tier],
+        sha256=surface.sha256,
+        rcs_limit=limits.rcs,
+        efficiency_limit=limits.efficiency,
+        error_field=list(errors),
+        error_max=[float(error[0]) for error in errors.values()],
+        error_p95=[float(error[1]) for error in errors.values()],
+        default_temperature=celsius(default_temperature),
+    )
+    message.limit_factor_low, message.limit_factor_high = surface.limit_band
+    message.corrected_speed = [float(one.speed) for one in surface.corrections]
+    message.corrected_load = [float(one.opposing_load) for one in surface.corrections]
+    message.corrected_temperature = [
+        celsius(float(one.temperature)) for one in surface.corrections
+    ]
+    message.header.frame_id = axis
+    fill_time(message.header.stamp, stamp)
+    for name, (low, high) in (('speed', surface.speed_range), ('axial_load', surface.load_range)):
+        setattr(message, f'{name}_min', float(low))
+        setattr(message, f'{name}_max', float(high))
+    message.temperature_min, message.temperature_max = (
+        celsius(float(limit)) for limit in surface.temperature_range
+    )
+    return message

@@ -1,0 +1,310 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What the node keeps of one axis: the axis, its publishers, and what it last said."""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+import dataclasses
+from typing import Any
+
+from ballscrew_monitor.core.conversions import nanoseconds
+from ballscrew_monitor.core.dwell import Dwell
+from ballscrew_monitor.core.estimate import estimate, MachinePoint
+from ballscrew_monitor.core.full_point import corrected, objection, solved_at
+from ballscrew_monitor.core.inputs import Source
+from ballscrew_monitor.core.links import Link
+from ballscrew_monitor.core.shelving import Shelving
+from ballscrew_monitor.core.state import State
+from ballscrew_monitor.messages import diagnostics
+from ballscrew_monitor.messages.state_messages import (
+    fill_result,
+    read_point,
+    StateWriter,
+    surface_info_message,
+    TIERS,
+)
+from ballscrew_monitor.node.alarm import Alarm
+from ballscrew_monitor.node.correction_store import CorrectionStore
+from ballscrew_monitor.node.event_log import Kind, point_facts
+from ballscrew_monitor.node.keeping import Keeping
+from ballscrew_monitor.node.output_topics import LatchedTopics, PlainTopics, quiet_publishers
+from ballscrew_monitor.settings.axis import Axis
+from ballscrew_monitor.settings.qos import state_qos
+from ballscrew_msgs.msg import BallScrewState, OperatingPoint, PointResult
+from ballscrew_msgs.srv import EvaluateOperatingPoint
+from diagnostic_msgs.msg import DiagnosticStatus
+from rclpy.lifecycle import LifecycleNode
+from rclpy.qos import QoSProfile, QoSReliabilityPolicy
+from surrogate.files import InputError
+from surrogate.surface import Surface, SurfaceError, SurfacePoint
+
+STATE_QOS = QoSProfile(depth=10, reliability=QoSReliabilityPolicy.RELIABLE)
+LOG_INTERVAL = nanoseconds(1.0)  # [ns] shortest time between two lines about the inputs
+NEWS_INTERVAL = nanoseconds(0.1)  # [ns] shortest time between two diagnostics sent for a change
+
+
+class AxisPublisher:
+    """One axis and what the node needs to speak for it."""
+
+    def __init__(
+        self,
+        node: LifecycleNode,
+        axis: Axis,
+        values: Mapping[str, Any],
+        store: CorrectionStore,
+        *,
+        latched: LatchedTopics,
+        keeping: Keeping,
+        record: Callable[[str, Any], None],
+        changed: Callable[[Iterable[str], str], None],
+    ) -> None:
+        """
+        Make the publishers, which stay silent until the node is active; `latched` are there.
+
+        `values` are the parameters as they are at any time; corrections are kept in the `store`,
+        and `keeping` is told what happens. `record` is given each message with its topic,
+        `changed` the axis and what has changed it.
+
+        """
+        self.axis = axis
+        self.dwell = Dwell()
+        self.refused = ''  # why the last reload of the surface was
+        self._values = values
+        self._store = store
+        self._keeping = keeping
+        self._record = record
+        self._changed = changed
+        self._unsaved = False  # corrections that could not be kept
+        self._node = node
+        self._writer = StateWriter(axis.name, TIERS[axis.surface.tier])
+        self._last: State | None = None
+        self._links: Mapping[Source, Link] = {}
+        self._said: tuple[diagnostics.StatusSummary, ...] = ()
+        self._said_at = -NEWS_INTERVAL
+        self._logged: diagnostics.StatusSummary | None = None
+        self._logged_at = -LOG_INTERVAL
+        make = quiet_publishers(node)
+        simulated = node.get_parameter('use_sim_time').value
+        promise = state_qos(axis.name, values, simulated=simulated)
+        self._state = make(BallScrewState, f'~/{axis.name}/state', promise)
+        self.alarm = Alarm(node, axis, latched.event, keeping, record)
+        self._info = latched.info
+        self._plain = None
+        if values[f'{axis.name}.plain_topics']:
+            self._plain = PlainTopics(node, axis.name, make, STATE_QOS)
+
+    def close(self) -> None:
+        """Destroy the publishers, but for those that outlive the axis."""
+        self._node.destroy_lifecycle_publisher(self._state)
+        if self._plain is not None:
+            self._plain.close()
+
+    def publish_state(self, state: State) -> None:
+        """Publish a state, and the event that it begins or ends."""
+        self._last = state
+        message = self._writer.write(state)
+        self._state.publish(message)
+        self._record(f'~/{self.name}/state', message)
+        if self._plain is not None:
+            self._plain.publish(state)
+        if state.event is not None:
+            self.alarm.follow(state)
+
+    def shelve(self, shelving: Shelving) -> None:
+        """Shelve the warning, or no longer, and let the last state say so."""
+        self.alarm.shelve(shelving)
+        self._show_shelving()
+
+    def look(self) -> bool:
+        """End a shelving that is over, and keep what could not be kept; tell of the former."""
+        if self._unsaved:
+            self._save()
+        over = self.alarm.end_shelving()
+        if over:
+            self._show_shelving()
+        return over
+
+    def _show_shelving(self) -> None:
+        if self._last is None:
+            return
+        self._last = dataclasses.replace(self._last, shelving=self.axis.monitor.shelving)
+        if self._plain is not None:
+            self._plain.publish(self._last)
+
+    def publish_info(self) -> None:
+        """Publish what the surface and the limits are."""
+        settings = self.axis.monitor.settings
+        message = surface_info_message(
+            self.axis.name,
+            self.axis.surface,
+            settings.limits,
+            stamp=self._node.get_clock().now().nanoseconds,
+            default_temperature=settings.default_temperature,
+        )
+        self._info.publish(message)
+        self._record(f'~/{self.name}/surface_info', message)
+
+    @property
+    def name(self) -> str:
+        """Name of the axis."""
+        return self.axis.name
+
+    @property
+    def surface(self) -> Surface:
+        """Surface that is judged with."""
+        return self.axis.surface
+
+    @property
+    def rcs_limit(self) -> float:
+        """Limit of RCS in force [-]."""
+        return self.axis.monitor.settings.limits.rcs
+
+    @property
+    def default_temperature(self) -> float:
+        """Oil temperature without a topic [K]."""
+        return self.axis.monitor.settings.default_temperature
+
+    def current_point(self) -> MachinePoint | str:
+        """Return the operating point of now, or why there is none."""
+        return self.axis.monitor.current_point(self._node.get_clock().now().nanoseconds)
+
+    def is_dwelling(self, state: State) -> bool:
+        """Tell whether the point of a state should be solved; only where that is asked for."""
+        if not self._values[f'{self.name}.solve_on_dwell']:
+            return False
+        return self.dwell.update(
+            state.stamp, state.point, state.estimate, state.verdict, state.limits
+        )
+
+    def correct(self, point: MachinePoint, full: SurfacePoint) -> tuple[bool, str]:
+        """Correct the surface by a full solve and keep it; return whether, and what or why not."""
+        if not self._values[f'{self.name}.correct_surface']:
+            return False, f'parameter {self.name}.correct_surface is false'
+        numbers = estimate(point, self.surface, rcs_limit=self.rcs_limit).numbers
+        problem = objection(full, numbers, self.surface)
+        if problem:
+            return False, problem
+        try:
+            surface = self.surface.with_correction(solved_at(point), full)
+        except SurfaceError as error:
+            return False, str(error)
+        self.use_surface(surface)
+        problem = self._save()
+        kept = f'not kept: {problem}' if problem else 'kept'
+        self._keeping.note(Kind.CORRECTION, self.name, point=point_facts(point), result=kept)
+        return True, f'corrected the surface about this point, {kept}'
+
+    def _save(self) -> str:
+        """Keep the corrections; return why that failed, or nothing."""
+        problem = self._store.save(self.name, self.surface.base_sha256, self.surface.corrections)
+        self._unsaved = bool(problem)
+        self._keeping.note_unsaved(self.name, problem)
+        return problem
+
+    def restore(self) -> str:
+        """Take up the corrections that were kept; return what became of them, if there are any."""
+        try:
+            sha256, kept = self._store.load(self.name)
+        except InputError as error:
+            self._keeping.note_damage(str(error))
+            return ''
+        if not kept:
+            return ''
+        if sha256 != self.surface.base_sha256:
+            return f'{len(kept)} kept corrections are of another surface and not used'
+        try:
+            surface = corrected(self.surface, kept)
+        except SurfaceError as error:
+            return f'{len(kept)} kept corrections are not used: {error}'
+        self.axis.use_surface(surface, self._values)
+        return f'{len(kept)} kept corrections are in use'
+
+    def reload(self, surface: Surface) -> str:
+        """
+        Judge with the surface of the file as it is now; return what became of the corrections.
+
+        Those of a file whose content is the same stay, others are dropped.
+
+        """
+        before = self.surface.corrections
+        same = surface.base_sha256 == self.surface.base_sha256
+        if before and same:
+            surface = corrected(surface, before)
+        self.use_surface(surface)
+        self._keeping.note(Kind.RELOAD_SURFACE, self.name, sha256=surface.sha256)
+        self.refused = ''
+        if not before:
+            return ''
+        if not same:
+            self._save()
+        return f'{len(before)} corrections {"stay" if same else "dropped"}'
+
+    def use_surface(self, surface: Surface) -> None:
+        """Judge with another surface from now on, and say so."""
+        self.axis.use_surface(surface, self._values)
+        self._writer.tier = TIERS[surface.tier]
+        self.publish_info()
+        self._changed([self.name], 'surface')
+
+    def evaluate(self, points: Sequence[OperatingPoint], response: Any) -> None:
+        """Fill the response with what the surface says of the points, if they are not too many."""
+        most = EvaluateOperatingPoint.Request.MAX_POINTS
+        if len(points) > most:
+            response.message = f'{len(points)} points are too many, allowed are {most}'
+            return
+        response.success = True
+        response.results = [self._evaluate(point) for point in points]
+
+    def _evaluate(self, point: OperatingPoint) -> PointResult:
+        settings, result = self.axis.monitor.settings, PointResult()
+        asked = read_point(point, default_temperature=settings.default_temperature)
+        answer = estimate(asked, self.axis.surface, rcs_limit=settings.limits.rcs)
+        fill_result(result, answer, TIERS[self.axis.surface.tier])
+        return result
+
+    def has_news(self, now: int) -> bool:
+        """Tell whether at `now` [ns] the last state changes what was said, if not just now."""
+        if self._last is None or now - self._said_at < NEWS_INTERVAL:
+            return False
+        return self._summaries(self._last) != self._said
+
+    def say_news(self, now: int) -> None:
+        """Take the last state for said at `now` [ns], and log a change of the inputs."""
+        if self._last is not None:
+            self._said, self._said_at = self._summaries(self._last), now
+            self.log_inputs(now)
+
+    def log_inputs(self, now: int) -> None:
+        """Log what the inputs are like, when that has changed; an input may alternate fast."""
+        if not self._said or self._said[1] == self._logged or now - self._logged_at < LOG_INTERVAL:
+            return
+        self._logged, self._logged_at = self._said[1], now
+        level, text = self._logged
+        # Two calls: rclpy ties one severity to one place in the code.
+        if level == diagnostics.OK:
+            self._node.get_logger().info(f'axis {self.axis.name}: {text}')
+        else:
+            self._node.get_logger().warning(f'axis {self.axis.name}: {text}')
+
+    def statuses(
+        self, *, links: Mapping[Source, Link] | None, stood: int
+    ) -> list[DiagnosticStatus]:
+        """
+        Return the diagnostics of the axis after the clock has stood for `stood` [ns].
+
+        `links` says how each input is connected; None: the node is inactive.
+
+        """
+        self._links = links or {}
+        return diagnostics.statuses(
+            self._node.get_fully_qualified_name(),
+            self.axis.name,
+            self._last,
+            self.axis.monitor.event,
+            self.axis.surface,
+            links=links,
+            clock_stands=stood > self.axis.monitor.settings.timeouts[Source.SPEED],
+            refused=self.refused,
+        )
+
+    def _summaries(self, state: State) -> tuple[diagnostics.StatusSummary, ...]:
+        return diagnostics.summaries(state, self.axis.monitor.event, self._links)

@@ -1,0 +1,326 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""From parameter values to one ready axis: its surface, its inputs and its monitor."""
+
+from collections.abc import Callable, Iterable, Mapping
+import contextlib
+import dataclasses
+from typing import Any
+
+from ballscrew_monitor.core.conversions import (
+    kelvin,
+    LINEAR_SPEED_UNITS,
+    load_scaling,
+    LOAD_UNITS,
+    MotorData,
+    nanoseconds,
+    POSITION_UNITS,
+    ROTARY_SPEED_UNITS,
+    Scaling,
+    screw_turn,
+    speed_scaling,
+    temperature_scaling,
+    TEMPERATURE_UNITS,
+    torque_scaling,
+    torque_unit,
+)
+from ballscrew_monitor.core.derived_load import LoadDerivation
+from ballscrew_monitor.core.differentiation import PositionSettings
+from ballscrew_monitor.core.fields import check_path
+from ballscrew_monitor.core.inputs import Input, make_input, OpenInput, Source
+from ballscrew_monitor.core.judgement import Limits
+from ballscrew_monitor.core.monitor import Monitor
+from ballscrew_monitor.core.state import MonitorSettings
+from ballscrew_monitor.settings.axis_parameters import LOAD_SOURCES
+from surrogate.files import InputError
+from surrogate.surface import find_surface, Surface, SurfaceError
+
+PLAUSIBLE = 3.0  # times the largest of the surface: what lies beyond is a glitch
+MOTOR_TORQUE = LOAD_SOURCES[1]
+OPTIONAL = (Source.TEMPERATURE, Source.TORQUE)
+UNITS = {
+    Source.SPEED: (*ROTARY_SPEED_UNITS, *LINEAR_SPEED_UNITS),
+    Source.LOAD: tuple(LOAD_UNITS),
+    Source.TEMPERATURE: tuple(TEMPERATURE_UNITS),
+}
+
+
+@dataclasses.dataclass(kw_only=True, slots=True)
+class Axis:
+    """One axis at work; `open_inputs` wait for the message type of their publisher."""
+
+    name: str
+    surface: Surface
+    inputs: tuple[Input, ...]
+    open_inputs: tuple[OpenInput, ...]
+    monitor: Monitor
+
+    @property
+    def topics(self) -> dict[Source, str]:
+        """Return the topic of each input as it is configured."""
+        configured: list[Input | OpenInput] = [*self.inputs, *self.open_inputs]
+        return {one.source: one.topic for one in configured}
+
+    @property
+    def max_future(self) -> int:
+        """Return how far a stamp may be ahead of the clock [ns]."""
+        return self.monitor.settings.max_future
+
+    def adapt(self, values: Mapping[str, Any]) -> None:
+        """Take over the parameters that may change at any time."""
+        self.monitor.settings = settings_of(self.name, values, self.surface)
+
+    def use_surface(self, surface: Surface, values: Mapping[str, Any]) -> None:
+        """Judge with another surface from now on."""
+        self.surface = surface
+        self.monitor.use_surface(surface)
+        self.adapt(values)
+
+
+def build_axis(name: str, values: Mapping[str, Any]) -> Axis:
+    """Return the axis `name` made of parameter `values` by full name; raises InputError."""
+    surface = load_surface(name, values)
+    inputs = _inputs_of(name, values, surface.lead)
+    return Axis(
+        name=name,
+        surface=surface,
+        inputs=tuple(one for one in inputs if isinstance(one, Input)),
+        open_inputs=tuple(one for one in inputs if isinstance(one, OpenInput)),
+        monitor=Monitor(surface, settings_of(name, values, surface)),
+    )
+
+
+def build_axes(
+    values: Mapping[str, Any], resolve: Callable[[str], str]
+) -> tuple[list[Axis], dict[str, str]]:
+    """
+    Return the axes that can be built of parameter `values`, and by name why others cannot.
+
+    `resolve` returns the full name of a topic, and raises RuntimeError for what is no name.
+
+    """
+    built: list[Axis] = []
+    reasons: dict[str, str] = {}
+    for name in values['axes']:
+        try:
+            axis = build_axis(name, values)
+            check_topics([*built, axis], resolve)
+            built.append(axis)
+        except InputError as error:
+            reasons[name] = str(error)
+    return built, reasons
+
+
+def check_topics(axes: Iterable[Axis], resolve: Callable[[str], str]) -> None:
+    """Raise InputError for a name that `resolve` refuses, and for a topic of two types."""
+    types: dict[str, str] = {}
+    for axis in axes:
+        for source, topic in axis.topics.items():
+            _resolved(axis.name, source, topic, resolve)
+        for one in axis.inputs:
+            name = resolve(one.topic)
+            if types.setdefault(name, one.type_name) != one.type_name:
+                raise InputError(
+                    f'topic {name} is configured as {types[name]} and as {one.type_name}'
+                )
+
+
+def named_topics(values: Mapping[str, Any], resolve: Callable[[str], str]) -> set[str]:
+    """Return the full names of all topics that parameters `values` name, as far as they are."""
+    found = set()
+    for axis in values['axes']:
+        for source in Source:
+            if topic := values[f'{axis}.{source.name.lower()}.topic']:
+                with contextlib.suppress(InputError):
+                    found.add(_resolved(axis, source, topic, resolve))
+    return found
+
+
+def _resolved(axis: str, source: Source, topic: str, resolve: Callable[[str], str]) -> str:
+    try:
+        return resolve(topic)
+    except RuntimeError:
+        raise InputError(
+            f'parameter {axis}.{source.name.lower()}.topic is {topic!r}, no topic name'
+        ) from None
+
+
+def load_surface(name: str, values: Mapping[str, Any]) -> Surface:
+    """Return the verified surface of the axis `name`; raises InputError with the reason."""
+    screw, oil = values[f'{name}.screw'], values[f'{name}.oil']
+    try:
+        path = find_surface(values[f'{name}.surface'], screw, oil)
+        return Surface.load(path, screw=screw, oil=oil)
+    except SurfaceError as error:
+        raise InputError(f'axis {name}: {error}') from None
+
+
+def reload_surface(axis: Axis, values: Mapping[str, Any]) -> Surface:
+    """Return the surface of `axis` as its file is now; raises InputError if it does not fit."""
+    surface = load_surface(axis.name, values)
+    if surface.lead != axis.surface.lead:  # the speeds are scaled with it
+        raise InputError(
+            f'axis {axis.name}: the new surface is of a lead of {surface.lead:g} m, '
+            f'the old one of {axis.surface.lead:g} m'
+        )
+    return surface
+
+
+def settings_of(name: str, values: Mapping[str, Any], surface: Surface) -> MonitorSettings:
+    """Return what the monitor is told; some limits are in parts of those of the surface."""
+    return MonitorSettings(
+        axis=name,
+        limits=_limits_of(name, values, surface.preload),
+        timeouts={
+            source: nanoseconds(values[f'{name}.{source.name.lower()}.timeout'])
+            for source in Source
+            if is_configured(name, values, source)
+        },
+        default_temperature=kelvin(values[f'{name}.temperature.default']),
+        publish_period=nanoseconds(values[f'{name}.publish_period']),
+        max_future=nanoseconds(values[f'{name}.max_future']),
+        max_lag=nanoseconds(values[f'{name}.max_lag']),
+        tick_period=nanoseconds(values['tick_period']),
+        plausible=_plausible_of(name, values, surface),
+        derivation=derivation_of(name, values),
+        positions=_positions_of(name, values, surface.lead),
+    )
+
+
+def derivation_of(name: str, values: Mapping[str, Any]) -> LoadDerivation | None:
+    """
+    Return how the load follows from the motor torque, None where it is an input.
+
+    Raises InputError where the torque or its uncertainty is not stated.
+
+    """
+    if values[f'{name}.load.source'] != MOTOR_TORQUE:
+        return None
+    for leaf, what in (('topic', 'the topic of the torque'), ('uncertainty', 'how sure that is')):
+        if not values[f'{name}.torque.{leaf}']:
+            raise InputError(
+                f'parameter {name}.torque.{leaf} is {values[f"{name}.torque.{leaf}"]!r}, not '
+                f'stated, {name}.load.source {MOTOR_TORQUE} needs {what}'
+            )
+    uncertainty = values[f'{name}.torque.uncertainty']
+    return LoadDerivation(
+        inertia=values[f'{name}.inertia'],
+        window=nanoseconds(values[f'{name}.acceleration_window']),
+        torque_uncertainty=uncertainty * _torque_unit(name, values),
+        parts_uncertainty=values[f'{name}.load.parts_uncertainty'],
+        largest_share=values[f'{name}.load.largest_share'],
+    )
+
+
+def _torque_unit(name: str, values: Mapping[str, Any]) -> float:
+    """Return the torque at the screw [N m] that one unit of the input is."""
+    leaves = ('constant', 'rated', 'gear_ratio')
+    motor = MotorData(**{leaf: values[f'{name}.torque.{leaf}'] for leaf in leaves})
+    try:
+        return torque_unit(values[f'{name}.torque.unit'], motor)
+    except InputError as error:
+        raise InputError(f'parameters {name}.torque: {error}') from None
+
+
+def _positions_of(name: str, values: Mapping[str, Any], lead: float) -> PositionSettings | None:
+    """Return how the speed follows from positions, None where it is an input; lead [m]."""
+    unit = values[f'{name}.speed.unit']
+    if unit not in POSITION_UNITS:
+        return None
+    return PositionSettings(
+        window=nanoseconds(values[f'{name}.speed.window']),
+        wrap=values[f'{name}.speed.wrap'] * screw_turn(unit, lead=lead),
+    )
+
+
+def _plausible_of(name: str, values: Mapping[str, Any], surface: Surface) -> dict[Source, float]:
+    """Return the largest plausible speed [rad/s] and load [N], as stated or by the surface."""
+    largest = {
+        Source.SPEED: surface.speed_range[1],
+        Source.LOAD: max(map(abs, surface.load_range)),
+    }
+    return {
+        source: values[f'{name}.limits.plausible_{source.name.lower()}'] or PLAUSIBLE * most
+        for source, most in largest.items()
+    }
+
+
+def _limits_of(name: str, values: Mapping[str, Any], preload: float) -> Limits:
+    prefix = f'{name}.limits.'
+    return Limits(
+        rcs=values[prefix + 'rcs'],
+        efficiency=values[prefix + 'efficiency'],
+        light_load=values[prefix + 'light_load_fraction'] * preload,
+        standstill_speed=values[prefix + 'standstill_speed'],
+        raise_delay=nanoseconds(values[prefix + 'raise_delay']),
+        clear_delay=nanoseconds(values[prefix + 'clear_delay']),
+        hysteresis=values[prefix + 'hysteresis'],
+    )
+
+
+def is_configured(name: str, values: Mapping[str, Any], source: Source) -> bool:
+    """Tell whether the axis `name` has an input; some may be left out, or be derived."""
+    if source is Source.LOAD and values[f'{name}.load.source'] == MOTOR_TORQUE:
+        return False
+    return source not in OPTIONAL or bool(values[f'{name}.{source.name.lower()}.topic'])
+
+
+def _inputs_of(name: str, values: Mapping[str, Any], lead: float) -> tuple[Input | OpenInput, ...]:
+    """Return the inputs in the order in which equal stamps are taken."""
+    return tuple(
+        _input_of(name, values, source, lead)
+        for source in Source
+        if is_configured(name, values, source)
+    )
+
+
+def _input_of(
+    name: str, values: Mapping[str, Any], source: Source, lead: float
+) -> Input | OpenInput:
+    prefix = f'{name}.{source.name.lower()}'
+    if not values[f'{prefix}.topic']:
+        raise InputError(f'parameter {prefix}.topic is empty, it must name a topic')
+    topic, field = values[f'{prefix}.topic'], values[f'{prefix}.field']
+    kind, scaling = values[f'{prefix}.type'], scaling_of(name, values, source, lead)
+    try:
+        if not kind:
+            check_path(field)
+            return OpenInput(source=source, topic=topic, field=field, scaling=scaling)
+        return make_input(source, topic=topic, type_name=kind, field=field, scaling=scaling)
+    except InputError as error:
+        raise InputError(f'parameters {prefix}: {error}') from None
+
+
+def scaling_of(name: str, values: Mapping[str, Any], source: Source, lead: float) -> Scaling:
+    """
+    Return the line to SI units of an input of the axis `name`; lead of the screw [m].
+
+    Raises InputError for a torque in a unit whose constant is not stated.
+
+    """
+    prefix = f'{name}.{source.name.lower()}'
+    unit, hand = values[f'{prefix}.unit'], values[f'{name}.handedness']
+    scale, offset = values[f'{prefix}.scale'], values[f'{prefix}.offset']
+    if source is Source.SPEED:
+        return speed_scaling(unit, scale=scale, offset=offset, lead=lead, handedness=hand)
+    if source is Source.LOAD:
+        return load_scaling(unit, scale=scale, offset=offset)
+    if source is Source.TEMPERATURE:
+        return temperature_scaling(unit, scale=scale, offset=offset)
+    torque = _torque_unit(name, values)
+    return torque_scaling(torque, scale=scale, offset=offset, handedness=hand)
+
+
+def scalings_of(
+    name: str, values: Mapping[str, Any], source: Source, lead: float
+) -> dict[str, Scaling]:
+    """
+    Return the line to SI units of an input for every unit that it may have; lead [m].
+
+    A torque has that of its own unit alone, for others may lack a constant; a position has none,
+    only the speed that is worked out from it.
+
+    """
+    name_of_unit = f'{name}.{source.name.lower()}.unit'
+    units = UNITS.get(source, (values[name_of_unit],))
+    return {unit: scaling_of(name, {**values, name_of_unit: unit}, source, lead) for unit in units}

@@ -1,0 +1,264 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+What is made from the table of parameters: checks, files, and the table for the documentation.
+
+The rows of `AXIS_ROWS` hold for every axis, under its name; `{axis}` in a default is that name.
+
+"""
+
+from collections.abc import Mapping
+import pathlib
+import re
+from typing import Any
+
+from ballscrew_monitor.settings.axis_parameters import AXIS_ROWS
+from ballscrew_monitor.settings.node_parameters import NODE_ROWS
+from ballscrew_monitor.settings.parameter_row import BARE_LETTERS, BARE_WORDS, ParameterRow
+from surrogate.files import InputError
+
+NODE_NAME = 'ballscrew_monitor'
+# Parameters, or first parts of their names, that any node may be given; they are not of the table.
+ROS_NAMES = frozenset({'qos_overrides', 'start_type_description_service', 'use_sim_time'})
+_AXIS_NAME = re.compile(r'[a-z][a-z0-9_]*')
+
+
+def check_axes(axes: list[str]) -> None:
+    """Raise InputError unless `axes` are usable and distinct names."""
+    if not axes:
+        raise InputError("parameter axes is empty, it must name at least one axis, such as ['x']")
+    for axis in axes:
+        if not _AXIS_NAME.fullmatch(axis):
+            raise InputError(
+                f'parameter axes holds {axis!r}, a name must be lower case letters, '
+                'digits and underscores, beginning with a letter'
+            )
+    if len(set(axes)) != len(axes):
+        raise InputError(f'parameter axes names an axis twice: {", ".join(axes)}')
+
+
+def table(axes: list[str]) -> dict[str, ParameterRow]:
+    """Return the row of every parameter of a node with `axes`, by full name, in order."""
+    check_axes(axes)
+    rows = {row.name: row for row in NODE_ROWS}
+    for axis in axes:
+        for row in AXIS_ROWS:
+            rows[f'{axis}.{row.name}'] = row
+    return rows
+
+
+def default_of(name: str, row: ParameterRow) -> Any:
+    """Return the default of the parameter `name`."""
+    if isinstance(row.default, str):
+        return row.default.replace('{axis}', name.partition('.')[0])
+    return row.default
+
+
+def defaults(axes: list[str]) -> dict[str, Any]:
+    """Return every parameter of a node with `axes` and its default."""
+    return {name: default_of(name, row) for name, row in table(axes).items()} | {'axes': axes}
+
+
+def is_of_ros(name: str) -> bool:
+    """Tell whether a parameter is one of any ROS node, and not of this one."""
+    return name.partition('.')[0] in ROS_NAMES
+
+
+def check(rows: Mapping[str, ParameterRow], values: Mapping[str, Any]) -> None:
+    """Raise InputError for the first parameter that is unknown or has a bad value."""
+    for name, value in values.items():
+        if name not in rows:
+            raise InputError(f'parameter {name} is unknown')
+        rows[name].check(name, value)
+
+
+def read_file(path: str | pathlib.Path, node: str = NODE_NAME) -> dict[str, Any]:
+    """
+    Return every parameter of a node started with the ROS parameter file at `path`.
+
+    The node is in the root namespace. Raises InputError when the file cannot be read or holds a
+    parameter that is unknown or bad.
+
+    """
+    return read_text(_text_of(path), str(path), node)
+
+
+def read_text(text: str, origin: str, node: str = NODE_NAME) -> dict[str, Any]:
+    """Return what `read_file` does, of the text of such a file; `origin` names it in errors."""
+    try:
+        given = _given(_sections(text), node)
+        axes = given.get('axes', NODE_ROWS[0].default)
+        NODE_ROWS[0].check('axes', axes)
+        rows = table(axes)
+        check(rows, given)
+        given = {name: rows[name].read(value) for name, value in given.items()}
+    except InputError as error:
+        raise InputError(f'{origin}: {error}') from None
+    return defaults(axes) | given
+
+
+def names_in_file(path: str | pathlib.Path, node: str = NODE_NAME) -> frozenset[str]:
+    """Return the names of the parameters to which the file at `path` gives a value."""
+    return names_in_text(_text_of(path), str(path), node)
+
+
+def names_in_text(text: str, origin: str, node: str = NODE_NAME) -> frozenset[str]:
+    """Return what `names_in_file` does, of the text of such a file, which `origin` names."""
+    try:
+        return frozenset(_given(_sections(text), node))
+    except InputError as error:
+        raise InputError(f'{origin}: {error}') from None
+
+
+def read_ros_parameters(path: str | pathlib.Path, node: str = NODE_NAME) -> dict[str, Any]:
+    """
+    Return what the file at `path` says of the parameters of any ROS node, such as `use_sim_time`.
+
+    Raises InputError when the file cannot be read, or says nothing to the node at all.
+
+    """
+    text = _text_of(path)
+    try:
+        given = _addressed(_sections(text), node)
+    except InputError as error:
+        raise InputError(f'{path}: {error}') from None
+    return {name: value for name, value in given.items() if is_of_ros(name)}
+
+
+def explain(error: Exception) -> str:
+    """Return an error of the start as one sentence; ROS does not say what to write instead."""
+    sentence = ' '.join(str(error).split())
+    mixed = "Value type 'bool' do not belong" in sentence
+    return f'{sentence}, {BARE_WORDS}' if mixed else sentence
+
+
+def _given(nodes: Mapping[str, Any], node: str) -> dict[str, Any]:
+    given = _addressed(nodes, node)
+    return {name: value for name, value in given.items() if not is_of_ros(name)}
+
+
+def _addressed(nodes: Mapping[str, Any], node: str) -> dict[str, Any]:
+    given: dict[str, Any] = {}
+    for key, section in nodes.items():
+        if key.lstrip('/') in ('**', node, f'**/{node}'):
+            values = section.get('ros__parameters')
+            if not isinstance(values, dict):
+                raise InputError(
+                    f'{key} holds no parameters, they must stand below ros__parameters'
+                )
+            given |= _flatten(values)
+    if not given:
+        raise InputError(f'it says nothing to the node, begin it with /**/{node}:')
+    return given
+
+
+def sections(path: str | pathlib.Path) -> dict[str, Any]:
+    """Return what the file at `path` says by nodes; raises InputError if it cannot be read."""
+    return _sections(_text_of(path))
+
+
+def _text_of(path: str | pathlib.Path) -> str:
+    try:
+        return pathlib.Path(path).read_text()
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f'{path}: the parameter file cannot be read: {error}') from None
+
+
+def _sections(text: str) -> dict[str, Any]:
+    import yaml  # the node itself is handed its parameters by ROS
+
+    try:
+        loader = yaml.SafeLoader(text)
+        root = loader.get_single_node()
+        if root is not None:
+            _take_letters_as_ros(root)
+        found = None if root is None else loader.construct_document(root)
+    except yaml.YAMLError as error:
+        reason = ' '.join(str(error).split())
+        raise InputError(f'the parameter file cannot be read: {reason}') from None
+    if not isinstance(found, dict) or not all(
+        isinstance(key, str) and isinstance(section, dict) for key, section in found.items()
+    ):
+        raise InputError('no ROS parameter file, it must be node names with ros__parameters below')
+    return found
+
+
+def _take_letters_as_ros(root: Any) -> None:
+    """Make a value that is a bare letter true or false, as ROS reads it; a key stays a text."""
+    waiting, seen = [root], set()
+    while waiting:
+        part = waiting.pop()
+        if id(part) in seen:  # an alias
+            continue
+        seen.add(id(part))
+        if part.id == 'mapping':
+            waiting += [value for _, value in part.value]
+        elif part.id == 'sequence':
+            waiting += part.value
+        elif not part.style and part.value in BARE_LETTERS:
+            part.tag = 'tag:yaml.org,2002:bool'
+            part.value = str(BARE_LETTERS[part.value])
+
+
+def _flatten(section: Mapping[str, Any], prefix: str = '') -> dict[str, Any]:
+    flat: dict[str, Any] = {}
+    for key, value in section.items():
+        if isinstance(value, dict):
+            flat |= _flatten(value, f'{prefix}{key}.')
+        else:
+            flat[f'{prefix}{key}'] = value
+    return flat
+
+
+def example_yaml() -> str:
+    """Return the example parameter file: every parameter of one axis, with its comment."""
+    lines = [
+        '# Every parameter of ballscrew_monitor with its default, made from the table in',
+        '# ballscrew_monitor/settings/parameters.py. Numbers need a decimal point.',
+        f'/**/{NODE_NAME}:',
+        '  ros__parameters:',
+    ]
+    for row in NODE_ROWS:
+        lines += _example_lines(row, row.name, row.name, 4)
+    lines += ['    # Axis x; each axis of `axes` has such a group.', '    x:']
+    group = ''
+    for row in AXIS_ROWS:
+        head, _, leaf = row.name.rpartition('.')
+        if head != group and head:
+            lines.append(f'      {head}:')
+        group = head
+        lines += _example_lines(row, f'x.{row.name}', leaf, 8 if head else 6)
+    return '\n'.join(lines) + '\n'
+
+
+def _example_lines(row: ParameterRow, name: str, leaf: str, indent: int) -> list[str]:
+    space = ' ' * indent
+    facts = [row.text.rstrip('.') + '.']
+    if row.unit:
+        facts.append(f'[{row.unit}]')
+    if row.allowed:
+        facts.append(f'Allowed: {row.allowed}.')
+    facts.append(f'Changes {row.change.value}.')
+    return [f'{space}# {" ".join(facts)}', f'{space}{leaf}: {_yaml(default_of(name, row))}']
+
+
+def _yaml(value: Any) -> str:
+    if isinstance(value, bool):
+        return 'true' if value else 'false'
+    return repr(value)
+
+
+def markdown_table() -> str:
+    """Return the table of all parameters for docs/guide/parameters.md."""
+    lines = [
+        '| parameter | default | allowed | unit | changes | meaning |',
+        '|---|---|---|---|---|---|',
+    ]
+    for prefix, rows in (('', NODE_ROWS), ('<axis>.', AXIS_ROWS)):
+        for row in rows:
+            default = str(row.default).replace('{axis}', '<axis>')
+            lines.append(
+                f'| `{prefix}{row.name}` | `{default}` | {row.allowed} | {row.unit} '
+                f'| {row.change.value} | {row.text} |'
+            )
+    return '\n'.join(lines) + '\n'

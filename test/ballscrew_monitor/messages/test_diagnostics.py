@@ -1,0 +1,361 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What the diagnostics say, case by case."""
+
+import dataclasses
+import math
+from pathlib import Path
+import re
+
+from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.core.derived_load import LoadDerivation
+from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, Why
+from ballscrew_monitor.core.judgement import Level
+from ballscrew_monitor.core.links import Link
+from ballscrew_monitor.core.shelving import shelve
+from ballscrew_monitor.core.state import Event
+from ballscrew_monitor.messages import diagnostics, reasons
+from ballscrew_monitor.messages.diagnostics import ERROR, OK, STALE, WARN
+from ballscrew_monitor.messages.state_messages import plain_values
+from ballscrew_monitor.node import state_folder
+import pytest
+
+START = 1000 * SECOND
+WALL = 1_800_000_000 * SECOND
+LINKS = {
+    Source.SPEED: Link(topic='/s', type_name='a/msg/B', matched=1),
+    Source.LOAD: Link(topic='/l', type_name='a/msg/B'),
+}
+
+
+def sample(source, value, stamp=START):
+    return InputSample(source=source, value=value, stamp=stamp)
+
+
+def after(core, *events, surface=None, clock_stands=False, settings=None, links=None, **limits):
+    """Return the statuses after some events, by their part, and the monitor."""
+    delays = {'raise_delay': 0, 'clear_delay': 0}
+    limits, state = core.limits(**(delays | limits)), None
+    monitor = core.monitor(surface, limits, **(settings or {}))
+    for event in events:
+        state = monitor.update(event) or state
+    made = diagnostics.statuses(
+        'node',
+        'x',
+        state,
+        monitor.event,
+        monitor.surface,
+        links=links or LINKS,
+        clock_stands=clock_stands,
+    )
+    return {status.name.rpartition(' ')[2]: status for status in made}
+
+
+LOAD, SPEED = sample(Source.LOAD, -1000.0), sample(Source.SPEED, 10.0)
+HEAVY, STILL = sample(Source.LOAD, 1e5), sample(Source.SPEED, 0.1)
+
+
+def test_a_status_begins_as_an_error():
+    for status in diagnostics.blank('node', 'x'):
+        assert (status.level, status.message) == (ERROR, 'no message was set')
+
+
+def test_names():
+    assert [status.name for status in diagnostics.blank('ballscrew_monitor', 'x')] == [
+        'ballscrew_monitor: x: Lubrication',
+        'ballscrew_monitor: x: Inputs',
+        'ballscrew_monitor: x: Surface',
+    ]
+
+
+def test_names_and_hardware_of_two_machines_and_two_axes_differ(core):
+    made = [
+        status
+        for node in ('/mill/monitor', '/lathe/monitor')
+        for axis in ('x', 'y')
+        for status in diagnostics.statuses(node, axis, None, Event(), core.surface(), links=None)
+    ]
+    assert len({status.name for status in made}) == 12
+    assert made[0].name == 'mill/monitor: x: Lubrication'
+    assert made[0].hardware_id == 'mill/x: constant'
+    assert len({status.hardware_id for status in made}) == 4
+    assert diagnostics.failed('/mill/monitor', 'x', 'why')[0].name == made[0].name
+
+
+def test_a_failure_is_an_error_everywhere():
+    assert {(status.level, status.message) for status in diagnostics.failed('n', 'x', 'why')} == {
+        (ERROR, 'why')
+    }
+
+
+def test_all_is_well(core):
+    made = after(core, LOAD, SPEED)
+    assert [status.level for status in made.values()] == [OK, OK, OK]
+    assert made['Lubrication'].message == 'optimal'
+    assert {status.hardware_id for status in made.values()} == {'x: constant'}
+
+
+@pytest.mark.parametrize(
+    ('events', 'level', 'message'),
+    [
+        ([SPEED], STALE, 'not judged: an input is missing'),
+        ([LOAD, STILL], OK, 'standstill, not judged for long enough yet'),
+        ([LOAD, SPEED, STILL], OK, 'standstill'),
+        ([LOAD, SPEED, HEAVY, STILL], WARN, 'not judged: load outside the surface'),
+        ([LOAD, sample(Source.SPEED, 1e3)], WARN, 'not judged: speed above the surface'),
+        ([sample(Source.LOAD, 1e5), SPEED], WARN, 'not judged: load outside the surface'),
+    ],
+)
+def test_lubrication_that_is_not_judged(core, events, level, message):
+    status = after(core, *events)['Lubrication']
+    assert (status.level, status.message) == (level, message)
+
+
+def test_before_the_delay_is_over_nothing_is_ok(core):
+    status = after(core, LOAD, SPEED, clear_delay=SECOND)['Lubrication']
+    assert (status.level, status.message) == (WARN, 'not judged for long enough yet')
+
+
+def test_a_warning_names_its_cause_and_stands_while_inputs_are_lost(core):
+    surface = core.surface(rcs=0.5)
+    late = sample(Source.SPEED, 10.0, START + 10 * SECOND)
+    for events in ([LOAD, SPEED], [LOAD, SPEED, late]):
+        status = after(core, *events, surface=surface)['Lubrication']
+        assert (status.level, status.message) == (
+            WARN,
+            'outside the optimal zone: asperities carry too much',
+        )
+
+
+def test_inputs_name_what_is_wrong(core):
+    assert after(core, SPEED)['Inputs'].message == (
+        'load was never received: no publisher yet on /l: start it, or set x.load.topic'
+    )
+    bad = after(core, LOAD, Refusal(source=Source.LOAD, why=Why.FUTURE), SPEED)['Inputs']
+    assert (bad.level, bad.message) == (
+        STALE,
+        'load is not usable: its stamps lie ahead of the clock, set the clocks alike or raise '
+        'max_future',
+    )
+    wall = after(core, LOAD, Refusal(source=Source.LOAD, why=Why.OTHER_CLOCK), SPEED)['Inputs']
+    assert wall.message.endswith('stamp with /clock or unset use_sim_time')
+    late = sample(Source.SPEED, 10.0, START + 10 * SECOND)
+    assert after(core, LOAD, late)['Inputs'].message == (
+        'load is stale: the publisher on /l is gone'
+    )
+
+
+def test_while_the_clock_stands_nothing_is_well_and_a_warning_stays(core):
+    made = after(core, LOAD, SPEED, clock_stands=True)
+    stands = (STALE, diagnostics.CLOCK_STANDS)
+    for part in ('Lubrication', 'Inputs'):
+        assert (made[part].level, made[part].message) == stands
+    assert made['Surface'].level == OK
+    made = after(core, clock_stands=True)
+    assert (made['Inputs'].level, made['Inputs'].message) == stands
+    made = after(core, LOAD, SPEED, surface=core.surface(rcs=0.5), clock_stands=True)
+    assert made['Lubrication'].level == WARN
+    assert (made['Inputs'].level, made['Inputs'].message) == stands
+
+
+def test_an_input_slower_than_its_timeout_is_told(core):
+    speeds = [sample(Source.SPEED, 10.0, START + i * SECOND) for i in range(3)]
+    loads = [sample(Source.LOAD, -1000.0, speed.stamp) for speed in speeds]
+    pairs = [event for pair in zip(loads, speeds, strict=True) for event in pair]
+    status = after(core, *pairs[:4])['Inputs']
+    assert (status.level, status.message) == (OK, 'all inputs arrive')
+    status = after(core, *pairs)['Inputs']
+    assert (status.level, status.message) == (
+        WARN,
+        'speed comes less often than its timeout allows: set x.speed.timeout to 2.0 or more; '
+        'load comes less often than its timeout allows: set x.load.timeout to 2.0 or more',
+    )
+
+
+def test_a_glitch_is_told_for_ten_seconds_and_counted(core):
+    def told(after_glitch):
+        stamp = START + after_glitch
+        good = [sample(Source.LOAD, -1000.0, stamp), sample(Source.SPEED, 10.0, stamp)]
+        glitch = sample(Source.SPEED, 1e12)
+        return after(core, LOAD, glitch, *good, settings={'plausible': {Source.SPEED: 300.0}})
+
+    cure = 'mend the source, its unit or scale, or raise limits.plausible_speed or '
+    status = told(10 * SECOND - 1)['Inputs']
+    assert (status.level, status.message) == (
+        WARN,
+        f'speed samples beyond the plausible range were refused: {cure}limits.plausible_load',
+    )
+    assert ('Speed implausible [-]', '1') in [(pair.key, pair.value) for pair in status.values]
+    assert told(10 * SECOND)['Inputs'].level == OK
+
+
+@pytest.mark.parametrize(
+    ('changes', 'message'),
+    [
+        (
+            {'lost': 2},
+            'speed messages are lost on the way: lower their rate, raise publish_period, or give '
+            'the node fewer axes or more of the processor',
+        ),
+        (
+            {'lost': None},
+            'speed loss is unknown: let the topic have one publisher that numbers its messages',
+        ),
+        (
+            {'stamp': WALL - SECOND},
+            'speed stamps lag behind their arrival: set the clocks alike, or raise max_lag',
+        ),
+        (
+            {'stamp': 5 * SECOND},
+            'speed stamps are of simulated time and the node runs on the wall clock: '
+            'set use_sim_time',
+        ),
+    ],
+)
+def test_a_trouble_of_an_input_has_one_sentence_with_its_cure(core, changes, message):
+    speed = dataclasses.replace(sample(Source.SPEED, 10.0, WALL), **changes)
+    load = sample(Source.LOAD, -1000.0, WALL)
+    arrived = dataclasses.replace(speed, arrival=WALL)
+    status = after(core, load, arrived, settings={'max_lag': SECOND // 2})
+    assert (status['Inputs'].level, status['Inputs'].message) == (WARN, message)
+
+
+@pytest.mark.parametrize(
+    ('links', 'message'),
+    [(LINKS, 'nothing has been judged yet'), (None, 'the node is inactive, nothing is judged')],
+)
+def test_without_a_state_there_is_no_news(core, links, message):
+    made = diagnostics.statuses('n', 'x', None, Event(), core.surface(), links=links)
+    assert [(status.level, status.message) for status in made[:2]] == [(STALE, message)] * 2
+    assert made[2].level == OK
+
+
+@pytest.mark.parametrize(
+    ('events', 'shown'),
+    [
+        ([LOAD, SPEED], (OK, 'shelved until 1970-01-01 00:17:40 UTC: nut is ordered')),
+        ([LOAD, SPEED, STILL], (OK, 'shelved until 1970-01-01 00:17:40 UTC: nut is ordered')),
+        ([LOAD, SPEED, HEAVY, SPEED], (WARN, 'not judged: load outside the surface')),
+    ],
+)
+def test_a_shelved_warning_is_no_warning_and_hides_no_other(core, events, shown):
+    state, monitor = None, core.monitor(core.surface(rcs=0.5), core.limits(raise_delay=0))
+    monitor.shelving = shelve(START, 60.0, 'nut is ordered')
+    for event in events:
+        state = monitor.update(event) or state
+    assert state.level is Level.WARN
+    (said, _) = diagnostics.summaries(state, monitor.event, LINKS)
+    assert said == shown
+    assert not plain_values(state)['out_of_zone']
+
+
+def test_the_state_directory():
+    good, bad = (diagnostics.of_folder('/cell/node', problem) for problem in ('', 'it is full'))
+    assert (good.level, good.message) == (OK, 'sums, events and corrections are kept')
+    assert (bad.level, bad.message) == (WARN, 'it is full')
+    assert good.name == bad.name == 'cell/node: State directory'
+
+
+def test_values_carry_their_unit(core):
+    made = after(core, LOAD, SPEED)
+    values = {pair.key: pair.value for pair in made['Lubrication'].values}
+    assert values['Speed [rad/s]'] == '10'
+    assert values['Oil temperature [degC]'] == '40'
+    assert values['Efficiency [-]'] == '0.9'
+    values = {pair.key: pair.value for pair in made['Inputs'].values}
+    assert (values['Speed state'], values['Torque state']) == ('OK', 'NOT_CONFIGURED')
+    assert (values['Speed publishers [-]'], values['Load publishers [-]']) == ('1', '0')
+    values = {pair.key: pair.value for pair in made['Surface'].values}
+    assert values['Opposing load max [N]'] == '4000'
+
+
+def test_messages_hold_no_measured_numbers(core):
+    for events in ([LOAD, SPEED], [SPEED], [LOAD, sample(Source.SPEED, 1e3)]):
+        for status in after(core, *events).values():
+            assert not any(character.isdigit() for character in status.message)
+
+
+def first_words(text):
+    """Return what a message begins with, up to where its cure begins."""
+    return re.split('[:,]', text, maxsplit=1)[0].strip()
+
+
+SENTENCES = [
+    *diagnostics._NOT_JUDGED.values(),
+    *(f'outside the optimal zone: {cause}' for cause in diagnostics._CAUSES.values()),
+    diagnostics.NOTHING_YET,
+    diagnostics.INACTIVE,
+    diagnostics.NOT_DERIVED,
+    diagnostics.KEPT,
+    *(state_folder.UNWRITABLE, state_folder.IN_USE, state_folder.DAMAGED),
+]
+BEGINNINGS = [
+    diagnostics.CLOCK_STANDS,
+    *reasons._REFUSED.values(),
+    *(text for _, text in reasons._TROUBLES if text),
+    reasons.slow_reason(1.0, 'x.speed'),
+]
+
+
+@pytest.mark.parametrize(
+    'words', [*SENTENCES, *sorted({first_words(text) for text in BEGINNINGS})]
+)
+def test_the_guide_says_what_to_do_about_each_message(words):
+    guide = Path(__file__).parents[3] / 'docs' / 'guide'
+    assert words in (guide / 'node.md').read_text() + (guide / 'kept.md').read_text()
+
+
+DERIVED = {
+    'timeouts': dict.fromkeys((Source.SPEED, Source.TORQUE), SECOND // 2),
+    'derivation': LoadDerivation(
+        inertia=0.0,
+        window=SECOND // 20,
+        torque_uncertainty=0.125,
+        parts_uncertainty=0.0,
+        largest_share=0.5,
+    ),
+}
+
+
+def values_of(status):
+    """Return the values of a status by key."""
+    return {pair.key: pair.value for pair in status.values}
+
+
+def straight(core, drag=0.0):
+    """Return a surface whose torque follows the load."""
+    surface = core.surface(driving_torque=lambda speed, load: load / 1024.0)
+    surface.parasitic, surface.lead = drag, math.tau / 1024.0
+    return surface
+
+
+def test_a_derived_load_is_told_with_its_uncertainty(core):
+    torque = sample(Source.TORQUE, 1.0)
+    found = after(core, torque, SPEED, surface=straight(core), settings=DERIVED)
+    lubrication, inputs = values_of(found['Lubrication']), values_of(found['Inputs'])
+    assert lubrication['Axial load [N]'] == '-1024'
+    assert lubrication['Axial load from'] == 'DERIVED'
+    assert lubrication['Axial load uncertainty [N]'] == '128'
+    assert (inputs['Load state'], inputs['Torque state']) == ('DERIVED', 'OK')
+    assert found['Inputs'].level == OK
+
+
+def test_a_torque_that_does_not_tell_the_load(core):
+    torque = sample(Source.TORQUE, 1.0)
+    found = after(core, torque, SPEED, surface=straight(core, 0.75), settings=DERIVED)
+    assert (found['Lubrication'].level, found['Lubrication'].message) == (
+        WARN,
+        'not judged: the motor torque does not tell the load here',
+    )
+    assert found['Inputs'].level == OK
+    still = after(core, torque, SPEED, STILL, surface=straight(core), settings=DERIVED)
+    assert still['Lubrication'].level == OK
+
+
+def test_without_the_torque_a_derived_load_is_lost(core):
+    links = {Source.TORQUE: Link(topic='/t', type_name='a/msg/B')}
+    found = after(core, SPEED, surface=straight(core), settings=DERIVED, links=links)
+    assert (found['Inputs'].level, found['Lubrication'].level) == (STALE, STALE)
+    assert found['Inputs'].message == (
+        'torque was never received: no publisher yet on /t: start it, or set x.torque.topic'
+    )

@@ -1,0 +1,191 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Facts in, findings out."""
+
+import math
+
+from ballscrew_monitor.core.conversions import (
+    kelvin,
+    load_scaling,
+    LOAD_UNITS,
+    speed_scaling,
+    temperature_scaling,
+    TEMPERATURE_UNITS,
+)
+from ballscrew_monitor.core.input_status import InputState, InputStatus
+from ballscrew_monitor.core.inputs import Source, StampSource
+from ballscrew_monitor.core.links import Link, Publisher
+from ballscrew_monitor.messages.doctor import findings, Heard, InputFacts, near_topic, Surroundings
+import pytest
+
+JOINTS, FLOAT = 'sensor_msgs/msg/JointState', 'std_msgs/msg/Float64'
+SPEED_UNITS = ('rad/s', 'rev/min', 'mm/s')
+SCALINGS = {
+    Source.SPEED: {
+        unit: speed_scaling(unit, scale=1.0, offset=0.0, lead=0.01, handedness='right')
+        for unit in SPEED_UNITS
+    },
+    Source.LOAD: {unit: load_scaling(unit, scale=1.0, offset=0.0) for unit in LOAD_UNITS},
+    Source.TEMPERATURE: {
+        unit: temperature_scaling(unit, scale=1.0, offset=0.0) for unit in TEMPERATURE_UNITS
+    },
+}
+KNOWN = {
+    Source.SPEED: (0.5, 314.0),
+    Source.LOAD: (-20e3, 20e3),
+    Source.TEMPERATURE: (kelvin(10.0), kelvin(80.0)),
+}
+
+
+def around(**changes):
+    values = {
+        'domain': 0,
+        'discovery': 'SUBNET',
+        'localhost_only': False,
+        'nodes': ('machine',),
+        'topics': {'/joint_states': (JOINTS,)},
+        'domains': (),
+        'use_sim_time': False,
+    }
+    return Surroundings(**(values | changes))
+
+
+def heard(low=1.0, high=2.0, gap=0.01, **changes):
+    status = {
+        'source': Source.SPEED,
+        'state': InputState.OK,
+        'stamp_source': StampSource.HEADER,
+        'age': 0.0,
+        'rate': 100.0,
+        'received': 100,
+        'dropped': 0,
+    }
+    return Heard(status=InputStatus(**(status | changes)), low=low, high=high, longest_gap=gap)
+
+
+def facts(source=Source.SPEED, unit='rad/s', **changes):
+    values = {
+        'axis': 'x',
+        'source': source,
+        'link': Link(
+            topic='/joint_states', type_name=JOINTS, publishers=(Publisher(type_name=JOINTS),)
+        ),
+        'timeout': 0.5,
+        'unit': unit,
+        'scalings': SCALINGS[source],
+        'known': KNOWN[source],
+        'heard': heard(),
+    }
+    return InputFacts(**(values | changes))
+
+
+def test_all_is_well():
+    assert findings(around(), [facts()], 3.0) == []
+
+
+@pytest.mark.parametrize(
+    ('changes', 'cure'),
+    [
+        ({}, 'start the machine, or set ROS_DOMAIN_ID to its domain'),
+        ({'domains': (7, 9)}, 'are in domain 7, 9, set ROS_DOMAIN_ID=7'),
+        ({'discovery': 'OFF'}, 'ROS_AUTOMATIC_DISCOVERY_RANGE=OFF hides other machines, set it'),
+        ({'localhost_only': True}, 'ROS_LOCALHOST_ONLY hides other machines, unset it'),
+    ],
+)
+def test_nobody_is_there(changes, cure):
+    (said,) = findings(around(nodes=(), **changes), [], 3.0)
+    assert said.startswith('nobody else is seen in ROS domain 0: ')
+    assert cure in said
+
+
+def test_simulated_time_needs_a_clock():
+    (said,) = findings(around(use_sim_time=True), [], 3.0)
+    assert said.startswith('use_sim_time is true and nobody publishes /clock')
+    topics = {'/clock': ('rosgraph_msgs/msg/Clock',)}
+    assert findings(around(use_sim_time=True, topics=topics), [], 3.0) == []
+
+
+@pytest.mark.parametrize(
+    ('topic', 'near'),
+    [
+        ('/cell/joint_states', '/joint_states'),
+        ('/joint_state', '/joint_states'),
+        ('/velocity', '/joint_states'),
+    ],
+)
+def test_a_topic_that_nobody_publishes_has_a_neighbour(topic, near):
+    link = Link(topic=topic, type_name=JOINTS)
+    assert near_topic(link, around().topics) == near
+    (said,) = findings(around(), [facts(link=link, heard=None)], 3.0)
+    assert said == (
+        f'x.speed: no publisher yet on {topic}: start it, or set x.speed.topic to {near} '
+        f'({JOINTS})'
+    )
+
+
+def test_a_topic_like_no_other_has_none():
+    assert near_topic(Link(topic='/velocity', type_name=FLOAT), around().topics) == ''
+
+
+def test_a_field_that_cannot_be_read_lists_the_numbers_that_can():
+    broken = facts(heard=None, problem='field is no number', numbers=('data',))
+    assert findings(around(), [broken], 3.0) == [
+        'x.speed: field is no number: set x.speed.field, numbers are data'
+    ]
+    broken = facts(heard=None, problem='type is not installed')
+    assert findings(around(), [broken], 3.0) == [
+        'x.speed: type is not installed: set x.speed.type, or x.speed.field'
+    ]
+    other = Link(topic='/t', type_name=JOINTS, publishers=(Publisher(type_name=FLOAT),))
+    (said,) = findings(around(), [facts(link=other, heard=None, problem='no number')], 3.0)
+    assert 'expected is' in said  # of the right type the field may be well
+
+
+@pytest.mark.parametrize(
+    ('source', 'unit', 'low', 'high', 'cure'),
+    [
+        (Source.SPEED, 'rad/s', -700.0, 700.0, 'it looks like rev/min (or mm/s): set x.speed'),
+        (Source.SPEED, 'rad/s', 0.0, 1e6, 'set x.speed.scale, or build a wider surface'),
+        (Source.SPEED, 'mm/s', 0.0, 3000.0, 'set x.speed.unit to rev/min'),
+        (Source.LOAD, 'kN', -5000.0, -900.0, 'set x.load.unit to N'),
+        (Source.TEMPERATURE, 'K', 40.0, 40.0, 'set x.temperature.unit to degC'),
+        (Source.TEMPERATURE, 'degC', 313.0, 314.0, 'set x.temperature.unit to K'),
+    ],
+)
+def test_numbers_far_outside_the_surface_look_like_another_unit(source, unit, low, high, cure):
+    (said,) = findings(around(), [facts(source, unit, heard=heard(low, high))], 3.0)
+    assert 'is far outside the surface' in said
+    assert cure in said
+
+
+@pytest.mark.parametrize(('high', 'count'), [(1.5 * 314.0, 0), (math.nextafter(471.0, 1e3), 1)])
+def test_the_limit_of_what_is_plausible_belongs_to_it(high, count):
+    assert len(findings(around(), [facts(heard=heard(0.0, high))], 3.0)) == count
+
+
+def test_without_a_surface_no_unit_is_judged():
+    unknown = facts(heard=heard(0.0, 1e9), known=None, scalings={})
+    assert findings(around(), [unknown], 3.0) == []
+
+
+def test_gaps_longer_than_the_timeout():
+    assert findings(around(), [facts(heard=heard(gap=0.5))], 3.0) == []
+    (said,) = findings(around(), [facts(heard=heard(gap=0.6))], 3.0)
+    assert said.endswith('set x.speed.timeout to 2.0 or more')
+
+
+def test_silence_is_a_finding_once_the_timeout_is_over():
+    silent = heard(math.nan, math.nan, math.nan, received=0, state=InputState.MISSING)
+    (said,) = findings(around(), [facts(heard=silent)], 3.0)
+    assert said == (
+        'x.speed: the publisher on /joint_states has sent nothing within 3 s: start it'
+    )
+    assert findings(around(), [facts(heard=silent, timeout=30.0)], 3.0) == []
+
+
+def test_more_messages_than_one_core_takes():
+    axes = [facts(heard=heard(rate=1600.0)) for _ in range(2)]
+    assert findings(around(), axes, 3.0) == []
+    axes.append(facts(heard=heard(rate=1.0)))
+    (said,) = findings(around(), axes, 3.0)
+    assert said.startswith('speed and load come 3201 times a second in all, safe are 3200')

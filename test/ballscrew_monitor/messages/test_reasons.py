@@ -1,0 +1,126 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What is wrong with an input, case by case, with what mends it."""
+
+import math
+
+from ballscrew_monitor.core.fields import OtherJoints
+from ballscrew_monitor.core.input_status import InputState, InputStatus
+from ballscrew_monitor.core.inputs import Source, StampSource, Why
+from ballscrew_monitor.core.links import Link
+from ballscrew_monitor.messages.reasons import (
+    enough_timeout,
+    fault,
+    joint_reason,
+    MOST_TIMEOUT,
+    SHOWN_JOINTS,
+    Standing,
+    summary,
+)
+import pytest
+
+MATCHED = Link(topic='/t', type_name='a/msg/B', matched=1)
+ALONE = Link(topic='/t', type_name='a/msg/B')
+JOINTS = OtherJoints('velocity', 'x_axis', ('gripper', 'x_joint'))
+
+
+def status(state, **changes):
+    values = {
+        'source': Source.SPEED,
+        'state': state,
+        'stamp_source': StampSource.HEADER,
+        'age': 0.0,
+        'rate': 100.0,
+        'received': 1,
+        'dropped': 0,
+    }
+    return InputStatus(**(values | changes))
+
+
+@pytest.mark.parametrize(
+    ('state', 'changes', 'link', 'text'),
+    [
+        (InputState.MISSING, {}, None, 'speed was never received'),
+        (
+            InputState.MISSING,
+            {},
+            ALONE,
+            'speed was never received: no publisher yet on /t: start it, or set x.speed.topic',
+        ),
+        (
+            InputState.MISSING,
+            {},
+            MATCHED,
+            'speed was never received: the publisher on /t has sent nothing yet',
+        ),
+        (
+            InputState.MISSING,
+            {'joints': JOINTS},
+            MATCHED,
+            'speed has no sample: the messages name gripper, x_joint and no joint x_axis, '
+            'set x.speed.field to velocity[x_joint] or another of them',
+        ),
+        (InputState.STALE, {}, None, 'speed is stale'),
+        (InputState.STALE, {}, MATCHED, 'speed is stale'),
+        (InputState.STALE, {}, ALONE, 'speed is stale: the publisher on /t is gone'),
+        (
+            InputState.STALE,
+            {'slow': True, 'longest_gap': 0.8},
+            MATCHED,
+            'speed is stale: it comes less often than its timeout allows: '
+            'set x.speed.timeout to 2.0 or more',
+        ),
+        (
+            InputState.BAD,
+            {'why': Why.NOT_A_NUMBER, 'refusal': 'the field holds nan'},
+            MATCHED,
+            'speed is not usable: it is not a finite number, mend its source or read another '
+            'field',
+        ),
+        (
+            InputState.BAD,
+            {'why': Why.TOO_SHORT, 'refusal': 'velocity is empty'},
+            MATCHED,
+            'speed is not usable: velocity is empty',
+        ),
+        (InputState.BAD, {}, None, 'speed is not usable'),
+        (InputState.UNKNOWN, {}, None, 'speed is unknown'),
+    ],
+)
+def test_each_fault_has_its_sentence(state, changes, link, text):
+    assert fault(status(state, **changes), link, 'x.speed') == text
+
+
+def test_messages_without_joints_are_read_by_index():
+    said = joint_reason(OtherJoints('velocity', 'x', ()), 'x.speed')
+    assert said == 'the messages name no joints at all, set x.speed.field to velocity[0]'
+
+
+def test_of_many_joints_some_are_listed():
+    names = tuple(f'joint_{letter}' for letter in 'abcdefghijkl')
+    said = joint_reason(OtherJoints('velocity', 'joint_l', names), 'x.speed')
+    assert f'{names[SHOWN_JOINTS - 1]}, ... and no joint' in said
+    assert 'velocity[joint_l]' in said
+
+
+@pytest.mark.parametrize(
+    ('gap', 'timeout'),
+    [(1.0, 2.0), (1.01, 5.0), (0.25, 0.5), (0.3, 1.0), (4.0, 10.0), (1e-3, 2e-3), (1e6, 3600.0)],
+)
+def test_a_timeout_that_would_do_is_round_and_at_least_twice_the_gap(gap, timeout):
+    assert enough_timeout(gap) == timeout
+    assert timeout >= min(2.0 * gap, MOST_TIMEOUT)
+
+
+def test_the_worst_kind_of_fault_is_told_alone():
+    good, slow = status(InputState.OK), status(InputState.OK, slow=True, longest_gap=1.0)
+    lost = status(InputState.OK, source=Source.LOAD, losing=True, lag=math.nan)
+    assert summary('x', (good,), {}) == (Standing.GOOD, 'all inputs arrive')
+    assert summary('x', (slow, good), {}) == (
+        Standing.DEGRADED,
+        'speed comes less often than its timeout allows: set x.speed.timeout to 2.0 or more',
+    )
+    assert summary('x', (slow, lost), {})[1].startswith('load messages are lost on the way')
+    standing, text = summary('x', (lost, status(InputState.MISSING)), {Source.SPEED: MATCHED})
+    assert standing is Standing.LOST
+    assert text == 'speed was never received: the publisher on /t has sent nothing yet'

@@ -1,0 +1,201 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""An axis made from parameter values."""
+
+import math
+
+from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.core.derived_load import LoadDerivation
+from ballscrew_monitor.core.inputs import Source
+from ballscrew_monitor.settings import parameters
+from ballscrew_monitor.settings.axis import build_axes, build_axis, named_topics, settings_of
+import pytest
+from std_msgs.msg import Float64
+from surrogate.files import InputError
+from surrogate.surface import shipped_surface
+
+
+def build(**changes):
+    values = parameters.defaults(['x']) | {
+        f'x.{name.replace("__", ".")}': value for name, value in changes.items()
+    }
+    return build_axis('x', values)
+
+
+def test_defaults_make_an_axis_of_the_shipped_surface():
+    axis = build()
+    assert (axis.surface.screw_name, axis.surface.oil_name) == ('nominal', 'iso_vg_68')
+    assert axis.surface.tier == 'full'
+    assert [source.source for source in axis.inputs] == [Source.LOAD, Source.SPEED]
+    assert axis.max_future == axis.monitor.settings.tick_period == SECOND // 10
+    limits = axis.monitor.settings.limits
+    assert limits.light_load == 0.25 * axis.surface.preload
+    assert (limits.raise_delay, limits.clear_delay) == (SECOND // 2, SECOND)
+
+
+@pytest.mark.parametrize('tier', ['closed_form', 'full'])
+def test_a_tier_chooses_its_shipped_surface(tier):
+    assert build(surface=tier).surface.tier == tier
+
+
+def test_a_topic_makes_an_input():
+    axis = build(temperature__topic='oil', torque__topic='torque')
+    assert [source.source for source in axis.inputs] == list(Source)
+    assert axis.monitor.settings.timeouts[Source.TEMPERATURE] == 30 * SECOND
+
+
+def test_an_empty_type_leaves_the_input_open():
+    axis = build(speed__type='')
+    assert [source.source for source in axis.inputs] == [Source.LOAD]
+    assert [source.source for source in axis.open_inputs] == [Source.SPEED]
+    assert axis.topics == {Source.LOAD: 'axial_load', Source.SPEED: 'joint_states'}
+
+
+@pytest.mark.parametrize(
+    ('unit', 'value', 'expected'), [('rad/s', 3.0, -3.0), ('mm/s', 10.0, 2.0 * math.pi)]
+)
+def test_units_and_handedness_reach_the_input(unit, value, expected):
+    axis = build(
+        handedness='left',
+        speed__unit=unit,
+        speed__type='std_msgs/msg/Float64',
+        speed__field='data',
+    )
+    sample = axis.inputs[-1].read(Float64(data=value), now=5, max_future=0)
+    assert sample.value == pytest.approx(expected)
+
+
+MOTOR = {
+    'load__source': 'motor_torque',
+    'torque__topic': 'torque',
+    'torque__unit': '%',
+    'torque__rated': 8.0,
+    'torque__gear_ratio': 2.0,
+    'torque__uncertainty': 5.0,
+}
+
+
+def test_a_load_of_the_motor_torque_has_no_topic():
+    axis = build(**MOTOR, inertia=2e-3, load__largest_share=0.25, acceleration_window=0.1)
+    assert [source.source for source in axis.inputs] == [Source.TORQUE, Source.SPEED]
+    assert axis.topics == {Source.TORQUE: 'torque', Source.SPEED: 'joint_states'}
+    assert Source.LOAD not in axis.monitor.settings.timeouts
+    assert axis.inputs[0].scaling(50.0) == pytest.approx(0.5 * 8.0 * 2.0)
+    assert axis.monitor.settings.derivation == LoadDerivation(
+        inertia=2e-3,
+        window=SECOND // 10,
+        torque_uncertainty=0.05 * 8.0 * 2.0,
+        parts_uncertainty=0.2,
+        largest_share=0.25,
+    )
+
+
+def test_a_load_of_a_topic_is_not_derived():
+    assert build().monitor.settings.derivation is None
+
+
+def test_a_torque_that_is_only_compared_has_the_unit_of_the_drive():
+    axis = build(
+        torque__topic='current', torque__unit='A', torque__constant=0.5, handedness='left'
+    )
+    assert axis.inputs[1].scaling(4.0) == -2.0
+
+
+def test_a_position_unit_makes_the_speed_of_positions():
+    assert build().monitor.settings.positions is None
+    axis = build(speed__unit='deg', speed__field='position[0]', speed__wrap=360.0)
+    positions = axis.monitor.settings.positions
+    assert positions.window == SECOND // 20
+    assert positions.wrap == pytest.approx(math.tau)
+    assert axis.inputs[-1].scaling(180.0) == pytest.approx(math.pi)
+
+
+@pytest.mark.parametrize(
+    ('changes', 'match'),
+    [
+        (
+            MOTOR | {'torque__topic': ''},
+            "parameter x.torque.topic is '', not stated, x.load.source motor_torque needs",
+        ),
+        (
+            MOTOR | {'torque__uncertainty': 0.0},
+            'parameter x.torque.uncertainty is 0.0, not stated, x.load.source motor_torque needs',
+        ),
+        (
+            MOTOR | {'torque__rated': 0.0},
+            "parameters x.torque: torque unit '%' needs torque.rated",
+        ),
+        (
+            {'torque__topic': 'current', 'torque__unit': 'A'},
+            r"parameters x.torque: torque unit 'A' needs torque.constant \[N m/A\], it is 0.0",
+        ),
+        ({'speed__topic': ''}, 'parameter x.speed.topic is empty'),
+        ({'speed__field': 'velocity'}, "parameters x.speed: field 'velocity' .* not a number"),
+        ({'speed__type': '', 'speed__field': 'velocity['}, 'parameters x.speed: .* is not a name'),
+        ({'load__type': 'a/b'}, "parameters x.load: message type 'a/b'"),
+        ({'surface': '/no/such/file.npz'}, 'axis x: .*/no/such/file.npz'),
+        ({'screw': 'other'}, "axis x: .*'other'"),
+        ({'oil': 'olive'}, "axis x: .*'olive'"),
+    ],
+)
+def test_an_axis_that_cannot_work_is_refused(changes, match):
+    with pytest.raises(InputError, match=match):
+        build(**changes)
+
+
+def resolve(topic):
+    if ' ' in topic:
+        raise RuntimeError(topic)
+    return f'/{topic}'
+
+
+def test_an_axis_that_cannot_be_built_leaves_the_others():
+    changes = {
+        'w.load.topic': 'no name',
+        'y.oil': 'olive',
+        'z.speed.type': 'std_msgs/msg/Float64',
+        'z.speed.field': 'data',
+    }
+    values = parameters.defaults(['w', 'x', 'y', 'z']) | changes
+    built, reasons = build_axes(values, resolve)
+    assert [axis.name for axis in built] == ['x']
+    assert list(reasons) == ['w', 'y', 'z']
+    assert reasons['w'] == "parameter w.load.topic is 'no name', no topic name"
+    assert "'olive'" in reasons['y']
+    assert reasons['z'] == (
+        'topic /joint_states is configured as sensor_msgs/msg/JointState and as '
+        'std_msgs/msg/Float64'
+    )
+    assert named_topics(values, resolve) == {'/axial_load', '/joint_states'}
+
+
+def test_a_surface_of_another_screw_is_refused():
+    with pytest.raises(InputError, match="configured is 'other'"):
+        build(surface=str(shipped_surface()), screw='other')
+
+
+def test_live_parameters_are_taken_over():
+    axis = build()
+    values = parameters.defaults(['x']) | {'x.limits.rcs': 0.5, 'x.max_future': 2.0}
+    axis.adapt(values)
+    assert axis.monitor.settings == settings_of('x', values, axis.surface)
+    assert axis.monitor.settings.limits.rcs == 0.5
+    assert axis.max_future == 2 * SECOND
+
+
+def test_what_is_plausible_is_stated_or_three_times_the_surface():
+    axis = build()
+    fastest, load = axis.surface.speed_range[1], axis.surface.load_range[1]
+    assert axis.monitor.settings.plausible == {
+        Source.SPEED: 3.0 * fastest,
+        Source.LOAD: 3.0 * load,
+    }
+    stated = build(limits__plausible_speed=300.0, limits__plausible_load=5e3)
+    assert stated.monitor.settings.plausible == {Source.SPEED: 300.0, Source.LOAD: 5e3}
+
+
+def test_a_new_surface_is_used_at_once():
+    axis = build()
+    other = build().surface
+    axis.use_surface(other, parameters.defaults(['x']))
+    assert axis.surface is axis.monitor.surface is other

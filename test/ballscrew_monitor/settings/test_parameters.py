@@ -1,0 +1,191 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The one table of parameters and what is made from it."""
+
+import math
+import pathlib
+import re
+
+from ballscrew_monitor.settings import parameters
+from ballscrew_monitor.settings.axis_parameters import AXIS_ROWS
+from ballscrew_monitor.settings.parameter_row import Change
+import pytest
+from surrogate.files import InputError
+import yaml
+
+CONFIG = pathlib.Path(__file__).resolve().parents[3] / 'config'
+ROWS = parameters.table(['x'])
+
+
+def written(tmp_path, text):
+    path = tmp_path / 'parameters.yaml'
+    path.write_text(text)
+    return path
+
+
+@pytest.mark.parametrize('name', ROWS)
+def test_every_default_is_allowed(name):
+    ROWS[name].check(name, parameters.default_of(name, ROWS[name]))
+
+
+@pytest.mark.parametrize('name', ROWS)
+def test_every_parameter_is_described(name):
+    row = ROWS[name]
+    descriptor = row.descriptor()
+    assert row.text in descriptor.description
+    assert descriptor.read_only is (row.change is Change.NEVER)
+    if isinstance(row.default, float):
+        assert math.isfinite(row.low)
+        assert math.isfinite(row.high)
+        assert descriptor.floating_point_range[0].to_value == row.high
+
+
+@pytest.mark.parametrize(
+    ('name', 'value', 'match'),
+    [
+        ('x.limits.rcs', 2.0, r'parameter x.limits.rcs is 2.0 -, allowed is 1e-06 to 0.999 -'),
+        ('x.limits.rcs', math.nan, 'x.limits.rcs is nan'),
+        ('x.limits.rcs', 1, 'is 1, it must be a number with a decimal point'),
+        ('x.limits.rcs', '0.1', "is '0.1', it must be a number"),
+        ('x.speed.timeout', 0.0, 'allowed is 0.001 to 3600 s'),
+        ('x.speed.scale', 0.0, 'allowed is -1e.12 to 1e.12, not 0'),
+        ('x.speed.unit', 'rpm', "is 'rpm', allowed is one of rad/s, rev/min"),
+        ('x.speed.field', 'velocity[-1]', 'x.speed.field: field .velocity.-1..: the index -1'),
+        ('x.handedness', 'Right', 'allowed is one of right, left'),
+        ('autostart', 1, 'it must be true or false'),
+        ('axes', 'x', 'it must be a list of texts'),
+        ('axes', [1], 'it must be a list of texts$'),
+        (
+            'axes',
+            [True],
+            r"axes is \[True\], it must be a list of texts, .* quote it, such as 'y'",
+        ),
+        ('x.screw', False, "it must be a text, ROS reads a bare .* quote it, such as 'y'"),
+        ('x.no_such', 1.0, 'parameter x.no_such is unknown'),
+    ],
+)
+def test_bad_values_are_refused(name, value, match):
+    with pytest.raises(InputError, match=match):
+        parameters.check(ROWS, {name: value})
+
+
+@pytest.mark.parametrize(
+    'name', [name for name, row in ROWS.items() if isinstance(row.default, float)]
+)
+def test_ends_of_a_range_belong_to_it(name):
+    row = ROWS[name]
+    for end, outward in ((row.low, -math.inf), (row.high, math.inf)):
+        row.check(name, end)
+        with pytest.raises(InputError, match='allowed is'):
+            row.check(name, math.nextafter(end, outward))
+
+
+@pytest.mark.parametrize(
+    ('axes', 'match'),
+    [
+        ([], 'axes is empty'),
+        (['X'], "holds 'X'"),
+        (['x.y'], "holds 'x.y'"),
+        ([''], "holds ''"),
+        (['x', 'x'], 'names an axis twice: x, x'),
+    ],
+)
+def test_bad_axes_are_refused(axes, match):
+    with pytest.raises(InputError, match=match):
+        parameters.table(axes)
+
+
+def test_each_axis_has_parameters_of_its_own():
+    values = parameters.defaults(['x', 'y2'])
+    assert values['axes'] == ['x', 'y2']
+    assert values['y2.speed.field'] == 'velocity[y2_axis]'
+    assert sum(name.startswith('x.') for name in values) == len(AXIS_ROWS)
+
+
+def test_the_example_file_is_the_one_made_from_the_table():
+    assert (CONFIG / 'example.yaml').read_text() == parameters.example_yaml()
+
+
+def test_the_example_file_holds_every_default():
+    assert parameters.read_file(CONFIG / 'example.yaml') == parameters.defaults(['x'])
+    assert len(parameters._flatten(yaml.safe_load(parameters.example_yaml()))) == len(ROWS)
+
+
+def test_the_file_of_the_nominal_cycle_is_good():
+    values = parameters.read_file(CONFIG / 'nominal_cycle.yaml')
+    assert values['x.temperature.topic'] == 'oil_temperature'
+
+
+def test_the_table_for_the_readme_has_a_line_for_each_parameter():
+    lines = parameters.markdown_table().splitlines()
+    assert len(lines) == 2 + len(ROWS)
+    assert {line.count('|') for line in lines} == {7}
+    assert any('| `<axis>.limits.rcs` | `0.01` |' in line for line in lines)
+
+
+def test_later_sections_win_and_other_nodes_do_not_count(tmp_path):
+    path = written(
+        tmp_path,
+        '/**: {ros__parameters: {use_sim_time: true, qos_overrides: {/parameter_events: '
+        '{publisher: {depth: 9}}}, x: {oil: a}}}\n'
+        'other: {ros__parameters: {x: {oil: b}}}\n'
+        'ballscrew_monitor: {ros__parameters: {x.oil: c}}\n',
+    )
+    assert parameters.read_file(path)['x.oil'] == 'c'
+
+
+@pytest.mark.parametrize(
+    ('text', 'match'),
+    [
+        ('- 1', 'no ROS parameter file'),
+        ('a: 1', 'no ROS parameter file'),
+        ('', 'no ROS parameter'),
+        ('a: [', 'cannot be read'),
+        ('/**: {ros__parameters: {x: {oli: a}}}', 'parameter x.oli is unknown'),
+        ('/**: {ros__parameters: {y: {oil: a}}}', 'parameter y.oil is unknown'),
+        ('/**: {ros__parameters: {axes: x}}', 'it must be a list of texts'),
+        ('/**: {ros__parameters: {x: {limits: {rcs: 1}}}}', 'a number with a decimal point'),
+        ('/**: {ros__parameters: }', 'holds no parameters, they must stand below'),
+        ('/**: {ros__parameters: [1.0]}', 'holds no parameters'),
+        ('ballscrew_monitor: {x: {oil: a}}', 'ballscrew_monitor holds no parameters'),
+        (
+            '/**: {ros__parameters: {axes: [x, y, z]}}',
+            "'x', True, 'z'., it must be a list .* quote it",
+        ),
+        (
+            '/**: {ros__parameters: {x: {screw: N}}}',
+            'x.screw is False, it must be a text, .* quote it',
+        ),
+        ('/cell/ballscrew_monitor: {ros__parameters: {x: {oil: a}}}', 'says nothing to the node'),
+        ('1: {ros__parameters: {x: {oil: a}}}', 'no ROS parameter file'),
+    ],
+)
+def test_bad_files_are_refused_by_their_name(tmp_path, text, match):
+    path = written(tmp_path, text)
+    with pytest.raises(InputError, match=f'^{re.escape(str(path))}: .*{match}') as caught:
+        parameters.read_file(path)
+    assert '\n' not in str(caught.value)
+
+
+def test_a_missing_file_is_refused(tmp_path):
+    with pytest.raises(InputError, match='cannot be read'):
+        parameters.read_file(tmp_path / 'none.yaml')
+
+
+def test_quoted_letters_and_groups_of_one_letter_are_texts(tmp_path):
+    path = written(tmp_path, "/**: {ros__parameters: {axes: [x, 'y'], y: {oil: a}}}")
+    assert parameters.read_file(path)['y.oil'] == 'a'
+
+
+def test_the_newton_needs_no_quotes(tmp_path):
+    path = written(
+        tmp_path, '/**: {ros__parameters: {x: {load: {unit: N}, screw: &n "N", oil: *n}}}'
+    )
+    values = parameters.read_file(path)
+    assert (values['x.load.unit'], values['x.screw'], values['x.oil']) == ('N', 'N', 'N')
+
+
+def test_the_error_of_ros_for_mixed_types_is_told_with_its_cure():
+    mixed = RuntimeError("Sequence should be of same type.\n Value type 'bool' do not belong at 3")
+    assert parameters.explain(mixed).endswith("quote it, such as 'y'")
+    assert parameters.explain(RuntimeError('other\n thing')) == 'other thing'
