@@ -6,8 +6,10 @@ import math
 from typing import Any
 
 from ballscrew_monitor.core.conversions import seconds
-from ballscrew_monitor.core.input_status import Tracker
-from ballscrew_monitor.core.inputs import Input, InputSample, Why
+from ballscrew_monitor.core.inputs import Input, InputSample
+from ballscrew_monitor.judge.inputs import accept, take_refusal
+from ballscrew_monitor.judge.records import Event, Memory, Settings
+from ballscrew_monitor.judge.words import fill, InputWords
 from ballscrew_monitor.messages.doctor import Heard
 from rclpy.clock import Clock
 
@@ -20,7 +22,11 @@ class Hearing:
     ) -> None:
         """Begin to listen on a clock; times [ns]."""
         self._source, self._clock, self._max_future = source, clock, max_future
-        self._tracker = Tracker(source.source, configured=True, timeout=timeout, max_lag=max_lag)
+        self._memory, self._settings, self._words = Memory(), Settings(), InputWords()
+        self._settings.configured[source.source] = 1
+        self._settings.timeout[source.source] = timeout
+        self._settings.max_lag = max_lag
+        self._record = Event()
         self.messages = 0
         self._numbers: list[float] = []
         self._last: int | None = None  # [ns]
@@ -31,13 +37,13 @@ class Hearing:
         self.messages += 1
         now = self._clock.now().nanoseconds
         event = self._source.read(message, now=now, max_future=self._max_future)
+        fill(self._record, event)
         if isinstance(event, InputSample):
-            self._tracker.accept(event)
+            accept(self._memory, self._settings, self._record, event.value)
             self._keep(event, now)
-        elif event.why is Why.OTHER_JOINTS:
-            self._tracker.drop(event.joints)
         else:
-            self._tracker.refuse(event)
+            self._words.hear(event, self._memory)
+            take_refusal(self._memory, self._record)
 
     def _keep(self, sample: InputSample, now: int) -> None:
         scaling = self._source.scaling
@@ -53,7 +59,7 @@ class Hearing:
         """Return what has come until now."""
         now = self._clock.now().nanoseconds
         return Heard(
-            status=self._tracker.status(now),
+            status=self._words.status(self._memory, self._settings, self._source.source, now),
             low=min(self._numbers, default=math.nan),
             high=max(self._numbers, default=math.nan),
             longest_gap=seconds(max(self._longest_gap, self._silence(now))),

@@ -134,9 +134,7 @@ def estimate(point: MachinePoint, surface: Surface, *, rcs_limit: float) -> Poin
     return estimate_from(point, numbers, rcs_limit=rcs_limit)
 
 
-def estimate_from(
-    point: MachinePoint, numbers: Found, *, rcs_limit: float
-) -> PointEstimate:
+def estimate_from(point: MachinePoint, numbers: Found, *, rcs_limit: float) -> PointEstimate:
     """Return what valid `numbers` say of `point`, in the machine frame."""
     return PointEstimate(
         validity=PointValidity.VALID,

@@ -23,7 +23,7 @@ TEMPERATURE, LOAD, TORQUE, SPEED = (
 )
 UNKNOWN, MEASURED = int(PointSource.UNKNOWN), int(PointSource.MEASURED)
 DEFAULT, HELD = int(PointSource.DEFAULT), int(PointSource.HELD)
-IMPLAUSIBLE = int(Why.IMPLAUSIBLE)
+OTHER_JOINTS, IMPLAUSIBLE = int(Why.OTHER_JOINTS), int(Why.IMPLAUSIBLE)
 HEADER = int(StampSource.HEADER)
 SLOW_GAPS = 2
 """Gaps above the timeout in a row from which on an input is slow, not interrupted."""
@@ -43,9 +43,7 @@ def drop(memory: Any, source: int) -> None:
     memory.dropped[source] += 1
 
 
-def refuse(
-    memory: Any, source: int, why: int, first: float, second: float, arrival: int
-) -> None:
+def refuse(memory: Any, source: int, why: int, first: float, second: float, arrival: int) -> None:
     """Count a bad message; the input stays bad until the next good one."""
     drop(memory, source)
     memory.refused[source * WHYS + why] += 1
@@ -55,6 +53,16 @@ def refuse(
     if why == IMPLAUSIBLE:
         memory.implausible[source] += 1
         memory.implausible_last[source] = arrival
+
+
+def take_refusal(memory: Any, event: Any) -> None:
+    """Take a message that gave no sample; one about other joints does no harm."""
+    source = event.source
+    if event.why == OTHER_JOINTS:
+        drop(memory, source)
+        memory.others[source] += 1
+    else:
+        refuse(memory, source, event.why, event.first, event.second, event.arrival)
 
 
 def accept(memory: Any, settings: Any, event: Any, value: float) -> None:

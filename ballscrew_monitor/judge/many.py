@@ -19,21 +19,22 @@ from surrogate.surface.records import as_array, dtype_of, from_array
 EVENT, MEMORY, ROW = dtype_of(Event), dtype_of(Memory), dtype_of(Row)
 AT_ONCE = 16384
 """Events that are judged in one go."""
-MOST_STATES = 2048
-"""States that are kept in one go, each with the whole memory."""
+MOST_MEMORIES = 2048
+"""Rows in one go of which the memory is kept."""
 
 
 class Judged(NamedTuple):
     """
-    Rows, the places of their events, and the memory after each row of which a state is published.
+    Rows, the places of their events, and the memory after some of them.
 
-    `memories` is empty unless states are asked for.
+    Memories are those of `told`, places among the rows.
 
     """
 
     rows: NDArray[Any]
     places: NDArray[np.int64]
     memories: NDArray[Any]
+    told: NDArray[np.intp]
 
 
 @functools.cache
@@ -72,16 +73,30 @@ class ManyJudge:
         self._monitor.speeds = from_array(SlopeRing, speeds[0])
         self._monitor.positions = from_array(SlopeRing, positions[0])
 
+    @property
+    def memory(self) -> Any:
+        """Return the memory, an element of an array."""
+        return self._arrays[1][0]
+
     def judge(self, events: NDArray[Any], *, states: bool = False) -> Iterator[Judged]:
-        """Judge events, an array of EVENT; the memory of each state comes if `states` are."""
-        memories = np.empty(MOST_STATES if states else 0, dtype=MEMORY)
+        """
+        Judge events, an array of EVENT.
+
+        The memory comes of each row of which a state is published if `states` are wanted, else of
+        the rows that begin or end an excursion.
+
+        """
+        memories = np.empty(MOST_MEMORIES if states else 64, dtype=MEMORY)
         at = 0
         while at < len(events):
-            some = events[at : at + AT_ONCE]
+            end = at + AT_ONCE
+            some = events[at:end]
             rows = np.empty(len(some), dtype=ROW)
             places = np.empty(len(some), dtype=np.int64)
             taken, made, told = compiled_step()(
-                self._tables, *self._arrays, some, rows, places, memories
+                self._tables, *self._arrays, some, rows, places, memories, states
             )
-            yield Judged(rows[:made], places[:made] + at, memories[:told])
+            rows = rows[:made]
+            which = np.flatnonzero(rows['published'] if states else rows['edge'])
+            yield Judged(rows, places[:made] + at, memories[:told], which)
             at += taken

@@ -32,6 +32,7 @@ from surrogate.surface import Surface
 
 NAN = math.nan
 
+
 def settings_record(settings: MonitorSettings) -> Settings:
     """Return settings as numbers."""
     limits, made = settings.limits, Settings()
@@ -160,9 +161,7 @@ class Monitor:
     @property
     def event(self) -> Event:
         """Return the event that is active, or the last one."""
-        made = views.event_of(
-            self.memory, self.surface, self._settings.limits, self.ending
-        )
+        made = views.event_of(self.memory, self.surface, self._settings.limits, self.ending)
         if made != self._told:  # the advice of one event is worked out once
             self._told = made
         return self._told
@@ -251,8 +250,7 @@ class Monitor:
     def input_status(self, now: int) -> tuple[InputStatus, ...]:
         """Return how well the inputs do at `now` [ns]."""
         return tuple(
-            self.words.status(self.memory, self.numbers, source, now)
-            for source in views.SOURCES
+            self.words.status(self.memory, self.numbers, source, now) for source in views.SOURCES
         )
 
     @property

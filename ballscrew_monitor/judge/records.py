@@ -97,7 +97,7 @@ class Event:
 
 @dataclasses.dataclass(slots=True)
 class Memory:
-    """All that a judgement remembers of one axis but slopes; stamps and times [ns], the rest SI."""
+    """All that is remembered of one axis but slopes; stamps and times [ns], the rest SI."""
 
     # inputs: counts
     received: list[int] = many(INPUTS, 0)
@@ -228,4 +228,3 @@ class Row(Found):
 EVENT_BEGINS, EVENT_ENDS = 1, 2
 STANDSTILL, LIGHT_LOAD = 1, 2
 """Bits of `Row.gates`."""
-

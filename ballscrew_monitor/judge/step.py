@@ -28,6 +28,7 @@ from ballscrew_monitor.judge.inputs import (
     refuse,
     slow_period,
     SPEED,
+    take_refusal,
 )
 from ballscrew_monitor.judge.point import NO_DIRECTION, set_answer, set_point
 from ballscrew_monitor.judge.records import INPUTS, REFUSAL, TICK
@@ -57,8 +58,7 @@ BACKWARD_JUMP = SECOND
 """Longest step back of one input that is no clock set back [ns]."""
 MOST_TURNS = 1e9
 """Jump of a position over the position at which it begins again that is no such turn [-]."""
-OTHER_JOINTS, NOT_A_NUMBER = int(Why.OTHER_JOINTS), int(Why.NOT_A_NUMBER)
-IMPLAUSIBLE, HOLE = int(Why.IMPLAUSIBLE), int(Why.HOLE)
+NOT_A_NUMBER, IMPLAUSIBLE, HOLE = int(Why.NOT_A_NUMBER), int(Why.IMPLAUSIBLE), int(Why.HOLE)
 HEADER = int(StampSource.HEADER)
 
 
@@ -101,19 +101,20 @@ def step_many(
     events: Any,
     rows: Any,
     places: Any,
-    states: Any,
+    memories: Any,
+    every: bool,
 ) -> tuple[int, int, int]:
     """
-    Take events until there is no room left for a state; return numbers of events, rows and states.
+    Take events while `memories` has room; return the numbers of events, rows and memories.
 
-    `memory`, `speeds`, `positions` and `derived` are arrays of one record. `rows` has room for
-    a row of every event, `places` tells the event of each. `states` takes the memory as it is at
-    each state, none if it is empty.
+    `settings`, `memory`, `speeds`, `positions` and `derived` are arrays of one record. `rows` has
+    room for a row of every event, `places` takes the event of each. `memories` takes the memory
+    after `every` row of a state, or after those alone that begin or end an excursion.
 
     """
     made = told = 0
     for at in range(len(events)):
-        if len(states) and told == len(states):
+        if told == len(memories):
             return at, made, told
         found = step(
             tables,
@@ -127,11 +128,11 @@ def step_many(
         )
         if found == NOTHING:
             continue
+        if found == STATE and (every or rows[made].edge != 0):
+            memories[told] = memory[0]
+            told += 1
         places[made] = at
         made += 1
-        if found == STATE and len(states):
-            states[told] = memory[0]
-            told += 1
     return len(events), made, told
 
 
@@ -140,11 +141,7 @@ def _take(settings: Any, memory: Any, positions: Any, event: Any) -> bool:
     source = event.source
     lose(memory, source, event.lost, event.arrival)
     if event.kind == REFUSAL:
-        if event.why == OTHER_JOINTS:
-            drop(memory, source)
-            memory.others[source] += 1
-        else:
-            refuse(memory, source, event.why, event.first, event.second, event.arrival)
+        take_refusal(memory, event)
         return False
     if not _is_usable(settings, memory, event):
         return False
@@ -237,9 +234,7 @@ def _is_tick_due(settings: Any, memory: Any, now: int) -> bool:
     return memory.known[SPEED] == 0 or now - memory.arrival[SPEED] > timeout
 
 
-def _judge(
-    tables: Any, settings: Any, memory: Any, speeds: Any, derived: Any, row: Any
-) -> int:
+def _judge(tables: Any, settings: Any, memory: Any, speeds: Any, derived: Any, row: Any) -> int:
     """Judge the instant of a row, hold the level, follow the excursion."""
     set_point(tables, settings, memory, speeds, derived, row)
     set_answer(tables, settings, derived, row)

@@ -27,15 +27,7 @@ from ballscrew_monitor.core.inputs import (
     StampSource,
     Why,
 )
-from ballscrew_monitor.core.judgement import (
-    Code,
-    Gate,
-    Limits,
-    unjudged,
-    Verdict,
-    violation,
-    Zone,
-)
+from ballscrew_monitor.core.judgement import Code, Gate, Limits, unjudged, Verdict, violation, Zone
 from ballscrew_monitor.core.state import Event
 from ballscrew_monitor.core.tally import Extremes, Totals, WindowStatistics
 from ballscrew_monitor.judge.derived_load import derived_text
@@ -146,7 +138,7 @@ def gates_of(bits: int) -> tuple[Gate, ...]:
 
 
 def event_of(memory: Any, surface: Surface, limits: Limits, ending: str = '') -> Event:
-    """Return the excursion that is active, or the last one; `ending` says why the node ended it."""
+    """Return the excursion that is active or was the last; `ending` is why the node ended it."""
     if not memory.event_number:
         return Event()
     code = Code(int(memory.event_code[ACTIVE]))
@@ -322,5 +314,3 @@ def refused_of(memory: Any) -> dict[Source, dict[Why, int]]:
         }
         for source in SOURCES
     }
-
-

@@ -24,8 +24,8 @@ from ballscrew_monitor.core.conversions import (
 from ballscrew_monitor.core.estimate import MachinePoint, PointEstimate
 from ballscrew_monitor.core.input_status import InputStatus
 from ballscrew_monitor.core.judgement import Limits
-from ballscrew_monitor.core.monitor import SHOWN
 from ballscrew_monitor.core.state import Event, State
+from ballscrew_monitor.judge.views import SOURCES
 from ballscrew_msgs.msg import (
     BallScrewState,
     Finding,
@@ -178,7 +178,7 @@ class StateWriter:
     def __init__(self, axis: str, tier: int) -> None:
         """Begin with an empty message, `tier` a TIER_ constant."""
         self.tier = tier
-        self._message = BallScrewState(axis=axis, inputs=[InputHealth() for _ in SHOWN])
+        self._message = BallScrewState(axis=axis, inputs=[InputHealth() for _ in SOURCES])
         self._message.header.frame_id = axis
 
     def write(self, state: State) -> BallScrewState:

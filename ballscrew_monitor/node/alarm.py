@@ -101,7 +101,7 @@ class Alarm:
 
     def reset_totals(self) -> None:
         """Set the sums to zero; what they were is in the log."""
-        totals = self._axis.monitor.memory.totals
+        totals = self._axis.monitor.kept.totals
         self._axis.monitor.reset_totals()
         self._keeping.note(Kind.RESET_TOTALS, self._axis.name, totals=totals_facts(totals))
         self.remember()
@@ -136,7 +136,7 @@ class Alarm:
 
     def remember(self) -> None:
         """Keep the sums, the event and the shelving."""
-        self._keeping.remember(self._axis.name, self._axis.monitor.memory)
+        self._keeping.remember(self._axis.name, self._axis.monitor.kept)
 
     @property
     def _now(self) -> int:

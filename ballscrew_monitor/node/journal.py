@@ -17,7 +17,7 @@ from typing import Any
 
 from ballscrew_monitor.core.cdr import serialized
 from ballscrew_monitor.core.conversions import nanoseconds
-from ballscrew_monitor.core.snapshot import freeze_monitor
+from ballscrew_monitor.judge.dump import dump
 from ballscrew_monitor.node.recording_process import RecordingProcess
 from ballscrew_monitor.node.topic import Arrival
 from ballscrew_monitor.recordings.frames import Frame, FrameKind, MOST_SEQUENCE, STRING, VERSION
@@ -132,7 +132,7 @@ class Journal:
                 'base_sha256': axis.surface.base_sha256,
                 'corrections': [correction_entry(one) for one in axis.surface.corrections],
             },
-            'monitor': freeze_monitor(axis.monitor),
+            'monitor': dump(axis.monitor),
         }
         self._note(now, entry)
 

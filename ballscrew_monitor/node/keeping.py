@@ -7,8 +7,8 @@ import datetime
 from typing import Any
 
 from ballscrew_monitor.core.memory import after_restart, Memory, NOTHING
-from ballscrew_monitor.core.monitor import Monitor
 from ballscrew_monitor.core.state import Event
+from ballscrew_monitor.judge.monitor import Monitor
 from ballscrew_monitor.messages import diagnostics
 from ballscrew_monitor.node.event_log import event_facts, EventLog, Kind, line_of
 from ballscrew_monitor.node.ledger import Ledger, Scribe
@@ -94,7 +94,7 @@ class Keeping:
             self._logged = EventLog(self._folder).last_events()
             for axis, monitor in monitors.items():
                 monitor.take_up(self._read(axis))
-                self.remember(axis, monitor.memory)
+                self.remember(axis, monitor.kept)
         return True
 
     def flush(self) -> str:

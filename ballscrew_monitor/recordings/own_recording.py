@@ -17,7 +17,7 @@ from typing import Any
 from ballscrew_monitor.core.fields import message_class
 from ballscrew_monitor.core.full_point import corrected, KeptSolve
 from ballscrew_monitor.core.inputs import Input, InputSample, ordered, Refusal
-from ballscrew_monitor.core.snapshot import freeze_monitor, thaw_monitor
+from ballscrew_monitor.judge.dump import dump, restored
 from ballscrew_monitor.recordings.bag import Bag, Message
 from ballscrew_monitor.recordings.decoding import decode, UNDECODABLE
 from ballscrew_monitor.recordings.frames import STRING, VERSION
@@ -33,12 +33,15 @@ TOLD = 1000  # messages after which the progress is told
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Step:
-    """What happened next to an axis: a sample or refusal, a tick [ns], or neither: it changed."""
+    """
+    The next step of an axis: a sample, a refusal, the stamp of a tick [ns], or None: it changed.
 
-    axis: Axis
-    event: InputSample | Refusal | None = None
-    tick: int | None = None
-    because: str = ''
+    Without an axis all steps before are to be judged, because the memory is looked at next.
+
+    """
+
+    axis: Axis | None = None
+    event: InputSample | Refusal | int | None = None
 
 
 def journal_of(bag: Bag) -> str:
@@ -157,10 +160,11 @@ class OwnRecording:
         """Take an entry of the journal."""
         if entry['kind'] == 'tick':
             for axis in self._axes.values():
-                yield Step(axis=axis, tick=entry['stamp'])
+                yield Step(axis=axis, event=int(entry['stamp']))
         elif entry['kind'] == 'hole':  # until each axis is described anew
             self._axes, self._readers, self._entries = {}, {}, {}
         elif entry['kind'] == 'axis':
+            yield Step()
             try:
                 step = self._describe(entry)
             except (KeyError, TypeError, AttributeError) as error:
@@ -174,7 +178,7 @@ class OwnRecording:
         self._lost = dict.fromkeys(entry['loss_unknown'])
         known = self._axes.get(name)
         if known is not None and entry['because'] == 'time':
-            same = freeze_monitor(known.monitor) == entry['monitor']
+            same = dump(known.monitor)['records'] == entry['monitor']['records']
             self.proven += same
             self.refuted += not same
             if same:
@@ -185,7 +189,7 @@ class OwnRecording:
         for one in self._axes.values():
             for source in one.inputs:
                 self._readers.setdefault(source.topic, []).append((one, source))
-        return Step(axis=axis, because=entry['because'])
+        return Step(axis=axis)
 
     def _rebuilt(self, known: Axis | None, entry: Mapping[str, Any]) -> Axis:
         """Return an axis as an entry describes it; what is the same as before is not made anew."""
@@ -198,7 +202,7 @@ class OwnRecording:
         else:
             axis = dataclasses.replace(known)
         settings = settings_of(name, values, axis.surface)
-        axis.monitor = thaw_monitor(entry['monitor'], axis.surface, settings)
+        axis.monitor = restored(entry['monitor'], axis.surface, settings)
         return axis
 
 

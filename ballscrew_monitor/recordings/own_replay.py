@@ -1,40 +1,23 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What the monitors of a node said, again, out of the recording that the node made of itself."""
+"""The judgement of a node, repeated from the recording that the node made of itself."""
 
-from collections.abc import Callable, Iterator
-from typing import NamedTuple
+from collections.abc import Iterator
 
-from ballscrew_monitor.core.state import Event, State
+from ballscrew_monitor.core.inputs import InputSample, Refusal
+from ballscrew_monitor.recordings.axis_run import AxisRun, judged_parts, Part
 from ballscrew_monitor.recordings.bag import Bag
-from ballscrew_monitor.recordings.columns import AxisOutcome, JudgedColumns
+from ballscrew_monitor.recordings.bulk.entries import entries_of, Told
+from ballscrew_monitor.recordings.bulk.source import OnDone
 from ballscrew_monitor.recordings.own_recording import OwnRecording, Step
-from ballscrew_monitor.recordings.rows import RowCollector
-from ballscrew_monitor.settings.axis import Axis
 
-OnDone = Callable[[float], None] | None
-BLOCK = 65536  # rows of an axis that are handed on at once
+BLOCK = 16384
+"""Steps that are judged together."""
 
 
-class TimedState(NamedTuple):
-    """
-    A state, its axis, and the event that began or ended with it.
-
-    `log_time` [ns] is that of the message or the tick at which it is due.
-
-    """
-
-    log_time: int
-    axis: Axis
-    state: State
-    event: Event | None
-
-
-Part = JudgedColumns | TimedState | AxisOutcome
-"""What comes out of judging: a block of rows, a state that was published, or all of an axis."""
-
-
-def own_parts(bag: Bag, on_done: OnDone = None) -> Iterator[Part]:
+def own_parts(
+    bag: Bag, *, columns: bool = True, states: bool = True, on_done: OnDone | None = None
+) -> Iterator[Part]:
     """
     Yield every state that the node published, the rows that it judged, and all of each axis last.
 
@@ -42,52 +25,48 @@ def own_parts(bag: Bag, on_done: OnDone = None) -> Iterator[Part]:
     that.
 
     """
-    followed: dict[str, _Followed] = {}
+    steps = _Steps()
     for step in OwnRecording(bag).steps(on_done):
-        name = step.axis.name
-        if name not in followed:
-            followed[name] = _Followed(step.axis)
-        yield from followed[name].take(step)
-    collectors = [one.collector for one in followed.values()]
-    yield from (one.block() for one in collectors if len(one))
-    yield from (one.outcome() for one in collectors)
+        if step.axis is None or len(steps) >= BLOCK:
+            yield from judged_parts(
+                steps.runs, entries_of(steps.taken()), columns=columns, states=states
+            )
+        if step.axis is not None:
+            steps.add(step)
+    yield from judged_parts(steps.runs, entries_of(steps.taken()), columns=columns, states=states)
+    yield from (run.outcome() for run in steps.runs)
 
 
-class _Followed:
-    """An axis whose steps are followed: its rows, and an event of which no state has told yet."""
+class _Steps:
+    """Steps that wait to be judged together, and the axes that they are of."""
 
-    def __init__(self, axis: Axis) -> None:
-        self.collector = RowCollector(axis.name, axis.monitor)
-        self._last: Event | None = None
-        self._ended: Event | None = None
+    def __init__(self) -> None:
+        self.runs: list[AxisRun] = []
+        self._numbers: dict[str, int] = {}
+        self._waiting: list[Told] = []
 
-    def take(self, step: Step) -> Iterator[JudgedColumns | TimedState]:
-        """Let the monitor take a step; yield a state that is due, and rows when they are many."""
-        monitor = step.axis.monitor
-        if step.because:
-            self.collector.observe(monitor)
-            if self._last is not None and self._last.active and not monitor.event.active:
-                self._ended = monitor.event
-        state = _take(step)
-        self._last = monitor.event
-        if state is not None:
-            event = state.event
-            if event is None:
-                event, self._ended = self._ended, None
-            yield TimedState(_log_time(step), step.axis, state, event)
-        if len(self.collector) >= BLOCK:
-            yield self.collector.block()
+    def __len__(self) -> int:
+        return len(self._waiting)
+
+    def add(self, step: Step) -> None:
+        """Let a step wait; a change of an axis takes place at once."""
+        assert step.axis is not None
+        number = self._numbers.get(step.axis.name)
+        if step.event is not None:
+            assert number is not None
+            self._waiting.append((step.event, _log_time(step.event), len(self), number))
+        elif number is None:
+            self._numbers[step.axis.name] = len(self.runs)
+            self.runs.append(AxisRun(step.axis))
+        else:
+            self.runs[number].change(step.axis)
+
+    def taken(self) -> list[Told]:
+        """Return the steps that wait, and let none wait any more."""
+        waiting, self._waiting = self._waiting, []
+        return waiting
 
 
-def _log_time(step: Step) -> int:
+def _log_time(event: InputSample | Refusal | int) -> int:
     """Return when a step was taken on the clock of the node [ns]."""
-    if step.event is not None:
-        return step.event.arrival
-    return step.tick or 0
-
-
-def _take(step: Step) -> State | None:
-    """Let the monitor of a step take it; return its state, if one was due."""
-    if step.event is not None:
-        return step.axis.monitor.update(step.event)
-    return None if step.tick is None else step.axis.monitor.tick(step.tick)
+    return event if isinstance(event, int) else event.arrival

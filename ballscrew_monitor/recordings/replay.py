@@ -5,14 +5,13 @@ Replays a bag through the same pure pipeline as the node, without DDS, faster th
 
 Samples are taken in the order of their stamps, equal stamps in the fixed order of the sources.
 Log times stand for the clock of the node: ticks fall on the same grid of it as online, whatever
-the stamps say, and are taken after the samples of equal stamp. Sample by sample the states are
-those of the node to the last bit; many at once, its numbers agree to rounding. The recording that
-a node made of itself, judged with its own parameters, is followed step by step.
+the stamps say, and are taken after the samples of equal stamp. The judgement is the one of the
+node, compiled, so its states are those of the node to the last bit. The recording that a node made
+of itself, judged with its own parameters, is taken in the order in which the node took it.
 
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-import operator
 from typing import Any, NamedTuple
 
 from ballscrew_monitor.core.conversions import nanoseconds
@@ -20,15 +19,14 @@ from ballscrew_monitor.core.fields import OtherJoints
 from ballscrew_monitor.core.inputs import Input
 from ballscrew_monitor.core.state import Event, State
 from ballscrew_monitor.messages.state_messages import out_of_zone_message, StateWriter, TIERS
+from ballscrew_monitor.recordings.axis_run import AxisRun, judged_parts, Part, TimedState
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bulk.entries import Entries
-from ballscrew_monitor.recordings.bulk.judge import AxisJudge
-from ballscrew_monitor.recordings.bulk.source import OnDone, ordered_entries, places_of_axis
+from ballscrew_monitor.recordings.bulk.source import OnDone, ordered_entries
 from ballscrew_monitor.recordings.columns import AxisOutcome, JudgedColumns
 from ballscrew_monitor.recordings.decoding import decode, named_instead
 from ballscrew_monitor.recordings.own_recording import is_as_recorded
-from ballscrew_monitor.recordings.own_replay import own_parts, Part, TimedState
-from ballscrew_monitor.recordings.rows import RowCollector
+from ballscrew_monitor.recordings.own_replay import own_parts
 from ballscrew_monitor.settings.axis import Axis, build_axis
 from ballscrew_monitor.settings.topics import absolute, input_topics, with_types
 from ballscrew_msgs.msg import BallScrewState, OutOfZone
@@ -44,14 +42,6 @@ class Judged(NamedTuple):
 
     state: BallScrewState
     event: OutOfZone | None
-
-
-class Due(NamedTuple):
-    """A state, the number of its axis, and the place in a batch of the entry it is due at."""
-
-    place: int
-    axis: int
-    state: State
 
 
 def speed_messages(bag: Bag, axes: Sequence[Axis]) -> dict[str, int]:
@@ -83,32 +73,24 @@ def speed_messages(bag: Bag, axes: Sequence[Axis]) -> dict[str, int]:
     return counts
 
 
-def replay(
-    bag: Bag, values: Mapping[str, Any], *, at_once: bool = False, on_done: OnDone = ignore
-) -> Iterator[Judged]:
+def replay(bag: Bag, values: Mapping[str, Any], *, on_done: OnDone = ignore) -> Iterator[Judged]:
     """
     Yield every state that the node would publish for `bag` with the parameters `values`.
 
-    Sample by sample, or many `at_once`; `on_done` is told which share of the bag is done [-].
-    Raises InputError for bad parameters, for a bag without the topics that they name and, unless
-    what is whole of it is to be salvaged, for a damaged one.
+    `on_done` is told which share of the bag is done [-]. Raises InputError for bad parameters, for
+    a bag without the topics that they name and, unless its intact part is to be salvaged, for a
+    damaged one.
 
     """
-    return _messages(replay_states(bag, values, at_once=at_once, on_done=on_done))
-
-
-def replay_states(
-    bag: Bag, values: Mapping[str, Any], *, at_once: bool = False, on_done: OnDone = ignore
-) -> Iterator[TimedState]:
-    """Yield what `replay` does before it is made a message."""
-    if is_as_recorded(bag, values):
-        return (part for part in own_parts(bag, on_done) if isinstance(part, TimedState))
-    axes = axes_for(bag, values)
-    return _states(_entries(bag, axes, values, on_done), axes, at_once=at_once)
+    return _messages(
+        part
+        for part in replay_parts(bag, values, columns=False, on_done=on_done)
+        if isinstance(part, TimedState)
+    )
 
 
 def replay_columns(
-    bag: Bag, values: Mapping[str, Any], *, at_once: bool = True, on_done: OnDone = ignore
+    bag: Bag, values: Mapping[str, Any], *, on_done: OnDone = ignore
 ) -> Iterator[JudgedColumns | AxisOutcome]:
     """
     Yield every judged row of `bag` with the parameters `values`, and at last what it comes to.
@@ -117,20 +99,27 @@ def replay_columns(
     is as for `replay`.
 
     """
-    if is_as_recorded(bag, values):
-        return (part for part in own_parts(bag, on_done) if not isinstance(part, TimedState))
-    axes = axes_for(bag, values)
-    return _columns(_entries(bag, axes, values, on_done), axes, at_once=at_once)
+    return (
+        part
+        for part in replay_parts(bag, values, states=False, on_done=on_done)
+        if not isinstance(part, TimedState)
+    )
 
 
 def replay_parts(
-    bag: Bag, values: Mapping[str, Any], *, on_done: OnDone = ignore
+    bag: Bag,
+    values: Mapping[str, Any],
+    *,
+    columns: bool = True,
+    states: bool = True,
+    on_done: OnDone = ignore,
 ) -> Iterator[Part]:
-    """Yield what `replay_columns` and `replay_states` do, of many samples at once, judged once."""
+    """Yield what `replay_columns` and `replay` do before messages are made, judged once."""
     if is_as_recorded(bag, values):
-        return own_parts(bag, on_done)
+        return own_parts(bag, columns=columns, states=states, on_done=on_done)
     axes = axes_for(bag, values)
-    return _parts(_entries(bag, axes, values, on_done), axes)
+    batches = ordered_entries(bag, axes, nanoseconds(values['tick_period']), on_done=on_done)
+    return _parts(batches, axes, columns=columns, states=states)
 
 
 def axes_for(bag: Bag, values: Mapping[str, Any]) -> list[Axis]:
@@ -145,58 +134,13 @@ def axes_for(bag: Bag, values: Mapping[str, Any]) -> list[Axis]:
     return [build_axis(name, values) for name in values['axes']]
 
 
-def _entries(
-    bag: Bag, axes: list[Axis], values: Mapping[str, Any], on_done: OnDone
-) -> Iterator[Entries]:
-    return ordered_entries(bag, axes, nanoseconds(values['tick_period']), on_done=on_done)
-
-
-def _columns(
-    batches: Iterator[Entries], axes: list[Axis], *, at_once: bool
-) -> Iterator[JudgedColumns | AxisOutcome]:
-    judges = [AxisJudge(axis, at_once=at_once) for axis in axes]
-    collectors = [RowCollector(axis.name, axis.monitor) for axis in axes]
+def _parts(
+    batches: Iterator[Entries], axes: list[Axis], *, columns: bool, states: bool
+) -> Iterator[Part]:
+    runs = [AxisRun(axis) for axis in axes]
     for entries in batches:
-        for number, (judge, collector) in enumerate(zip(judges, collectors, strict=True)):
-            yield from judge.columns(entries.take(places_of_axis(entries, number)), collector)
-    yield from (collector.outcome() for collector in collectors)
-
-
-def _states(
-    batches: Iterator[Entries], axes: list[Axis], *, at_once: bool
-) -> Iterator[TimedState]:
-    judges = [AxisJudge(axis, at_once=at_once) for axis in axes]
-    for entries in batches:
-        found = [
-            Due(int(places[at]), number, state)
-            for number, judge in enumerate(judges)
-            for places in [places_of_axis(entries, number)]
-            for at, state in judge.states(entries.take(places))
-        ]
-        yield from _in_order(found, entries, axes)
-
-
-def _parts(batches: Iterator[Entries], axes: list[Axis]) -> Iterator[Part]:
-    judges = [AxisJudge(axis) for axis in axes]
-    collectors = [RowCollector(axis.name, axis.monitor) for axis in axes]
-    for entries in batches:
-        found: list[Due] = []
-        for number, (judge, collector) in enumerate(zip(judges, collectors, strict=True)):
-            places = places_of_axis(entries, number)
-            for part in judge.both(entries.take(places), collector):
-                if isinstance(part, JudgedColumns):
-                    yield part
-                else:
-                    found.append(Due(int(places[part[0]]), number, part[1]))
-        yield from _in_order(found, entries, axes)
-    yield from (collector.outcome() for collector in collectors)
-
-
-def _in_order(found: list[Due], entries: Entries, axes: list[Axis]) -> Iterator[TimedState]:
-    """Yield the states of a batch in the order of the entries that they are due at."""
-    for one in sorted(found, key=operator.itemgetter(0, 1)):
-        log_time = int(entries.log_time[one.place])
-        yield TimedState(log_time, axes[one.axis], one.state, one.state.event)
+        yield from judged_parts(runs, entries, columns=columns, states=states)
+    yield from (run.outcome() for run in runs)
 
 
 def _messages(states: Iterator[TimedState]) -> Iterator[Judged]:

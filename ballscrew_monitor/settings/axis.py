@@ -24,13 +24,11 @@ from ballscrew_monitor.core.conversions import (
     torque_scaling,
     torque_unit,
 )
-from ballscrew_monitor.core.derived_load import LoadDerivation
-from ballscrew_monitor.core.differentiation import PositionSettings
 from ballscrew_monitor.core.fields import check_path
 from ballscrew_monitor.core.inputs import Input, make_input, OpenInput, Source
 from ballscrew_monitor.core.judgement import Limits
-from ballscrew_monitor.core.monitor import Monitor
-from ballscrew_monitor.core.state import MonitorSettings
+from ballscrew_monitor.core.state import LoadDerivation, MonitorSettings, PositionSettings
+from ballscrew_monitor.judge.monitor import Monitor
 from ballscrew_monitor.settings.axis_parameters import LOAD_SOURCES
 from surrogate.files import InputError
 from surrogate.surface import find_surface, Surface, SurfaceError

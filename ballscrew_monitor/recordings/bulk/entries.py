@@ -23,6 +23,8 @@ class Kind(enum.IntEnum):
     TICK = 3
 
 
+UNKNOWN_LOSS = -1
+"""Number of lost messages that is not known."""
 TICK_SOURCE = max(Source) + 1
 """Place of a tick among the sources: after the samples of equal stamp."""
 
@@ -33,7 +35,8 @@ class Entries:
     Samples, refusals and ticks.
 
     `log_time`, `stamp` and `arrival` [ns]; `value` [SI, machine frame]; `place` orders messages of
-    equal log time; `header` tells where the stamp is that of a header. `note` is the refusal of a
+    equal log time; `header` tells where the stamp is that of a header; `lost` messages never
+    arrived before one, -1: not known. `note` is the refusal of a
     refused message and what a message about other joints names, else None.
 
     """
@@ -47,6 +50,7 @@ class Entries:
     arrival: NDArray[np.int64]
     value: NDArray[np.float64]
     header: NDArray[np.bool_]
+    lost: NDArray[np.int64]
     note: NDArray[Any]
 
     def __len__(self) -> int:
@@ -56,27 +60,6 @@ class Entries:
     def take(self, which: Selection) -> 'Entries':
         """Return some of the entries, or all in another order."""
         return Entries(**{name: getattr(self, name)[which] for name in NAMES})
-
-    def event(self, at: int) -> InputSample | Refusal:
-        """Return one entry, which is no tick, as a monitor takes it."""
-        source = Source(int(self.source[at]))
-        if self.kind[at] == Kind.REFUSED:
-            refusal: Refusal = self.note[at]
-            return refusal
-        if self.kind[at] == Kind.OTHER_JOINTS:
-            return Refusal(
-                source=source,
-                why=Why.OTHER_JOINTS,
-                joints=self.note[at],
-                arrival=int(self.arrival[at]),
-            )
-        return InputSample(
-            source=source,
-            value=float(self.value[at]),
-            stamp=int(self.stamp[at]),
-            stamp_source=StampSource.HEADER if self.header[at] else StampSource.RECEIVE,
-            arrival=int(self.arrival[at]),
-        )
 
 
 NAMES = tuple(field.name for field in dataclasses.fields(Entries))
@@ -90,6 +73,7 @@ _TYPES = {
     'arrival': np.int64,
     'value': np.float64,
     'header': np.bool_,
+    'lost': np.int64,
     'note': np.object_,
 }
 
@@ -119,36 +103,29 @@ def made(count: int, **columns: Any) -> Entries:
     return Entries(**arrays)
 
 
-Told = tuple[InputSample | Refusal, int, int, int]
-"""What a message says, its log time [ns], its place and the number of the axis."""
+Told = tuple[InputSample | Refusal | int, int, int, int]
+"""What a message says, or the stamp of a tick [ns]; log time [ns], place, number of the axis."""
 
 
 def entries_of(told: Sequence[Told]) -> Entries:
-    """Return samples and refusals as entries."""
-    events, log_times, places, axes = zip(*told) if told else ((), (), (), ())
-    samples = [each if isinstance(each, InputSample) else None for each in events]
-    note = np.empty(len(events), dtype=object)
-    note[:] = [None if isinstance(each, InputSample) else _note(each) for each in events]
-    return made(
-        len(events),
-        log_time=log_times,
-        place=places,
-        axis=axes,
-        source=[each.source for each in events],
-        kind=[_kind(each) for each in events],
-        stamp=[at if one is None else one.stamp for one, at in zip(samples, log_times)],
-        arrival=[each.arrival for each in events],
-        value=[np.nan if one is None else one.value for one in samples],
-        header=[one is not None and one.stamp_source is StampSource.HEADER for one in samples],
-        note=note,
-    )
-
-
-def _kind(event: InputSample | Refusal) -> Kind:
-    if isinstance(event, InputSample):
-        return Kind.SAMPLE
-    return Kind.OTHER_JOINTS if event.why is Why.OTHER_JOINTS else Kind.REFUSED
-
-
-def _note(refusal: Refusal) -> Any:
-    return refusal.joints if refusal.why is Why.OTHER_JOINTS else refusal
+    """Return samples, refusals and ticks as entries."""
+    entries = made(len(told))
+    for at, (event, log_time, place, axis) in enumerate(told):
+        entries.log_time[at], entries.place[at], entries.axis[at] = log_time, place, axis
+        entries.value[at] = np.nan
+        if isinstance(event, int):
+            entries.source[at], entries.kind[at] = TICK_SOURCE, Kind.TICK
+            entries.stamp[at] = entries.arrival[at] = event
+            continue
+        entries.source[at], entries.arrival[at] = event.source, event.arrival
+        entries.lost[at] = UNKNOWN_LOSS if event.lost is None else event.lost
+        if isinstance(event, InputSample):
+            entries.stamp[at], entries.value[at] = event.stamp, event.value
+            entries.header[at] = event.stamp_source is StampSource.HEADER
+        elif event.why is Why.OTHER_JOINTS:
+            entries.kind[at], entries.note[at] = Kind.OTHER_JOINTS, event.joints
+            entries.stamp[at] = log_time
+        else:
+            entries.kind[at], entries.note[at] = Kind.REFUSED, event
+            entries.stamp[at] = log_time
+    return entries

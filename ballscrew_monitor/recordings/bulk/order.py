@@ -12,7 +12,7 @@ time, after the samples of equal stamp.
 import heapq
 
 from ballscrew_monitor.core.conversions import nanoseconds
-from ballscrew_monitor.core.monitor import BACKWARD_JUMP
+from ballscrew_monitor.judge.step import BACKWARD_JUMP
 from ballscrew_monitor.recordings.bulk.entries import Entries, joined, Kind, made, TICK_SOURCE
 import numpy as np
 from numpy.typing import NDArray

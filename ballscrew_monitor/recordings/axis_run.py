@@ -1,0 +1,206 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""One axis through a recording: rows, states and what they come to."""
+
+from collections.abc import Iterator, Sequence
+import operator
+from typing import Any, NamedTuple
+
+from ballscrew_monitor.core.inputs import Refusal, Source, Why
+from ballscrew_monitor.core.state import Event, State
+from ballscrew_monitor.judge import records, views
+from ballscrew_monitor.judge.many import EVENT, Judged, ManyJudge
+from ballscrew_monitor.judge.words import EARLIEST, LATEST, MOST_OTHERS
+from ballscrew_monitor.recordings.bulk.entries import Entries, Kind
+from ballscrew_monitor.recordings.bulk.source import places_of_axis
+from ballscrew_monitor.recordings.columns import AxisOutcome, COLUMNS, JudgedColumns
+from ballscrew_monitor.recordings.summary import event_record, EventRecord
+from ballscrew_monitor.settings.axis import Axis
+import numpy as np
+from numpy.typing import NDArray
+from surrogate.surface.records import from_array
+
+
+class TimedState(NamedTuple):
+    """
+    A state, its axis, and the event that it tells of.
+
+    `log_time` [ns] is that of the message or the tick at which it is due.
+
+    """
+
+    log_time: int
+    axis: Axis
+    state: State
+    event: Event | None
+
+
+Part = JudgedColumns | TimedState | AxisOutcome
+"""What comes out of judging: a block of rows, a state that was published, or all of an axis."""
+KINDS = np.array([records.SAMPLE, records.REFUSAL, records.REFUSAL, records.TICK])
+"""Kind of an event by that of an entry."""
+HEADER, RECEIVE = 1, 2
+"""Sources of a stamp."""
+
+
+class Due(NamedTuple):
+    """A state, the place of the entry it is due at, and the event that it tells of."""
+
+    place: int
+    state: State
+    event: Event | None
+
+
+def events_of(entries: Entries) -> NDArray[Any]:
+    """Return entries as events of the judgement."""
+    events = np.empty(len(entries), dtype=EVENT)
+    events['kind'] = KINDS[entries.kind]
+    events['source'] = entries.source
+    events['why'] = int(Why.OTHER_JOINTS)
+    events['stamp_source'] = np.where(entries.header, HEADER, RECEIVE)
+    np.clip(entries.stamp, EARLIEST, LATEST, out=events['stamp'])
+    np.clip(entries.arrival, EARLIEST, LATEST, out=events['arrival'])
+    events['lost'] = entries.lost
+    events['value'] = entries.value
+    events['first'] = events['second'] = np.nan
+    for at in np.flatnonzero(entries.kind == Kind.REFUSED).tolist():
+        events['why'][at] = int(entries.note[at].why)
+    return events
+
+
+def columns_of(axis: str, rows: NDArray[Any]) -> JudgedColumns:
+    """Return rows of a judgement as columns."""
+    named = {'log_time': 'now'}
+    return JudgedColumns(
+        axis=axis,
+        **{name: rows[named.get(name, name)].astype(kind) for name, kind in COLUMNS.items()},
+    )
+
+
+class AxisRun:
+    """Judges the ordered entries of one axis and collects what they come to."""
+
+    def __init__(self, axis: Axis) -> None:
+        """Begin with what the monitor of `axis` remembers."""
+        self.axis = axis
+        self._judge = ManyJudge(axis.monitor)
+        self._events: dict[int, EventRecord] = {}
+        self._rows = self._states = self._first = self._last = 0
+        self._last_row: Any = None
+        self._ended: Event | None = None  # by something else than a sample, and not told yet
+
+    def take(
+        self, entries: Entries, *, columns: bool = True, states: bool = True
+    ) -> Iterator[JudgedColumns | Due]:
+        """Judge entries; yield their rows as columns, and the states that are due."""
+        refusals = np.flatnonzero(entries.kind == Kind.REFUSED).tolist()
+        for judged in self._judge.judge(events_of(entries), states=states):
+            for place, row in self._told(judged):
+                self._hear(refusals, entries, place)
+                state = self.axis.monitor.state(row)
+                event = state.event
+                if event is not None:
+                    self._note(event)
+                elif states:
+                    event, self._ended = self._ended, None
+                if states:
+                    yield Due(place, state, event)
+            if len(judged.rows):
+                self._count(judged.rows)
+                if columns:
+                    yield columns_of(self.axis.name, judged.rows)
+        self._hear(refusals, entries, len(entries))
+        self._judge.give_back()
+        self._hear_others(entries)
+
+    def change(self, axis: Axis) -> None:
+        """Go on with an axis as it is described now; an event may have been ended meanwhile."""
+        before, event = self.axis.monitor.event, axis.monitor.event
+        self.axis = axis
+        self._judge = ManyJudge(axis.monitor)
+        if event.number in self._events:
+            self._note(event)
+        if before.active and not event.active:
+            self._ended = event
+
+    def outcome(self) -> AxisOutcome:
+        """Return what the axis comes to so far."""
+        monitor, row = self.axis.monitor, self._last_row
+        if monitor.event.active:
+            self._note(monitor.event, until=int(monitor.memory.stamp))
+        reason = '' if row is None else views.reason_of(row, views.point_of(row), monitor.surface)
+        return AxisOutcome(
+            axis=self.axis.name,
+            first=self._first,
+            last=self._last,
+            rows=self._rows,
+            states=self._states,
+            judged=monitor.judged,
+            totals=monitor.totals,
+            events=tuple(self._events[number] for number in sorted(self._events)),
+            inputs=monitor.input_status(0 if row is None else int(row.now)),
+            refused=monitor.refused,
+            limits=monitor.settings.limits,
+            reason=reason,
+        )
+
+    def _told(self, judged: Judged) -> Iterator[tuple[int, records.Row]]:
+        """Yield the rows of which the memory is known; the monitor remembers it meanwhile."""
+        monitor = self.axis.monitor
+        for at, memory in zip(judged.told.tolist(), judged.memories, strict=True):
+            number = monitor.memory.event_number
+            monitor.memory = from_array(records.Memory, memory)
+            if monitor.memory.event_number != number:
+                monitor.ending = ''
+            yield int(judged.places[at]), from_array(records.Row, judged.rows[at])
+
+    def _note(self, event: Event, *, until: int | None = None) -> None:
+        self._events[event.number] = event_record(
+            event, until=event.stamp if until is None else until
+        )
+
+    def _count(self, rows: NDArray[Any]) -> None:
+        """Count rows, at least one."""
+        published = rows['stamp'][rows['published']]
+        self._rows += len(rows)
+        if len(published):
+            self._first = self._first if self._states else int(published[0])
+            self._last = int(published[-1])
+            self._states += len(published)
+        self._last_row = from_array(records.Row, rows[-1])
+
+    def _hear(self, refusals: list[int], entries: Entries, end: int) -> None:
+        """Keep the words of the refusals before a place of the entries."""
+        while refusals and refusals[0] < end:
+            refusal: Refusal = entries.note[refusals.pop(0)]
+            self.axis.monitor.words.texts[refusal.source] = refusal.text
+
+    def _hear_others(self, entries: Entries) -> None:
+        """Keep the joints that messages have named since the last good sample of an input."""
+        words, others = self.axis.monitor.words, self.axis.monitor.memory.others
+        which = entries.kind == Kind.OTHER_JOINTS
+        for source in Source:
+            at = np.flatnonzero(which & (entries.source == source))
+            count = min(others[source], len(at))
+            if others[source] <= len(at):
+                words.joints[source].clear()
+            for joints in dict.fromkeys(entries.note[at[len(at) - count :]].tolist()):
+                if len(words.joints[source]) < MOST_OTHERS:
+                    words.joints[source][joints] = None
+
+
+def judged_parts(
+    runs: Sequence[AxisRun], entries: Entries, *, columns: bool, states: bool
+) -> Iterator[Part]:
+    """Judge the entries of several axes; yield rows, and the states in the order of entries."""
+    found: list[tuple[int, int, TimedState]] = []
+    for number, run in enumerate(runs):
+        places = places_of_axis(entries, number)
+        for part in run.take(entries.take(places), columns=columns, states=states):
+            if isinstance(part, JudgedColumns):
+                yield part
+                continue
+            place = int(places[part.place])
+            log_time = int(entries.log_time[place])
+            found.append((place, number, TimedState(log_time, run.axis, part.state, part.event)))
+    yield from (state for _, _, state in sorted(found, key=operator.itemgetter(0, 1)))
