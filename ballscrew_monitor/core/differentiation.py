@@ -20,6 +20,7 @@ from ballscrew_monitor.core.inputs import InputSample, Refusal, StampSource, Why
 NAN = math.nan
 FEWEST = 2  # samples of a line
 MOST = 512  # samples in a window; faster sources shorten it
+LARGEST = 1e300  # differences of samples beyond it have no slope: their sums would overflow
 
 
 class SlopeFilter:
@@ -84,6 +85,8 @@ def _slope(samples: list[tuple[int, float]]) -> float:
     if len(samples) < FEWEST:
         return NAN
     end, value = samples[-1]
+    if max(abs(other - value) for _, other in samples) > LARGEST:
+        return NAN
     # From the last sample: differences of large numbers keep their digits.
     times = [seconds(stamp - end) for stamp, _ in samples]
     middle = math.fsum(times) / len(times)
@@ -130,7 +133,7 @@ class SpeedFromPosition:
             return None
         stamp, before = self._filter.last
         step = sample.value - before
-        if self._wrap:
+        if self._wrap and math.isfinite(step / self._wrap):
             turns = self._wrap * round(step / self._wrap)
             self._filter.shift(turns)  # the way to the new position is the shorter one
             step -= turns

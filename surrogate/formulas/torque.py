@@ -9,7 +9,11 @@ it. Plain arithmetic on floats or arrays, without further imports: the lookup us
 """
 
 import math
+import sys
 from typing import Any
+
+SMALLEST = sys.float_info.min
+"""Ideal torque below which a load counts as no load [N m]: its inverse overflows."""
 
 
 def driving_torque(friction_torque: Any, opposing_load: Any, lead: float) -> Any:
@@ -32,12 +36,12 @@ def efficiency(friction_torque: float, opposing_load: float, lead: float) -> flo
 
     """
     ideal = abs(opposing_load) * lead / (2 * math.pi)
+    if ideal < SMALLEST:
+        return 0.0
     if opposing_load > 0:
         return ideal / (ideal + friction_torque)
-    if opposing_load < 0:
-        left = (ideal - friction_torque) / ideal
-        return 0.0 if left < 0 else left
-    return 0.0 if opposing_load == 0 else math.nan
+    left = (ideal - friction_torque) / ideal
+    return 0.0 if left < 0 else left
 
 
 def efficiency_slope(friction_torque: float, opposing_load: float, lead: float) -> float:
@@ -48,9 +52,11 @@ def efficiency_slope(friction_torque: float, opposing_load: float, lead: float) 
 
     """
     ideal = abs(opposing_load) * lead / (2 * math.pi)
+    if ideal < SMALLEST:
+        return math.nan
     if opposing_load > 0:
-        return ideal / (ideal + friction_torque) ** 2
-    return 1 / ideal if opposing_load < 0 else math.nan
+        return ideal / (ideal + friction_torque) / (ideal + friction_torque)
+    return 1 / ideal
 
 
 def is_back_driving(friction_torque: float, opposing_load: float, lead: float) -> bool:

@@ -15,6 +15,7 @@ from surrogate.formulas.torque import (
     efficiency,
     efficiency_slope,
     is_back_driving,
+    SMALLEST,
     torque_constant_friction,
 )
 
@@ -88,6 +89,25 @@ def test_zero_load_has_efficiency_zero():
     assert efficiency(0.1, 0.0, LEAD) == 0.0
     assert efficiency(0.1, -0.0, LEAD) == 0.0
     assert driving_torque(0.1, 0.0, LEAD) == 0.1
+
+
+@given(
+    FRICTION,
+    st.sampled_from([0.0, 5e-324, 1e-320, 2.3e-308, 1e-200, 1e308, math.inf, math.nan])
+    | st.floats(),
+    st.sampled_from([1, -1]),
+)
+def test_no_float_of_the_load_raises(friction, load, sign):
+    """A load whose ideal torque is no normal float counts as no load."""
+    ideal = abs(load) * LEAD / (2 * math.pi)
+    found = efficiency(friction, sign * load, LEAD)
+    slope = efficiency_slope(friction, sign * load, LEAD)
+    if ideal < SMALLEST:
+        assert found == 0.0
+        assert math.isnan(slope)
+    elif math.isfinite(ideal):
+        assert 0.0 <= found <= 1.0
+        assert 0.0 <= slope < math.inf
 
 
 def test_a_frictionless_screw_is_perfect_both_ways():

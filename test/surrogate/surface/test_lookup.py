@@ -159,6 +159,20 @@ def test_outside_is_an_answer_and_never_a_number(shipped, point, validity):
     assert found.back_driving is False
 
 
+EDGES = [0.0, 5e-324, 2.2e-308, 2.3e-308, 1e-200, 60.0, 1000.0, 300.0, 1e308, 1.8e308, math.nan]
+
+
+@both
+@given(*[st.sampled_from([*EDGES, *(-edge for edge in EDGES)]) | st.floats()] * 3)
+def test_every_float_has_an_answer(shipped, speed, load, kelvin):
+    """Numbers with VALID, NaN without, and nothing raises."""
+    found = shipped.lookup(speed, load, kelvin)
+    told = (found.friction_torque, found.rcs, found.film_ratio, found.efficiency)
+    assert all(map(math.isfinite, told)) is (found.validity is Validity.VALID)
+    assert not math.isinf(found.efficiency_error)
+    assert found.worst_side in (0, 1, 2)
+
+
 @both
 def test_limits_of_the_ranges_belong_to_the_surface(shipped):
     """Each end of each range can be looked up."""

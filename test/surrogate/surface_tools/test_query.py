@@ -51,6 +51,13 @@ def test_a_point_is_the_lookup(capsys, tier, rpm, load, opposing):
     assert (found['tier'], found['rcs_std']) == (tier, to_json(direct.rcs_std))
 
 
+@pytest.mark.parametrize('load', ['-5e-324', '5e-324', '-1e-307', '-0.0'])
+def test_a_load_of_almost_nothing_is_no_load(capsys, load):
+    found = query(capsys, '--speed-rpm', 600, f'--load-N={load}', '--temperature-degC', 50)
+    assert found['validity'] == 'VALID'
+    assert found['efficiency'] == 0.0
+
+
 def test_a_page_says_what_is_known(capsys):
     """Default temperature is that of the oil's datasheet; errors stand beside their numbers."""
     assert run('closed_form', '--speed-rpm', 600, '--load-N', 1000) == 0

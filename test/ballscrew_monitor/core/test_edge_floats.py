@@ -1,0 +1,120 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""No float that a message may contain ends the judgement."""
+
+import itertools
+import math
+import sys
+
+from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.core.derived_load import LoadDerivation
+from ballscrew_monitor.core.differentiation import PositionSettings
+from ballscrew_monitor.core.inputs import InputSample, Source
+from ballscrew_monitor.core.judgement import Limits
+from ballscrew_monitor.core.monitor import Monitor
+from ballscrew_monitor.core.state import MonitorSettings
+from hypothesis import given, settings
+from hypothesis import strategies as st
+import pytest
+from surrogate.surface import shipped_surface, Surface
+
+SURFACE = Surface.load(shipped_surface())
+STEP = SECOND // 100
+TINY, SMALL, HUGE = 5e-324, sys.float_info.min, sys.float_info.max
+EDGES = [
+    sign * size
+    for size in (0.0, TINY, 2e-320, SMALL, 1e-200, 30.0, 1e154, 1e308, HUGE, math.inf)
+    for sign in (1.0, -1.0)
+] + [math.nan]
+USUAL = {Source.TEMPERATURE: 313.15, Source.LOAD: -1000.0, Source.TORQUE: 3.0, Source.SPEED: 60.0}
+LIMITS = Limits(
+    rcs=0.01,
+    efficiency=0.85,
+    light_load=250.0,
+    standstill_speed=0.5,
+    raise_delay=SECOND // 10,
+    clear_delay=SECOND,
+    hysteresis=0.1,
+)
+DERIVATION = LoadDerivation(
+    inertia=1e-3,
+    window=SECOND // 20,
+    torque_uncertainty=0.1,
+    parts_uncertainty=0.1,
+    largest_share=0.5,
+)
+WAYS = {
+    'measured': {},
+    'torque': {'derivation': DERIVATION},
+    'position': {'positions': PositionSettings(window=SECOND // 20)},
+    'angle': {'positions': PositionSettings(window=SECOND // 20, wrap=2 * math.pi)},
+}
+
+
+def make_monitor(way, plausible=math.inf):
+    return Monitor(
+        SURFACE,
+        MonitorSettings(
+            axis='x',
+            limits=LIMITS,
+            timeouts=dict.fromkeys(Source, SECOND // 2),
+            default_temperature=313.15,
+            plausible={Source.SPEED: plausible},
+            **WAYS[way],
+        ),
+    )
+
+
+def feed(monitor, *readings):
+    """Return the last state after readings, each a value for every input."""
+    state = None
+    for number, reading in enumerate(readings, 1):
+        for source in Source:
+            sample = InputSample(source=source, value=reading[source], stamp=number * STEP)
+            state = monitor.update(sample) or state
+    return monitor.tick((len(readings) + 100) * STEP) or state
+
+
+@pytest.mark.parametrize('way', WAYS)
+@pytest.mark.parametrize('source', list(Source))
+def test_each_edge_of_each_input_is_judged_or_refused(way, source):
+    for value in EDGES:
+        monitor = make_monitor(way)
+        odd = USUAL | {source: value}
+        assert feed(monitor, USUAL, odd, odd, USUAL).stamp > 0
+        refused = sum(monitor.refused[source].values())
+        assert (refused == 2) is not math.isfinite(value), value
+
+
+@settings(max_examples=200)
+@given(
+    st.sampled_from(list(WAYS)),
+    st.lists(
+        st.fixed_dictionaries(dict.fromkeys(Source, st.sampled_from(EDGES) | st.floats())),
+        min_size=1,
+        max_size=6,
+    ),
+    st.sampled_from([math.inf, HUGE, 700.0]),
+)
+def test_no_course_of_floats_ends_the_judgement(way, readings, plausible):
+    state = feed(make_monitor(way, plausible), *readings)
+    assert not math.isnan(state.totals.angle)
+
+
+@pytest.mark.parametrize('way', ['position', 'angle'])
+def test_positions_that_leap_further_than_a_float_reaches(way):
+    leaps = [USUAL | {Source.SPEED: value} for value in (HUGE, -HUGE, HUGE, 0.0, 0.3)]
+    assert feed(make_monitor(way), *leaps).judged == 0
+    assert feed(make_monitor(way, 700.0), *leaps).judged > 0
+
+
+@pytest.mark.parametrize('load', [TINY, 2e-320, 1e-322, 0.0])
+def test_a_load_of_almost_nothing_is_judged_as_none(load):
+    """Its ideal torque underflows: the efficiency is that at zero load, in both directions."""
+    for sign, speed in itertools.product((1.0, -1.0), (60.0, -60.0)):
+        monitor = make_monitor('measured')
+        monitor.update(InputSample(source=Source.LOAD, value=sign * load, stamp=STEP))
+        monitor.update(InputSample(source=Source.TEMPERATURE, value=313.15, stamp=STEP))
+        state = monitor.update(InputSample(source=Source.SPEED, value=speed, stamp=STEP))
+        assert state.estimate.efficiency == 0.0
+        assert math.isnan(state.estimate.numbers.efficiency_error)
