@@ -44,7 +44,7 @@ from ballscrew_monitor.core.differentiation import PositionSettings
 from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, StampSource, Why
 from ballscrew_monitor.core.judgement import Code, Limits
 from ballscrew_monitor.core.memory import Memory
-from ballscrew_monitor.core.monitor import Monitor
+from ballscrew_monitor.judge.monitor import Monitor
 from ballscrew_monitor.core.shelving import Shelving
 from ballscrew_monitor.core.state import Event, Instant, MonitorSettings, State
 from ballscrew_monitor.core.tally import Totals

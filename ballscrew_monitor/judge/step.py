@@ -161,7 +161,7 @@ def _take(settings: Any, memory: Any, positions: Any, event: Any) -> bool:
 def _is_usable(settings: Any, memory: Any, event: Any) -> bool:
     """Tell whether the value of a sample can be used, and refuse it if not."""
     if not math.isfinite(event.value):
-        refuse(memory, event.source, NOT_A_NUMBER, event.value, math.nan, event.arrival)
+        refuse(memory, event.source, NOT_A_NUMBER, 0.0, math.nan, event.arrival)
         return False
     # Of a position: plausible or not is the speed that follows from it.
     if event.source == SPEED and settings.positions:

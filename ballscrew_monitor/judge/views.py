@@ -282,6 +282,8 @@ def input_status_of(
 def refusal_text(memory: Any, settings: Any, source: Source, texts: Texts) -> str:
     """Return why the last message of an input was refused."""
     first, second = float(memory.refusal_first[source]), float(memory.refusal_second[source])
+    if math.isnan(first):  # refused before the judgement, which has no words
+        return texts.get(source, '')
     if memory.refusal[source] == Why.HOLE:
         return hole_text(first)
     if memory.refusal[source] == Why.IMPLAUSIBLE:
@@ -289,7 +291,7 @@ def refusal_text(memory: Any, settings: Any, source: Source, texts: Texts) -> st
         if math.isnan(second):
             return implausible_text(source, first, most)
         return jump_text(first, second, most)
-    return texts.get(source, '')
+    return ''
 
 
 def _rate(memory: Any, source: Source) -> float:

@@ -13,7 +13,7 @@ import types
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.inputs import InputSample, Source
-from ballscrew_monitor.core.monitor import Monitor
+from ballscrew_monitor.judge.monitor import Monitor
 from ballscrew_monitor.node.alarm import Alarm
 from ballscrew_monitor.node.axis_publisher import AxisPublisher
 from ballscrew_monitor.node.correction_store import CorrectionStore
