@@ -21,13 +21,14 @@ import warnings
 from ballscrew_monitor.core.conversions import direction_of, SECOND
 from ballscrew_monitor.core.estimate import MachinePoint, PointSource, PointValidity
 from ballscrew_monitor.core.fields import message_class
-from ballscrew_monitor.core.inputs import Source
+from ballscrew_monitor.core.inputs import InputSample, Source
 from ballscrew_monitor.core.judgement import Limits
-from ballscrew_monitor.judge.monitor import Monitor
 from ballscrew_monitor.core.state import MonitorSettings
 from ballscrew_monitor.cycle.domain import DOMAINS, free_domain, held
 from ballscrew_monitor.cycle.node_process import child_environment
 from ballscrew_monitor.cycle.shared_memory import remove_stale, SHARED_MEMORY
+from ballscrew_monitor.judge import point, step
+from ballscrew_monitor.judge.monitor import Monitor
 from ballscrew_monitor.node.solver_process import MODULE
 from ballscrew_msgs.msg import BallScrewState
 from diagnostic_msgs.msg import DiagnosticArray
@@ -43,7 +44,7 @@ from rclpy.qos import QoSProfile, QoSReliabilityPolicy
 from rosidl_parser import definition
 from sensor_msgs.msg import JointState
 from surrogate.surface import file as surface_file
-from surrogate.surface import shipped_surface
+from surrogate.surface import Found, shipped_surface
 import yaml
 
 with warnings.catch_warnings():
@@ -54,6 +55,7 @@ with warnings.catch_warnings():
 os.environ['ROS_PYTHON_CHECK_FIELDS'] = '1'
 os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+START, STEP = 1000 * SECOND, SECOND // 100  # [ns] of the samples of `core.motion`
 DEADLINE = 120.0  # [s] for anything that another process has to do, however busy the machine
 
 
@@ -72,6 +74,7 @@ class Numbers:
     back_driving: bool = False
     worst_nut: int = 1
     worst_side: int = 2
+    worst_contact: int = 1
     asperity_share: float = 0.0
     central_film: float = 1e-7
     minimum_film: float = 5e-8
@@ -124,6 +127,10 @@ class ConstantSurface:
             }
         )
 
+    @property
+    def tables(self):
+        return self
+
     def driving_torques(self, speed, temperature):
         loads = np.linspace(*self.load_range, 81)
         points = [self.lookup(speed, float(load), temperature) for load in loads]
@@ -172,16 +179,66 @@ def make_monitor(surface=None, limits=None, **changes):
     return Monitor(surface or ConstantSurface(), MonitorSettings(**(values | changes)))
 
 
-@pytest.fixture(scope='session')
+def sample(source, value, stamp=START, **changes):
+    return InputSample(source=source, value=value, stamp=stamp, **changes)
+
+
+def motion(value, *, start=START, count=1, force=-1000.0, step=STEP):
+    """Return pairs of a load and a speed sample."""
+    return [
+        sample(source, number, start + i * step)
+        for i in range(count)
+        for source, number in ((Source.LOAD, force), (Source.SPEED, value))
+    ]
+
+
+def feed(monitor, events):
+    """Return the states that events give; a number is the stamp of a tick."""
+    states = [
+        monitor.tick(event) if isinstance(event, int) else monitor.update(event)
+        for event in events
+    ]
+    return [state for state in states if state is not None]
+
+
+def constant_or(real):
+    """Return a lookup that asks a surface of constants, and any other as `real` does."""
+
+    def look_up(tables, speed, load, temperature, found):
+        if not isinstance(tables, ConstantSurface):
+            real(tables, speed, load, temperature, found)
+            return
+        numbers = tables.lookup(speed, load, temperature)
+        valid = numbers.validity is PointValidity.VALID
+        for name in Found.__dataclass_fields__:
+            if hasattr(numbers, name):
+                number = getattr(numbers, name)
+                setattr(found, name, number if valid or not isinstance(number, float) else math.nan)
+
+    return look_up
+
+
+@pytest.fixture(scope='module')
 def core():
-    """Make the parts that tests of the core are built from."""
-    return types.SimpleNamespace(
-        surface=ConstantSurface,
-        numbers=Numbers,
-        limits=make_limits,
-        point=make_point,
-        monitor=make_monitor,
-    )
+    """Make the parts that tests of the core are built from; nothing compiles meanwhile."""
+    rest = step.look_up_rest
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(point, 'look_up', constant_or(point.look_up))
+        patch.setattr(
+            step,
+            'look_up_rest',
+            lambda tables, found: isinstance(tables, ConstantSurface) or rest(tables, found),
+        )
+        yield types.SimpleNamespace(
+            surface=ConstantSurface,
+            numbers=Numbers,
+            limits=make_limits,
+            point=make_point,
+            monitor=make_monitor,
+            sample=sample,
+            motion=motion,
+            feed=feed,
+        )
 
 
 @contextlib.contextmanager
