@@ -108,7 +108,8 @@ def reason_of(row: Any, point: MachinePoint, surface: Surface) -> str:
 def verdict_of(row: Any, estimate: PointEstimate, limits: Limits) -> Verdict:
     """Return the zone of a row, the gates that are shut, and what was found."""
     gates = gates_of(int(row.gates))
-    zone, findings = Zone(int(row.zone)), ()
+    zone = Zone(int(row.zone))
+    findings: tuple[Finding, ...] = ()
     light = Gate.LIGHT_LOAD in gates
     if row.zone == OUTSIDE:
         findings = tuple(

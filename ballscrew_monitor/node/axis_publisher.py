@@ -4,13 +4,14 @@
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 import dataclasses
+import traceback
 from typing import Any
 
 from ballscrew_monitor.core.conversions import nanoseconds
 from ballscrew_monitor.core.dwell import Dwell
 from ballscrew_monitor.core.estimate import estimate, MachinePoint
 from ballscrew_monitor.core.full_point import corrected, objection, solved_at
-from ballscrew_monitor.core.inputs import Source
+from ballscrew_monitor.core.inputs import InputSample, Refusal, Source
 from ballscrew_monitor.core.links import Link
 from ballscrew_monitor.core.shelving import Shelving
 from ballscrew_monitor.core.state import State
@@ -68,6 +69,7 @@ class AxisPublisher:
         self.axis = axis
         self.dwell = Dwell()
         self.refused = ''  # why the last reload of the surface was
+        self.defect = ''  # of the program, at a sample that it could not judge
         self._values = values
         self._store = store
         self._keeping = keeping
@@ -285,6 +287,16 @@ class AxisPublisher:
         else:
             self._node.get_logger().warning(f'axis {self.axis.name}: {text}')
 
+    def note_defect(self, error: Exception, event: InputSample | Refusal | int) -> bool:
+        """Keep and log that a defect of the program met an event; tell whether it is new."""
+        sentence = diagnostics.defect_text(error, event)
+        if self.defect:
+            return False
+        self.defect = sentence
+        trace = ''.join(traceback.format_exception(error))
+        self._node.get_logger().error(f'axis {self.name}: {sentence}\n{trace}')
+        return True
+
     def statuses(
         self, *, links: Mapping[Source, Link] | None, stood: int
     ) -> list[DiagnosticStatus]:
@@ -304,6 +316,7 @@ class AxisPublisher:
             links=links,
             clock_stands=stood > self.axis.monitor.settings.timeouts[Source.SPEED],
             refused=self.refused,
+            defect=self.defect,
         )
 
     def _summaries(self, state: State) -> tuple[diagnostics.StatusSummary, ...]:

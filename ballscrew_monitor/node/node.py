@@ -263,7 +263,17 @@ class BallscrewMonitor(LifecycleNode):
         self._publish_diagnostics()
 
     def _on_event(self, axis: Axis, event: InputSample | Refusal) -> None:
-        self._publish(self._axis_publishers[axis.name], axis.monitor.update(event))
+        self._judge(self._axis_publishers[axis.name], axis.monitor.update, event)
+
+    def _judge(
+        self, publisher: AxisPublisher, judge: Callable[[Any], State | None], event: Any
+    ) -> None:
+        """Judge a sample, a refusal or a tick; a defect is an error of its axis alone."""
+        try:
+            self._publish(publisher, judge(event))
+        except Exception as error:  # the other axes go on, whatever it is
+            if publisher.note_defect(error, event):
+                self._publish_diagnostics([publisher.name])
 
     def _on_tick(self) -> None:
         """Tick on the grid of stamps, when that is due; what has arrived by then comes first."""
@@ -275,7 +285,7 @@ class BallscrewMonitor(LifecycleNode):
         journal = self._chronicle.journal
         journal.tick(grid, self.get_clock().now().nanoseconds)
         for publisher in self._axis_publishers.values():
-            self._publish(publisher, publisher.axis.monitor.tick(grid))
+            self._judge(publisher, publisher.axis.monitor.tick, grid)
         steady, now = self._steady.now().nanoseconds, self.get_clock().now().nanoseconds
         due = journal.due(self._axis_publishers, steady, now)
         self._chronicle.describe(due, 'time')

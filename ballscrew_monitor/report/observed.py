@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 import math
 
 from ballscrew_monitor.core.inputs import Source
-from ballscrew_monitor.recordings.columns import Reason
+from ballscrew_monitor.core.judgement import Reason
 from ballscrew_monitor.recordings.words import counted, duration, NONE, number, share, shown_unit
 from ballscrew_monitor.report.case import AxisCase
 from ballscrew_monitor.report.grounds import TAGS
