@@ -28,6 +28,10 @@ from surrogate.files import InputError
 from surrogate.surface import SurfaceError
 
 JOURNAL = '/journal'
+OTHER_VERSION = (
+    'the node that made this recording was of another version: the recording is judged as an '
+    'ordinary bag, by log times'
+)
 TOLD = 1000  # messages after which the progress is told
 
 
@@ -61,15 +65,7 @@ def recorded_values(bag: Bag) -> dict[str, Any]:
     Raises InputError for a recording that describes no axis.
 
     """
-    found: dict[str, dict[str, Any]] = {}
-    for message in bag.as_written([journal_of(bag)]):
-        entry = _entry(message)
-        if entry['kind'] == 'axis':
-            if entry['axis'] in found:
-                break
-            found[entry['axis']] = _values(entry, bag.types)
-    if not found:
-        raise InputError(f'bag {bag.path}: its journal describes no axis')
+    found = {entry['axis']: _values(entry, bag.types) for entry in _first_entries(bag)}
     values = parameters.defaults(list(found))
     for one in found.values():
         values |= one
@@ -77,8 +73,33 @@ def recorded_values(bag: Bag) -> dict[str, Any]:
 
 
 def is_as_recorded(bag: Bag, values: Mapping[str, Any]) -> bool:
-    """Tell whether a bag is the recording of a node, to be judged with the node's parameters."""
-    return bool(journal_of(bag)) and recorded_values(bag) == dict(values)
+    """
+    Tell whether a bag is the recording of a node, to be judged with the node's parameters.
+
+    The journal of another version says nothing of the memory: such a bag is judged as any other
+    bag is, and has a remark.
+
+    """
+    if not journal_of(bag):
+        return False
+    if any(entry['version'] != VERSION for entry in _first_entries(bag)):
+        bag.remarks.append(OTHER_VERSION)
+        return False
+    return recorded_values(bag) == dict(values)
+
+
+def _first_entries(bag: Bag) -> list[Mapping[str, Any]]:
+    """Return the first description of each axis; raises InputError if there is none."""
+    found: dict[str, Mapping[str, Any]] = {}
+    for message in bag.as_written([journal_of(bag)]):
+        entry = _entry(message)
+        if entry['kind'] == 'axis':
+            if entry['axis'] in found:
+                break
+            found[entry['axis']] = entry
+    if not found:
+        raise InputError(f'bag {bag.path}: its journal describes no axis')
+    return list(found.values())
 
 
 class OwnRecording:
@@ -210,13 +231,10 @@ def _entry(message: Message) -> Mapping[str, Any]:
     try:
         text = deserialize_message(message.data, message_class(STRING)).data
         entry: Mapping[str, Any] = json.loads(text)
-        known = entry['kind'] != 'axis' or entry['version'] == VERSION
+        if entry['kind'] == 'axis':
+            _ = entry['axis'], entry['version']
     except (*UNDECODABLE, KeyError, TypeError) as error:
         raise InputError(f'{message.topic}: no entry of a journal ({error})') from None
-    if not known:
-        raise InputError(
-            f'{message.topic}: a journal of version {entry["version"]}, known is {VERSION}'
-        )
     return entry
 
 
