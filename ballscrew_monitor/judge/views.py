@@ -27,7 +27,16 @@ from ballscrew_monitor.core.inputs import (
     StampSource,
     Why,
 )
-from ballscrew_monitor.core.judgement import Code, Gate, Limits, unjudged, Verdict, violation, Zone
+from ballscrew_monitor.core.judgement import (
+    Code,
+    Finding,
+    Gate,
+    Limits,
+    unjudged,
+    Verdict,
+    violation,
+    Zone,
+)
 from ballscrew_monitor.core.state import Event
 from ballscrew_monitor.core.tally import Extremes, Totals, WindowStatistics
 from ballscrew_monitor.judge.derived_load import derived_text

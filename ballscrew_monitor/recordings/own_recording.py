@@ -83,7 +83,8 @@ def is_as_recorded(bag: Bag, values: Mapping[str, Any]) -> bool:
     if not journal_of(bag):
         return False
     if any(entry['version'] != VERSION for entry in _first_entries(bag)):
-        bag.remarks.append(OTHER_VERSION)
+        if OTHER_VERSION not in bag.remarks:
+            bag.remarks.append(OTHER_VERSION)
         return False
     return recorded_values(bag) == dict(values)
 
