@@ -42,8 +42,7 @@ LOOKUP = {'surrogate', 'surrogate.files', 'surrogate.surface', 'surrogate.units'
 
 FLOORS = (
     ('core',),
-    ('settings',),
-    ('messages',),
+    ('settings', 'messages'),
     ('recordings',),
     ('node', 'report'),
     ('clients', 'cycle'),
