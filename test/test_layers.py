@@ -42,6 +42,7 @@ LOOKUP = {'surrogate', 'surrogate.files', 'surrogate.surface', 'surrogate.units'
 
 FLOORS = (
     ('core',),
+    ('judge',),
     ('settings', 'messages'),
     ('recordings',),
     ('node', 'report'),
