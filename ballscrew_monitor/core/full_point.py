@@ -45,6 +45,13 @@ class SolvedAt:
     temperature: float
 
 
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class KeptSolve(SolvedAt):
+    """A full solve that corrects a surface: where it was made, and the fields solved [SI]."""
+
+    solved: dict[str, float]
+
+
 class Solve(HasOperatingPoint, Protocol):
     """A full solve that has corrected a surface, or did so in an earlier run of the node."""
 

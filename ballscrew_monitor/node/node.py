@@ -12,20 +12,17 @@ from ballscrew_monitor.core.state import State
 from ballscrew_monitor.node import diagnostics, parameters
 from ballscrew_monitor.node.alarm import end_all
 from ballscrew_monitor.node.axis import Axis, build_axes, named_topics
-from ballscrew_monitor.node.caretaker import Caretaker
 from ballscrew_monitor.node.chronicle import Chronicle
-from ballscrew_monitor.node.correction_store import CorrectionStore
-from ballscrew_monitor.node.event_log import Kind
 from ballscrew_monitor.node.intake import Intake
-from ballscrew_monitor.node.keeping import Keeping
 from ballscrew_monitor.node.latched_topics import LatchedTopics
 from ballscrew_monitor.node.parameter_store import ParameterStore
 from ballscrew_monitor.node.qos import check_overrides, longest_period
 from ballscrew_monitor.node.reported import reported
+from ballscrew_monitor.node.restart_state import RestartState, state_directory
+from ballscrew_monitor.node.retention import Retention
 from ballscrew_monitor.node.shelve_service import ShelveService
 from ballscrew_monitor.node.solve_server import SolveServer
 from ballscrew_monitor.node.solver_process import SolverProcess
-from ballscrew_monitor.node.state_folder import state_directory, StateFolder
 from ballscrew_monitor.node.station import STATE_QOS, Station
 from ballscrew_monitor.node.trigger_services import not_built, TriggerServices
 from ballscrew_msgs.srv import EvaluateOperatingPoint
@@ -63,15 +60,12 @@ class BallscrewMonitor(LifecycleNode):
         )
         self.create_service(EvaluateOperatingPoint, '~/evaluate', self._on_evaluate)
         self._latched = {name: LatchedTopics(self, name) for name in self._values['axes']}
-        self._folder = StateFolder(
+        state = RestartState(
             state_directory(self._values['state_dir'], self.get_fully_qualified_name()),
             limit=round(self._values['state_limit'] * MEGABYTE),
         )
-        self._corrections = CorrectionStore(self._folder)
-        self._keeping = Keeping(self, self._folder)
-        self._keeping.note(Kind.NODE_START)
-        self._caretaker = Caretaker(
-            self, self._keeping, lambda: self._stations, self._on_kept, clock=self._steady
+        self._retention = Retention(
+            self, state, lambda: self._stations, self._on_kept, clock=self._steady
         )
         self._solves = SolveServer(self, SolverProcess, self._find_station)
         TriggerServices(
@@ -102,7 +96,7 @@ class BallscrewMonitor(LifecycleNode):
             resolve = self.resolve_topic_name
             check_overrides(self._store.given, named_topics(self._values, resolve))
             axes, reasons = build_axes(self._values, resolve)
-            self._chronicle.configure(self._folder.path)
+            self._chronicle.configure(self._retention.state.folder)
         except InputError as error:
             axes, reasons = [], dict.fromkeys(self._values['axes'], str(error))
         self._failed = {name: f'not configured: {why}' for name, why in reasons.items()}
@@ -116,15 +110,14 @@ class BallscrewMonitor(LifecycleNode):
                 self,
                 axis,
                 self._values,
-                self._corrections,
                 latched=self._latched[axis.name],
-                keeping=self._keeping,
+                retention=self._retention,
                 record=self._chronicle.record,
                 changed=self._chronicle.describe,
             )
             for axis in axes
         }
-        self._caretaker.restore()
+        self._retention.restore()
         self._store.ceilings = {
             f'{axis.name}.publish_period': longest_period(axis.name, self._values) for axis in axes
         }
@@ -175,8 +168,8 @@ class BallscrewMonitor(LifecycleNode):
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Stop to judge; levels, events and totals stand."""
         self._stop()
-        self._caretaker.remember()
-        self._keeping.flush()
+        self._retention.remember_all()
+        self._retention.state.flush()
         result = super().on_deactivate(state)
         self._publish_diagnostics()
         return result
@@ -192,8 +185,7 @@ class BallscrewMonitor(LifecycleNode):
         """Stop and forget the axes."""
         self._finalized = True
         self._clear('shut down')
-        self._keeping.note(Kind.NODE_STOP)
-        self._keeping.close()
+        self._retention.close()
         return SUCCESS
 
     def on_error(self, state: LifecycleState) -> TransitionCallbackReturn:
@@ -210,7 +202,7 @@ class BallscrewMonitor(LifecycleNode):
         """Keep what a service has changed at once; return why that failed, or nothing."""
         self._chronicle.describe(axes, name)
         self._publish_diagnostics(list(axes))
-        return self._keeping.flush()
+        return self._retention.state.flush()
 
     def _stop(self, reason: str = '') -> None:
         """Judge no longer; for a `reason` events end, while they are still recorded."""
@@ -232,8 +224,8 @@ class BallscrewMonitor(LifecycleNode):
         for station in self._stations.values():
             station.close()
         self._stations, self._failed = {}, {}
-        self._keeping.flush()
-        self._keeping.forget_damage()
+        self._retention.state.flush()
+        self._retention.state.forget_problems()
         self._store.locked = False
         self._reason = reason
         self._publish_diagnostics()
@@ -277,7 +269,7 @@ class BallscrewMonitor(LifecycleNode):
         stood = self._pulse.stood(now.nanoseconds, self._steady.now().nanoseconds)
         statuses = self._statuses(self._values['axes'] if axes is None else axes, stood)
         if axes is None:
-            statuses += self._keeping.statuses()
+            statuses += self._retention.statuses()
         message = DiagnosticArray(status=statuses)
         message.header.stamp = now.to_msg()
         self._diagnostics.publish(message)

@@ -16,8 +16,8 @@ import time
 from typing import Any, IO
 
 from ballscrew_monitor.node.frames import Frame, FrameSender
+from ballscrew_monitor.node.restart_state import AUTO
 from ballscrew_monitor.node.solver_process import worker_environment
-from ballscrew_monitor.node.state_folder import AUTO
 from surrogate.files import InputError
 
 MODULE = 'ballscrew_monitor.recordings.black_box'

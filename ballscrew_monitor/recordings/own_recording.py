@@ -15,12 +15,11 @@ import json
 from typing import Any
 
 from ballscrew_monitor.core.fields import message_class
-from ballscrew_monitor.core.full_point import corrected
+from ballscrew_monitor.core.full_point import corrected, KeptSolve
 from ballscrew_monitor.core.inputs import Input, InputSample, Refusal
 from ballscrew_monitor.core.snapshot import freeze_monitor, thaw_monitor
 from ballscrew_monitor.node import parameters
 from ballscrew_monitor.node.axis import Axis, build_axis, settings_of
-from ballscrew_monitor.node.correction_store import KeptSolve
 from ballscrew_monitor.node.intake import ordered
 from ballscrew_monitor.node.journal import STRING, VERSION
 from ballscrew_monitor.recordings.bag import Bag, Message
