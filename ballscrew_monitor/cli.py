@@ -17,6 +17,7 @@ from typing import Any
 from ballscrew_monitor.core.interrupts import FAILED, leave_to_python, raise_signals, SIGNALLED
 from ballscrew_monitor.options import (
     add_doctor,
+    add_events,
     add_import,
     add_play,
     add_recover,
@@ -94,6 +95,7 @@ def _parser() -> argparse.ArgumentParser:
         (add_import, _import),
         (add_solve, _solve),
         (add_doctor, _doctor),
+        (add_events, _events),
         (add_play, _play),
         (add_recover, _recover),
     ):
@@ -175,6 +177,12 @@ def _doctor(args: argparse.Namespace) -> int:
     from ballscrew_monitor.clients.doctor import doctor
 
     return doctor(args.params, seconds=args.seconds, as_json=args.json)
+
+
+def _events(args: argparse.Namespace) -> int:
+    from ballscrew_monitor.clients.events import print_events
+
+    return print_events(args.folder, as_json=args.json)
 
 
 def _recover(args: argparse.Namespace) -> int:

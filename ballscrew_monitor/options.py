@@ -136,6 +136,22 @@ def add_recover(commands: Commands) -> argparse.ArgumentParser:
     return parser
 
 
+def add_events(commands: Commands) -> argparse.ArgumentParser:
+    """Add `ballscrew events`."""
+    parser: argparse.ArgumentParser = commands.add_parser(
+        'events', help='print the event log of a node out of its state_dir'
+    )
+    parser.add_argument(
+        'folder',
+        type=Path,
+        nargs='?',
+        metavar='STATE_DIR',
+        help='state_dir of the node (default that of /ballscrew_monitor of this user)',
+    )
+    parser.add_argument('--json', action='store_true', help='print a line of JSON for each entry')
+    return parser
+
+
 def add_doctor(commands: Commands) -> argparse.ArgumentParser:
     """Add `ballscrew doctor`."""
     parser: argparse.ArgumentParser = commands.add_parser(

@@ -38,21 +38,38 @@ POINTS = 200_000
 TYPES = {'/joint_states': 'sensor_msgs/msg/JointState', '/load': 'geometry_msgs/msg/WrenchStamped'}
 
 
-def write(folder: Path, duration: float, rate: float) -> Bag:
-    """Return a recording of speed and load at a rate [Hz]."""
+def signals(duration: float, rate: float) -> dict[str, np.ndarray]:
+    """Return times [s], speeds [rad/s], positions [rad], loads [N] and torques [N m] at a rate."""
     time_ = np.arange(int(duration * rate)) / rate
     phase = 2 * np.pi * time_ / CYCLE
-    speeds, loads = (
-        150.0 * np.sin(phase),
-        -1200.0 * np.sign(np.sin(phase)) + 300 * np.sin(7 * phase),
-    )
-    joint, wrench = JointState(name=['x_axis'], velocity=[0.0]), WrenchStamped()
+    load = -1200.0 * np.sign(np.sin(phase)) + 300 * np.sin(7 * phase)
+    return {
+        'time': time_,
+        'velocity': 150.0 * np.sin(phase),
+        'position': 150.0 * CYCLE / (2 * np.pi) * (1.0 - np.cos(phase)),
+        'load': load,
+        'effort': 0.25 * np.sign(np.sin(phase)) - 1.6e-3 * load,
+    }
+
+
+def write(folder: Path, duration: float, rate: float, field: str = 'velocity') -> Bag:
+    """Return a recording of a `field` of the joint and of the load, at a rate [Hz]."""
+    made = signals(duration, rate)
+    joint = JointState(name=['x_axis'], velocity=[0.0], position=[0.0], effort=[0.0])
+    wrench = WrenchStamped()
     with BagWriter(folder, 'bag') as writer:
         for name, kind in TYPES.items():
             writer.add_topic(Topic(name=name, type_name=kind, offer=Offer.SENSOR))
-        for at, speed, load in zip(time_.tolist(), speeds.tolist(), loads.tolist()):
+        for row in zip(*(column.tolist() for column in made.values()), strict=True):
+            at, joint.velocity, joint.position, load, joint.effort = (
+                row[0],
+                [row[1]],
+                [row[2]],
+                row[3],
+                [row[4]],
+            )
+            wrench.wrench.force.x = load
             stamp = BEGIN + round(at * 1e9)
-            joint.velocity, wrench.wrench.force.x = [speed], load
             for topic, message in (('/load', wrench), ('/joint_states', joint)):
                 clock = message.header.stamp
                 clock.sec, clock.nanosec = divmod(stamp, 10**9)

@@ -42,8 +42,8 @@ LOOKUP = {'surrogate', 'surrogate.files', 'surrogate.surface', 'surrogate.units'
 
 FLOORS = (
     ('core',),
-    ('settings',),
-    ('messages',),
+    ('judge',),
+    ('settings', 'messages'),
     ('recordings',),
     ('node', 'report'),
     ('clients', 'cycle'),

@@ -45,22 +45,19 @@ class SolvedAt:
     temperature: float
 
 
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class KeptSolve(SolvedAt):
+    """A full solve that corrects a surface: where it was made, and the fields solved [SI]."""
+
+    solved: dict[str, float]
+
+
 class Solve(HasOperatingPoint, Protocol):
     """A full solve that has corrected a surface, or did so in an earlier run of the node."""
 
     @property
     def solved(self) -> dict[str, float]:
         """Return the fields that were solved [SI]."""
-
-
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class KeptSolve:
-    """A solve that corrects: speed [rad/s], opposing load [N], temperature [K], fields [SI]."""
-
-    speed: float
-    opposing_load: float
-    temperature: float
-    solved: dict[str, float]
 
 
 def solved_at(point: MachinePoint) -> SolvedAt:

@@ -1,14 +1,20 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What is kept of an axis over restarts: its sums, its last event, and its shelving."""
+"""Memory of an axis over restarts: sums, last event and shelving; also as a plain record."""
 
+from collections.abc import Mapping
 import dataclasses
+import math
+from typing import Any
 
+from ballscrew_monitor.core.judgement import Code, Finding, Severity
 from ballscrew_monitor.core.shelving import NOT_SHELVED, Shelving
 from ballscrew_monitor.core.state import Event
 from ballscrew_monitor.core.tally import Totals
 
 RESTARTED = 'ended by a restart of the node'
+MOST_EVENTS = 2**32 - 1  # what a message holds
+NAN = math.nan
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -20,19 +26,135 @@ class Memory:
     shelving: Shelving = NOT_SHELVED
 
 
-def after_restart(kept: Memory, logged: Event) -> Memory:
-    """
-    Return the memory to go on with: what was `kept`, and what the log says of the last event.
-
-    The log is written at once and the memory later, or not while a disk is full: whichever knows
-    more of the event is right. One that both know as active was interrupted, and is over.
-
-    """
-    ended = logged.number == kept.event.number and not logged.active
-    event = logged if ended or logged.number > kept.event.number else kept.event
-    if event.active:
-        event = dataclasses.replace(event, active=False, ending=RESTARTED)
-    return dataclasses.replace(kept, event=event)
-
-
 NOTHING = Memory()
+
+
+def after_restart(memory: Memory) -> Memory:
+    """Return the memory to go on with: an event that was interrupted is over."""
+    if not memory.event.active:
+        return memory
+    event = dataclasses.replace(memory.event, active=False, ending=RESTARTED)
+    return dataclasses.replace(memory, event=event)
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class AxisRecord:
+    """
+    Memory of an axis in plain numbers and words: a row of the database.
+
+    The suffixes are the units; times in [ns] so that none is rounded. `worst_value`, `value` and
+    `limit` stand in `unit`, NaN is not known.
+
+    """
+
+    axis: str
+    running_time_ns: int = 0
+    unjudged_time_ns: int = 0
+    boundary_time_ns: int = 0
+    mixed_time_ns: int = 0
+    hydrodynamic_time_ns: int = 0
+    optimal_time_ns: int = 0
+    outside_time_ns: int = 0
+    since_ns: int = 0
+    angle_rad: float = 0.0
+    energy_lost_J: float = 0.0
+    event: int = 0
+    active: bool = False
+    stamp_ns: int = 0
+    start_ns: int = 0
+    worst_value: float = NAN
+    cause: str = Code.UNKNOWN.name
+    severity: str = Severity.UNKNOWN.name
+    value: float = NAN
+    limit: float = NAN
+    unit: str = '-'
+    text: str = ''
+    ending: str = ''
+    until_ns: int = 0
+    reason: str = ''
+
+    def row(self) -> dict[str, Any]:
+        """Return the values by name, None for what is not known."""
+        values = {name: getattr(self, name) for name in TYPES}
+        return {name: None if value != value else value for name, value in values.items()}
+
+
+TYPES: dict[str, Any] = {field.name: field.type for field in dataclasses.fields(AxisRecord)}
+SUMS = ('angle_rad', 'energy_lost_J')
+TIMES = tuple(field.name for field in dataclasses.fields(Totals) if field.type is int)
+
+
+def read_record(row: Mapping[str, Any]) -> AxisRecord:
+    """
+    Return the record of a row, in which None is a number that is not known.
+
+    Raises ValueError, KeyError or TypeError for a row that no node has written.
+
+    """
+    record = AxisRecord(**{name: _read(name, kind, row[name]) for name, kind in TYPES.items()})
+    if record.event > MOST_EVENTS:
+        raise ValueError(f'event {record.event} is above {MOST_EVENTS}')
+    Code[record.cause], Severity[record.severity]
+    return record
+
+
+def _read(name: str, kind: Any, value: Any) -> Any:
+    if kind is float:
+        value = NAN if value is None else float(value)
+    elif kind is bool:
+        value = bool(value)
+    limited = kind is int or name in SUMS
+    if type(value) is not kind or (limited and not 0 <= value < math.inf):
+        raise ValueError(f'{name} is {value!r}')
+    return value
+
+
+def record_of(axis: str, memory: Memory) -> AxisRecord:
+    """Return the memory of an axis as a record."""
+    totals, event, cause = memory.totals, memory.event, memory.event.cause
+    return AxisRecord(
+        axis=axis,
+        **{f'{name}_ns': getattr(totals, name) for name in TIMES},
+        angle_rad=float(totals.angle),
+        energy_lost_J=float(totals.energy_lost),
+        event=event.number,
+        active=event.active,
+        stamp_ns=event.stamp,
+        start_ns=event.start,
+        worst_value=float(event.worst_value),
+        cause=cause.code.name,
+        severity=cause.severity.name,
+        value=float(cause.value),
+        limit=float(cause.limit),
+        unit=cause.unit,
+        text=cause.text,
+        ending=event.ending,
+        until_ns=memory.shelving.until,
+        reason=memory.shelving.reason,
+    )
+
+
+def memory_of(record: AxisRecord) -> Memory:
+    """Return the memory of a record."""
+    cause = Finding(
+        code=Code[record.cause],
+        severity=Severity[record.severity],
+        **{name: getattr(record, name) for name in ('value', 'limit', 'unit', 'text')},
+    )
+    return Memory(
+        totals=Totals(
+            **{name: getattr(record, f'{name}_ns') for name in TIMES},
+            angle=record.angle_rad,
+            energy_lost=record.energy_lost_J,
+        ),
+        event=Event(
+            number=record.event,
+            active=record.active,
+            stamp=record.stamp_ns,
+            start=record.start_ns,
+            worst_value=record.worst_value,
+            cause=cause,
+            ending=record.ending,
+        ),
+        shelving=Shelving(until=record.until_ns, reason=record.reason),
+    )

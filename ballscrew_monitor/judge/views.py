@@ -27,7 +27,16 @@ from ballscrew_monitor.core.inputs import (
     StampSource,
     Why,
 )
-from ballscrew_monitor.core.judgement import Code, Gate, Limits, unjudged, Verdict, violation, Zone
+from ballscrew_monitor.core.judgement import (
+    Code,
+    Finding,
+    Gate,
+    Limits,
+    unjudged,
+    Verdict,
+    violation,
+    Zone,
+)
 from ballscrew_monitor.core.state import Event
 from ballscrew_monitor.core.tally import Extremes, Totals, WindowStatistics
 from ballscrew_monitor.judge.derived_load import derived_text
@@ -108,7 +117,8 @@ def reason_of(row: Any, point: MachinePoint, surface: Surface) -> str:
 def verdict_of(row: Any, estimate: PointEstimate, limits: Limits) -> Verdict:
     """Return the zone of a row, the gates that are shut, and what was found."""
     gates = gates_of(int(row.gates))
-    zone, findings = Zone(int(row.zone)), ()
+    zone = Zone(int(row.zone))
+    findings: tuple[Finding, ...] = ()
     light = Gate.LIGHT_LOAD in gates
     if row.zone == OUTSIDE:
         findings = tuple(

@@ -14,7 +14,7 @@ from collections.abc import Mapping
 from ballscrew_monitor.core.conversions import celsius, clock_text, seconds
 from ballscrew_monitor.core.estimate import PointValidity
 from ballscrew_monitor.core.input_status import InputStatus
-from ballscrew_monitor.core.inputs import Source
+from ballscrew_monitor.core.inputs import InputSample, Refusal, Source
 from ballscrew_monitor.core.judgement import Code, Gate, Level
 from ballscrew_monitor.core.links import Link
 from ballscrew_monitor.core.state import Event, State
@@ -75,6 +75,23 @@ def of_folder(node: str, problem: str) -> DiagnosticStatus:
     )
 
 
+def defect_text(error: Exception, event: InputSample | Refusal | int) -> str:
+    """Return that the program failed at a sample, a refusal or a tick, and at which."""
+    if isinstance(event, int):
+        place = f'a tick at {event} ns'
+    else:
+        value = (
+            f' of {event.value!r} (SI)' if isinstance(event, InputSample) else ' that is refused'
+        )
+        place = (
+            f'a message of the {event.source.name.lower()}{value}, arrived at {event.arrival} ns'
+        )
+    return (
+        f'a defect of the program at {place}: {type(error).__name__}: {error}; configure the node '
+        'again and report the log'
+    )
+
+
 def blank(node: str, axis: str) -> list[DiagnosticStatus]:
     """Return the statuses of an axis of which nothing is known."""
     return failed(node, axis, NOT_SET)
@@ -104,12 +121,14 @@ def statuses(
     links: Mapping[Source, Link] | None,
     clock_stands: bool = False,
     refused: str = '',
+    defect: str = '',
 ) -> list[DiagnosticStatus]:
     """
     Return the three statuses of a configured axis of the `node`, by full name.
 
     `state` is its last one, if there is one; `links` says how each input is connected, None: the
-    node is inactive; `refused` why the surface was not reloaded.
+    node is inactive; `refused` why the surface was not reloaded; `defect` is a sentence about one
+    of the program.
     While the clock stands no state tells that an input is dead, so nothing but a warning is held.
 
     """
@@ -133,7 +152,7 @@ def statuses(
             status.level, status.message = STALE, CLOCK_STANDS if clock_stands else NOTHING_YET
             if links is None:
                 status.message = INACTIVE
-        return made
+        return _with_defect(made, defect)
     for status, (level, message) in zip(made, summaries(state, event, links)):
         status.level, status.message = level, message
     if clock_stands:
@@ -141,6 +160,12 @@ def statuses(
             status.level, status.message = STALE, CLOCK_STANDS
     made[0].values = _values(_lubrication_values(state))
     made[1].values = [*made[1].values, *_values(_input_values(state.inputs))]
+    return _with_defect(made, defect)
+
+
+def _with_defect(made: list[DiagnosticStatus], defect: str) -> list[DiagnosticStatus]:
+    if defect:
+        made[0].level, made[0].message = ERROR, defect
     return made
 
 

@@ -11,8 +11,8 @@ from ballscrew_monitor.core.judgement import Level
 from ballscrew_monitor.core.shelving import NOT_SHELVED, Shelving
 from ballscrew_monitor.core.state import State
 from ballscrew_monitor.messages.state_messages import out_of_zone_message
-from ballscrew_monitor.node.event_log import event_facts, Kind, point_facts, totals_facts
-from ballscrew_monitor.node.keeping import Keeping
+from ballscrew_monitor.node.retention import Retention
+from ballscrew_monitor.node.state_records import event_facts, Kind, point_facts, totals_facts
 from ballscrew_monitor.settings.axis import Axis
 from ballscrew_msgs.msg import OutOfZone
 from rclpy.clock import Clock
@@ -40,14 +40,14 @@ class Alarm:
         node: LifecycleNode,
         axis: Axis,
         publisher: Publisher,
-        keeping: Keeping,
+        retention: Retention,
         record: Callable[[str, Any], None],
     ) -> None:
         """Speak through a `publisher` of the node; `record` is given each message and topic."""
         self._node = node
         self._axis = axis
         self._publisher = publisher
-        self._keeping = keeping
+        self._retention = retention
         self._record = record
 
     def publish(self) -> None:
@@ -91,20 +91,16 @@ class Alarm:
     def acknowledge(self) -> None:
         """Set the level back to UNKNOWN and end the event, because somebody has seen it."""
         ended = self._axis.monitor.acknowledge(self._now)
-        self._keeping.note(
-            Kind.ACKNOWLEDGE, self._axis.name, event=self._axis.monitor.event.number
-        )
+        self._note(Kind.ACKNOWLEDGE, event=self._axis.monitor.event.number)
         if ended is not None:
             self.publish()
             self._note_event(Kind.EVENT_END)
-        self.remember()
 
     def reset_totals(self) -> None:
         """Set the sums to zero; what they were is in the log."""
         totals = self._axis.monitor.kept.totals
         self._axis.monitor.reset_totals()
-        self._keeping.note(Kind.RESET_TOTALS, self._axis.name, totals=totals_facts(totals))
-        self.remember()
+        self._note(Kind.RESET_TOTALS, totals=totals_facts(totals))
 
     def shelve(self, shelving: Shelving) -> None:
         """Shelve the warning, or no longer."""
@@ -113,9 +109,8 @@ class Alarm:
             until = clock_text(shelving.until)
             self._warn(f'the warning is shelved until {until}: {shelving.reason}')
             duration = seconds(shelving.until - self._now)
-            self._keeping.note(
+            self._note(
                 Kind.SHELVE,
-                self._axis.name,
                 duration_s=duration,
                 until=until,
                 until_ns=shelving.until,
@@ -123,7 +118,7 @@ class Alarm:
             )
         elif before.until:
             self._say('the warning is no longer shelved')
-            self._keeping.note(Kind.UNSHELVE, self._axis.name, reason=before.reason)
+            self._note(Kind.UNSHELVE, reason=before.reason)
         self.publish()
         self.remember()
 
@@ -136,7 +131,7 @@ class Alarm:
 
     def remember(self) -> None:
         """Keep the sums, the event and the shelving."""
-        self._keeping.remember(self._axis.name, self._axis.monitor.kept)
+        self._retention.remember(self._axis.name, self._axis.monitor.kept)
 
     @property
     def _now(self) -> int:
@@ -149,8 +144,11 @@ class Alarm:
 
     def _note_event(self, kind: Kind, **facts: Any) -> None:
         event = self._axis.monitor.event
-        self._keeping.note(kind, self._axis.name, stamp=event.stamp, **event_facts(event), **facts)
-        self.remember()
+        self._note(kind, stamp=event.stamp, **event_facts(event), **facts)
+
+    def _note(self, kind: Kind, **facts: Any) -> None:
+        memory = self._axis.monitor.kept
+        self._retention.note(kind, self._axis.name, memory=memory, **facts)
 
     # Two functions: rclpy ties one severity to one place in the code.
     def _say(self, text: str) -> None:

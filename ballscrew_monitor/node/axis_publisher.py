@@ -4,13 +4,14 @@
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 import dataclasses
+import traceback
 from typing import Any
 
 from ballscrew_monitor.core.conversions import nanoseconds
 from ballscrew_monitor.core.dwell import Dwell
 from ballscrew_monitor.core.estimate import estimate, MachinePoint
 from ballscrew_monitor.core.full_point import corrected, objection, solved_at
-from ballscrew_monitor.core.inputs import Source
+from ballscrew_monitor.core.inputs import InputSample, Refusal, Source
 from ballscrew_monitor.core.links import Link
 from ballscrew_monitor.core.shelving import Shelving
 from ballscrew_monitor.core.state import State
@@ -23,10 +24,15 @@ from ballscrew_monitor.messages.state_messages import (
     TIERS,
 )
 from ballscrew_monitor.node.alarm import Alarm
-from ballscrew_monitor.node.correction_store import CorrectionStore
-from ballscrew_monitor.node.event_log import Kind, point_facts
-from ballscrew_monitor.node.keeping import Keeping
 from ballscrew_monitor.node.output_topics import LatchedTopics, PlainTopics, quiet_publishers
+from ballscrew_monitor.node.retention import Retention
+from ballscrew_monitor.node.state_records import (
+    Corrections,
+    corrections_of,
+    Kind,
+    point_facts,
+    solves_of,
+)
 from ballscrew_monitor.settings.axis import Axis
 from ballscrew_monitor.settings.qos import state_qos
 from ballscrew_msgs.msg import BallScrewState, OperatingPoint, PointResult
@@ -34,7 +40,6 @@ from ballscrew_msgs.srv import EvaluateOperatingPoint
 from diagnostic_msgs.msg import DiagnosticStatus
 from rclpy.lifecycle import LifecycleNode
 from rclpy.qos import QoSProfile, QoSReliabilityPolicy
-from surrogate.files import InputError
 from surrogate.surface import Surface, SurfaceError, SurfacePoint
 
 STATE_QOS = QoSProfile(depth=10, reliability=QoSReliabilityPolicy.RELIABLE)
@@ -50,30 +55,28 @@ class AxisPublisher:
         node: LifecycleNode,
         axis: Axis,
         values: Mapping[str, Any],
-        store: CorrectionStore,
         *,
         latched: LatchedTopics,
-        keeping: Keeping,
+        retention: Retention,
         record: Callable[[str, Any], None],
         changed: Callable[[Iterable[str], str], None],
     ) -> None:
         """
         Make the publishers, which stay silent until the node is active; `latched` are there.
 
-        `values` are the parameters as they are at any time; corrections are kept in the `store`,
-        and `keeping` is told what happens. `record` is given each message with its topic,
-        `changed` the axis and what has changed it.
+        `values` are the parameters as they are at any time; `retention` keeps corrections and what
+        happens. `record` is given each message with its topic, `changed` the axis and what has
+        changed it.
 
         """
         self.axis = axis
         self.dwell = Dwell()
         self.refused = ''  # why the last reload of the surface was
+        self.defect = ''  # of the program, at a sample that it could not judge
         self._values = values
-        self._store = store
-        self._keeping = keeping
+        self._retention = retention
         self._record = record
         self._changed = changed
-        self._unsaved = False  # corrections that could not be kept
         self._node = node
         self._writer = StateWriter(axis.name, TIERS[axis.surface.tier])
         self._last: State | None = None
@@ -86,7 +89,7 @@ class AxisPublisher:
         simulated = node.get_parameter('use_sim_time').value
         promise = state_qos(axis.name, values, simulated=simulated)
         self._state = make(BallScrewState, f'~/{axis.name}/state', promise)
-        self.alarm = Alarm(node, axis, latched.event, keeping, record)
+        self.alarm = Alarm(node, axis, latched.event, retention, record)
         self._info = latched.info
         self._plain = None
         if values[f'{axis.name}.plain_topics']:
@@ -114,10 +117,8 @@ class AxisPublisher:
         self.alarm.shelve(shelving)
         self._show_shelving()
 
-    def look(self) -> bool:
-        """End a shelving that is over, and keep what could not be kept; tell of the former."""
-        if self._unsaved:
-            self._save()
+    def end_shelving(self) -> bool:
+        """End a shelving that is over; tell whether one was."""
         over = self.alarm.end_shelving()
         if over:
             self._show_shelving()
@@ -190,32 +191,31 @@ class AxisPublisher:
         self.use_surface(surface)
         problem = self._save()
         kept = f'not kept: {problem}' if problem else 'kept'
-        self._keeping.note(Kind.CORRECTION, self.name, point=point_facts(point), result=kept)
+        self._retention.note(Kind.CORRECTION, self.name, point=point_facts(point), result=kept)
         return True, f'corrected the surface about this point, {kept}'
 
     def _save(self) -> str:
         """Keep the corrections; return why that failed, or nothing."""
-        problem = self._store.save(self.name, self.surface.base_sha256, self.surface.corrections)
-        self._unsaved = bool(problem)
-        self._keeping.note_unsaved(self.name, problem)
-        return problem
+        surface = self.surface
+        kept = corrections_of(self.name, surface.base_sha256, surface.corrections)
+        return self._retention.state.keep_corrections(kept)
 
     def restore(self) -> str:
         """Take up the corrections that were kept; return what became of them, if there are any."""
-        try:
-            sha256, kept = self._store.load(self.name)
-        except InputError as error:
-            self._keeping.note_damage(str(error))
-            return ''
+        found = self._retention.state.recall(Corrections(self.name))
+        kept = solves_of(found)
         if not kept:
             return ''
-        if sha256 != self.surface.base_sha256:
+        if found.surface != self.surface.base_sha256:
             return f'{len(kept)} kept corrections are of another surface and not used'
         try:
             surface = corrected(self.surface, kept)
         except SurfaceError as error:
             return f'{len(kept)} kept corrections are not used: {error}'
+        late = bool(self.surface.corrections)
         self.axis.use_surface(surface, self._values)
+        if late:
+            self._save()
         return f'{len(kept)} kept corrections are in use'
 
     def reload(self, surface: Surface) -> str:
@@ -230,7 +230,7 @@ class AxisPublisher:
         if before and same:
             surface = corrected(surface, before)
         self.use_surface(surface)
-        self._keeping.note(Kind.RELOAD_SURFACE, self.name, sha256=surface.sha256)
+        self._retention.note(Kind.RELOAD_SURFACE, self.name, sha256=surface.sha256)
         self.refused = ''
         if not before:
             return ''
@@ -285,6 +285,16 @@ class AxisPublisher:
         else:
             self._node.get_logger().warning(f'axis {self.axis.name}: {text}')
 
+    def note_defect(self, error: Exception, event: InputSample | Refusal | int) -> bool:
+        """Keep and log that a defect of the program met an event; tell whether it is new."""
+        sentence = diagnostics.defect_text(error, event)
+        if self.defect:
+            return False
+        self.defect = sentence
+        trace = ''.join(traceback.format_exception(error))
+        self._node.get_logger().error(f'axis {self.name}: {sentence}\n{trace}')
+        return True
+
     def statuses(
         self, *, links: Mapping[Source, Link] | None, stood: int
     ) -> list[DiagnosticStatus]:
@@ -304,6 +314,7 @@ class AxisPublisher:
             links=links,
             clock_stands=stood > self.axis.monitor.settings.timeouts[Source.SPEED],
             refused=self.refused,
+            defect=self.defect,
         )
 
     def _summaries(self, state: State) -> tuple[diagnostics.StatusSummary, ...]:

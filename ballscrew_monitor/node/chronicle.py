@@ -14,16 +14,16 @@ from ballscrew_msgs.msg import OutOfZone
 from diagnostic_msgs.msg import DiagnosticStatus
 from rclpy.node import Node
 
-Stations = Mapping[str, AxisPublisher]
+Publishers = Mapping[str, AxisPublisher]
 
 
 class Chronicle:
     """The journal of the node while it is active, and none before and after."""
 
     def __init__(
-        self, node: Node, values: Mapping[str, Any], find: Callable[[], Stations]
+        self, node: Node, values: Mapping[str, Any], find: Callable[[], Publishers]
     ) -> None:
-        """Keep silent at first; `find` returns the stations."""
+        """Keep silent at first; `find` returns the axes."""
         self.journal = SILENT
         self._node, self._values, self._find = node, values, find
         self._start: Callable[[], RecordingProcess] | None = None

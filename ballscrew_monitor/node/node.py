@@ -14,18 +14,15 @@ from ballscrew_monitor.core.tick_grid import TickGrid
 from ballscrew_monitor.messages import diagnostics
 from ballscrew_monitor.node.alarm import end_all
 from ballscrew_monitor.node.axis_publisher import AxisPublisher, STATE_QOS
-from ballscrew_monitor.node.caretaker import Caretaker
 from ballscrew_monitor.node.chronicle import Chronicle
-from ballscrew_monitor.node.correction_store import CorrectionStore
-from ballscrew_monitor.node.event_log import Kind
 from ballscrew_monitor.node.intake import Intake
-from ballscrew_monitor.node.keeping import Keeping
 from ballscrew_monitor.node.output_topics import LatchedTopics
 from ballscrew_monitor.node.parameter_store import ParameterStore
+from ballscrew_monitor.node.restart_state import RestartState, state_directory
+from ballscrew_monitor.node.retention import Retention
 from ballscrew_monitor.node.shelve_service import ShelveService
 from ballscrew_monitor.node.solve_server import SolveServer
 from ballscrew_monitor.node.solver_process import SolverProcess
-from ballscrew_monitor.node.state_folder import state_directory, StateFolder
 from ballscrew_monitor.node.trigger_services import not_built, TriggerServices
 from ballscrew_monitor.settings import parameters
 from ballscrew_monitor.settings.axis import Axis, build_axes, named_topics
@@ -79,15 +76,12 @@ class BallscrewMonitor(LifecycleNode):
         )
         self.create_service(EvaluateOperatingPoint, '~/evaluate', self._on_evaluate)
         self._latched = {name: LatchedTopics(self, name) for name in self._values['axes']}
-        self._folder = StateFolder(
+        state = RestartState(
             state_directory(self._values['state_dir'], self.get_fully_qualified_name()),
             limit=round(self._values['state_limit'] * MEGABYTE),
         )
-        self._corrections = CorrectionStore(self._folder)
-        self._keeping = Keeping(self, self._folder)
-        self._keeping.note(Kind.NODE_START)
-        self._caretaker = Caretaker(
-            self, self._keeping, lambda: self._axis_publishers, self._on_kept, clock=self._steady
+        self._retention = Retention(
+            self, state, lambda: self._axis_publishers, self._on_kept, clock=self._steady
         )
         self._solves = SolveServer(self, SolverProcess, self._find_publisher)
         TriggerServices(
@@ -122,7 +116,7 @@ class BallscrewMonitor(LifecycleNode):
             resolve = self.resolve_topic_name
             check_overrides(self._store.given, named_topics(self._values, resolve))
             axes, reasons = build_axes(self._values, resolve)
-            self._chronicle.configure(self._folder.path)
+            self._chronicle.configure(self._retention.state.folder)
         except InputError as error:
             axes, reasons = [], dict.fromkeys(self._values['axes'], str(error))
         self._failed = {name: f'not configured: {why}' for name, why in reasons.items()}
@@ -136,15 +130,14 @@ class BallscrewMonitor(LifecycleNode):
                 self,
                 axis,
                 self._values,
-                self._corrections,
                 latched=self._latched[axis.name],
-                keeping=self._keeping,
+                retention=self._retention,
                 record=self._chronicle.record,
                 changed=self._chronicle.describe,
             )
             for axis in axes
         }
-        self._caretaker.restore()
+        self._retention.restore()
         self._store.ceilings = {
             f'{axis.name}.publish_period': longest_period(axis.name, self._values) for axis in axes
         }
@@ -199,8 +192,8 @@ class BallscrewMonitor(LifecycleNode):
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Stop to judge; levels, events and totals stand."""
         self._stop()
-        self._caretaker.remember()
-        self._keeping.flush()
+        self._retention.remember_all()
+        self._retention.state.flush()
         result = super().on_deactivate(state)
         self._publish_diagnostics()
         return result
@@ -216,8 +209,7 @@ class BallscrewMonitor(LifecycleNode):
         """Stop and forget the axes."""
         self._finalized = True
         self._clear('shut down')
-        self._keeping.note(Kind.NODE_STOP)
-        self._keeping.close()
+        self._retention.close()
         return SUCCESS
 
     def on_error(self, state: LifecycleState) -> TransitionCallbackReturn:
@@ -234,7 +226,7 @@ class BallscrewMonitor(LifecycleNode):
         """Keep what a service has changed at once; return why that failed, or nothing."""
         self._chronicle.describe(axes, name)
         self._publish_diagnostics(list(axes))
-        return self._keeping.flush()
+        return self._retention.state.flush()
 
     def _stop(self, reason: str = '') -> None:
         """Judge no longer; for a `reason` events end, while they are still recorded."""
@@ -256,14 +248,24 @@ class BallscrewMonitor(LifecycleNode):
         for publisher in self._axis_publishers.values():
             publisher.close()
         self._axis_publishers, self._failed = {}, {}
-        self._keeping.flush()
-        self._keeping.forget_damage()
+        self._retention.state.flush()
+        self._retention.state.forget_problems()
         self._store.locked = False
         self._reason = reason
         self._publish_diagnostics()
 
     def _on_event(self, axis: Axis, event: InputSample | Refusal) -> None:
-        self._publish(self._axis_publishers[axis.name], axis.monitor.update(event))
+        self._judge(self._axis_publishers[axis.name], axis.monitor.update, event)
+
+    def _judge(
+        self, publisher: AxisPublisher, judge: Callable[[Any], State | None], event: Any
+    ) -> None:
+        """Judge a sample, a refusal or a tick; a defect is an error of its axis alone."""
+        try:
+            self._publish(publisher, judge(event))
+        except Exception as error:  # the other axes go on, whatever it is
+            if publisher.note_defect(error, event):
+                self._publish_diagnostics([publisher.name])
 
     def _on_tick(self) -> None:
         """Tick on the grid of stamps, when that is due; what has arrived by then comes first."""
@@ -275,7 +277,7 @@ class BallscrewMonitor(LifecycleNode):
         journal = self._chronicle.journal
         journal.tick(grid, self.get_clock().now().nanoseconds)
         for publisher in self._axis_publishers.values():
-            self._publish(publisher, publisher.axis.monitor.tick(grid))
+            self._judge(publisher, publisher.axis.monitor.tick, grid)
         steady, now = self._steady.now().nanoseconds, self.get_clock().now().nanoseconds
         due = journal.due(self._axis_publishers, steady, now)
         self._chronicle.describe(due, 'time')
@@ -301,7 +303,7 @@ class BallscrewMonitor(LifecycleNode):
         stood = self._grid.stood(now.nanoseconds, self._steady.now().nanoseconds)
         statuses = self._statuses(self._values['axes'] if axes is None else axes, stood)
         if axes is None:
-            statuses += self._keeping.statuses()
+            statuses += self._retention.statuses()
         message = DiagnosticArray(status=statuses)
         message.header.stamp = now.to_msg()
         self._diagnostics.publish(message)

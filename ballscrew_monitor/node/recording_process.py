@@ -15,8 +15,8 @@ import sys
 import time
 from typing import Any, IO
 
+from ballscrew_monitor.node.restart_state import AUTO
 from ballscrew_monitor.node.solver_process import worker_environment
-from ballscrew_monitor.node.state_folder import AUTO
 from ballscrew_monitor.recordings.frames import Frame, FrameSender
 from surrogate.files import InputError
 

@@ -50,6 +50,10 @@ class Due(NamedTuple):
     state: State
     event: Event | None
 
+    def later(self, places: int) -> 'Due':
+        """Return the same at a place that lies further on."""
+        return self._replace(place=self.place + places)
+
 
 def events_of(entries: Entries) -> NDArray[Any]:
     """Return entries as events of the judgement."""
@@ -93,18 +97,23 @@ class AxisRun:
         self, entries: Entries, *, columns: bool = True, states: bool = True
     ) -> Iterator[JudgedColumns | Due]:
         """Judge entries; yield their rows as columns, and the states that are due."""
+        begin = 0
+        for end in [*np.flatnonzero(entries.kind == Kind.CHECK).tolist(), len(entries)]:
+            part = entries.take(slice(begin, end))
+            for made in self._take(part, columns=columns, states=states):
+                yield made if isinstance(made, JudgedColumns) else made.later(begin)
+            if end < len(entries):
+                entries.note[end]()
+            begin = end + 1
+
+    def _take(
+        self, entries: Entries, *, columns: bool, states: bool
+    ) -> Iterator[JudgedColumns | Due]:
         refusals = np.flatnonzero(entries.kind == Kind.REFUSED).tolist()
         for judged in self._judge.judge(events_of(entries), states=states):
             for place, row in self._told(judged):
                 self._hear(refusals, entries, place)
-                state = self.axis.monitor.state(row)
-                event = state.event
-                if event is not None:
-                    self._note(event)
-                elif states:
-                    event, self._ended = self._ended, None
-                if states:
-                    yield Due(place, state, event)
+                yield from self._state(place, row, states=states)
             if len(judged.rows):
                 self._count(judged.rows)
                 if columns:
@@ -112,6 +121,17 @@ class AxisRun:
         self._hear(refusals, entries, len(entries))
         self._judge.give_back()
         self._hear_others(entries)
+
+    def _state(self, place: int, row: records.Row, *, states: bool) -> Iterator[Due]:
+        """Yield the state of a row if states are wanted, and keep the event that it tells of."""
+        state = self.axis.monitor.state(row)
+        event = state.event
+        if event is not None:
+            self._note(event)
+        elif states:
+            event, self._ended = self._ended, None
+        if states:
+            yield Due(place, state, event)
 
     def change(self, axis: Axis) -> None:
         """Go on with an axis as it is described now; an event may have been ended meanwhile."""

@@ -1,47 +1,53 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-A recording that a node made of itself: the very steps that its monitors took.
+The recording that a node made of itself: the steps of its judgement in their order.
 
 Its journal says in which bursts messages were taken, when ticks came, what was lost, and all about
 each axis from time to time. So a replay gives what the node gave, bit for bit, and proves it: each
-time the node wrote down what a monitor remembered, the replayed one must remember the same.
+time the node wrote down what it remembered of an axis, the replay must remember the same.
 
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 import dataclasses
+import functools
 import json
 from typing import Any
 
 from ballscrew_monitor.core.fields import message_class
 from ballscrew_monitor.core.full_point import corrected, KeptSolve
-from ballscrew_monitor.core.inputs import Input, InputSample, ordered, Refusal
 from ballscrew_monitor.judge.dump import dump, restored
-from ballscrew_monitor.recordings.bag import Bag, Message
-from ballscrew_monitor.recordings.decoding import decode, UNDECODABLE
+from ballscrew_monitor.recordings.axis_run import AxisRun
+from ballscrew_monitor.recordings.bag import Bag
+from ballscrew_monitor.recordings.bulk.batches import batches, END
+from ballscrew_monitor.recordings.bulk.chunks import Integers
+from ballscrew_monitor.recordings.bulk.decode import Messages, Reader, TopicDecoder
+from ballscrew_monitor.recordings.bulk.entries import (
+    Entries,
+    joined,
+    Kind,
+    made,
+    TICK_SOURCE,
+    UNKNOWN_LOSS,
+)
+from ballscrew_monitor.recordings.bulk.source import OnDone
+from ballscrew_monitor.recordings.decoding import UNDECODABLE
 from ballscrew_monitor.recordings.frames import STRING, VERSION
 from ballscrew_monitor.settings import parameters
 from ballscrew_monitor.settings.axis import Axis, build_axis, settings_of
+import numpy as np
 from rclpy.serialization import deserialize_message
 from surrogate.files import InputError
 from surrogate.surface import SurfaceError
 
 JOURNAL = '/journal'
-TOLD = 1000  # messages after which the progress is told
-
-
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Step:
-    """
-    The next step of an axis: a sample, a refusal, the stamp of a tick [ns], or None: it changed.
-
-    Without an axis all steps before are to be judged, because the memory is looked at next.
-
-    """
-
-    axis: Axis | None = None
-    event: InputSample | Refusal | int | None = None
+OTHER_VERSION = (
+    'the node that made this recording was of another version: the recording is judged as an '
+    'ordinary bag, by log times'
+)
+Noted = tuple[int, Mapping[str, Any]]
+"""The place of an entry of the journal, and the entry."""
 
 
 def journal_of(bag: Bag) -> str:
@@ -61,15 +67,7 @@ def recorded_values(bag: Bag) -> dict[str, Any]:
     Raises InputError for a recording that describes no axis.
 
     """
-    found: dict[str, dict[str, Any]] = {}
-    for message in bag.as_written([journal_of(bag)]):
-        entry = _entry(message)
-        if entry['kind'] == 'axis':
-            if entry['axis'] in found:
-                break
-            found[entry['axis']] = _values(entry, bag.types)
-    if not found:
-        raise InputError(f'bag {bag.path}: its journal describes no axis')
+    found = {entry['axis']: _values(entry, bag.types) for entry in _first_entries(bag)}
     values = parameters.defaults(list(found))
     for one in found.values():
         values |= one
@@ -77,146 +75,243 @@ def recorded_values(bag: Bag) -> dict[str, Any]:
 
 
 def is_as_recorded(bag: Bag, values: Mapping[str, Any]) -> bool:
-    """Tell whether a bag is the recording of a node, to be judged with the node's parameters."""
-    return bool(journal_of(bag)) and recorded_values(bag) == dict(values)
+    """
+    Tell whether a bag is the recording of a node, to be judged with the node's parameters.
+
+    The journal of another version says nothing of the memory: such a bag is judged as any other
+    bag is, and has a remark.
+
+    """
+    if not journal_of(bag):
+        return False
+    if any(entry['version'] != VERSION for entry in _first_entries(bag)):
+        if OTHER_VERSION not in bag.remarks:
+            bag.remarks.append(OTHER_VERSION)
+        return False
+    return recorded_values(bag) == dict(values)
+
+
+def _first_entries(bag: Bag) -> list[Mapping[str, Any]]:
+    """Return the first description of each axis; raises InputError if there is none."""
+    found: dict[str, Mapping[str, Any]] = {}
+    for message in bag.as_written([journal_of(bag)]):
+        entry = _entry_of(message.data, message.topic)
+        if entry['kind'] == 'axis':
+            if entry['axis'] in found:
+                break
+            found[entry['axis']] = entry
+    if not found:
+        raise InputError(f'bag {bag.path}: its journal describes no axis')
+    return list(found.values())
 
 
 class OwnRecording:
-    """The steps in a recording, and how often it proved the replay right and wrong."""
+    """The entries of a recording, and how often it proved the replay right and wrong."""
 
     def __init__(self, bag: Bag) -> None:
         """Read a bag that has a journal."""
-        self.proven = 0
-        self.refuted = 0
+        self.runs: list[AxisRun] = []
         self._bag = bag
         self._journal = journal_of(bag)
-        self._axes: dict[str, Axis] = {}
-        self._readers: dict[str, list[tuple[Axis, Input]]] = {}
-        self._entries: dict[str, Mapping[str, Any]] = {}
-        self._burst: list[tuple[Message, int | None]] = []
-        self._lost: dict[str, int | None] = {}
+        self._proven = self._refuted = 0
+        self._numbers: dict[str, int] = {}  # of the axes that are described, among the runs
+        self._described: dict[str, Mapping[str, Any]] = {}
+        self._decoders: dict[str, TopicDecoder] = {}
+        self._lost: dict[str, int] = {}  # before the next message of a topic
 
-    def steps(self, on_done: Callable[[float], None] | None = None) -> Iterator[Step]:
+    def entries(self, on_done: OnDone) -> Iterator[Entries]:
         """
-        Yield every step; raises InputError for a recording that cannot be replayed here.
+        Yield the entries in the order in which the node took them; each is judged before the next.
 
-        `on_done` is told which share is done [-].
+        Raises InputError for a recording that cannot be replayed here. `on_done` is told which
+        share is done [-].
 
         """
-        for number, message in enumerate(self._bag.as_written()):
-            if on_done is not None and number % TOLD == 0:
-                span = max(self._bag.end_time - self._bag.start_time, 1)
-                on_done(min(max((message.log_time - self._bag.start_time) / span, 0.0), 1.0))
-            entry = _entry(message) if message.topic == self._journal else None
-            if entry is not None and entry['kind'] == 'lost':  # of a message in the burst
-                self._lost[entry['topic']] = entry['count']
-                continue
-            if self._burst and message.sequence != self._burst[0][0].sequence:
-                yield from self._take_burst()
-            if entry is not None:
-                yield from self._follow(entry)
-            elif message.topic in self._readers:
-                self._burst.append((message, self._take_lost(message.topic)))
-        yield from self._take_burst()
-        if self.proven + self.refuted:
+        for batch in batches(self._bag, self._bag.topics.keys(), as_written=True):
+            yield from self._segments(batch.topics)
+            on_done(min(max(batch.done, 0.0), 1.0))
+        if self._proven + self._refuted:
             self._bag.remarks.append(self._proof())
 
-    def _proof(self) -> str:
-        """Return how often the replay was held against what the node remembered."""
-        held = self.proven + self.refuted
-        if self.refuted:
-            return (
-                f'the replay differs from what the node said of itself at {self.refuted} of '
-                f'{held} times that it did'
-            )
-        return f'the replay is what the node judged: it agrees with all {held} notes of the node'
+    def _segments(self, topics: dict[str, Messages]) -> Iterator[Entries]:
+        """Yield the entries of a batch, in parts between changes of what is read."""
+        journal = self._journal_entries(topics.pop(self._journal, None))
+        begin, waiting = -1, list[Noted]()
+        for place, entry in journal:
+            if not self._changes(entry):
+                waiting.append((place, entry))
+                continue
+            yield self._ordered(topics, begin, place, waiting)
+            begin, waiting = place, []
+            self._change(entry)
+        yield self._ordered(topics, begin, END, waiting)
 
-    def _take_lost(self, topic: str) -> int | None:
-        """Return how many messages were lost; a number counts once, that it is unknown stays."""
-        lost = self._lost.get(topic, 0)
-        if lost:
-            self._lost[topic] = 0
-        return lost
+    def _journal_entries(self, messages: Messages | None) -> list[Noted]:
+        """Return the entries of the journal in a batch, each with its place."""
+        if messages is None:
+            return []
+        order = np.argsort(messages.place)
+        contents = messages.some(order).contents()
+        found = (_entry_of(data, self._journal) for data in contents)
+        return list(zip(messages.place[order].tolist(), found, strict=True))
 
-    def _take_burst(self) -> Iterator[Step]:
-        burst, self._burst = self._burst, []
-        events = [event for one, lost in burst for event in self._events(one, lost)]
-        for axis, event in ordered(events):
-            yield Step(axis=axis, event=event)
+    def _changes(self, entry: Mapping[str, Any]) -> bool:
+        """Tell whether an entry changes what is read, so that all before is judged first."""
+        if entry['kind'] != 'axis':
+            return bool(entry['kind'] == 'hole')
+        return entry['because'] != 'time' or entry['axis'] not in self._numbers
 
-    def _events(
-        self, message: Message, lost: int | None
-    ) -> Iterator[tuple[Axis, InputSample | Refusal]]:
-        """Yield what a message says of each axis."""
-        readers, now = self._readers[message.topic], message.log_time
-        decoded, _ = decode(self._bag, message, readers[0][1].message_type)
-        for axis, one in readers:
-            if decoded is None:
-                yield axis, one.refuse_undecoded(now=now, lost=lost)
-            else:
-                yield axis, one.read(decoded, now=now, max_future=axis.max_future, lost=lost)
+    def _change(self, entry: Mapping[str, Any]) -> None:
+        """Read on as an entry says."""
+        if entry['kind'] == 'hole':  # until each axis is described again
+            self._numbers, self._described, self._decoders = {}, {}, {}
+            return
+        self._describe(entry)
+        readers: dict[str, list[Reader]] = {}
+        for number in self._numbers.values():
+            axis = self.runs[number].axis
+            for one in axis.inputs:
+                readers.setdefault(one.topic, []).append((number, axis, one))
+        self._decoders = {
+            topic: TopicDecoder(self._bag, wanted) for topic, wanted in readers.items()
+        }
 
-    def _follow(self, entry: Mapping[str, Any]) -> Iterator[Step]:
-        """Take an entry of the journal."""
+    def _ordered(
+        self, topics: dict[str, Messages], begin: int, end: int, noted: list[Noted]
+    ) -> Entries:
+        """Return the entries between two places, in the order in which the node took them."""
+        parts = [self._of_journal(place, entry) for place, entry in noted]
+        for topic, decoder in self._decoders.items():
+            messages = topics.get(topic)
+            if messages is None:
+                continue
+            some = np.flatnonzero((messages.place > begin) & (messages.place < end))
+            some = some[np.argsort(messages.place[some])]
+            messages = messages.some(some)
+            found = decoder.entries(messages)
+            at = np.searchsorted(messages.place, found.place)
+            found.lost[:] = self._losses(topic, messages.place, noted)[at]
+            found.burst[:] = messages.sequence[at]
+            parts.append(found)
+        return as_taken(joined(parts))
+
+    def _losses(self, topic: str, places: Integers, noted: list[Noted]) -> Integers:
+        """Return how many messages were lost before each; that it is not known holds on."""
+        found = np.zeros(len(places), dtype=np.int64)
+        changes = [(-1, self._lost.get(topic, 0))]
+        changes += [
+            (place, UNKNOWN_LOSS if entry['count'] is None else entry['count'])
+            for place, entry in noted
+            if entry['kind'] == 'lost' and entry['topic'] == topic
+        ]
+        for place, count in changes:
+            first = int(np.searchsorted(places, place))
+            if count == UNKNOWN_LOSS:
+                found[first:] = UNKNOWN_LOSS
+            elif first < len(places):
+                found[first], found[first + 1 :] = count, 0
+            self._lost[topic] = count if count == UNKNOWN_LOSS or first == len(places) else 0
+        return found
+
+    def _of_journal(self, place: int, entry: Mapping[str, Any]) -> Entries:
+        """Return an entry of the journal that changes nothing as an entry to be judged."""
         if entry['kind'] == 'tick':
-            for axis in self._axes.values():
-                yield Step(axis=axis, event=int(entry['stamp']))
-        elif entry['kind'] == 'hole':  # until each axis is described anew
-            self._axes, self._readers, self._entries = {}, {}, {}
-        elif entry['kind'] == 'axis':
-            yield Step()
-            try:
-                step = self._describe(entry)
-            except (KeyError, TypeError, AttributeError) as error:
-                raise InputError(f'{self._journal}: an axis is described badly: {error}') from None
-            if step is not None:
-                yield step
+            stamp = int(entry['stamp'])
+            return made(
+                len(self._numbers),
+                log_time=stamp,
+                place=place,
+                axis=list(self._numbers.values()),
+                source=TICK_SOURCE,
+                kind=Kind.TICK,
+                stamp=stamp,
+                arrival=stamp,
+            )
+        if entry['kind'] != 'axis':
+            return made(0)
+        found = made(1, place=place, axis=self._numbers[entry['axis']], kind=Kind.CHECK)
+        found.note[0] = functools.partial(self._check, entry)
+        return found
 
-    def _describe(self, entry: Mapping[str, Any]) -> Step | None:
-        """Hold an axis against what is said of it, or make it as is said."""
-        name = entry['axis']
-        self._lost = dict.fromkeys(entry['loss_unknown'])
-        known = self._axes.get(name)
-        if known is not None and entry['because'] == 'time':
-            same = dump(known.monitor)['records'] == entry['monitor']['records']
-            self.proven += same
-            self.refuted += not same
-            if same:
-                return None
-        axis = self._rebuilt(known, entry)
-        self._axes[name], self._entries[name] = axis, entry
-        self._readers = {}
-        for one in self._axes.values():
-            for source in one.inputs:
-                self._readers.setdefault(source.topic, []).append((one, source))
-        return Step(axis=axis)
+    def _check(self, entry: Mapping[str, Any]) -> None:
+        """Hold what is remembered of an axis against what the node says it remembered."""
+        run = self.runs[self._numbers[entry['axis']]]
+        if dump(run.axis.monitor)['records'] == entry['monitor']['records']:
+            self._proven += 1
+            return
+        self._refuted += 1
+        self._describe(entry)
 
-    def _rebuilt(self, known: Axis | None, entry: Mapping[str, Any]) -> Axis:
-        """Return an axis as an entry describes it; what is the same as before is not made anew."""
+    def _describe(self, entry: Mapping[str, Any]) -> None:
+        """Make an axis as it is described, and go on with it."""
+        try:
+            name = entry['axis']
+            self._lost = dict.fromkeys(entry['loss_unknown'], UNKNOWN_LOSS)
+            axis = self._rebuilt(entry)
+        except (KeyError, TypeError, AttributeError) as error:
+            raise InputError(f'{self._journal}: an axis is described badly: {error}') from None
+        self._described[name] = entry
+        known = [number for number, run in enumerate(self.runs) if run.axis.name == name]
+        if known:
+            self.runs[known[0]].change(axis)
+        else:
+            self.runs.append(AxisRun(axis))
+        self._numbers[name] = known[0] if known else len(self.runs) - 1
+
+    def _rebuilt(self, entry: Mapping[str, Any]) -> Axis:
+        """Return an axis as an entry describes it; the same parts as before are not made again."""
         name, values = entry['axis'], _values(entry, self._bag.types)
-        before = self._entries.get(name)
+        before = self._described.get(name)
         parts = ('values', 'topics', 'surface')
-        if known is None or before is None or any(before[part] != entry[part] for part in parts):
+        if before is None or any(before[part] != entry[part] for part in parts):
             axis = build_axis(name, values)
             axis.surface = _surface(axis, entry['surface'])
         else:
-            axis = dataclasses.replace(known)
+            axis = dataclasses.replace(self.runs[self._numbers[name]].axis)
         settings = settings_of(name, values, axis.surface)
         axis.monitor = restored(entry['monitor'], axis.surface, settings)
         return axis
 
+    def _proof(self) -> str:
+        """Return how often the replay was held against what the node remembered."""
+        held = self._proven + self._refuted
+        if self._refuted:
+            return (
+                f'the replay differs from what the node said of itself at {self._refuted} of '
+                f'{held} times that it did'
+            )
+        return f'the replay is what the node judged: it agrees with all {held} notes of the node'
 
-def _entry(message: Message) -> Mapping[str, Any]:
+
+def as_taken(entries: Entries) -> Entries:
+    """
+    Return entries in the order in which a node takes them, see `core.inputs.ordered`.
+
+    Messages of one burst come by the place at which their stamp came first, then by source.
+
+    """
+    entries = entries.take(np.lexsort((entries.axis, entries.place)))
+    count = np.arange(len(entries))
+    other = entries.burst != np.roll(entries.burst, 1)
+    apart = other | (entries.kind == Kind.TICK) | (entries.kind == Kind.CHECK)
+    burst = np.cumsum(apart | np.roll(apart, 1))
+    order = np.lexsort((count, entries.stamp, burst))
+    new = np.ones(len(order), dtype=bool)
+    groups, stamps = burst[order], entries.stamp[order]
+    new[1:] = (groups[1:] != groups[:-1]) | (stamps[1:] != stamps[:-1])
+    first = np.empty(len(order), dtype=np.int64)
+    first[order] = order[np.maximum.accumulate(np.where(new, count, 0))]
+    return entries.take(np.lexsort((count, entries.source, first, burst)))
+
+
+def _entry_of(data: bytes, topic: str) -> Mapping[str, Any]:
     try:
-        text = deserialize_message(message.data, message_class(STRING)).data
+        text = deserialize_message(data, message_class(STRING)).data
         entry: Mapping[str, Any] = json.loads(text)
-        known = entry['kind'] != 'axis' or entry['version'] == VERSION
+        if entry['kind'] == 'axis':
+            _ = entry['axis'], entry['version']
     except (*UNDECODABLE, KeyError, TypeError) as error:
-        raise InputError(f'{message.topic}: no entry of a journal ({error})') from None
-    if not known:
-        raise InputError(
-            f'{message.topic}: a journal of version {entry["version"]}, known is {VERSION}'
-        )
+        raise InputError(f'{topic}: no entry of a journal ({error})') from None
     return entry
 
 

@@ -25,8 +25,7 @@ from ballscrew_monitor.recordings.bulk.entries import Entries
 from ballscrew_monitor.recordings.bulk.source import OnDone, ordered_entries
 from ballscrew_monitor.recordings.columns import AxisOutcome, JudgedColumns
 from ballscrew_monitor.recordings.decoding import decode, named_instead
-from ballscrew_monitor.recordings.own_recording import is_as_recorded
-from ballscrew_monitor.recordings.own_replay import own_parts
+from ballscrew_monitor.recordings.own_recording import is_as_recorded, OwnRecording
 from ballscrew_monitor.settings.axis import Axis, build_axis
 from ballscrew_monitor.settings.topics import absolute, input_topics, with_types
 from ballscrew_msgs.msg import BallScrewState, OutOfZone
@@ -116,10 +115,12 @@ def replay_parts(
 ) -> Iterator[Part]:
     """Yield what `replay_columns` and `replay` do before messages are made, judged once."""
     if is_as_recorded(bag, values):
-        return own_parts(bag, columns=columns, states=states, on_done=on_done)
+        own = OwnRecording(bag)
+        return _parts(own.entries(on_done), own.runs, columns=columns, states=states)
     axes = axes_for(bag, values)
     batches = ordered_entries(bag, axes, nanoseconds(values['tick_period']), on_done=on_done)
-    return _parts(batches, axes, columns=columns, states=states)
+    runs = [AxisRun(axis) for axis in axes]
+    return _parts(batches, runs, columns=columns, states=states)
 
 
 def axes_for(bag: Bag, values: Mapping[str, Any]) -> list[Axis]:
@@ -135,9 +136,8 @@ def axes_for(bag: Bag, values: Mapping[str, Any]) -> list[Axis]:
 
 
 def _parts(
-    batches: Iterator[Entries], axes: list[Axis], *, columns: bool, states: bool
+    batches: Iterator[Entries], runs: list[AxisRun], *, columns: bool, states: bool
 ) -> Iterator[Part]:
-    runs = [AxisRun(axis) for axis in axes]
     for entries in batches:
         yield from judged_parts(runs, entries, columns=columns, states=states)
     yield from (run.outcome() for run in runs)

@@ -18,10 +18,10 @@ from ballscrew_monitor.messages.state_messages import (
     surface_info_message,
     TIERS,
 )
+from ballscrew_monitor.recordings.axis_run import TimedState
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter, whole_bag
 from ballscrew_monitor.recordings.bulk.batches import Batch, batches, END
-from ballscrew_monitor.recordings.own_replay import TimedState
 from ballscrew_monitor.recordings.recorded_topics import DIAGNOSTICS, recorded_topics
 from ballscrew_monitor.settings.parameters import NODE_NAME
 from ballscrew_monitor.settings.topics import input_topics, output, with_types

@@ -14,10 +14,10 @@ from typing import Any, Protocol
 
 from ballscrew_monitor.core.conversions import POSITION_UNITS
 from ballscrew_monitor.core.inputs import Source
+from ballscrew_monitor.recordings.axis_run import TimedState
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.columns import AxisOutcome, JudgedColumns
 from ballscrew_monitor.recordings.own_recording import is_as_recorded
-from ballscrew_monitor.recordings.own_replay import TimedState
 from ballscrew_monitor.recordings.replay import ignore, replay_columns, replay_parts
 from ballscrew_monitor.report.case import AxisCase, InputSetting, LogCase
 from ballscrew_monitor.report.parameters import LogParameters

@@ -19,7 +19,7 @@ from ballscrew_monitor.recordings.operating_field import (
 )
 from ballscrew_monitor.report.case import AxisCase
 from ballscrew_monitor.report.encoding import floats, packed
-from ballscrew_monitor.report.room import PATH_POINTS
+from ballscrew_monitor.report.page_budget import PATH_POINTS
 from ballscrew_monitor.report.survey import opposing_loads, Span
 from contourpy import contour_generator
 import numpy as np

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 import math
 from typing import Any
 
-from ballscrew_monitor.recordings.columns import Reason
+from ballscrew_monitor.core.judgement import Reason
 from ballscrew_monitor.recordings.words import number, shown_unit
 from ballscrew_monitor.report.case import AxisCase, LogCase
 from ballscrew_monitor.report.inputs_seen import inputs_seen, InputSeen, NAMES, Trouble

@@ -16,8 +16,8 @@ from typing import Any, Self
 
 from ballscrew_monitor.core.conversions import Direction, Nut
 from ballscrew_monitor.core.estimate import ContactState, PointSource, PointValidity
-from ballscrew_monitor.core.judgement import Level, Zone
-from ballscrew_monitor.recordings.columns import COLUMNS, JudgedColumns, Reason
+from ballscrew_monitor.core.judgement import Level, Reason, Zone
+from ballscrew_monitor.recordings.columns import COLUMNS, JudgedColumns
 from ballscrew_monitor.report.scratch import scratch_folder
 import numpy as np
 import polars as pl

@@ -16,8 +16,8 @@ from typing import Any
 from ballscrew_monitor.core.conversions import Direction, SECOND
 from ballscrew_monitor.core.estimate import PointSource
 from ballscrew_monitor.core.inputs import Source
-from ballscrew_monitor.core.judgement import Zone
-from ballscrew_monitor.recordings.columns import Flags, Floats, JudgedColumns, Reason, Times
+from ballscrew_monitor.core.judgement import Reason, Zone
+from ballscrew_monitor.recordings.columns import Flags, Floats, JudgedColumns, Times
 import numpy as np
 
 REST = 'gaps in the speed, up to its timeout'

@@ -8,7 +8,7 @@ import enum
 import math
 
 from ballscrew_monitor.core.inputs import Source
-from ballscrew_monitor.recordings.columns import Reason
+from ballscrew_monitor.core.judgement import Reason
 from ballscrew_monitor.recordings.summary import EventRecord, Summary
 from ballscrew_monitor.recordings.words import counted, duration, list_of, percent, share
 from ballscrew_monitor.report.case import AxisCase, LogCase, RCS

@@ -11,10 +11,11 @@ from collections.abc import Collection, Iterator, Sequence
 import contextlib
 import dataclasses
 import itertools
+import operator
 from typing import BinaryIO
 
 from ballscrew_monitor.core.conversions import seconds
-from ballscrew_monitor.recordings.bag import Bag
+from ballscrew_monitor.recordings.bag import Bag, Message
 from ballscrew_monitor.recordings.bag_files import ZSTD
 from ballscrew_monitor.recordings.bulk.chunks import (
     chunk_places,
@@ -55,9 +56,9 @@ class _Chunk:
     channels: dict[int, str]
 
 
-def batches(bag: Bag, topics: Collection[str]) -> Iterator[Batch]:
+def batches(bag: Bag, topics: Collection[str], *, as_written: bool = False) -> Iterator[Batch]:
     """
-    Yield the messages of `topics`.
+    Yield the messages of `topics`, by log time or in the order in which they were written.
 
     Raises InputError for a damaged bag, unless what is whole of it is to be salvaged; then the
     file that holds a damaged chunk has a note on it.
@@ -66,7 +67,10 @@ def batches(bag: Bag, topics: Collection[str]) -> Iterator[Batch]:
     with contextlib.ExitStack() as stack:
         chunks = _chunks(stack, bag, topics)
         if chunks is None:
-            yield from _by_message(bag, topics)
+            messages = bag.as_written(topics) if as_written else bag.messages(topics)
+            yield from _by_message(bag, messages)
+        elif as_written:
+            yield from _by_chunk(sorted(chunks, key=operator.attrgetter('rank')))
         else:
             yield from _by_chunk(chunks)
 
@@ -136,7 +140,7 @@ def _topics(waiting: Sequence[tuple[_Chunk, Found]]) -> dict[str, Messages]:
     shifts = [0, *ends][:-1]
     data = b''.join(found.data for _, found in waiting)
     names: dict[str, int] = {}
-    topic, begin, size, log_time, place = zip(
+    topic, begin, size, log_time, place, sequence = zip(
         *(
             (
                 _numbers_of(found.channel, chunk.channels, names),
@@ -144,6 +148,7 @@ def _topics(waiting: Sequence[tuple[_Chunk, Found]]) -> dict[str, Messages]:
                 found.size,
                 found.log_time,
                 (chunk.rank << PLACES) + found.begin,
+                found.sequence,
             )
             for (chunk, found), shift in zip(waiting, shifts, strict=True)
         )
@@ -155,6 +160,7 @@ def _topics(waiting: Sequence[tuple[_Chunk, Found]]) -> dict[str, Messages]:
         size=np.concatenate(size),
         log_time=np.concatenate(log_time),
         place=np.concatenate(place),
+        sequence=np.concatenate(sequence),
     )
     return {name: everything.some(np.flatnonzero(numbers == at)) for name, at in names.items()}
 
@@ -169,10 +175,9 @@ def _numbers_of(
     return numbers[channel]
 
 
-def _by_message(bag: Bag, topics: Collection[str]) -> Iterator[Batch]:
+def _by_message(bag: Bag, messages: Iterator[Message]) -> Iterator[Batch]:
     """Yield the messages of a bag that has no chunks, as its reader gives them."""
     span = max(bag.end_time - bag.start_time, 1)
-    messages = bag.messages(topics)
     first = 0
     while part := list(itertools.islice(messages, MESSAGES)):
         found: dict[str, list[int]] = {}
@@ -185,6 +190,7 @@ def _by_message(bag: Bag, topics: Collection[str]) -> Iterator[Batch]:
             size=size,
             log_time=np.array([min(message.log_time, LATEST) for message in part]),
             place=np.arange(first, first + len(part)),
+            sequence=np.array([message.sequence for message in part]),
         )
         first += len(part)
         until = part[-1].log_time

@@ -26,7 +26,7 @@ MESSAGE, CHUNK, MESSAGE_INDEX = 5, 6, 7  # operation codes of records
 RECORD = struct.Struct('<BQ')  # operation code and length of what follows
 CHUNK_HEAD = struct.Struct('<QQQII')  # times, size, checksum, length of the compression's name
 MESSAGE_HEAD = 22  # [bytes] channel, number, log time and publish time
-LOG_TIME, CHANNEL_NUMBER = RECORD.size + 6, RECORD.size  # where they stand in a record
+CHANNEL_NUMBER, SEQUENCE, LOG_TIME = RECORD.size, RECORD.size + 2, RECORD.size + 6  # in a record
 
 
 class ChunkDamage(ValueError):
@@ -49,7 +49,7 @@ class Found:
     """
     Messages within `data`: where each begins and how long it is [bytes].
 
-    `channel` is its number in the file, `log_time` in [ns].
+    `channel` and `sequence` are their numbers in the file, `log_time` in [ns].
 
     """
 
@@ -58,6 +58,7 @@ class Found:
     begin: Integers
     size: Integers
     log_time: Integers
+    sequence: Integers
 
 
 def chunk_places(stream: BinaryIO, topics: Collection[str]) -> tuple[list[Place], dict[int, str]]:
@@ -189,6 +190,7 @@ def _messages(data: bytes, starts: Integers) -> Found:
         begin=starts + RECORD.size + MESSAGE_HEAD,
         size=length - MESSAGE_HEAD,
         log_time=np.minimum(unaligned(data, '<u8')[starts + LOG_TIME], LATEST).astype(np.int64),
+        sequence=unaligned(data, '<u4')[starts + SEQUENCE].astype(np.int64),
     )
 
 

@@ -31,13 +31,19 @@ Reader = tuple[int, Axis, Input]
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Messages:
-    """Messages of one topic within `data`; `begin` and `size` [bytes], `log_time` [ns]."""
+    """
+    Messages of one topic within `data`; `begin` and `size` [bytes], `log_time` [ns].
+
+    `place` is that in the bag as it is written, `sequence` the number that the writer gave.
+
+    """
 
     data: bytes
     begin: Integers
     size: Integers
     log_time: Integers
     place: Integers
+    sequence: Integers
 
     def __len__(self) -> int:
         """Return the number of messages."""
@@ -45,13 +51,8 @@ class Messages:
 
     def some(self, which: NDArray[Any]) -> 'Messages':
         """Return some of the messages."""
-        return Messages(
-            data=self.data,
-            begin=self.begin[which],
-            size=self.size[which],
-            log_time=self.log_time[which],
-            place=self.place[which],
-        )
+        arrays = ('begin', 'size', 'log_time', 'place', 'sequence')
+        return Messages(data=self.data, **{name: getattr(self, name)[which] for name in arrays})
 
     def contents(self) -> list[bytes]:
         """Return all messages."""

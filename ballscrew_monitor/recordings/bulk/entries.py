@@ -21,6 +21,7 @@ class Kind(enum.IntEnum):
     REFUSED = 1
     OTHER_JOINTS = 2
     TICK = 3
+    CHECK = 4  # no event: a place at which the note is called
 
 
 UNKNOWN_LOSS = -1
@@ -36,8 +37,8 @@ class Entries:
 
     `log_time`, `stamp` and `arrival` [ns]; `value` [SI, machine frame]; `place` orders messages of
     equal log time; `header` tells where the stamp is that of a header; `lost` messages never
-    arrived before one, -1: not known. `note` is the refusal of a
-    refused message and what a message about other joints names, else None.
+    arrived before one, -1: not known; a node took those of one `burst` together. `note` is the
+    refusal of a refused message, what a message about other joints names, or what a check calls.
 
     """
 
@@ -51,6 +52,7 @@ class Entries:
     value: NDArray[np.float64]
     header: NDArray[np.bool_]
     lost: NDArray[np.int64]
+    burst: NDArray[np.int64]
     note: NDArray[Any]
 
     def __len__(self) -> int:
@@ -74,6 +76,7 @@ _TYPES = {
     'value': np.float64,
     'header': np.bool_,
     'lost': np.int64,
+    'burst': np.int64,
     'note': np.object_,
 }
 

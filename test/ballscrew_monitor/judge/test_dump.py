@@ -142,3 +142,12 @@ def test_what_is_not_listed_is_not_written(core):
     monitor.shelving = object()
     with pytest.raises(TypeError, match='object is no part of the memory'):
         freeze_monitor(monitor)
+
+
+def test_a_recording_with_the_first_name_of_excursions_is_read(core):
+    monitor = core.monitor(is_slow_bad(core))
+    frozen = freeze_monitor(monitor)
+    text = json.dumps(frozen).replace('"Excursions"', '"Stays"')
+    assert json.loads(text) != frozen
+    again = thaw_monitor(json.loads(text), monitor.surface, monitor.settings)
+    assert freeze_monitor(again) == frozen

@@ -6,7 +6,7 @@ import zipfile
 
 from ballscrew_monitor.cycle.domain import free_domain
 from ballscrew_monitor.cycle.node_process import confined
-from ballscrew_monitor.node.run import live
+from ballscrew_monitor.node.run import run
 from ballscrew_monitor.settings import parameters
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 import pytest
@@ -118,7 +118,7 @@ def environment():
 @pytest.mark.parametrize('name', ROWS)
 def test_a_bad_start_value_is_one_sentence_and_exit_code_2(environment, name, capfd):
     value = bad_value(ROWS[name])
-    assert live(['--ros-args', '-p', f'{name}:={value}'], [1]) == 2
+    assert run(['--ros-args', '-p', f'{name}:={value}'], [1]) == 2
     out, err = capfd.readouterr()
     assert out == ''
     assert err.count('\n') == 1

@@ -10,7 +10,12 @@ from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.report import log_page
 from ballscrew_monitor.report.case import LogCase
 from ballscrew_monitor.report.log_page import report_page
-from ballscrew_monitor.report.room import axis_rooms, fair_shares, MOST_ROWS, shares_of_worst
+from ballscrew_monitor.report.page_budget import (
+    axis_budgets,
+    fair_shares,
+    MOST_ROWS,
+    shares_of_worst,
+)
 import numpy as np
 import pytest
 
@@ -121,6 +126,8 @@ def test_every_sample_is_for_the_worst_events_of_all_axes(judged):
 
 def test_a_few_axes_have_all_and_many_as_much_as_there_is(judged):
     quiet = judged.case([judged.columns()])
-    assert axis_rooms([quiet])[0].buckets == axis_rooms([quiet] * 4)[0].buckets == 3000
-    rooms = axis_rooms([quiet] * 16)
-    assert {(room.buckets, room.path_points, room.events) for room in rooms} == {(750, 1500, 0)}
+    assert axis_budgets([quiet])[0].buckets == axis_budgets([quiet] * 4)[0].buckets == 3000
+    budgets = axis_budgets([quiet] * 16)
+    assert {(budget.buckets, budget.path_points, budget.events) for budget in budgets} == {
+        (750, 1500, 0)
+    }

@@ -29,8 +29,8 @@ from ballscrew_monitor.report.buckets import (
 )
 from ballscrew_monitor.report.case import AxisCase
 from ballscrew_monitor.report.encoding import script_json
+from ballscrew_monitor.report.page_budget import AxisBudget, PAGE_BYTES
 from ballscrew_monitor.report.panels import panels
-from ballscrew_monitor.report.room import AxisRoom, PAGE_BYTES
 from ballscrew_monitor.report.stretches import (
     AROUND,
     bytes_per_second,
@@ -66,12 +66,12 @@ NUMBERS = (
 )
 
 
-def course_record(
-    case: AxisCase, fine_bytes: float = PAGE_BYTES, room: AxisRoom | None = None
+def time_series_record(
+    case: AxisCase, fine_bytes: float = PAGE_BYTES, budget: AxisBudget | None = None
 ) -> dict[str, Any]:
     """Return the course of an axis; `fine_bytes` of the page are for every sample of events."""
-    room = room or AxisRoom()
-    coarse, near, bucket = _columns(case, fine_bytes, room.buckets)
+    budget = budget or AxisBudget()
+    coarse, near, bucket = _columns(case, fine_bytes, budget.buckets)
     shown, fine = _fine(case, near, fine_bytes)
     record = coarse_record(coarse)
     codes = record.pop('codes')
@@ -90,7 +90,7 @@ def course_record(
         ],
         'events': [
             {'begin': case.since_first(event.start), 'end': case.since_first(event.end)}
-            for event in case.worst_first[: room.events]
+            for event in case.worst_first[: budget.events]
         ],
         'panels': [
             panel
@@ -100,19 +100,19 @@ def course_record(
     }
 
 
-def coarse_bytes(case: AxisCase, room: AxisRoom) -> float:
+def coarse_bytes(case: AxisCase, budget: AxisBudget) -> float:
     """Return what a course takes in a page at most, without every sample of events [bytes]."""
     row = 4 * len(_numbers(case)) + len(BARS)
-    if _is_short(case, room.buckets):  # each row has its time, and there may be a break after it
+    if _is_short(case, budget.buckets):  # each row has its time, and there may be a break after it
         rows, row = 2 * case.survey.rows, row + 8
     else:
-        rows = 2 * room.buckets
-    return rows * row * 4 / 3 + room.events * EVENT_BYTES + COARSE_BYTES
+        rows = 2 * budget.buckets
+    return rows * row * 4 / 3 + budget.events * EVENT_BYTES + COARSE_BYTES
 
 
-def event_bytes(case: AxisCase, room: AxisRoom) -> float:
+def event_bytes(case: AxisCase, budget: AxisBudget) -> float:
     """Return what every sample about an event takes in a page, at the mean rate [bytes]."""
-    if _is_short(case, room.buckets):
+    if _is_short(case, budget.buckets):
         return 0.0
     return 2.0 * (2.0 * AROUND * bytes_per_second(case, _fine_columns(case)) + STRETCH_BYTES)
 

@@ -23,7 +23,7 @@ MOST_ROWS = 1000
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class AxisRoom:
+class AxisBudget:
     """Most buckets in time, points of the path, and rows of events and of gaps."""
 
     buckets: int = BUCKETS
@@ -32,14 +32,14 @@ class AxisRoom:
     gaps: int = MOST_ROWS
 
 
-def axis_rooms(cases: Sequence[AxisCase]) -> list[AxisRoom]:
-    """Return the room of each axis of a page."""
+def axis_budgets(cases: Sequence[AxisCase]) -> list[AxisBudget]:
+    """Return the budget of each axis of a page."""
     part = min(1.0, FEW / max(1, len(cases)))
     rows = FEW * MOST_ROWS * min(1.0, MANY / max(1, len(cases)))
     events = fair_shares(rows, [min(MOST_ROWS, len(case.outcome.events)) for case in cases])
     gaps = fair_shares(rows, [min(MOST_ROWS, len(case.survey.speed_gaps)) for case in cases])
     return [
-        AxisRoom(
+        AxisBudget(
             buckets=max(1, int(part * BUCKETS)),
             path_points=max(1, int(part * PATH_POINTS)),
             events=int(event_rows),

@@ -1,0 +1,125 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Retention of the axes of one node: restored at the start, handed over while they are judged."""
+
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any, TYPE_CHECKING
+
+from ballscrew_monitor.core.memory import after_restart, AxisRecord, Memory, memory_of, record_of
+from ballscrew_monitor.messages import diagnostics
+from ballscrew_monitor.node.restart_state import RestartState
+from ballscrew_monitor.node.state_records import entry_of, event_facts, Kind
+from diagnostic_msgs.msg import DiagnosticStatus
+from rclpy.clock import Clock
+from rclpy.node import Node
+
+if TYPE_CHECKING:  # which imports this module
+    from ballscrew_monitor.node.axis_publisher import AxisPublisher
+
+LOOK = 1.0  # [s] between two looks
+PERIOD = 4.0  # [s] between two records of the sums: with the pause of the thread below 5 s
+
+
+class Retention:
+    """What the axes that `find` returns keep; `say` is called with those that have news."""
+
+    def __init__(
+        self,
+        node: Node,
+        state: RestartState,
+        find: Callable[[], Mapping[str, 'AxisPublisher']],
+        say: Callable[[list[str]], None],
+        *,
+        clock: Clock,
+    ) -> None:
+        """Keep it in a `state`, with a look now and then on a steady `clock`."""
+        self._node = node
+        self.state = state
+        self._find = find
+        self._say = say
+        self._looks = 0
+        self._said = ''
+        node.create_timer(LOOK, self._look, clock=clock)
+        self.note(Kind.NODE_START)
+        state.start()
+
+    def statuses(self) -> list[DiagnosticStatus]:
+        """Return the diagnostics of what is kept, none if nothing is to be."""
+        name = self._node.get_fully_qualified_name()
+        kept = self.state.folder is not None
+        return [diagnostics.of_folder(name, self.state.problem)] if kept else []
+
+    def note(
+        self,
+        kind: Kind,
+        axis: str | None = None,
+        *,
+        stamp: int | None = None,
+        memory: Memory | None = None,
+        **facts: Any,
+    ) -> None:
+        """Write an entry and the memory of its axis; its stamp [ns] is now unless stated."""
+        if self.state.folder is None:
+            return
+        if stamp is None:
+            stamp = self._node.get_clock().now().nanoseconds
+        record = None if axis is None or memory is None else record_of(axis, memory)
+        self.state.keep(record, entry_of(kind, axis, stamp, facts))
+
+    def remember(self, axis: str, memory: Memory) -> None:
+        """Keep what is remembered of an axis."""
+        if self.state.folder is not None:
+            self.state.keep(record_of(axis, memory))
+
+    def recall(self, axis: str) -> Memory:
+        """Return what is known of an axis from before; an event that was interrupted is over."""
+        before = memory_of(self.state.recall(AxisRecord(axis=axis)))
+        memory = after_restart(before)
+        if memory is not before:
+            event = memory.event
+            facts = event_facts(event)
+            self.note(Kind.EVENT_END, axis, stamp=event.stamp, memory=memory, **facts)
+        return memory
+
+    def restore(self, axes: Iterable[str] | None = None) -> None:
+        """Take up what was kept of some axes, or of all, and say what came of that."""
+        publishers = self._find()
+        for name in [*publishers] if axes is None else axes:
+            monitor = publishers[name].axis.monitor
+            monitor.take_up(self.recall(name))
+            self.remember(name, monitor.kept)
+            if said := publishers[name].restore():
+                self._node.get_logger().info(f'axis {name}: {said}')
+        self._log()
+
+    def remember_all(self) -> None:
+        """Keep the sums, events and shelvings of all axes."""
+        for publisher in self._find().values():
+            publisher.alarm.remember()
+
+    def close(self) -> None:
+        """Write all that waits, and let another node have the directory."""
+        self.note(Kind.NODE_STOP)
+        self.state.close()
+
+    def _look(self) -> None:
+        publishers = self._find()
+        late = [name for name in publishers if self.state.is_late(name)]
+        self.restore(late)
+        over = [name for name, publisher in publishers.items() if publisher.end_shelving()]
+        if over or late:
+            self._say([*publishers] if late else over)
+        self._looks += 1
+        if self._looks % round(PERIOD / LOOK) == 0:
+            self.remember_all()
+
+    def _log(self) -> None:
+        """Log what is wrong, when that has changed, and what was taken over."""
+        while self.state.notices:
+            self._node.get_logger().info(f'state_dir: {self.state.notices.pop()}')
+        problem, before = self.state.problem, self._said
+        self._said = problem
+        if problem and problem != before:
+            self._node.get_logger().warning(f'state_dir: {problem}')
+        elif before and not problem:
+            self._node.get_logger().info('state_dir: all is kept again')

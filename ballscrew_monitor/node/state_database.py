@@ -1,0 +1,300 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Database of what outlives the node: `state.sqlite3` in a directory for one node alone.
+
+What is written at a time is one transaction and is on the disk when `write` returns. A write-ahead
+log lets others read meanwhile; where it cannot work there is a rollback journal. A database that
+is damaged or of another version is renamed, and an empty one takes its place.
+
+"""
+
+from collections.abc import Iterable
+import contextlib
+import fcntl
+import itertools
+import os
+from pathlib import Path
+import sqlite3
+from typing import Any
+
+from ballscrew_monitor.core.memory import AxisRecord, read_record, TYPES
+from ballscrew_monitor.node.former_files import read_former, set_aside
+from ballscrew_monitor.node.state_records import (
+    by_key,
+    Corrections,
+    Entry,
+    read_corrections,
+    Record,
+    Records,
+)
+from surrogate.files import InputError
+
+FILE = 'state.sqlite3'
+PARTS = ('', '-wal', '-shm', '-journal')  # of the file, by the names that SQLite gives
+VERSION = 1
+UNWRITABLE = 'cannot be written'
+IN_USE = 'is in use by another node of this name'
+DAMAGED = 'is damaged'
+OTHER_VERSION = 'is of another version'
+BUSY = 1.0  # [s] to wait for somebody who reads
+CHUNK = 500  # entries that are appended, or removed, at a time
+SHARE = 0.75  # of the limit for the database, the rest is for its journal
+NETWORK = {'9p', 'afs', 'ceph', 'cifs', 'fuse.sshfs', 'lustre', 'nfs', 'nfs4', 'smb3', 'vboxsf'}
+SQL = {int: 'INTEGER', bool: 'INTEGER', float: 'REAL', str: 'TEXT'}
+TABLES = f"""
+CREATE TABLE axes ({', '.join(f'"{name}" {SQL[kind]}' for name, kind in TYPES.items())},
+    PRIMARY KEY (axis));
+CREATE TABLE corrections (axis TEXT PRIMARY KEY, surface TEXT, solves TEXT);
+CREATE TABLE events (number INTEGER PRIMARY KEY, time TEXT, stamp_ns INTEGER, axis TEXT,
+    kind TEXT, facts TEXT);
+PRAGMA user_version = {VERSION}
+"""
+READ: dict[str, Any] = {'axes': read_record, 'corrections': read_corrections}
+TABLE_OF = {AxisRecord: 'axes', Corrections: 'corrections'}
+
+
+class StateDatabase:
+    """The database in a `folder`, with its journal smaller than a `limit` [B]."""
+
+    def __init__(self, folder: Path, limit: int, *, damage: list[str], notices: list[str]) -> None:
+        """Open nothing yet; sentences on what was found go to `damage` and `notices`."""
+        self.folder, self.limit = folder, limit
+        self._damage, self._notices = damage, notices
+        self._file = folder / FILE
+        self._lock = -1
+        self._database: Any = None
+
+    @property
+    def is_open(self) -> bool:
+        """Tell whether the database is open, and still there."""
+        return self._database is not None and self._file.exists()
+
+    def open(self) -> Records:
+        """
+        Take the directory for this node alone, and return what it holds besides the event log.
+
+        Raises InputError while another node has it, OSError and sqlite3.Error if nothing can be
+        had of it now.
+
+        """
+        self._take()
+        self.disconnect()
+        try:
+            return self._load()
+        except (sqlite3.DatabaseError, ValueError, KeyError, TypeError) as error:
+            if _is_passing(error):
+                raise
+            numbers = self._last_numbers()
+            self._set_aside(error)
+        self._load()
+        self.write([], numbers)
+        return by_key(numbers)
+
+    def write(self, entries: Iterable[Entry], records: Iterable[Record]) -> None:
+        """
+        Append entries to the event log and replace records, all or nothing.
+
+        Raises InputError at the limit, sqlite3.Error and OSError.
+
+        """
+        if self._size() > self.limit:  # somebody reads, and the journal could not begin again
+            self._database.execute('PRAGMA wal_checkpoint(TRUNCATE)').fetchall()
+            if self._size() > self.limit:
+                raise InputError(at_limit(self.folder, self.limit))
+        with self._database as database:
+            database.execute('BEGIN IMMEDIATE')
+            _write(database, entries, records, SHARE * self.limit)
+
+    def disconnect(self) -> None:
+        """Let go of the file, but not of the directory."""
+        if self._database is not None:
+            with contextlib.suppress(sqlite3.Error):
+                self._database.close()
+        self._database = None
+
+    def close(self) -> None:
+        """Leave one whole file, which anybody can read, and let another node have it."""
+        if self._database is not None:
+            with contextlib.suppress(sqlite3.Error):
+                self._database.execute('PRAGMA journal_mode = DELETE')
+        self.disconnect()
+        if self._lock >= 0:
+            os.close(self._lock)
+        self._lock = -1
+
+    def _take(self) -> None:
+        if self._lock >= 0:
+            return
+        self.folder.mkdir(parents=True, exist_ok=True)
+        lock = os.open(self.folder / 'lock', os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o644)
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError as error:
+            os.close(lock)
+            if isinstance(error, BlockingIOError):
+                raise InputError(f'{self.folder} {IN_USE}') from None
+            raise
+        self._lock = lock
+
+    def _load(self) -> Records:
+        """Return what the file holds; raises ValueError or KeyError for what no node has left."""
+        database = self._database = self._connected()
+        ((version,),) = database.execute('PRAGMA user_version')
+        ((tables,),) = database.execute('SELECT count(*) FROM sqlite_master')
+        if not version and not tables:
+            self._create()
+        elif version != VERSION:
+            raise ValueError(f'{OTHER_VERSION} ({version}, known is {VERSION})')
+        ((fault,),) = database.execute('PRAGMA quick_check(1)')
+        if fault != 'ok':
+            raise ValueError(fault.splitlines()[-1])
+        self._notices += set_aside(self.folder)
+        if self._size() > self.limit:  # that of before was larger
+            _make_room(database, SHARE * self.limit)
+            database.execute('VACUUM')
+        return by_key(
+            read(row)
+            for table, read in READ.items()
+            for row in database.execute(f'SELECT * FROM {table}')
+        )
+
+    def _connected(self) -> sqlite3.Connection:
+        """Return a connection with a write-ahead log, or with what works in its place."""
+        if not on_network(self.folder):
+            with contextlib.suppress(sqlite3.OperationalError):
+                return self._set_up('journal_mode = WAL')
+        # Who is alone can read the write-ahead log of before without shared memory.
+        return self._set_up('locking_mode = EXCLUSIVE', 'journal_mode = TRUNCATE')
+
+    def _set_up(self, *journal: str) -> sqlite3.Connection:
+        database = sqlite3.connect(
+            self._file, timeout=BUSY, isolation_level=None, check_same_thread=False
+        )
+        size = self.limit // 16
+        settings = (
+            *('locking_mode = NORMAL', 'synchronous = FULL', 'temp_store = MEMORY'),
+            *(f'journal_size_limit = {size}', f'wal_autocheckpoint = {max(1, size // 4096)}'),
+        )
+        try:
+            for setting in (*journal, *settings):
+                database.execute(f'PRAGMA {setting}').fetchall()
+            database.executescript('BEGIN IMMEDIATE; ROLLBACK')  # tries the journal
+        except sqlite3.Error:
+            database.close()
+            raise
+        database.row_factory = sqlite3.Row
+        return database
+
+    def _create(self) -> None:
+        """Make the tables, and take over what a node of a former version has left."""
+        entries, records, damage = read_former(self.folder)
+        with self._database as database:
+            database.execute('BEGIN IMMEDIATE')
+            for statement in TABLES.split(';'):
+                database.execute(statement)
+            _write(database, entries, records.values(), SHARE * self.limit)
+        self._damage += damage
+
+    def _size(self) -> int:
+        files = [self._file.with_name(FILE + part) for part in PARTS]
+        return sum(one.stat().st_size for one in files if one.exists())
+
+    def _last_numbers(self) -> list[Record]:
+        """Return records with the numbers of the last events, as far as they can be read."""
+        found: list[Record] = []
+        with contextlib.suppress(sqlite3.Error, ValueError, TypeError, AttributeError):
+            for row in self._database.execute('SELECT axis, event FROM axes'):
+                blank = AxisRecord(axis=str(row['axis'])).row()
+                found.append(read_record(blank | {'event': row['event']}))
+        return found
+
+    def _set_aside(self, why: Exception) -> None:
+        """Rename the database, with the journal that belongs to it."""
+        self.disconnect()
+        for part in PARTS:
+            one = self._file.with_name(FILE + part)
+            aside = one.with_name(f'{FILE}.aside{part}')
+            aside.unlink(missing_ok=True)
+            if one.exists():
+                one.replace(aside)
+        what = str(why) if str(why).startswith(OTHER_VERSION) else f'{DAMAGED} ({why})'
+        self._damage.append(f'{self._file} {what}, moved to {FILE}.aside')
+
+
+def read_entries(folder: Path) -> list[Entry]:
+    """
+    Return the event log in a folder, whether or not its node runs.
+
+    Raises InputError if there is none, or none that can be read.
+
+    """
+    file = folder / FILE
+    if not file.is_file():
+        raise InputError(f'{folder} has no {FILE}: name the state_dir of a node')
+    try:
+        place = f'{file.absolute().as_uri()}?mode=ro'
+        with contextlib.closing(sqlite3.connect(place, uri=True, timeout=BUSY)) as database:
+            (version,) = database.execute('PRAGMA user_version').fetchone()
+            if version != VERSION:
+                raise InputError(f'{file} {OTHER_VERSION} ({version}, known is {VERSION})')
+            # At once: somebody who reads on and on keeps the journal from being cleared.
+            rows = database.execute('SELECT * FROM events ORDER BY number').fetchall()
+            return [Entry(*row[1:]) for row in rows]
+    except sqlite3.Error as error:
+        raise InputError(f'{file} cannot be read, {error}') from None
+
+
+def at_limit(folder: Path, limit: int) -> str:
+    """Return that there is no room below the `limit` [B] of a folder."""
+    return f'{folder} is at its state_limit of {limit / 1e6:g} MB'
+
+
+def on_network(folder: Path, mounts: Path = Path('/proc/self/mountinfo')) -> bool:
+    """Tell whether a folder is on a file system that other machines may share."""
+    device = folder.stat().st_dev
+    number = f'{os.major(device)}:{os.minor(device)}'
+    with contextlib.suppress(OSError):
+        lines = [line.partition(' - ') for line in mounts.read_text().splitlines()]
+        kinds = {right.split()[0] for left, _, right in lines if left.split()[2] == number}
+        return bool(kinds & NETWORK)
+    return False
+
+
+def _is_passing(error: Exception) -> bool:
+    """Tell whether the file is as it should be, and only cannot be had now."""
+    code = getattr(error, 'sqlite_errorcode', sqlite3.SQLITE_ERROR) & 0xFF
+    return isinstance(error, sqlite3.OperationalError) and code != sqlite3.SQLITE_ERROR
+
+
+def _used(database: sqlite3.Connection) -> int:
+    """Return the size [B] of the pages in use."""
+    pages, free, size = (
+        database.execute(f'PRAGMA {name}').fetchone()[0]
+        for name in ('page_count', 'freelist_count', 'page_size')
+    )
+    return int((pages - free) * size)
+
+
+def _write(
+    database: sqlite3.Connection, entries: Iterable[Entry], records: Iterable[Record], limit: float
+) -> None:
+    """Write what no transaction has to be begun for; old entries go, up to the `limit` [B]."""
+    waiting = iter(entries)
+    _make_room(database, limit)
+    while chunk := list(itertools.islice(waiting, CHUNK)):
+        _make_room(database, limit - sum(len(str(one)) for one in chunk))
+        database.executemany('INSERT INTO events VALUES (NULL, ?, ?, ?, ?, ?)', chunk)
+    for record in records:
+        row = record.row()
+        values = ', '.join(f':{name}' for name in row)
+        database.execute(f'INSERT OR REPLACE INTO {TABLE_OF[type(record)]} VALUES ({values})', row)
+
+
+def _make_room(database: sqlite3.Connection, limit: float) -> None:
+    """Remove the oldest entries until the database is within a `limit` [B]."""
+    while _used(database) > limit:
+        ((first,),) = database.execute('SELECT min(number) FROM events')
+        if first is None:
+            return
+        database.execute('DELETE FROM events WHERE number < ?', (first + CHUNK,))

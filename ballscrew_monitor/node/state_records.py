@@ -1,0 +1,146 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Records of what outlives the node: entries of the event log, axes, corrections."""
+
+from collections.abc import Iterable, Mapping
+import datetime
+import enum
+import json
+from typing import Any, NamedTuple
+
+from ballscrew_monitor.core.conversions import celsius, seconds
+from ballscrew_monitor.core.estimate import MachinePoint
+from ballscrew_monitor.core.full_point import KeptSolve, Solve
+from ballscrew_monitor.core.memory import AxisRecord, Memory, record_of, TIMES
+from ballscrew_monitor.core.state import Event
+from ballscrew_monitor.core.tally import Totals
+from surrogate.files import to_json
+
+EVENT = (
+    *('event', 'start_ns', 'worst_value', 'cause', 'severity', 'value', 'limit', 'unit', 'text'),
+    'ending',
+)
+"""What an entry says of an event, by the names of its record."""
+
+
+SOLVE = {
+    'speed': 'speed_rad_s',
+    'opposing_load': 'opposing_load_N',
+    'temperature': 'temperature_K',
+    'solved': 'solved',
+}
+"""Names of a solve, and with their units as they are kept."""
+
+
+class Kind(enum.StrEnum):
+    """Subject of an entry of the event log."""
+
+    NODE_START = 'node_start'
+    NODE_STOP = 'node_stop'
+    EVENT_BEGIN = 'event_begin'
+    EVENT_END = 'event_end'
+    ACKNOWLEDGE = 'acknowledge'
+    RESET_TOTALS = 'reset_totals'
+    RELOAD_SURFACE = 'reload_surface'
+    SHELVE = 'shelve'
+    UNSHELVE = 'unshelve'
+    CORRECTION = 'correction'
+
+
+class Entry(NamedTuple):
+    """
+    An entry of the event log, a row of its table.
+
+    `time` of the machine in UTC, `stamp_ns` [ns] of the clock of the node, `facts` in strict JSON.
+
+    """
+
+    time: str
+    stamp_ns: int
+    axis: str | None
+    kind: str
+    facts: str
+
+    def record(self) -> dict[str, Any]:
+        """Return the entry as one record."""
+        record = self._asdict()
+        return record | json.loads(record.pop('facts'))
+
+
+class Corrections(NamedTuple):
+    """Full solves that correct the surface of an axis, by its hash: a row of their table."""
+
+    axis: str
+    surface: str = ''
+    solves: str = '[]'
+
+    def row(self) -> dict[str, Any]:
+        """Return the values by name."""
+        return self._asdict()
+
+
+Record = AxisRecord | Corrections
+Records = dict[tuple[type, str], Any]
+"""Records by what they are and their axis."""
+
+
+def entry_of(kind: Kind, axis: str | None, stamp: int, facts: Mapping[str, Any]) -> Entry:
+    """Return an entry of now; `stamp` [ns]."""
+    time = datetime.datetime.now(datetime.UTC).isoformat(timespec='milliseconds')
+    return Entry(time, stamp, axis, kind.value, json.dumps(to_json(facts), allow_nan=False))
+
+
+def by_key(records: Iterable[Record]) -> Records:
+    """Return records by what they are and their axis."""
+    return {(type(one), one.axis): one for one in records}
+
+
+def corrections_of(axis: str, surface: str, solves: Iterable[Solve]) -> Corrections:
+    """Return the solves that correct the `surface` of a hash, as they are kept."""
+    rows = [{key: getattr(one, name) for name, key in SOLVE.items()} for one in solves]
+    return Corrections(axis, surface, json.dumps(rows))
+
+
+def read_corrections(row: Mapping[str, Any]) -> Corrections:
+    """Return the corrections of a row; raises as `solves_of` does."""
+    kept = Corrections(*(str(row[name]) for name in Corrections._fields))
+    solves_of(kept)
+    return kept
+
+
+def solves_of(kept: Corrections) -> list[KeptSolve]:
+    """Return the solves; raises ValueError, KeyError or TypeError for what no node has written."""
+    return [
+        KeptSolve(
+            **{name: float(one[key]) for name, key in SOLVE.items() if name != 'solved'},
+            solved={name: float(value) for name, value in one['solved'].items()},
+        )
+        for one in json.loads(kept.solves)
+    ]
+
+
+def event_facts(event: Event) -> dict[str, Any]:
+    """Return what an entry says of an event, besides its stamp."""
+    record = record_of('', Memory(event=event))
+    return {name: getattr(record, name) for name in EVENT} | {
+        'duration_s': seconds(event.stamp - event.start),
+        'advice': event.advice.text,
+    }
+
+
+def point_facts(point: MachinePoint) -> dict[str, float]:
+    """Return where an axis was, in the machine frame."""
+    return {
+        'speed_rad_s': point.speed,
+        'axial_load_N': point.axial_load,
+        'temperature_degC': celsius(point.temperature),
+    }
+
+
+def totals_facts(totals: Totals) -> dict[str, float]:
+    """Return sums as an entry says them: times in [s]."""
+    return {f'{name}_s': seconds(getattr(totals, name)) for name in TIMES if name != 'since'} | {
+        'revolutions': totals.revolutions,
+        'energy_lost_J': totals.energy_lost,
+        'since_ns': totals.since,
+    }
