@@ -213,7 +213,9 @@ def constant_or(real):
         for name in Found.__dataclass_fields__:
             if hasattr(numbers, name):
                 number = getattr(numbers, name)
-                setattr(found, name, number if valid or not isinstance(number, float) else math.nan)
+                setattr(
+                    found, name, number if valid or not isinstance(number, float) else math.nan
+                )
 
     return look_up
 

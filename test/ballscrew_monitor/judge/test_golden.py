@@ -1,11 +1,11 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-The judgement gives the golden rows, which an earlier implementation of it made of the same events.
+The judgement gives the golden rows, which an earlier one made of the same events.
 
-The events come from all scenarios of `bags/`, from the nominal cycle and from lists that meet every
-refusal, command and correction; the surface is a small one of the closed form with spreads and a
-masked node. `golden_rows.npz` holds columns of four tables. Their names tell what they hold:
+The events come from all scenarios of `bags/`, from the nominal cycle and from lists that meet
+every refusal, command and correction; the surface is a small one of the closed form with spreads
+and a masked node. `golden_rows.npz` holds columns of four tables. Their names tell what they hold:
 
 * `run_`: name, settings and kept memory as JSON.
 * `event_`: kind of KINDS, source, value, stamps, and -1 for what there is none of. A tick, an
@@ -132,9 +132,7 @@ def fed(monitor, event, golden):
     elif kind == 'correct':
         pull = table(golden, 'pull_', slice(None))[int(event.value)]
         solved = {name: getattr(pull, f'solved_{name}') for name in FIELDS}
-        monitor.use_surface(
-            monitor.surface.with_correction(pull, types.SimpleNamespace(**solved))
-        )
+        monitor.use_surface(monitor.surface.with_correction(pull, types.SimpleNamespace(**solved)))
     else:
         monitor.reset_totals()
     return None

@@ -223,7 +223,9 @@ def test_a_loop_of_the_clock_opens_the_gates(core):
     core.feed(monitor, core.motion(10.0, force=-100.0))
     state = core.feed(monitor, core.motion(10.0, start=START + STEP, force=-300.0))[-1]
     assert state.verdict.gates == (Gate.LIGHT_LOAD,)
-    assert core.feed(monitor, core.motion(10.0, start=SECOND, force=-300.0))[-1].verdict.gates == ()
+    assert (
+        core.feed(monitor, core.motion(10.0, start=SECOND, force=-300.0))[-1].verdict.gates == ()
+    )
 
 
 def test_a_tick_of_an_earlier_time_forgets_the_future(core):

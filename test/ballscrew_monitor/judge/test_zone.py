@@ -6,8 +6,14 @@ import math
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.judgement import Code, Gate, Level, Zone
-from ballscrew_monitor.judge.records import EVENT_BEGINS, EVENT_ENDS, LIGHT_LOAD, Memory, Row
-from ballscrew_monitor.judge.records import STANDSTILL
+from ballscrew_monitor.judge.records import (
+    EVENT_BEGINS,
+    EVENT_ENDS,
+    LIGHT_LOAD,
+    Memory,
+    Row,
+    STANDSTILL,
+)
 from ballscrew_monitor.judge.views import event_of
 from ballscrew_monitor.judge.zone import follow_excursion, hold_level, set_zone, shut_gates
 from hypothesis import given
