@@ -1,11 +1,17 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Where a node is: its domain and discovery, who else is there, and which domains are in use."""
+"""What is seen and heard in a ROS graph: domain, nodes, topics, and an input as nodes take it."""
 
+import math
 import os
 from pathlib import Path
+from typing import Any
 
-from ballscrew_monitor.core.doctor import Surroundings
+from ballscrew_monitor.core.conversions import seconds
+from ballscrew_monitor.core.doctor import Heard, Surroundings
+from ballscrew_monitor.core.health import Tracker
+from ballscrew_monitor.core.inputs import Input, InputSample, Why
+from rclpy.clock import Clock
 from rclpy.node import Node
 
 UDP = Path('/proc/net/udp')
@@ -48,3 +54,51 @@ def domains_of(udp_table: str) -> list[int]:
         if 0 <= domain <= MOST_DOMAIN and offset in OFFSETS:
             found.add(domain)
     return sorted(found)
+
+
+class Hearing:
+    """The messages of one input: their health, their numbers, and the time between them."""
+
+    def __init__(
+        self, source: Input, clock: Clock, *, timeout: int, max_future: int, max_lag: int
+    ) -> None:
+        """Begin to listen on a clock; times [ns]."""
+        self._source, self._clock, self._max_future = source, clock, max_future
+        self._tracker = Tracker(source.source, configured=True, timeout=timeout, max_lag=max_lag)
+        self.messages = 0
+        self._numbers: list[float] = []
+        self._last: int | None = None  # [ns]
+        self._longest_gap = 0  # [ns]
+
+    def take(self, message: Any) -> None:
+        """Take a message."""
+        self.messages += 1
+        now = self._clock.now().nanoseconds
+        event = self._source.read(message, now=now, max_future=self._max_future)
+        if isinstance(event, InputSample):
+            self._tracker.accept(event)
+            self._keep(event, now)
+        elif event.why is Why.OTHER_JOINTS:
+            self._tracker.drop(event.joints)
+        else:
+            self._tracker.refuse(event)
+
+    def _keep(self, sample: InputSample, now: int) -> None:
+        scaling = self._source.scaling
+        self._numbers.append((sample.value - scaling.shift) / scaling.factor)
+        self._longest_gap = max(self._longest_gap, self._silence(now))
+        self._last = now
+
+    def _silence(self, now: int) -> int:
+        """Return the time since the last sample [ns], 0 before the first."""
+        return 0 if self._last is None else now - self._last
+
+    def heard(self) -> Heard:
+        """Return what has come until now."""
+        now = self._clock.now().nanoseconds
+        return Heard(
+            health=self._tracker.health(now),
+            low=min(self._numbers, default=math.nan),
+            high=max(self._numbers, default=math.nan),
+            longest_gap=seconds(max(self._longest_gap, self._silence(now))),
+        )

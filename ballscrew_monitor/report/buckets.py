@@ -14,7 +14,7 @@ from typing import Any
 
 from ballscrew_monitor.report.encoding import codes as encoded_codes
 from ballscrew_monitor.report.encoding import doubles, floats, packed
-from ballscrew_monitor.report.room import BUCKETS
+from ballscrew_monitor.report.page_budget import BUCKETS
 import numpy as np
 from numpy.typing import NDArray
 

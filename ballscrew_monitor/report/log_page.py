@@ -8,27 +8,47 @@ import math
 from typing import Any
 
 from ballscrew_monitor.core.conversions import seconds
-from ballscrew_monitor.report import grounds, observed, parts
+from ballscrew_monitor.recordings.declared import plain
+from ballscrew_monitor.report import observed, parts, provenance
 from ballscrew_monitor.report.case import AxisCase, LogCase
-from ballscrew_monitor.report.course import coarse_bytes, course_record, event_bytes
 from ballscrew_monitor.report.encoding import script_json
-from ballscrew_monitor.report.map_record import map_record
+from ballscrew_monitor.report.map_record import map_legend, operating_map, OperatingMap
 from ballscrew_monitor.report.markup import element, joined, Markup, swatch
 from ballscrew_monitor.report.page import CHARTS, page
-from ballscrew_monitor.report.room import axis_rooms, AxisRoom, PAGE_BYTES, shares_of_worst
+from ballscrew_monitor.report.page_budget import (
+    axis_budgets,
+    AxisBudget,
+    PAGE_BYTES,
+    shares_of_worst,
+)
+from ballscrew_monitor.report.time_series import (
+    BAR_LEGEND,
+    coarse_bytes,
+    event_bytes,
+    series_record,
+)
 from ballscrew_monitor.report.verdict import verdicts_of
 
 
-def report_page(log: LogCase) -> str:
-    """Return the page of a recording."""
-    rooms = axis_rooms(log.axes)
-    maps = [map_record(case, room.path_points) for case, room in zip(log.axes, rooms, strict=True)]
-    body = _body(log, maps, rooms)
-    bare = _page(log, body, [{'map': chart} for chart in maps])
+def maps_of(log: LogCase) -> list[OperatingMap]:
+    """Return the maps of all axes, as a page has room for them."""
+    budgets = axis_budgets(log.axes)
+    return [
+        operating_map(case, budget.path_points)
+        for case, budget in zip(log.axes, budgets, strict=True)
+    ]
+
+
+def report_page(log: LogCase, maps: Sequence[OperatingMap] | None = None) -> str:
+    """Return the page of a recording; its maps may have been made before."""
+    maps = maps_of(log) if maps is None else maps
+    budgets = axis_budgets(log.axes)
+    body = _body(log, maps, budgets)
+    bare = _page(log, body, [{'map': plain(chart)} for chart in maps])
     records = [
-        {'id': _id(number), 'map': chart, 'course': course}
+        {'id': _id(number), 'map': plain(chart), 'course': course}
         for number, (chart, course) in enumerate(
-            zip(maps, _courses(log, rooms, PAGE_BYTES - len(bare.encode())), strict=True)
+            zip(maps, _courses(log, budgets, PAGE_BYTES - len(bare.encode())), strict=True)
         )
     ]
     return _page(log, body, records)
@@ -39,33 +59,35 @@ def _page(log: LogCase, body: Markup, records: Sequence[Mapping[str, Any]]) -> s
     return page(f'Ball screw report: {log.name}', body, scripts=CHARTS, data=data)
 
 
-def _courses(log: LogCase, rooms: Sequence[AxisRoom], spare: float) -> list[dict[str, Any]]:
+def _courses(log: LogCase, budgets: Sequence[AxisBudget], spare: float) -> list[dict[str, Any]]:
     """Return the courses of all axes, which share what is to spare of the page [bytes]."""
-    axes = list(zip(log.axes, rooms, strict=True))
+    axes = list(zip(log.axes, budgets, strict=True))
     spare -= sum(coarse_bytes(*axis) for axis in axes)
     shares = shares_of_worst(spare, log.axes, [event_bytes(*axis) for axis in axes])
     made: list[dict[str, Any]] = []
     left = 0.0  # what an axis did not take is for the next one
-    for (case, room), share in zip(axes, shares, strict=True):
-        made.append(course_record(case, share + left, room))
+    for (case, budget), share in zip(axes, shares, strict=True):
+        made.append(series_record(case, share + left, budget))
         left += share - len(script_json(made[-1]['fine']))
     return made
 
 
-def _body(log: LogCase, maps: Sequence[Mapping[str, Any]], rooms: Sequence[AxisRoom]) -> Markup:
+def _body(log: LogCase, maps: Sequence[OperatingMap], budgets: Sequence[AxisBudget]) -> Markup:
     return element(
         'main',
         element('h1', f'Ball screw report: {log.name}'),
         element('p', _when(log), class_='muted'),
         *(parts.verdict_part(verdict) for verdict in verdicts_of(log)),
-        *grounds.caution(log.axes),
+        *provenance.caution(log.axes),
         *(element('p', f'Note: {note}', class_='hint') for note in log.notes),
         element(
             'noscript', element('p', 'The charts need JavaScript; all else is here without it.')
         ),
         *(
-            _axis_part(_id(number), case, chart, room, log)
-            for number, (case, chart, room) in enumerate(zip(log.axes, maps, rooms, strict=True))
+            _axis_part(_id(number), case, chart, budget, log)
+            for number, (case, chart, budget) in enumerate(
+                zip(log.axes, maps, budgets, strict=True)
+            )
         ),
     )
 
@@ -90,7 +112,7 @@ def _date(stamp: int) -> str:
 
 
 def _axis_part(
-    name: str, case: AxisCase, chart: Mapping[str, Any], room: AxisRoom, log: LogCase
+    name: str, case: AxisCase, chart: OperatingMap, budget: AxisBudget, log: LogCase
 ) -> Markup:
     summary = case.outcome.summary()
     known = [] if summary is None else [parts.tiles(case, summary)]
@@ -98,11 +120,11 @@ def _axis_part(
         'section',
         element('h2', f'Axis {case.axis}'),
         *known,
-        element('h3', f'Operating map at {chart["temperature"]:g} °C oil'),
+        element('h3', f'Operating map at {chart.temperature:g} °C oil'),
         element('div', class_='map'),
-        _map_legend(chart, case),
+        _legend(map_legend(case, chart)),
         *([] if summary is None else [parts.shares(case, summary)]),
-        parts.events_part(case, room.events),
+        parts.events_part(case, budget.events),
         element('h3', 'Course over time'),
         element(
             'p',
@@ -110,49 +132,15 @@ def _axis_part(
             class_='muted screen',
         ),
         element('div', class_='series'),
-        _bar_legend(),
+        _legend([((kind,), text) for kind, text in BAR_LEGEND]),
         observed.torque_part(case),
         observed.inputs_part(case),
-        observed.gaps_part(case, room.gaps),
-        grounds.assumptions_part(case, log.parameters),
+        observed.gaps_part(case, budget.gaps),
+        provenance.assumptions_part(case, log.parameters),
         id=name,
     )
 
 
-def _map_legend(chart: Mapping[str, Any], case: AxisCase) -> Markup:
-    limits, degrees = case.settings.limits, f'{chart["temperature"]:g} °C'
-    entries = [
-        (swatch('zone'), f'optimal zone at {degrees}'),
-        (swatch('heat'), 'time spent, darker is longer'),
-        (swatch('path', 'line'), 'path'),
-        (swatch('rcs', 'line'), f'RCS {limits.rcs:g}: left of it metal pierces the oil film'),
-        (swatch('efficiency', 'line'), f'efficiency {100 * limits.efficiency:g} %'),
-        (swatch('hatch', 'dots'), 'light load: efficiency is not judged'),
-        (swatch('film', 'line', '2 3'), 'film ratio Λ 1 and 3'),
-    ]
-    if chart['others']:
-        text = 'RCS limit with the coldest and the warmest oil'
-        entries.insert(4, (swatch('rcs', 'line', '6 4'), text))
-    if chart['banded']:
-        text = 'RCS limit with the thinnest and the thickest boundary film'
-        entries.insert(4, (swatch('rcs', 'line', '8 3 2 3'), text))
-    return _legend(entries)
-
-
-def _bar_legend() -> Markup:
-    return _legend(
-        [
-            (swatch('optimal'), 'optimal, no warning'),
-            (swatch('outside'), 'outside the zone, warning'),
-            (swatch('unjudged'), 'not judged, not known yet'),
-            (swatch('boundary'), 'boundary'),
-            (swatch('mixed'), 'mixed'),
-            (swatch('hydrodynamic'), 'hydrodynamic'),
-            (swatch('warning-shade'), 'during a warning; over the film ratio a bar'),
-        ]
-    )
-
-
-def _legend(entries: Sequence[tuple[Markup, str]]) -> Markup:
-    items = (element('li', joined([sample, text])) for sample, text in entries)
+def _legend(entries: Sequence[tuple[tuple[str, ...], str]]) -> Markup:
+    items = (element('li', joined([swatch(*sample), text])) for sample, text in entries)
     return element('ul', *items, class_='legend')

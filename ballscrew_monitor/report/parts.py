@@ -20,7 +20,7 @@ from ballscrew_monitor.report.markup import (
     TableCell,
     TableRow,
 )
-from ballscrew_monitor.report.room import MOST_ROWS
+from ballscrew_monitor.report.page_budget import MOST_ROWS
 from ballscrew_monitor.report.verdict import AxisVerdict
 
 SIGNS = {'>=': '≥'}

@@ -6,11 +6,12 @@ from collections.abc import Iterable, Mapping
 import dataclasses
 import math
 from pathlib import Path
+import shutil
 from typing import Any
 
 from ballscrew_monitor.report.case import AxisCase, LogCase
 from ballscrew_monitor.report.inputs_seen import inputs_seen, InputSeen
-from ballscrew_monitor.report.logs import PAGE
+from ballscrew_monitor.report.logs import EVENTS, JUDGED, PAGE, PICTURE, STATES, SUMMARY
 from ballscrew_monitor.report.verdict import AxisVerdict, verdicts_of
 from surrogate.files import json_text, replace_file
 from surrogate.tasks.table import write_table
@@ -53,12 +54,19 @@ def replace_report(made: Path, out: Path) -> None:
     products = {path.relative_to(made) for path in made.rglob('*') if path.is_file()} - {
         Path(PAGE)
     }
-    for name in products:
+    for name in {*products, Path(PICTURE)}:
         (out / name).unlink(missing_ok=True)
     (made / PAGE).replace(out / PAGE)
     for name in products:
         (out / name).parent.mkdir(exist_ok=True)
         (made / name).replace(out / name)
+
+
+def remove_report(out: Path) -> None:
+    """Remove a report from `out`, its page last."""
+    shutil.rmtree(out / JUDGED, ignore_errors=True)
+    for name in (STATES, EVENTS, SUMMARY, PICTURE, PAGE):
+        (out / name).unlink(missing_ok=True)
 
 
 def write_events(path: Path, log: LogCase) -> None:

@@ -16,8 +16,8 @@ from ballscrew_monitor.node.parameters import read_file
 from ballscrew_monitor.node.topic import Arrival
 from ballscrew_monitor.node.topics import absolute, input_topics
 from ballscrew_monitor.recordings.bag import Bag
-from ballscrew_monitor.recordings.keeper import Keeper, KeepSettings
 from ballscrew_monitor.recordings.own_recording import OwnRecording
+from ballscrew_monitor.recordings.retention import KeepSettings, Retention
 import pytest
 from rclpy.serialization import deserialize_message
 from scenario import generate, PARAMETERS
@@ -46,10 +46,10 @@ class Frames(list):
         return True
 
     def close(self):
-        keeper = Keeper(self.folder, ALWAYS)
+        retention = Retention(self.folder, ALWAYS)
         for frame in self:
-            keeper.take(frame, 0.0)
-        keeper.close()
+            retention.take(frame, 0.0)
+        retention.close()
 
 
 class Listener:

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a report rests on, and how each is known."""
 
-from ballscrew_monitor.report.grounds import assumptions_part, caution
+from ballscrew_monitor.report.provenance import assumptions_part, caution
 import pytest
 
 

@@ -10,7 +10,12 @@ from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.report import log_page
 from ballscrew_monitor.report.case import LogCase
 from ballscrew_monitor.report.log_page import report_page
-from ballscrew_monitor.report.room import axis_rooms, fair_shares, MOST_ROWS, shares_of_worst
+from ballscrew_monitor.report.page_budget import (
+    axis_budgets,
+    fair_shares,
+    MOST_ROWS,
+    shares_of_worst,
+)
 import numpy as np
 import pytest
 
@@ -62,14 +67,14 @@ def _case(judged, name, numbers, events):
 @pytest.fixture
 def one_map(monkeypatch):
     """Let all axes of a page have the map of the first one, which takes long to make."""
-    made, make = [], log_page.map_record
+    made, make = [], log_page.operating_map
 
     def make_once(case, points):
         if not made:
             made.append(make(case, points))
         return made[0]
 
-    monkeypatch.setattr(log_page, 'map_record', make_once)
+    monkeypatch.setattr(log_page, 'operating_map', make_once)
 
 
 def courses_of(page):
@@ -121,6 +126,6 @@ def test_every_sample_is_for_the_worst_events_of_all_axes(judged):
 
 def test_a_few_axes_have_all_and_many_as_much_as_there_is(judged):
     quiet = judged.case([judged.columns()])
-    assert axis_rooms([quiet])[0].buckets == axis_rooms([quiet] * 4)[0].buckets == 3000
-    rooms = axis_rooms([quiet] * 16)
+    assert axis_budgets([quiet])[0].buckets == axis_budgets([quiet] * 4)[0].buckets == 3000
+    rooms = axis_budgets([quiet] * 16)
     assert {(room.buckets, room.path_points, room.events) for room in rooms} == {(750, 1500, 0)}

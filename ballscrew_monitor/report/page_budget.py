@@ -12,18 +12,18 @@ from collections.abc import Sequence
 import dataclasses
 
 from ballscrew_monitor.report.case import AxisCase, badness
-from ballscrew_monitor.report.stretches import WORST
 
 PAGE_BYTES = 4_950_000
 FEW = 4  # axes of which all is shown
 MANY = 16  # axes from which on the tables of all have fewer rows, too
 BUCKETS, PATH_POINTS = 3000, 6000
+WORST = 50  # events of an axis about which every sample is kept
 MOST_ROWS = 1000
 """Rows of a table of which there may be any number; the worst are shown."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class AxisRoom:
+class AxisBudget:
     """Most buckets in time, points of the path, and rows of events and of gaps."""
 
     buckets: int = BUCKETS
@@ -32,14 +32,14 @@ class AxisRoom:
     gaps: int = MOST_ROWS
 
 
-def axis_rooms(cases: Sequence[AxisCase]) -> list[AxisRoom]:
-    """Return the room of each axis of a page."""
+def axis_budgets(cases: Sequence[AxisCase]) -> list[AxisBudget]:
+    """Return the budget of each axis of a page."""
     part = min(1.0, FEW / max(1, len(cases)))
     rows = FEW * MOST_ROWS * min(1.0, MANY / max(1, len(cases)))
     events = fair_shares(rows, [min(MOST_ROWS, len(case.outcome.events)) for case in cases])
     gaps = fair_shares(rows, [min(MOST_ROWS, len(case.survey.speed_gaps)) for case in cases])
     return [
-        AxisRoom(
+        AxisBudget(
             buckets=max(1, int(part * BUCKETS)),
             path_points=max(1, int(part * PATH_POINTS)),
             events=int(event_rows),
