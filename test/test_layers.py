@@ -34,7 +34,6 @@ NUMERICAL = {
 PLOTTING = {'surrogate.plotting.style'}  # for the picture of a page alone
 TASKS = {
     'surrogate.tasks.pool',
-    'surrogate.tasks.table',
     'surrogate.tasks.worker',
     'surrogate.tasks.workers',
 }

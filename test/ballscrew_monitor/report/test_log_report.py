@@ -13,7 +13,7 @@ from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
 from ballscrew_monitor.recordings.replay import replay
 from ballscrew_monitor.report.log_report import JUDGED_SHARE, report_log, STORED_SHARE
 from ballscrew_monitor.report.parameters import LogParameters, parameters_for
-from ballscrew_monitor.report.scratch import remove_left
+from ballscrew_monitor.report.store import remove_left
 from ballscrew_msgs.msg import BallScrewState
 from diagnostic_msgs.msg import DiagnosticArray
 import polars as pl
