@@ -44,10 +44,10 @@ from ballscrew_monitor.core.differentiation import PositionSettings
 from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, StampSource, Why
 from ballscrew_monitor.core.judgement import Code, Limits
 from ballscrew_monitor.core.memory import Memory
-from ballscrew_monitor.judge.monitor import Monitor
 from ballscrew_monitor.core.shelving import Shelving
 from ballscrew_monitor.core.state import Event, Instant, MonitorSettings, State
 from ballscrew_monitor.core.tally import Totals
+from ballscrew_monitor.judge.monitor import Monitor
 from ballscrew_monitor.node.axis import build_axis
 from ballscrew_monitor.node.parameters import read_file
 from ballscrew_monitor.recordings.bag import Bag

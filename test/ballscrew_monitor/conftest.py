@@ -23,11 +23,11 @@ from ballscrew_monitor.core.estimate import MachinePoint, PointSource, PointVali
 from ballscrew_monitor.core.fields import message_class
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.core.judgement import Limits
-from ballscrew_monitor.judge.monitor import Monitor
 from ballscrew_monitor.core.state import MonitorSettings
 from ballscrew_monitor.cycle.domain import DOMAINS, free_domain, held
 from ballscrew_monitor.cycle.node_process import child_environment
 from ballscrew_monitor.cycle.shared_memory import remove_stale, SHARED_MEMORY
+from ballscrew_monitor.judge.monitor import Monitor
 from ballscrew_monitor.node.solver_process import MODULE
 from ballscrew_msgs.msg import BallScrewState
 from diagnostic_msgs.msg import DiagnosticArray

@@ -11,8 +11,8 @@ from ballscrew_monitor.core.derived_load import LoadDerivation
 from ballscrew_monitor.core.differentiation import PositionSettings
 from ballscrew_monitor.core.inputs import InputSample, Source
 from ballscrew_monitor.core.judgement import Limits
-from ballscrew_monitor.judge.monitor import Monitor
 from ballscrew_monitor.core.state import MonitorSettings
+from ballscrew_monitor.judge.monitor import Monitor
 from hypothesis import given, settings
 from hypothesis import strategies as st
 import pytest

@@ -8,10 +8,10 @@ from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.inputs import InputSample, Source
 from ballscrew_monitor.core.judgement import Level
 from ballscrew_monitor.core.memory import after_restart, Memory, RESTARTED
-from ballscrew_monitor.judge.monitor import Monitor
 from ballscrew_monitor.core.shelving import NOT_SHELVED, Shelving
 from ballscrew_monitor.core.state import Event
 from ballscrew_monitor.core.tally import Totals
+from ballscrew_monitor.judge.monitor import Monitor
 import pytest
 
 START = 1000 * SECOND

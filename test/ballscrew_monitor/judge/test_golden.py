@@ -132,9 +132,7 @@ def fed(monitor, event, golden):
     elif kind == 'correct':
         pull = table(golden, 'pull_', slice(None))[int(event.value)]
         solved = {name: getattr(pull, f'solved_{name}') for name in FIELDS}
-        monitor.use_surface(
-            monitor.surface.with_correction(pull, types.SimpleNamespace(**solved))
-        )
+        monitor.use_surface(monitor.surface.with_correction(pull, types.SimpleNamespace(**solved)))
     else:
         monitor.reset_totals()
     return None

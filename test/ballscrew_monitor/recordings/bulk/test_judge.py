@@ -10,8 +10,8 @@ from ballscrew_monitor.core.conversions import Direction
 from ballscrew_monitor.core.estimate import MachinePoint
 from ballscrew_monitor.core.fields import OtherJoints
 from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, StampSource, Why
-from ballscrew_monitor.judge.monitor import Monitor
 from ballscrew_monitor.core.remembered import NAMES, recall
+from ballscrew_monitor.judge.monitor import Monitor
 from ballscrew_monitor.recordings.bulk.entries import entries_of, joined, Kind, made, TICK_SOURCE
 from ballscrew_monitor.recordings.bulk.judge import AxisJudge
 from ballscrew_monitor.recordings.columns import COLUMNS, JudgedColumns
