@@ -9,9 +9,9 @@ from pathlib import Path
 import sys
 
 from ballscrew_monitor.cycle.plan import Plan
-from ballscrew_monitor.node.axis import Axis
-from ballscrew_monitor.node.parameters import names_in_file
-from ballscrew_monitor.node.topics import absolute, output
+from ballscrew_monitor.settings.axis import Axis
+from ballscrew_monitor.settings.parameters import names_in_file
+from ballscrew_monitor.settings.topics import absolute, output
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.log_facts import LogFacts, parameters_text, PREFIX
 from ballscrew_monitor.recordings.summary import Summarizer
