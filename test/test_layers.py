@@ -38,7 +38,14 @@ TASKS = {
     'surrogate.tasks.worker',
     'surrogate.tasks.workers',
 }
-LOOKUP = {'surrogate', 'surrogate.files', 'surrogate.surface', 'surrogate.units'}
+LOOKUP = {
+    'surrogate',
+    'surrogate.files',
+    'surrogate.surface',
+    'surrogate.surface.compiled',
+    'surrogate.surface.records',
+    'surrogate.units',
+}
 
 FLOORS = ('core', 'node', 'clients', 'recordings', 'report', 'cycle')
 """Folders of the online half, the lowest first."""

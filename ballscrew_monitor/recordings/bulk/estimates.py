@@ -3,8 +3,7 @@
 """
 Estimates and zones of many rows at once.
 
-What `estimate` and `judge` say of a single point. Rows so near to a limit that rounding could tell
-them apart are handed to these two.
+What `estimate` and `judge` say of a single point, by the same lookup.
 
 """
 
@@ -28,16 +27,11 @@ from ballscrew_monitor.recordings.columns import BY_VALIDITY, LIGHT_LOAD, Reason
 from ballscrew_monitor.recordings.rows import gate_bits, reason_of
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.surface import FILM_RATIO_LIMITS, ManyLookup, Surface, Validity
+from surrogate.surface import FILM_RATIO_LIMITS, look_up_many, Surface, Validity
 
 Array = NDArray[np.float64]
 Codes = NDArray[np.uint8]
 
-FIELDS = ('friction_torque', 'rcs', 'film_ratio')
-NEAR = 1e-9
-"""Distance from a limit, over the limit, below which a single lookup decides [-]."""
-SMALL = 1e-2
-"""Difference over its larger part that rounding may have changed by 1e-12 of it [-]."""
 _REASONS = np.array([BY_VALIDITY[each] for each in sorted(BY_VALIDITY)], dtype=np.uint8)
 
 
@@ -130,7 +124,6 @@ class Estimator:
     def __init__(self, surface: Surface, limits: Limits) -> None:
         """Lay out the tables of the surface."""
         self.surface, self.limits = surface, limits
-        self._lookup = ManyLookup(surface, FIELDS)
 
     def single(self, point: MachinePoint) -> tuple[PointEstimate, Verdict]:
         """Return estimate and verdict of one point, as the monitor makes them."""
@@ -139,27 +132,20 @@ class Estimator:
 
     def __call__(self, points: Points) -> Judgements:
         """Return what the model says of points."""
-        with np.errstate(invalid='ignore', over='ignore', divide='ignore'):
-            made, doubtful = self._judge(points)
-        for at in np.flatnonzero(doubtful).tolist():
-            point = points.point(at)
-            made.put(at, point, *self.single(point))
-        return made
-
-    def _judge(self, points: Points) -> tuple[Judgements, NDArray[np.bool_]]:
         lost = _lost(points)
         opposing = np.where(
             points.direction == Direction.POSITIVE, 0.0 - points.axial_load, points.axial_load
         )
-        found = self._lookup(np.abs(points.speed), opposing, points.temperature)
-        validity = np.where(points.direction == 0, PointValidity.UNKNOWN, found.validity)
+        found = look_up_many(self.surface, np.abs(points.speed), opposing, points.temperature)
+        validity = np.where(points.direction == 0, PointValidity.UNKNOWN, found['validity'])
         validity = np.where(lost.any(axis=0), PointValidity.NO_INPUT, validity).astype(np.uint8)
         valid = validity == Validity.VALID
-        friction, raw, log_film = (np.where(valid, found.values[name], np.nan) for name in FIELDS)
-        rcs, film = np.clip(raw, 0.0, 1.0), np.exp(log_film)
-        efficiency, driving = _torques(friction, opposing, self.surface.lead)
+        names = ('friction_torque', 'rcs', 'film_ratio', 'efficiency', 'driving_torque')
+        friction, rcs, film, efficiency, driving = (
+            np.where(valid, found[name], np.nan) for name in names
+        )
         gates = self._gates(points)
-        made = Judgements(
+        return Judgements(
             validity=validity,
             efficiency=efficiency,
             rcs=rcs,
@@ -168,16 +154,12 @@ class Estimator:
             machine_torque=np.where(
                 points.direction == Direction.NEGATIVE, 0.0 - driving, driving
             ),
-            worst_nut=_nuts(np.where(valid, found.worst_contact, -1), points.axial_load),
+            worst_nut=_nuts(np.where(valid, found['worst_contact'], -1), points.axial_load),
             regime=_regimes(film),
             contact_state=self._contact_states(rcs),
             gates=gates,
             **self._zones(validity, gates, rcs, efficiency, lost),
         )
-        near = self._near(made) | (found.doubtful & ~lost.any(axis=0))
-        hair = (raw < 0.0) | (raw > 1.0) | ((raw > 0.0) & (raw < 1e-12))
-        cancelled = np.abs(driving) < SMALL * friction
-        return made, near | (valid & (hair | cancelled))
 
     def _gates(self, points: Points) -> Codes:
         still = (np.abs(points.speed) < self.limits.standstill_speed) & (
@@ -215,20 +197,6 @@ class Estimator:
             'sign': np.where(known, sign, Sign.NONE).astype(np.uint8),
         }
 
-    def _near(self, made: Judgements) -> NDArray[np.bool_]:
-        """Tell which points are so near to a limit that rounding could move them over it."""
-        limits = self.limits
-        at = (
-            (made.rcs, (limits.rcs, limits.rcs_to_clear, DOMINANT_RCS)),
-            (made.efficiency, (limits.efficiency, limits.efficiency_to_clear)),
-            (made.film_ratio, FILM_RATIO_LIMITS),
-        )
-        near = np.zeros(len(made.zone), dtype=bool)
-        for values, each in at:
-            for limit in each:
-                near |= np.abs(values - limit) <= NEAR * limit
-        return near
-
 
 def _lost(points: Points) -> NDArray[np.bool_]:
     """Return a row for speed, load and temperature each: whether it cannot be used."""
@@ -249,16 +217,6 @@ def _lost(points: Points) -> NDArray[np.bool_]:
 def _lost_reasons(lost: NDArray[np.bool_]) -> Codes:
     single = np.select(list(lost), [Reason.NO_SPEED, Reason.NO_LOAD, Reason.NO_TEMPERATURE])
     return np.where(lost.sum(axis=0) == 1, single, Reason.NO_INPUTS).astype(np.uint8)
-
-
-def _torques(friction: Array, opposing: Array, lead: float) -> tuple[Array, Array]:
-    """Return efficiency [-] and driving torque [N m], as for a single point."""
-    ideal = np.abs(opposing) * lead / (2 * math.pi)
-    against = ideal / (ideal + friction)
-    along = np.maximum((ideal - friction) / ideal, 0.0)
-    idle = np.where(np.isnan(friction), np.nan, 0.0)
-    efficiency = np.where(opposing > 0, against, np.where(opposing < 0, along, idle))
-    return efficiency, opposing * lead / (2 * math.pi) + friction
 
 
 def _nuts(contact: NDArray[np.int64], load: Array) -> Codes:
