@@ -33,7 +33,14 @@ NUMERICAL = {
 }
 PLOTTING = {'surrogate.plotting.style'}  # for the picture of a page alone
 TASKS = {'surrogate.tasks.pool', 'surrogate.tasks.worker', 'surrogate.tasks.workers'}
-LOOKUP = {'surrogate', 'surrogate.files', 'surrogate.surface', 'surrogate.units'}
+LOOKUP = {
+    'surrogate',
+    'surrogate.files',
+    'surrogate.surface',
+    'surrogate.surface.compiled',
+    'surrogate.surface.records',
+    'surrogate.units',
+}
 
 FLOORS = (
     ('core',),
