@@ -30,7 +30,7 @@ from geometry_msgs.msg import WrenchStamped
 import numpy as np
 from rclpy.serialization import serialize_message
 from sensor_msgs.msg import JointState
-from surrogate.surface import ManyLookup, shipped_surface, Surface
+from surrogate.surface import look_up_many, shipped_surface, Surface
 
 BEGIN = 1_700_000_000_000_000_000  # [ns]
 CYCLE = 20.0  # [s] of a motion to and fro
@@ -107,14 +107,13 @@ def report(bag: Bag, out: Path) -> LogResult:
 def lookups(repeats: int) -> float:
     """Return how many points are looked up in a second."""
     surface, drawn = Surface.load(shipped_surface()), np.random.default_rng(1)
-    lookup = ManyLookup(surface)
     slow, fast = np.log(surface.speed_range)
     points = (
         np.exp(drawn.uniform(slow, fast, POINTS)),
         drawn.uniform(*surface.load_range, POINTS),
         drawn.uniform(*surface.temperature_range, POINTS),
     )
-    return POINTS / spent(repeats, lambda: [lookup(*points)])
+    return POINTS / spent(repeats, lambda: [look_up_many(surface, *points)])
 
 
 def measure(asked: argparse.Namespace, folder: Path) -> None:

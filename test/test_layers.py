@@ -31,14 +31,16 @@ NUMERICAL = {
     'xarray',
     'yaml',
 }
-PLOTTING = {'surrogate.plotting.style'}  # for the pictures of a cycle alone
-TASKS = {
-    'surrogate.tasks.pool',
-    'surrogate.tasks.table',
-    'surrogate.tasks.worker',
-    'surrogate.tasks.workers',
+PLOTTING = {'surrogate.plotting.style'}  # for the picture of a page alone
+TASKS = {'surrogate.tasks.pool', 'surrogate.tasks.worker', 'surrogate.tasks.workers'}
+LOOKUP = {
+    'surrogate',
+    'surrogate.files',
+    'surrogate.surface',
+    'surrogate.surface.compiled',
+    'surrogate.surface.records',
+    'surrogate.units',
 }
-LOOKUP = {'surrogate', 'surrogate.files', 'surrogate.surface', 'surrogate.units'}
 
 FLOORS = (
     ('core',),
@@ -121,11 +123,11 @@ def test_online_half_imports_the_lookup_alone(path: Path) -> None:
     more = {
         'cli.py': {'surrogate.cli', 'surrogate.parameters'},
         'options.py': {'surrogate.cli'},
-        # The bar of both halves, text alone, and the style of all pictures.
-        'cycle': PLOTTING | {'surrogate.progress'},
+        # The bar of both halves, text alone.
+        'cycle': {'surrogate.progress'},
         'recordings': {'surrogate.progress'},
-        # The page over many recordings, on the workers of the sweeps.
-        'report': {'surrogate.progress'} | TASKS,
+        # The page over many recordings, on the workers of the sweeps, and the style of pictures.
+        'report': {'surrogate.progress'} | PLOTTING | TASKS,
     }
     allowed = LOOKUP | more.get(path.name, set()) | more.get(path.parent.name, set())
     assert {name for name in imports(path) if name.split('.')[0] == 'surrogate'} <= allowed

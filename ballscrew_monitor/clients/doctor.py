@@ -16,8 +16,7 @@ import threading
 import time
 from typing import Any
 
-from ballscrew_monitor.clients.hearing import Hearing
-from ballscrew_monitor.clients.surroundings import surroundings
+from ballscrew_monitor.clients.surroundings import Hearing, surroundings
 from ballscrew_monitor.core.conversions import nanoseconds
 from ballscrew_monitor.core.fields import message_class, number_fields
 from ballscrew_monitor.core.inputs import Input, make_input, Source

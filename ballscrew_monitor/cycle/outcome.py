@@ -1,13 +1,28 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What a run came to, and the words for what was lost in it."""
+"""What a run came to: the words for what was lost, the summary, and the report."""
 
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 import dataclasses
 from pathlib import Path
+import sys
 
-from ballscrew_msgs.msg import BallScrewState, InputHealth, PointResult
+from ballscrew_monitor.cycle.plan import Plan
+from ballscrew_monitor.settings.axis import Axis
+from ballscrew_monitor.settings.parameters import names_in_file
+from ballscrew_monitor.settings.topics import absolute, output
+from ballscrew_monitor.recordings.bag import Bag
+from ballscrew_monitor.recordings.log_facts import LogFacts, parameters_text, PREFIX
+from ballscrew_monitor.recordings.summary import Summarizer
+from ballscrew_monitor.recordings.words import counted
+from ballscrew_monitor.report.logs import PAGE, PICTURE
+from ballscrew_monitor.report.parameters import parameters_for
+from ballscrew_msgs.msg import BallScrewState, InputHealth, OutOfZone, PointResult
+from rclpy.serialization import deserialize_message
+from surrogate.files import InputError
+
+LOG = 'node.log'
 
 # Why a sample was not judged, where the sentence in the state names a number of its own.
 REASONS = {
@@ -66,6 +81,22 @@ def unjudged(states: Iterable[BallScrewState]) -> Counter[str]:
     )
 
 
+def losses(plan: Plan, outcome: Outcome) -> tuple[str, ...]:
+    """Return a sentence for each axis of which a speed message was not judged."""
+    return tuple(
+        loss(
+            outcome,
+            axis.name,
+            sent=_sent(outcome, axis),
+            expected=plan.expected[axis.name],
+            unjudged=unjudged(_states(outcome, axis)),
+            rate=plan.rate,
+        )
+        for axis in plan.axes
+        if outcome.judged(axis.name) != plan.expected[axis.name]
+    )
+
+
 def loss(
     outcome: Outcome,
     axis: str,
@@ -96,3 +127,79 @@ def loss(
         + (', '.join(parts) or 'the recording does not say why')
         + (f'; at {rate:g}x messages may be lost, a lower rate helps' if rate > 1 and lost else '')
     )
+
+
+def facts(plan: Plan, outcome: Outcome) -> dict[str, str]:
+    """Return what a recording says of itself: the parameters of the run, and what became of it."""
+    notes = tuple(
+        f'axis {axis}: during the run the node judged '
+        f'{counted(int(state.judged), "speed sample")} and raised '
+        f'{counted(int(state.event_id), "warning")}, '
+        f'{state.totals.outside_time:.1f} s were outside the zone'
+        for axis, state in outcome.states.items()
+    )
+    said = names_in_file(plan.params)
+    made = LogFacts(
+        source=plan.bag.path.name, parameters={}, mapping={}, assumptions=(), notes=notes
+    )
+    return made.texts() | {f'{PREFIX}parameters': parameters_text(plan.values, said)}
+
+
+def report(plan: Plan, outcome: Outcome) -> None:
+    """Print the summary of every axis, write the report of the recording, and name the files."""
+    if not outcome.recorded:
+        print(f'files       {plan.out / LOG}; nothing was recorded')
+        return
+    recorded = Bag(outcome.recording)
+    for axis in plan.axes:
+        print('\n'.join(_axis_lines(outcome, axis, recorded)))
+    made = _write_report(recorded, plan)
+    size = outcome.recording.stat().st_size / 1e6
+    files = ', '.join(str(plan.out / name) for name in (*made, LOG))
+    print(
+        f'\nnode        {outcome.cpu_time:.1f} s of processor time, its start included; '
+        f'messages sent at most {1e3 * outcome.lateness:.0f} ms late\n'
+        f'files       {outcome.recording} ({size:.1f} MB), {files}'
+    )
+
+
+def _write_report(recorded: Bag, plan: Plan) -> list[str]:
+    """Write the report of a recording; return its files that a person opens, if there are any."""
+    # Imported here: it takes longer than everything else of the program.
+    from ballscrew_monitor.report.log_report import report_log
+
+    try:
+        report_log(recorded, plan.out, parameters_for(recorded, None, plan.params), picture=True)
+    except InputError as error:  # of a run that ended too early
+        print(f'ballscrew: no report: {error}', file=sys.stderr)
+    return [name for name in (PAGE, PICTURE) if (plan.out / name).exists()]
+
+
+def _axis_lines(outcome: Outcome, axis: Axis, recorded: Bag) -> Iterator[str]:
+    """Yield what the node said of an axis, in words."""
+    summarizer = Summarizer()
+    for state in _states(outcome, axis):
+        summarizer.add_state(state)
+    for message in recorded.messages({output(axis.name, 'out_of_zone')}):
+        summarizer.add_event(deserialize_message(message.data, OutOfZone))
+    summary = summarizer.result()
+    yield (
+        f'\naxis {axis.name}: screw {axis.surface.screw_name}, oil {axis.surface.oil_name}, '
+        f'{axis.surface.tier.replace("_", "-")} model'
+    )
+    yield (
+        f'samples     {_sent(outcome, axis)} sent, {outcome.judged(axis.name)} judged, '
+        f'{summary.states if summary else 0} states recorded'
+    )
+    yield from [] if summary is None else summary.lines()
+
+
+def _sent(outcome: Outcome, axis: Axis) -> int:
+    return outcome.sent[absolute(axis.inputs[-1].topic)]
+
+
+def _states(outcome: Outcome, axis: Axis) -> Iterator[BallScrewState]:
+    """Yield the recorded states of an axis."""
+    if outcome.recorded:
+        for message in Bag(outcome.recording).messages({output(axis.name, 'state')}):
+            yield deserialize_message(message.data, BallScrewState)

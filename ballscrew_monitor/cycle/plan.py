@@ -10,6 +10,7 @@ from typing import Any
 
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.replay import speed_messages
+from ballscrew_monitor.report.logs import JUDGED
 from ballscrew_monitor.settings import parameters
 from ballscrew_monitor.settings.axis import Axis, build_axis
 from ballscrew_monitor.settings.topics import input_topics, with_types
@@ -45,14 +46,16 @@ def plan(bag: Path, params: Path, out: Path, rate: float) -> Plan:
     InputError before anything is started or written.
 
     """
-    if importlib.util.find_spec('matplotlib') is None:  # asked early, imported late: it is slow
-        raise ModuleNotFoundError('no picture without matplotlib', name='matplotlib')
+    for name in ('matplotlib', 'polars', 'contourpy'):  # asked early, imported late: they are slow
+        if importlib.util.find_spec(name) is None:
+            raise ModuleNotFoundError(f'no report without {name}', name=name)
     if not 0.0 < rate <= 1000.0:
         raise InputError(f'rate is {rate:g}, allowed is above 0 to 1000')
     opened = Bag(bag, salvage=True)
     values = with_types(parameters.read_file(params), opened.types)
     axes = [build_axis(name, values) for name in values['axes']]
-    if any(file.resolve() == (out / f'{RECORDING}.mcap').resolve() for file in opened.files):
+    taken = {(out / f'{RECORDING}.mcap').resolve(), (out / JUDGED / f'{JUDGED}.mcap').resolve()}
+    if any(file.resolve() in taken for file in opened.files):
         raise InputError(
             f'bag {bag} would be overwritten by the recording in {out}, '
             'another output directory must be given'

@@ -20,12 +20,12 @@ import threading
 from ballscrew_monitor.core.interrupts import DONE, FAILED, interrupts, SIGNALLED
 from ballscrew_monitor.cycle.domain import free_domain, is_free
 from ballscrew_monitor.cycle.node_process import confined, NodeProcess, ros_environment
-from ballscrew_monitor.cycle.outcome import Outcome
+from ballscrew_monitor.cycle.outcome import facts, LOG, losses, Outcome, report
 from ballscrew_monitor.cycle.plan import Plan, RECORDING
-from ballscrew_monitor.cycle.report import LOG, losses, picture, report
 from ballscrew_monitor.cycle.shared_memory import remove_stale
 from ballscrew_monitor.cycle.supervision import RunFailure, Supervision
 from ballscrew_monitor.recordings.bag_writer import BagWriter
+from ballscrew_monitor.report.products import remove_report
 from surrogate.files import InputError
 
 LOCK = '.lock'
@@ -42,7 +42,7 @@ def run(made: Plan) -> int:
         )
         for note in made.bag.notes:
             print(f'ballscrew: {note}', file=sys.stderr)
-        _remove_pictures(made)
+        remove_report(made.out)  # the recording of this run would belie an earlier one
         outcome = _supervise(made, stop)
     if interrupted:
         print(f'ballscrew: interrupted, recorded so far: {outcome.recording}', file=sys.stderr)
@@ -52,12 +52,6 @@ def run(made: Plan) -> int:
         print(f'ballscrew: {sentence}', file=sys.stderr)
     report(made, outcome)
     return FAILED if failures else DONE
-
-
-def _remove_pictures(made: Plan) -> None:
-    """Remove the pictures of an earlier run, which the recording of this one would belie."""
-    for axis in made.axes:
-        picture(made, axis).unlink(missing_ok=True)
 
 
 def _supervise(made: Plan, stop: threading.Event) -> Outcome:
@@ -75,9 +69,11 @@ def _supervise(made: Plan, stop: threading.Event) -> Outcome:
         writer = stack.enter_context(BagWriter(made.out, RECORDING))
         supervision = stack.enter_context(Supervision(made, node, writer, domain))
         try:
-            return supervision.carry_out(stop)
+            outcome = supervision.carry_out(stop)
         except RunFailure as failure:
-            return supervision.outcome(str(failure))
+            outcome = supervision.outcome(str(failure))
+        writer.add_metadata(facts(made, outcome))
+        return outcome
 
 
 @contextlib.contextmanager

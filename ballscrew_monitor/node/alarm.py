@@ -11,7 +11,7 @@ from ballscrew_monitor.core.judgement import Level
 from ballscrew_monitor.core.shelving import NOT_SHELVED, Shelving
 from ballscrew_monitor.core.state import State
 from ballscrew_monitor.messages.state_messages import out_of_zone_message
-from ballscrew_monitor.node.retention import Retention
+from ballscrew_monitor.node.kept_axes import KeptAxes
 from ballscrew_monitor.node.state_records import event_facts, Kind, point_facts, totals_facts
 from ballscrew_monitor.settings.axis import Axis
 from ballscrew_msgs.msg import OutOfZone
@@ -40,14 +40,14 @@ class Alarm:
         node: LifecycleNode,
         axis: Axis,
         publisher: Publisher,
-        retention: Retention,
+        kept: KeptAxes,
         record: Callable[[str, Any], None],
     ) -> None:
         """Speak through a `publisher` of the node; `record` is given each message and topic."""
         self._node = node
         self._axis = axis
         self._publisher = publisher
-        self._retention = retention
+        self._kept = kept
         self._record = record
 
     def publish(self) -> None:
@@ -131,7 +131,7 @@ class Alarm:
 
     def remember(self) -> None:
         """Keep the sums, the event and the shelving."""
-        self._retention.remember(self._axis.name, self._axis.monitor.kept)
+        self._kept.remember(self._axis.name, self._axis.monitor.kept)
 
     @property
     def _now(self) -> int:
@@ -148,7 +148,7 @@ class Alarm:
 
     def _note(self, kind: Kind, **facts: Any) -> None:
         memory = self._axis.monitor.kept
-        self._retention.note(kind, self._axis.name, memory=memory, **facts)
+        self._kept.note(kind, self._axis.name, memory=memory, **facts)
 
     # Two functions: rclpy ties one severity to one place in the code.
     def _say(self, text: str) -> None:

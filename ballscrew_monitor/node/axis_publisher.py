@@ -24,8 +24,8 @@ from ballscrew_monitor.messages.state_messages import (
     TIERS,
 )
 from ballscrew_monitor.node.alarm import Alarm
+from ballscrew_monitor.node.kept_axes import KeptAxes
 from ballscrew_monitor.node.output_topics import LatchedTopics, PlainTopics, quiet_publishers
-from ballscrew_monitor.node.retention import Retention
 from ballscrew_monitor.node.state_records import (
     Corrections,
     corrections_of,
@@ -57,14 +57,14 @@ class AxisPublisher:
         values: Mapping[str, Any],
         *,
         latched: LatchedTopics,
-        retention: Retention,
+        kept: KeptAxes,
         record: Callable[[str, Any], None],
         changed: Callable[[Iterable[str], str], None],
     ) -> None:
         """
         Make the publishers, which stay silent until the node is active; `latched` are there.
 
-        `values` are the parameters as they are at any time; `retention` keeps corrections and what
+        `values` are the parameters as they are at any time; `kept` keeps corrections and what
         happens. `record` is given each message with its topic, `changed` the axis and what has
         changed it.
 
@@ -74,7 +74,7 @@ class AxisPublisher:
         self.refused = ''  # why the last reload of the surface was
         self.defect = ''  # of the program, at a sample that it could not judge
         self._values = values
-        self._retention = retention
+        self._kept = kept
         self._record = record
         self._changed = changed
         self._node = node
@@ -89,7 +89,7 @@ class AxisPublisher:
         simulated = node.get_parameter('use_sim_time').value
         promise = state_qos(axis.name, values, simulated=simulated)
         self._state = make(BallScrewState, f'~/{axis.name}/state', promise)
-        self.alarm = Alarm(node, axis, latched.event, retention, record)
+        self.alarm = Alarm(node, axis, latched.event, kept, record)
         self._info = latched.info
         self._plain = None
         if values[f'{axis.name}.plain_topics']:
@@ -191,18 +191,18 @@ class AxisPublisher:
         self.use_surface(surface)
         problem = self._save()
         kept = f'not kept: {problem}' if problem else 'kept'
-        self._retention.note(Kind.CORRECTION, self.name, point=point_facts(point), result=kept)
+        self._kept.note(Kind.CORRECTION, self.name, point=point_facts(point), result=kept)
         return True, f'corrected the surface about this point, {kept}'
 
     def _save(self) -> str:
         """Keep the corrections; return why that failed, or nothing."""
         surface = self.surface
         kept = corrections_of(self.name, surface.base_sha256, surface.corrections)
-        return self._retention.state.keep_corrections(kept)
+        return self._kept.state.keep_corrections(kept)
 
     def restore(self) -> str:
         """Take up the corrections that were kept; return what became of them, if there are any."""
-        found = self._retention.state.recall(Corrections(self.name))
+        found = self._kept.state.recall(Corrections(self.name))
         kept = solves_of(found)
         if not kept:
             return ''
@@ -230,7 +230,7 @@ class AxisPublisher:
         if before and same:
             surface = corrected(surface, before)
         self.use_surface(surface)
-        self._retention.note(Kind.RELOAD_SURFACE, self.name, sha256=surface.sha256)
+        self._kept.note(Kind.RELOAD_SURFACE, self.name, sha256=surface.sha256)
         self.refused = ''
         if not before:
             return ''

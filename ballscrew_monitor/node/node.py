@@ -16,10 +16,10 @@ from ballscrew_monitor.node.alarm import end_all
 from ballscrew_monitor.node.axis_publisher import AxisPublisher, STATE_QOS
 from ballscrew_monitor.node.chronicle import Chronicle
 from ballscrew_monitor.node.intake import Intake
+from ballscrew_monitor.node.kept_axes import KeptAxes
 from ballscrew_monitor.node.output_topics import LatchedTopics
 from ballscrew_monitor.node.parameter_store import ParameterStore
 from ballscrew_monitor.node.restart_state import RestartState, state_directory
-from ballscrew_monitor.node.retention import Retention
 from ballscrew_monitor.node.shelve_service import ShelveService
 from ballscrew_monitor.node.solve_server import SolveServer
 from ballscrew_monitor.node.solver_process import SolverProcess
@@ -80,7 +80,7 @@ class BallscrewMonitor(LifecycleNode):
             state_directory(self._values['state_dir'], self.get_fully_qualified_name()),
             limit=round(self._values['state_limit'] * MEGABYTE),
         )
-        self._retention = Retention(
+        self._kept = KeptAxes(
             self, state, lambda: self._axis_publishers, self._on_kept, clock=self._steady
         )
         self._solves = SolveServer(self, SolverProcess, self._find_publisher)
@@ -116,7 +116,7 @@ class BallscrewMonitor(LifecycleNode):
             resolve = self.resolve_topic_name
             check_overrides(self._store.given, named_topics(self._values, resolve))
             axes, reasons = build_axes(self._values, resolve)
-            self._chronicle.configure(self._retention.state.folder)
+            self._chronicle.configure(self._kept.state.folder)
         except InputError as error:
             axes, reasons = [], dict.fromkeys(self._values['axes'], str(error))
         self._failed = {name: f'not configured: {why}' for name, why in reasons.items()}
@@ -131,13 +131,13 @@ class BallscrewMonitor(LifecycleNode):
                 axis,
                 self._values,
                 latched=self._latched[axis.name],
-                retention=self._retention,
+                kept=self._kept,
                 record=self._chronicle.record,
                 changed=self._chronicle.describe,
             )
             for axis in axes
         }
-        self._retention.restore()
+        self._kept.restore()
         self._store.ceilings = {
             f'{axis.name}.publish_period': longest_period(axis.name, self._values) for axis in axes
         }
@@ -192,8 +192,8 @@ class BallscrewMonitor(LifecycleNode):
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Stop to judge; levels, events and totals stand."""
         self._stop()
-        self._retention.remember_all()
-        self._retention.state.flush()
+        self._kept.remember_all()
+        self._kept.state.flush()
         result = super().on_deactivate(state)
         self._publish_diagnostics()
         return result
@@ -209,7 +209,7 @@ class BallscrewMonitor(LifecycleNode):
         """Stop and forget the axes."""
         self._finalized = True
         self._clear('shut down')
-        self._retention.close()
+        self._kept.close()
         return SUCCESS
 
     def on_error(self, state: LifecycleState) -> TransitionCallbackReturn:
@@ -226,7 +226,7 @@ class BallscrewMonitor(LifecycleNode):
         """Keep what a service has changed at once; return why that failed, or nothing."""
         self._chronicle.describe(axes, name)
         self._publish_diagnostics(list(axes))
-        return self._retention.state.flush()
+        return self._kept.state.flush()
 
     def _stop(self, reason: str = '') -> None:
         """Judge no longer; for a `reason` events end, while they are still recorded."""
@@ -248,8 +248,8 @@ class BallscrewMonitor(LifecycleNode):
         for publisher in self._axis_publishers.values():
             publisher.close()
         self._axis_publishers, self._failed = {}, {}
-        self._retention.state.flush()
-        self._retention.state.forget_problems()
+        self._kept.state.flush()
+        self._kept.state.forget_problems()
         self._store.locked = False
         self._reason = reason
         self._publish_diagnostics()
@@ -303,7 +303,7 @@ class BallscrewMonitor(LifecycleNode):
         stood = self._grid.stood(now.nanoseconds, self._steady.now().nanoseconds)
         statuses = self._statuses(self._values['axes'] if axes is None else axes, stood)
         if axes is None:
-            statuses += self._retention.statuses()
+            statuses += self._kept.statuses()
         message = DiagnosticArray(status=statuses)
         message.header.stamp = now.to_msg()
         self._diagnostics.publish(message)

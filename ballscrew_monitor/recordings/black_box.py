@@ -18,7 +18,7 @@ import sys
 import time
 
 from ballscrew_monitor.recordings.frames import read_frames
-from ballscrew_monitor.recordings.keeper import Keeper, KeepSettings
+from ballscrew_monitor.recordings.retention import KeepSettings, Retention
 
 NICENESS = 5
 
@@ -28,13 +28,13 @@ def main() -> None:
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, signal.SIG_IGN)
     os.nice(NICENESS)
-    keeper = Keeper(Path(sys.argv[1]), KeepSettings(**json.loads(sys.argv[2])))
+    retention = Retention(Path(sys.argv[1]), KeepSettings(**json.loads(sys.argv[2])))
     said = ''
     for frame in read_frames(sys.stdin.buffer):
-        keeper.take(frame, time.monotonic())
-        said = _say(keeper.problem, said)
-    keeper.close()
-    _say(keeper.problem, said)
+        retention.take(frame, time.monotonic())
+        said = _say(retention.problem, said)
+    retention.close()
+    _say(retention.problem, said)
 
 
 def _say(problem: str, said: str) -> str:

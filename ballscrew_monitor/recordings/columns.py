@@ -10,17 +10,19 @@ of some rows only. A long recording is many blocks of rows, so that it need not 
 
 from collections.abc import Mapping, Sequence
 import dataclasses
+import enum
 from typing import Any
 
-from ballscrew_monitor.core.conversions import seconds
-from ballscrew_monitor.core.estimate import PointSource
+from ballscrew_monitor.core.conversions import Direction, Nut, seconds
+from ballscrew_monitor.core.estimate import ContactState, PointSource, PointValidity
 from ballscrew_monitor.core.input_status import InputStatus
 from ballscrew_monitor.core.inputs import Source, Why
-from ballscrew_monitor.core.judgement import Limits, Zone
+from ballscrew_monitor.core.judgement import Level, Limits, Reason, Zone
 from ballscrew_monitor.core.tally import Totals
 from ballscrew_monitor.recordings.summary import EventRecord, Summary
 import numpy as np
 from numpy.typing import NDArray
+from surrogate.surface import Regime
 
 Floats = NDArray[np.float64]
 Times = NDArray[np.int64]
@@ -29,6 +31,11 @@ Flags = NDArray[np.bool_]
 
 STANDSTILL, LIGHT_LOAD = 1, 2
 """Bits of the column `gates`."""
+
+
+def _column(kind: Any = np.uint8, *, codes: type[enum.IntEnum] | None = None) -> Any:
+    """Declare an array by the type of its numbers, and by the class of codes without a hole."""
+    return dataclasses.field(metadata={'kind': kind, 'codes': codes})
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -47,34 +54,34 @@ class JudgedColumns:
     """
 
     axis: str
-    stamp: Times
-    log_time: Times
-    speed: Floats
-    axial_load: Floats
-    temperature: Floats
-    motor_torque: Floats
-    speed_source: Codes
-    axial_load_source: Codes
-    temperature_source: Codes
-    motor_torque_source: Codes
-    direction: Codes
-    validity: Codes
-    efficiency: Floats
-    rcs: Floats
-    film_ratio: Floats
-    friction_torque: Floats
-    machine_torque: Floats
-    axial_load_uncertainty: Floats
-    worst_nut: Codes
-    regime: Codes
-    contact_state: Codes
-    gates: Codes
-    zone: Codes
-    reason: Codes
-    level: Codes
-    event_id: NDArray[np.uint32]
-    tick: Flags
-    published: Flags
+    stamp: Times = _column(np.int64)
+    log_time: Times = _column(np.int64)
+    speed: Floats = _column(np.float64)
+    axial_load: Floats = _column(np.float64)
+    temperature: Floats = _column(np.float64)
+    motor_torque: Floats = _column(np.float64)
+    speed_source: Codes = _column(codes=PointSource)
+    axial_load_source: Codes = _column(codes=PointSource)
+    temperature_source: Codes = _column(codes=PointSource)
+    motor_torque_source: Codes = _column(codes=PointSource)
+    direction: Codes = _column(codes=Direction)
+    validity: Codes = _column(codes=PointValidity)
+    efficiency: Floats = _column(np.float64)
+    rcs: Floats = _column(np.float64)
+    film_ratio: Floats = _column(np.float64)
+    friction_torque: Floats = _column(np.float64)
+    machine_torque: Floats = _column(np.float64)
+    axial_load_uncertainty: Floats = _column(np.float64)
+    worst_nut: Codes = _column(codes=Nut)
+    regime: Codes = _column(codes=Regime)
+    contact_state: Codes = _column(codes=ContactState)
+    gates: Codes = _column(np.uint8)
+    zone: Codes = _column(codes=Zone)
+    reason: Codes = _column(codes=Reason)
+    level: Codes = _column(codes=Level)
+    event_id: NDArray[np.uint32] = _column(np.uint32)
+    tick: Flags = _column(np.bool_)
+    published: Flags = _column(np.bool_)
 
     def __len__(self) -> int:
         """Return the number of rows."""
@@ -108,37 +115,11 @@ class JudgedColumns:
         return np.diff(self.stamp, append=self.stamp[-1:])
 
 
-COLUMNS: dict[str, Any] = {
-    'stamp': np.int64,
-    'log_time': np.int64,
-    'speed': np.float64,
-    'axial_load': np.float64,
-    'temperature': np.float64,
-    'motor_torque': np.float64,
-    'speed_source': np.uint8,
-    'axial_load_source': np.uint8,
-    'temperature_source': np.uint8,
-    'motor_torque_source': np.uint8,
-    'direction': np.uint8,
-    'validity': np.uint8,
-    'efficiency': np.float64,
-    'rcs': np.float64,
-    'film_ratio': np.float64,
-    'friction_torque': np.float64,
-    'machine_torque': np.float64,
-    'axial_load_uncertainty': np.float64,
-    'worst_nut': np.uint8,
-    'regime': np.uint8,
-    'contact_state': np.uint8,
-    'gates': np.uint8,
-    'zone': np.uint8,
-    'reason': np.uint8,
-    'level': np.uint8,
-    'event_id': np.uint32,
-    'tick': np.bool_,
-    'published': np.bool_,
-}
+_ARRAYS = [one for one in dataclasses.fields(JudgedColumns) if one.metadata]
+COLUMNS = {one.name: one.metadata['kind'] for one in _ARRAYS}
 """Type of each array of `JudgedColumns`, in their order."""
+CODED = {one.name: one.metadata['codes'] for one in _ARRAYS if one.metadata['codes']}
+"""Class of the codes of each array that holds some."""
 
 
 def joined(blocks: Sequence[JudgedColumns]) -> JudgedColumns:

@@ -9,6 +9,7 @@ from typing import Any
 from ballscrew_monitor.core.conversions import SECOND, seconds
 from ballscrew_monitor.core.fields import stamp_of
 from ballscrew_monitor.core.state import Event
+from ballscrew_monitor.recordings.declared import plain, written
 from ballscrew_monitor.recordings.words import number, share
 from ballscrew_msgs.msg import BallScrewState, Finding, OutOfZone
 from surrogate.surface import REGIMES
@@ -22,6 +23,8 @@ RELATIONS = {
     Finding.CODE_RCS_HIGH: ('RCS', '>='),
     Finding.CODE_EFFICIENCY_LOW: ('efficiency', '<'),
 }
+SHOWN = ('event_id', 'start_s', 'duration_s', 'active', 'cause', 'worst_value', 'limit', 'advice')
+"""What the totals say of an event, by its keys."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -35,18 +38,18 @@ class EventRecord:
     """
 
     event_id: int
-    start: int
-    duration: float
+    start: int = written('ns', key='start_stamp')
+    duration: float = written('s')
     active: bool
     quantity: str
     relation: str
-    worst_value: float
     limit: float
+    worst_value: float
+    speed: float = written('rad_s', default=math.nan, compare=False)
+    axial_load: float = written('N', default=math.nan, compare=False)
+    target_speed: float = written('rad_s', default=math.nan, compare=False)
+    target_load: float = written('N', default=math.nan, compare=False)
     advice: str
-    speed: float = dataclasses.field(default=math.nan, compare=False)
-    axial_load: float = dataclasses.field(default=math.nan, compare=False)
-    target_speed: float = dataclasses.field(default=math.nan, compare=False)
-    target_load: float = dataclasses.field(default=math.nan, compare=False)
 
     @property
     def place(self) -> str:
@@ -83,19 +86,19 @@ class Summary:
     """
 
     axis: str
-    first: int
-    last: int
+    first: int = written('ns', key='first_stamp')
+    last: int = written('ns', key='last_stamp')
     states: int
     judged: int
-    running_time: float
-    unjudged_time: float
-    boundary_time: float
-    mixed_time: float
-    hydrodynamic_time: float
-    optimal_time: float
-    outside_time: float
+    running_time: float = written('s')
+    unjudged_time: float = written('s')
+    boundary_time: float = written('s')
+    mixed_time: float = written('s')
+    hydrodynamic_time: float = written('s')
+    optimal_time: float = written('s')
+    outside_time: float = written('s')
     revolutions: float
-    energy_lost: float
+    energy_lost: float = written('J')
     events: tuple[EventRecord, ...]
 
     @property
@@ -105,25 +108,14 @@ class Summary:
 
     def record(self) -> dict[str, Any]:
         """Return plain data for JSON; times of events are relative [s]."""
-        record = {
-            _with_unit(field.name): getattr(self, field.name)
-            for field in dataclasses.fields(self)
-            if field.name != 'events'
-        }
-        record['events'] = [self._event_record(event) for event in self.events]
-        return record
+        return plain(self) | {'events': [self._event_record(event) for event in self.events]}
 
     def _event_record(self, event: EventRecord) -> dict[str, Any]:
-        return {
-            'event_id': event.event_id,
+        own = plain(event) | {
             'start_s': self.since_first(event.start),
-            'duration_s': event.duration,
-            'active': event.active,
             'cause': f'{event.quantity} {event.relation} limit',
-            'worst_value': event.worst_value,
-            'limit': event.limit,
-            'advice': event.advice,
         }
+        return {key: own[key] for key in SHOWN}
 
     def since_first(self, stamp: int) -> float:
         """Return a stamp [ns] as time since the first state [s]."""
@@ -250,11 +242,3 @@ def _event_record(message: OutOfZone) -> EventRecord:
 
 def _rounded(value: float) -> str:
     return f'{value:.0f}' if abs(value) >= 100.0 else f'{value:.3g}'
-
-
-def _with_unit(name: str) -> str:
-    if name in ('first', 'last'):
-        return f'{name}_stamp_ns'
-    return (
-        f'{name}_s' if name.endswith('_time') else {'energy_lost': 'energy_lost_J'}.get(name, name)
-    )

@@ -14,6 +14,7 @@ from ballscrew_monitor.core.inputs import Source, Why, YEAR
 from ballscrew_monitor.core.links import Link
 from ballscrew_monitor.messages.doctor import Heard, InputFacts, known_range, unit_doubts
 from ballscrew_monitor.messages.reasons import slow_reason
+from ballscrew_monitor.recordings.declared import unwritten, written
 from ballscrew_monitor.recordings.words import duration, number
 from ballscrew_monitor.report.case import AxisCase, InputSetting
 from ballscrew_monitor.report.survey import Gaps, Span
@@ -68,25 +69,42 @@ class InputSeen:
 
     """
 
-    source: Source
-    origin: str
+    source: Source = unwritten()
+    origin: str = written(key='source')
     measured: bool
-    stated: bool = False
-    place: str = ''
+    stated: bool = unwritten(default=False)
+    place: str = written(key='read_from', default='')
     unit: str = ''
-    low: float = math.nan
-    high: float = math.nan
-    rate: float = math.nan
     rate_assumed: bool = False
     received: int = 0
     refused: str = ''
     left_out: int = 0
-    lost: int | None = None
-    numbered: bool = False
-    lag: float = math.nan
-    slow: bool = False
     gaps: Gaps = Gaps()
+    slow: bool = False
     hints: tuple[str, ...] = ()
+    lost: int | None = written(because='uncounted', default=None)
+    numbered: bool = unwritten(default=False)
+    lag: float = written('s', because='unstamped', default=math.nan)
+    low: float = written(key='lowest', because='silence', default=math.nan)
+    high: float = written(key='highest', because='silence', default=math.nan)
+    rate: float = written('Hz', because='silence', default=math.nan)
+
+    @property
+    def silence(self) -> str:
+        """Return why there is no number."""
+        return 'no valid sample was received' if self.place else 'the input is not recorded'
+
+    @property
+    def unstamped(self) -> str:
+        """Return why there is no lag."""
+        return 'its messages bear no stamp' if self.received else self.silence
+
+    @property
+    def uncounted(self) -> str:
+        """Return why it is not known how many messages were lost."""
+        if self.numbered:
+            return 'its publishers do not number them'
+        return 'the recording does not tell'
 
     @property
     def troubles(self) -> dict[Trouble, str]:

@@ -8,10 +8,11 @@ import math
 from typing import Any
 
 from ballscrew_monitor.core.conversions import seconds
+from ballscrew_monitor.recordings.declared import plain
 from ballscrew_monitor.report import observed, parts, provenance
 from ballscrew_monitor.report.case import AxisCase, LogCase
 from ballscrew_monitor.report.encoding import script_json
-from ballscrew_monitor.report.map_record import map_record
+from ballscrew_monitor.report.map_record import map_legend, operating_map, OperatingMap
 from ballscrew_monitor.report.markup import element, joined, Markup, swatch
 from ballscrew_monitor.report.page import CHARTS, page
 from ballscrew_monitor.report.page_budget import (
@@ -20,21 +21,32 @@ from ballscrew_monitor.report.page_budget import (
     PAGE_BYTES,
     shares_of_worst,
 )
-from ballscrew_monitor.report.time_series import coarse_bytes, event_bytes, time_series_record
+from ballscrew_monitor.report.time_series import (
+    BAR_LEGEND,
+    coarse_bytes,
+    event_bytes,
+    series_record,
+)
 from ballscrew_monitor.report.verdict import verdicts_of
 
 
-def report_page(log: LogCase) -> str:
-    """Return the page of a recording."""
+def maps_of(log: LogCase) -> list[OperatingMap]:
+    """Return the maps of all axes, as a page has room for them."""
     budgets = axis_budgets(log.axes)
-    maps = [
-        map_record(case, budget.path_points)
+    return [
+        operating_map(case, budget.path_points)
         for case, budget in zip(log.axes, budgets, strict=True)
     ]
+
+
+def report_page(log: LogCase, maps: Sequence[OperatingMap] | None = None) -> str:
+    """Return the page of a recording; its maps may have been made before."""
+    maps = maps_of(log) if maps is None else maps
+    budgets = axis_budgets(log.axes)
     body = _body(log, maps, budgets)
-    bare = _page(log, body, [{'map': chart} for chart in maps])
+    bare = _page(log, body, [{'map': plain(chart)} for chart in maps])
     records = [
-        {'id': _id(number), 'map': chart, 'course': course}
+        {'id': _id(number), 'map': plain(chart), 'course': course}
         for number, (chart, course) in enumerate(
             zip(maps, _courses(log, budgets, PAGE_BYTES - len(bare.encode())), strict=True)
         )
@@ -55,14 +67,12 @@ def _courses(log: LogCase, budgets: Sequence[AxisBudget], spare: float) -> list[
     made: list[dict[str, Any]] = []
     left = 0.0  # what an axis did not take is for the next one
     for (case, budget), share in zip(axes, shares, strict=True):
-        made.append(time_series_record(case, share + left, budget))
+        made.append(series_record(case, share + left, budget))
         left += share - len(script_json(made[-1]['fine']))
     return made
 
 
-def _body(
-    log: LogCase, maps: Sequence[Mapping[str, Any]], budgets: Sequence[AxisBudget]
-) -> Markup:
+def _body(log: LogCase, maps: Sequence[OperatingMap], budgets: Sequence[AxisBudget]) -> Markup:
     return element(
         'main',
         element('h1', f'Ball screw report: {log.name}'),
@@ -102,7 +112,7 @@ def _date(stamp: int) -> str:
 
 
 def _axis_part(
-    name: str, case: AxisCase, chart: Mapping[str, Any], budget: AxisBudget, log: LogCase
+    name: str, case: AxisCase, chart: OperatingMap, budget: AxisBudget, log: LogCase
 ) -> Markup:
     summary = case.outcome.summary()
     known = [] if summary is None else [parts.tiles(case, summary)]
@@ -110,9 +120,9 @@ def _axis_part(
         'section',
         element('h2', f'Axis {case.axis}'),
         *known,
-        element('h3', f'Operating map at {chart["temperature"]:g} °C oil'),
+        element('h3', f'Operating map at {chart.temperature:g} °C oil'),
         element('div', class_='map'),
-        _map_legend(chart, case),
+        _legend(map_legend(case, chart)),
         *([] if summary is None else [parts.shares(case, summary)]),
         parts.events_part(case, budget.events),
         element('h3', 'Course over time'),
@@ -122,7 +132,7 @@ def _axis_part(
             class_='muted screen',
         ),
         element('div', class_='series'),
-        _bar_legend(),
+        _legend([((kind,), text) for kind, text in BAR_LEGEND]),
         observed.torque_part(case),
         observed.inputs_part(case),
         observed.gaps_part(case, budget.gaps),
@@ -131,40 +141,6 @@ def _axis_part(
     )
 
 
-def _map_legend(chart: Mapping[str, Any], case: AxisCase) -> Markup:
-    limits, degrees = case.settings.limits, f'{chart["temperature"]:g} °C'
-    entries = [
-        (swatch('zone'), f'optimal zone at {degrees}'),
-        (swatch('heat'), 'time spent, darker is longer'),
-        (swatch('path', 'line'), 'path'),
-        (swatch('rcs', 'line'), f'RCS {limits.rcs:g}: left of it metal pierces the oil film'),
-        (swatch('efficiency', 'line'), f'efficiency {100 * limits.efficiency:g} %'),
-        (swatch('hatch', 'dots'), 'light load: efficiency is not judged'),
-        (swatch('film', 'line', '2 3'), 'film ratio Λ 1 and 3'),
-    ]
-    if chart['others']:
-        text = 'RCS limit with the coldest and the warmest oil'
-        entries.insert(4, (swatch('rcs', 'line', '6 4'), text))
-    if chart['banded']:
-        text = 'RCS limit with the thinnest and the thickest boundary film'
-        entries.insert(4, (swatch('rcs', 'line', '8 3 2 3'), text))
-    return _legend(entries)
-
-
-def _bar_legend() -> Markup:
-    return _legend(
-        [
-            (swatch('optimal'), 'optimal, no warning'),
-            (swatch('outside'), 'outside the zone, warning'),
-            (swatch('unjudged'), 'not judged, not known yet'),
-            (swatch('boundary'), 'boundary'),
-            (swatch('mixed'), 'mixed'),
-            (swatch('hydrodynamic'), 'hydrodynamic'),
-            (swatch('warning-shade'), 'during a warning; over the film ratio a bar'),
-        ]
-    )
-
-
-def _legend(entries: Sequence[tuple[Markup, str]]) -> Markup:
-    items = (element('li', joined([sample, text])) for sample, text in entries)
+def _legend(entries: Sequence[tuple[tuple[str, ...], str]]) -> Markup:
+    items = (element('li', joined([swatch(*sample), text])) for sample, text in entries)
     return element('ul', *items, class_='legend')

@@ -12,8 +12,9 @@ from ballscrew_monitor.recordings.replay import ignore
 from ballscrew_monitor.report.case import AxisCase, badness, LogCase
 from ballscrew_monitor.report.judged_bag import judged_bag
 from ballscrew_monitor.report.judging import judge_log, OnShare
-from ballscrew_monitor.report.log_page import report_page
-from ballscrew_monitor.report.logs import EVENTS, JUDGED, PAGE, STATES, SUMMARY
+from ballscrew_monitor.report.log_page import maps_of, report_page
+from ballscrew_monitor.report.logs import EVENTS, JUDGED, PAGE, PICTURE, STATES, SUMMARY
+from ballscrew_monitor.report.map_record import OperatingMap
 from ballscrew_monitor.report.parameters import LogParameters
 from ballscrew_monitor.report.products import replace_report, write_events, write_summary
 from ballscrew_monitor.report.store import RowStore
@@ -64,12 +65,18 @@ class LogResult:
 
 
 def report_log(
-    bag: Bag, out: Path, parameters: LogParameters, *, on_share: OnShare = ignore
+    bag: Bag,
+    out: Path,
+    parameters: LogParameters,
+    *,
+    on_share: OnShare = ignore,
+    picture: bool = False,
 ) -> LogResult:
     """
     Judge a recording; write page, states, events, summary and judged bag into `out`.
 
-    `on_share` is told which share of all that is done [-]. All is made in a hidden folder first:
+    `on_share` is told which share of all that is done [-]; a `picture` of the page is made too if
+    that is asked for. All is made in a hidden folder first:
     what stops it, be it an error or an interrupt, leaves what was in `out` before. Raises
     InputError when it cannot be read with the parameters.
 
@@ -88,10 +95,19 @@ def report_log(
         on_share(STORED_SHARE)
         write_events(made / EVENTS, log)
         write_summary(made / SUMMARY, log)
-        replace_file(made / PAGE, report_page(log).encode())
+        maps = maps_of(log)
+        replace_file(made / PAGE, report_page(log, maps).encode())
+        if picture and maps:
+            _draw(log, maps, made / PICTURE)
         replace_report(made, out)
         on_share(1.0)
         return _result(log)
+
+
+def _draw(log: LogCase, maps: Sequence[OperatingMap], path: Path) -> None:
+    from ballscrew_monitor.report.picture import draw_log  # slow to load, and seldom needed
+
+    draw_log(log, maps, path)
 
 
 def _result(log: LogCase) -> LogResult:

@@ -11,7 +11,7 @@ from surrogate.files import InputError
 
 _PART = re.compile(r'(.*)_(\d+)')  # file of a bag that was split
 PAGE, STATES, EVENTS, JUDGED = 'report.html', 'states.parquet', 'events.csv', 'judged'
-SUMMARY = 'summary.json'
+SUMMARY, PICTURE = 'summary.json', 'cycle.png'
 PRODUCTS = (JUDGED, STATES, EVENTS)
 """How a folder with a report is known, and what is no recording in it."""
 MOST_NAMED = 5  # tables that are left out

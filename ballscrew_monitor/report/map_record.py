@@ -1,8 +1,9 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The operating map of an axis as a page carries it: zone, borders, time spent, path, warnings."""
+"""The operating map of an axis for page and picture: zone, borders, time spent, path, warnings."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+import dataclasses
 import math
 from typing import Any
 
@@ -10,15 +11,16 @@ from ballscrew_monitor.core.conversions import celsius, SECOND
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.core.judgement import Limits, Zone
 from ballscrew_monitor.recordings.columns import JudgedColumns
-from ballscrew_monitor.recordings.operating_field import (
+from ballscrew_monitor.recordings.declared import written
+from ballscrew_monitor.report.case import AxisCase
+from ballscrew_monitor.report.encoding import floats, packed
+from ballscrew_monitor.report.operating_field import (
     Field,
     judged_speeds,
     loads_around,
     map_temperatures,
     sample,
 )
-from ballscrew_monitor.report.case import AxisCase
-from ballscrew_monitor.report.encoding import floats, packed
 from ballscrew_monitor.report.page_budget import PATH_POINTS
 from ballscrew_monitor.report.survey import opposing_loads, Span
 from contourpy import contour_generator
@@ -36,7 +38,73 @@ TOP, BELOW_TOP, MIDDLE = 0.96, 0.88, 0.7  # heights of the names of lines, as pa
 OUTSIDE, OPTIMAL, NO_NUMBER = 0, 1, 2  # codes of the cells of the zone
 
 
-def map_record(case: AxisCase, path_points: int = PATH_POINTS) -> dict[str, Any]:
+def longest_dwell(cells: Array) -> float:
+    """Return the longest time in a cell [s], 1 where there is none."""
+    return float(cells.max()) or 1.0
+
+
+def _ends(span: tuple[float, float]) -> dict[str, float]:
+    return dict(zip(('low', 'high'), span, strict=True))
+
+
+def _shape(cells: Array) -> dict[str, Any]:
+    return {'columns': cells.shape[1], 'rows': cells.shape[0]}
+
+
+def _zone_record(cells: Array) -> dict[str, Any]:
+    return _shape(cells) | {'cells': packed(cells.ravel())}
+
+
+def _dwell_record(cells: Array) -> dict[str, Any]:
+    return _shape(cells) | {'longest': longest_dwell(cells), 'cells': floats(cells)}
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class MapLine:
+    """Where a quantity has a level; its name is at a height, a part of that of the map."""
+
+    kind: str
+    label: str
+    height: float
+    points: Array = written(form=floats)
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class MapMark:
+    """A warning: its number, its place [rev/min], [N], and what its page shows of time [s]."""
+
+    number: int
+    speed: float
+    load: float
+    begin: float
+    end: float
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class OperatingMap:
+    """
+    The map of an axis at an oil temperature [degC], between speeds [rev/min] and loads [N].
+
+    Rows of the cells of zone (a code) and dwell [s] are of a load, columns of a speed. Points of
+    lines and path are speed and load in turn, NaN where a line is interrupted. `others`: borders
+    at other temperatures are among the lines; `banded`: so are those of other boundary films.
+
+    """
+
+    temperature: float
+    others: bool
+    banded: bool
+    speed: tuple[float, float] = written(form=_ends)
+    load: tuple[float, float] = written(form=_ends)
+    light_load: float
+    zone: Array = written(form=_zone_record)
+    lines: Sequence[MapLine]
+    dwell: Array = written(form=_dwell_record)
+    path: Array = written(form=floats)
+    events: Sequence[MapMark]
+
+
+def operating_map(case: AxisCase, path_points: int = PATH_POINTS) -> OperatingMap:
     """Return the map of an axis at the mean temperature of its oil in motion."""
     limits, surface, oil = case.settings.limits, case.surface, case.survey.oil
     speeds = judged_speeds(surface, limits.standstill_speed)
@@ -48,17 +116,17 @@ def map_record(case: AxisCase, path_points: int = PATH_POINTS) -> dict[str, Any]
     for degrees in others:
         border = sample(surface, degrees, speeds=speeds, loads=loads)
         lines.append(_line(border, border.rcs, limits.rcs, 'rcs_other', _degrees(degrees)))
-    return {
-        'temperature': mean,
-        'others': bool(others),
-        'banded': math.isfinite(field.band[0]),
-        'speed': {'low': speeds[0] / RPM, 'high': speeds[1] / RPM},
-        'load': {'low': loads[0], 'high': loads[1]},
-        'light_load': limits.light_load,
-        'zone': _zone(field, limits),
-        'lines': lines,
+    return OperatingMap(
+        temperature=mean,
+        others=bool(others),
+        banded=math.isfinite(field.band[0]),
+        speed=(speeds[0] / RPM, speeds[1] / RPM),
+        load=loads,
+        light_load=limits.light_load,
+        zone=_zone(field, limits),
+        lines=lines,
         **_visited(case, speeds, loads, path_points),
-    }
+    )
 
 
 def _celsius(oil: Span, reference: float) -> tuple[float, float, float]:
@@ -72,17 +140,16 @@ def _degrees(temperature: float) -> str:
     return f'{temperature:.0f} °C'
 
 
-def _zone(field: Field, limits: Limits) -> dict[str, Any]:
+def _zone(field: Field, limits: Limits) -> Array:
     """Return the zone in the cells between the points of the field."""
     middles = field.middles()
     optimal = middles.is_optimal(
         rcs=limits.rcs, efficiency=limits.efficiency, light_load=limits.light_load
     )
-    cells = np.where(np.isnan(middles.rcs), NO_NUMBER, np.where(optimal, OPTIMAL, OUTSIDE))
-    return {'columns': cells.shape[1], 'rows': cells.shape[0], 'cells': packed(cells.ravel())}
+    return np.where(np.isnan(middles.rcs), NO_NUMBER, np.where(optimal, OPTIMAL, OUTSIDE))
 
 
-def _lines(field: Field, limits: Limits, mean: float) -> list[dict[str, Any]]:
+def _lines(field: Field, limits: Limits, mean: float) -> list[MapLine]:
     shown = field.judged_efficiency(limits.light_load)
     percent = f'{100 * limits.efficiency:g} %'
     return [
@@ -113,13 +180,13 @@ def _line(
     height: float = BELOW_TOP,
     *,
     factor: float = 1.0,
-) -> dict[str, Any]:
+) -> MapLine:
     """Return where values are at a level, as points with breaks; speeds times a factor."""
     found: Any = contour_generator(factor * field.speed, field.load, values).lines(level)
     gap = np.full((1, 2), np.nan)
     parts: list[Array] = [part for line in found for part in (line, gap)]
     points = np.concatenate(parts[:-1]) if parts else np.empty((0, 2))
-    return {'kind': kind, 'label': label, 'height': height, 'points': floats(points.ravel())}
+    return MapLine(kind=kind, label=label, height=height, points=points)
 
 
 def _visited(
@@ -146,26 +213,26 @@ def _visited(
             inside = outside & (block.stamp >= event.start) & (block.stamp <= event.end)
             places[event.event_id].add(speed[inside] / RPM, load[inside])
     return {
-        'dwell': dwell.record(),
-        'path': floats(np.concatenate(path).ravel()),
+        'dwell': dwell.times,
+        'path': np.concatenate(path),
         'events': list(_marks(case, places)),
     }
 
 
-def _marks(case: AxisCase, places: dict[int, 'MeanPlace']) -> Iterable[dict[str, Any]]:
+def _marks(case: AxisCase, places: dict[int, 'MeanPlace']) -> Iterable[MapMark]:
     """Return where the worst events are on the map, the worst last, to be drawn on top."""
     for event in reversed(case.worst_first[:MARKED]):
         spot = places[event.event_id].middle
         if spot is not None:
             begin, end = case.since_first(event.start), case.since_first(event.end)
             margin = max(1.0, 0.2 * (end - begin))
-            yield {
-                'number': event.event_id,
-                'speed': spot[0],
-                'load': spot[1],
-                'begin': begin - margin,
-                'end': end + margin,
-            }
+            yield MapMark(
+                number=event.event_id,
+                speed=spot[0],
+                load=spot[1],
+                begin=begin - margin,
+                end=end + margin,
+            )
 
 
 class MeanPlace:
@@ -196,21 +263,33 @@ class TimeSpent:
         """Begin at zero; speeds [rad/s], loads [N]; times above `max_gap` [ns] are not counted."""
         self._edges = np.linspace(*loads, ROWS + 1), np.geomspace(*speeds, COLUMNS + 1)
         self._max_gap = max_gap
-        self._times = np.zeros((ROWS, COLUMNS))
+        self.times = np.zeros((ROWS, COLUMNS))
 
     def add(self, block: JudgedColumns, speed: Array, load: Array) -> None:
         """Add a block: amount of the speed [rad/s] and opposing load [N] of its rows."""
         steps = np.where(block.time_to_next <= self._max_gap, block.time_to_next, 0)
         known = np.isfinite(load) & (steps > 0)
-        self._times += np.histogram2d(
+        self.times += np.histogram2d(
             load[known], speed[known], bins=self._edges, weights=steps[known] / SECOND
         )[0]
 
-    def record(self) -> dict[str, Any]:
-        """Return the cells as a page carries them [s]."""
-        return {
-            'columns': COLUMNS,
-            'rows': ROWS,
-            'longest': float(self._times.max()) or 1.0,
-            'cells': floats(self._times),
-        }
+
+def map_legend(case: AxisCase, chart: OperatingMap) -> list[tuple[tuple[str, ...], str]]:
+    """Return what is on a map: colour, shape and dashes of each sample, and its words."""
+    limits, degrees = case.settings.limits, f'{chart.temperature:g} °C'
+    entries: list[tuple[tuple[str, ...], str]] = [
+        (('zone',), f'optimal zone at {degrees}'),
+        (('heat',), 'time spent, darker is longer'),
+        (('path', 'line'), 'path'),
+        (('rcs', 'line'), f'RCS {limits.rcs:g}: left of it metal pierces the oil film'),
+        (('efficiency', 'line'), f'efficiency {100 * limits.efficiency:g} %'),
+        (('hatch', 'dots'), 'light load: efficiency is not judged'),
+        (('film', 'line', '2 3'), 'film ratio Λ 1 and 3'),
+    ]
+    if chart.others:
+        text = 'RCS limit with the coldest and the warmest oil'
+        entries.insert(4, (('rcs', 'line', '6 4'), text))
+    if chart.banded:
+        text = 'RCS limit with the thinnest and the thickest boundary film'
+        entries.insert(4, (('rcs', 'line', '8 3 2 3'), text))
+    return entries

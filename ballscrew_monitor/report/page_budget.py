@@ -12,12 +12,12 @@ from collections.abc import Sequence
 import dataclasses
 
 from ballscrew_monitor.report.case import AxisCase, badness
-from ballscrew_monitor.report.stretches import WORST
 
 PAGE_BYTES = 4_950_000
 FEW = 4  # axes of which all is shown
 MANY = 16  # axes from which on the tables of all have fewer rows, too
 BUCKETS, PATH_POINTS = 3000, 6000
+WORST = 50  # events of an axis about which every sample is kept
 MOST_ROWS = 1000
 """Rows of a table of which there may be any number; the worst are shown."""
 

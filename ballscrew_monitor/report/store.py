@@ -5,40 +5,27 @@ Judged rows as a Parquet file, and as blocks that can be read again while a repo
 
 The blocks wait in a directory of their own until all are there, so that a recording larger than
 memory becomes one file, and a report can go through them twice. Codes are stored by their names.
+The directory is hidden and does not outlive the report: a process keeps a lock in it as long as it
+lives, so that one that was left by a killed process is known from one in use, also on a network
+file system that knows locks.
 
 """
 
 from collections.abc import Iterator
 import contextlib
 import enum
+import fcntl
 from pathlib import Path
+import shutil
 from typing import Any, Self
+import uuid
 
-from ballscrew_monitor.core.conversions import Direction, Nut
-from ballscrew_monitor.core.estimate import ContactState, PointSource, PointValidity
-from ballscrew_monitor.core.judgement import Level, Reason, Zone
-from ballscrew_monitor.recordings.columns import COLUMNS, JudgedColumns
-from ballscrew_monitor.report.scratch import scratch_folder
+from ballscrew_monitor.recordings.columns import CODED, COLUMNS, JudgedColumns
 import numpy as np
 import polars as pl
 from surrogate.files import new_file
-from surrogate.surface import Regime
 
-CODED: dict[str, type[enum.IntEnum]] = {
-    'speed_source': PointSource,
-    'axial_load_source': PointSource,
-    'temperature_source': PointSource,
-    'motor_torque_source': PointSource,
-    'direction': Direction,
-    'validity': PointValidity,
-    'worst_nut': Nut,
-    'regime': Regime,
-    'contact_state': ContactState,
-    'zone': Zone,
-    'reason': Reason,
-    'level': Level,
-}
-"""Columns of codes, which count from 0 without a hole, and their classes."""
+PREFIX, LOCK = '.rows-', 'lock'
 
 
 def frame_of(block: JudgedColumns) -> pl.DataFrame:
@@ -60,6 +47,10 @@ def block_of(frame: pl.DataFrame) -> JudgedColumns:
         axis=frame['axis'][0],
         **{name: np.ascontiguousarray(arrays[name], dtype=kind) for name, kind in COLUMNS.items()},
     )
+
+
+def _no_rows() -> JudgedColumns:
+    return JudgedColumns(axis='', **{name: np.empty(0, kind) for name, kind in COLUMNS.items()})
 
 
 def _named(values: Any, kind: type[enum.IntEnum]) -> pl.Series:
@@ -110,16 +101,29 @@ class RowStore:
             if parts:
                 pl.scan_ipc(parts).sink_parquet(partial, compression='zstd')
             else:
-                pl.DataFrame(schema=_schema()).write_parquet(partial)
+                frame_of(_no_rows()).write_parquet(partial)
 
 
-def _schema() -> dict[str, Any]:
-    schema: dict[str, Any] = {'axis': pl.String}
-    for name, kind in COLUMNS.items():
-        coded = CODED.get(name)
-        schema[name] = (
-            pl.Enum([member.name for member in coded])
-            if coded
-            else pl.Series(np.empty(0, dtype=kind)).dtype
-        )
-    return schema
+@contextlib.contextmanager
+def scratch_folder(directory: Path) -> Iterator[Path]:
+    """Give a folder in `directory` until the block ends, and remove what was left of others."""
+    directory.mkdir(parents=True, exist_ok=True)
+    remove_left(directory)
+    # Named before it is there, so that no interrupt comes between its making and the `try`.
+    folder = directory / f'{PREFIX}{uuid.uuid4().hex}'
+    try:
+        folder.mkdir(mode=0o700)
+        with (folder / LOCK).open('w') as lock:
+            with contextlib.suppress(OSError):  # without locks there, nobody removes what is left
+                fcntl.flock(lock, fcntl.LOCK_EX)
+            yield folder
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def remove_left(directory: Path) -> None:
+    """Remove the folders in `directory` whose process is gone."""
+    for folder in directory.glob(f'{PREFIX}*'):
+        with contextlib.suppress(OSError), (folder / LOCK).open('r+') as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            shutil.rmtree(folder, ignore_errors=True)

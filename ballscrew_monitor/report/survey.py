@@ -18,6 +18,7 @@ from ballscrew_monitor.core.estimate import PointSource
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.core.judgement import Reason, Zone
 from ballscrew_monitor.recordings.columns import Flags, Floats, JudgedColumns, Times
+from ballscrew_monitor.recordings.declared import unwritten, written
 import numpy as np
 
 REST = 'gaps in the speed, up to its timeout'
@@ -46,11 +47,16 @@ class Span:
 class TorqueFit:
     """Torque measured less modelled in motion: samples, mean and root mean square [N m]."""
 
-    count: int
-    forward: float
-    backward: float
-    spread: float
-    measured: float
+    count: int = unwritten()
+    forward: float = written('Nm', key='mean_forward', because='silence')
+    backward: float = written('Nm', key='mean_backward', because='silence')
+    spread: float = written('Nm', key='rms', because='silence')
+    measured: float = unwritten()
+
+    @property
+    def silence(self) -> str:
+        """Return why a mean is not known."""
+        return 'not in one way' if self.count else 'no torque was measured in motion'
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -58,7 +64,7 @@ class Gaps:
     """How often an input was interrupted, and how long in all [s]."""
 
     count: int = 0
-    time: float = 0.0
+    time: float = written('s', default=0.0)
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The course of an axis over time, as panels of a page: numbers, limits, regimes and warnings."""
 
+from collections.abc import Iterable
 import math
 from typing import Any
 
@@ -29,27 +30,31 @@ from ballscrew_monitor.report.buckets import (
 )
 from ballscrew_monitor.report.case import AxisCase
 from ballscrew_monitor.report.encoding import script_json
-from ballscrew_monitor.report.page_budget import AxisBudget, PAGE_BYTES
+from ballscrew_monitor.report.page_budget import AxisBudget, BUCKETS, PAGE_BYTES, WORST
 from ballscrew_monitor.report.panels import panels
-from ballscrew_monitor.report.stretches import (
-    AROUND,
-    bytes_per_second,
-    length,
-    STRETCH_BYTES,
-    WORST,
-    worst_stretches,
-)
 import numpy as np
 from surrogate.surface import Regime
 from surrogate.units import RPM
 
 COARSE_BYTES, EVENT_BYTES = 5000, 60  # of panels and the like in the page, and of an event
+AROUND = 1.0  # [s] about an end of an event, of which every sample is kept
+SAMPLE_BYTES = 8 / 3  # of one number of a stretch in the page
+STRETCH_BYTES = 1000  # of a stretch in the page besides its numbers
 LESS = 0.95  # of what would just fit, where stretches were too large
 # What is drawn of codes: the largest of a bucket, so the worst comes last.
 BARS = (
     ('regime', 'Regime', ('none', 'hydrodynamic', 'mixed', 'boundary')),
     ('zone', 'Zone', ('none', 'none', 'optimal', 'unjudged', 'outside')),
     ('level', 'Warning', ('none', 'unjudged', 'optimal', 'outside')),
+)
+BAR_LEGEND = (
+    ('optimal', 'optimal, no warning'),
+    ('outside', 'outside the zone, warning'),
+    ('unjudged', 'not judged, not known yet'),
+    ('boundary', 'boundary'),
+    ('mixed', 'mixed'),
+    ('hydrodynamic', 'hydrodynamic'),
+    ('warning-shade', 'during a warning; over the film ratio a bar'),
 )
 _REGIME_RANK = {Regime.UNKNOWN: 0, Regime.HYDRODYNAMIC: 1, Regime.MIXED: 2, Regime.BOUNDARY: 3}
 _ZONE_RANK = {Zone.UNKNOWN: 3, Zone.OPTIMAL: 2, Zone.OUTSIDE: 4}
@@ -66,7 +71,7 @@ NUMBERS = (
 )
 
 
-def time_series_record(
+def series_record(
     case: AxisCase, fine_bytes: float = PAGE_BYTES, budget: AxisBudget | None = None
 ) -> dict[str, Any]:
     """Return the course of an axis; `fine_bytes` of the page are for every sample of events."""
@@ -100,6 +105,11 @@ def time_series_record(
     }
 
 
+def drawn_rows(case: AxisCase) -> TimedRows:
+    """Return all rows of a short recording, extremes of buckets of a long one."""
+    return _columns(case, 0.0, BUCKETS)[0]
+
+
 def coarse_bytes(case: AxisCase, budget: AxisBudget) -> float:
     """Return what a course takes in a page at most, without every sample of events [bytes]."""
     row = 4 * len(_numbers(case)) + len(BARS)
@@ -114,7 +124,7 @@ def event_bytes(case: AxisCase, budget: AxisBudget) -> float:
     """Return what every sample about an event takes in a page, at the mean rate [bytes]."""
     if _is_short(case, budget.buckets):
         return 0.0
-    return 2.0 * (2.0 * AROUND * bytes_per_second(case, _fine_columns(case)) + STRETCH_BYTES)
+    return 2.0 * (2.0 * AROUND * _bytes_per_second(case, _fine_columns(case)) + STRETCH_BYTES)
 
 
 def _is_short(case: AxisCase, buckets: int) -> bool:
@@ -141,7 +151,7 @@ def _columns(
     if _is_short(case, buckets):
         rows = joined_rows([rows_of(case, block, numbers) for block in case.blocks()])
         return with_breaks(in_order(rows), _longest_step(case)), None, 0.0
-    _, stretches = worst_stretches(case, _longest(case, fine_bytes))
+    _, stretches = _worst_stretches(case, _longest(case, fine_bytes))
     found = Buckets(case.survey.span, numbers, [key for key, _, _ in BARS], count=buckets)
     kept: list[TimedRows] = []
     for block in case.blocks():
@@ -153,7 +163,7 @@ def _columns(
 
 def _longest(case: AxisCase, fine_bytes: float) -> float:
     """Return how long stretches may be in all at the mean rate [s]."""
-    return fine_bytes / bytes_per_second(case, _fine_columns(case))
+    return fine_bytes / _bytes_per_second(case, _fine_columns(case))
 
 
 def _longest_step(case: AxisCase) -> float:
@@ -167,7 +177,7 @@ def _fine(
     """Return of how many of the worst events every sample is kept, and the stretches of those."""
     longest = _longest(case, fine_bytes)
     while near is not None:
-        shown, stretches = worst_stretches(case, longest)
+        shown, stretches = _worst_stretches(case, longest)
         parts = [stretch_of(near, *stretch) for stretch in stretches]
         records = [
             fine_record(with_breaks(part, _longest_step(case)))
@@ -178,7 +188,7 @@ def _fine(
         if size <= fine_bytes or not shown:
             return shown, records
         # Rates differ, and so do times that are not even.
-        longest = LESS * fine_bytes / size * min(longest, length(stretches))
+        longest = LESS * fine_bytes / size * min(longest, _length(stretches))
     return 0, []
 
 
@@ -225,3 +235,37 @@ def _codes(block: JudgedColumns, still: np.ndarray) -> dict[str, Codes]:
 
 def _ranks(table: dict[Any, int]) -> Codes:
     return np.array([table[code] for code in sorted(table)], dtype=np.uint8)
+
+
+def _worst_stretches(case: AxisCase, longest: float) -> tuple[int, list[tuple[float, float]]]:
+    """Return of how many of the worst events samples are kept, and where; `longest` in all [s]."""
+    chosen: list[tuple[float, float]] = []
+    count = 0
+    for event in case.worst_first[:WORST]:
+        ends = case.since_first(event.start), case.since_first(event.end)
+        more = _merged([*chosen, *((at - AROUND, at + AROUND) for at in ends)])
+        if _length(more) > longest:
+            break
+        count, chosen = count + 1, more
+    return count, chosen
+
+
+def _bytes_per_second(case: AxisCase, columns: int) -> float:
+    """Return how much a second of some columns takes in a page, at the mean rate [bytes/s]."""
+    return columns * SAMPLE_BYTES * case.survey.rows / max(case.survey.span, 1e-9)
+
+
+def _length(stretches: Iterable[tuple[float, float]]) -> float:
+    """Return how long stretches are in all [s]."""
+    return sum(end - begin for begin, end in stretches)
+
+
+def _merged(stretches: Iterable[tuple[float, float]]) -> list[tuple[float, float]]:
+    """Return stretches in order, those that touch as one."""
+    made: list[tuple[float, float]] = []
+    for begin, end in sorted(stretches):
+        if made and begin <= made[-1][1]:
+            made[-1] = made[-1][0], max(made[-1][1], end)
+        else:
+            made.append((begin, end))
+    return made

@@ -8,25 +8,33 @@ Needs numpy alone.
 """
 
 from surrogate.surface.aims import EFFICIENCY_LIMIT, LIGHT_LOAD, RCS_LIMIT
+from surrogate.surface.batch import look_up_many
 from surrogate.surface.correction import Correction, HasOperatingPoint
+from surrogate.surface.fields import FIELDS
 from surrogate.surface.file import SurfaceError
+from surrogate.surface.found import Found, look_up, look_up_rest
+from surrogate.surface.load_scan import scan
 from surrogate.surface.lookup import Surface
-from surrogate.surface.many import ManyLookup, ManyPoints
-from surrogate.surface.point import FIELDS, solved_point, SurfacePoint, Validity
+from surrogate.surface.point import solved_point, SurfacePoint, Validity
 from surrogate.surface.regime import FILM_RATIO_LIMITS, Regime, regime_of, REGIMES
 from surrogate.surface.shipped import find_surface, shipped_surface
 from surrogate.surface.solved import SolvedPoint
+from surrogate.surface.tables import SurfaceTables
 
 __all__ = [
     'Correction',
     'EFFICIENCY_LIMIT',
     'FIELDS',
     'FILM_RATIO_LIMITS',
+    'Found',
     'find_surface',
     'HasOperatingPoint',
     'LIGHT_LOAD',
-    'ManyLookup',
-    'ManyPoints',
+    'look_up',
+    'look_up_many',
+    'look_up_rest',
+    'scan',
+    'SurfaceTables',
     'RCS_LIMIT',
     'Regime',
     'regime_of',

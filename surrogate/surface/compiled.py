@@ -57,10 +57,10 @@ def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def _digest(parts: list[types.FunctionType]) -> str:
-    """Return a hash of the sources of functions and of the constants that they name."""
+    """Return a hash of modules and sources of functions and of the constants that they name."""
     content = hashlib.sha256()
     for part in parts:
-        content.update(inspect.getsource(part).encode())
+        content.update(f'{part.__module__} {inspect.getsource(part)}'.encode())
         for name in part.__code__.co_names:
             value = part.__globals__.get(name)
             if isinstance(value, (bool, int, float, str, tuple)):

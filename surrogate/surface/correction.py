@@ -17,14 +17,13 @@ import math
 from typing import Protocol
 
 from surrogate.files import canonical_json
+from surrogate.surface.fields import FIELDS, LOGARITHMIC, SHARES
 from surrogate.surface.file import SurfaceError
-from surrogate.surface.point import FIELDS, LOGARITHMIC
 
 TRUST_RADIUS = 0.5
 """Half width of the trust region along each axis, over the width of the cell [-]."""
 NEAREST = 0.01
 """Least distance of a point from the faces of its cell, over the width of the cell [-]."""
-SHARES = ('rcs', 'asperity_share')
 Cell = tuple[int, int, int]
 Fractions = tuple[float, float, float]
 
@@ -64,30 +63,6 @@ class Correction:
     fractions: Fractions
     gains: tuple[float, ...]
     shifts: tuple[float, ...]
-
-    def apply(self, values: list[float], fractions: Fractions) -> tuple[list[float], bool]:
-        """Return transformed values at a place of the cell, and whether they were pulled."""
-        weight = math.prod(map(_bump, fractions, self.fractions))
-        if weight == 0.0:
-            return values, False
-        return [
-            value + weight * (gain * value + shift)
-            for value, gain, shift in zip(values, self.gains, self.shifts)
-        ], True
-
-
-def _bump(fraction: float, centre: float) -> float:
-    """
-    Return the bump along one axis [-]: a smoothstep up to the centre and one down from it.
-
-    3 t^2 - 2 t^3, t being the distance from the edge of the trust region over its reach.
-
-    """
-    if fraction == centre:
-        return 1.0
-    reach = min(TRUST_RADIUS, centre if fraction < centre else 1.0 - centre)
-    t = max(1.0 - abs(fraction - centre) / reach, 0.0)
-    return t * t * (3.0 - 2.0 * t)
 
 
 def solved_values(solution: object) -> dict[str, float]:

@@ -24,7 +24,7 @@ import zlib
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.files import canonical_json, replace_file
-from surrogate.surface.point import FIELDS
+from surrogate.surface.fields import FIELDS
 
 Array = NDArray[np.float64]
 Arrays = dict[str, NDArray[Any]]

@@ -131,11 +131,11 @@ def hermite_weights(width: Number, fraction: Number) -> tuple[Number, Number, Nu
     )
 
 
-def patch_weights(p: Weights, q: Weights) -> list[float]:
+def patch_weights(p: Weights, q: Weights) -> tuple[float, ...]:
     """Return the weights of the four corners of a cell in two dimensions, value and two slopes."""
     a, da, b, db = p
     c, dc, d, dd = q
-    return [
+    return (
         a * c,
         da * c,
         a * dc,
@@ -148,49 +148,4 @@ def patch_weights(p: Weights, q: Weights) -> list[float]:
         b * d,
         db * d,
         b * dd,
-    ]
-
-
-def extend_patch_weights(p: Weights, patch: list[float]) -> list[float]:
-    """Return the weights of eight corners, value and three slopes, from those of a face."""
-    a, da, b, db = p
-    v0, l0, t0, v1, l1, t1, v2, l2, t2, v3, l3, t3 = patch
-    return [
-        a * v0,
-        da * v0,
-        a * l0,
-        a * t0,
-        a * v1,
-        da * v1,
-        a * l1,
-        a * t1,
-        a * v2,
-        da * v2,
-        a * l2,
-        a * t2,
-        a * v3,
-        da * v3,
-        a * l3,
-        a * t3,
-        b * v0,
-        db * v0,
-        b * l0,
-        b * t0,
-        b * v1,
-        db * v1,
-        b * l1,
-        b * t1,
-        b * v2,
-        db * v2,
-        b * l2,
-        b * t2,
-        b * v3,
-        db * v3,
-        b * l3,
-        b * t3,
-    ]
-
-
-def trilinear_weights(u: float, v: float, w: float) -> list[float]:
-    """Return the weights of the eight corners of a cell, the last fraction running fastest."""
-    return [a * b * c for a in (1.0 - u, u) for b in (1.0 - v, v) for c in (1.0 - w, w)]
+    )

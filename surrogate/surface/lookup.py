@@ -9,18 +9,15 @@ keeps the kinks at zero load and at the unloading load. Needs numpy only and nev
 
 """
 
-from bisect import bisect_right
 from collections.abc import Mapping
 import copy
 import functools
 import math
-from operator import mul
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.formulas import torque
 from surrogate.surface import file as surface_file
 from surrogate.surface.correction import (
     corrected_hash,
@@ -30,23 +27,22 @@ from surrogate.surface.correction import (
     places_of,
     solved_values,
 )
+from surrogate.surface.fields import FIELDS
 from surrogate.surface.file import SurfaceData, SurfaceError
-from surrogate.surface.hermite import (
-    extend_patch_weights,
-    first_rows,
-    hermite_weights,
-    patch_table,
-    patch_weights,
-    trilinear_weights,
+from surrogate.surface.found import (
+    cell_below,
+    face_weights,
+    field,
+    fraction_of,
+    look_up,
+    look_up_rest,
+    onset_on_face,
+    width_of,
 )
-from surrogate.surface.load_scan import LoadScan
-from surrogate.surface.point import FIELDS, INDEX, MEASURED, NO_SPREADS, SurfacePoint, Validity
-from surrogate.surface.tables import open_cells, ROUNDING, spread_table, summary, transform
-
-Place = tuple[int, float, float]
-"""Cell, its width and the fraction of it at which a value lies."""
-Located = tuple[Place, Place, Place, list[float]]
-"""Places along speed, load and temperature, and the weights of the face of the last two."""
+from surrogate.surface.hermite import hermite_weights
+from surrogate.surface.load_scan import scan
+from surrogate.surface.point import SurfacePoint, VALIDITIES, Validity
+from surrogate.surface.tables import as_lists, summary, SurfaceTables, tabulate, with_pulls
 
 
 class Surface:
@@ -57,21 +53,7 @@ class Surface:
         self.header: Mapping[str, Any] = data.header
         self.sha256 = self._uncorrected = data.sha256
         self._pulls: dict[tuple[int, int, int], Correction] = {}
-        self._axes = (data.speed_coordinate, data.load, data.temperature)
-        self._lists = tuple(axis.tolist() for axis in self._axes)
-        breaks = np.asarray(data.header['load_breaks'], dtype=float)
-        cuts = (np.empty(0), breaks, np.empty(0))
-        self._rows = tuple(first_rows(axis, cut) for axis, cut in zip(self._axes, cuts))
-        # Plain lists: a small table is read faster than an array is sliced.
-        self._onset = patch_table(self._axes[1:], cuts[1:], data.log_onset).tolist()
-        values = np.stack([transform(name, data.fields[name]) for name in FIELDS], axis=-1)
-        self._table = patch_table(self._axes, cuts, values)
-        self._speed_range = tuple(data.header['settings']['speed_range'])
-        self._lead = float(data.header['inputs']['screw']['lead'])
-        self._worst = data.worst_contact
-        self._spreads = spread_table(data)
-        self._open_cells = open_cells(data.mask)
-        self._errors = np.stack([data.errors[name] for name in MEASURED], -1)
+        self.array_tables: SurfaceTables = tabulate(data)
         self.errors = {name: summary(error) for name, error in data.errors.items()}
 
     @classmethod
@@ -126,7 +108,7 @@ class Surface:
     @property
     def lead(self) -> float:
         """Lead of the screw [m]."""
-        return self._lead
+        return float(self.array_tables.lead)
 
     @property
     def reference_temperature(self) -> float:
@@ -136,35 +118,46 @@ class Surface:
     @property
     def speed_range(self) -> tuple[float, float]:
         """Speeds covered, whatever load and temperature [rad/s]."""
-        return self._speed_range
+        return self.array_tables.speed_low, self.array_tables.speed_high
 
     @property
     def load_range(self) -> tuple[float, float]:
         """Opposing loads covered [N]."""
-        return self._lists[1][0], self._lists[1][-1]
+        return self.array_tables.load_low, self.array_tables.load_high
 
     @property
     def temperature_range(self) -> tuple[float, float]:
         """Temperatures covered [K]."""
-        return self._lists[2][0], self._lists[2][-1]
+        return self.array_tables.temperature_low, self.array_tables.temperature_high
 
     @property
     def cells(self) -> tuple[int, int, int]:
         """Return the number of cells along speed, load and temperature."""
-        s, load, temperature = (len(axis) - 1 for axis in self._lists)
+        s, load, temperature = (len(axis) - 1 for axis in self.array_tables[:3])
         return s, load, temperature
 
     @property
     def masked_cells(self) -> int:
         """Return the number of cells that answer MASKED."""
-        return int(np.count_nonzero(~self._open_cells))
+        return int(np.count_nonzero(~self.array_tables.open_cells))
+
+    @functools.cached_property
+    def tables(self) -> SurfaceTables:
+        """Return the tables that an interpreted lookup reads; `array_tables` are to compile."""
+        return as_lists(self.array_tables)
 
     def onset_speed(self, opposing_load: float, temperature: float) -> float:
         """Return the speed [rad/s] of the coordinate origin at load [N], temperature [K]."""
-        load, heat = self._place(1, opposing_load), self._place(2, temperature)
-        if load is None or heat is None:
+        tables = self.tables
+        inside = tables.load_low <= opposing_load <= tables.load_high
+        if not (inside and tables.temperature_low <= temperature <= tables.temperature_high):
             return math.nan
-        return math.exp(self._log_onset(load, heat, self._patch(load, heat)))
+        loads, heats = tables.load_nodes, tables.heat_nodes
+        j, k = cell_below(loads, opposing_load), cell_below(heats, temperature)
+        fractions = fraction_of(loads, j, opposing_load), fraction_of(heats, k, temperature)
+        face = face_weights(loads, j, fractions[0], heats, k, fractions[1])
+        node = tables.load_rows[j] * len(heats) + k
+        return math.exp(onset_on_face(tables.onset, node, len(heats), face))
 
     def lookup(self, speed: float, opposing_load: float, temperature: float) -> SurfacePoint:
         """
@@ -174,10 +167,11 @@ class Surface:
         is NaN and `validity` says which limit was passed. A NaN argument is out of range.
 
         """
-        found = self._locate(speed, opposing_load, temperature)
-        if isinstance(found, Validity):
-            return self._empty(found, opposing_load)
-        return self._interpolate(*found, opposing_load)
+        found = SurfacePoint()
+        validity = look_up(self.tables, speed, opposing_load, temperature, found)
+        look_up_rest(self.tables, opposing_load, found)
+        found.validity = VALIDITIES[validity]
+        return found
 
     def driving_torques(
         self, speed: float, temperature: float
@@ -189,32 +183,13 @@ class Surface:
         lookup has no answer. The loads are the nodes and places between them.
 
         """
-        heat, (slowest, fastest) = self._place(2, temperature), self._speed_range
-        loads = self._scan.loads
-        if heat is None or not slowest <= speed <= fastest:
-            return loads, np.full_like(loads, np.nan)
-        weights = hermite_weights(heat[1], heat[2])
-        friction = self._scan.friction_torques(speed, heat[0], weights)
-        for cell in {cell[1] for cell in self._pulls if cell[2] == heat[0]}:
-            for place in np.flatnonzero(self._scan.cells == cell):
-                point = self.lookup(speed, float(loads[place]), temperature)
-                friction[place] = point.friction_torque
-        return loads, torque.driving_torque(friction, loads, self._lead)
-
-    @functools.cached_property
-    def _scan(self) -> LoadScan:
-        return LoadScan(
-            self._axes,
-            self._rows,
-            np.array(self._onset),
-            self._table[..., INDEX['friction_torque']],
-            self._open_cells,
-        )
+        scan(self.tables, speed, temperature)
+        return np.array(self.tables.scan_loads), np.array(self.tables.scan_torques)
 
     def drag(self, speed: float) -> float:
         """Return the parasitic part [N m] of the friction torque at a speed [rad/s]."""
-        screw = self.header['inputs']['screw']
-        return float(screw['parasitic_torque'] + screw['parasitic_torque_rate'] * abs(speed))
+        tables = self.array_tables
+        return float(tables.parasitic_torque + tables.parasitic_torque_rate * abs(speed))
 
     @property
     def corrections(self) -> tuple[Correction, ...]:
@@ -236,11 +211,14 @@ class Surface:
         """
         values = solved_values(solution)
         where = abs(point.speed), point.opposing_load, point.temperature
-        validity, found = self.lookup(*where).validity, self._locate(*where)
-        if isinstance(found, Validity) or validity is not Validity.VALID:
-            raise SurfaceError(f'no correction where the surface has no answer: {validity.name}')
-        cell, fractions = zip(*((place[0], place[2]) for place in found[:3]))
-        here = self._values(*found)
+        found = self.lookup(*where)
+        if found.validity is not Validity.VALID:
+            raise SurfaceError(
+                f'no correction where the surface has no answer: {found.validity.name}'
+            )
+        cell = found.speed_cell, found.load_cell, found.heat_cell
+        fractions = found.speed_fraction, found.load_fraction, found.heat_fraction
+        here = self._uncorrected_values(found)
         made = {
             place: make_correction(point, place, where, here, values)
             for place, where in places_of(cell, fractions, self.cells)
@@ -251,100 +229,23 @@ class Surface:
         }
         other = copy.copy(self)
         other._pulls = kept | made
+        other.array_tables = with_pulls(self.array_tables, other._pulls)
+        other.__dict__.pop('tables', None)
         other.sha256 = corrected_hash(self._uncorrected, other.corrections)
         return other
 
-    def _locate(
-        self, speed: float, opposing_load: float, temperature: float
-    ) -> Located | Validity:
-        """Return where a point lies, or which limit it passes."""
-        heat = self._place(2, temperature)
-        if heat is None:
-            return Validity.TEMPERATURE_OUT_OF_RANGE
-        load = self._place(1, opposing_load)
-        if load is None:
-            return Validity.LOAD_OUT_OF_RANGE
-        if not self._speed_range[0] <= speed <= self._speed_range[1]:
-            fast = speed > self._speed_range[1]
-            return Validity.SPEED_ABOVE_RANGE if fast else Validity.SPEED_BELOW_RANGE
-        patch = self._patch(load, heat)
-        s = math.log(speed) - self._log_onset(load, heat, patch)
-        place = self._place_speed(s)
-        if place is None:
-            slow = s < self._lists[0][0]
-            return Validity.SPEED_BELOW_RANGE if slow else Validity.SPEED_ABOVE_RANGE
-        return place, load, heat, patch
-
-    def _place(self, axis: int, value: float) -> Place | None:
-        """Return cell, width and fraction of `value`, or None outside."""
-        nodes = self._lists[axis]
-        if not nodes[0] <= value <= nodes[-1]:
-            return None
-        cell = bisect_right(nodes, value, 1, len(nodes) - 1) - 1
-        width = nodes[cell + 1] - nodes[cell]
-        return cell, width, (value - nodes[cell]) / width
-
-    def _place_speed(self, s: float) -> Place | None:
-        """Place a speed coordinate; the mapping rounds, so an end may be passed by a rounding."""
-        nodes = self._lists[0]
-        inside = min(max(s, nodes[0]), nodes[-1])
-        return self._place(0, inside) if abs(inside - s) < ROUNDING else None
-
-    def _patch(self, load: Place, heat: Place) -> list[float]:
-        return patch_weights(hermite_weights(load[1], load[2]), hermite_weights(heat[1], heat[2]))
-
-    def _log_onset(self, load: Place, heat: Place, patch: list[float]) -> float:
-        j, k = self._rows[1][load[0]], self._rows[2][heat[0]]
-        low, high = self._onset[j], self._onset[j + 1]
-        onset: float = sum(map(mul, patch, (*low[k], *low[k + 1], *high[k], *high[k + 1])))
-        return onset
-
-    def _values(self, fast: Place, load: Place, heat: Place, patch: list[float]) -> list[float]:
-        """Return the fields, transformed, without corrections."""
-        i, j, k = self._rows[0][fast[0]], self._rows[1][load[0]], self._rows[2][heat[0]]
-        # Bounds with names: the two formatters disagree about spaces beside the colon of sums.
-        x, y, z = i + 2, j + 2, k + 2
-        corners = self._table[i:x, j:y, k:z].reshape(32, -1)
-        weights = extend_patch_weights(hermite_weights(fast[1], fast[2]), patch)
-        values: list[float] = np.array(weights).dot(corners).tolist()
-        return values
-
-    def _interpolate(
-        self, fast: Place, load: Place, heat: Place, patch: list[float], opposing_load: float
-    ) -> SurfacePoint:
-        cell = fast[0], load[0], heat[0]
-        if not self._open_cells[cell]:
-            return self._empty(Validity.MASKED, opposing_load)
-        values = self._values(fast, load, heat, patch)
-        pull, corrected = self._pulls.get(cell), False
-        if pull is not None:
-            values, corrected = pull.apply(values, (fast[2], load[2], heat[2]))
-        nearest = (cell[0] + (fast[2] > 0.5), cell[1] + (load[2] > 0.5), cell[2] + (heat[2] > 0.5))
-        return SurfacePoint(
-            validity=Validity.VALID,
-            opposing_load=opposing_load,
-            lead=self._lead,
-            values=values,
-            worst_contact=int(self._worst[nearest]),
-            errors=self._errors[cell].tolist(),
-            spreads=NO_SPREADS if self._spreads is None else self._spread(fast, load, heat),
-            corrected=corrected,
-        )
-
-    def _empty(self, validity: Validity, opposing_load: float) -> SurfacePoint:
-        return SurfacePoint(validity=validity, opposing_load=opposing_load, lead=self._lead)
-
-    def _spread(self, fast: Place, load: Place, heat: Place) -> list[float]:
-        """Return what strips differ by, linear between the nodes: never below zero."""
-        assert self._spreads is not None
-        i, j, k = fast[0], load[0], heat[0]
-        x, y, z = i + 2, j + 2, k + 2
-        corners = self._spreads[i:x, j:y, k:z].reshape(8, -1)
-        weights = np.array(trilinear_weights(fast[2], load[2], heat[2]))
-        # A node that is not known has no part in a point where its weight is zero.
-        used = weights > 0
-        spread: list[float] = weights[used].dot(corners[used]).tolist()
-        return spread
+    def _uncorrected_values(self, found: SurfacePoint) -> list[float]:
+        """Return the fields at a place, transformed, without corrections."""
+        tables, across, along = self.tables, len(self.tables.heat_nodes), self.tables.rows
+        i, j, k = found.speed_cell, found.load_cell, found.heat_cell
+        loads = found.load_fraction, found.heat_fraction
+        fast = hermite_weights(width_of(tables.speed_nodes, i), found.speed_fraction)
+        face = face_weights(tables.load_nodes, j, loads[0], tables.heat_nodes, k, loads[1])
+        node = (i * along + tables.load_rows[j]) * across + k
+        return [
+            field(tables.values, name, node, across, along, fast, face)
+            for name in range(len(FIELDS))
+        ]
 
 
 def _solve_of(pull: Correction) -> tuple[float, float, float]:

@@ -4,7 +4,7 @@
 
 from dataclasses import dataclass
 
-from surrogate.surface.point import FIELDS
+from surrogate.surface.fields import FIELDS
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -13,8 +13,8 @@ from ballscrew_monitor.node.intake import ordered
 from ballscrew_monitor.node.journal import Journal
 from ballscrew_monitor.node.topic import Arrival
 from ballscrew_monitor.recordings.bag import Bag
-from ballscrew_monitor.recordings.keeper import Keeper, KeepSettings
 from ballscrew_monitor.recordings.own_recording import OwnRecording
+from ballscrew_monitor.recordings.retention import KeepSettings, Retention
 from ballscrew_monitor.settings.axis import build_axis
 from ballscrew_monitor.settings.parameters import read_file
 from ballscrew_monitor.settings.topics import absolute, input_topics
@@ -46,10 +46,10 @@ class Frames(list):
         return True
 
     def close(self):
-        keeper = Keeper(self.folder, ALWAYS)
+        retention = Retention(self.folder, ALWAYS)
         for frame in self:
-            keeper.take(frame, 0.0)
-        keeper.close()
+            retention.take(frame, 0.0)
+        retention.close()
 
 
 class Listener:

@@ -3,6 +3,7 @@
 """The main job from end to end, on a short bag: the real node, the real middleware."""
 
 import dataclasses
+import json
 import os
 from pathlib import Path
 import re
@@ -12,6 +13,7 @@ import sys
 import threading
 import types
 
+from ballscrew_monitor.cli import main
 from ballscrew_monitor.core.fields import stamp_of
 from ballscrew_monitor.cycle import node_process
 from ballscrew_monitor.cycle.node_process import child_environment, ros_environment
@@ -21,6 +23,7 @@ from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.replay import replay
 from ballscrew_monitor.settings.parameters import read_file
 from ballscrew_msgs.msg import BallScrewState
+import polars as pl
 import pytest
 from rclpy.serialization import deserialize_message
 from rosbags.highlevel import AnyReader
@@ -73,13 +76,39 @@ def test_it_succeeds_and_leaves_its_products(finished):
     assert {path.name for path in out.iterdir() if not path.name.startswith('.')} == {
         'cycle.mcap',
         'cycle.png',
+        'events.csv',
+        'judged',
         'metadata.yaml',
         'node.log',
+        'report.html',
         'ros_log',
+        'states.parquet',
+        'summary.json',
     }
     assert '300 sent, 300 judged' in text
     assert re.search(r'^\[#+\.*\] 0:\d\d left .* rev/min .* RCS ', text, flags=re.MULTILINE)
     assert 'zone        optimal' in text
+
+
+def test_its_page_is_that_of_a_replay_of_the_recording(finished, tmp_path):
+    assert main(['replay', str(finished[0] / 'cycle.mcap'), '--out', str(tmp_path)]) == 0
+    for name in ('report.html', 'summary.json', 'events.csv'):
+        assert (tmp_path / name).read_bytes() == (finished[0] / name).read_bytes()
+
+
+def test_its_page_shows_what_the_node_judged(finished):
+    states = [
+        deserialize_message(message.data, BallScrewState)
+        for message in Bag(finished[0]).messages([STATE])
+    ]
+    rows = pl.read_parquet(finished[0] / 'states.parquet').filter(~pl.col('tick'))
+    zones = dict(zip(rows['stamp'].to_list(), rows['zone'].to_physical().to_list(), strict=True))
+    judged = {stamp_of(state): state.zone for state in states if stamp_of(state) in zones}
+    assert judged.keys() == zones.keys()
+    # Between topics the order of arrival is not promised: a speed may meet the next load.
+    assert sum(zones[stamp] != zone for stamp, zone in judged.items()) <= 0.02 * len(zones)
+    (note,) = json.loads((finished[0] / 'summary.json').read_text())['notes']
+    assert note.startswith('axis x: during the run the node judged 300 speed samples and raised ')
 
 
 def test_no_process_is_left(finished):
@@ -180,14 +209,17 @@ def keep_environment(monkeypatch):
 
 def test_a_node_that_dies_at_its_start_is_a_failure(short_bag, tmp_path, monkeypatch, capsys):
     keep_environment(monkeypatch)
-    (tmp_path / 'cycle.png').write_bytes(b'of an earlier run')
+    old = [tmp_path / name for name in ('cycle.png', 'report.html', 'judged/judged.mcap')]
+    (tmp_path / 'judged').mkdir()
+    for path in old:
+        path.write_bytes(b'of an earlier run')
     made = plan(short_bag, PARAMS, tmp_path, 1.0)
     monkeypatch.setattr(node_process, 'sys', types.SimpleNamespace(executable='false'))
     assert run(made) == 1
     out, err = capsys.readouterr()
     assert err.startswith('ballscrew: the node ended with exit code 1')
     assert out.endswith('node.log; nothing was recorded\n')
-    assert not (tmp_path / 'cycle.png').exists()
+    assert not any(path.exists() for path in old)
 
 
 def test_samples_without_a_verdict_are_a_failure(short_bag, tmp_path, monkeypatch, capsys):

@@ -2,15 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The table of columns, and what follows from them."""
 
-import dataclasses
-
 from ballscrew_monitor.core.estimate import PointSource, PointValidity
 from ballscrew_monitor.recordings.columns import BY_VALIDITY, COLUMNS, JudgedColumns, Reason
 import numpy as np
-
-
-def test_the_table_names_the_arrays_in_their_order():
-    assert ['axis', *COLUMNS] == [field.name for field in dataclasses.fields(JudgedColumns)]
 
 
 def test_every_validity_has_a_reason():

@@ -14,10 +14,10 @@ from ballscrew_monitor.node.intake import _events, ordered
 from ballscrew_monitor.node.journal import Journal
 from ballscrew_monitor.node.topic import Arrival
 from ballscrew_monitor.recordings.bag import Bag
-from ballscrew_monitor.recordings.keeper import Keeper, KeepSettings
 from ballscrew_monitor.recordings.log_facts import values_for
 from ballscrew_monitor.recordings.own_recording import journal_of, OwnRecording, recorded_values
 from ballscrew_monitor.recordings.replay import replay, replay_columns
+from ballscrew_monitor.recordings.retention import KeepSettings, Retention
 from ballscrew_monitor.report.inputs_seen import inputs_seen
 from ballscrew_monitor.report.judging import judge_log
 from ballscrew_monitor.report.parameters import LogParameters
@@ -41,20 +41,20 @@ class KeptFrames:
     problem, lost = '', False
 
     def __init__(self, folder, settings=ALWAYS):
-        self.keeper = Keeper(folder, settings)
+        self.retention = Retention(folder, settings)
         self.now = 0.0
         self.room = True
 
     def put(self, frame):
         if self.room:
-            self.keeper.take(frame, self.now)
+            self.retention.take(frame, self.now)
         return self.room
 
     def flush(self):
         return self.room
 
     def close(self):
-        self.keeper.close()
+        self.retention.close()
 
 
 class SmallNode:

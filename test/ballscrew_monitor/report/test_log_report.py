@@ -11,7 +11,7 @@ from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
 from ballscrew_monitor.recordings.replay import replay
 from ballscrew_monitor.report.log_report import JUDGED_SHARE, report_log, STORED_SHARE
 from ballscrew_monitor.report.parameters import LogParameters, parameters_for
-from ballscrew_monitor.report.scratch import remove_left
+from ballscrew_monitor.report.store import remove_left
 from ballscrew_monitor.settings.parameters import read_file
 from ballscrew_monitor.settings.topics import absolute
 from ballscrew_msgs.msg import BallScrewState

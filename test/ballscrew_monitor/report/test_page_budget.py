@@ -67,14 +67,14 @@ def _case(judged, name, numbers, events):
 @pytest.fixture
 def one_map(monkeypatch):
     """Let all axes of a page have the map of the first one, which takes long to make."""
-    made, make = [], log_page.map_record
+    made, make = [], log_page.operating_map
 
     def make_once(case, points):
         if not made:
             made.append(make(case, points))
         return made[0]
 
-    monkeypatch.setattr(log_page, 'map_record', make_once)
+    monkeypatch.setattr(log_page, 'operating_map', make_once)
 
 
 def courses_of(page):
@@ -127,7 +127,5 @@ def test_every_sample_is_for_the_worst_events_of_all_axes(judged):
 def test_a_few_axes_have_all_and_many_as_much_as_there_is(judged):
     quiet = judged.case([judged.columns()])
     assert axis_budgets([quiet])[0].buckets == axis_budgets([quiet] * 4)[0].buckets == 3000
-    budgets = axis_budgets([quiet] * 16)
-    assert {(budget.buckets, budget.path_points, budget.events) for budget in budgets} == {
-        (750, 1500, 0)
-    }
+    rooms = axis_budgets([quiet] * 16)
+    assert {(room.buckets, room.path_points, room.events) for room in rooms} == {(750, 1500, 0)}

@@ -5,11 +5,10 @@
 import contextlib
 import csv
 import json
-import math
 from pathlib import Path
 
 from ballscrew_monitor.report.case import LogCase
-from ballscrew_monitor.report.products import known, replace_report, write_events, write_summary
+from ballscrew_monitor.report.products import replace_report, write_events, write_summary
 import pytest
 
 
@@ -70,11 +69,6 @@ def unexplained(record, path=''):
         elif isinstance(value, dict):
             found += unexplained(value, f'{path}/{key}')
     return found
-
-
-def test_known_numbers_have_no_reason():
-    assert known({'a': 1.0}, 'why') == {'a': 1.0}
-    assert math.isnan(known({'a': math.nan}, 'why')['a'])
 
 
 NAMES = ('report.html', 'summary.json', 'states.parquet', 'judged/judged.mcap')

@@ -1,13 +1,29 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Rows survive being stored, and a Parquet file is whole or not there."""
+"""Rows survive being stored; a file is whole or not there; hidden folders go with a process."""
+
+import os
+import subprocess
+import sys
 
 from ballscrew_monitor.core.judgement import Zone
-from ballscrew_monitor.recordings.columns import COLUMNS, joined
-from ballscrew_monitor.report.store import block_of, CODED, frame_of, RowStore
+from ballscrew_monitor.recordings.columns import CODED, COLUMNS, joined
+from ballscrew_monitor.report import store as store_module
+from ballscrew_monitor.report.store import block_of, frame_of, RowStore, scratch_folder
 import numpy as np
 import polars as pl
 import pytest
+
+KILLED = """
+import os
+import signal
+import sys
+from pathlib import Path
+from ballscrew_monitor.report.store import scratch_folder
+with scratch_folder(Path(sys.argv[1])) as folder:
+    (folder / 'rows').touch()
+    os.kill(os.getpid(), signal.SIGKILL)
+"""
 
 
 def assert_same(one, other):
@@ -48,3 +64,35 @@ def test_no_rows_are_a_file_with_the_same_columns(judged, tmp_path):
     empty = pl.read_parquet(tmp_path / 'states.parquet')
     assert empty.schema == frame_of(judged.columns()).schema
     assert empty.height == 0
+
+
+def test_what_a_killed_process_has_left_is_removed_and_what_is_in_use_is_not(tmp_path):
+    environment = os.environ | {'PYTHONPATH': os.pathsep.join(sys.path)}
+    subprocess.run([sys.executable, '-c', KILLED, str(tmp_path)], env=environment, check=False)
+    (left,) = tmp_path.iterdir()
+    with scratch_folder(tmp_path) as first, scratch_folder(tmp_path) as second:
+        assert not left.exists()
+        assert set(tmp_path.iterdir()) == {first, second}
+    assert not list(tmp_path.iterdir())
+
+
+def test_where_there_are_no_locks_nothing_is_taken_away(tmp_path, monkeypatch):
+    def refuse(*_):
+        raise OSError
+
+    monkeypatch.setattr(store_module.fcntl, 'flock', refuse)
+    with scratch_folder(tmp_path) as first, scratch_folder(tmp_path) as second:
+        assert set(tmp_path.iterdir()) == {first, second}
+
+
+def test_an_interrupt_as_soon_as_a_folder_is_there_leaves_nothing(tmp_path, monkeypatch):
+    make = os.mkdir
+
+    def make_and_interrupt(*arguments):
+        make(*arguments)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(os, 'mkdir', make_and_interrupt)
+    with pytest.raises(KeyboardInterrupt), scratch_folder(tmp_path):
+        raise AssertionError
+    assert not list(tmp_path.iterdir())

@@ -8,7 +8,7 @@ from ballscrew_monitor.core.judgement import Level, Zone
 from ballscrew_monitor.recordings.columns import LIGHT_LOAD, STANDSTILL
 from ballscrew_monitor.report.encoding import script_json
 from ballscrew_monitor.report.page_budget import AxisBudget, BUCKETS, MOST_ROWS
-from ballscrew_monitor.report.time_series import coarse_bytes, rows_of, time_series_record
+from ballscrew_monitor.report.time_series import coarse_bytes, rows_of, series_record
 import numpy as np
 import pytest
 
@@ -16,7 +16,7 @@ SHORT = 2 * BUCKETS
 
 
 def test_around_the_50_worst_events_every_sample_is_kept(hour):
-    record = time_series_record(hour)
+    record = series_record(hour)
     assert record['shown'] == 50
     worst = hour.worst_first[:50]
     assert min(event.event_id for event in worst) == 11  # the last ones are the worst
@@ -28,7 +28,7 @@ def test_around_the_50_worst_events_every_sample_is_kept(hour):
 
 
 def test_samples_near_events_make_way_where_there_is_no_room(hour):
-    record = time_series_record(hour, 1_000_000)
+    record = series_record(hour, 1_000_000)
     assert 5 < record['shown'] < 50
     assert (
         sum(len(one['columns'][key]['data']) for one in record['fine'] for key in one['columns'])
@@ -46,30 +46,30 @@ def test_samples_that_come_in_bursts_and_at_uneven_times_fit_too(judged):
         block, stamp=stamp, log_time=stamp, speed=noise.normal(100.0, 1.0, number.size)
     )
     events = [judged.event(n + 1, 10.0 + 3.0 * n, 1.0) for n in range(10)]
-    record = time_series_record(judged.case([block], events), 100_000)
+    record = series_record(judged.case([block], events), 100_000)
     assert 1 <= record['shown'] < record['worst'] == 10
     assert 50_000 < len(script_json(record['fine'])) <= 100_000
 
 
 @pytest.mark.parametrize('count', [500, 2000])
 def test_what_a_course_takes_is_known_before(judged, count):
-    budget = AxisBudget(buckets=500, events=7)
+    room = AxisBudget(buckets=500, events=7)
     events = [judged.event(n + 1, 0.123456789 * n, 0.07654321) for n in range(10)]
     case = judged.case([judged.columns(count=count)], events)
-    made = len(script_json(time_series_record(case, 0, budget)))
-    assert 0.3 * coarse_bytes(case, budget) < made <= coarse_bytes(case, budget)
+    made = len(script_json(series_record(case, 0, room)))
+    assert 0.3 * coarse_bytes(case, room) < made <= coarse_bytes(case, room)
 
 
 def test_a_short_recording_keeps_every_sample(judged):
     case = judged.case([judged.columns(count=SHORT)], [judged.event(1, 1.0, 2.0)])
-    record = time_series_record(case)
+    record = series_record(case)
     assert (record['bucket'], record['fine']) == (0.0, [])
     assert len(record['time']) == pytest.approx(SHORT * 8 * 4 / 3, abs=4)
 
 
 def test_events_are_on_the_time_line_of_the_page(judged):
     case = judged.case([judged.columns(count=1000)], [judged.event(1, 1.0, 2.0)])
-    assert time_series_record(case)['events'] == [{'begin': 1.0, 'end': 3.0}]
+    assert series_record(case)['events'] == [{'begin': 1.0, 'end': 3.0}]
 
 
 def test_only_the_worst_events_are_shaded(judged):
@@ -77,17 +77,15 @@ def test_only_the_worst_events_are_shaded(judged):
         judged.event(n + 1, 0.01 * n, 0.005, worst_value=0.011 + 1e-5 * n)
         for n in range(MOST_ROWS + 200)
     ]
-    shaded = time_series_record(judged.case([judged.columns(count=1000)], events))['events']
+    shaded = series_record(judged.case([judged.columns(count=1000)], events))['events']
     assert len(shaded) == MOST_ROWS
     assert min(one['begin'] for one in shaded) == pytest.approx(2.0)
 
 
 def test_torque_has_a_panel_where_it_was_measured(judged, hour):
-    titles = [
-        panel['title'] for panel in time_series_record(judged.case([judged.columns()]))['panels']
-    ]
+    titles = [panel['title'] for panel in series_record(judged.case([judged.columns()]))['panels']]
     assert len(titles) == 6
-    assert time_series_record(hour)['panels'][-1]['title'].startswith('Torque')
+    assert series_record(hour)['panels'][-1]['title'].startswith('Torque')
 
 
 def test_what_is_not_judged_or_only_held_is_a_gap(judged):
@@ -126,4 +124,4 @@ def test_stray_stamps_do_not_stretch_the_page(judged):
     stamps = block.stamp.copy()
     stamps[7] = 1
     case = judged.case([dataclasses.replace(block, stamp=stamps)])
-    assert time_series_record(case)['span'] == pytest.approx(0.99)
+    assert series_record(case)['span'] == pytest.approx(0.99)

@@ -10,14 +10,16 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 from surrogate.surface import shipped_surface, Surface, Validity
-from surrogate.surface.load_scan import SPLITS
+from surrogate.surface.tables import SPLITS
 
 SHIPPED = [Surface.load(shipped_surface(tier=tier)) for tier in ('closed_form', 'full')]
 
 
 def looked_up(surface, speed, temperature):
     """Return the driving torque at each scanned load, NaN without an answer."""
-    points = [surface.lookup(speed, float(load), temperature) for load in surface._scan.loads]
+    points = [
+        surface.lookup(speed, float(load), temperature) for load in surface.tables.scan_loads
+    ]
     return np.array(
         [point.driving_torque if point.validity is Validity.VALID else np.nan for point in points]
     )

@@ -14,12 +14,13 @@ import math
 from ballscrew_monitor.core.conversions import kelvin
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.surface import FIELDS, ManyLookup, Surface, SurfacePoint, Validity
+from surrogate.surface import look_up_many, Surface
 from surrogate.units import RPM
 
 Array = NDArray[np.float64]
 
 SPEEDS, LOADS = 120, 181  # points of the grid
+NAMES = ('efficiency', 'rcs', 'film_ratio')
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -72,32 +73,11 @@ def sample(
 ) -> Field:
     """Return a surface at a temperature [degC] between speeds [rad/s] and opposing loads [N]."""
     speed, load = np.geomspace(*speeds, SPEEDS), np.linspace(*loads, LOADS)
-    points = _points(surface, *np.meshgrid(speed, load), kelvin(temperature))
-    columns = {
-        name: np.array([getattr(point, name) if point else math.nan for point in points])
-        for name in ('efficiency', 'rcs', 'film_ratio')
-    }
-    shaped = {name: values.reshape(LOADS, SPEEDS) for name, values in columns.items()}
+    across, along = (each.ravel() for each in np.meshgrid(speed, load))
+    heats = np.full(across.size, kelvin(temperature))
+    found = look_up_many(surface, across, along, heats)
+    shaped = {name: found[name].reshape(LOADS, SPEEDS) for name in NAMES}
     return Field(speed=speed / RPM, load=load, band=surface.limit_band, **shaped)
-
-
-def _points(
-    surface: Surface, speed: Array, load: Array, temperature: float
-) -> list[SurfacePoint | None]:
-    """Return what the surface says of each point of a grid, None where it has no number."""
-    speed, load = speed.ravel(), load.ravel()
-    found = ManyLookup(surface)(speed, load, np.full(speed.size, temperature))
-    values = np.stack([found.values[name] for name in FIELDS], axis=-1).tolist()
-    made = [
-        SurfacePoint(validity=Validity.VALID, opposing_load=f, lead=surface.lead, values=row)
-        if validity == Validity.VALID
-        else None
-        for f, row, validity in zip(load.tolist(), values, found.validity.tolist(), strict=True)
-    ]
-    for at in np.flatnonzero(found.doubtful).tolist():
-        point = surface.lookup(float(speed[at]), float(load[at]), temperature)
-        made[at] = point if point.validity is Validity.VALID else None
-    return made
 
 
 def judged_speeds(surface: Surface, standstill: float) -> tuple[float, float]:

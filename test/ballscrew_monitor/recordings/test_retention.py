@@ -9,7 +9,7 @@ import os
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.frames import Frame, FrameKind
-from ballscrew_monitor.recordings.keeper import Keeper, KeepSettings
+from ballscrew_monitor.recordings.retention import KeepSettings, Retention
 import pytest
 from rclpy.serialization import serialize_message
 from std_msgs.msg import Float64
@@ -31,8 +31,8 @@ TOPIC = Frame(
 )
 
 
-def keeper_in(folder, **changes):
-    return Keeper(folder, KeepSettings(**(SETTINGS | changes)))
+def retention_in(folder, **changes):
+    return Retention(folder, KeepSettings(**(SETTINGS | changes)))
 
 
 def message(second, body=DATA):
@@ -41,13 +41,13 @@ def message(second, body=DATA):
     return Frame(FrameKind.MESSAGE, 3, time, time + 7, second, body)
 
 
-def feed(keeper, seconds, triggers=()):
+def feed(retention, seconds, triggers=()):
     """Give a message each second, and triggers just before those of some seconds."""
-    keeper.take(TOPIC, 0.0)
+    retention.take(TOPIC, 0.0)
     for second in seconds:
         if second in triggers:
-            keeper.take(Frame(FrameKind.TRIGGER, log_time=EPOCH), float(second))
-        keeper.take(message(second), float(second))
+            retention.take(Frame(FrameKind.TRIGGER, log_time=EPOCH), float(second))
+        retention.take(message(second), float(second))
 
 
 def seconds_in(folder):
@@ -59,9 +59,9 @@ def seconds_in(folder):
 
 
 def test_always_is_everything_in_recordings_of_limited_length(tmp_path):
-    keeper = keeper_in(tmp_path)
-    feed(keeper, range(25))
-    keeper.close()
+    retention = retention_in(tmp_path)
+    feed(retention, range(25))
+    retention.close()
     assert seconds_in(tmp_path) == {
         '20231114T221320Z': [*range(10)],
         '20231114T221330Z': [*range(10, 20)],
@@ -69,27 +69,27 @@ def test_always_is_everything_in_recordings_of_limited_length(tmp_path):
     }
     one = next(Bag(tmp_path / '20231114T221320Z').messages())
     assert (one.topic, one.data, one.publish_time - one.log_time) == ('/a', DATA, 7)
-    assert keeper.problem == ''
+    assert retention.problem == ''
 
 
 def test_a_recording_that_is_large_enough_is_finished(tmp_path):
-    keeper = keeper_in(tmp_path, largest=4.0 * len(DATA))
-    feed(keeper, range(9))
-    keeper.close()
+    retention = retention_in(tmp_path, largest=4.0 * len(DATA))
+    feed(retention, range(9))
+    retention.close()
     assert [len(found) for found in seconds_in(tmp_path).values()] == [4, 4, 1]
 
 
 def test_around_events_the_seconds_before_and_after_each_are_kept(tmp_path):
-    keeper = keeper_in(tmp_path, always=False)
-    feed(keeper, range(40), triggers=(8, 10, 30))
-    keeper.close()
+    retention = retention_in(tmp_path, always=False)
+    feed(retention, range(40), triggers=(8, 10, 30))
+    retention.close()
     assert [*seconds_in(tmp_path).values()] == [[*range(2, 13)], [*range(24, 33)]]
 
 
 def test_without_an_event_nothing_is_written(tmp_path):
-    keeper = keeper_in(tmp_path / 'none', always=False)
-    feed(keeper, range(40))
-    keeper.close()
+    retention = retention_in(tmp_path / 'none', always=False)
+    feed(retention, range(40))
+    retention.close()
     assert not (tmp_path / 'none').exists()
 
 
@@ -98,11 +98,11 @@ def test_the_oldest_recordings_make_room_and_nothing_else_does(tmp_path):
     (tmp_path / 'mine' / 'notes.mcap').write_bytes(bytes(5000))
     (tmp_path / '20200101T000000Z').mkdir()
     (tmp_path / '20200101T000000Z' / 'mine.txt').write_text('kept')
-    keeper = keeper_in(tmp_path, largest=2e4, total=8e4)
-    keeper.take(TOPIC, 0.0)
+    retention = retention_in(tmp_path, largest=2e4, total=8e4)
+    retention.take(TOPIC, 0.0)
     for second in range(200):
-        keeper.take(message(second, os.urandom(2000)), 0.01 * second)
-    keeper.close()
+        retention.take(message(second, os.urandom(2000)), 0.01 * second)
+    retention.close()
     assert (tmp_path / 'mine' / 'notes.mcap').exists()
     assert (tmp_path / '20200101T000000Z' / 'mine.txt').exists()
     sizes = [
@@ -122,64 +122,64 @@ def seconds_in_last(path):
 
 def test_two_recordings_of_one_second_have_two_names(tmp_path):
     for _ in range(2):
-        keeper = keeper_in(tmp_path)
-        feed(keeper, [0])
-        keeper.close()
+        retention = retention_in(tmp_path)
+        feed(retention, [0])
+        retention.close()
     assert [*seconds_in(tmp_path)] == ['20231114T221320Z', '20231114T221320Z_2']
 
 
 def test_a_full_disk_is_told_and_tried_again(tmp_path, monkeypatch):
-    keeper = keeper_in(tmp_path)
-    feed(keeper, [0])
+    retention = retention_in(tmp_path)
+    feed(retention, [0])
 
     def full(*unused, **also):
         raise OSError(errno.ENOSPC, 'No space left on device')
 
     with monkeypatch.context() as context:
-        context.setattr(type(keeper._writer), 'write', full)
-        keeper.take(message(1), 1.0)
-        assert keeper.problem == f'nothing is recorded in {tmp_path}: No space left on device'
-    keeper.take(message(5), 5.0)
-    assert keeper.problem
-    keeper.take(message(12), 12.0)
-    assert keeper.problem == ''
-    keeper.close()
+        context.setattr(type(retention._writer), 'write', full)
+        retention.take(message(1), 1.0)
+        assert retention.problem == f'nothing is recorded in {tmp_path}: No space left on device'
+    retention.take(message(5), 5.0)
+    assert retention.problem
+    retention.take(message(12), 12.0)
+    assert retention.problem == ''
+    retention.close()
     assert seconds_in_last(tmp_path / '20231114T221332Z') == 12
 
 
 @pytest.mark.parametrize('always', [True, False])
 def test_a_topic_that_comes_later_is_recorded_too(tmp_path, always):
-    keeper = keeper_in(tmp_path, always=always)
-    feed(keeper, range(3), triggers=(2,))
+    retention = retention_in(tmp_path, always=always)
+    feed(retention, range(3), triggers=(2,))
     body = json.dumps({'name': '/b', 'type': 'std_msgs/msg/Float64', 'offer': 'LATCHED'})
-    keeper.take(Frame(FrameKind.TOPIC, topic=4, body=body.encode()), 3.0)
-    keeper.take(Frame(FrameKind.MESSAGE, 4, EPOCH + 3 * SECOND, 0, 0, DATA), 3.0)
-    keeper.close()
+    retention.take(Frame(FrameKind.TOPIC, topic=4, body=body.encode()), 3.0)
+    retention.take(Frame(FrameKind.MESSAGE, 4, EPOCH + 3 * SECOND, 0, 0, DATA), 3.0)
+    retention.close()
     (path,) = tmp_path.iterdir()
     assert [one.topic for one in Bag(path).messages()] == ['/a'] * 3 + ['/b']
 
 
 def test_an_event_soon_after_another_is_shown_with_what_was_before_it(tmp_path):
-    keeper = keeper_in(tmp_path, always=False)
-    feed(keeper, range(40), triggers=(20, 25))
-    keeper.close()
+    retention = retention_in(tmp_path, always=False)
+    feed(retention, range(40), triggers=(20, 25))
+    retention.close()
     assert [*seconds_in(tmp_path).values()] == [[*range(14, 23)], [*range(19, 28)]]
 
 
 def test_a_topic_that_is_announced_while_nothing_can_be_written_is_known_later(
     tmp_path, monkeypatch
 ):
-    keeper = keeper_in(tmp_path)
+    retention = retention_in(tmp_path)
 
     def refuse(*unused):
         raise OSError(errno.ENOSPC, 'No space left on device')
 
     with monkeypatch.context() as context:
-        context.setattr(keeper, '_write', refuse)
-        feed(keeper, [0])
+        context.setattr(retention, '_write', refuse)
+        feed(retention, [0])
     body = json.dumps({'name': '/b', 'type': 'std_msgs/msg/Float64', 'offer': 'LATCHED'})
-    keeper.take(Frame(FrameKind.TOPIC, topic=4, body=body.encode()), 1.0)
-    keeper.take(Frame(FrameKind.MESSAGE, 4, EPOCH + 20 * SECOND, 0, 0, DATA), 20.0)
-    keeper.close()
-    assert keeper.problem == ''
+    retention.take(Frame(FrameKind.TOPIC, topic=4, body=body.encode()), 1.0)
+    retention.take(Frame(FrameKind.MESSAGE, 4, EPOCH + 20 * SECOND, 0, 0, DATA), 20.0)
+    retention.close()
+    assert retention.problem == ''
     assert seconds_in_last(tmp_path / '20231114T221340Z') == 20

@@ -4,7 +4,7 @@
 
 import math
 
-from ballscrew_monitor.recordings.operating_field import (
+from ballscrew_monitor.report.operating_field import (
     judged_speeds,
     loads_around,
     map_temperatures,

@@ -46,7 +46,7 @@ class KeepSettings:
     total: float
 
 
-class Keeper:
+class Retention:
     """Keeps what is to be kept of the frames that it takes."""
 
     def __init__(self, folder: Path, settings: KeepSettings) -> None:
@@ -205,7 +205,7 @@ class Keeper:
 
 
 def _is_made(path: Path) -> bool:
-    """Make a folder; return False if somebody has made it before, another keeper perhaps."""
+    """Make a folder; return False if somebody has made it before, another process perhaps."""
     try:
         path.mkdir(parents=True)
     except FileExistsError:

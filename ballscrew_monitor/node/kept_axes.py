@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Retention of the axes of one node: restored at the start, handed over while they are judged."""
+"""Records of the axes of one node: restored at the start, handed over while they are judged."""
 
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, TYPE_CHECKING
@@ -20,7 +20,7 @@ LOOK = 1.0  # [s] between two looks
 PERIOD = 4.0  # [s] between two records of the sums: with the pause of the thread below 5 s
 
 
-class Retention:
+class KeptAxes:
     """What the axes that `find` returns keep; `say` is called with those that have news."""
 
     def __init__(

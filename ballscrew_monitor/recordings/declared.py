@@ -1,0 +1,73 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Records whose fields declare how a file names them: one function writes them all."""
+
+from collections.abc import Callable, Mapping
+import dataclasses
+import enum
+import math
+from typing import Any
+
+
+def written(
+    unit: str = '',
+    *,
+    key: str = '',
+    because: str = '',
+    form: Callable[[Any], Any] | None = None,
+    **more: Any,
+) -> Any:
+    """
+    Declare a field that is written by its name, or by `key`, with the unit as suffix.
+
+    `because` names the attribute that says why its number is missing; `form` makes plain data of
+    its value; `more` is what `dataclasses.field` takes.
+
+    """
+    metadata = {'unit': unit, 'key': key, 'because': because, 'form': form or plain}
+    return dataclasses.field(metadata=metadata, **more)
+
+
+def unwritten(**more: Any) -> Any:
+    """Declare a field that no file holds; `more` is what `dataclasses.field` takes."""
+    return dataclasses.field(metadata={'unwritten': True}, **more)
+
+
+def keys(record: Any) -> dict[str, 'dataclasses.Field[Any]']:
+    """Return the fields of a record, or of a class of records, that are written, by their keys."""
+    specs = [one for one in dataclasses.fields(record) if 'unwritten' not in one.metadata]
+    return {_key(spec): spec for spec in specs}
+
+
+def _key(spec: 'dataclasses.Field[Any]') -> str:
+    name, unit = spec.metadata.get('key') or spec.name, spec.metadata.get('unit')
+    return f'{name}_{unit}' if unit else name
+
+
+def plain(record: Any) -> Any:
+    """
+    Return a record as plain data: its fields by their keys, records within it alike.
+
+    A number that is not known has its reason beside it where one is declared. Keys that are
+    members of an enumeration become their names.
+
+    """
+    if dataclasses.is_dataclass(record):
+        return _plain_fields(record)
+    if isinstance(record, Mapping):
+        return {_name(key): plain(value) for key, value in record.items()}
+    return [plain(one) for one in record] if isinstance(record, list | tuple) else record
+
+
+def _plain_fields(record: Any) -> dict[str, Any]:
+    made: dict[str, Any] = {}
+    for key, spec in keys(record).items():
+        value = getattr(record, spec.name)
+        made[key] = spec.metadata.get('form', plain)(value)
+        if spec.metadata.get('because') and (value is None or not math.isfinite(value)):
+            made[f'{key}_reason'] = getattr(record, spec.metadata['because'])
+    return made
+
+
+def _name(key: Any) -> Any:
+    return key.name.lower() if isinstance(key, enum.Enum) else key

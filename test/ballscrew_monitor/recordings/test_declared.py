@@ -1,0 +1,60 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Keys and units of records come from their declarations alone."""
+
+import dataclasses
+import math
+
+from ballscrew_monitor.core.inputs import Source
+from ballscrew_monitor.recordings.declared import keys, plain, unwritten, written
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Part:
+    count: int = 2
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Whole:
+    load: float = written('N')
+    start: int = written('ns', key='start_stamp', default=5)
+    speed: float = written('rad_s', because='silence', default=math.nan)
+    hidden: str = unwritten(default='none')
+    parts: tuple[Part, ...] = (Part(),)
+    by_input: dict[Source, Part] = dataclasses.field(
+        default_factory=lambda: {Source.LOAD: Part(count=3)}
+    )
+    doubled: float = written(form=lambda value: 2.0 * value, default=1.5)
+
+    @property
+    def silence(self):
+        return 'no valid sample'
+
+
+def test_a_record_is_written_as_it_is_declared():
+    record = plain(Whole(load=-1.5))
+    assert math.isnan(record.pop('speed_rad_s'))
+    assert record == {
+        'load_N': -1.5,
+        'start_stamp_ns': 5,
+        'speed_rad_s_reason': 'no valid sample',
+        'parts': [{'count': 2}],
+        'by_input': {'load': {'count': 3}},
+        'doubled': 3.0,
+    }
+
+
+def test_a_number_that_is_known_needs_no_reason():
+    assert 'speed_rad_s_reason' not in plain(Whole(load=0.0, speed=0.0))
+    assert plain(Whole(load=0.0, speed=None))['speed_rad_s_reason'] == 'no valid sample'
+
+
+def test_keys_are_those_of_what_is_written():
+    assert list(keys(Whole)) == [
+        'load_N',
+        'start_stamp_ns',
+        'speed_rad_s',
+        'parts',
+        'by_input',
+        'doubled',
+    ]

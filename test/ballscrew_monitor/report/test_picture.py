@@ -1,0 +1,102 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The picture of a page appears whole or not at all, and holds what the page does."""
+
+import struct
+
+from ballscrew_monitor.report import picture
+from ballscrew_monitor.report.case import LogCase
+from ballscrew_monitor.report.log_page import maps_of
+from ballscrew_monitor.report.map_record import OperatingMap
+import numpy as np
+import pytest
+from surrogate.plotting.style import DPI
+
+
+def log_of(*cases):
+    return LogCase(name='log', parameters='', axes=cases)
+
+
+def small_map(*marks):
+    """Return a map without lines, which take most of the time."""
+    return OperatingMap(
+        temperature=40.0,
+        others=False,
+        banded=False,
+        speed=(5.0, 2000.0),
+        load=(-1000.0, 2000.0),
+        light_load=250.0,
+        zone=np.ones((4, 3), dtype=int),
+        lines=[],
+        dwell=np.zeros((2, 2)),
+        path=np.empty((0, 2)),
+        events=list(marks),
+    )
+
+
+def test_axes_are_side_by_side_in_one_png(judged, tmp_path):
+    cases = [judged.case([judged.columns(axis=axis)]) for axis in ('x', 'y')]
+    picture.draw_log(log_of(*cases), [small_map()] * 2, tmp_path / 'log.png')
+    data = (tmp_path / 'log.png').read_bytes()
+    assert data.startswith(b'\x89PNG')
+    size = struct.unpack('>II', data[16:24])
+    assert size == (round(2 * picture.WIDTH * DPI), round(picture.HEIGHT * DPI))
+    assert [path.name for path in tmp_path.iterdir()] == ['log.png']
+
+
+def test_a_failure_leaves_no_picture(judged, tmp_path, monkeypatch):
+    monkeypatch.setattr(picture, '_draw_map', lambda *arguments: 1 / 0)
+    with pytest.raises(ZeroDivisionError):
+        picture.draw_log(
+            log_of(judged.case([judged.columns()])), [small_map()], tmp_path / 'log.png'
+        )
+    assert not list(tmp_path.iterdir())
+
+
+def strips_of(case):
+    """Return the axes of the bars and of the panels."""
+    (part,) = picture.figure_log(log_of(case), [small_map()]).subfigs
+    bars, *strips = part.subfigs[1].axes
+    return bars, {strip.get_title(loc='left'): strip for strip in strips}
+
+
+def test_panels_and_numbers_are_those_of_the_page(judged):
+    case = judged.case([judged.columns(rcs=0.0)], [judged.event(7, 0.2, 0.4)])
+    bars, strips = strips_of(case)
+    assert [text.get_text() for text in bars.texts] == ['7']
+    assert bars.texts[0].get_position()[0] == pytest.approx(0.4)
+    assert [title.split()[0] for title in strips] == [
+        'Screw',
+        'Axial',
+        'Oil',
+        'Efficiency,',
+        'Film',
+        'RCS:',
+    ]
+    load = strips['Axial load, positive along the axis [N]']
+    np.testing.assert_array_equal(load.lines[0].get_ydata(), judged.columns().axial_load)
+    (shade,) = load.patches
+    assert (shade.get_x(), shade.get_width()) == pytest.approx((0.2, 0.4))
+    lowest = next(strip for title, strip in strips.items() if title.startswith('RCS'))
+    assert set(lowest.lines[0].get_ydata()) == {1e-4}  # what is smaller is drawn on it
+
+
+def test_colours_are_those_of_the_page(judged):
+    assert picture.COLOURS['outside'] == '#d55e00'
+    assert {colour for colour, _, _ in picture.STYLES.values()} <= picture.COLOURS.keys()
+
+
+@pytest.mark.parametrize('temperature', [313.15, np.nan])
+def test_names_of_lines_are_on_the_map_and_apart(judged, temperature):
+    log = log_of(judged.case([judged.columns(temperature=temperature)]))
+    maps = maps_of(log)
+    figure = picture.figure_log(log, maps)
+    figure.draw_without_rendering()
+    (axes,) = figure.subfigs[0].subfigs[0].axes
+    inside = axes.get_window_extent()
+    boxes = [text.get_window_extent() for text in axes.texts]
+    assert {text.get_text() for text in axes.texts} >= {'40 °C', 'Λ 1', '85 %'}
+    assert all(inside.x0 <= box.x0 and box.x1 <= inside.x1 for box in boxes)
+    assert not any(
+        one.overlaps(other) for place, one in enumerate(boxes) for other in boxes[:place]
+    )
