@@ -27,10 +27,7 @@ from ballscrew_monitor.core.state import MonitorSettings
 from ballscrew_monitor.cycle.domain import DOMAINS, free_domain, held
 from ballscrew_monitor.cycle.node_process import child_environment
 from ballscrew_monitor.cycle.shared_memory import remove_stale, SHARED_MEMORY
-<<<<<<< HEAD
 from ballscrew_monitor.judge import point, step
-=======
->>>>>>> 57085b60e74dcf013f1a01167ba1c946d5e4923c
 from ballscrew_monitor.judge.monitor import Monitor
 from ballscrew_monitor.node.solver_process import MODULE
 from ballscrew_msgs.msg import BallScrewState
