@@ -9,15 +9,15 @@ from pathlib import Path
 import sys
 
 from ballscrew_monitor.cycle.plan import Plan
-from ballscrew_monitor.settings.axis import Axis
-from ballscrew_monitor.settings.parameters import names_in_file
-from ballscrew_monitor.settings.topics import absolute, output
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.log_facts import LogFacts, parameters_text, PREFIX
 from ballscrew_monitor.recordings.summary import Summarizer
 from ballscrew_monitor.recordings.words import counted
 from ballscrew_monitor.report.logs import PAGE, PICTURE
 from ballscrew_monitor.report.parameters import parameters_for
+from ballscrew_monitor.settings.axis import Axis
+from ballscrew_monitor.settings.parameters import names_in_file
+from ballscrew_monitor.settings.topics import absolute, output
 from ballscrew_msgs.msg import BallScrewState, InputHealth, OutOfZone, PointResult
 from rclpy.serialization import deserialize_message
 from surrogate.files import InputError

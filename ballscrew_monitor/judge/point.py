@@ -13,7 +13,7 @@ from typing import Any
 
 from ballscrew_monitor.core.conversions import Direction, Nut
 from ballscrew_monitor.core.estimate import ContactState, DOMINANT_RCS, PointSource
-from ballscrew_monitor.judge.derived_load import AT_STANDSTILL, derive_load, NOTHING_DERIVED
+from ballscrew_monitor.judge.derived_load import derive_load, no_load, NOT_FRESH, STANDSTILL
 from ballscrew_monitor.judge.inputs import (
     DEFAULT,
     HELD,
@@ -28,7 +28,7 @@ from ballscrew_monitor.judge.inputs import (
 )
 from ballscrew_monitor.judge.slopes import slope_change, slope_of
 from ballscrew_monitor.judge.zone import NO_INPUT, VALID
-from surrogate.surface import FILM_RATIO_LIMITS, look_up, Regime
+from surrogate.surface import FILM_RATIO_LIMITS, leave, look_up, Regime
 
 DERIVED = int(PointSource.DERIVED)
 NO_DIRECTION, POSITIVE, NEGATIVE = (
@@ -66,7 +66,8 @@ def set_point(
     row.direction = memory.direction
     row.direction_held = not moving and memory.direction != NO_DIRECTION
     row.axial_load_uncertainty = math.nan
-    row.derived, row.derived_first, row.derived_second = 0, math.nan, math.nan
+    row.derived = 0
+    row.derived_first = row.derived_second = row.derived_third = math.nan
     if settings.derives:
         _set_derived_load(tables, settings, memory, speeds, derived, row, moving)
         return
@@ -84,7 +85,7 @@ def _set_derived_load(
         or row.motor_torque_source != MEASURED
         or (row.temperature_source != MEASURED and row.temperature_source != DEFAULT)
     ):
-        row.derived, derived.validity = NOTHING_DERIVED, 0
+        row.derived, derived.validity = NOT_FRESH, 0
         row.axial_load = memory.held_load
         if math.isfinite(memory.held_load):
             row.axial_load_source = HELD
@@ -103,15 +104,14 @@ def _set_derived_load(
             row.motor_torque,
             row.temperature,
             memory.direction,
-            derived,
             row,
+            derived,
         )
     else:
-        derived.validity, derived.code = 0, AT_STANDSTILL
-        derived.axial_load, derived.uncertainty = math.nan, math.nan
-        derived.first, derived.second = math.nan, math.nan
+        no_load(derived, 0, STANDSTILL, math.nan, math.nan, math.nan)
     row.derived = derived.code
     row.derived_first, row.derived_second = derived.first, derived.second
+    row.derived_third = derived.third
     row.axial_load = memory.held_load = derived.axial_load
     if math.isfinite(derived.axial_load):
         row.axial_load_source = DERIVED
@@ -121,16 +121,20 @@ def _set_derived_load(
 def set_answer(tables: Any, settings: Any, derived: Any, row: Any) -> None:
     """Set what the surface says of the operating point of a row."""
     if not _is_complete(row):
-        _blank(row, NO_INPUT)
+        leave(row, NO_INPUT)
     elif row.direction == NO_DIRECTION:
-        _blank(row, 0)
+        leave(row, 0)
     elif row.derived != 0 and derived.validity != VALID:
-        _blank(row, derived.validity)
+        leave(row, derived.validity)
     else:
-        # Subtracted from zero: a zero load must not become -0.0.
-        load = 0.0 - row.axial_load if row.direction == POSITIVE else row.axial_load
-        look_up(tables, abs(row.speed), load, row.temperature, row)
+        look_up(tables, abs(row.speed), opposing_load(row), row.temperature, row)
     _set_words(settings, row)
+
+
+def opposing_load(row: Any) -> float:
+    """Return the load [N] of a row that opposes its motion."""
+    # Subtracted from zero: a zero load must not become -0.0.
+    return 0.0 - row.axial_load if row.direction == POSITIVE else row.axial_load
 
 
 def _is_complete(row: Any) -> bool:
@@ -144,13 +148,6 @@ def _is_complete(row: Any) -> bool:
         and source != HELD
         and row.temperature_source != HELD
     )
-
-
-def _blank(row: Any, validity: int) -> None:
-    """Leave a row without an answer of the surface."""
-    row.validity, row.corrected, row.worst_contact = validity, False, -1
-    row.friction_torque = row.rcs = row.film_ratio = math.nan
-    row.efficiency = row.driving_torque = math.nan
 
 
 def _set_words(settings: Any, row: Any) -> None:

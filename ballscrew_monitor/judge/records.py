@@ -210,6 +210,7 @@ class Row(Found):
     derived: int = 0  # a code of `derived_load`, 0 where the load is an input
     derived_first: float = NAN
     derived_second: float = NAN
+    derived_third: float = NAN
     axial_load_uncertainty: float = NAN
     machine_torque: float = NAN
     worst_nut: int = 0

@@ -30,11 +30,10 @@ from ballscrew_monitor.judge.inputs import (
     SPEED,
     take_refusal,
 )
-from ballscrew_monitor.judge.point import NO_DIRECTION, set_answer, set_point
+from ballscrew_monitor.judge.point import NO_DIRECTION, opposing_load, set_answer, set_point
 from ballscrew_monitor.judge.records import INPUTS, REFUSAL, TICK
 from ballscrew_monitor.judge.slopes import (
-    last_stamp,
-    last_value,
+    slope_last,
     slope_of,
     slope_restart,
     slope_shift,
@@ -205,13 +204,14 @@ def _take_position(settings: Any, memory: Any, positions: Any, event: Any) -> bo
 
 def _odd_position(settings: Any, positions: Any, event: Any) -> tuple[int, float, float]:
     """Return why no speed follows from a position and the one before, 0 if one does."""
-    change = event.value - last_value(positions)
+    last = slope_last(positions)
+    change = event.value - positions.values[last]
     if settings.wrap != 0.0 and abs(change) <= MOST_TURNS * settings.wrap:
         # The way to the new position is the shorter one.
         turns = settings.wrap * round(change / settings.wrap)
         slope_shift(positions, turns)
         change -= turns
-    gap, change = event.stamp - last_stamp(positions), abs(change)
+    gap, change = event.stamp - positions.stamps[last], abs(change)
     if gap > settings.timeout[SPEED]:
         return HOLE, gap / SECOND, math.nan
     if event.stamp_source != HEADER:  # a burst of messages is no jump
@@ -257,7 +257,7 @@ def _judge(tables: Any, settings: Any, memory: Any, speeds: Any, derived: Any, r
     row.published = row.edge != 0 or memory.level != before or _is_state_due(settings, memory)
     if not row.published:
         return ROW
-    look_up_rest(tables, row)
+    look_up_rest(tables, opposing_load(row), row)
     memory.published, memory.last_published, memory.window_told = True, row.stamp, True
     return STATE
 

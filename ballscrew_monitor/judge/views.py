@@ -39,7 +39,7 @@ from ballscrew_monitor.core.judgement import (
 )
 from ballscrew_monitor.core.state import Event
 from ballscrew_monitor.core.tally import Extremes, Totals, WindowStatistics
-from ballscrew_monitor.judge.derived_load import derived_text
+from ballscrew_monitor.judge import derived_load
 from ballscrew_monitor.judge.inputs import is_fresh, is_lagging, least_lag, SLOW_GAPS
 from ballscrew_monitor.judge.records import (
     LIGHT_LOAD,
@@ -106,12 +106,35 @@ def reason_of(row: Any, point: MachinePoint, surface: Surface) -> str:
     if point.direction is Direction.UNKNOWN:
         return NO_DIRECTION
     if point.derived:
-        said = derived_text(
-            int(row.derived), float(row.derived_first), float(row.derived_second), surface
-        )
+        said = derived_text(row)
         if said or validity is PointValidity.UNKNOWN:
             return said
     return outside_text(validity, point, surface)
+
+
+def derived_text(row: Any) -> str:
+    """Return why the motor torque does not tell the load; empty where the surface says why."""
+    first, second = float(row.derived_first), float(row.derived_second)
+    if row.derived == derived_load.STANDSTILL:
+        return 'the screw stands still, friction may hold any part of the load'
+    if row.derived == derived_load.NO_ACCELERATION:
+        return 'the acceleration is not known yet, and with it the torque that inertia takes'
+    if row.derived == derived_load.TOO_MUCH_INERTIA:
+        return (
+            f'inertia and drag take {first:.3g} N m and the torque is {second:.3g} N m, '
+            f'allowed is a share of {float(row.derived_third):g}: too little is left for the load'
+        )
+    if row.derived == derived_load.SEVERAL_LOADS:
+        return (
+            f'the torque is that of several loads, from {first:.4g} to {second:.4g} N that oppose '
+            'the motion'
+        )
+    if row.derived == derived_load.OUTSIDE:
+        return (
+            f'the torque along the motion, {first:.3g} N m, asks for a load outside the surface, '
+            f'{second:.4g} to {float(row.derived_third):.4g} N that oppose the motion'
+        )
+    return ''
 
 
 def verdict_of(row: Any, estimate: PointEstimate, limits: Limits) -> Verdict:

@@ -12,7 +12,7 @@ from surrogate.surface.batch import look_up_many
 from surrogate.surface.correction import Correction, HasOperatingPoint
 from surrogate.surface.fields import FIELDS
 from surrogate.surface.file import SurfaceError
-from surrogate.surface.found import Found, look_up, look_up_rest
+from surrogate.surface.found import Found, leave, look_up, look_up_rest
 from surrogate.surface.load_scan import scan
 from surrogate.surface.lookup import Surface
 from surrogate.surface.point import solved_point, SurfacePoint, Validity
@@ -29,6 +29,7 @@ __all__ = [
     'Found',
     'find_surface',
     'HasOperatingPoint',
+    'leave',
     'LIGHT_LOAD',
     'look_up',
     'look_up_many',

@@ -76,7 +76,7 @@ def look_up(
     Locate a point and look up the numbers that are judged; return the validity.
 
     Speed |w| [rad/s], opposing load [N], temperature [K]. Fills validity, cells, fractions,
-    friction torque, RCS, film ratio, efficiency, driving torque and `corrected`.
+    friction torque, RCS, film ratio, efficiency, driving torque, worst contact and `corrected`.
 
     """
     if not tables.temperature_low <= temperature <= tables.temperature_high:
@@ -116,6 +116,8 @@ def look_up(
         ratio = pulled(tables.pulls, pull, weight, RATIO, ratio)
     found.friction_torque, found.rcs, found.film_ratio = torque, share(rcs), exponential(ratio)
     found.corrected = weight != 0.0
+    node = ((i + (u > 0.5)) * len(loads) + j + (v > 0.5)) * across + k + (w > 0.5)
+    found.worst_contact = tables.worst_contacts[node]
     fill_torques(found, load, tables.lead)
     return VALID
 
@@ -127,7 +129,7 @@ def leave(found: Found, validity: int) -> int:
     found.speed_fraction = found.load_fraction = found.heat_fraction = NAN
     found.friction_torque = found.rcs = found.film_ratio = NAN
     found.efficiency = found.driving_torque = NAN
-    found.corrected = False
+    found.corrected, found.worst_contact = False, -1
     return validity
 
 
@@ -165,10 +167,6 @@ def look_up_rest(tables: SurfaceTables, load: float, found: Found) -> None:
     found.asperity_share = share(shared)
     found.central_film, found.minimum_film = exponential(central), exponential(minimum)
     found.friction_coefficient, found.max_pressure = coefficient, pressure
-    node = (i * len(loads) + j) * across + k
-    near = (1 if v > 0.5 else 0) * across + (1 if w > 0.5 else 0)
-    near += (1 if u > 0.5 else 0) * len(loads) * across
-    found.worst_contact = tables.worst_contacts[node + near]
     found.friction_torque_error = tables.errors[ERRORS * cell]
     found.rcs_error = tables.errors[ERRORS * cell + 1]
     slope = efficiency_slope(found.friction_torque, load, tables.lead)
@@ -178,7 +176,8 @@ def look_up_rest(tables: SurfaceTables, load: float, found: Found) -> None:
         leave_spreads(found)
         return
     corners = corner_weights(u, v, w)
-    node, across, along = SPREADS * node, SPREADS * across, SPREADS * len(loads) * across
+    node = SPREADS * ((i * len(loads) + j) * across + k)
+    across, along = SPREADS * across, SPREADS * len(loads) * across
     spreads = tables.spreads
     found.friction_torque_std = spread(spreads, node, across, along, corners)
     found.friction_torque_stderr = spread(spreads, node + 1, across, along, corners)
@@ -192,7 +191,6 @@ def leave_rest(found: Found) -> None:
     """Say that all that `look_up` leaves is not known."""
     found.asperity_share = found.central_film = found.minimum_film = NAN
     found.friction_coefficient = found.max_pressure = NAN
-    found.worst_contact = -1
     found.friction_torque_error = found.rcs_error = found.efficiency_error = NAN
     leave_spreads(found)
     found.back_driving = False
