@@ -46,12 +46,13 @@ def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
         if part not in _REGISTERED:
             register_jitable(part)
             _REGISTERED.add(part)
-    digest = _digest(parts)
 
     def entry(*arguments):  # type: ignore[no-untyped-def]
-        _ = digest  # the cache tells closures apart: other sources are compiled again
         return function(*arguments)
 
+    # A file of the cache for each state of the sources: one of another state may name classes
+    # that are gone, and numba fails to read it.
+    entry.__qualname__ = f'{function.__name__}_{_digest(parts)[:16]}'
     made: Callable[..., Any] = numba.njit(cache=True)(entry)
     return made
 
