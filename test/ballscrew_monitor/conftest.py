@@ -27,7 +27,7 @@ from ballscrew_monitor.core.state import MonitorSettings
 from ballscrew_monitor.cycle.domain import DOMAINS, free_domain, held
 from ballscrew_monitor.cycle.node_process import child_environment
 from ballscrew_monitor.cycle.shared_memory import remove_stale, SHARED_MEMORY
-from ballscrew_monitor.judge import point, step
+from ballscrew_monitor.judge import derived_load, point, step
 from ballscrew_monitor.judge.monitor import Monitor
 from ballscrew_monitor.node.solver_process import MODULE
 from ballscrew_msgs.msg import BallScrewState
@@ -104,9 +104,10 @@ class ConstantSurface:
     temperature_range = (283.15, 353.15)
     errors = {'rcs': (2e-3, 1e-3)}
     corrections = ()
-    parasitic = 0.0
+    parasitic_torque = parasitic_torque_rate = 0.0
 
     def __init__(self, **numbers):
+        self.scan_loads = self.scan_torques = ()
         self.numbers = numbers
         self.asked = []
 
@@ -138,7 +139,7 @@ class ConstantSurface:
         return loads, np.where(valid, [point.driving_torque for point in points], math.nan)
 
     def drag(self, speed):
-        return self.parasitic
+        return self.parasitic_torque
 
 
 def make_limits(**changes):
@@ -201,36 +202,45 @@ def feed(monitor, events):
     return [state for state in states if state is not None]
 
 
-def constant_or(real):
-    """Return a lookup that asks a surface of constants, and any other as `real` does."""
+def look_up(surface, speed, load, temperature, found):
+    """Fill in what a surface of constants says, as `surrogate.surface.look_up` does."""
+    numbers = surface.lookup(speed, load, temperature)
+    found.validity = int(numbers.validity)
+    for name in Found.__dataclass_fields__:
+        number = getattr(numbers, name, None)
+        if isinstance(number, float) and found.validity != PointValidity.VALID:
+            number = math.nan
+        if number is not None and name != 'validity':
+            setattr(found, name, number)
+    return found.validity
 
-    def look_up(tables, speed, load, temperature, found):
-        if not isinstance(tables, ConstantSurface):
-            real(tables, speed, load, temperature, found)
-            return
-        numbers = tables.lookup(speed, load, temperature)
-        valid = numbers.validity is PointValidity.VALID
-        for name in Found.__dataclass_fields__:
-            if hasattr(numbers, name):
-                number = getattr(numbers, name)
-                setattr(
-                    found, name, number if valid or not isinstance(number, float) else math.nan
-                )
 
-    return look_up
+def look_up_rest(surface, load, found):
+    """Leave what `look_up` has filled in."""
+
+
+def scan(surface, speed, temperature):
+    """Fill in the driving torques of a surface of constants."""
+    surface.scan_loads, surface.scan_torques = surface.driving_torques(speed, temperature)
+    return np.count_nonzero(np.isfinite(surface.scan_torques))
+
+
+def constant_or(constant, real):
+    """Return a lookup of surfaces of constants that leaves any other to the real one."""
+    return lambda tables, *others: (constant if isinstance(tables, ConstantSurface) else real)(
+        tables, *others
+    )
 
 
 @pytest.fixture(scope='module')
 def core():
     """Make the parts that tests of the core are built from; nothing compiles meanwhile."""
-    rest = step.look_up_rest
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(point, 'look_up', constant_or(point.look_up))
-        patch.setattr(
-            step,
-            'look_up_rest',
-            lambda tables, found: isinstance(tables, ConstantSurface) or rest(tables, found),
-        )
+        for module in (point, step, derived_load):
+            for constant in (look_up, look_up_rest, scan):
+                name = constant.__name__
+                if hasattr(module, name):
+                    patch.setattr(module, name, constant_or(constant, getattr(module, name)))
         yield types.SimpleNamespace(
             surface=ConstantSurface,
             numbers=Numbers,

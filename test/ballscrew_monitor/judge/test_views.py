@@ -10,7 +10,7 @@ from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.core.judgement import Code, Gate, Reason, Severity, Zone
 from ballscrew_monitor.core.state import Event
 from ballscrew_monitor.core.tally import Totals
-from ballscrew_monitor.judge import views
+from ballscrew_monitor.judge import derived_load, views
 from ballscrew_monitor.judge.records import Memory, Row
 from ballscrew_monitor.judge.zone import set_reason, set_zone, shut_gates
 import pytest
@@ -94,7 +94,17 @@ def test_findings_say_value_limit_and_sentence(core):
             'no valid sample of speed and load',
         ),
         ({'validity': 7}, Reason.NO_INPUTS, 'an input is beyond any range'),
-        ({'validity': 0, 'derived': 2}, Reason.NO_DERIVED_LOAD, 'the screw stands still, fric'),
+        *(
+            ({'validity': validity, 'derived': code}, reason, text)
+            for code, validity, reason, text in (
+                (derived_load.STANDSTILL, 0, Reason.NO_DERIVED_LOAD, 'the screw stands still'),
+                (derived_load.NO_ACCELERATION, 0, Reason.NO_DERIVED_LOAD, 'the acceleration is'),
+                (derived_load.TOO_MUCH_INERTIA, 0, Reason.NO_DERIVED_LOAD, 'inertia and drag'),
+                (derived_load.SEVERAL_LOADS, 0, Reason.NO_DERIVED_LOAD, 'the torque is that of'),
+                (derived_load.OUTSIDE, 4, Reason.LOAD_OUT_OF_RANGE, 'the torque along the mot'),
+                (derived_load.NO_NUMBER, 6, Reason.MASKED, 'the model did not converge'),
+            )
+        ),
     ],
 )
 def test_an_instant_without_a_zone_says_why(core, changes, reason, text):
