@@ -47,7 +47,7 @@ LOOKUP = {
     'surrogate.units',
 }
 
-FLOORS = ('core', 'node', 'clients', 'recordings', 'report', 'cycle')
+FLOORS = ('core', 'judge', 'node', 'clients', 'recordings', 'report', 'cycle')
 """Folders of the online half, the lowest first."""
 OFFLINE_FLOORS = (
     ('units', 'files', 'progress'),

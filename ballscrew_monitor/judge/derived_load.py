@@ -1,0 +1,250 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+The axial load that a motor torque states: inertia is taken off, the surface is turned round.
+
+    torque - inertia dw/dt = driving torque(|w|, load, temperature)
+
+The driving torque of a surface holds the friction of the nuts and the parasitic torque of its
+datasheet, so drag is not taken off a second time. It rises with the load but for a few newtons
+about the idle load of a nut, so all loads of the surface are scanned, and the first and the last
+crossing are refined. No clock. In the subset of Python that also compiles.
+
+"""
+
+import dataclasses
+import math
+from typing import Any, NamedTuple
+
+from surrogate.surface import Found, look_up, look_up_rest, scan, SurfaceTables
+from surrogate.units import TURN
+
+NAN = math.nan
+TOLERANCE = 1e-6  # [N] of the last step to a root, which converges faster than linearly
+MOST_STEPS = 60
+UNKNOWN, VALID, OUTSIDE_LOADS, NO_ANSWER = 0, 1, 4, 6  # validities of a surface
+POSITIVE, NEGATIVE = 1, 2  # directions
+NOT_DERIVED = 0
+DERIVED_OK = 1
+NO_ACCELERATION = 2
+TOO_MUCH_INERTIA = 3
+SEVERAL_LOADS = 4
+OUTSIDE = 5
+NO_NUMBER = 6
+STANDSTILL = 7
+
+
+class LoadSettings(NamedTuple):
+    """
+    How a load is derived from the torque.
+
+    `inertia` [kg m2] of what turns, at the screw; `torque_uncertainty` [N m] at the screw, a half
+    width; `parts_uncertainty` [-] that of inertia torque and drag over themselves; `largest_share`
+    [-] of both in the measured torque up to which a load is derived.
+
+    """
+
+    inertia: float
+    torque_uncertainty: float
+    parts_uncertainty: float
+    largest_share: float
+
+
+@dataclasses.dataclass(slots=True)
+class Derived:
+    """
+    A load in the machine frame and the half width of the range in which it lies [N], or why not.
+
+    Both are NaN unless `validity` is VALID. `code` and three numbers make the sentence:
+    TOO_MUCH_INERTIA has the torque of inertia and drag and the measured one [N m], SEVERAL_LOADS
+    the lowest and highest of them, opposing [N], OUTSIDE the torque along the motion [N m] and the
+    lowest and highest opposing load of the surface [N]. With NO_NUMBER the validity says why.
+
+    """
+
+    validity: int = UNKNOWN
+    axial_load: float = NAN
+    uncertainty: float = NAN
+    code: int = NOT_DERIVED
+    first: float = NAN
+    second: float = NAN
+    third: float = NAN
+
+
+def no_load(
+    found: Derived, validity: int, code: int, first: float, second: float, third: float
+) -> None:
+    """Say why no load follows."""
+    found.validity, found.code = validity, code
+    found.axial_load = found.uncertainty = NAN
+    found.first, found.second, found.third = first, second, third
+
+
+def derive_load(
+    tables: SurfaceTables,
+    settings: Any,
+    speed: float,
+    acceleration: float,
+    acceleration_change: float,
+    motor_torque: float,
+    temperature: float,
+    direction: int,
+    scratch: Found,
+    found: Derived,
+) -> None:
+    """
+    Fill in the load that the torque of a moving screw states, or why it is not known.
+
+    All in the machine frame: speed [rad/s], acceleration and by how much it changes [rad/s2],
+    motor_torque [N m], temperature [K], direction by its number. `settings` have the attributes
+    of LoadSettings. Lookups go to `scratch`.
+
+    """
+    taken = settings.inertia * acceleration if settings.inertia != 0.0 else 0.0
+    if math.isnan(taken):
+        no_load(found, UNKNOWN, NO_ACCELERATION, NAN, NAN, NAN)
+        return
+    drag = tables.parasitic_torque + tables.parasitic_torque_rate * abs(speed)
+    parts, measured = abs(taken) + drag, abs(motor_torque)
+    if parts > settings.largest_share * measured:
+        no_load(found, UNKNOWN, TOO_MUCH_INERTIA, parts, measured, NAN)
+        return
+    driving = motor_torque - taken
+    driving = 0.0 - driving if direction == NEGATIVE else driving
+    margin = settings.torque_uncertainty + settings.parts_uncertainty * parts
+    if settings.inertia != 0.0:
+        margin += settings.inertia * acceleration_change
+    solve(tables, abs(speed), temperature, driving, margin, scratch, found)
+    load = found.axial_load
+    # Subtracted from zero: a zero load must not become -0.0.
+    found.axial_load = 0.0 - load if direction == POSITIVE else load
+
+
+def solve(
+    tables: SurfaceTables,
+    speed: float,
+    temperature: float,
+    driving: float,
+    margin: float,
+    scratch: Found,
+    found: Derived,
+) -> None:
+    """
+    Fill in the opposing load of a driving torque [N m] that is known within a margin [N m].
+
+    Speed |w| [rad/s], temperature [K]. Several loads are one answer where the margin cannot tell
+    them apart.
+
+    """
+    loads, torques = tables.scan_loads, tables.scan_torques
+    if scan(tables, speed, temperature) == 0:
+        validity = look_up(tables, speed, loads[len(loads) // 2], temperature, scratch)
+        validity = NO_ANSWER if validity == VALID else validity
+        no_load(found, validity, NO_NUMBER, NAN, NAN, NAN)
+        return
+    begin, first, last, before = -1, -1, -1, -1
+    for i in range(len(loads)):
+        if math.isnan(torques[i]):
+            continue
+        begin = i if begin < 0 else begin
+        if before >= 0 and (torques[i] - driving > 0.0) != (torques[before] - driving > 0.0):
+            if i - before > 1:
+                no_load(found, NO_ANSWER, NO_NUMBER, NAN, NAN, NAN)
+                return
+            first = before if first < 0 else first
+            last = before
+        before = i
+    if first < 0:
+        no_load(found, OUTSIDE_LOADS, OUTSIDE, driving, loads[begin], loads[before])
+        return
+    low = root(tables, speed, temperature, driving, first, scratch)
+    high = low if last == first else root(tables, speed, temperature, driving, last, scratch)
+    per_newton = tables.lead / TURN  # [N m] of torque for a load without friction
+    if high - low > 2.0 * margin / per_newton:
+        no_load(found, UNKNOWN, SEVERAL_LOADS, low, high, NAN)
+        return
+    load = 0.5 * (low + high)
+    if look_up(tables, speed, load, temperature, scratch) != VALID:
+        no_load(found, NO_ANSWER, NO_NUMBER, NAN, NAN, NAN)
+        return
+    look_up_rest(tables, load, scratch)
+    error = scratch.friction_torque_error
+    stated = error if math.isfinite(error) else 0.0
+    error = scratch.friction_torque_stderr
+    margin += stated + (error if math.isfinite(error) else 0.0)
+    no_load(found, VALID, DERIVED_OK, NAN, NAN, NAN)
+    found.axial_load = load
+    found.uncertainty = reach_of(loads, torques, driving, load, margin, per_newton)
+
+
+def reach_of(
+    loads: Any, torques: Any, driving: float, load: float, margin: float, per_newton: float
+) -> float:
+    """
+    Return how far from `load` [N] the loads lie whose torque is the driving one within the margin.
+
+    Torques [N m] at the scanned loads, linear between them; beyond their ends friction counts as
+    constant, and a load takes the torque `per_newton` [m].
+
+    """
+    reach, before = 0.0, -1
+    for i in range(len(loads)):
+        excess = torques[i] - driving
+        if math.isnan(excess):
+            continue
+        if abs(excess) <= margin:
+            reach = max(reach, abs(loads[i] - load))
+        if before < 0:
+            left = excess + margin
+            if left > 0.0:
+                reach = max(reach, abs(loads[i] - load) + left / per_newton)
+        else:
+            other = torques[before] - driving
+            for level in (-margin, margin):
+                if (excess > level) != (other > level):
+                    part = (level - other) / (excess - other)
+                    place = loads[before] + part * (loads[i] - loads[before])
+                    reach = max(reach, abs(place - load))
+        before = i
+    left = margin - (torques[before] - driving)
+    if left > 0.0:
+        reach = max(reach, abs(loads[before] - load) + left / per_newton)
+    return reach
+
+
+def root(
+    tables: SurfaceTables,
+    speed: float,
+    temperature: float,
+    driving: float,
+    place: int,
+    scratch: Found,
+) -> float:
+    """
+    Return the load [N] of a driving torque [N m] above a place of the scan; NaN if it is lost.
+
+    Speed |w| [rad/s], temperature [K]. Anderson and Bjorck, BIT 13 (1973) 253: the secant, with
+    the rest of an end that stays made smaller.
+
+    """
+    low, high = tables.scan_loads[place], tables.scan_loads[place + 1]
+    below = tables.scan_torques[place] - driving
+    above = tables.scan_torques[place + 1] - driving
+    if above == 0.0:
+        return high
+    for _ in range(MOST_STEPS):
+        middle = (low * above - high * below) / (above - below)
+        look_up(tables, speed, middle, temperature, scratch)
+        here = scratch.driving_torque - driving
+        if here == 0.0 or math.isnan(here):
+            return middle if here == 0.0 else NAN
+        if (here > 0.0) == (above > 0.0):
+            smaller = 1.0 - here / above
+            below *= smaller if smaller > 0.0 else 0.5
+        else:
+            low, below = high, above
+        moved = abs(middle - high)
+        high, above = middle, here
+        if moved <= TOLERANCE:
+            return middle
+    return NAN
