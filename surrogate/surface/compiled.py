@@ -13,9 +13,11 @@ which it is written (no fastmath).
 from collections.abc import Callable
 import hashlib
 import inspect
+from pathlib import Path
 import types
 from typing import Any
 
+DIGITS = 16
 _REGISTERED: set[types.FunctionType] = set()
 
 
@@ -49,20 +51,23 @@ def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
     digest = _digest(parts)
 
     def entry(*arguments):  # type: ignore[no-untyped-def]
-        _ = digest  # the cache tells closures apart: other sources are compiled again
         return function(*arguments)
 
+    # A file of its own in the cache: other sources are compiled again, and what was compiled from
+    # these does not name what is gone.
+    entry.__qualname__ = f'{function.__name__}_{digest}'
     made: Callable[..., Any] = numba.njit(cache=True)(entry)
     return made
 
 
 def _digest(parts: list[types.FunctionType]) -> str:
-    """Return a hash of modules and sources of functions and of the constants that they name."""
+    """Return a hash of the modules of functions and of the constants that they name."""
     content = hashlib.sha256()
     for part in parts:
-        content.update(f'{part.__module__} {inspect.getsource(part)}'.encode())
+        content.update(f'{part.__module__}.{part.__qualname__}'.encode())
+        content.update(Path(inspect.getfile(part)).read_bytes())
         for name in part.__code__.co_names:
             value = part.__globals__.get(name)
             if isinstance(value, (bool, int, float, str, tuple)):
                 content.update(f'{name}={value!r}'.encode())
-    return content.hexdigest()
+    return content.hexdigest()[:DIGITS]
