@@ -3,8 +3,8 @@
 """
 The judgement gives the golden rows, which an earlier implementation of it made of the same events.
 
-The events come from all scenarios of `bags/`, from the nominal cycle and from lists that meet every
-refusal, command and correction; the surface is a small one of the closed form with spreads and a
+The events come from all scenarios of `bags/`, from the nominal cycle and from lists that meet
+every refusal, command and correction; the surface is a small one of the closed form with spreads and a
 masked node. `golden_rows.npz` holds columns of four tables. Their names tell what they hold:
 
 * `run_`: name, settings and kept memory as JSON.
@@ -45,7 +45,7 @@ KINDS = ('sample', 'refusal', 'tick', 'acknowledge', 'shelve', 'correct', 'reset
 SAME = (
     'stamp now tick published level speed axial_load temperature motor_torque speed_source '
     'axial_load_source temperature_source motor_torque_source direction direction_held '
-    'axial_load_uncertainty validity rcs efficiency machine_torque worst_nut regime '
+    'axial_load_uncertainty validity rcs efficiency machine_torque regime '
     'contact_state friction_torque film_ratio worst_contact driving_torque corrected zone'
 ).split()
 """Columns that a row has under the same name."""
@@ -160,6 +160,7 @@ def check_row(row, memory, wanted, texts, monitor, place):
         check(row, wanted, REST, place)
     assert bool(row.clears) == bool(wanted.clear), place
     assert row.gates * 2 == wanted.gates, place
+    assert row.machine_nut == wanted.worst_nut, place
     assert (row.derived == 0) == (wanted.derived < 0), place
     assert bool(row.edge) == bool(wanted.edge), place
     point = views.point_of(row)
