@@ -10,7 +10,7 @@ from ballscrew_monitor.core.conversions import (
     machine_torque,
     opposing_load,
 )
-from ballscrew_monitor.core.derived_load import (
+from plain_load import (
     derive_load,
     LoadDerivation,
     NO_ACCELERATION,

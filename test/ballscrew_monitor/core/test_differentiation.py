@@ -6,7 +6,7 @@ import cmath
 import math
 
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.core.differentiation import (
+from plain_slope import (
     MOST,
     PositionSettings,
     SlopeFilter,

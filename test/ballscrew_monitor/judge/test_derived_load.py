@@ -1,36 +1,36 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Load from a motor torque: the monitor's, interpreted and compiled, with codes for sentences."""
+"""Load from a motor torque: that of its plain twin, interpreted and compiled."""
 
 import dataclasses
 import math
 from types import SimpleNamespace
 
-from ballscrew_monitor.core import derived_load as core
 from ballscrew_monitor.core.conversions import Direction
+from ballscrew_monitor.core.state import LoadDerivation
 from ballscrew_monitor.judge.derived_load import (
     derive_load,
     Derived,
     DERIVED_OK,
-    LoadSettings,
     NO_ACCELERATION,
     NO_NUMBER,
     OUTSIDE,
     SEVERAL_LOADS,
     TOO_MUCH_INERTIA,
 )
+from ballscrew_monitor.judge.records import Settings
 from hypothesis import given, settings
 from hypothesis import strategies as st
 import numpy as np
+import plain_load as twin
 import pytest
 from surrogate.surface import Found, shipped_surface, Surface, Validity
 from surrogate.surface.compiled import compiled
 from surrogate.surface.file import read
 from surrogate.surface.records import as_array
 
-USUAL = LoadSettings(
-    inertia=1e-3, torque_uncertainty=0.05, parts_uncertainty=0.1, largest_share=0.8
-)
+PARTS = ('inertia', 'torque_uncertainty', 'parts_uncertainty', 'largest_share')
+USUAL = Settings(inertia=1e-3, torque_uncertainty=0.05, parts_uncertainty=0.1, largest_share=0.8)
 
 
 def masked():
@@ -58,22 +58,22 @@ COURSES = st.tuples(
     st.floats(282.0, 354.0),
 )
 DERIVATIONS = st.builds(
-    LoadSettings,
-    st.sampled_from([0.0, 1e-3]),
-    st.sampled_from([0.0, 1e-6, 0.05, 1.0]),
-    st.sampled_from([0.0, 0.2]),
-    st.sampled_from([0.5, 100.0]),
+    Settings,
+    inertia=st.sampled_from([0.0, 1e-3]),
+    torque_uncertainty=st.sampled_from([0.0, 1e-6, 0.05, 1.0]),
+    parts_uncertainty=st.sampled_from([0.0, 0.2]),
+    largest_share=st.sampled_from([0.5, 100.0]),
 )
 
 
 def expected(surface, derivation, course):
-    """Return what the monitor says."""
+    """Return what the twin says."""
     names = ('speed', 'acceleration', 'acceleration_change', 'motor_torque', 'temperature')
-    running = core.Running(
+    running = twin.Running(
         **dict(zip(names, course, strict=True)), direction=direction_of(course[0])
     )
-    how = core.LoadDerivation(window=1, **derivation._asdict())
-    return core.derive_load(running, surface, how)
+    how = LoadDerivation(window=1, **{name: getattr(derivation, name) for name in PARTS})
+    return twin.derive_load(running, surface, how)
 
 
 def direction_of(speed):
@@ -90,7 +90,7 @@ def sentence(found, derivation):
     """Return the sentence that a code and its numbers make."""
     first, second, third = found.first, found.second, found.third
     return {
-        NO_ACCELERATION: core.NO_ACCELERATION,
+        NO_ACCELERATION: twin.NO_ACCELERATION,
         TOO_MUCH_INERTIA: f'inertia and drag take {first:.3g} N m and the torque is '
         f'{second:.3g} N m, allowed is a share of {derivation.largest_share:g}: too little is '
         'left for the load',
@@ -114,7 +114,7 @@ def assert_agrees(surface, derivation, course):
 
 @settings(max_examples=150)
 @given(st.sampled_from(SURFACES), DERIVATIONS, COURSES)
-def test_it_is_the_load_of_the_monitor(surface, derivation, course):
+def test_it_is_the_load_of_the_twin(surface, derivation, course):
     assert_agrees(surface, derivation, course)
 
 
@@ -158,7 +158,7 @@ def wavy():
 
 def test_several_loads_are_one_within_the_margin(wavy):
     course = (60.0, 0.0, 0.0, 1.3, 313.15)
-    sure, unsure = (USUAL._replace(torque_uncertainty=each) for each in (1e-6, 2.0))
+    sure, unsure = (dataclasses.replace(USUAL, torque_uncertainty=each) for each in (1e-6, 2.0))
     found = assert_agrees(wavy, sure, course)
     assert found.code == SEVERAL_LOADS
     assert found.first < found.second
@@ -174,7 +174,9 @@ def test_compiled_it_has_the_same_bits(surface, derivation, course):
     pytest.importorskip('numba')
     kept, scratch = as_array(Derived()), as_array(Found())
     direction = int(direction_of(course[0]))
-    numba_derive(surface.array_tables, derivation, *course, direction, scratch[0], kept[0])
+    numba_derive(
+        surface.array_tables, as_array(derivation)[0], *course, direction, scratch[0], kept[0]
+    )
     plain = derived(surface, derivation, course)
     for name in kept.dtype.names:
         np.testing.assert_array_equal(kept[0][name], getattr(plain, name), err_msg=name)

@@ -4,8 +4,8 @@
 The judgement gives the golden rows, which an earlier implementation of it made of the same events.
 
 The events come from all scenarios of `bags/`, from the nominal cycle and from lists that meet
-every refusal, command and correction; the surface is a small one of the closed form with spreads and a
-masked node. `golden_rows.npz` holds columns of four tables. Their names tell what they hold:
+every refusal, command and correction; the surface is a small one of the closed form with spreads
+and a masked node. `golden_rows.npz` holds columns of four tables. Their names tell what they hold:
 
 * `run_`: name, settings and kept memory as JSON.
 * `event_`: kind of KINDS, source, value, stamps, and -1 for what there is none of. A tick, an

@@ -1,11 +1,10 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The slope over a ring: that of the filter of the monitor, interpreted and compiled."""
+"""The slope over a ring: that of its plain twin, interpreted and compiled."""
 
 import math
 
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.core.differentiation import SlopeFilter
 from ballscrew_monitor.judge.slopes import (
     MOST,
     slope_change,
@@ -18,6 +17,7 @@ from ballscrew_monitor.judge.slopes import (
 from hypothesis import given, settings
 from hypothesis import strategies as st
 import numpy as np
+from plain_slope import SlopeFilter
 import pytest
 from surrogate.surface.compiled import compiled
 from surrogate.surface.records import as_array
@@ -57,7 +57,7 @@ def assert_same(ring, kept, scale):
 
 
 @given(SAMPLES, st.floats(-10.0, 10.0))
-def test_it_is_the_filter_of_the_monitor(steps, amount):
+def test_it_is_the_filter_of_the_twin(steps, amount):
     ring, kept = SlopeRing(), SlopeFilter(window=WINDOW, max_gap=GAP)
     for stamp, value in stamped(steps):
         slope_take(ring, WINDOW, GAP, stamp, value)
