@@ -6,8 +6,8 @@ import dataclasses
 import math
 
 from ballscrew_monitor.core.advice import Advice, advise, optimal_load, optimal_speed
-from ballscrew_monitor.core.estimate import estimate
-from ballscrew_monitor.core.judgement import judge
+from ballscrew_monitor.core.estimate import opposing_load_of
+from ballscrew_monitor.core.judgement import clears
 import pytest
 
 
@@ -103,7 +103,8 @@ def test_who_follows_the_advice_clears_the_warning(core, sign, name, sensitive):
     ]
     assert followed
     for there in followed:
-        assert judge(there, estimate(there, surface, rcs_limit=limits.rcs), limits).clear
+        numbers = surface.lookup(abs(there.speed), opposing_load_of(there), there.temperature)
+        assert clears(numbers, limits, light=False)
 
 
 def test_what_only_meets_the_limit_is_no_advice(core):

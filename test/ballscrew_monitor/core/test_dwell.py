@@ -7,10 +7,16 @@ import math
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.dwell import Dwell, is_uncertain, LEAST, PAUSE
 from ballscrew_monitor.core.estimate import estimate
-from ballscrew_monitor.core.judgement import judge
+from ballscrew_monitor.core.judgement import Gate, Verdict, Zone
 import pytest
 
 START = 1000 * SECOND
+
+
+def judged(point):
+    """Return a verdict with the gate that is shut at standstill."""
+    still = abs(point.speed) < 0.5
+    return Verdict(zone=Zone.UNKNOWN, gates=(Gate.STANDSTILL,) if still else ())
 
 
 def asked(core, stamps, numbers=None, dwell=None, **point):
@@ -19,7 +25,7 @@ def asked(core, stamps, numbers=None, dwell=None, **point):
     surface = core.surface(**({'rcs': 0.25, 'rcs_error': 0.0625} if numbers is None else numbers))
     here = core.point(**point)
     result = estimate(here, surface, rcs_limit=limits.rcs)
-    verdict = judge(here, result, limits)
+    verdict = judged(here)
     return [one for one in stamps if dwell.update(one, here, result, verdict, limits)]
 
 
@@ -57,7 +63,7 @@ def test_a_clock_that_is_set_back_begins_the_stay_anew(core):
 def test_only_a_limit_within_reach_of_the_error_is_uncertain(core, numbers, uncertain):
     limits, here = core.limits(), core.point()
     result = estimate(here, core.surface(**numbers), rcs_limit=limits.rcs)
-    assert is_uncertain(result, judge(here, result, limits), limits) is uncertain
+    assert is_uncertain(result, judged(here), limits) is uncertain
 
 
 def test_at_standstill_and_outside_the_surface_there_is_nothing_to_solve(core):

@@ -96,11 +96,6 @@ def test_a_valid_estimate_carries_the_numbers(core):
             PointValidity.NO_INPUT,
             'no valid sample of load and temperature',
         ),
-        (
-            {'axial_load_source': PointSource.HELD},
-            PointValidity.NO_INPUT,
-            'no valid sample of load',
-        ),
     ],
 )
 def test_what_cannot_be_estimated_has_a_reason_and_no_numbers(core, changes, validity, reason):

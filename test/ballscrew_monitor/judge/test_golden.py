@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-The judgement gives the golden rows, which an earlier implementation of it made of the same events.
+The judgement gives the golden rows, which an earlier one made of the same events.
 
 The events come from all scenarios of `bags/`, from the nominal cycle and from lists that meet
 every refusal, command and correction; the surface is a small one of the closed form with spreads

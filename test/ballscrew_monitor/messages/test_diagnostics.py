@@ -325,7 +325,7 @@ def values_of(status):
 def straight(core, drag=0.0):
     """Return a surface whose torque follows the load."""
     surface = core.surface(driving_torque=lambda speed, load: load / 1024.0)
-    surface.parasitic, surface.lead = drag, math.tau / 1024.0
+    surface.parasitic_torque, surface.lead = drag, math.tau / 1024.0
     return surface
 
 

@@ -7,11 +7,9 @@ import math
 import sys
 
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.core.derived_load import LoadDerivation
-from ballscrew_monitor.core.differentiation import PositionSettings
 from ballscrew_monitor.core.inputs import InputSample, Source
 from ballscrew_monitor.core.judgement import Limits
-from ballscrew_monitor.core.state import MonitorSettings
+from ballscrew_monitor.core.state import LoadDerivation, MonitorSettings, PositionSettings
 from ballscrew_monitor.judge.monitor import Monitor
 from hypothesis import given, settings
 from hypothesis import strategies as st

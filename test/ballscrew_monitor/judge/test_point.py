@@ -1,22 +1,22 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The monitor with a load out of the motor torque, and with speeds out of positions."""
+"""The operating point with a load out of the motor torque."""
 
 import dataclasses
 import math
 
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.core.derived_load import LoadDerivation, STANDSTILL
-from ballscrew_monitor.core.differentiation import PositionSettings
 from ballscrew_monitor.core.estimate import PointSource, PointValidity
 from ballscrew_monitor.core.input_status import InputState
 from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, Why
 from ballscrew_monitor.core.judgement import Gate, Zone
+from ballscrew_monitor.core.state import LoadDerivation
 import pytest
 from surrogate.surface import shipped_surface, Surface
 
 STEP, TIMEOUT = SECOND // 100, SECOND // 2
 START = 1000 * SECOND
+STANDSTILL = 'the screw stands still, friction may hold any part of the load'
 WINDOW = SECOND // 20
 INERTIA = 1.0 / 1024.0  # [kg m2]
 SETTINGS = LoadDerivation(
@@ -130,7 +130,7 @@ def test_at_standstill_friction_hides_the_load(core):
 
 def test_a_load_that_is_not_known_is_not_judged(core):
     surface = straight(core)
-    surface.parasitic = 1.0
+    surface.parasitic_torque = 1.0
     monitor = derived(core, surface)
     state = run(monitor, 10.0, 1.125)
     assert state.estimate.validity is PointValidity.UNKNOWN
@@ -196,51 +196,3 @@ def test_the_load_of_the_shipped_surface_closes_the_circle(core):
         state = run(monitor, speed, known.estimate.machine_torque)
         assert state.point.axial_load == pytest.approx(force, rel=1e-9)
         assert state.estimate.efficiency == pytest.approx(known.estimate.efficiency, rel=1e-9)
-
-
-def turning(core, **changes):
-    """Return a monitor whose samples of the speed are positions [rad]."""
-    values = {'positions': PositionSettings(window=WINDOW, wrap=math.tau)}
-    return core.monitor(**(values | {'plausible': {Source.SPEED: 50.0}} | changes))
-
-
-def turn(monitor, angle, i):
-    """Take a load and a position; return the state."""
-    monitor.update(sample(Source.LOAD, -1000.0, START + i * STEP))
-    return monitor.update(sample(Source.SPEED, angle, START + i * STEP))
-
-
-def test_positions_are_judged_by_their_speed(core):
-    monitor = turning(core)
-    assert turn(monitor, 0.0, 0) is None
-    for i in range(1, 300):
-        state = turn(monitor, math.remainder(0.2 * i, math.tau), i)
-        assert state.point.speed == pytest.approx(20.0)
-    assert (state.verdict.zone, state.judged) == (Zone.OPTIMAL, 299)
-    assert (state.inputs[0].received, state.inputs[0].dropped) == (300, 1)
-    assert state.totals.revolutions == pytest.approx(298 * 0.2 / math.tau)
-
-
-def test_a_jump_of_the_position_never_reaches_the_totals(core):
-    monitor = turning(core, positions=PositionSettings(window=WINDOW))
-    states = [turn(monitor, 0.2 * i + 1e6 * (i == 10), i) for i in range(21)]
-    assert [i for i, state in enumerate(states) if state is None] == [0, 10, 11]
-    assert states[-1].inputs[0].implausible == 2
-    assert states[-1].totals.revolutions == pytest.approx(19 * 0.2 / math.tau)
-    assert states[-1].window.speed.high == pytest.approx(20.0)
-
-
-def test_a_speed_of_positions_that_is_not_plausible_is_refused(core):
-    monitor = turning(core)
-    for i in range(5):
-        assert turn(monitor, 0.6 * i, i) is None
-    assert monitor.tick(START + 10 * SECOND).inputs[0].implausible == 4
-
-
-def test_after_a_hole_two_positions_are_needed(core):
-    monitor = turning(core)
-    turn(monitor, 0.0, 0)
-    turn(monitor, 0.2, 1)
-    assert turn(monitor, 0.4, 200) is None
-    assert monitor.tick(START + 2 * SECOND).inputs[0].why is Why.HOLE
-    assert turn(monitor, 0.6, 201).point.speed == pytest.approx(20.0)

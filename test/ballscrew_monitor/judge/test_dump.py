@@ -1,0 +1,116 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""A monitor that was written and read again goes on bit for bit as if nothing had happened."""
+
+import json
+import math
+
+from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.core.fields import OtherJoints
+from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, Why
+from ballscrew_monitor.core.shelving import Shelving
+from ballscrew_monitor.core.state import LoadDerivation, PositionSettings
+from ballscrew_monitor.judge.dump import dump, restored
+from hypothesis import given, settings
+from hypothesis import strategies as st
+import pytest
+from surrogate.files import InputError
+
+START = 1000 * SECOND
+STEP = SECOND // 100
+DERIVED = {
+    'timeouts': dict.fromkeys((Source.SPEED, Source.TORQUE), SECOND // 2),
+    'derivation': LoadDerivation(
+        inertia=1e-4,
+        window=SECOND // 20,
+        torque_uncertainty=0.1,
+        parts_uncertainty=0.1,
+        largest_share=1e9,
+    ),
+    'positions': PositionSettings(window=SECOND // 20, wrap=math.tau),
+}
+
+
+def through_json(monitor):
+    text = json.dumps(dump(monitor), allow_nan=False)
+    return restored(json.loads(text), monitor.surface, monitor.settings)
+
+
+@st.composite
+def streams(draw):
+    """Return samples, refusals and ticks as they may come, in an order that may be wrong."""
+    made, now = [], START
+    for _ in range(draw(st.integers(2, 50))):
+        now += draw(st.sampled_from([STEP, STEP, SECOND // 3, -2 * SECOND]))
+        source = draw(st.sampled_from([Source.SPEED, Source.SPEED, Source.LOAD, Source.TORQUE]))
+        kind = draw(st.sampled_from(['sample'] * 6 + ['tick', 'other', 'refused']))
+        if kind == 'tick':
+            made.append(now)
+        elif kind == 'sample':
+            value = draw(st.sampled_from([10.0, 30.0, -10.0, 0.1, 300.0, math.nan, 1e9]))
+            late = draw(st.sampled_from([0, SECOND]))
+            made.append(
+                InputSample(source=source, value=value, stamp=now, arrival=now + late, lost=None)
+            )
+        else:
+            joints = OtherJoints('velocity', 'x_axis', ('a', 'b'))
+            why = Why.OTHER_JOINTS if kind == 'other' else Why.NOT_A_NUMBER
+            made.append(
+                Refusal(source=source, why=why, text=f'{now}', joints=joints, arrival=now, lost=2)
+            )
+    return made
+
+
+@settings(max_examples=200)
+@given(streams(), st.booleans(), st.data())
+def test_the_monitor_goes_on_as_if_nothing_had_happened(core, stream, derived, data):
+    surface = core.surface(rcs=lambda speed, load: 0.5 if speed < 20.0 else 0.0)
+    changes = {'plausible': {Source.SPEED: 1000.0}} | (DERIVED if derived else {})
+    first = core.monitor(surface, core.limits(raise_delay=0), **changes)
+    first.shelving = Shelving(until=START, reason='known')
+    cut = data.draw(st.integers(0, len(stream)))
+    core.feed(first, stream[:cut])
+    if data.draw(st.booleans()):
+        first.acknowledge(START, 'seen')
+    second = through_json(first)
+    assert second.kept == first.kept
+    for event in stream[cut:]:
+        said, again = core.feed(first, [event]), core.feed(second, [event])
+        assert repr(again) == repr(said)
+        if any(state.event for state in said):
+            assert repr(second.event.advice) == repr(first.event.advice)
+    assert dump(second) == dump(first)
+
+
+@pytest.mark.parametrize(
+    ('change', 'text'),
+    [
+        ({'version': 0}, 'the memory is of version 0, known is 1'),
+        ({'version': None}, 'the memory is of version None'),
+        ({'records': {}}, "the memory is damaged: 'memory'"),
+        ({'records': {'memory': 'AAAA'}}, 'the memory is damaged: buffer size'),
+        ({'records': {'memory': ''}}, 'the memory is damaged: '),
+        ({'records': {'memory': '~'}}, 'the memory is damaged: '),
+        ({'records': {'memory': 1}}, 'the memory is damaged: '),
+        ({'records': 1}, 'the memory is damaged: '),
+        ({'texts': {'HEIGHT': 'x'}}, "the memory is damaged: 'HEIGHT'"),
+        ({'joints': {'LOAD': [['velocity']]}}, 'the memory is damaged: not enough values'),
+        ({'joints': None}, 'the memory is damaged: '),
+    ],
+)
+def test_what_no_monitor_has_dumped_is_refused(core, change, text):
+    monitor = core.monitor()
+    with pytest.raises(InputError, match=text):
+        restored(dump(monitor) | change, monitor.surface, monitor.settings)
+
+
+def test_a_dump_that_lacks_a_part_or_repeats_a_record_is_refused(core):
+    monitor = core.monitor()
+    whole = dump(monitor)
+    for name in whole:
+        with pytest.raises(InputError, match='the memory is'):
+            restored(
+                {key: value for key, value in whole.items() if key != name},
+                monitor.surface,
+                monitor.settings,
+            )

@@ -1,0 +1,161 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""How well an input does: freshness, rate, lag, losses, refusals."""
+
+import math
+
+from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.core.input_status import InputState
+from ballscrew_monitor.core.inputs import Source, StampSource, Why
+from ballscrew_monitor.judge import inputs
+from ballscrew_monitor.judge.records import Event, INPUTS, Memory, RATE_SAMPLES, Settings, SHOWN
+from ballscrew_monitor.judge.views import input_status_of, refused_of
+from ballscrew_msgs.msg import InputHealth
+from hypothesis import given
+from hypothesis import strategies as st
+import pytest
+
+LOAD = int(Source.LOAD)
+
+
+class Input:
+    """The load of one axis."""
+
+    def __init__(self, timeout=10, max_lag=10**9, configured=1):
+        self.memory = Memory()
+        self.settings = Settings(timeout=[timeout] * INPUTS, max_lag=max_lag)
+        self.settings.configured = [configured] * INPUTS
+
+    def accept(self, stamp, arrival=None, stamp_source=StampSource.HEADER):
+        arrival = stamp if arrival is None else arrival
+        event = Event(source=LOAD, stamp=stamp, arrival=arrival, stamp_source=stamp_source)
+        inputs.accept(self.memory, self.settings, event, 1.0)
+
+    def refuse(self, why, first=math.nan):
+        inputs.take_refusal(self.memory, Event(source=LOAD, why=why, first=first, arrival=SECOND))
+
+    def lose(self, count, arrival):
+        inputs.lose(self.memory, LOAD, count, arrival)
+
+    def status(self, now=0):
+        texts = {Source.LOAD: 'because'}
+        return input_status_of(self.memory, self.settings, Source.LOAD, now, texts)
+
+
+@pytest.mark.parametrize('arrival', [100, 700])
+def test_a_sample_that_arrived_exactly_the_timeout_ago_is_good(arrival):
+    load = Input()
+    load.accept(100, arrival)
+    assert load.status(arrival + 10).state is InputState.OK
+    stale = load.status(arrival + 11)
+    assert (stale.state, stale.age) == (InputState.STALE, 11e-9)
+    assert load.status(arrival - 10).age == 0.0
+
+
+def test_an_input_begins_missing_and_is_bad_until_the_next_good_sample():
+    load = Input()
+    missing = load.status()
+    assert missing.state is InputState.MISSING
+    assert math.isnan(missing.age + missing.rate + missing.lag)
+    load.refuse(Why.NOT_A_NUMBER)
+    bad = load.status()
+    assert (bad.state, bad.why, bad.refusal) == (InputState.BAD, Why.NOT_A_NUMBER, 'because')
+    load.accept(1)
+    good = load.status(1)
+    assert (good.state, good.why, good.refusal) == (InputState.OK, None, '')
+    assert (good.received, good.dropped) == (2, 1)
+    assert refused_of(load.memory)[Source.LOAD] == {Why.NOT_A_NUMBER: 1}
+
+
+def test_messages_about_other_joints_are_counted_but_do_no_harm():
+    load = Input()
+    load.accept(1)
+    load.refuse(Why.OTHER_JOINTS)
+    status = load.status(1)
+    assert (status.state, status.received, status.dropped) == (InputState.OK, 2, 1)
+    assert refused_of(load.memory)[Source.LOAD] == {}
+
+
+def test_an_input_without_a_topic_says_so():
+    assert Input(configured=0).status().state is InputState.NOT_CONFIGURED
+
+
+@given(st.integers(2, 70))
+def test_rate_is_the_mean_over_the_last_samples(count):
+    load = Input()
+    for i in range(count):  # the spacing doubles where the last samples begin
+        load.accept((i if i < count - RATE_SAMPLES else 2 * i) * SECOND // 64)
+    assert load.status().rate == 32.0
+    inputs.forget(load.memory, LOAD)
+    assert math.isnan(load.status().rate)
+
+
+def test_states_have_the_numbers_of_the_messages():
+    for member in InputState:
+        assert getattr(InputHealth, f'STATE_{member.name}') == member
+
+
+@given(st.lists(st.integers(-1000, 1000), min_size=1, max_size=70))
+def test_the_lag_is_the_least_of_the_last_samples(lags):
+    load = Input(max_lag=0)
+    for lag in lags:
+        load.accept(10_000, 10_000 + lag)
+    least = min(lags[-RATE_SAMPLES:])
+    assert load.status().lag == least / SECOND
+    assert load.status().lagging is (least > 0)
+
+
+def test_stamps_of_reception_have_no_lag():
+    load = Input(max_lag=1)
+    load.accept(100, 200, StampSource.RECEIVE)
+    assert math.isnan(load.status(100).lag)
+    assert not load.status(100).lagging
+
+
+def test_what_arrived_in_the_future_of_a_clock_that_was_set_back_has_arrived_now():
+    load = Input()
+    load.accept(1000)
+    inputs.rebase(load.memory, 500)
+    assert load.status(510).state is InputState.OK
+    assert load.status(511).state is InputState.STALE
+
+
+def test_losses_add_up_and_are_shown_for_a_while():
+    load = Input()
+    load.lose(0, SECOND)
+    assert (load.status(SECOND).lost, load.status(SECOND).losing) == (0, False)
+    load.lose(3, 2 * SECOND)
+    load.lose(4, 3 * SECOND)
+    assert load.status(3 * SECOND).lost == 7
+    assert load.status(3 * SECOND + SHOWN - 1).losing
+    assert not load.status(3 * SECOND + SHOWN).losing
+
+
+def test_a_loss_that_cannot_be_known_is_unknown_and_keeps_what_was_counted():
+    load = Input()
+    for count, told in ((3, 3), (-1, None), (0, 3)):
+        load.lose(count, SECOND)
+        assert load.status(SECOND).lost == told
+
+
+def test_implausible_samples_are_told_with_their_value_and_shown_for_a_while():
+    load = Input()
+    load.settings.plausible = [5e3] * INPUTS
+    load.refuse(Why.IMPLAUSIBLE, 5001.0)
+    status = load.status(SECOND)
+    assert (status.implausible, status.glitching) == (1, True)
+    assert status.refusal.startswith('load 5001 N is beyond the plausible 5000 N: ')
+    assert not load.status(SECOND + SHOWN).glitching
+
+
+def test_a_slow_input_tells_its_longest_gap():
+    load = Input(timeout=SECOND)
+    gaps = []
+    for stamp in (1, 2, 4, 7, 9, 10):
+        load.accept(stamp * SECOND)
+        status = load.status()
+        gaps.append((status.slow, status.longest_gap, inputs.slow_period(load.memory, LOAD)))
+    nan = pytest.approx(math.nan, nan_ok=True)
+    # One gap is an interruption, two make a slow input.
+    slow = [(True, 3.0, 3 * SECOND), (True, 3.0, 2 * SECOND)]
+    assert gaps == [*[(False, nan, 0)] * 3, *slow, (False, nan, 0)]

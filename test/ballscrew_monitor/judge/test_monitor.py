@@ -1,0 +1,217 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What a monitor tells of an excursion, and what it is told beside samples."""
+
+import dataclasses
+import math
+
+from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.core.inputs import Source
+from ballscrew_monitor.core.judgement import Code, Level, Zone
+from ballscrew_monitor.core.memory import Memory
+from ballscrew_monitor.core.shelving import NOT_SHELVED, Shelving
+from ballscrew_monitor.core.state import Event
+from ballscrew_monitor.core.tally import Totals
+from ballscrew_monitor.judge.monitor import Monitor
+import pytest
+
+STEP = SECOND // 100
+START = 1000 * SECOND
+KEPT = Memory(
+    totals=Totals(running_time=5 * SECOND, optimal_time=5 * SECOND, angle=7.5, since=SECOND),
+    event=Event(number=7, stamp=20, start=10),
+    shelving=Shelving(until=START + 10 * SECOND, reason='nut is ordered'),
+)
+
+
+def slow_is_bad(core, memory=None, **limits):
+    """Return a monitor that warns below 30 rad/s."""
+    surface = core.surface(rcs=lambda speed, load: 1.0 if speed < 30.0 else 0.0)
+    made = core.monitor(surface, core.limits(**limits))
+    return made if memory is None else Monitor(surface, made.settings, memory)
+
+
+def test_an_event_begins_and_ends_with_its_facts(core):
+    monitor = slow_is_bad(core)
+    states = core.feed(monitor, core.motion(40.0, count=120))
+    assert all(state.event is None for state in states)
+    begin = START + 2 * SECOND
+    states = core.feed(monitor, core.motion(10.0, start=begin, count=80))
+    (edge,) = [state for state in states if state.event is not None]
+    event = edge.event
+    assert (event.number, event.active, event.start) == (1, True, begin)
+    assert event.stamp == edge.stamp == begin + SECOND // 2
+    assert (event.cause.code, event.worst_value) == (Code.RCS_HIGH, 1.0)
+    assert event.advice.target_speed == pytest.approx(30.0, rel=1e-5)
+    assert event.advice.text.startswith('at this load run at 30 rad/s (286 rev/min)')
+    states = core.feed(monitor, core.motion(40.0, start=begin + SECOND, count=120))
+    (over,) = [state.event for state in states if state.event is not None]
+    assert (over.number, over.active, over.start) == (1, False, begin)
+    assert over.stamp == begin + 2 * SECOND
+    assert {state.event_id for state in states} == {1}
+
+
+def test_the_state_that_raises_does_not_wait_for_the_advice(core):
+    """One lookup for a sample, as ever; the scan of the surface comes when it is asked for."""
+    monitor = core.monitor(core.surface(rcs=1.0), core.limits(raise_delay=0))
+    (state,) = core.feed(monitor, core.motion(10.0))
+    assert state.event.active
+    assert len(monitor.surface.asked) == 1
+    assert math.isnan(state.event.advice.target_speed)  # bad everywhere
+    asked = len(monitor.surface.asked)
+    assert asked > 100
+    assert monitor.event.advice is state.event.advice
+    assert len(monitor.surface.asked) == asked
+
+
+@pytest.mark.parametrize(
+    ('course', 'raise_delay', 'code', 'worst'),
+    [
+        # speed, load and what the surface says there: RCS, efficiency
+        ([(1.0, 1e3, 0.5, 0.9), (2.0, 1e3, 0.9, 0.9), (3.0, 1e3, 0.4, 0.9)], 2, 1, 1),
+        ([(1.0, 1e3, 0.0, 0.7), (2.0, 100.0, 0.5, 0.1), (3.0, 1e3, 0.0, 0.5)], 0, 2, 2),
+        ([(1.0, 1e3, 0.0, 0.7), (2.0, 100.0, 0.5, 0.1), (3.0, 1e3, 0.9, 0.72)], 2, 2, 0),
+        ([(1.0, 1e3, 0.5, 0.5), (2.0, 1e3, 0.5, 0.25), (3.0, 1e3, 0.0, 0.1)], 0, 1, 0),
+    ],
+)
+def test_worst_value_limit_and_place_are_of_one_sample(core, course, raise_delay, code, worst):
+    """From the first sample outside on; one under a light load has no efficiency."""
+    numbers = {at: (rcs, efficiency) for at, _, rcs, efficiency in course}
+    surface = core.surface(
+        rcs=lambda speed, load: numbers.get(speed, (0.0, 0.0))[0],
+        efficiency=lambda speed, load: numbers.get(speed, (0.0, 0.0))[1],
+    )
+    monitor = core.monitor(surface, core.limits(raise_delay=raise_delay * STEP, hysteresis=0.0))
+    for i, (speed, force, _, _) in enumerate(course):
+        core.feed(monitor, core.motion(speed, start=START + i * STEP, force=-force))
+    event, (speed, force, rcs, efficiency) = monitor.event, course[worst]
+    value, limit = (rcs, 0.25) if code == Code.RCS_HIGH else (efficiency, 0.75)
+    assert (event.active, event.start) == (True, START)
+    assert (event.cause.code, event.cause.value, event.worst_value) == (code, value, value)
+    assert event.cause.limit == limit
+    assert f'{value:.3g}, limit {limit:.3g}' in event.cause.text
+    point = event.advisor.point
+    assert (point.speed, point.axial_load, point.temperature) == (speed, -force, 313.15)
+
+
+def test_the_limit_of_the_worst_sample_stays_with_it(core):
+    monitor = core.monitor(core.surface(rcs=0.5), core.limits(raise_delay=0))
+    core.feed(monitor, core.motion(10.0))
+    limits = core.limits(rcs=0.375, raise_delay=0)
+    monitor.settings = dataclasses.replace(monitor.settings, limits=limits)
+    core.feed(monitor, core.motion(11.0, start=START + STEP))
+    assert (monitor.event.worst_value, monitor.event.cause.limit) == (0.5, 0.25)
+    monitor.surface.numbers = {'rcs': 0.75}
+    core.feed(monitor, core.motion(12.0, start=START + 2 * STEP))
+    assert (monitor.event.worst_value, monitor.event.cause.limit) == (0.75, 0.375)
+    assert monitor.event.advisor.point.speed == 12.0
+
+
+def test_a_stay_too_short_is_no_event(core):
+    monitor = slow_is_bad(core)
+    core.feed(monitor, core.motion(10.0, count=50))
+    core.feed(monitor, core.motion(40.0, start=START + SECOND // 2, count=3))
+    core.feed(monitor, core.motion(10.0, start=START + SECOND, count=50))
+    assert monitor.event == Event()
+    core.feed(monitor, core.motion(10.0, start=START + SECOND + SECOND // 2))
+    assert (monitor.event.number, monitor.event.start) == (1, START + SECOND)
+
+
+def test_an_acknowledged_warning_comes_back_as_a_new_event(core):
+    monitor = slow_is_bad(core)
+    core.feed(monitor, core.motion(10.0, count=51))
+    ended = monitor.acknowledge(START + SECOND, 'seen')
+    assert (ended.number, ended.active, ended.stamp) == (1, False, START + SECOND)
+    assert (ended.ending, monitor.level) == ('seen', Level.UNKNOWN)
+    assert monitor.acknowledge(START + SECOND) is None
+    core.feed(monitor, core.motion(10.0, start=START + SECOND, count=51))
+    event = monitor.event
+    assert (event.number, event.active, event.ending) == (2, True, '')
+
+
+def test_an_event_whose_stamps_run_ahead_of_the_clock_ends_after_it_began(core):
+    monitor, samples = slow_is_bad(core), core.motion(10.0, count=51)
+    core.feed(monitor, samples)
+    ended = monitor.acknowledge(START - 10 * SECOND)
+    assert (ended.start, ended.stamp) == (START, samples[-1].stamp)
+    (state,) = core.feed(monitor, core.motion(40.0, start=samples[-1].stamp + STEP))
+    assert state.level_since <= state.stamp
+
+
+def test_totals_reset(core):
+    monitor = core.monitor()
+    assert core.feed(monitor, core.motion(10.0, count=11))[-1].totals.running_time == 10 * STEP
+    monitor.reset_totals()
+    state = core.feed(monitor, core.motion(10.0, start=START + 11 * STEP))[-1]
+    assert (state.totals.running_time, state.judged) == (STEP, 12)
+
+
+def test_new_limits_hold_from_the_next_sample(core):
+    monitor = core.monitor(core.surface(rcs=0.5), core.limits(raise_delay=0))
+    assert core.feed(monitor, core.motion(10.0))[-1].verdict.zone is Zone.OUTSIDE
+    limits = core.limits(rcs=0.625, raise_delay=0)
+    monitor.settings = dataclasses.replace(monitor.settings, limits=limits)
+    state = core.feed(monitor, core.motion(10.0, start=START + STEP))[-1]
+    assert (state.verdict.zone, state.limits) == (Zone.OPTIMAL, limits)
+
+
+def test_a_new_surface_answers_from_the_next_sample(core):
+    monitor = core.monitor(core.surface(rcs=0.5))
+    core.feed(monitor, core.motion(10.0))
+    monitor.use_surface(core.surface(rcs=0.125))
+    assert core.feed(monitor, core.motion(10.0, start=START + STEP))[-1].estimate.rcs == 0.125
+
+
+@pytest.mark.parametrize(
+    ('events', 'now', 'answer'),
+    [
+        ([], START, 'no valid sample of speed and load'),
+        ([(Source.SPEED, 10.0)], START, 'no valid sample of load'),
+        ([(Source.LOAD, -1e3), (Source.SPEED, 10.0)], START + SECOND, 'no valid sample of spe'),
+        ([(Source.LOAD, -1e3), (Source.SPEED, 0.2)], START, 'the direction of motion is unk'),
+        ([(Source.LOAD, -1e3), (Source.SPEED, 500.0)], START, 500.0),  # a solve may know it
+        ([(Source.LOAD, -1e3), (Source.SPEED, -10.0)], START, -10.0),
+        ([(Source.LOAD, -1e3), (Source.SPEED, 10.0), (Source.SPEED, 0.2)], START, 'the screw st'),
+    ],
+)
+def test_the_point_of_now_is_known_or_said_to_be_missing(core, events, now, answer):
+    monitor = core.monitor()
+    core.feed(monitor, [core.sample(*event) for event in events])
+    before = dataclasses.asdict(monitor.memory)
+    found = monitor.current_point(now)
+    if isinstance(answer, str):
+        assert found.startswith(answer)
+    else:
+        assert (found.speed, found.axial_load) == (answer, -1e3)
+    assert repr(dataclasses.asdict(monitor.memory)) == repr(before)  # to ask changes nothing
+
+
+def test_a_monitor_goes_on_where_another_one_ended(core):
+    monitor = slow_is_bad(core, KEPT, raise_delay=0)
+    assert monitor.kept == KEPT
+    states = core.feed(monitor, core.motion(10.0, count=2))
+    assert states[0].event.number == 8
+    assert states[-1].totals.running_time == 5 * SECOND + STEP
+    assert states[-1].totals.since == SECOND
+    assert states[-1].shelving == KEPT.shelving
+    assert states[-1].level is Level.WARN
+    kept = monitor.kept.event
+    assert (kept.active, kept.stamp) == (True, START + STEP)
+
+
+def test_what_was_added_up_before_a_late_memory_counts_too(core):
+    monitor = slow_is_bad(core, raise_delay=0)
+    core.feed(monitor, core.motion(10.0, count=3))
+    monitor.take_up(KEPT)
+    assert (monitor.event.number, monitor.event.active) == (8, True)
+    assert monitor.kept.totals.running_time == 5 * SECOND + 2 * STEP
+    assert monitor.shelving == KEPT.shelving
+
+
+def test_a_shelved_warning_is_judged_and_counted_as_ever(core):
+    shelved, plain = (slow_is_bad(core, memory, raise_delay=0) for memory in (KEPT, Memory()))
+    events = core.motion(10.0, count=20)
+    for one, other in zip(core.feed(shelved, events), core.feed(plain, events), strict=True):
+        assert (one.level, one.verdict, one.judged) == (other.level, other.verdict, other.judged)
+    late = core.motion(10.0, start=START + 10 * SECOND)
+    assert core.feed(shelved, late)[0].shelving is NOT_SHELVED

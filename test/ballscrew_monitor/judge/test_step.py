@@ -1,0 +1,488 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The judgement as a function of an ordered list of events; numbers among them are ticks."""
+
+import dataclasses
+import math
+
+from ballscrew_monitor.core.conversions import Direction, SECOND
+from ballscrew_monitor.core.estimate import PointSource, PointValidity
+from ballscrew_monitor.core.input_status import InputState
+from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, Why
+from ballscrew_monitor.core.judgement import Code, Gate, Level, Zone
+from ballscrew_monitor.core.state import PositionSettings
+from ballscrew_monitor.judge.monitor import Monitor
+from ballscrew_monitor.judge.step import BACKWARD_JUMP
+from hypothesis import given
+from hypothesis import strategies as st
+import pytest
+
+STEP, TIMEOUT = SECOND // 100, SECOND // 2
+START = 1000 * SECOND
+THREE = (Source.SPEED, Source.LOAD, Source.TEMPERATURE)
+
+
+def speed(value, stamp=START):
+    return InputSample(source=Source.SPEED, value=value, stamp=stamp)
+
+
+def load(value, stamp=START):
+    return InputSample(source=Source.LOAD, value=value, stamp=stamp)
+
+
+def slow_is_bad(core, **changes):
+    surface = core.surface(rcs=lambda speed, load: 1.0 if speed < 30.0 else 0.0)
+    return core.monitor(surface, **changes)
+
+
+def test_every_speed_sample_is_judged_once_and_no_other(core):
+    monitor = core.monitor()
+    assert monitor.update(load(5.0)) is None
+    states = core.feed(monitor, core.motion(10.0, count=5))
+    assert [state.judged for state in states] == [1, 2, 3, 4, 5]
+    assert [state.stamp for state in states] == [START + i * STEP for i in range(5)]
+
+
+def test_only_samples_that_led_to_a_verdict_count_as_judged(core):
+    monitor = core.monitor()
+    counts = [monitor.update(speed(10.0)).judged]  # no load yet
+    for i, (value, force) in enumerate(
+        [(0.1, -1e3), (10.0, -1e3), (1e3, -1e3), (10.0, 1e5), (0.1, 1e5), (-10.0, 0.0)]
+    ):
+        pair = core.motion(value, start=START + i * STEP, force=force)
+        counts.append(core.feed(monitor, pair)[-1].judged)
+    assert counts == [0, 1, 2, 2, 2, 3, 4]
+    assert monitor.update(Refusal(source=Source.LOAD, why=Why.NOT_A_NUMBER)) is None
+    assert monitor.update(speed(10.0, START + SECOND)).judged == 4
+
+
+def test_before_the_load_arrives_nothing_can_be_judged(core):
+    state = core.monitor().update(speed(10.0))
+    assert state.estimate.validity is PointValidity.NO_INPUT
+    assert state.verdict.findings[0].code is Code.INPUT_LOST
+    assert math.isnan(state.point.axial_load)
+    assert (state.level, state.judged) == (Level.UNKNOWN, 0)
+
+
+def test_a_load_exactly_as_old_as_its_timeout_is_judged(core):
+    monitor = core.monitor()
+    monitor.update(load(-1000.0))
+    assert monitor.update(speed(10.0, START + TIMEOUT)).verdict.zone is Zone.OPTIMAL
+    stale = monitor.update(speed(10.0, START + TIMEOUT + 1))
+    assert stale.point.axial_load_source is PointSource.HELD
+    assert stale.point.axial_load == -1000.0
+    assert stale.estimate.validity is PointValidity.NO_INPUT
+
+
+def test_a_configured_temperature_is_waited_for_and_the_default_is_not(core):
+    point = core.feed(core.monitor(), core.motion(10.0))[-1].point
+    assert (point.temperature, point.temperature_source) == (313.15, PointSource.DEFAULT)
+    monitor = core.monitor(timeouts=dict.fromkeys(THREE, TIMEOUT))
+    state = core.feed(monitor, core.motion(10.0))[-1]
+    assert state.estimate.validity is PointValidity.NO_INPUT
+    monitor.update(core.sample(Source.TEMPERATURE, 300.0))
+    point = core.feed(monitor, core.motion(10.0, start=START + STEP))[-1].point
+    assert (point.temperature, point.temperature_source) == (300.0, PointSource.MEASURED)
+
+
+def test_the_measured_torque_is_compared_and_never_judged(core):
+    timeouts = dict.fromkeys((Source.SPEED, Source.LOAD, Source.TORQUE), TIMEOUT)
+    monitor = core.monitor(timeouts=timeouts)
+    before = core.feed(monitor, core.motion(-10.0))[-1]
+    assert math.isnan(before.measured_torque)
+    assert before.verdict.zone is Zone.OPTIMAL
+    monitor.update(core.sample(Source.TORQUE, -2.5))
+    after = core.feed(monitor, core.motion(-10.0, start=START + STEP))[-1]
+    assert (after.measured_torque, after.torque_residual) == (-2.5, -0.5)
+
+
+@pytest.mark.parametrize('glitch', [1e12, -1e12, math.nextafter(300.0, math.inf)])
+def test_a_glitch_is_counted_and_never_reaches_the_totals(core, glitch):
+    clean, glitched = (core.monitor(plausible={Source.SPEED: 300.0}) for _ in range(2))
+    core.feed(clean, core.motion(10.0, count=5))
+    odd = [*core.motion(10.0, count=2), speed(glitch, START + 3 * STEP // 2)]
+    core.feed(glitched, odd)
+    last = core.feed(glitched, core.motion(10.0, start=START + 2 * STEP, count=3))[-1]
+    assert last.totals == core.feed(clean, [speed(10.0, START + 4 * STEP)])[-1].totals
+    assert last.window.speed.high == 10.0
+    health = last.inputs[0]
+    assert (health.implausible, health.dropped, health.glitching) == (1, 1, True)
+    assert health.state is InputState.OK
+
+
+def test_the_plausible_limit_itself_is_plausible(core):
+    monitor = core.monitor(plausible={Source.SPEED: 300.0, Source.LOAD: 5e3})
+    state = core.feed(monitor, core.motion(-300.0, force=-5e3))[-1]
+    assert [health.dropped for health in state.inputs[:2]] == [0, 0]
+    later = core.feed(monitor, core.motion(10.0, start=START + STEP, force=5001.0))[-1]
+    assert later.estimate.validity is PointValidity.NO_INPUT
+    assert later.inputs[1].refusal == (
+        'load 5001 N is beyond the plausible 5000 N: mend the source, its unit or scale, '
+        'or raise limits.plausible_load'
+    )
+
+
+@pytest.mark.parametrize('bad', [math.nan, math.inf, -math.inf])
+def test_a_bad_speed_is_refused_and_counted(core, bad):
+    monitor = core.monitor()
+    core.feed(monitor, core.motion(10.0))
+    assert monitor.update(speed(bad, START + STEP)) is None
+    health = core.feed(monitor, core.motion(10.0, start=START + 2 * STEP))[-1].inputs[0]
+    assert (health.source, health.received, health.dropped) == (Source.SPEED, 3, 1)
+    assert health.state is InputState.OK
+
+
+@pytest.mark.parametrize('why', [Why.NOT_A_NUMBER, Why.OTHER_JOINTS])
+def test_a_bad_load_stops_the_judgement_and_one_of_other_joints_does_not(core, why):
+    monitor = core.monitor()
+    core.feed(monitor, core.motion(10.0))
+    monitor.update(Refusal(source=Source.LOAD, why=why))
+    state = monitor.update(speed(10.0, START + STEP))
+    bad = why is Why.NOT_A_NUMBER
+    assert (state.estimate.validity is PointValidity.NO_INPUT) is bad
+    assert state.inputs[1].state is (InputState.BAD if bad else InputState.OK)
+    assert state.inputs[1].dropped == 1
+    state = core.feed(monitor, core.motion(10.0, start=START + 2 * STEP))[-1]
+    assert state.verdict.zone is Zone.OPTIMAL
+
+
+def test_a_sample_out_of_order_is_dropped_and_one_of_equal_stamp_is_judged(core):
+    monitor = core.monitor()
+    core.feed(monitor, core.motion(10.0, count=3))
+    assert monitor.update(speed(10.0, START + STEP)) is None
+    state = monitor.update(speed(10.0, START + 2 * STEP))
+    assert (state.judged, state.inputs[0].dropped) == (4, 1)
+
+
+def test_the_direction_is_held_at_standstill(core):
+    monitor, told = core.monitor(), []
+    for i, value in enumerate((0.1, -10.0, 0.1)):
+        state = core.feed(monitor, core.motion(value, start=START + i * STEP))[-1]
+        told.append((state.point.direction, state.point.direction_held, state.verdict.gates))
+        assert (state.estimate.validity is PointValidity.UNKNOWN) == (i == 0)
+    still = (Gate.STANDSTILL,)
+    assert told == [
+        (Direction.UNKNOWN, False, still),
+        (Direction.NEGATIVE, False, ()),
+        (Direction.NEGATIVE, True, still),
+    ]
+
+
+def test_a_standing_warning_is_not_cleared_by_standstill_or_silence(core):
+    monitor = slow_is_bad(core)
+    core.feed(monitor, core.motion(10.0, count=60))
+    assert monitor.level is Level.WARN
+    core.feed(monitor, core.motion(0.0, start=START + SECOND, count=300))
+    core.feed(monitor, [START + i * SECOND for i in range(5, 60)])
+    assert monitor.level is Level.WARN
+    state = core.feed(monitor, core.motion(40.0, start=START + 100 * SECOND, count=101))[-1]
+    assert (state.level, state.level_since) == (Level.OK, START + 101 * SECOND)
+
+
+def test_ticks_speak_only_while_the_speed_is_missing(core):
+    monitor = core.monitor()
+    state = monitor.tick(START)
+    assert (state.stamp, state.estimate.validity) == (START, PointValidity.NO_INPUT)
+    assert state.point.speed_source is PointSource.UNKNOWN
+    core.feed(monitor, core.motion(10.0, start=START + STEP))
+    assert monitor.tick(START + STEP + TIMEOUT) is None
+    state = monitor.tick(START + STEP + TIMEOUT + 1)
+    assert state.point.speed_source is PointSource.HELD
+    assert (state.point.speed, state.judged) == (10.0, 1)
+    assert state.inputs[0].state is InputState.STALE
+
+
+def test_states_are_thinned_to_a_grid_but_edges_are_not(core):
+    monitor = slow_is_bad(core, publish_period=SECOND)
+    states = core.feed(monitor, core.motion(40.0, start=START + STEP, count=299))
+    stamps = [START + STEP, START + SECOND, START + SECOND + STEP, START + 2 * SECOND]
+    assert [state.stamp for state in states] == stamps
+    assert states[2].level is Level.OK
+    assert [state.window.count for state in states] == [1, 99, 1, 99]
+    assert sum(state.window.count for state in states) == states[-1].judged
+
+
+def test_a_loop_of_the_clock_starts_the_filters_over_and_keeps_the_level(core):
+    monitor = slow_is_bad(core)
+    first = core.feed(monitor, core.motion(10.0, count=71))[-1]
+    states = core.feed(monitor, core.motion(40.0, start=SECOND, count=100))
+    assert [state.level for state in states] == [Level.WARN] * 100
+    assert states[0].level_since == SECOND - (first.stamp - first.level_since)
+    since = SECOND - (first.stamp - first.totals.since)
+    assert states[0].totals == dataclasses.replace(first.totals, since=since)
+    assert states[0].estimate.validity is PointValidity.VALID
+    assert states[-1].judged == 171
+    over = core.feed(monitor, core.motion(40.0, start=2 * SECOND))[-1]
+    assert over.level is Level.OK
+    assert over.event.start <= over.event.stamp
+
+
+def test_a_loop_of_the_clock_opens_the_gates(core):
+    """A direction and a light load of another time line hold no more."""
+    monitor = core.monitor()
+    core.feed(monitor, core.motion(10.0, force=-100.0))
+    state = core.feed(monitor, core.motion(10.0, start=START + STEP, force=-300.0))[-1]
+    assert state.verdict.gates == (Gate.LIGHT_LOAD,)
+    assert (
+        core.feed(monitor, core.motion(10.0, start=SECOND, force=-300.0))[-1].verdict.gates == ()
+    )
+
+
+def test_a_tick_of_an_earlier_time_forgets_the_future(core):
+    monitor = core.monitor()
+    core.feed(monitor, [START, *core.motion(10.0)])
+    state = monitor.tick(START - BACKWARD_JUMP - 1)
+    assert state.estimate.validity is PointValidity.NO_INPUT
+    assert state.point.speed_source is PointSource.UNKNOWN
+    assert monitor.tick(START - BACKWARD_JUMP) is not None
+
+
+def test_stamps_that_run_ahead_of_the_clock_are_no_jump(core):
+    monitor = slow_is_bad(core, max_future=START)
+    for i in range(51):
+        pair = core.motion(10.0, start=START + i * STEP)
+        core.feed(monitor, [*pair, START // 2 + i * STEP])
+    assert monitor.level is Level.WARN
+
+
+@pytest.mark.parametrize('early', [Source.SPEED, Source.LOAD])
+def test_a_sample_taken_before_the_clock_began_goes_stale_too(core, early):
+    """A clock at zero refuses no stamp, so one may lie any distance ahead."""
+    monitor = core.monitor(max_future=SECOND)
+    core.feed(monitor, [0, load(-1000.0), speed(10.0)])
+    here = START // 2
+    state = monitor.tick(here)
+    assert state.estimate.validity is PointValidity.NO_INPUT
+    late = [event for event in core.motion(10.0, start=here) if event.source is not early]
+    core.feed(monitor, [*late, here])
+    states = core.feed(monitor, [speed(10.0, here + STEP)])
+    if early is Source.LOAD:
+        assert states[-1].inputs[1].state is InputState.MISSING
+    else:
+        assert states[-1].verdict.zone is Zone.OPTIMAL
+
+
+def test_a_load_alone_from_before_the_clock_began_is_forgotten(core):
+    monitor = core.monitor(max_future=SECOND)
+    core.feed(monitor, [0, load(-1000.0)])
+    here = START // 2
+    assert core.feed(monitor, [speed(10.0, here)])[-1].verdict.zone is Zone.OPTIMAL
+    monitor.tick(here)
+    assert monitor.update(speed(10.0, here + STEP)).inputs[1].state is InputState.MISSING
+
+
+def test_stamps_as_far_ahead_as_is_allowed_are_kept(core):
+    """A tick lies on its grid, which the clock may have left by almost a period."""
+    monitor = core.monitor(max_future=SECOND, tick_period=10 * SECOND)
+    ahead = START + 11 * SECOND
+    core.feed(monitor, [START, *core.motion(10.0, start=ahead), START])
+    assert monitor.update(speed(10.0, ahead)).verdict.zone is Zone.OPTIMAL
+
+
+@pytest.mark.parametrize('period', [TIMEOUT + SECOND // 10, 2 * TIMEOUT])
+def test_a_speed_slower_than_its_timeout_is_warned_of(core, period):
+    monitor = slow_is_bad(core)
+    for i in range(5):
+        core.feed(monitor, core.motion(10.0, start=START + i * period))
+        core.feed(monitor, [START + (i + 1) * period - 1])
+    assert monitor.level is Level.WARN
+    # The first hole may be an interruption; from the second on the input is slow.
+    assert monitor.event.start == START + period
+
+
+def test_a_slow_speed_that_stands_in_between_is_outside_anew(core):
+    monitor = slow_is_bad(core)
+    for i in range(20):
+        core.feed(monitor, core.motion(0.0 if i % 2 else 10.0, start=START + i * SECOND))
+    assert monitor.level is Level.UNKNOWN
+
+
+def test_one_hole_between_two_short_stays_outside_is_no_warning(core):
+    monitor = slow_is_bad(core)
+    core.feed(monitor, core.motion(10.0, count=20))
+    core.feed(monitor, core.motion(10.0, start=START + 60 * SECOND, count=20))
+    assert monitor.level is Level.UNKNOWN
+
+
+def test_a_slow_speed_never_brings_ok(core):
+    monitor = slow_is_bad(core)
+    state = core.feed(monitor, core.motion(40.0, count=20, step=SECOND))[-1]
+    assert state.inputs[0].slow
+    assert monitor.level is Level.UNKNOWN
+    state = core.feed(monitor, core.motion(40.0, start=START + 20 * SECOND, count=102))[-1]
+    assert not state.inputs[0].slow
+    assert monitor.level is Level.OK
+
+
+def test_a_load_of_an_earlier_time_line_leaves_the_filters_alone(core):
+    monitor = slow_is_bad(core)
+    for i in range(51):
+        skew = i % 2 * 10 * SECOND
+        core.feed(monitor, core.motion(10.0, start=START + i * STEP))
+        core.feed(monitor, [load(-1000.0, START + i * STEP - skew)])
+    assert monitor.level is Level.WARN
+
+
+def lagging(events, lag):
+    """Return samples whose stamps lie `lag` [ns] behind their arrivals, which stay."""
+    return [
+        dataclasses.replace(event, stamp=event.stamp - lag, arrival=event.stamp)
+        for event in events
+    ]
+
+
+@pytest.mark.parametrize('lag', [6 * SECOND // 10, 3 * SECOND, -SECOND // 20])
+def test_a_source_with_a_constant_offset_is_judged_like_any_other(core, lag):
+    """Whatever the stamps say, with the ticks of a node between the samples."""
+    monitor, plain = slow_is_bad(core, max_lag=SECOND // 5), slow_is_bad(core)
+    states = []
+    for i in range(300):
+        pair = core.motion(40.0 if i > 120 else 10.0, start=START + i * STEP)
+        ticks = [START + i * STEP] if i and i % 10 == 0 else []
+        states += core.feed(monitor, [*lagging(pair, lag), *ticks])
+        core.feed(plain, [*pair, *ticks])
+        assert monitor.level is plain.level
+    assert [state.stamp for state in states] == [START - lag + i * STEP for i in range(300)]
+    assert {state.estimate.validity for state in states} == {PointValidity.VALID}
+    assert monitor.level is Level.OK
+    assert monitor.event.number == 1
+    assert states[-1].inputs[0].lag == pytest.approx(lag / SECOND)
+    assert states[-1].inputs[0].lagging is (lag > SECOND // 5)
+
+
+def test_a_warning_clears_though_the_stamps_drift(core):
+    monitor = slow_is_bad(core)
+    core.feed(monitor, core.motion(10.0, count=60))
+    for i in range(210):
+        pair = core.motion(40.0, start=START + SECOND + i * STEP)
+        core.feed(monitor, [*lagging(pair, i * STEP // 2), START + SECOND + i * STEP])
+    assert monitor.level is Level.OK
+
+
+def test_a_stamped_speed_goes_with_a_load_that_is_timed_by_its_arrival(core):
+    monitor = core.monitor()
+    for i in range(20):
+        force, fast = core.motion(10.0, start=START + i * STEP)
+        state = core.feed(monitor, [force, *lagging([fast], SECOND)])[-1]
+        assert state.verdict.zone is Zone.OPTIMAL
+
+
+def test_a_lagging_speed_that_dies_goes_stale_by_its_arrival_on_its_own_time_line(core):
+    monitor, lag = slow_is_bad(core, max_lag=SECOND // 5), SECOND
+    core.feed(monitor, lagging(core.motion(10.0, count=60), lag))
+    last = START + 59 * STEP
+    assert monitor.tick(last + TIMEOUT) is None
+    state = monitor.tick(last + TIMEOUT + 1)
+    assert state.estimate.validity is PointValidity.NO_INPUT
+    assert state.stamp == last + TIMEOUT + 1 - lag
+    assert state.level is Level.WARN
+
+
+def test_a_clock_that_is_set_back_does_not_hide_a_dead_speed(core):
+    """The stamps come from another machine, whose clock runs on."""
+    monitor = core.monitor()
+    core.feed(monitor, [START, *lagging(core.motion(10.0), 5 * SECOND)])
+    back = START - 4 * SECOND
+    assert monitor.tick(back) is None
+    assert monitor.tick(back + TIMEOUT + 1).estimate.validity is PointValidity.NO_INPUT
+
+
+def test_what_was_lost_is_told_with_the_next_state(core):
+    monitor = core.monitor()
+    force, fast = core.motion(10.0)
+    core.feed(monitor, [force])
+    state = monitor.update(dataclasses.replace(fast, lost=7))
+    assert (state.inputs[0].lost, state.inputs[0].losing) == (7, True)
+    assert (state.inputs[1].lost, state.inputs[1].losing) == (0, False)
+
+
+stamps = st.integers(0, 40).map(lambda i: START + i * SECOND // 10)
+values = st.sampled_from([0.0, 0.2, 5.0, -5.0, 40.0, -40.0, 500.0, math.nan])
+events = st.one_of(
+    st.builds(speed, values, stamps),
+    st.builds(load, values.map(lambda v: 50.0 * v), stamps),
+    st.builds(Refusal, source=st.sampled_from(Source), why=st.sampled_from(Why)),
+    stamps,
+)
+
+
+@given(st.lists(events, max_size=60))
+def test_the_same_events_give_the_same_states(core, stream):
+    first = slow_is_bad(core)
+    second = Monitor(first.surface, first.settings)  # the text of an event names its surface
+    states = [list(map(repr, core.feed(one, stream))) for one in (first, second)]
+    assert states[0] == states[1]
+
+
+@given(st.lists(events, max_size=60))
+def test_the_level_changes_on_judged_speed_samples_only(core, stream):
+    monitor, judged = slow_is_bad(core, limits=core.limits(raise_delay=0, clear_delay=0)), 0
+    for event in stream:
+        before = monitor.level
+        state = (core.feed(monitor, [event]) or [None])[0]
+        if isinstance(event, InputSample) and event.source is Source.SPEED and state is not None:
+            still = state.verdict.gates[:1] == (Gate.STANDSTILL,)
+            judged += state.verdict.zone is not Zone.UNKNOWN or still
+            assert state.judged == judged
+        if monitor.level is not before:
+            assert state.estimate.validity is PointValidity.VALID
+            outside = state.verdict.zone is Zone.OUTSIDE
+            assert monitor.level is (Level.WARN if outside else Level.OK)
+
+
+@given(st.lists(events, max_size=60))
+def test_the_event_is_active_exactly_while_the_level_warns(core, stream):
+    monitor, last = slow_is_bad(core, limits=core.limits(raise_delay=SECOND // 10)), 0
+    for event in stream:
+        core.feed(monitor, [event])
+        assert monitor.event.active is (monitor.level is Level.WARN)
+        assert monitor.event.number >= last
+        last = monitor.event.number
+
+
+def turning(core, wrap=math.tau):
+    """Return a monitor whose samples of the speed are positions [rad]."""
+    positions = PositionSettings(window=SECOND // 20, wrap=wrap)
+    return core.monitor(positions=positions, plausible={Source.SPEED: 50.0})
+
+
+def turn(monitor, angle, i):
+    """Take a load and a position; return the state."""
+    monitor.update(load(-1000.0, START + i * STEP))
+    return monitor.update(speed(angle, START + i * STEP))
+
+
+def test_positions_are_judged_by_their_speed(core):
+    monitor = turning(core)
+    assert turn(monitor, 0.0, 0) is None
+    for i in range(1, 300):
+        state = turn(monitor, math.remainder(0.2 * i, math.tau), i)
+        assert state.point.speed == pytest.approx(20.0)
+    assert (state.verdict.zone, state.judged) == (Zone.OPTIMAL, 299)
+    assert (state.inputs[0].received, state.inputs[0].dropped) == (300, 1)
+    assert state.totals.revolutions == pytest.approx(298 * 0.2 / math.tau)
+
+
+def test_a_jump_of_the_position_never_reaches_the_totals(core):
+    monitor = turning(core, wrap=0.0)
+    states = [turn(monitor, 0.2 * i + 1e6 * (i == 10), i) for i in range(21)]
+    assert [i for i, state in enumerate(states) if state is None] == [0, 10, 11]
+    assert states[-1].inputs[0].implausible == 2
+    assert states[-1].totals.revolutions == pytest.approx(19 * 0.2 / math.tau)
+    assert states[-1].window.speed.high == pytest.approx(20.0)
+
+
+def test_a_speed_of_positions_that_is_not_plausible_is_refused(core):
+    monitor = turning(core)
+    for i in range(5):
+        assert turn(monitor, 0.6 * i, i) is None
+    assert monitor.tick(START + 10 * SECOND).inputs[0].implausible == 4
+
+
+def test_after_a_hole_two_positions_are_needed(core):
+    monitor = turning(core)
+    turn(monitor, 0.0, 0)
+    turn(monitor, 0.2, 1)
+    assert turn(monitor, 0.4, 200) is None
+    assert monitor.tick(START + 2 * SECOND).inputs[0].why is Why.HOLE
+    assert turn(monitor, 0.6, 201).point.speed == pytest.approx(20.0)

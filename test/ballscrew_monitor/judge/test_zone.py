@@ -1,0 +1,263 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Limits on the limit, gates, the level held over time, and the excursions that it raises."""
+
+import math
+
+from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.core.judgement import Code, Gate, Level, Zone
+from ballscrew_monitor.judge.records import (
+    EVENT_BEGINS,
+    EVENT_ENDS,
+    LIGHT_LOAD,
+    Memory,
+    Row,
+    STANDSTILL,
+)
+from ballscrew_monitor.judge.views import event_of
+from ballscrew_monitor.judge.zone import follow_excursion, hold_level, set_zone, shut_gates
+from hypothesis import given
+from hypothesis import strategies as st
+import pytest
+
+GAP = SECOND // 2
+STEP = SECOND // 100
+HELD = 3
+OUTSIDE, INSIDE, BAND, UNKNOWN = (2, False), (1, True), (1, False), (0, False)
+"""Zone, and whether it counts towards clearing."""
+below = lambda value: math.nextafter(value, -math.inf)  # noqa: E731
+
+
+def numbers(core, **changes):
+    """Return settings as numbers."""
+    return core.monitor(limits=core.limits(**changes)).numbers
+
+
+def judged(core, memory=None, **changes):
+    """Return a row with its gates and zone."""
+    values = {'validity': 1, 'speed': 10.0, 'axial_load': -1000.0, 'rcs': 0.0, 'efficiency': 0.9}
+    row, settings = Row(**(values | changes)), numbers(core)
+    shut_gates(settings, memory or Memory(), row)
+    set_zone(settings, row)
+    return row
+
+
+@pytest.mark.parametrize(
+    ('rcs', 'efficiency', 'zone'),
+    [
+        (0.25, 0.75, Zone.OUTSIDE),
+        (below(0.25), 0.75, Zone.OPTIMAL),
+        (below(0.25), below(0.75), Zone.OUTSIDE),
+        (0.0, 1.0, Zone.OPTIMAL),
+        (math.nan, 0.9, Zone.UNKNOWN),
+        (0.0, math.nan, Zone.UNKNOWN),
+    ],
+)
+def test_zone_on_its_limits(core, rcs, efficiency, zone):
+    row = judged(core, rcs=rcs, efficiency=efficiency)
+    assert row.zone == zone
+    assert not row.clears or zone is Zone.OPTIMAL
+
+
+@pytest.mark.parametrize(
+    ('rcs', 'efficiency', 'clears'),
+    [(0.125, 0.875, False), (below(0.125), 0.875, True), (below(0.125), below(0.875), False)],
+)
+def test_hysteresis_on_its_limits(core, rcs, efficiency, clears):
+    row = judged(core, rcs=rcs, efficiency=efficiency)
+    assert (row.zone, row.clears) == (Zone.OPTIMAL, clears)
+
+
+@pytest.mark.parametrize('sign', [1.0, -1.0])
+@pytest.mark.parametrize(
+    ('force', 'was_light', 'light'),
+    [
+        (256.0, False, False),
+        (below(256.0), False, True),
+        (below(384.0), True, True),
+        (384.0, True, False),
+        (0.0, False, True),
+    ],
+)
+def test_light_load_on_its_limits(core, force, was_light, light, sign):
+    """A light load leaves the efficiency unjudged and does not excuse RCS."""
+    memory = Memory(light=was_light)
+    row = judged(core, memory, axial_load=sign * force, efficiency=0.0)
+    assert (row.gates, memory.light) == (LIGHT_LOAD * light, light)
+    assert (row.zone, row.clears) == ((1, True) if light else (2, False))
+    assert judged(core, axial_load=sign * force, rcs=0.25).zone == Zone.OUTSIDE
+
+
+@given(st.lists(st.floats(520.0, 680.0), min_size=1, max_size=60), st.booleans())
+def test_a_load_about_the_light_limit_is_one_verdict(core, loads, begins_light):
+    """600 +- 80 N about a gate of 661 N, too small to open it at 727 N."""
+    settings, memory = numbers(core, light_load=661.0, hysteresis=0.1), Memory()
+    zones = []
+    for load in ([600.0] if begins_light else []) + loads:
+        row = Row(validity=1, speed=10.0, axial_load=-load, rcs=0.0, efficiency=0.5)
+        shut_gates(settings, memory, row)
+        set_zone(settings, row)
+        zones.append(row.zone)
+    assert zones == sorted(zones, reverse=True)  # from OUTSIDE to OPTIMAL, and never back
+    assert not begins_light or set(zones) == {Zone.OPTIMAL}
+
+
+@pytest.mark.parametrize('sign', [1.0, -1.0])
+@pytest.mark.parametrize(('speed', 'still'), [(0.5, False), (below(0.5), True), (0.0, True)])
+def test_standstill_on_its_limit(core, speed, still, sign):
+    row = judged(core, speed=sign * speed, rcs=1.0)
+    assert row.gates == STANDSTILL * still
+    assert row.zone == (Zone.UNKNOWN if still else Zone.OUTSIDE)
+
+
+def test_numbers_that_are_unknown_or_held_shut_no_gate(core):
+    held = {'speed_source': HELD, 'axial_load_source': HELD}
+    memory = Memory(light=True)
+    for row in (
+        judged(core, memory, speed=math.nan, axial_load=math.nan),
+        judged(core, memory, speed=0.0, axial_load=0.0, **held),
+    ):
+        assert row.gates == 0
+    assert memory.light
+
+
+@given(st.floats(0.0, 1.0), st.floats(0.0, 1.0))
+def test_bands_are_exhaustive(core, rcs, efficiency):
+    row = judged(core, rcs=rcs, efficiency=efficiency)
+    assert (row.zone == Zone.OUTSIDE) == (rcs >= 0.25 or efficiency < 0.75)
+    assert (row.zone == Zone.OPTIMAL) == (rcs < 0.25 and efficiency >= 0.75)
+
+
+def levels(core, signs, *, level=Level.UNKNOWN, step=STEP, period=0, **limits):
+    """Return the level after each of rows that are one step apart."""
+    settings, found = numbers(core, **limits), []
+    memory = Memory(level=int(level), level_since=-1)
+    for i, (zone, clears) in enumerate(signs):
+        before = memory.level
+        hold_level(settings, memory, Row(zone=zone, clears=clears, stamp=i * step), GAP, period)
+        assert memory.level == before or memory.level_since == i * step
+        found.append(Level(memory.level))
+    return found
+
+
+def test_a_level_changes_when_its_delay_is_exactly_over(core):
+    assert levels(core, [OUTSIDE] * 51) == [Level.UNKNOWN] * 50 + [Level.WARN]
+    assert levels(core, [INSIDE] * 101, level=Level.WARN) == [Level.WARN] * 100 + [Level.OK]
+    none = {'raise_delay': 0, 'clear_delay': 0}
+    assert levels(core, [OUTSIDE, INSIDE, OUTSIDE], **none) == [Level.WARN, Level.OK, Level.WARN]
+
+
+def test_one_optimal_sample_starts_the_raising_over(core):
+    signs = [OUTSIDE] * 50 + [BAND] + [OUTSIDE] * 50
+    assert set(levels(core, signs, level=Level.OK)) == {Level.OK}
+
+
+@pytest.mark.parametrize('spoiler', [OUTSIDE, BAND, UNKNOWN])
+def test_anything_else_starts_the_clearing_over(core, spoiler):
+    signs = [INSIDE] * 100 + [spoiler] + [INSIDE] * 100
+    assert set(levels(core, signs, level=Level.WARN)) == {Level.WARN}
+
+
+def test_the_hysteresis_band_keeps_a_warning_but_brings_the_first_ok(core):
+    assert levels(core, [BAND] * 200, level=Level.WARN)[-1] is Level.WARN
+    assert levels(core, [BAND] * 200)[-1] is Level.OK
+
+
+def test_what_cannot_be_judged_does_not_hide_a_warning(core):
+    found = levels(core, [OUTSIDE, UNKNOWN] * 26, level=Level.OK)
+    assert found[-2:] == [Level.WARN, Level.WARN]
+
+
+@pytest.mark.parametrize(
+    ('sign', 'step', 'period', 'changes'),
+    [
+        (OUTSIDE, GAP, 0, True),
+        (OUTSIDE, GAP + 1, 0, False),
+        (OUTSIDE, 3 * GAP, 3 * GAP, True),  # the period of a slow input
+        (OUTSIDE, 3 * GAP + 1, 3 * GAP, False),
+        (INSIDE, 3 * GAP, 3 * GAP, False),
+    ],
+)
+def test_a_hole_starts_over(core, sign, step, period, changes):
+    before = Level.OK if sign is OUTSIDE else Level.WARN
+    found = levels(core, [sign] * 2, level=before, step=step, period=period)
+    assert (found[-1] is not before) is changes
+
+
+signs = st.lists(st.sampled_from([OUTSIDE, INSIDE, BAND, UNKNOWN]), max_size=300)
+
+
+@given(signs)
+def test_an_unknown_changes_no_level_and_no_level_becomes_unknown(core, signs):
+    before = Level.UNKNOWN
+    for sign, level in zip(signs, levels(core, signs), strict=True):
+        if level is not before:
+            assert level is {2: Level.WARN, 1: Level.OK}[sign[0]]
+        before = level
+
+
+@given(
+    st.lists(st.sampled_from([INSIDE, INSIDE, INSIDE, BAND]), max_size=300),
+    st.sets(st.integers(0, 299), max_size=3),
+)
+def test_making_samples_unknown_never_clears_a_warning_sooner(core, signs, holes):
+    spoiled = [UNKNOWN if i in holes else sign for i, sign in enumerate(signs)]
+    whole = levels(core, signs, level=Level.WARN)
+    for good, bad in zip(whole, levels(core, spoiled, level=Level.WARN), strict=True):
+        assert not (bad is Level.OK and good is Level.WARN)
+
+
+rows = st.builds(
+    Row,
+    validity=st.just(1),
+    speed=st.floats(1.0, 50.0),
+    axial_load=st.sampled_from([-1000.0, 1000.0, 100.0, 300.0]),
+    temperature=st.floats(290.0, 340.0),
+    direction=st.sampled_from([1, 2]),
+    derived=st.sampled_from([0, 3]),
+    rcs=st.sampled_from([0.0, 0.25, 0.5, 0.75]),
+    efficiency=st.sampled_from([0.25, 0.5, 0.75, 0.9]),
+)
+
+
+@given(st.lists(rows, max_size=40), st.sampled_from([0, 2]), st.sampled_from([0, 2]))
+def test_an_excursion_keeps_one_sample_as_its_worst(core, rows, raise_delay, clear_delay):
+    """Value, limit and place are of one row outside between begin and end, and none is worse."""
+    settings, memory = numbers(core, raise_delay=raise_delay, clear_delay=clear_delay), Memory()
+    limits, surface, begun = core.limits(), core.surface(), []
+    for stamp, row in enumerate(rows, 1):
+        row.stamp, before = stamp, memory.level
+        shut_gates(settings, memory, row)
+        set_zone(settings, row)
+        hold_level(settings, memory, row, GAP, 0)
+        follow_excursion(settings, memory, row, before)
+        changed = memory.level != before
+        assert (row.edge == EVENT_BEGINS) == (changed and memory.level == Level.WARN)
+        assert (row.edge == EVENT_ENDS) == (changed and before == Level.WARN)
+        event = event_of(memory, surface, limits)
+        assert event.active == (memory.level == Level.WARN)
+        if row.edge == EVENT_BEGINS:
+            begun = [one for one in rows[:stamp] if one.stamp >= event.start]
+        elif event.active:
+            begun.append(row)
+        if not event.active:
+            continue
+        high = event.cause.code is Code.RCS_HIGH
+        outside = [
+            one
+            for one in begun
+            if one.zone == Zone.OUTSIDE
+            and (one.rcs >= 0.25 if high else one.efficiency < 0.75 and one.gates == 0)
+        ]
+        value = (lambda one: one.rcs) if high else (lambda one: one.efficiency)
+        worst = (max if high else min)(outside, key=value)
+        assert event.worst_value == event.cause.value == value(worst)
+        assert event.cause.limit == (limits.rcs if high else limits.efficiency)
+        assert ('derived' in event.cause.text) == (not high and worst.derived != 0)
+        point = event.advisor.point
+        for name in ('speed', 'axial_load', 'temperature', 'direction'):
+            assert getattr(point, name) == getattr(worst, name)
+
+
+def test_gates_are_the_bits_of_a_row():
+    assert (1 << (Gate.STANDSTILL - 1), 1 << (Gate.LIGHT_LOAD - 1)) == (STANDSTILL, LIGHT_LOAD)
