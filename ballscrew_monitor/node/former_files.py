@@ -54,7 +54,7 @@ def set_aside(folder: Path) -> list[str]:
         place.parent.mkdir(exist_ok=True)
         path.replace(place)
         moved += 1
-    said = f'{moved} files of the former format were taken over, they are now in {folder / PLACE}'
+    said = f'the database replaces {moved} files, which are now in {folder / PLACE}'
     return [said] if moved else []
 
 

@@ -172,7 +172,7 @@ class RestartState:
             self._wake.wait(None if again is None else max(again - time.monotonic(), 0.0))
 
     def _write(self) -> None:
-        if self._database is None or self._stopped:
+        if self._database is None:
             return
         try:
             self._write_into(self._database)
@@ -185,6 +185,8 @@ class RestartState:
             self._problem = f'{self.folder} {UNWRITABLE}, {what}'
 
     def _write_into(self, database: StateDatabase) -> None:
+        if self._stopped:
+            raise InputError(f'{self.folder} is closed')
         if not database.is_open:
             found = database.open()
             with self._lock:

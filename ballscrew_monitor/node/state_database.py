@@ -38,7 +38,7 @@ IN_USE = 'is in use by another node of this name'
 DAMAGED = 'is damaged'
 OTHER_VERSION = 'is of another version'
 BUSY = 1.0  # [s] to wait for somebody who reads
-CHUNK = 500  # entries that are appended, or removed, at a time
+CHUNK = 500  # entries that are appended at a time
 SHARE = 0.75  # of the limit for the database, the rest is for its journal
 NETWORK = {'9p', 'afs', 'ceph', 'cifs', 'fuse.sshfs', 'lustre', 'nfs', 'nfs4', 'smb3', 'vboxsf'}
 SQL = {int: 'INTEGER', bool: 'INTEGER', float: 'REAL', str: 'TEXT'}
@@ -152,7 +152,7 @@ class StateDatabase:
         self._notices += set_aside(self.folder)
         if self._size() > self.limit:  # that of before was larger
             _make_room(database, SHARE * self.limit)
-            database.execute('VACUUM')
+            database.executescript('VACUUM; PRAGMA wal_checkpoint(TRUNCATE)')
         return by_key(
             read(row)
             for table, read in READ.items()
@@ -294,7 +294,7 @@ def _write(
 def _make_room(database: sqlite3.Connection, limit: float) -> None:
     """Remove the oldest entries until the database is within a `limit` [B]."""
     while _used(database) > limit:
-        ((first,),) = database.execute('SELECT min(number) FROM events')
+        ((first, last),) = database.execute('SELECT min(number), max(number) FROM events')
         if first is None:
             return
-        database.execute('DELETE FROM events WHERE number < ?', (first + CHUNK,))
+        database.execute('DELETE FROM events WHERE number <= ?', (first + (last - first) // 16,))

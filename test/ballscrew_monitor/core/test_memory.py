@@ -3,11 +3,20 @@
 """What a monitor gives to be kept, and how it goes on with it."""
 
 import dataclasses
+import math
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.inputs import InputSample, Source
-from ballscrew_monitor.core.judgement import Level
-from ballscrew_monitor.core.memory import after_restart, Memory, RESTARTED
+from ballscrew_monitor.core.judgement import Code, Finding, Level, Severity
+from ballscrew_monitor.core.memory import (
+    after_restart,
+    AxisRecord,
+    Memory,
+    memory_of,
+    read_record,
+    record_of,
+    RESTARTED,
+)
 from ballscrew_monitor.core.monitor import Monitor
 from ballscrew_monitor.core.shelving import NOT_SHELVED, Shelving
 from ballscrew_monitor.core.state import Event
@@ -70,25 +79,58 @@ def test_a_shelved_warning_is_judged_and_counted_as_ever(core):
     assert feed(shelved, 10.0, 1, start=late)[0].shelving is NOT_SHELVED
 
 
-def event(number, active=False):
-    return Event(number=number, active=active, stamp=number * SECOND)
+def test_an_event_that_was_interrupted_is_over():
+    active = dataclasses.replace(KEPT, event=dataclasses.replace(KEPT.event, active=True))
+    memory = after_restart(active)
+    assert memory.event == dataclasses.replace(KEPT.event, ending=RESTARTED)
+    assert (memory.totals, memory.shelving) == (KEPT.totals, KEPT.shelving)
+    assert after_restart(KEPT) is KEPT
+
+
+RICH = Memory(
+    totals=Totals(running_time=2**60 + 1, outside_time=3, angle=0.1 + 0.2, energy_lost=1e-9),
+    event=Event(
+        number=7,
+        active=True,
+        stamp=20,
+        start=10,
+        worst_value=1 / 3,
+        cause=Finding(code=Code.RCS_HIGH, severity=Severity.WARN, value=0.5, limit=0.25, text='t'),
+    ),
+    shelving=Shelving(until=30, reason='Nut für Montag bestellt'),
+)
+
+
+@pytest.mark.parametrize('memory', [RICH, KEPT, Memory()])
+def test_a_record_holds_all_of_a_memory_bit_for_bit(memory):
+    record = record_of('x', memory)
+    assert record.axis == 'x'
+    assert repr(memory_of(record)) == repr(memory)
+    assert repr(read_record(record.row())) == repr(record)
+
+
+def test_a_record_of_nothing_is_that_of_a_memory_of_nothing():
+    assert repr(AxisRecord(axis='x')) == repr(record_of('x', Memory()))
 
 
 @pytest.mark.parametrize(
-    ('kept', 'logged', 'number', 'ending'),
+    ('name', 'value'),
     [
-        (event(0), event(0), 0, ''),
-        (event(3), event(3), 3, ''),
-        (event(3, active=True), event(3, active=True), 3, RESTARTED),
-        (event(3, active=True), event(3), 3, ''),  # killed before the end was remembered
-        (event(3), event(3, active=True), 3, ''),  # the log could not be written
-        (event(3), event(4, active=True), 4, RESTARTED),  # killed before it was remembered
-        (event(3), event(5), 5, ''),
-        (event(3, active=True), event(0), 3, RESTARTED),  # there is no log
-        (event(3, active=True), event(2, active=True), 3, RESTARTED),
+        ('running_time_ns', -1),
+        ('running_time_ns', 1.5),
+        ('running_time_ns', True),
+        ('running_time_ns', None),
+        ('angle_rad', None),
+        ('angle_rad', math.inf),
+        ('energy_lost_J', -1.0),
+        ('energy_lost_J', 'much'),
+        ('event', 2**32),
+        ('cause', 'BAD_LUCK'),
+        ('severity', None),
+        ('until_ns', 'tomorrow'),
+        ('reason', None),
     ],
 )
-def test_an_event_that_was_interrupted_is_over(kept, logged, number, ending):
-    memory = after_restart(dataclasses.replace(KEPT, event=kept), logged)
-    assert memory.event == Event(number=number, stamp=number * SECOND, ending=ending)
-    assert memory.totals == KEPT.totals
+def test_a_row_that_no_node_has_written_is_refused(name, value):
+    with pytest.raises((ValueError, KeyError, TypeError)):
+        read_record(record_of('x', RICH).row() | {name: value})

@@ -15,7 +15,7 @@ from ballscrew_monitor.core.judgement import Level
 from ballscrew_monitor.core.links import Link
 from ballscrew_monitor.core.shelving import shelve
 from ballscrew_monitor.core.state import Event
-from ballscrew_monitor.node import diagnostics, state_folder
+from ballscrew_monitor.node import diagnostics, state_database
 from ballscrew_monitor.node.diagnostics import ERROR, OK, STALE, WARN
 from ballscrew_monitor.node.plain_topics import plain_values
 import pytest
@@ -287,7 +287,8 @@ SENTENCES = [
     diagnostics.INACTIVE,
     diagnostics.NOT_DERIVED,
     diagnostics.KEPT,
-    *(state_folder.UNWRITABLE, state_folder.IN_USE, state_folder.DAMAGED),
+    *(state_database.UNWRITABLE, state_database.IN_USE),
+    *(state_database.DAMAGED, state_database.OTHER_VERSION),
 ]
 BEGINNINGS = [
     diagnostics.CLOCK_STANDS,
