@@ -22,8 +22,9 @@ from ballscrew_monitor.node.state_records import by_key, Corrections, Entry, Rec
 from surrogate.files import InputError
 
 AUTO = 'auto'
-PAUSE = 0.5  # [s] shortest time between two commits
+PAUSE = 0.05  # [s] shortest time between two commits
 RETRY = 1.0  # [s] after a failure
+SILENT = 'does not answer'
 PATIENCE = 2.0  # [s] that somebody waits for the disk
 MOST_ENTRIES = 10_000  # waiting while nothing can be written; the oldest are dropped
 SHARE = 4  # corrections have this part of the limit
@@ -130,7 +131,9 @@ class RestartState:
         with self._lock:
             self._asked.append(done)
         self._wake.set()
-        return self._problem if done.wait(PATIENCE) else f'{self.folder} does not answer'
+        if not done.wait(PATIENCE):
+            self._problem = f'{self.folder} {SILENT}'  # until something is written
+        return self._problem
 
     def start(self) -> None:
         """Let a thread write what comes; a process that ends does not wait for it."""

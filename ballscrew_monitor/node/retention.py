@@ -17,7 +17,7 @@ if TYPE_CHECKING:  # a station imports this module
     from ballscrew_monitor.node.station import Station
 
 LOOK = 1.0  # [s] between two looks
-PERIOD = 4.0  # [s] between two records of the sums: with the pause of the thread below 5 s
+PERIOD = 4.0  # [s] between two records of the sums: with the write below 5 s
 
 
 class Retention:

@@ -15,7 +15,7 @@ from ballscrew_monitor.core.judgement import Level
 from ballscrew_monitor.core.links import Link
 from ballscrew_monitor.core.shelving import shelve
 from ballscrew_monitor.core.state import Event
-from ballscrew_monitor.node import diagnostics, state_database
+from ballscrew_monitor.node import diagnostics, restart_state, state_database
 from ballscrew_monitor.node.diagnostics import ERROR, OK, STALE, WARN
 from ballscrew_monitor.node.plain_topics import plain_values
 import pytest
@@ -288,7 +288,7 @@ SENTENCES = [
     diagnostics.NOT_DERIVED,
     diagnostics.KEPT,
     *(state_database.UNWRITABLE, state_database.IN_USE),
-    *(state_database.DAMAGED, state_database.OTHER_VERSION),
+    *(state_database.DAMAGED, state_database.OTHER_VERSION, restart_state.SILENT),
 ]
 BEGINNINGS = [
     diagnostics.CLOCK_STANDS,

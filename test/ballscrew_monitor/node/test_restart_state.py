@@ -146,7 +146,7 @@ def test_nobody_waits_for_a_disk_that_does_not_answer(state, monkeypatch):
     state.start()
     state.keep(record(1))
     thread = state._thread
-    assert state.flush() == f'{state.folder} does not answer'
+    assert state.flush() == state.problem == f'{state.folder} does not answer'
     state.close()
     answer.set()
     thread.join()
