@@ -100,10 +100,8 @@ class RestartState:
         """Keep corrections; return why that failed, or nothing."""
         if self.folder is None:
             return 'state_dir is empty'
-        kept = {
-            key: len(one.solves) for key, one in self._latest.items() if type(one) is Corrections
-        }
-        size = sum((kept | {(Corrections, corrections.axis): len(corrections.solves)}).values())
+        kept = self._latest | by_key([corrections])
+        size = sum(len(one.solves) for (kind, _), one in kept.items() if kind is Corrections)
         if size * SHARE > self.limit:
             self._refused[corrections.axis] = at_limit(self.folder, self.limit)
             return self._refused[corrections.axis]
@@ -111,12 +109,17 @@ class RestartState:
         self.keep(corrections)
         return self.flush()
 
-    def recall(self, blank: Kept) -> Kept:
-        """Return what is known in place of a `blank` record; what an earlier node left once."""
+    def recall(self, blank: Kept, *, late: bool = False) -> Kept:
+        """
+        Return what is known in place of a `blank` record: what an earlier node left, once.
+
+        Else what was kept last, unless the earlier node is asked about `late`.
+
+        """
         key = (type(blank), blank.axis)
         with self._lock:
             found = self._found.pop(key, None) if self._found else None
-            return found or self._latest.get(key, blank)
+            return found or (blank if late else self._latest.get(key, blank))
 
     def is_late(self, axis: str) -> bool:
         """Tell whether an earlier node left something of an axis that is not recalled yet."""
@@ -190,27 +193,32 @@ class RestartState:
     def _write_into(self, database: StateDatabase) -> None:
         if self._stopped:
             raise InputError(f'{self.folder} is closed')
-        if not database.is_open:
-            found = database.open()
-            with self._lock:
-                self._found = found if self._found is None else self._found
-                self._changed.update(self._latest)  # the file may be a new one
-        with self._lock:
-            entries = list(self._entries)
-            # What an earlier node left is not replaced before it is recalled.
-            held = self._found or {}
-            records = {key: one for key, one in self._changed.items() if key not in held}
-        if not entries and not records:
-            return
         try:
-            database.write(entries, records.values())
-        except sqlite3.Error:
+            if not database.is_open:
+                self._open(database)
+            entries, records = self._waiting()
+            if entries or records:
+                database.write(entries, records.values())
+        except (OSError, sqlite3.Error):
             database.disconnect()
             raise
+        written = set(map(id, entries))
         with self._lock:
-            written = set(map(id, entries))
             left = [one for one in self._entries if id(one) not in written]
             self._entries = deque(left, maxlen=MOST_ENTRIES)
             for key, one in records.items():
                 if self._changed[key] is one:
                     del self._changed[key]
+
+    def _open(self, database: StateDatabase) -> None:
+        found = database.open()
+        with self._lock:
+            self._found = found if self._found is None else self._found
+            self._changed.update(self._latest)  # the file may be a new one
+
+    def _waiting(self) -> tuple[list[Entry], Records]:
+        """Return what is to be written; what an earlier node left is not replaced unseen."""
+        with self._lock:
+            held = self._found or {}
+            records = {key: one for key, one in self._changed.items() if key not in held}
+            return list(self._entries), records

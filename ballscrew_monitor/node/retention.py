@@ -71,26 +71,26 @@ class Retention:
         if self.state.folder is not None:
             self.state.keep(record_of(axis, memory))
 
-    def recall(self, axis: str) -> Memory:
+    def restore(self, axes: Iterable[str] | None = None) -> None:
+        """Take up what was kept of all axes, or late of some, and say what came of that."""
+        stations, late = self._find(), axes is not None
+        for name in stations if axes is None else axes:
+            monitor = stations[name].axis.monitor
+            monitor.take_up(self._recall(name, late=late))
+            self.remember(name, monitor.memory)
+            if said := stations[name].restore(late=late):
+                self._node.get_logger().info(f'axis {name}: {said}')
+        self._log()
+
+    def _recall(self, axis: str, *, late: bool) -> Memory:
         """Return what is known of an axis from before; an event that was interrupted is over."""
-        before = memory_of(self.state.recall(AxisRecord(axis=axis)))
+        before = memory_of(self.state.recall(AxisRecord(axis=axis), late=late))
         memory = after_restart(before)
         if memory is not before:
             event = memory.event
             facts = event_facts(event)
             self.note(Kind.EVENT_END, axis, stamp=event.stamp, memory=memory, **facts)
         return memory
-
-    def restore(self, axes: Iterable[str] | None = None) -> None:
-        """Take up what was kept of some axes, or of all, and say what came of that."""
-        stations = self._find()
-        for name in [*stations] if axes is None else axes:
-            monitor = stations[name].axis.monitor
-            monitor.take_up(self.recall(name))
-            self.remember(name, monitor.memory)
-            if said := stations[name].restore():
-                self._node.get_logger().info(f'axis {name}: {said}')
-        self._log()
 
     def remember_all(self) -> None:
         """Keep the sums, events and shelvings of all axes."""

@@ -199,9 +199,9 @@ class Station:
         kept = corrections_of(self.name, surface.base_sha256, surface.corrections)
         return self._retention.state.keep_corrections(kept)
 
-    def restore(self) -> str:
-        """Take up the corrections that were kept; return what became of them, if there are any."""
-        found = self._retention.state.recall(Corrections(self.name))
+    def restore(self, *, late: bool) -> str:
+        """Take up corrections of before; return what became of them, if there are any."""
+        found = self._retention.state.recall(Corrections(self.name), late=late)
         kept = solves_of(found)
         if not kept:
             return ''
@@ -211,7 +211,6 @@ class Station:
             surface = corrected(self.surface, kept)
         except SurfaceError as error:
             return f'{len(kept)} kept corrections are not used: {error}'
-        late = bool(self.surface.corrections)
         self.axis.use_surface(surface, self._values)
         if late:
             self._save()

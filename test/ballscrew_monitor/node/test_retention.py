@@ -28,7 +28,7 @@ from ballscrew_monitor.node.alarm import Alarm
 from ballscrew_monitor.node.restart_state import RestartState
 from ballscrew_monitor.node.retention import PERIOD, Retention
 from ballscrew_monitor.node.state_database import read_entries
-from ballscrew_monitor.node.state_records import by_key
+from ballscrew_monitor.node.state_records import by_key, Corrections
 import pytest
 
 STEP = SECOND // 10
@@ -54,6 +54,10 @@ class Machine:
             get_clock=lambda: now, get_logger=lambda: logger, create_timer=self.take_timer
         )
 
+    def take_corrections(self, *, late):
+        kept = self.state.recall(Corrections('x'), late=late)
+        return f'{kept.surface} late' if late else kept.surface
+
     def take_timer(self, period, look, clock):
         self.look = look
 
@@ -70,7 +74,10 @@ class Machine:
         publisher = types.SimpleNamespace(publish=nothing)
         self.alarm = Alarm(self.node, axis, publisher, self.retention, nothing)
         self.stations['x'] = types.SimpleNamespace(
-            axis=axis, alarm=self.alarm, restore=lambda: '', end_shelving=self.alarm.end_shelving
+            axis=axis,
+            alarm=self.alarm,
+            restore=self.take_corrections,
+            end_shelving=self.alarm.end_shelving,
         )
         self.retention.restore()
 
@@ -211,6 +218,11 @@ def test_what_an_earlier_node_left_is_taken_up_late(machine):
     machine.move(SLOW)
     machine.move(SLOW)
     assert machine.monitor.event.number == 1
+    machine.state._found = by_key([Corrections('x', 'abc')])
+    machine.look()
+    assert machine.monitor.event.number == 1
+    assert machine.running_time == STEP
+    assert 'axis x: abc late' in machine.said
     machine.state._found = by_key([record_of('x', before)])
     machine.look()
     assert machine.monitor.event.number == 42
