@@ -168,8 +168,7 @@ class RestartState:
 
     @property
     def _is_waiting(self) -> bool:
-        closed = self._database is not None and not self._database.is_open
-        return closed or bool(self._entries or self._changed)
+        return bool(self._entries or self._changed or self._problem)
 
     def _run(self) -> None:
         while not self._stopped:
