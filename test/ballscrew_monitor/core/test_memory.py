@@ -59,36 +59,6 @@ def test_a_record_holds_all_of_a_memory_bit_for_bit(memory):
     assert repr(read_record(record.row())) == repr(record)
 
 
-def test_an_event_that_was_interrupted_is_over():
-    active = dataclasses.replace(KEPT, event=dataclasses.replace(KEPT.event, active=True))
-    memory = after_restart(active)
-    assert memory.event == dataclasses.replace(KEPT.event, ending=RESTARTED)
-    assert (memory.totals, memory.shelving) == (KEPT.totals, KEPT.shelving)
-    assert after_restart(KEPT) is KEPT
-
-
-RICH = Memory(
-    totals=Totals(running_time=2**60 + 1, outside_time=3, angle=0.1 + 0.2, energy_lost=1e-9),
-    event=Event(
-        number=7,
-        active=True,
-        stamp=20,
-        start=10,
-        worst_value=1 / 3,
-        cause=Finding(code=Code.RCS_HIGH, severity=Severity.WARN, value=0.5, limit=0.25, text='t'),
-    ),
-    shelving=Shelving(until=30, reason='Nut für Montag bestellt'),
-)
-
-
-@pytest.mark.parametrize('memory', [RICH, KEPT, Memory()])
-def test_a_record_holds_all_of_a_memory_bit_for_bit(memory):
-    record = record_of('x', memory)
-    assert record.axis == 'x'
-    assert repr(memory_of(record)) == repr(memory)
-    assert repr(read_record(record.row())) == repr(record)
-
-
 def test_a_record_of_nothing_is_that_of_a_memory_of_nothing():
     assert repr(AxisRecord(axis='x')) == repr(record_of('x', Memory()))
 

@@ -8,12 +8,11 @@ from pathlib import Path
 import re
 
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.core.derived_load import LoadDerivation
 from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, Why
 from ballscrew_monitor.core.judgement import Level
 from ballscrew_monitor.core.links import Link
 from ballscrew_monitor.core.shelving import shelve
-from ballscrew_monitor.core.state import Event
+from ballscrew_monitor.core.state import Event, LoadDerivation
 from ballscrew_monitor.messages import diagnostics, reasons
 from ballscrew_monitor.messages.diagnostics import ERROR, OK, STALE, WARN
 from ballscrew_monitor.messages.state_messages import plain_values
