@@ -23,6 +23,7 @@ from typing import Any
 
 from ballscrew_monitor.cycle.domain import free_domain
 from ballscrew_monitor.cycle.node_process import child_environment, ros_environment
+from ballscrew_monitor.node.state_database import read_entries
 from ballscrew_msgs.msg import BallScrewState
 from geometry_msgs.msg import WrenchStamped
 from node_parts.peer import FAST, LOAD, SLOW, TURNING
@@ -102,19 +103,7 @@ def kill_one(machine: Machine, folder: Path, domain: int, seconds: float) -> tup
     return first, last
 
 
-def log_of(folder: Path) -> list[dict[str, Any]]:
-    """Return the lines of the event log, without those that a kill has torn."""
-    found = []
-    for path in (*sorted(folder.glob('events.*.jsonl')), folder / 'events.jsonl'):
-        for line in path.read_text().splitlines():
-            try:
-                found.append(json.loads(line))
-            except ValueError:
-                print(f'torn: {line[:60]}')
-    return found
-
-
-def report(runs: list[tuple[Any, Any]], lines: list[dict[str, Any]]) -> None:
+def report(runs: list[tuple[Any, Any]], entries: list[dict[str, Any]]) -> None:
     """Print what was lost between one run and the next."""
     pairs = [(before, after) for (_, before), (after, _) in zip(runs, runs[1:])]
     lost = [before.totals.running_time - after.totals.running_time for before, after in pairs]
@@ -124,10 +113,10 @@ def report(runs: list[tuple[Any, Any]], lines: list[dict[str, Any]]) -> None:
     print(f'largest loss            {max(lost):.2f} s, mean {sum(lost) / len(lost):.2f} s')
     print(f'numbers fallen back     {sum(number > 0 for number in numbers)}')
     begun, ended = (
-        Counter(line['event'] for line in lines if line['kind'] == kind)
+        Counter(one['event'] for one in entries if one['kind'] == kind)
         for kind in ('event_begin', 'event_end')
     )
-    restarted = sum('restart' in line.get('ending', '') for line in lines)
+    restarted = sum('restart' in one.get('ending', '') for one in entries)
     twice = [sum(count > 1 for count in counts.values()) for counts in (begun, ended)]
     print(f'events in the log       {len(begun)}, the last is {max(begun)}')
     print(f'begun, ended twice      {twice[0]}, {twice[1]}')
@@ -149,7 +138,7 @@ def main() -> None:
         rclpy.init()
         folder, machine = Path(place, 'state'), Machine(asked.turning)
         runs = [kill_one(machine, folder, domain, asked.seconds) for _ in range(asked.kills)]
-        report(runs, log_of(folder))
+        report(runs, [entry.record() for entry in read_entries(folder)])
         rclpy.shutdown()
 
 

@@ -17,7 +17,7 @@ from typing import Any, Protocol
 
 from ballscrew_monitor.core.conversions import opposing_load
 from ballscrew_monitor.core.estimate import MachinePoint
-from surrogate.surface import HasOperatingPoint, Surface, SurfacePoint
+from surrogate.surface import Found, HasOperatingPoint, Surface
 
 NAN = math.nan
 JUDGED = ('efficiency', 'rcs')
@@ -69,7 +69,7 @@ def solved_at(point: MachinePoint) -> SolvedAt:
     )
 
 
-def compare(full: SurfacePoint, surface: SurfacePoint | None) -> Comparison:
+def compare(full: Found, surface: Found | None) -> Comparison:
     """Hold a full solve against the surface; None: the surface has no answer."""
     if surface is None:
         return Comparison()
@@ -81,13 +81,13 @@ def compare(full: SurfacePoint, surface: SurfacePoint | None) -> Comparison:
     return Comparison(**differences, within_stated_error=within)
 
 
-def stated_error(surface: SurfacePoint, name: str) -> float:
+def stated_error(surface: Found, name: str) -> float:
     """Return the error that a surface states [-]: interpolation, and law where it is known."""
     error: float = getattr(surface, f'{name}_error')
     return error + known(getattr(surface, f'{name}_stderr'))
 
 
-def objection(full: SurfacePoint, answer: SurfacePoint | None, surface: Surface) -> str:
+def objection(full: Found, answer: Found | None, surface: Surface) -> str:
     """Return why a full solve may not correct a surface with this answer; empty if it may."""
     if surface.tier != MODEL:
         return f'a surface of the {surface.tier.replace("_", "-")} tier is not corrected'

@@ -14,6 +14,7 @@ from ballscrew_monitor.core.tally import Totals
 
 RESTARTED = 'ended by a restart of the node'
 MOST_EVENTS = 2**32 - 1  # what a message holds
+LARGEST = 2**63 - 1  # what a database holds
 NAN = math.nan
 
 
@@ -104,7 +105,7 @@ def _read(name: str, kind: Any, value: Any) -> Any:
     elif kind is bool:
         value = bool(value)
     limited = kind is int or name in SUMS
-    if type(value) is not kind or (limited and not 0 <= value < math.inf):
+    if type(value) is not kind or (limited and not 0 <= value <= LARGEST):
         raise ValueError(f'{name} is {value!r}')
     return value
 

@@ -14,8 +14,9 @@ crossing are refined. No clock. In the subset of Python that also compiles.
 
 import dataclasses
 import math
-from typing import Any, Protocol
+from typing import Any
 
+from ballscrew_monitor.judge.records import Settings
 from surrogate.surface import Found, look_up, look_up_rest, scan, SurfaceTables
 from surrogate.units import TURN
 
@@ -33,33 +34,6 @@ OUTSIDE = 5
 NO_NUMBER = 6
 STANDSTILL = 7
 NOT_FRESH = 8
-
-
-class LoadSettings(Protocol):
-    """
-    How a load is derived from the torque.
-
-    `inertia` [kg m2] of what turns, at the screw; `torque_uncertainty` [N m] at the screw, a half
-    width; `parts_uncertainty` [-] that of inertia torque and drag over themselves; `largest_share`
-    [-] of both in the measured torque up to which a load is derived.
-
-    """
-
-    @property
-    def inertia(self) -> float:
-        """Inertia [kg m2]."""
-
-    @property
-    def torque_uncertainty(self) -> float:
-        """Half width of the torque [N m]."""
-
-    @property
-    def parts_uncertainty(self) -> float:
-        """Half width of inertia torque and drag over themselves [-]."""
-
-    @property
-    def largest_share(self) -> float:
-        """Largest share of inertia torque and drag [-]."""
 
 
 @dataclasses.dataclass(slots=True)
@@ -95,7 +69,7 @@ def no_load(
 
 def derive_load(
     tables: SurfaceTables,
-    settings: LoadSettings,
+    settings: Settings,
     speed: float,
     acceleration: float,
     acceleration_change: float,
@@ -243,13 +217,13 @@ def root(
     below = tables.scan_torques[place] - driving
     above = tables.scan_torques[place + 1] - driving
     if above == 0.0:
-        return high  # type: ignore[no-any-return]
+        return high
     for _ in range(MOST_STEPS):
         middle = (low * above - high * below) / (above - below)
         look_up(tables, speed, middle, temperature, scratch)
         here = scratch.driving_torque - driving
         if here == 0.0 or math.isnan(here):
-            return middle if here == 0.0 else NAN  # type: ignore[no-any-return]
+            return middle if here == 0.0 else NAN
         if (here > 0.0) == (above > 0.0):
             smaller = 1.0 - here / above
             below *= smaller if smaller > 0.0 else 0.5
@@ -258,5 +232,5 @@ def root(
         moved = abs(middle - high)
         high, above = middle, here
         if moved <= TOLERANCE:
-            return middle  # type: ignore[no-any-return]
+            return middle
     return NAN

@@ -152,7 +152,7 @@ def _is_complete(row: Any) -> bool:
 
 def _set_words(settings: Any, row: Any) -> None:
     """Set torque and nut in the machine frame, regime and contact state of a row."""
-    row.machine_torque, row.worst_nut = math.nan, 0
+    row.machine_torque, row.machine_nut = math.nan, 0
     row.regime, row.contact_state = NO_REGIME, 0
     if row.validity != VALID:
         return
@@ -162,7 +162,7 @@ def _set_words(settings: Any, row: Any) -> None:
     # Nut 1 of the surface is the one that the load presses, whichever way the screw turns.
     if row.worst_contact >= 0 and abs(row.axial_load) > 0.0:
         pressed = row.worst_contact // 2 == 0
-        row.worst_nut = POSITIVE_NUT if pressed == (row.axial_load > 0.0) else NEGATIVE_NUT
+        row.machine_nut = POSITIVE_NUT if pressed == (row.axial_load > 0.0) else NEGATIVE_NUT
     if row.film_ratio >= HYDRODYNAMIC_FROM:
         row.regime = HYDRODYNAMIC
     elif row.film_ratio >= MIXED_FROM:

@@ -213,7 +213,7 @@ class Row(Found):
     derived_third: float = NAN
     axial_load_uncertainty: float = NAN
     machine_torque: float = NAN
-    worst_nut: int = 0
+    machine_nut: int = 0
     regime: int = 0
     contact_state: int = 0
     gates: int = 0  # bits STANDSTILL and LIGHT_LOAD

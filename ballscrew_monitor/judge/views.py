@@ -90,7 +90,7 @@ def estimate_of(row: Any, point: MachinePoint, surface: Surface) -> PointEstimat
         rcs=float(row.rcs),
         efficiency=float(row.efficiency),
         machine_torque=float(row.machine_torque),
-        worst_nut=Nut(int(row.worst_nut)),
+        worst_nut=Nut(int(row.machine_nut)),
         regime=Regime(int(row.regime)),
         contact_state=ContactState(int(row.contact_state)),
     )

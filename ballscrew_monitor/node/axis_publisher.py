@@ -200,9 +200,9 @@ class AxisPublisher:
         kept = corrections_of(self.name, surface.base_sha256, surface.corrections)
         return self._kept.state.keep_corrections(kept)
 
-    def restore(self) -> str:
-        """Take up the corrections that were kept; return what became of them, if there are any."""
-        found = self._kept.state.recall(Corrections(self.name))
+    def restore(self, *, late: bool) -> str:
+        """Take up corrections of before; return what became of them, if there are any."""
+        found = self._kept.state.recall(Corrections(self.name), late=late)
         kept = solves_of(found)
         if not kept:
             return ''
@@ -212,7 +212,6 @@ class AxisPublisher:
             surface = corrected(self.surface, kept)
         except SurfaceError as error:
             return f'{len(kept)} kept corrections are not used: {error}'
-        late = bool(self.surface.corrections)
         self.axis.use_surface(surface, self._values)
         if late:
             self._save()

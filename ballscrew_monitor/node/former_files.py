@@ -3,12 +3,13 @@
 """Files of the former format, one or two for each axis and the event log: taken over once."""
 
 from collections.abc import Iterator, Mapping
+import contextlib
 import json
 from pathlib import Path
 import re
 from typing import Any
 
-from ballscrew_monitor.core.memory import AxisRecord, read_record
+from ballscrew_monitor.core.memory import AxisRecord, LARGEST, read_record
 from ballscrew_monitor.node.state_records import (
     by_key,
     Entry,
@@ -54,7 +55,7 @@ def set_aside(folder: Path) -> list[str]:
         place.parent.mkdir(exist_ok=True)
         path.replace(place)
         moved += 1
-    said = f'{moved} files of the former format were taken over, they are now in {folder / PLACE}'
+    said = f'the database replaces {moved} files, which are now in {folder / PLACE}'
     return [said] if moved else []
 
 
@@ -90,14 +91,15 @@ def _entries(folder: Path, records: Records) -> Iterator[Entry]:
     """Yield the entries of the log but for torn lines, and bring the `records` up to date."""
     for path, _, kind in _files(folder):
         for line in path.read_bytes().splitlines() if kind == 'events' else ():
-            try:
+            with contextlib.suppress(*BAD):
                 facts = json.loads(line)
                 time, stamp, axis, what = (facts.pop(name) for name in Entry._fields[:-1])
-                entry = Entry(time, stamp, axis, Kind(what), json.dumps(facts))
-                _follow(records, entry, facts)
-            except BAD:
-                continue
-            yield entry
+                if type(stamp) is int and 0 <= stamp <= LARGEST:
+                    entry = Entry(
+                        str(time), stamp, axis and str(axis), Kind(what), json.dumps(facts)
+                    )
+                    yield entry
+                    _follow(records, entry, facts)
 
 
 def _follow(records: Records, entry: Entry, facts: Mapping[str, Any]) -> None:

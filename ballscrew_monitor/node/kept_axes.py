@@ -17,7 +17,7 @@ if TYPE_CHECKING:  # which imports this module
     from ballscrew_monitor.node.axis_publisher import AxisPublisher
 
 LOOK = 1.0  # [s] between two looks
-PERIOD = 4.0  # [s] between two records of the sums: with the pause of the thread below 5 s
+PERIOD = 4.0  # [s] between two records of the sums: with the write below 5 s
 
 
 class KeptAxes:
@@ -71,26 +71,26 @@ class KeptAxes:
         if self.state.folder is not None:
             self.state.keep(record_of(axis, memory))
 
-    def recall(self, axis: str) -> Memory:
+    def restore(self, axes: Iterable[str] | None = None) -> None:
+        """Take up what was kept of all axes, or late of some, and say what came of that."""
+        publishers, late = self._find(), axes is not None
+        for name in publishers if axes is None else axes:
+            monitor = publishers[name].axis.monitor
+            monitor.take_up(self._recall(name, late=late))
+            self.remember(name, monitor.kept)
+            if said := publishers[name].restore(late=late):
+                self._node.get_logger().info(f'axis {name}: {said}')
+        self._log()
+
+    def _recall(self, axis: str, *, late: bool) -> Memory:
         """Return what is known of an axis from before; an event that was interrupted is over."""
-        before = memory_of(self.state.recall(AxisRecord(axis=axis)))
+        before = memory_of(self.state.recall(AxisRecord(axis=axis), late=late))
         memory = after_restart(before)
         if memory is not before:
             event = memory.event
             facts = event_facts(event)
             self.note(Kind.EVENT_END, axis, stamp=event.stamp, memory=memory, **facts)
         return memory
-
-    def restore(self, axes: Iterable[str] | None = None) -> None:
-        """Take up what was kept of some axes, or of all, and say what came of that."""
-        publishers = self._find()
-        for name in [*publishers] if axes is None else axes:
-            monitor = publishers[name].axis.monitor
-            monitor.take_up(self.recall(name))
-            self.remember(name, monitor.kept)
-            if said := publishers[name].restore():
-                self._node.get_logger().info(f'axis {name}: {said}')
-        self._log()
 
     def remember_all(self) -> None:
         """Keep the sums, events and shelvings of all axes."""

@@ -22,8 +22,9 @@ from ballscrew_monitor.node.state_records import by_key, Corrections, Entry, Rec
 from surrogate.files import InputError
 
 AUTO = 'auto'
-PAUSE = 0.5  # [s] shortest time between two commits
+PAUSE = 0.05  # [s] shortest time between two commits
 RETRY = 1.0  # [s] after a failure
+SILENT = 'does not answer'
 PATIENCE = 2.0  # [s] that somebody waits for the disk
 MOST_ENTRIES = 10_000  # waiting while nothing can be written; the oldest are dropped
 SHARE = 4  # corrections have this part of the limit
@@ -99,10 +100,8 @@ class RestartState:
         """Keep corrections; return why that failed, or nothing."""
         if self.folder is None:
             return 'state_dir is empty'
-        kept = {
-            key: len(one.solves) for key, one in self._latest.items() if type(one) is Corrections
-        }
-        size = sum((kept | {(Corrections, corrections.axis): len(corrections.solves)}).values())
+        kept = self._latest | by_key([corrections])
+        size = sum(len(one.solves) for (kind, _), one in kept.items() if kind is Corrections)
         if size * SHARE > self.limit:
             self._refused[corrections.axis] = at_limit(self.folder, self.limit)
             return self._refused[corrections.axis]
@@ -110,12 +109,17 @@ class RestartState:
         self.keep(corrections)
         return self.flush()
 
-    def recall(self, blank: Kept) -> Kept:
-        """Return what is known in place of a `blank` record; what an earlier node left once."""
+    def recall(self, blank: Kept, *, late: bool = False) -> Kept:
+        """
+        Return what is known in place of a `blank` record: what an earlier node left, once.
+
+        Else what was kept last, unless the earlier node is asked about `late`.
+
+        """
         key = (type(blank), blank.axis)
         with self._lock:
             found = self._found.pop(key, None) if self._found else None
-            return found or self._latest.get(key, blank)
+            return found or (blank if late else self._latest.get(key, blank))
 
     def is_late(self, axis: str) -> bool:
         """Tell whether an earlier node left something of an axis that is not recalled yet."""
@@ -130,7 +134,9 @@ class RestartState:
         with self._lock:
             self._asked.append(done)
         self._wake.set()
-        return self._problem if done.wait(PATIENCE) else f'{self.folder} does not answer'
+        if not done.wait(PATIENCE):
+            self._problem = f'{self.folder} {SILENT}'  # until something is written
+        return self._problem
 
     def start(self) -> None:
         """Let a thread write what comes; a process that ends does not wait for it."""
@@ -162,8 +168,7 @@ class RestartState:
 
     @property
     def _is_waiting(self) -> bool:
-        closed = self._database is not None and not self._database.is_open
-        return closed or bool(self._entries or self._changed)
+        return bool(self._entries or self._changed or self._problem)
 
     def _run(self) -> None:
         while not self._stopped:
@@ -172,7 +177,7 @@ class RestartState:
             self._wake.wait(None if again is None else max(again - time.monotonic(), 0.0))
 
     def _write(self) -> None:
-        if self._database is None or self._stopped:
+        if self._database is None:
             return
         try:
             self._write_into(self._database)
@@ -185,27 +190,34 @@ class RestartState:
             self._problem = f'{self.folder} {UNWRITABLE}, {what}'
 
     def _write_into(self, database: StateDatabase) -> None:
-        if not database.is_open:
-            found = database.open()
-            with self._lock:
-                self._found = found if self._found is None else self._found
-                self._changed.update(self._latest)  # the file may be a new one
-        with self._lock:
-            entries = list(self._entries)
-            # What an earlier node left is not replaced before it is recalled.
-            held = self._found or {}
-            records = {key: one for key, one in self._changed.items() if key not in held}
-        if not entries and not records:
-            return
+        if self._stopped:
+            raise InputError(f'{self.folder} is closed')
         try:
-            database.write(entries, records.values())
-        except sqlite3.Error:
+            if not database.is_open:
+                self._open(database)
+            entries, records = self._waiting()
+            if entries or records:
+                database.write(entries, records.values())
+        except (OSError, sqlite3.Error):
             database.disconnect()
             raise
+        written = set(map(id, entries))
         with self._lock:
-            written = set(map(id, entries))
             left = [one for one in self._entries if id(one) not in written]
             self._entries = deque(left, maxlen=MOST_ENTRIES)
             for key, one in records.items():
                 if self._changed[key] is one:
                     del self._changed[key]
+
+    def _open(self, database: StateDatabase) -> None:
+        found = database.open()
+        with self._lock:
+            self._found = found if self._found is None else self._found
+            self._changed.update(self._latest)  # the file may be a new one
+
+    def _waiting(self) -> tuple[list[Entry], Records]:
+        """Return what is to be written; what an earlier node left is not replaced unseen."""
+        with self._lock:
+            held = self._found or {}
+            records = {key: one for key, one in self._changed.items() if key not in held}
+            return list(self._entries), records

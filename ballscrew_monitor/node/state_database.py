@@ -38,7 +38,7 @@ IN_USE = 'is in use by another node of this name'
 DAMAGED = 'is damaged'
 OTHER_VERSION = 'is of another version'
 BUSY = 1.0  # [s] to wait for somebody who reads
-CHUNK = 500  # entries that are appended, or removed, at a time
+CHUNK = 500  # entries that are appended at a time
 SHARE = 0.75  # of the limit for the database, the rest is for its journal
 NETWORK = {'9p', 'afs', 'ceph', 'cifs', 'fuse.sshfs', 'lustre', 'nfs', 'nfs4', 'smb3', 'vboxsf'}
 SQL = {int: 'INTEGER', bool: 'INTEGER', float: 'REAL', str: 'TEXT'}
@@ -50,6 +50,11 @@ CREATE TABLE events (number INTEGER PRIMARY KEY, time TEXT, stamp_ns INTEGER, ax
     kind TEXT, facts TEXT);
 PRAGMA user_version = {VERSION}
 """
+USED = """
+SELECT (page_count - freelist_count) * page_size
+    FROM pragma_page_count, pragma_freelist_count, pragma_page_size
+"""
+"""Bytes of the pages in use."""
 READ: dict[str, Any] = {'axes': read_record, 'corrections': read_corrections}
 TABLE_OF = {AxisRecord: 'axes', Corrections: 'corrections'}
 
@@ -98,9 +103,11 @@ class StateDatabase:
         Raises InputError at the limit, sqlite3.Error and OSError.
 
         """
-        if self._size() > self.limit:  # somebody reads, and the journal could not begin again
+        journal = self._file.with_name(f'{FILE}-wal')
+        if _size(journal) > (1.0 - SHARE) * self.limit:
+            # Somebody reads, and it could not begin again.
             self._database.execute('PRAGMA wal_checkpoint(TRUNCATE)').fetchall()
-            if self._size() > self.limit:
+            if _size(journal):
                 raise InputError(at_limit(self.folder, self.limit))
         with self._database as database:
             database.execute('BEGIN IMMEDIATE')
@@ -150,9 +157,9 @@ class StateDatabase:
         if fault != 'ok':
             raise ValueError(fault.splitlines()[-1])
         self._notices += set_aside(self.folder)
-        if self._size() > self.limit:  # that of before was larger
+        if _size(self._file) > SHARE * self.limit:  # a limit of before was larger
             _make_room(database, SHARE * self.limit)
-            database.execute('VACUUM')
+            database.executescript('VACUUM; PRAGMA wal_checkpoint(TRUNCATE)')
         return by_key(
             read(row)
             for table, read in READ.items()
@@ -195,10 +202,6 @@ class StateDatabase:
                 database.execute(statement)
             _write(database, entries, records.values(), SHARE * self.limit)
         self._damage += damage
-
-    def _size(self) -> int:
-        files = [self._file.with_name(FILE + part) for part in PARTS]
-        return sum(one.stat().st_size for one in files if one.exists())
 
     def _last_numbers(self) -> list[Record]:
         """Return records with the numbers of the last events, as far as they can be read."""
@@ -267,13 +270,10 @@ def _is_passing(error: Exception) -> bool:
     return isinstance(error, sqlite3.OperationalError) and code != sqlite3.SQLITE_ERROR
 
 
-def _used(database: sqlite3.Connection) -> int:
-    """Return the size [B] of the pages in use."""
-    pages, free, size = (
-        database.execute(f'PRAGMA {name}').fetchone()[0]
-        for name in ('page_count', 'freelist_count', 'page_size')
-    )
-    return int((pages - free) * size)
+def _size(file: Path) -> int:
+    with contextlib.suppress(FileNotFoundError):
+        return file.stat().st_size
+    return 0
 
 
 def _write(
@@ -281,7 +281,6 @@ def _write(
 ) -> None:
     """Write what no transaction has to be begun for; old entries go, up to the `limit` [B]."""
     waiting = iter(entries)
-    _make_room(database, limit)
     while chunk := list(itertools.islice(waiting, CHUNK)):
         _make_room(database, limit - sum(len(str(one)) for one in chunk))
         database.executemany('INSERT INTO events VALUES (NULL, ?, ?, ?, ?, ?)', chunk)
@@ -293,8 +292,8 @@ def _write(
 
 def _make_room(database: sqlite3.Connection, limit: float) -> None:
     """Remove the oldest entries until the database is within a `limit` [B]."""
-    while _used(database) > limit:
-        ((first,),) = database.execute('SELECT min(number) FROM events')
+    while database.execute(USED).fetchone()[0] > limit:
+        ((first, last),) = database.execute('SELECT min(number), max(number) FROM events')
         if first is None:
             return
-        database.execute('DELETE FROM events WHERE number < ?', (first + CHUNK,))
+        database.execute('DELETE FROM events WHERE number <= ?', (first + (last - first) // 16,))

@@ -74,7 +74,7 @@ def events_of(entries: Entries) -> NDArray[Any]:
 
 def columns_of(axis: str, rows: NDArray[Any]) -> JudgedColumns:
     """Return rows of a judgement as columns."""
-    named = {'log_time': 'now'}
+    named = {'log_time': 'now', 'worst_nut': 'machine_nut'}
     return JudgedColumns(
         axis=axis,
         **{name: rows[named.get(name, name)].astype(kind) for name, kind in COLUMNS.items()},

@@ -100,7 +100,7 @@ NODE_ROWS = (
         low=1.0,
         high=1e6,
         change=Change.NEVER,
-        text='Limit of what is kept in state_dir; the oldest part of the event log goes first.',
+        text='Limit of what is kept in state_dir; the oldest entries of the event log go first.',
     ),
     ParameterRow(
         name='diagnostics_period',

@@ -13,9 +13,11 @@ which it is written (no fastmath).
 from collections.abc import Callable
 import hashlib
 import inspect
+from pathlib import Path
 import types
 from typing import Any
 
+DIGITS = 16
 _REGISTERED: set[types.FunctionType] = set()
 
 
@@ -46,24 +48,26 @@ def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
         if part not in _REGISTERED:
             register_jitable(part)
             _REGISTERED.add(part)
+    digest = _digest(parts)
 
     def entry(*arguments):  # type: ignore[no-untyped-def]
         return function(*arguments)
 
-    # A file of the cache for each state of the sources: one of another state may name classes
-    # that are gone, and numba fails to read it.
-    entry.__qualname__ = f'{function.__name__}_{_digest(parts)[:16]}'
+    # A file of its own in the cache: other sources are compiled again, and what was compiled from
+    # these does not name what is gone.
+    entry.__qualname__ = f'{function.__name__}_{digest}'
     made: Callable[..., Any] = numba.njit(cache=True)(entry)
     return made
 
 
 def _digest(parts: list[types.FunctionType]) -> str:
-    """Return a hash of modules and sources of functions and of the constants that they name."""
+    """Return a hash of the modules of functions and of the constants that they name."""
     content = hashlib.sha256()
     for part in parts:
-        content.update(f'{part.__module__} {inspect.getsource(part)}'.encode())
+        content.update(f'{part.__module__}.{part.__qualname__}'.encode())
+        content.update(Path(inspect.getfile(part)).read_bytes())
         for name in part.__code__.co_names:
             value = part.__globals__.get(name)
             if isinstance(value, (bool, int, float, str, tuple)):
                 content.update(f'{name}={value!r}'.encode())
-    return content.hexdigest()
+    return content.hexdigest()[:DIGITS]

@@ -68,6 +68,16 @@ class Found:
     efficiency_stderr: float = NAN
     back_driving: bool = False
 
+    @property
+    def worst_nut(self) -> int:
+        """Nut of the worst contact: 1 pressed by the load, 2 relieved, 0 unknown."""
+        return self.worst_contact // 2 + 1
+
+    @property
+    def worst_side(self) -> int:
+        """Side of the worst contact: 1 screw, 2 nut, 0 unknown."""
+        return self.worst_contact % 2 + 1 if self.worst_contact >= 0 else 0
+
 
 def look_up(
     tables: SurfaceTables, speed: float, load: float, temperature: float, found: Found

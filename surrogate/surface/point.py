@@ -32,16 +32,6 @@ class SurfacePoint(Found):
 
     validity: Validity = Validity.UNKNOWN
 
-    @property
-    def worst_nut(self) -> int:
-        """Nut of the worst contact: 1 pressed by the load, 2 relieved, 0 unknown."""
-        return self.worst_contact // 2 + 1
-
-    @property
-    def worst_side(self) -> int:
-        """Side of the worst contact: 1 screw, 2 nut, 0 unknown."""
-        return self.worst_contact % 2 + 1 if self.worst_contact >= 0 else 0
-
 
 def solved_point(
     means: Mapping[str, float],

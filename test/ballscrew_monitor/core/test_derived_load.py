@@ -10,14 +10,9 @@ from ballscrew_monitor.core.conversions import (
     machine_torque,
     opposing_load,
 )
-from ballscrew_monitor.core.derived_load import (
-    derive_load,
-    LoadDerivation,
-    NO_ACCELERATION,
-    Running,
-)
 from hypothesis import assume, given
 from hypothesis import strategies as st
+from plain_load import derive_load, LoadDerivation, NO_ACCELERATION, Running
 import pytest
 from surrogate.surface import shipped_surface, Surface, Validity
 

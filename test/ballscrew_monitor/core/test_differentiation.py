@@ -6,15 +6,10 @@ import cmath
 import math
 
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.core.differentiation import (
-    MOST,
-    PositionSettings,
-    SlopeFilter,
-    SpeedFromPosition,
-)
 from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, StampSource, Why
 from hypothesis import given
 from hypothesis import strategies as st
+from plain_slope import MOST, PositionSettings, SlopeFilter, SpeedFromPosition
 import pytest
 
 START = 1_700_000_000 * SECOND

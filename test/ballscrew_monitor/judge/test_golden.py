@@ -33,7 +33,7 @@ TOLERANCE = 1e-12  # of numbers, relative, and absolute in SI: sums run in anoth
 SAME = (
     'stamp now tick published level speed axial_load temperature motor_torque speed_source '
     'axial_load_source temperature_source motor_torque_source direction direction_held '
-    'axial_load_uncertainty validity rcs efficiency machine_torque worst_nut regime '
+    'axial_load_uncertainty validity rcs efficiency machine_torque regime '
     'contact_state friction_torque film_ratio worst_contact driving_torque corrected zone'
 ).split()
 """Columns that a row has under the same name."""
@@ -71,6 +71,7 @@ def check_row(row, memory, wanted, texts, monitor, place):
         check(row, wanted, REST, place)
     assert bool(row.clears) == bool(wanted.clear), place
     assert row.gates * 2 == wanted.gates, place
+    assert row.machine_nut == wanted.worst_nut, place
     assert (row.derived == 0) == (wanted.derived < 0), place
     assert bool(row.edge) == bool(wanted.edge), place
     point = views.point_of(row)

@@ -8,16 +8,15 @@ from pathlib import Path
 import re
 
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.core.derived_load import LoadDerivation
 from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, Why
 from ballscrew_monitor.core.judgement import Level
 from ballscrew_monitor.core.links import Link
 from ballscrew_monitor.core.shelving import shelve
-from ballscrew_monitor.core.state import Event
+from ballscrew_monitor.core.state import Event, LoadDerivation
 from ballscrew_monitor.messages import diagnostics, reasons
 from ballscrew_monitor.messages.diagnostics import ERROR, OK, STALE, WARN
 from ballscrew_monitor.messages.state_messages import plain_values
-from ballscrew_monitor.node import state_folder
+from ballscrew_monitor.node import restart_state, state_database
 import pytest
 
 START = 1000 * SECOND
@@ -287,7 +286,8 @@ SENTENCES = [
     diagnostics.INACTIVE,
     diagnostics.NOT_DERIVED,
     diagnostics.KEPT,
-    *(state_folder.UNWRITABLE, state_folder.IN_USE, state_folder.DAMAGED),
+    *(state_database.UNWRITABLE, state_database.IN_USE),
+    *(state_database.DAMAGED, state_database.OTHER_VERSION, restart_state.SILENT),
 ]
 BEGINNINGS = [
     diagnostics.CLOCK_STANDS,

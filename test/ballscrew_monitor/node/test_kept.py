@@ -2,15 +2,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the node keeps, over the real middleware: killed, restarted, on a full disk, shelved."""
 
-import json
+import contextlib
 import resource
 import signal
+import sqlite3
 
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.core.memory import Memory, RESTARTED
+from ballscrew_monitor.core.memory import Memory, record_of, RESTARTED
 from ballscrew_monitor.core.state import Event
 from ballscrew_monitor.core.tally import Totals
-from ballscrew_monitor.node.memory_store import memory_record
+from ballscrew_monitor.node.restart_state import RestartState
+from ballscrew_monitor.node.state_database import FILE, read_entries
 from ballscrew_msgs.msg import BallScrewState, OutOfZone
 from ballscrew_msgs.srv import ShelveAlarm
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
@@ -18,7 +20,6 @@ import pytest
 from rclpy.qos import QoSDurabilityPolicy, QoSProfile
 from std_msgs.msg import Bool
 from std_srvs.srv import Trigger
-from surrogate.files import json_text
 
 LATCHED = QoSProfile(depth=10, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL)
 FAST, SLOW = 100.0, 0.8  # [rad/s] optimal and outside at 1 kN and 40 degC
@@ -75,9 +76,14 @@ class Axis:
         return [now for now, before in zip(found, [None, *found], strict=False) if now != before]
 
     def kept(self):
-        """Return what is on the disk of the axis."""
-        path = self.folder / 'x.memory.json'
-        return json.loads(path.read_text()) if path.exists() else None
+        """Return the row of the axis on the disk."""
+        if not (self.folder / FILE).exists():
+            return None
+        place = f'file:{self.folder / FILE}?mode=ro'
+        with contextlib.closing(sqlite3.connect(place, uri=True)) as database:
+            database.row_factory = sqlite3.Row
+            with contextlib.suppress(sqlite3.OperationalError):  # there is no table yet
+                return database.execute('SELECT * FROM axes').fetchone()
 
     def begin(self, number):
         """Leave the zone until the event of a number is on the disk as active."""
@@ -86,14 +92,13 @@ class Axis:
 
         def active():
             kept = self.kept()
-            return kept and (kept['event']['event'], kept['event']['active']) == (number, True)
+            return kept and (kept['event'], kept['active']) == (number, True)
 
         self.node.until(active, 'the event on the disk')
 
     def log(self):
-        """Return the lines of the event log."""
-        lines = (self.folder / 'events.jsonl').read_text().splitlines()
-        return [json.loads(line) for line in lines]
+        """Return the event log."""
+        return [entry.record() for entry in read_entries(self.folder)]
 
 
 def test_a_node_that_is_killed_in_an_event_goes_on(axis):
@@ -106,7 +111,7 @@ def test_a_node_that_is_killed_in_an_event_goes_on(axis):
         first = axis.move(SLOW, lambda state: state.judged, 'a state')
         assert first.totals.running_time >= known
         axis.begin(number)
-        known = axis.kept()['totals']['running_time_ns'] / SECOND
+        known = axis.kept()['running_time_ns'] / SECOND
         axis.kill()
     lines = [(line['kind'], line.get('event'), line.get('ending')) for line in axis.log()]
     assert [line for line in lines if line[0] == 'event_begin'] == [
@@ -122,7 +127,7 @@ def test_a_full_disk_is_one_sentence_and_nothing_is_lost(axis):
     """The limit on the size of a file stands for the disk: nothing can be written below it."""
     axis.start()
     axis.move(FAST, lambda state: state.judged > 2, 'a state')
-    axis.node.until(lambda: axis.kept(), 'the first file')
+    axis.node.until(lambda: axis.kept(), 'the first record')
     process = axis.node.process.pid
     soft, hard = resource.prlimit(process, resource.RLIMIT_FSIZE)
     axis.node.until(lambda: axis.statuses('State directory'), 'the status')
@@ -132,11 +137,11 @@ def test_a_full_disk_is_one_sentence_and_nothing_is_lost(axis):
     axis.move(FAST, lambda state: state.level == BallScrewState.LEVEL_OK, 'the end of it')
     reset = axis.node.call(Trigger, 'x/reset_totals')
     assert reset.success
-    assert reset.message.endswith('cannot be written, File too large')
+    assert reset.message.endswith('cannot be written, disk I/O error')
     resource.prlimit(process, resource.RLIMIT_FSIZE, (soft, hard))
     axis.node.until(lambda: axis.statuses('State directory')[2:], 'the disk to work again')
     good = (DiagnosticStatus.OK, 'sums, events and corrections are kept')
-    bad = f'{axis.folder} cannot be written, File too large'
+    bad = f'{axis.folder} cannot be written, disk I/O error'
     assert axis.statuses('State directory') == [good, (DiagnosticStatus.WARN, bad), good]
     kinds = [line['kind'] for line in axis.log()]
     assert [kind for kind in kinds if kind != 'reset_totals'] == [
@@ -145,7 +150,7 @@ def test_a_full_disk_is_one_sentence_and_nothing_is_lost(axis):
         'event_end',
     ]
     assert 'reset_totals' in kinds
-    assert axis.kept()['event']['event'] == 1
+    assert axis.kept()['event'] == 1
     assert axis.node.stop() == 0
     assert axis.log()[-1]['kind'] == 'node_stop'
 
@@ -160,11 +165,12 @@ def test_a_directory_that_is_mounted_later_is_taken_up(axis, tmp_path):
     axis.node.until(
         lambda: axis.statuses('State directory')[-1:] == [(DiagnosticStatus.WARN, bad)]
     )
-    disk.unlink()
-    axis.folder.mkdir(parents=True)
     before = Memory(totals=Totals(running_time=7 * SECOND, since=1), event=Event(number=41))
-    record = json_text({'version': 1, **memory_record(before)})
-    (axis.folder / 'x.memory.json').write_text(record)
+    mounted = RestartState(tmp_path / 'mounted' / 'state')
+    mounted.keep(record_of('x', before))
+    mounted.close()
+    disk.unlink()
+    (tmp_path / 'mounted').rename(disk)
     state = axis.move(SLOW, lambda state: state.event_id == 42, 'the number that goes on')
     assert state.totals.running_time > 7.0
     assert state.totals.since.nanosec == 1
@@ -172,30 +178,18 @@ def test_a_directory_that_is_mounted_later_is_taken_up(axis, tmp_path):
     assert [line['kind'] for line in axis.log()] == ['node_start', 'event_begin']
 
 
-def test_damaged_corrections_are_one_sentence(axis):
-    axis.folder.mkdir()
-    path = axis.folder / 'x.corrections.json'
-    path.write_text('[1')
-    axis.start()
-    axis.node.until(lambda: axis.statuses('State directory'), 'the status')
-    ((level, message),) = axis.statuses('State directory')
-    assert level == DiagnosticStatus.WARN
-    assert message.startswith(f'{path} is damaged (')
-    assert message.endswith('), moved to x.corrections.damaged')
-
-
 def test_a_damaged_file_is_one_sentence_and_begins_anew(axis):
     axis.folder.mkdir()
-    path = axis.folder / 'x.memory.json'
-    path.write_text('{"version": 1, "totals": {}}')
+    path = axis.folder / FILE
+    path.write_text('no database' * 1000)
     axis.start()
     state = axis.move(SLOW, lambda state: state.event_id == 1, 'the event')
     assert state.totals.running_time < 7.0
     (level, message), *rest = axis.statuses('State directory')
     assert (level, rest) == (DiagnosticStatus.WARN, [])
-    assert message.startswith(f'{path} is damaged (')
-    assert message.endswith('), moved to x.memory.damaged')
-    assert path.with_suffix('.damaged').exists()
+    damaged = f'{path} is damaged (file is not a database), moved to state.sqlite3.aside'
+    assert message == damaged
+    assert path.with_suffix('.sqlite3.aside').exists()
 
 
 def test_a_shelved_warning_calls_nobody_and_outlives_the_node(axis):

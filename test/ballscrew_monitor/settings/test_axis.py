@@ -5,8 +5,8 @@
 import math
 
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.core.derived_load import LoadDerivation
 from ballscrew_monitor.core.inputs import Source
+from ballscrew_monitor.core.state import LoadDerivation
 from ballscrew_monitor.settings import parameters
 from ballscrew_monitor.settings.axis import build_axes, build_axis, named_topics, settings_of
 import pytest

@@ -4,7 +4,7 @@
 
 import heapq
 
-from ballscrew_monitor.core.monitor import BACKWARD_JUMP
+from ballscrew_monitor.judge.step import BACKWARD_JUMP
 from ballscrew_monitor.recordings.bulk.entries import joined, Kind, made
 from ballscrew_monitor.recordings.bulk.order import Arrivals, REORDER, StampOrder
 from hypothesis import given

@@ -7,7 +7,7 @@ import itertools
 import shutil
 
 from ballscrew_monitor.core.inputs import InputSample
-from ballscrew_monitor.core.monitor import BACKWARD_JUMP
+from ballscrew_monitor.judge.step import BACKWARD_JUMP
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bulk import batches as batches_module
 from ballscrew_monitor.recordings.bulk.decode import not_decoded

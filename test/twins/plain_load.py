@@ -1,14 +1,9 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-The axial load that a motor torque stands for: inertia is taken off, the surface is turned round.
+Plain twin of `judge/derived_load.py`: the load of a motor torque over arrays of all loads.
 
-    torque - inertia dw/dt = driving torque(|w|, load, temperature)
-
-The driving torque of a surface holds the friction of the nuts and the parasitic torque of its
-datasheet, so drag is not taken off a second time. It rises with the load but for a few newtons
-about the idle load of a nut, so all loads of the surface are scanned and each crossing is refined.
-No clock, no state.
+Every crossing is refined, not only the first and the last one.
 
 """
 
@@ -17,6 +12,7 @@ import dataclasses
 import math
 
 from ballscrew_monitor.core.conversions import axial_load, Direction, machine_torque
+from ballscrew_monitor.core.state import LoadDerivation
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.surface import Surface, Validity
@@ -28,25 +24,6 @@ MOST_STEPS = 60
 STANDSTILL = 'the screw stands still, friction may hold any part of the load'
 NO_ACCELERATION = 'the acceleration is not known yet, and with it the torque that inertia takes'
 Array = NDArray[np.float64]
-
-
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class LoadDerivation:
-    """
-    How a load is derived from the torque.
-
-    `inertia` [kg m2] of what turns, at the screw; `window` [ns] of the
-    acceleration; `torque_uncertainty` [N m] at the screw, a half width; `parts_uncertainty` [-]
-    that of inertia torque and drag over themselves; `largest_share` [-] of inertia torque and drag
-    in the measured torque up to which a load is derived.
-
-    """
-
-    inertia: float
-    window: int
-    torque_uncertainty: float
-    parts_uncertainty: float
-    largest_share: float
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)

@@ -1,0 +1,236 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What is written when: at once, but never in a flood, and again until it works."""
+
+import threading
+
+from ballscrew_monitor.core.memory import AxisRecord
+from ballscrew_monitor.node import restart_state
+from ballscrew_monitor.node.restart_state import PAUSE, RestartState, RETRY, state_directory
+from ballscrew_monitor.node.state_database import FILE, read_entries, StateDatabase
+from ballscrew_monitor.node.state_records import Corrections, entry_of, Kind
+import pytest
+
+SOLVES = '[' + ' ' * 998 + ']'
+
+
+@pytest.fixture(name='state')
+def make_state(tmp_path):
+    state = RestartState(tmp_path, limit=400_000)
+    yield state
+    state.close()
+
+
+def entry(number):
+    return entry_of(Kind.NODE_START, None, number, {})
+
+
+def record(number, axis='x'):
+    return AxisRecord(axis=axis, event=number)
+
+
+def kept(state):
+    """Return what is on the disk: the entries, and the last event of axis x."""
+    rows = state._database._database.execute('SELECT event FROM axes WHERE axis = "x"').fetchall()
+    return [one.stamp_ns for one in read_entries(state.folder)], [row[0] for row in rows]
+
+
+def test_a_flood_is_written_in_turns(state):
+    assert state.work(0.0) is None
+    state.keep(record(1), entry(1))
+    assert state.work(10.0) is None
+    assert kept(state) == ([1], [1])
+    state.keep(record(2), entry(2))
+    state.keep(record(3))
+    assert state.work(10.0) == 10.0 + PAUSE
+    assert kept(state) == ([1], [1])
+    assert state.recall(record(0)).event == 3
+    assert state.work(10.0 + PAUSE) is None
+    assert kept(state) == ([1, 2], [3])
+
+
+def test_what_has_not_changed_is_not_written(state):
+    state.keep(record(1))
+    state.work(0.0)
+    state.keep(record(1))
+    assert not state._is_waiting
+
+
+def refuse(*args):
+    raise OSError(28, 'No space left on device')
+
+
+def test_what_cannot_be_written_waits(state, monkeypatch):
+    with monkeypatch.context() as full:
+        full.setattr(StateDatabase, 'write', refuse)
+        state.keep(record(1), entry(1))
+        assert state.work(0.0) == RETRY
+        assert state.problem == f'{state.folder} cannot be written, No space left on device'
+        state.keep(record(2), entry(2))
+        assert state.flush() == state.problem
+    assert state.work(RETRY) is None
+    assert state.problem == ''
+    assert kept(state) == ([1, 2], [2])
+
+
+def test_a_disk_that_is_full_is_tried_until_it_is_not(state):
+    database = state._database
+    database._database.execute('PRAGMA max_page_count = 1')
+    for number in range(100):
+        state.keep(record(number), entry(number))
+    assert state.flush() == f'{state.folder} cannot be written, database or disk is full'
+    assert not database.is_open
+    assert state.flush() == ''
+    assert kept(state) == (list(range(100)), [99])
+
+
+def test_what_waits_is_bounded_and_the_oldest_go(state, monkeypatch):
+    state._entries = type(state._entries)(maxlen=3)
+    with monkeypatch.context() as full:
+        full.setattr(StateDatabase, 'write', refuse)
+        for number in range(5):
+            state.keep(None, entry(number))
+            state.flush()
+    state.flush()
+    assert kept(state)[0] == [2, 3, 4]
+
+
+def test_what_fails_unexpectedly_waits_and_is_told(state, monkeypatch):
+    def fail(*_):
+        raise ValueError('surprise')
+
+    state.keep(record(1), entry(1))
+    with monkeypatch.context() as broken:
+        broken.setattr(StateDatabase, 'write', fail)
+        assert state.flush() == f'{state.folder} cannot be written, ValueError: surprise'
+    assert state.flush() == ''
+    assert kept(state) == ([1], [1])
+
+
+def test_what_comes_while_all_is_written_is_written_next(state, monkeypatch):
+    write = StateDatabase.write
+
+    def slow(*args):
+        state.keep(record(2), entry(2))
+        write(*args)
+
+    state.keep(record(1), entry(1))
+    with monkeypatch.context() as busy:
+        busy.setattr(StateDatabase, 'write', slow)
+        assert state.work(0.0) == PAUSE
+    assert kept(state) == ([1], [1])
+    assert state.flush() == ''
+    assert kept(state) == ([1, 2], [2])
+
+
+def test_a_thread_writes_what_comes(state):
+    state.start()
+    for number in range(100):
+        state.keep(record(number), entry(number))
+    assert state.flush() == ''
+    assert kept(state) == (list(range(100)), [99])
+    thread = state._thread
+    state.close()
+    assert not thread.is_alive()
+    state.keep(record(100), entry(100))
+    assert state.flush() == f'{state.folder} is closed'
+    again = RestartState(state.folder)
+    assert again.recall(record(0)).event == 99
+    again.close()
+
+
+def test_nobody_waits_for_a_disk_that_does_not_answer(state, monkeypatch):
+    answer = threading.Event()
+    monkeypatch.setattr(restart_state, 'PATIENCE', 0.0)
+    monkeypatch.setattr(StateDatabase, 'write', lambda *_: answer.wait())
+    state.start()
+    state.keep(record(1))
+    thread = state._thread
+    assert state.flush() == state.problem == f'{state.folder} does not answer'
+    state.close()
+    answer.set()
+    thread.join()
+
+
+def test_a_second_node_takes_over_when_the_first_is_gone(state):
+    state.keep(record(41))
+    second = RestartState(state.folder)
+    assert second.problem == f'{state.folder} is in use by another node of this name'
+    second.keep(record(1), entry(1))
+    assert second.work(0.0) == RETRY
+    state.close()
+    assert second.work(RETRY) == RETRY + PAUSE
+    # What the first has left is not replaced before somebody has seen it.
+    assert kept(second) == ([1], [41])
+    assert second.is_late('x')
+    assert second.recall(record(0)).event == 41
+    assert second.recall(record(0)).event == 1
+    second.keep(record(42))
+    assert second.work(RETRY + PAUSE) is None
+    assert (second.problem, kept(second)) == ('', ([1], [42]))
+    second.close()
+
+
+def test_a_directory_is_taken_as_soon_as_it_is_there(tmp_path):
+    place = tmp_path / 'disk'
+    place.write_text('not mounted yet')
+    state = RestartState(place / 'state')
+    assert state.problem == f'{place / "state"} cannot be written, Not a directory'
+    state.keep(record(1), entry(1))
+    place.unlink()
+    assert state.flush() == ''
+    assert kept(state) == ([1], [1])
+    state.close()
+
+
+@pytest.mark.parametrize('content', [None, b'no database' * 1000])
+def test_a_file_that_is_gone_or_damaged_is_written_once_more(state, content):
+    state.keep(record(7))
+    state.keep_corrections(Corrections('x', 'abc'))
+    (state.folder / FILE).unlink()
+    if content:
+        (state.folder / FILE).write_bytes(content)
+        state._database.disconnect()
+    assert state.flush() == ''
+    assert kept(state) == ([], [7])
+    assert state.recall(Corrections('x')).surface == 'abc'
+    assert bool(state.damage) is bool(content)
+    state.forget_problems()
+    assert state.problem == ''
+
+
+def test_corrections_leave_room_for_the_sums(state):
+    full = f'{state.folder} is at its state_limit of 0.4 MB'
+    assert state.keep_corrections(Corrections('x', 'abc', SOLVES * 50)) == ''
+    assert state.keep_corrections(Corrections('y', 'abc', SOLVES * 51)) == full
+    assert state.problem == f'corrections of y are not kept, {full}'
+    assert state.keep_corrections(Corrections('y', 'abc', SOLVES * 50)) == state.problem == ''
+
+
+def test_no_directory_keeps_nothing():
+    state = RestartState(None)
+    state.start()
+    assert state.keep_corrections(Corrections('x')) == 'state_dir is empty'
+    assert (state.flush(), state.problem) == ('', '')
+    state.close()
+
+
+@pytest.mark.parametrize(
+    ('wanted', 'place'),
+    [
+        ('', None),
+        ('/var/lib/screw', '/var/lib/screw'),
+        ('auto', '/state/ballscrew_monitor/cell/monitor'),
+    ],
+)
+def test_where_things_are_kept(monkeypatch, wanted, place):
+    monkeypatch.setenv('XDG_STATE_HOME', '/state')
+    found = state_directory(wanted, '/cell/monitor')
+    assert found is None if place is None else str(found) == place
+
+
+def test_without_the_variable_it_is_the_place_of_the_specification(monkeypatch):
+    monkeypatch.delenv('XDG_STATE_HOME', raising=False)
+    monkeypatch.setenv('HOME', '/someone')
+    found = state_directory('auto', '/monitor')
+    assert str(found) == '/someone/.local/state/ballscrew_monitor/monitor'

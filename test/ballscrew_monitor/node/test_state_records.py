@@ -1,0 +1,49 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Records of what outlives the node: what an entry says, and corrections bit for bit."""
+
+import json
+import types
+
+from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.core.state import Event
+from ballscrew_monitor.node.state_records import (
+    Corrections,
+    corrections_of,
+    entry_of,
+    event_facts,
+    Kind,
+    read_corrections,
+    solves_of,
+)
+import pytest
+
+SOLVE = types.SimpleNamespace(
+    speed=0.1 + 0.2, opposing_load=-1e3, temperature=313.15, solved={'rcs': 1 / 3}
+)
+
+
+def test_an_entry_says_what_when_where_and_why():
+    event = Event(number=4, stamp=3 * SECOND, start=SECOND)
+    record = entry_of(Kind.EVENT_END, 'x', event.stamp, event_facts(event)).record()
+    assert list(record)[:5] == ['time', 'stamp_ns', 'axis', 'kind', 'event']
+    assert record['time'].endswith('+00:00')
+    assert (record['stamp_ns'], record['axis']) == (3 * SECOND, 'x')
+    assert (record['kind'], record['event'], record['duration_s']) == ('event_end', 4, 2.0)
+    assert (record['cause'], record['value'], record['limit']) == ('UNKNOWN', None, None)
+
+
+def test_corrections_come_back_bit_for_bit_and_say_their_units():
+    kept = corrections_of('x', 'abc', [SOLVE])
+    (solve,) = solves_of(read_corrections(kept.row()))
+    assert (kept.axis, kept.surface) == ('x', 'abc')
+    assert all(getattr(solve, name) == value for name, value in vars(SOLVE).items())
+    (row,) = json.loads(kept.solves)
+    assert set(row) == {'speed_rad_s', 'opposing_load_N', 'temperature_K', 'solved'}
+    assert solves_of(Corrections('x')) == []
+
+
+@pytest.mark.parametrize('solves', ['', '[1', '3', '[{}]', '[{"speed_rad_s": "fast"}]'])
+def test_what_is_no_correction_is_refused(solves):
+    with pytest.raises((ValueError, KeyError, TypeError)):
+        read_corrections({'axis': 'x', 'surface': 'abc', 'solves': solves})
