@@ -32,11 +32,7 @@ NUMERICAL = {
     'yaml',
 }
 PLOTTING = {'surrogate.plotting.style'}  # for the picture of a page alone
-TASKS = {
-    'surrogate.tasks.pool',
-    'surrogate.tasks.worker',
-    'surrogate.tasks.workers',
-}
+TASKS = {'surrogate.tasks.pool', 'surrogate.tasks.worker', 'surrogate.tasks.workers'}
 LOOKUP = {'surrogate', 'surrogate.files', 'surrogate.surface', 'surrogate.units'}
 
 FLOORS = ('core', 'node', 'clients', 'recordings', 'report', 'cycle')

@@ -231,7 +231,9 @@ def test_samples_without_a_verdict_are_a_failure(short_bag, tmp_path, monkeypatc
     )
     assert run(plan(short_bag, params, tmp_path / 'out', 1.0)) == 1
     err = capsys.readouterr().err
-    assert re.search(r'had no verdict \(load outside the surface\)$', err, flags=re.MULTILINE)
+    assert re.search(r'had no verdict, the report says why$', err, flags=re.MULTILINE)
+    axis = json.loads((tmp_path / 'out' / 'summary.json').read_text())['axes']['x']
+    assert axis['time_by_reason_s']['load_out_of_range'] > 0.0
 
 
 def test_what_is_not_judged_is_a_failure(short_bag, tmp_path, monkeypatch, capsys):
@@ -240,7 +242,7 @@ def test_what_is_not_judged_is_a_failure(short_bag, tmp_path, monkeypatch, capsy
     assert run(dataclasses.replace(made, expected={'x': made.expected['x'] + 1})) == 1
     assert capsys.readouterr().err == (
         'ballscrew: axis x: 300 of 301 speed messages were judged; '
-        'the recording does not say why\n'
+        '1 had no verdict, the report says why\n'
     )
     assert [thread.name for thread in threading.enumerate() if thread.name == 'player'] == []
 
