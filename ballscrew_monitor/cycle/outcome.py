@@ -83,7 +83,7 @@ def loss(outcome: Outcome, axis: str, sent: int, expected: int, rate: float) -> 
     rest = expected - judged - lost - refused
     parts = [f'{lost} did not reach the node'] if lost else []
     parts += [f'the node refused {refused}'] if refused else []
-    parts += [f'{rest} had no verdict, the report says why'] if rest > 0 else []
+    parts += [f'{rest} had no verdict, the recorded states name the reason'] if rest > 0 else []
     slower = (
         f'; at {rate:g}x messages may be lost, a lower rate helps' if rate > 1 and lost else ''
     )
@@ -97,7 +97,8 @@ def facts(plan: Plan, outcome: Outcome) -> dict[str, str]:
         f'axis {axis}: during the run the node judged '
         f'{counted(int(state.judged), "speed sample")} and raised '
         f'{counted(int(state.event_id), "warning")}, '
-        f'{state.totals.outside_time:.1f} s were outside the zone'
+        f'{state.totals.outside_time:.1f} s were outside the zone; '
+        'this page judges the recorded inputs again'
         for axis, state in outcome.states.items()
     ]
     notes = (*judged, *outcome.failures)

@@ -42,14 +42,15 @@ def test_it_says_what_did_not_arrive_what_was_refused_and_what_had_no_verdict():
     state = last_state(received=9, judged=3, dropped=1)
     assert words(state) == (
         'axis x: 3 of 10 speed messages were judged; 1 did not reach the node, the node refused '
-        '1, 5 had no verdict, the report says why'
+        '1, 5 had no verdict, the recorded states name the reason'
     )
 
 
 def test_messages_of_other_joints_are_not_called_refused():
     state = last_state(received=12, judged=9, dropped=2)
     assert words(state, sent=12) == (
-        'axis x: 9 of 10 speed messages were judged; 1 had no verdict, the report says why'
+        'axis x: 9 of 10 speed messages were judged; 1 had no verdict, the recorded states name '
+        'the reason'
     )
 
 
