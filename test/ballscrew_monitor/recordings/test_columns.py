@@ -2,14 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The table of columns, and what follows from them."""
 
-from ballscrew_monitor.core.estimate import PointSource, PointValidity
-from ballscrew_monitor.recordings.columns import BY_VALIDITY, COLUMNS, JudgedColumns, Reason
+from ballscrew_monitor.core.estimate import PointSource
+from ballscrew_monitor.recordings.columns import COLUMNS, JudgedColumns
 import numpy as np
-
-
-def test_every_validity_has_a_reason():
-    assert set(BY_VALIDITY) == set(PointValidity)
-    assert Reason.JUDGED not in BY_VALIDITY.values()
 
 
 def test_only_a_measured_torque_is_compared():

@@ -33,6 +33,11 @@ def test_extremes_of_packed_numbers_are_exact():
     assert (record['low'], record['high']) == (-1.0, 3.0)
 
 
+def test_numbers_that_differ_less_than_can_be_divided_by_are_one():
+    record = packed([0.0, 2.2e-309, math.nan])
+    np.testing.assert_allclose(unpacked(record), [0.0, 0.0, math.nan], atol=2.2e-309)
+
+
 def test_numbers_that_seldom_change_take_no_room():
     record = packed(np.repeat([1.0, math.nan, 2.0], 1000))
     assert len(record['data']) < 20
