@@ -4,12 +4,14 @@
 RATE ?= 1
 # More arguments for pytest, such as ARGS='test/surrogate -k hertz'.
 ARGS ?=
+# How long `make fuzz` goes on [min].
+MINUTES ?= 10
 
 # Another ROS or another environment must not reach into this one.
 unexport _ROS_WHEELS_BOOTSTRAP_COMPLETE LD_LIBRARY_PATH PYTHONPATH PYTHONHOME VIRTUAL_ENV
 unexport AMENT_PREFIX_PATH CMAKE_PREFIX_PATH COLCON_PREFIX_PATH RMW_IMPLEMENTATION
 
-.PHONY: set-up run test format bench fresh-test clean help
+.PHONY: set-up run test fuzz format bench fresh-test clean help
 
 set-up:
 	@sh scripts/set_up.sh
@@ -19,6 +21,9 @@ run: set-up
 
 test: set-up
 	@exec sh scripts/test.sh $(ARGS)
+
+fuzz: set-up
+	@exec sh scripts/fuzz.sh $(MINUTES) $(ARGS)
 
 format: set-up
 	@.venv/bin/ruff check --quiet --fix-only
@@ -41,6 +46,8 @@ help:
 	@echo '                RATE=4 plays four times faster'
 	@echo 'make test       the checks and the tests; ARGS is handed to pytest'
 	@echo '                ARGS="-m fast" leaves out what takes long'
+	@echo 'make fuzz       the properties among the tests with random draws, round after round'
+	@echo '                MINUTES=60 goes on for an hour instead of 10 min'
 	@echo 'make format     put imports and code in the form that the checks ask for'
 	@echo 'make bench      measure solver, lookup and node, in under two minutes'
 	@echo 'make fresh-test clone the last commit and run both there'
