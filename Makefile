@@ -20,6 +20,7 @@ run: set-up
 	@exec .venv/bin/ballscrew run --rate $(RATE) --out out
 
 test: set-up
+	@sh scripts/browser.sh
 	@exec sh scripts/test.sh $(ARGS)
 
 fuzz: set-up
