@@ -9,7 +9,7 @@ from pathlib import Path
 import sys
 import time
 
-from hypothesis import HealthCheck, settings
+from hypothesis import HealthCheck, Phase, settings
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -87,6 +87,10 @@ UNHURRIED = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow]
 settings.register_profile('same', UNHURRIED, derandomize=True, database=None)
 # `make fuzz` draws others each time, more of them, and begins with those that failed before.
 settings.register_profile('fuzz', UNHURRIED, max_examples=1000, print_blob=True)
+# `make mutate` asks whether a mutant fails, not for the smallest example of it.
+settings.register_profile(
+    'mutate', settings.get_profile('same'), phases=[Phase.explicit, Phase.generate]
+)
 settings.load_profile(os.environ.get('HYPOTHESIS_PROFILE', 'same'))
 
 
