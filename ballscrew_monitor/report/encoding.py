@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from surrogate.files import to_json
 
 LEVELS = 65534  # steps of a packed number between the lowest and the highest
+LARGEST = np.finfo(float).max / 2  # number that is packed, of which a span is finite
 SELDOM = 4  # numbers to a change from which on runs are the shorter form
 
 
@@ -28,16 +29,16 @@ def packed(values: ArrayLike) -> dict[str, Any]:
     """
     Return numbers in 65534 steps from the lowest to the highest, two bytes each, 0 for NaN.
 
-    Where they seldom change, `runs` tells how often each stands.
+    A number beyond half of the largest double counts as NaN: the reader's span would overflow.
+    Where the numbers seldom change, `runs` says how often each is repeated.
 
     """
     numbers = np.asarray(values, dtype=float)
-    known = np.isfinite(numbers)
+    known = np.abs(numbers) <= LARGEST
     low, high = _span(numbers[known])
     steps = np.zeros(numbers.size, dtype=np.uint16)
-    scale = LEVELS / (high - low) if high > low else 0.0
-    scale = scale if math.isfinite(scale) else 0.0  # what differs less than a float can divide by
-    steps[known] = 1 + np.rint((numbers[known] - low) * scale)
+    # The span may be subnormal, and its reciprocal infinite: it divides.
+    steps[known] = 1 + np.rint((numbers[known] - low) / ((high - low) or 1.0) * LEVELS)
     record = {'low': low, 'high': high}
     starts = np.flatnonzero(np.diff(steps, prepend=steps[:1] + 1))
     if SELDOM * starts.size > steps.size:
