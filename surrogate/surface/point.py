@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What a surface says of one point; needs no numpy at all."""
+"""Answer of a surface for one point; it needs no numpy."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
