@@ -90,6 +90,7 @@ setup(
         'report': ['contourpy>=1.0', 'polars>=1.0'],
         'areal': ['SurfaceTopography>=1.17'],
         'dask': ['distributed>=2024.1'],
+        'docs': ['pdoc>=16.0'],
         'netcdf': ['xarray>=2024.1'],
         'test': [
             'ContactMechanics>=1.8',
