@@ -106,7 +106,7 @@ setup(
     },
     zip_safe=False,
     maintainer='ballscrew_monitor maintainers',
-    maintainer_email='maintainer@example.com',
+    maintainer_email='ballscrew_monitor@users.noreply.github.com',
     description='Watches the lubrication and efficiency of a ball screw while the machine runs.',
     license='Apache-2.0',
     entry_points={
