@@ -14,7 +14,7 @@ SEED ?= 1
 unexport _ROS_WHEELS_BOOTSTRAP_COMPLETE LD_LIBRARY_PATH PYTHONPATH PYTHONHOME VIRTUAL_ENV
 unexport AMENT_PREFIX_PATH CMAKE_PREFIX_PATH COLCON_PREFIX_PATH RMW_IMPLEMENTATION
 
-.PHONY: set-up run test fuzz mutate format bench fresh-test clean help
+.PHONY: set-up run test fuzz mutate format bench docs fresh-test clean help
 
 set-up:
 	@sh scripts/set_up.sh
@@ -39,6 +39,10 @@ format: set-up
 bench: set-up
 	@for file in bench/*.py; do echo "== $$file"; .venv/bin/python $$file || exit; done
 
+docs: set-up
+	@.venv/bin/pdoc --no-show-source --output-directory build/api ballscrew_monitor surrogate
+	@echo 'API pages: build/api/index.html'
+
 fresh-test:
 	@exec sh scripts/fresh_test.sh
 
@@ -59,6 +63,7 @@ help:
 	@echo '                SAMPLE=300 tries more places, SEED=2 others, ARGS names files'
 	@echo 'make format     put imports and code in the form that the checks ask for'
 	@echo 'make bench      measure solver, lookup and node, in under two minutes'
+	@echo 'make docs       write pages of the API from the docstrings into build/api/'
 	@echo 'make fresh-test clone the last commit and run both there'
 	@echo 'make clean      remove everything that is made'
 	@echo 'PYTHON=python3.12 chooses the Python that .venv is made of'
