@@ -5,7 +5,6 @@
 import base64
 import functools
 import json
-import math
 from typing import Any
 
 import numpy as np
