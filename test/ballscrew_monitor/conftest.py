@@ -53,6 +53,7 @@ with warnings.catch_warnings():
 
 os.environ['ROS_PYTHON_CHECK_FIELDS'] = '1'
 os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
+SCANNED = 81  # loads of a surface of constants
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 START, STEP = 1000 * SECOND, SECOND // 100  # [ns] of the samples of `core.motion`
 DEADLINE = 120.0  # [s] for the end of a process, however busy the machine
@@ -106,7 +107,7 @@ class ConstantSurface:
     parasitic_torque = parasitic_torque_rate = 0.0
 
     def __init__(self, **numbers):
-        self.scan_loads = self.scan_torques = ()
+        self.scan_loads, self.scan_torques = np.zeros((2, SCANNED))
         self.numbers = numbers
         self.asked = []
 
@@ -132,7 +133,7 @@ class ConstantSurface:
         return self
 
     def driving_torques(self, speed, temperature):
-        loads = np.linspace(*self.load_range, 81)
+        loads = np.linspace(*self.load_range, SCANNED)
         points = [self.lookup(speed, float(load), temperature) for load in loads]
         valid = [point.validity is PointValidity.VALID for point in points]
         return loads, np.where(valid, [point.driving_torque for point in points], math.nan)
@@ -220,7 +221,7 @@ def look_up_rest(surface, load, found):
 
 def scan(surface, speed, temperature):
     """Fill in the driving torques of a surface of constants."""
-    surface.scan_loads, surface.scan_torques = surface.driving_torques(speed, temperature)
+    surface.scan_loads[:], surface.scan_torques[:] = surface.driving_torques(speed, temperature)
     return np.count_nonzero(np.isfinite(surface.scan_torques))
 
 

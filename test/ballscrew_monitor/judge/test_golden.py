@@ -8,9 +8,9 @@ every refusal, command and correction; the surface is a small one of the closed 
 and a masked node. `golden_rows.npz` holds columns of four tables. Their names tell what they hold:
 
 * `run_`: name, settings and kept memory as JSON.
-* `event_`: kind of KINDS, source, value, stamps, and -1 for what there is none of. A tick, an
-  acknowledgement and a reset have their clock as stamp; a shelving has its end as stamp and its
-  begin as arrival; a correction has its row of `pull_` as value.
+* `event_`: kind of KINDS in `conftest`, source, value, stamps, and -1 for what there is none of.
+  A tick, an acknowledgement and a reset have their clock as stamp; a shelving has its end as stamp
+  and its begin as arrival; a correction has its row of `pull_` as value.
 * `row_`: each judgement, and the `event` that gave it. `gates` and `findings` are sums of
   2^number; `told_` is the excursion that is active or was the last; `reason` counts `texts`.
 * `state_`: each published state; `row` -1 where none gave it.
@@ -20,28 +20,16 @@ excursion keeps limit and place of its worst sample.
 
 """
 
-import json
 import math
-from pathlib import Path
-import types
 
-from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, StampSource, Why
-from ballscrew_monitor.core.judgement import Code, Limits
-from ballscrew_monitor.core.memory import Memory
-from ballscrew_monitor.core.shelving import Shelving
-from ballscrew_monitor.core.state import Event, LoadDerivation, MonitorSettings, PositionSettings
+from ballscrew_monitor.core.judgement import Code
 from ballscrew_monitor.core.tally import Totals
 from ballscrew_monitor.judge import monitor as monitors
 from ballscrew_monitor.judge import views
-from ballscrew_monitor.judge.monitor import Monitor
 from ballscrew_monitor.judge.step import NOTHING, step
 import numpy as np
-import pytest
-from surrogate.surface import FIELDS, Surface
 
-DATA = Path(__file__).resolve().parents[2] / 'data'
 TOLERANCE = 1e-12  # of numbers, relative, and absolute in SI: sums run in another order
-KINDS = ('sample', 'refusal', 'tick', 'acknowledge', 'shelve', 'correct', 'reset')
 SAME = (
     'stamp now tick published level speed axial_load temperature motor_torque speed_source '
     'axial_load_source temperature_source motor_torque_source direction direction_held '
@@ -59,83 +47,6 @@ INPUT = (
     'state stamp_source age rate received dropped slow lag lagging lost losing implausible '
     'glitching longest_gap why'
 ).split()
-GOLDEN = DATA / 'golden_rows.npz'
-with np.load(GOLDEN) as archive:
-    NAMES = archive['run_name'].tolist()
-
-
-@pytest.fixture(scope='module')
-def golden():
-    """Return the arrays on file by name."""
-    with np.load(GOLDEN) as archive:
-        return {name: archive[name] for name in archive.files}
-
-
-@pytest.fixture(scope='module')
-def surface():
-    """Return the surface that the rows were made with."""
-    return Surface.load(DATA / 'golden_surface.npz')
-
-
-def settings_of(text):
-    """Return settings as they are on file."""
-    known = json.loads(text)
-    for name in ('timeouts', 'plausible'):
-        known[name] = {Source[source]: value for source, value in known[name].items()}
-    kinds = {'limits': Limits, 'derivation': LoadDerivation, 'positions': PositionSettings}
-    for name, kind in kinds.items():
-        known[name] = None if known[name] is None else kind(**known[name])
-    return MonitorSettings(**known)
-
-
-def kept_of(text):
-    """Return what was kept from before, as it is on file."""
-    known = json.loads(text)
-    shelving = Shelving(until=known['shelved_until'], reason='kept')
-    return Memory(
-        totals=Totals(**known['totals']), event=Event(**known['event']), shelving=shelving
-    )
-
-
-def table(golden, prefix, which):
-    """Return rows of a table, each a namespace of its columns."""
-    columns = {
-        name.removeprefix(prefix): column[which].tolist()
-        for name, column in golden.items()
-        if name.startswith(prefix)
-    }
-    return [types.SimpleNamespace(**dict(zip(columns, row))) for row in zip(*columns.values())]
-
-
-def fed(monitor, event, golden):
-    """Let a monitor take an event of the file; return its state."""
-    kind, lost = KINDS[event.kind], None if event.lost < 0 else event.lost
-    if kind == 'sample':
-        sample = InputSample(
-            source=Source(event.source),
-            value=event.value,
-            stamp=event.stamp,
-            arrival=event.arrival,
-            stamp_source=StampSource(event.stamp_source),
-            lost=lost,
-        )
-        return monitor.update(sample)
-    if kind == 'refusal':
-        source, why = Source(event.source), Why(event.why)
-        return monitor.update(Refusal(source=source, why=why, arrival=event.arrival, lost=lost))
-    if kind == 'tick':
-        return monitor.tick(event.stamp)
-    if kind == 'acknowledge':
-        monitor.acknowledge(event.stamp)
-    elif kind == 'shelve':
-        monitor.shelving = Shelving(until=event.stamp, reason='known')
-    elif kind == 'correct':
-        pull = table(golden, 'pull_', slice(None))[int(event.value)]
-        solved = {name: getattr(pull, f'solved_{name}') for name in FIELDS}
-        monitor.use_surface(monitor.surface.with_correction(pull, types.SimpleNamespace(**solved)))
-    else:
-        monitor.reset_totals()
-    return None
 
 
 def close(found, wanted):
@@ -200,9 +111,7 @@ def check_state(state, wanted, place):
             assert close(-1 if here is None else here, there), f'{place}: {prefix} {name}'
 
 
-@pytest.mark.fast
-@pytest.mark.parametrize('run', range(len(NAMES)), ids=NAMES)
-def test_rows_are_the_golden_ones(run, golden, surface, monkeypatch):
+def test_rows_are_the_golden_ones(run, golden, core, monkeypatch):
     """Every number of every row and state of one list of events."""
     rows = []
 
@@ -214,20 +123,22 @@ def test_rows_are_the_golden_ones(run, golden, surface, monkeypatch):
         return found
 
     monkeypatch.setattr(monitors, 'step', observed)
-    settings = settings_of(golden['run_settings'][run])
-    monitor = Monitor(surface, settings, kept_of(golden['run_memory'][run]))
-    numbers = np.flatnonzero(golden['event_run'] == run)
-    of_run = np.isin(golden['row_event'], numbers)
-    wanted_rows = iter(table(golden, 'row_', of_run))
-    wanted_states = iter(table(golden, 'state_', of_run[golden['state_row']]))
-    for number, event in zip(numbers.tolist(), table(golden, 'event_', numbers)):
-        place = f'{NAMES[run]}, event {number}'
-        state = fed(monitor, event, golden)
+    monitor, numbers = golden.monitor(run), golden.numbers(run)
+    of_run = np.isin(golden.arrays['row_event'], numbers)
+    wanted_rows = iter(golden.table('row_', of_run))
+    wanted_states = iter(golden.table('state_', of_run[golden.arrays['state_row']]))
+    for number, stored in zip(numbers.tolist(), golden.table('event_', numbers)):
+        place, event, states = f'event {number}', golden.event(stored), []
+        if event is None:
+            golden.command(monitor, stored)
+        else:
+            states = core.feed(monitor, [event])
         if rows:
             wanted = next(wanted_rows)
             assert wanted.event == number
-            check_row(rows.pop(), monitor.memory, wanted, golden['texts'], monitor, place)
-        if state is not None:
+            texts = golden.arrays['texts']
+            check_row(rows.pop(), monitor.memory, wanted, texts, monitor, place)
+        for state in states:
             check_state(state, next(wanted_states), place)
     assert next(wanted_rows, None) is None
     assert next(wanted_states, None) is None

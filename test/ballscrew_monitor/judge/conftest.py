@@ -1,0 +1,117 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The golden events and rows on file, see `test_golden`."""
+
+import json
+from pathlib import Path
+import types
+
+from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, StampSource, Why
+from ballscrew_monitor.core.judgement import Limits
+from ballscrew_monitor.core.memory import Memory
+from ballscrew_monitor.core.shelving import Shelving
+from ballscrew_monitor.core.state import Event, LoadDerivation, MonitorSettings, PositionSettings
+from ballscrew_monitor.core.tally import Totals
+from ballscrew_monitor.judge.monitor import Monitor
+import numpy as np
+import pytest
+from surrogate.surface import FIELDS, Surface
+
+DATA = Path(__file__).resolve().parents[2] / 'data'
+ROWS = DATA / 'golden_rows.npz'
+KINDS = ('sample', 'refusal', 'tick', 'acknowledge', 'shelve', 'correct', 'reset')
+with np.load(ROWS) as archive:
+    NAMES = archive['run_name'].tolist()
+
+
+@pytest.fixture(params=range(len(NAMES)), ids=NAMES)
+def run(request):
+    """Return the number of a run."""
+    return request.param
+
+
+@pytest.fixture(scope='session')
+def golden():
+    """Return all that is on file."""
+    return Golden()
+
+
+class Golden:
+    """The runs on file, and the surface that their rows were made with."""
+
+    def __init__(self):
+        with np.load(ROWS) as archive:
+            self.arrays = {name: archive[name] for name in archive.files}
+        self.surface = Surface.load(DATA / 'golden_surface.npz')
+
+    def table(self, prefix, which):
+        """Return rows of a table, each a namespace of its columns."""
+        columns = {
+            name.removeprefix(prefix): column[which].tolist()
+            for name, column in self.arrays.items()
+            if name.startswith(prefix)
+        }
+        return [types.SimpleNamespace(**dict(zip(columns, row))) for row in zip(*columns.values())]
+
+    def numbers(self, run):
+        """Return the numbers of the events of a run."""
+        return np.flatnonzero(self.arrays['event_run'] == run)
+
+    def monitor(self, run):
+        """Return the monitor of a run before its first event."""
+        settings = settings_of(self.arrays['run_settings'][run])
+        return Monitor(self.surface, settings, kept_of(self.arrays['run_memory'][run]))
+
+    def event(self, stored):
+        """Return a sample, a refusal, or the stamp of a tick; None for a command."""
+        kind, lost = KINDS[stored.kind], None if stored.lost < 0 else stored.lost
+        if kind == 'tick':
+            return stored.stamp
+        if kind == 'refusal':
+            source, why = Source(stored.source), Why(stored.why)
+            return Refusal(source=source, why=why, arrival=stored.arrival, lost=lost)
+        if kind != 'sample':
+            return None
+        return InputSample(
+            source=Source(stored.source),
+            value=stored.value,
+            stamp=stored.stamp,
+            arrival=stored.arrival,
+            stamp_source=StampSource(stored.stamp_source),
+            lost=lost,
+        )
+
+    def command(self, monitor, stored):
+        """Let a monitor take a command."""
+        kind = KINDS[stored.kind]
+        if kind == 'acknowledge':
+            monitor.acknowledge(stored.stamp)
+        elif kind == 'shelve':
+            monitor.shelving = Shelving(until=stored.stamp, reason='known')
+        elif kind == 'correct':
+            pull = self.table('pull_', slice(None))[int(stored.value)]
+            solved = {name: getattr(pull, f'solved_{name}') for name in FIELDS}
+            solution = types.SimpleNamespace(**solved)
+            monitor.use_surface(monitor.surface.with_correction(pull, solution))
+        else:
+            monitor.reset_totals()
+
+
+def settings_of(text):
+    """Return settings as they are on file."""
+    known = json.loads(text)
+    for name in ('timeouts', 'plausible'):
+        known[name] = {Source[source]: value for source, value in known[name].items()}
+    kinds = {'limits': Limits, 'derivation': LoadDerivation, 'positions': PositionSettings}
+    for name, kind in kinds.items():
+        known[name] = None if known[name] is None else kind(**known[name])
+    return MonitorSettings(**known)
+
+
+def kept_of(text):
+    """Return what was kept from before, as it is on file."""
+    known = json.loads(text)
+    shelving = Shelving(until=known['shelved_until'], reason='kept')
+    return Memory(
+        totals=Totals(**known['totals']), event=Event(**known['event']), shelving=shelving
+    )

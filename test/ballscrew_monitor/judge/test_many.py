@@ -1,0 +1,231 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The step compiled over arrays and interpreted event by event: the same bits."""
+
+import math
+import sys
+
+from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.core.inputs import Source, Why
+from ballscrew_monitor.core.judgement import Limits
+from ballscrew_monitor.core.state import LoadDerivation, MonitorSettings, PositionSettings
+from ballscrew_monitor.judge import many
+from ballscrew_monitor.judge.derived_load import Derived
+from ballscrew_monitor.judge.many import EVENT, ManyJudge, MEMORY, ROW
+from ballscrew_monitor.judge.monitor import Monitor
+from ballscrew_monitor.judge.records import Event, Memory, REFUSAL, Row, SAMPLE, TICK
+from ballscrew_monitor.judge.step import NOTHING, STATE, step
+from ballscrew_monitor.judge.words import fill
+from hypothesis import given, settings
+from hypothesis import strategies as st
+import numpy as np
+import pytest
+from surrogate.surface import shipped_surface, Surface
+from surrogate.surface.records import as_array, dtype_of, from_array
+
+SURFACE = Surface.load(shipped_surface())
+TIMEOUT, STEP = SECOND // 2, SECOND // 100
+LIMITS = Limits(
+    rcs=0.01,
+    efficiency=0.85,
+    light_load=661.0,
+    standstill_speed=0.5,
+    raise_delay=3 * STEP,
+    clear_delay=2 * STEP,
+    hysteresis=0.1,
+)
+DERIVATION = {
+    'window': SECOND // 20,
+    'torque_uncertainty': 0.05,
+    'parts_uncertainty': 0.1,
+    'largest_share': 2.0,
+}
+POSITIONS = {'positions': PositionSettings(window=SECOND // 20, wrap=2 * math.pi)}
+WAYS = {
+    'measured': {},
+    'torque': {'derivation': LoadDerivation(inertia=0.0, **DERIVATION)},
+    'inertia': {'derivation': LoadDerivation(inertia=1e-3, **DERIVATION)},
+    'angle': POSITIONS,
+    'all': {'derivation': LoadDerivation(inertia=1e-3, **DERIVATION), **POSITIONS},
+}
+REST = set(
+    'asperity_share central_film minimum_film friction_coefficient max_pressure back_driving '
+    'friction_torque_error friction_torque_std friction_torque_stderr rcs_error rcs_std '
+    'rcs_stderr efficiency_error efficiency_std efficiency_stderr'.split()
+)
+"""Fields that only the row of a state has."""
+
+
+def bits(array):
+    """Return the bytes of an array of records field by field; every NaN is one."""
+    found = {}
+    for name in array.dtype.names:
+        column = np.ascontiguousarray(array[name])
+        if column.dtype.kind == 'f':
+            column = np.where(np.isnan(column), math.nan, column).view(np.int64)
+        found[name] = column
+    return found
+
+
+def assert_same(one, other, names, place):
+    """Compare fields bit by bit."""
+    one, other = bits(one), bits(other)
+    for name in names:
+        np.testing.assert_array_equal(one[name], other[name], f'{place}: {name}')
+
+
+def interpreted(monitor, events):
+    """Return rows and the memory after each row of a state, and let the monitor remember."""
+    rows, memories, derived = [], [], Derived()
+    for event in events:
+        row = Row()
+        found = step(
+            monitor.surface.tables,
+            monitor.numbers,
+            monitor.memory,
+            monitor.speeds,
+            monitor.positions,
+            derived,
+            from_array(Event, event),
+            row,
+        )
+        if found != NOTHING:
+            rows.append(as_array(row))
+        if found == STATE:
+            memories.append(as_array(monitor.memory))
+    none = np.empty(0, ROW), np.empty(0, MEMORY)
+    return np.concatenate([none[0], *rows]), np.concatenate([none[1], *memories])
+
+
+def at_once(monitor, events):
+    """Return the same, compiled."""
+    judge = ManyJudge(monitor)
+    rows, memories = [np.empty(0, ROW)], [np.empty(0, MEMORY)]
+    for judged in judge.judge(events, states=True):
+        assert len(judged.memories) == len(judged.told)
+        rows.append(judged.rows)
+        memories.append(judged.memories.copy())
+    judge.give_back()
+    return np.concatenate(rows), np.concatenate(memories)
+
+
+def compare(one, other, events, place=''):
+    """Let two monitors judge events, one of them at once; compare all that comes of it."""
+    (rows, memories), (wanted, remembered) = at_once(one, events), interpreted(other, events)
+    assert len(rows) == len(wanted)
+    assert_same(rows, wanted, [name for name in ROW.names if name not in REST], place)
+    published = wanted['published']
+    assert_same(rows[published], wanted[published], ROW.names, place)
+    assert_same(memories, remembered, MEMORY.names, place)
+    for name in ('memory', 'speeds', 'positions'):
+        left, right = (as_array(getattr(monitor, name)) for monitor in (one, other))
+        assert left.tobytes() == right.tobytes(), f'{place}: {name}'
+
+
+def test_golden_runs_come_out_the_same(run, golden):
+    one, other, events = golden.monitor(run), golden.monitor(run), []
+    for stored in golden.table('event_', golden.numbers(run)):
+        event, record = golden.event(stored), Event()
+        if event is None:
+            compare(one, other, np.array(events, EVENT), f'before event {stored.stamp}')
+            events.clear()
+            for monitor in (one, other):
+                golden.command(monitor, stored)
+            continue
+        if isinstance(event, int):
+            record.kind, record.stamp = TICK, event
+        else:
+            fill(record, event)
+        events.append(as_array(record)[0])
+    compare(one, other, np.array(events, EVENT))
+
+
+def near(*limits):
+    """Return limits and their neighbours, of both signs."""
+    found = [math.nextafter(one, way) for one in limits for way in (-math.inf, one, math.inf)]
+    return st.sampled_from([sign * one for one in found for sign in (1.0, -1.0)])
+
+
+EDGES = st.sampled_from(
+    [0.0, -0.0, 5e-324, -2e-320, 1e154, sys.float_info.max, math.inf, -math.inf, math.nan]
+)
+VALUES = {
+    Source.SPEED: near(0.5, *SURFACE.speed_range) | st.floats(-250.0, 250.0),
+    Source.LOAD: near(661.0, 1.1 * 661.0, *SURFACE.load_range) | st.floats(520.0, 740.0),
+    Source.TEMPERATURE: near(*SURFACE.temperature_range) | st.floats(283.0, 354.0),
+    Source.TORQUE: near(0.05, 1.0) | st.floats(-8.0, 8.0),
+}
+READINGS = st.sampled_from([Source.SPEED, *Source]).flatmap(
+    lambda source: st.tuples(
+        st.just(source), st.one_of(VALUES[source], VALUES[source], VALUES[source], EDGES)
+    )
+)
+HAPPENINGS = st.lists(
+    st.tuples(
+        st.sampled_from([SAMPLE] * 12 + [REFUSAL, TICK, TICK]),
+        READINGS,
+        st.sampled_from(
+            [0, 1, *[STEP] * 9, TIMEOUT, TIMEOUT + 1, 3 * SECOND]
+            + [-1, -STEP, -SECOND, -SECOND - 1, -3 * SECOND]
+        ),
+        st.sampled_from([0, 0, 0, STEP, SECOND, None]),  # lag of the stamp, no arrival
+        st.sampled_from([0, 0, 0, 2, -1]),
+        st.sampled_from([1, 1, 2]),
+        st.sampled_from(Why),
+    ),
+    max_size=80,
+)
+
+
+def events_of(happenings, positions):
+    """Return what happens as events; positions follow from the speeds."""
+    events, now, angle = np.empty(len(happenings), EVENT), 1000 * SECOND, 0.0
+    for at, (kind, (source, value), gap, lag, lost, stamp_source, why) in enumerate(happenings):
+        now += gap
+        if positions and source is Source.SPEED and abs(value) < 300.0:
+            value = angle = math.remainder(angle + value * STEP / SECOND, math.tau)
+        arrival = 0 if lag is None else now + lag
+        record = Event(kind=kind, source=source, why=why, stamp=now, arrival=arrival, lost=lost)
+        record.stamp_source, record.value = stamp_source, value
+        events[at] = as_array(record)[0]
+    return events
+
+
+@pytest.mark.parametrize('way', WAYS)
+@settings(max_examples=60)
+@given(HAPPENINGS, st.booleans(), st.sampled_from([0, 2 * STEP]))
+def test_whatever_happens_comes_out_the_same(way, happenings, usual, period):
+    """In blocks of a few events and memories; `usual` inputs come before the odd ones."""
+    told = MonitorSettings(
+        axis='x',
+        limits=LIMITS,
+        timeouts=dict.fromkeys(Source, TIMEOUT),
+        default_temperature=313.15,
+        publish_period=period,
+        max_future=SECOND,
+        max_lag=SECOND // 5,
+        tick_period=SECOND // 10,
+        plausible={Source.SPEED: 700.0},
+        **WAYS[way],
+    )
+    if usual:
+        before = [(Source.TEMPERATURE, 313.15), (Source.LOAD, -900.0), (Source.TORQUE, 3.0)]
+        before += [(Source.SPEED, 60.0)] * 5
+        rest = (STEP // 10, 0, 0, 1, Why.OTHER_JOINTS)
+        happenings = [*((SAMPLE, reading, *rest) for reading in before), *happenings]
+    events = events_of(happenings, told.positions is not None)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(many, 'AT_ONCE', 16)
+        patch.setattr(many, 'MOST_MEMORIES', 5)
+        compare(Monitor(SURFACE, told), Monitor(SURFACE, told), events)
+
+
+def test_a_memory_has_the_fields_of_its_slots():
+    for kind in (Memory, Row, Event):
+        assert dtype_of(kind).names == tuple(
+            name for base in kind.__mro__[::-1] for name in getattr(base, '__slots__', ())
+        )
+        made = as_array(kind())
+        again = from_array(kind, made[0])
+        assert repr(again) == repr(kind())
+        assert as_array(again).tobytes() == made.tobytes()
