@@ -4,12 +4,17 @@
 RATE ?= 1
 # More arguments for pytest, such as ARGS='test/surrogate -k hertz'.
 ARGS ?=
+# How long `make fuzz` goes on [min].
+MINUTES ?= 10
+# How many mutants `make mutate` tries, and which of them.
+SAMPLE ?= 100
+SEED ?= 1
 
 # Another ROS or another environment must not reach into this one.
 unexport _ROS_WHEELS_BOOTSTRAP_COMPLETE LD_LIBRARY_PATH PYTHONPATH PYTHONHOME VIRTUAL_ENV
 unexport AMENT_PREFIX_PATH CMAKE_PREFIX_PATH COLCON_PREFIX_PATH RMW_IMPLEMENTATION
 
-.PHONY: set-up run test format bench fresh-test clean help
+.PHONY: set-up run test fuzz mutate format bench docs fresh-test clean help
 
 set-up:
 	@sh scripts/set_up.sh
@@ -18,7 +23,14 @@ run: set-up
 	@exec .venv/bin/ballscrew run --rate $(RATE) --out out
 
 test: set-up
+	@sh scripts/browser.sh
 	@exec sh scripts/test.sh $(ARGS)
+
+fuzz: set-up
+	@exec sh scripts/fuzz.sh $(MINUTES) $(ARGS)
+
+mutate: set-up
+	@exec .venv/bin/python scripts/mutate.py --sample $(SAMPLE) --seed $(SEED) $(ARGS)
 
 format: set-up
 	@.venv/bin/ruff check --quiet --fix-only
@@ -26,6 +38,10 @@ format: set-up
 
 bench: set-up
 	@for file in bench/*.py; do echo "== $$file"; .venv/bin/python $$file || exit; done
+
+docs: set-up
+	@.venv/bin/pdoc --no-show-source --output-directory build/api ballscrew_monitor surrogate
+	@echo 'API pages: build/api/index.html'
 
 fresh-test:
 	@exec sh scripts/fresh_test.sh
@@ -41,8 +57,13 @@ help:
 	@echo '                RATE=4 plays four times faster'
 	@echo 'make test       the checks and the tests; ARGS is handed to pytest'
 	@echo '                ARGS="-m fast" leaves out what takes long'
+	@echo 'make fuzz       the properties among the tests with random draws, round after round'
+	@echo '                MINUTES=60 goes on for an hour instead of 10 min'
+	@echo 'make mutate     change the sources in a sample of places and ask which test notices'
+	@echo '                SAMPLE=300 tries more places, SEED=2 others, ARGS names files'
 	@echo 'make format     put imports and code in the form that the checks ask for'
 	@echo 'make bench      measure solver, lookup and node, in under two minutes'
+	@echo 'make docs       write pages of the API from the docstrings into build/api/'
 	@echo 'make fresh-test clone the last commit and run both there'
 	@echo 'make clean      remove everything that is made'
 	@echo 'PYTHON=python3.12 chooses the Python that .venv is made of'

@@ -90,6 +90,7 @@ setup(
         'report': ['contourpy>=1.0', 'polars>=1.0'],
         'areal': ['SurfaceTopography>=1.17'],
         'dask': ['distributed>=2024.1'],
+        'docs': ['pdoc>=16.0'],
         'netcdf': ['xarray>=2024.1'],
         'test': [
             'ContactMechanics>=1.8',
@@ -105,7 +106,7 @@ setup(
     },
     zip_safe=False,
     maintainer='ballscrew_monitor maintainers',
-    maintainer_email='maintainer@example.com',
+    maintainer_email='ballscrew_monitor@users.noreply.github.com',
     description='Watches the lubrication and efficiency of a ball screw while the machine runs.',
     license='Apache-2.0',
     entry_points={

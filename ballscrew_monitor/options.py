@@ -45,7 +45,7 @@ def add_run(commands: Commands) -> argparse.ArgumentParser:
         type=Path,
         default=OUT,
         metavar='DIR',
-        help='directory for recording, picture and log (default %(default)s)',
+        help='directory for recording, report and log (default %(default)s)',
     )
     _add_rate(parser)
     return parser

@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-How a datasheet is declared, checked and read.
+Declaration, check and reading of a datasheet.
 
 Every quantity is declared once, as a field with the unit on file, the factor to SI and the allowed
 range; keys, checks and error sentences all derive from that declaration.

@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What every folder needs of files: bad input in a sentence, whole files, strict JSON."""
+"""Files for every folder: bad input in a sentence, complete files, strict JSON."""
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager

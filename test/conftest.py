@@ -4,13 +4,16 @@
 
 import importlib
 from importlib.abc import MetaPathFinder
+import os
 from pathlib import Path
 import sys
+import time
 
-from hypothesis import HealthCheck, settings
+from hypothesis import HealthCheck, Phase, settings
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
+DEADLINE = 120.0  # [s] for anything that another process has to do, however busy the machine
 OPTIONAL = (
     'apsw',
     'contourpy',
@@ -79,9 +82,17 @@ SLOW = (
 )
 SLOW_FIXTURES = {'nominal_bag', 'short_bag'}
 
-# Two workers share the machine with others: how long an example takes says nothing of the code.
-settings.register_profile('unhurried', deadline=None, suppress_health_check=[HealthCheck.too_slow])
-settings.load_profile('unhurried')
+# The machine is shared with others: how long an example takes says nothing about the code.
+UNHURRIED = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
+# `make test` draws the same examples each time: whoever did not change the code sees no failure.
+settings.register_profile('same', UNHURRIED, derandomize=True, database=None)
+# `make fuzz` draws others each time, more of them, and begins with those that failed before.
+settings.register_profile('fuzz', UNHURRIED, max_examples=1000, print_blob=True)
+# `make mutate` asks whether a mutant fails, not for the smallest example of it.
+settings.register_profile(
+    'mutate', settings.get_profile('same'), phases=[Phase.explicit, Phase.generate]
+)
+settings.load_profile(os.environ.get('HYPOTHESIS_PROFILE', 'same'))
 
 
 class Skipper(MetaPathFinder):
@@ -105,6 +116,31 @@ def pytest_collection_modifyitems(items):
         slow = any(path.is_relative_to(name) for name in SLOW)
         if not slow and not SLOW_FIXTURES & set(item.fixturenames):
             item.add_marker('fast')
+
+
+def _pause():
+    """Leave the processor to whoever is waited for."""
+    time.sleep(0.005)
+
+
+def _wait_for(condition, what='the condition', *, meanwhile=_pause, deadline=DEADLINE):
+    """
+    Call `meanwhile` until `condition` gives something true, and return that.
+
+    The condition has the last word: a machine that stood still past the deadline [s] is well.
+
+    """
+    end = time.monotonic() + deadline
+    while not (result := condition()):
+        assert time.monotonic() < end, f'{what} did not come'
+        meanwhile()
+    return result
+
+
+@pytest.fixture(scope='session')
+def wait_for():
+    """Return the one function by which a test waits; all of it is `_wait_for`."""
+    return _wait_for
 
 
 @pytest.fixture(scope='session')

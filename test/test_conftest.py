@@ -51,3 +51,12 @@ def test_no_example_is_judged_by_its_time() -> None:
     """A busy machine fails no property."""
     assert settings().deadline is None
     assert HealthCheck.too_slow in settings().suppress_health_check
+
+
+def test_the_tests_draw_the_same_examples_each_time_and_fuzzing_does_not() -> None:
+    """Nobody's first `make test` finds a defect that is not of their change."""
+    same, fuzz = settings.get_profile('same'), settings.get_profile('fuzz')
+    assert (same.derandomize, same.database) == (True, None)
+    assert not fuzz.derandomize
+    assert fuzz.database is not None
+    assert fuzz.max_examples > same.max_examples

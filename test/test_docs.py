@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Documentation that would rot: links, paths, commands, the parameter table, short guides."""
+"""Documentation that would rot: links, paths, commands, the parameter table, short pages."""
 
 from pathlib import Path
 import re
@@ -12,11 +12,13 @@ import pytest
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / 'docs'
 GUIDE = sorted((DOCS / 'guide').glob('*.md'))
+REFERENCE = sorted((DOCS / 'reference').glob('*.md'))
 PAGES = [
     ROOT / 'README.md',
     ROOT / 'CONTRIBUTING.md',
     *sorted(DOCS.rglob('*.md')),
     ROOT / 'bags' / 'README.md',
+    ROOT / 'studies' / 'README.md',
 ]
 SOURCES = [
     path
@@ -38,8 +40,11 @@ HISTORY = re.compile(
     r'|previous(?:ly)? version|earlier version|in the past|so far|not any ?more|nowadays)\b',
     re.IGNORECASE,
 )
+FOREIGN = re.compile(
+    r'\b(told of|anew|of late|what it stands for|is none|whole of)\b', re.IGNORECASE
+)
 COMMAND = re.compile(r'ballscrew ((?:surface )?[a-z]+)((?: [^`\n#]*)?)')
-MOST_LINES, MOST_WORDS = 130, 1500
+MOST_PAGES, MOST_WORDS = 10, 900
 
 
 def name_of(page: Path) -> str:
@@ -56,6 +61,12 @@ def anchors(page: Path) -> set[str]:
 def defines(file: Path, name: str) -> bool:
     """Tell whether a module defines a function or class of that name."""
     return bool(re.search(rf'^(?:def|class) {name}\b', file.read_text(encoding='utf-8'), re.M))
+
+
+def words_of(page: Path) -> str:
+    """Return the text of a page without line breaks and without the table that code makes."""
+    text = page.read_text(encoding='utf-8').replace(markdown_table().strip(), '')
+    return ' '.join(text.split())
 
 
 def help_of(capsys, *words: str) -> str:
@@ -100,7 +111,7 @@ def test_documents_named_in_code_exist():
 
 def test_parameter_page_is_the_table():
     """The page holds the table as the code makes it."""
-    page = (DOCS / 'guide' / 'parameters.md').read_text(encoding='utf-8')
+    page = (DOCS / 'reference' / 'parameters.md').read_text(encoding='utf-8')
     assert markdown_table().strip() in page
 
 
@@ -114,8 +125,8 @@ def test_commands_of_the_readme_exist(capsys):
         assert command in help_text
 
 
-@pytest.mark.parametrize('page', [ROOT / 'README.md', *GUIDE], ids=name_of)
-def test_commands_of_the_guide_have_their_options(page: Path, capsys):
+@pytest.mark.parametrize('page', [ROOT / 'README.md', *GUIDE, *REFERENCE], ids=name_of)
+def test_commands_of_a_page_have_their_options(page: Path, capsys):
     """Each option of a command that a page shows is one that the command knows."""
     for command, rest in COMMAND.findall(page.read_text(encoding='utf-8')):
         known = help_of(capsys, *command.split())
@@ -123,19 +134,33 @@ def test_commands_of_the_guide_have_their_options(page: Path, capsys):
             assert option in known, f'{command} {option}'
 
 
+def test_guide_is_of_few_pages():
+    """A reader finds the page of a task at a glance."""
+    assert len(GUIDE) <= MOST_PAGES
+
+
 @pytest.mark.parametrize('page', GUIDE, ids=name_of)
-def test_guide_is_short_and_without_history(page: Path):
-    """A page, but for the table of parameters, is read in one go and says what is, not was."""
-    text = page.read_text(encoding='utf-8').replace(markdown_table().strip(), '')
-    assert len(text.splitlines()) < MOST_LINES
-    assert len(text.split()) < MOST_WORDS
-    assert not HISTORY.findall(text)
+def test_guide_is_short(page: Path):
+    """A page of the guide is read in one go."""
+    assert len(page.read_text(encoding='utf-8').split()) <= MOST_WORDS
+
+
+@pytest.mark.parametrize('page', [*GUIDE, *REFERENCE], ids=name_of)
+def test_pages_are_without_history(page: Path):
+    """Guide and reference say what is, not what was."""
+    assert not HISTORY.findall(words_of(page))
+
+
+@pytest.mark.parametrize('page', PAGES, ids=name_of)
+def test_pages_are_in_plain_words(page: Path):
+    """No page has phrases that a native speaker would not write."""
+    assert not FOREIGN.findall(words_of(page))
 
 
 def test_front_page_leads_to_every_page():
-    """Each page of the guide and of the theory is linked from docs/README.md."""
+    """Each page of guide, reference and theory is linked from docs/README.md."""
     front = (DOCS / 'README.md').read_text(encoding='utf-8')
-    for page in (*GUIDE, *sorted((DOCS / 'theory').glob('*.md'))):
+    for page in (*GUIDE, *REFERENCE, *sorted((DOCS / 'theory').glob('*.md'))):
         assert f'({page.relative_to(DOCS)})' in front
 
 

@@ -3,7 +3,7 @@
 """What a run came to: the words for what was lost, the summary, and the report."""
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 import dataclasses
 from pathlib import Path
 import sys
@@ -18,19 +18,11 @@ from ballscrew_monitor.report.parameters import parameters_for
 from ballscrew_monitor.settings.axis import Axis
 from ballscrew_monitor.settings.parameters import names_in_file
 from ballscrew_monitor.settings.topics import absolute, output
-from ballscrew_msgs.msg import BallScrewState, InputHealth, OutOfZone, PointResult
+from ballscrew_msgs.msg import BallScrewState, InputHealth, OutOfZone
 from rclpy.serialization import deserialize_message
 from surrogate.files import InputError
 
 LOG = 'node.log'
-
-# Why a sample was not judged, where the sentence in the state names a number of its own.
-REASONS = {
-    PointResult.VALIDITY_SPEED_BELOW_RANGE: 'speed below the surface',
-    PointResult.VALIDITY_SPEED_ABOVE_RANGE: 'speed above the surface',
-    PointResult.VALIDITY_LOAD_OUT_OF_RANGE: 'load outside the surface',
-    PointResult.VALIDITY_TEMPERATURE_OUT_OF_RANGE: 'oil temperature outside the surface',
-}
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -65,79 +57,51 @@ def speed_health(state: BallScrewState) -> InputHealth:
     return next(health for health in state.inputs if health.name == 'speed')
 
 
-def unjudged(states: Iterable[BallScrewState]) -> Counter[str]:
-    """
-    Return how many of the states of one axis hold a speed sample without a verdict, by reason.
-
-    Standstill is a verdict, whatever the inputs; a state of a tick holds no sample.
-
-    """
-    return Counter(
-        REASONS.get(state.result.validity) or state.result.reason or 'the model gives no number'
-        for state in states
-        if state.zone == BallScrewState.ZONE_UNKNOWN
-        and BallScrewState.GATE_STANDSTILL not in state.active_gates
-        and speed_health(state).state == InputHealth.STATE_OK
-    )
-
-
 def losses(plan: Plan, outcome: Outcome) -> tuple[str, ...]:
     """Return a sentence for each axis of which a speed message was not judged."""
-    return tuple(
-        loss(
-            outcome,
-            axis.name,
-            sent=_sent(outcome, axis),
-            expected=plan.expected[axis.name],
-            unjudged=unjudged(_states(outcome, axis)),
-            rate=plan.rate,
-        )
+    sentences = (
+        loss(outcome, axis.name, _sent(outcome, axis), plan.expected[axis.name], plan.rate)
         for axis in plan.axes
-        if outcome.judged(axis.name) != plan.expected[axis.name]
     )
+    return tuple(filter(None, sentences))
 
 
-def loss(
-    outcome: Outcome,
-    axis: str,
-    *,
-    sent: int,
-    expected: int,
-    unjudged: Mapping[str, int],
-    rate: float,
-) -> str:
+def loss(outcome: Outcome, axis: str, sent: int, expected: int, rate: float) -> str:
     """
     Return the sentence on the speed messages of `axis` that were not judged, empty without any.
 
     `sent` messages of the topic of the speed, `expected` of them with the speed of this axis, were
-    sent at `rate` [-], bag time over wall time; `unjudged` are those in the recording, by reason.
+    sent at `rate` [-], bag time over wall time.
 
     """
     judged, health = outcome.judged(axis), outcome.speed(axis)
-    if judged == expected:
+    if judged >= expected:
         return ''
     lost = max(sent - health.received, 0)
     # Messages that speak of other joints only are dropped too, as they should be.
     refused = max(health.dropped - max(sent - expected, 0), 0)
+    rest = expected - judged - lost - refused
     parts = [f'{lost} did not reach the node'] if lost else []
     parts += [f'the node refused {refused}'] if refused else []
-    parts += [f'{count} had no verdict ({reason})' for reason, count in unjudged.items()]
-    return (
-        f'axis {axis}: {judged} of {expected} speed messages were judged; '
-        + (', '.join(parts) or 'the recording does not say why')
-        + (f'; at {rate:g}x messages may be lost, a lower rate helps' if rate > 1 and lost else '')
+    parts += [f'{rest} had no verdict, the recorded states name the reason'] if rest > 0 else []
+    slower = (
+        f'; at {rate:g}x messages may be lost, a lower rate helps' if rate > 1 and lost else ''
     )
+    why = ', '.join(parts)
+    return f'axis {axis}: {judged} of {expected} speed messages were judged; {why}{slower}'
 
 
 def facts(plan: Plan, outcome: Outcome) -> dict[str, str]:
     """Return what a recording says of itself: the parameters of the run, and what became of it."""
-    notes = tuple(
+    judged = [
         f'axis {axis}: during the run the node judged '
         f'{counted(int(state.judged), "speed sample")} and raised '
         f'{counted(int(state.event_id), "warning")}, '
-        f'{state.totals.outside_time:.1f} s were outside the zone'
+        f'{state.totals.outside_time:.1f} s were outside the zone; '
+        'this page judges the recorded inputs again'
         for axis, state in outcome.states.items()
-    )
+    ]
+    notes = (*judged, *outcome.failures)
     said = names_in_file(plan.params)
     made = LogFacts(
         source=plan.bag.path.name, parameters={}, mapping={}, assumptions=(), notes=notes
@@ -178,10 +142,12 @@ def _write_report(recorded: Bag, plan: Plan) -> list[str]:
 def _axis_lines(outcome: Outcome, axis: Axis, recorded: Bag) -> Iterator[str]:
     """Yield what the node said of an axis, in words."""
     summarizer = Summarizer()
-    for state in _states(outcome, axis):
-        summarizer.add_state(state)
-    for message in recorded.messages({output(axis.name, 'out_of_zone')}):
-        summarizer.add_event(deserialize_message(message.data, OutOfZone))
+    state, event = output(axis.name, 'state'), output(axis.name, 'out_of_zone')
+    for message in recorded.messages({state, event}):
+        if message.topic == state:
+            summarizer.add_state(deserialize_message(message.data, BallScrewState))
+        else:
+            summarizer.add_event(deserialize_message(message.data, OutOfZone))
     summary = summarizer.result()
     yield (
         f'\naxis {axis.name}: screw {axis.surface.screw_name}, oil {axis.surface.oil_name}, '
@@ -196,10 +162,3 @@ def _axis_lines(outcome: Outcome, axis: Axis, recorded: Bag) -> Iterator[str]:
 
 def _sent(outcome: Outcome, axis: Axis) -> int:
     return outcome.sent[absolute(axis.inputs[-1].topic)]
-
-
-def _states(outcome: Outcome, axis: Axis) -> Iterator[BallScrewState]:
-    """Yield the recorded states of an axis."""
-    if outcome.recorded:
-        for message in Bag(outcome.recording).messages({output(axis.name, 'state')}):
-            yield deserialize_message(message.data, BallScrewState)

@@ -11,6 +11,7 @@ was judged. All of it happens in a ROS domain of its own that is seen on this ma
 
 from collections.abc import Iterator
 import contextlib
+import dataclasses
 import fcntl
 import os
 from pathlib import Path
@@ -47,11 +48,10 @@ def run(made: Plan) -> int:
     if interrupted:
         print(f'ballscrew: interrupted, recorded so far: {outcome.recording}', file=sys.stderr)
         return SIGNALLED + interrupted[0]
-    failures = outcome.failures or losses(made, outcome)
-    for sentence in failures:
+    for sentence in outcome.failures:
         print(f'ballscrew: {sentence}', file=sys.stderr)
     report(made, outcome)
-    return FAILED if failures else DONE
+    return FAILED if outcome.failures else DONE
 
 
 def _supervise(made: Plan, stop: threading.Event) -> Outcome:
@@ -70,6 +70,8 @@ def _supervise(made: Plan, stop: threading.Event) -> Outcome:
         supervision = stack.enter_context(Supervision(made, node, writer, domain))
         try:
             outcome = supervision.carry_out(stop)
+            if not stop.is_set():
+                outcome = dataclasses.replace(outcome, failures=losses(made, outcome))
         except RunFailure as failure:
             outcome = supervision.outcome(str(failure))
         writer.add_metadata(facts(made, outcome))

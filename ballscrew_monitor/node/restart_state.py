@@ -198,8 +198,9 @@ class RestartState:
             entries, records = self._waiting()
             if entries or records:
                 database.write(entries, records.values())
-        except (OSError, sqlite3.Error):
-            database.disconnect()
+        except Exception as error:
+            if not isinstance(error, InputError):  # what it left is read before all else
+                database.disconnect()
             raise
         written = set(map(id, entries))
         with self._lock:

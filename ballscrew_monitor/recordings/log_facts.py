@@ -9,6 +9,7 @@ import re
 from typing import Any
 
 from ballscrew_monitor.recordings.bag import Bag
+from ballscrew_monitor.recordings.declared import plain
 from ballscrew_monitor.recordings.own_recording import journal_of, recorded_values
 from ballscrew_monitor.settings import parameters
 from ballscrew_monitor.settings.parameter_row import BARE_LETTERS
@@ -55,13 +56,7 @@ class LogFacts:
 
     def texts(self) -> dict[str, str]:
         """Return the facts as the metadata of a bag holds them."""
-        content = {
-            'source': self.source,
-            'parameters': _parameters_text(self.parameters),
-            'mapping': dict(self.mapping),
-            'assumptions': [dataclasses.asdict(one) for one in self.assumptions],
-            'notes': list(self.notes),
-        }
+        content = plain(self) | {'parameters': _parameters_text(self.parameters)}
         return {f'{PREFIX}{key}': _text(value) for key, value in content.items()}
 
     def sentences(self) -> list[str]:

@@ -23,7 +23,7 @@ RELATIONS = {
     Finding.CODE_RCS_HIGH: ('RCS', '>='),
     Finding.CODE_EFFICIENCY_LOW: ('efficiency', '<'),
 }
-SHOWN = ('event_id', 'start_s', 'duration_s', 'active', 'cause', 'worst_value', 'limit', 'advice')
+SHOWN = 'event_id start_s duration_s active cause worst_value limit advice'.split()
 """What the totals say of an event, by its keys."""
 
 

@@ -80,11 +80,13 @@ def joined_rows(parts: Sequence[TimedRows]) -> TimedRows:
     """Return slices, at least one, as one."""
     return TimedRows(
         time=np.concatenate([part.time for part in parts]),
-        numbers={
-            key: np.concatenate([part.numbers[key] for part in parts]) for key in parts[0].numbers
-        },
-        codes={key: np.concatenate([part.codes[key] for part in parts]) for key in parts[0].codes},
+        numbers=_joined([part.numbers for part in parts]),
+        codes=_joined([part.codes for part in parts]),
     )
+
+
+def _joined(parts: Sequence[Mapping[str, NDArray[Any]]]) -> dict[str, NDArray[Any]]:
+    return {key: np.concatenate([part[key] for part in parts]) for key in parts[0]}
 
 
 def between(rows: TimedRows, stretches: Sequence[tuple[float, float]]) -> TimedRows:

@@ -3,6 +3,7 @@
 """Numbers and texts as a page carries them: compact columns, and JSON that ends no element."""
 
 import base64
+import functools
 import json
 from typing import Any
 
@@ -11,47 +12,38 @@ from numpy.typing import ArrayLike
 from surrogate.files import to_json
 
 LEVELS = 65534  # steps of a packed number between the lowest and the highest
+LARGEST = np.finfo(float).max / 2  # number that is packed, of which a span is finite
 SELDOM = 4  # numbers to a change from which on runs are the shorter form
 
 
-def floats(values: ArrayLike) -> str:
-    """Return numbers as base64 of little-endian float32."""
-    return base64.b64encode(np.asarray(values, dtype='<f4').tobytes()).decode()
+def _encoded(kind: str, values: ArrayLike) -> str:
+    return base64.b64encode(np.asarray(values, dtype=kind).tobytes()).decode()
 
 
-def doubles(values: ArrayLike) -> str:
-    """Return numbers as base64 of little-endian float64."""
-    return base64.b64encode(np.asarray(values, dtype='<f8').tobytes()).decode()
-
-
-def codes(values: ArrayLike) -> str:
-    """Return small whole numbers as base64 of bytes."""
-    return base64.b64encode(np.asarray(values, dtype=np.uint8).tobytes()).decode()
+floats, doubles, codes = (functools.partial(_encoded, kind) for kind in ('<f4', '<f8', '<u1'))
+"""Return numbers as base64 of little-endian float32, of float64, and of bytes."""
 
 
 def packed(values: ArrayLike) -> dict[str, Any]:
     """
     Return numbers in 65534 steps from the lowest to the highest, two bytes each, 0 for NaN.
 
-    Where they seldom change, `runs` tells how often each stands.
+    A number beyond half of the largest double counts as NaN: the reader's span would overflow.
+    Where the numbers seldom change, `runs` says how often each is repeated.
 
     """
     numbers = np.asarray(values, dtype=float)
-    known = np.isfinite(numbers)
+    known = np.abs(numbers) <= LARGEST
     low, high = _span(numbers[known])
-    steps = np.zeros(numbers.size, dtype='<u2')
-    scale = LEVELS / (high - low) if high > low else 0.0
-    steps[known] = 1 + np.rint((numbers[known] - low) * scale)
+    steps = np.zeros(numbers.size, dtype=np.uint16)
+    # The span may be subnormal, and its reciprocal infinite: it divides.
+    steps[known] = 1 + np.rint((numbers[known] - low) / ((high - low) or 1.0) * LEVELS)
     record = {'low': low, 'high': high}
     starts = np.flatnonzero(np.diff(steps, prepend=steps[:1] + 1))
     if SELDOM * starts.size > steps.size:
-        return record | {'data': _text(steps)}
-    runs = np.diff(starts, append=steps.size).astype('<u4')
-    return record | {'data': _text(steps[starts]), 'runs': _text(runs)}
-
-
-def _text(values: Any) -> str:
-    return base64.b64encode(values.tobytes()).decode()
+        return record | {'data': _encoded('<u2', steps)}
+    runs = np.diff(starts, append=steps.size)
+    return record | {'data': _encoded('<u2', steps[starts]), 'runs': _encoded('<u4', runs)}
 
 
 def _span(numbers: Any) -> tuple[float, float]:

@@ -7,10 +7,10 @@ Printing asks for no more than the node: nothing here loads what pages and table
 
 """
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 import functools
 import math
-from typing import Any, Protocol
+from typing import Any, TYPE_CHECKING
 
 from ballscrew_monitor.core.conversions import POSITION_UNITS
 from ballscrew_monitor.core.inputs import Source
@@ -24,31 +24,13 @@ from ballscrew_monitor.report.parameters import LogParameters
 from ballscrew_monitor.report.survey import Surveyor
 from ballscrew_monitor.settings.axis import is_configured, load_surface, scalings_of, settings_of
 
+if TYPE_CHECKING:  # it asks for packages that printing does not need
+    from ballscrew_monitor.report.store import RowStore
+
 OnShare = Callable[[float], None]
 """Told which share of a recording is judged [-]."""
 OnState = Callable[[TimedState], None]
 """Handed a state that would be published."""
-
-
-class KeptRows(Protocol):
-    """Where judged rows are kept, to be read again by axis."""
-
-    def add(self, block: JudgedColumns) -> None:
-        """Keep a block."""
-
-    def blocks(self, axis: str) -> Iterable[JudgedColumns]:
-        """Return the blocks of an axis in order."""
-
-
-class NoRows:
-    """Keeps nothing: what is only printed needs no row again."""
-
-    def add(self, block: JudgedColumns) -> None:
-        """Let a block go."""
-
-    def blocks(self, axis: str) -> Iterable[JudgedColumns]:
-        """Return none."""
-        return ()
 
 
 class CaseMaker:
@@ -102,7 +84,7 @@ def judge_log(
     parameters: LogParameters,
     *,
     on_share: OnShare = ignore,
-    rows: KeptRows | None = None,
+    rows: 'RowStore | None' = None,
     on_state: OnState | None = None,
 ) -> LogCase:
     """
@@ -112,7 +94,6 @@ def judge_log(
     read with the parameters.
 
     """
-    rows = rows or NoRows()
     makers: dict[str, CaseMaker] = {}
     outcomes = []
     for part in _parts(bag, parameters.values, on_share, on_state):
@@ -122,7 +103,8 @@ def judge_log(
             if part.axis not in makers:
                 makers[part.axis] = CaseMaker(part.axis, parameters.values)
             makers[part.axis].add(part)
-            rows.add(part)
+            if rows is not None:
+                rows.add(part)
     numbered = is_as_recorded(bag, parameters.values)
     return LogCase(
         name=bag.path.name,
@@ -130,7 +112,7 @@ def judge_log(
         axes=[
             makers[one.axis].case(
                 one,
-                blocks=functools.partial(rows.blocks, one.axis),
+                blocks=tuple if rows is None else functools.partial(rows.blocks, one.axis),
                 numbered=numbered,
                 **_known(parameters, one.axis),
             )

@@ -18,7 +18,7 @@ from ballscrew_monitor.report.map_record import OperatingMap
 from ballscrew_monitor.report.parameters import LogParameters
 from ballscrew_monitor.report.products import replace_report, write_events, write_summary
 from ballscrew_monitor.report.store import RowStore
-from ballscrew_monitor.report.verdict import verdicts_of
+from ballscrew_monitor.report.verdict import AxisVerdict, verdicts_of
 from surrogate.files import replace_file
 
 JUDGED_SHARE, STORED_SHARE = 0.92, 0.95
@@ -111,28 +111,21 @@ def _draw(log: LogCase, maps: Sequence[OperatingMap], path: Path) -> None:
 
 
 def _result(log: LogCase) -> LogResult:
-    verdicts = verdicts_of(log)
+    cases = {case.axis: case for case in log.axes}
     lines = [
-        _axis_line(case, verdict.standing.value, f'{verdict.word}: {verdict.sentence}')
-        for case, verdict in zip(log.axes, verdicts, strict=False)
-    ]
-    lines += [
-        AxisLine(
-            axis=axis,
-            standing=verdict.standing.value,
-            verdict=f'{verdict.word}: {verdict.sentence}',
-        )
-        for axis, verdict in zip(reversed(log.empty), reversed(verdicts), strict=False)
+        _axis_line(axis, verdict, cases.get(axis))
+        for axis, verdict in zip([*cases, *log.empty], verdicts_of(log), strict=True)
     ]
     return LogResult(name=log.name, lines=lines, unjudged=log.unjudged, notes=log.notes)
 
 
-def _axis_line(case: AxisCase, standing: str, verdict: str) -> AxisLine:
+def _axis_line(axis: str, verdict: AxisVerdict, case: AxisCase | None) -> AxisLine:
+    said = AxisLine(axis=axis, standing=verdict.standing.value, verdict=verdict.whole)
+    if case is None:
+        return said
     summary, worst = case.outcome.summary(), next(iter(case.worst_first), None)
-    return AxisLine(
-        axis=case.axis,
-        standing=standing,
-        verdict=verdict,
+    return dataclasses.replace(
+        said,
         begins=case.begins,
         recorded=case.survey.span,
         running_time=math.nan if summary is None else summary.running_time,

@@ -193,7 +193,8 @@ def _visited(
     case: AxisCase, speeds: tuple[float, float], loads: tuple[float, float], path_points: int
 ) -> dict[str, Any]:
     """Return time spent in each cell, path and places of the warnings."""
-    dwell = TimeSpent(speeds, loads, max_gap=case.settings.timeouts[Source.SPEED])
+    edges = np.linspace(*loads, ROWS + 1), np.geomspace(*speeds, COLUMNS + 1)
+    dwell = np.zeros((ROWS, COLUMNS))  # [s]
     stride, seen = max(1, case.survey.rows // path_points), 0
     marked = case.worst_first[:MARKED]
     path, places = [], {event.event_id: MeanPlace() for event in marked}
@@ -201,7 +202,7 @@ def _visited(
         speed = np.abs(block.speed)
         moving = speed >= case.settings.limits.standstill_speed
         load = np.where(moving, opposing_loads(block), np.nan)
-        dwell.add(block, speed, load)
+        dwell += _time_spent(case, block, load, edges)
         chosen = slice(-seen % stride, None, stride)
         path.append(np.stack([speed[chosen] / RPM, load[chosen]], axis=-1))
         seen += len(block)
@@ -212,11 +213,7 @@ def _visited(
                 continue
             inside = outside & (block.stamp >= event.start) & (block.stamp <= event.end)
             places[event.event_id].add(speed[inside] / RPM, load[inside])
-    return {
-        'dwell': dwell.times,
-        'path': np.concatenate(path),
-        'events': list(_marks(case, places)),
-    }
+    return {'dwell': dwell, 'path': np.concatenate(path), 'events': list(_marks(case, places))}
 
 
 def _marks(case: AxisCase, places: dict[int, 'MeanPlace']) -> Iterable[MapMark]:
@@ -226,13 +223,8 @@ def _marks(case: AxisCase, places: dict[int, 'MeanPlace']) -> Iterable[MapMark]:
         if spot is not None:
             begin, end = case.since_first(event.start), case.since_first(event.end)
             margin = max(1.0, 0.2 * (end - begin))
-            yield MapMark(
-                number=event.event_id,
-                speed=spot[0],
-                load=spot[1],
-                begin=begin - margin,
-                end=end + margin,
-            )
+            shown = {'begin': begin - margin, 'end': end + margin}
+            yield MapMark(number=event.event_id, speed=spot[0], load=spot[1], **shown)
 
 
 class MeanPlace:
@@ -254,24 +246,16 @@ class MeanPlace:
         return (math.exp(speed / count), load / count) if count else None
 
 
-class TimeSpent:
-    """Time spent in cells of speed, logarithmic, and opposing load."""
-
-    def __init__(
-        self, speeds: tuple[float, float], loads: tuple[float, float], *, max_gap: int
-    ) -> None:
-        """Begin at zero; speeds [rad/s], loads [N]; times above `max_gap` [ns] are not counted."""
-        self._edges = np.linspace(*loads, ROWS + 1), np.geomspace(*speeds, COLUMNS + 1)
-        self._max_gap = max_gap
-        self.times = np.zeros((ROWS, COLUMNS))
-
-    def add(self, block: JudgedColumns, speed: Array, load: Array) -> None:
-        """Add a block: amount of the speed [rad/s] and opposing load [N] of its rows."""
-        steps = np.where(block.time_to_next <= self._max_gap, block.time_to_next, 0)
-        known = np.isfinite(load) & (steps > 0)
-        self.times += np.histogram2d(
-            load[known], speed[known], bins=self._edges, weights=steps[known] / SECOND
-        )[0]
+def _time_spent(
+    case: AxisCase, block: JudgedColumns, load: Array, edges: tuple[Array, Array]
+) -> Array:
+    """Return the time of a block in each cell [s]; before a gap it is not counted."""
+    steps = np.where(
+        block.time_to_next <= case.settings.timeouts[Source.SPEED], block.time_to_next, 0
+    )
+    known = np.isfinite(load) & (steps > 0)
+    weights = steps[known] / SECOND
+    return np.histogram2d(load[known], np.abs(block.speed[known]), edges, weights=weights)[0]
 
 
 def map_legend(case: AxisCase, chart: OperatingMap) -> list[tuple[tuple[str, ...], str]]:

@@ -35,7 +35,10 @@ def verdict_part(verdict: AxisVerdict) -> Markup:
     return element(
         'div',
         element(
-            'p', element('strong', f'{verdict.word}:'), f' {verdict.sentence}', class_='sentence'
+            'p',
+            element('strong', f'{verdict.standing.word}:'),
+            f' {verdict.sentence}',
+            class_='sentence',
         ),
         *(element('p', line) for line in lines),
         class_=f'verdict {verdict.standing.value}',

@@ -67,7 +67,7 @@ def _draw_axis(part: SubFigure, case: AxisCase, chart: OperatingMap) -> None:
     upper, lower = part.subfigures(2, 1, height_ratios=(1.0, 1.25), squeeze=False)[:, 0]
     axes, surface, verdict = upper.subplots(), case.surface, verdict_of(case)
     axes.set_title(
-        f'{verdict.word}: {verdict.sentence}\nscrew {surface.screw_name}, oil {surface.oil_name}, '
+        f'{verdict.whole}\nscrew {surface.screw_name}, oil {surface.oil_name}, '
         f'{surface.tier.replace("_", "-")} model, map at {chart.temperature:g} °C oil',
         fontsize=11,
     )

@@ -36,7 +36,7 @@ def log_lines(log: LogCase) -> Iterator[str]:
 def axis_lines(case: AxisCase) -> Iterator[str]:
     """Yield the lines about an axis that has rows."""
     verdict, summary = verdict_of(case), case.outcome.summary()
-    yield _line('verdict', f'{verdict.word}: {verdict.sentence}')
+    yield _line('verdict', verdict.whole)
     if verdict.why:
         yield _line('why', verdict.why)
     if verdict.remedy:

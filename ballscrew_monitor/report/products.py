@@ -73,14 +73,13 @@ def summary_record(log: LogCase) -> dict[str, Any]:
 
 def _axis_records(log: LogCase) -> dict[str, Any]:
     """Return the records of all axes; an axis without rows is None, with its reason."""
-    verdicts = verdicts_of(log)
-    count = len(log.axes)
-    records: dict[str, Any] = {
-        case.axis: axis_record(case, verdict)
-        for case, verdict in zip(log.axes, verdicts[:count], strict=True)
-    }
-    for axis, verdict in zip(log.empty, verdicts[count:], strict=True):
-        records |= without(axis, verdict.sentence)
+    records: dict[str, Any] = {}
+    cases = {case.axis: case for case in log.axes}
+    for axis, verdict in zip([*cases, *log.empty], verdicts_of(log), strict=True):
+        known = cases.get(axis)
+        records |= (
+            {axis: axis_record(known, verdict)} if known else without(axis, verdict.sentence)
+        )
     return records
 
 
@@ -88,7 +87,7 @@ def axis_record(case: AxisCase, verdict: AxisVerdict) -> dict[str, Any]:
     """Return what is known of an axis; `<name>_reason` says why a number is missing."""
     summary, survey, surface = case.outcome.summary(), case.survey, case.surface
     return {
-        'verdict': f'{verdict.word}: {verdict.sentence}',
+        'verdict': verdict.whole,
         'standing': verdict.standing.value,
         'why': verdict.why,
         'what_to_do': verdict.remedy,

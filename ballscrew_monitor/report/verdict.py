@@ -42,16 +42,25 @@ class VerdictKind(enum.Enum):
     BAD = 'bad'
     UNKNOWN = 'unknown'
 
+    @property
+    def word(self) -> str:
+        """Return how a verdict begins."""
+        return {'good': 'Good', 'bad': 'Outside', 'unknown': 'Not known'}[self.value]
+
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class AxisVerdict:
-    """The standing, in a word and in the rest of a sentence; why, and what to do."""
+    """The standing, in the rest of a sentence; why, and what to do."""
 
-    standing: VerdictKind
-    word: str
+    standing: VerdictKind = VerdictKind.UNKNOWN
     sentence: str
     why: str = ''
     remedy: str = ''
+
+    @property
+    def whole(self) -> str:
+        """Return the sentence with the word that it begins with."""
+        return f'{self.standing.word}: {self.sentence}'
 
 
 def verdicts_of(log: LogCase) -> list[AxisVerdict]:
@@ -61,8 +70,6 @@ def verdicts_of(log: LogCase) -> list[AxisVerdict]:
 
 def _no_rows(axis: str) -> AxisVerdict:
     return AxisVerdict(
-        standing=VerdictKind.UNKNOWN,
-        word='Not known',
         sentence=f'the recording holds no usable sample of axis {axis}.',
         remedy='Check topics, fields and joints in the parameters.',
     )
@@ -80,7 +87,6 @@ def verdict_of(case: AxisCase) -> AxisVerdict:
     if not summary.outside_time:
         return AxisVerdict(
             standing=VerdictKind.GOOD,
-            word='Good',
             sentence=f'axis {case.axis} stayed in its optimal zone for all '
             f'{duration(summary.running_time - summary.unjudged_time)} of motion '
             f'that could be judged{more}.',
@@ -94,18 +100,13 @@ def _unmoved(case: AxisCase) -> AxisVerdict:
     if never_moved(case):
         limit = case.settings.limits.standstill_speed
         return AxisVerdict(
-            standing=VerdictKind.UNKNOWN,
-            word='Not known',
             sentence=f'axis {case.axis} never moved: its speed stayed below {limit:g} rad/s, '
             'and at standstill nothing is judged.',
             remedy='Check the unit of the speed if the machine did move.',
         )
     why = reason.text if reason else 'no motion was recorded'
     return AxisVerdict(
-        standing=VerdictKind.UNKNOWN,
-        word='Not known',
-        sentence=f'nothing could be judged on axis {case.axis}: {why}.',
-        remedy=_remedy(reason),
+        sentence=f'nothing could be judged on axis {case.axis}: {why}.', remedy=_remedy(reason)
     )
 
 
@@ -123,8 +124,6 @@ def _unjudged(case: AxisCase, summary: Summary, part: float) -> AxisVerdict:
     reason = _longest(case.survey.moving)
     why = reason.text if reason else 'the reason is not known'
     return AxisVerdict(
-        standing=VerdictKind.UNKNOWN,
-        word='Not known',
         sentence=f'axis {case.axis} could not be judged for {duration(summary.unjudged_time)} '
         f'({percent(part)}) of its motion: {why}.',
         remedy=_remedy(reason),
@@ -137,13 +136,11 @@ def _outside(case: AxisCase, summary: Summary, more: str) -> AxisVerdict:
     if not summary.events:
         return AxisVerdict(
             standing=VerdictKind.GOOD,
-            word='Good',
             sentence=f'axis {case.axis} left its optimal zone for {time}, each time too briefly '
             f'for a warning{more}.',
         )
     return AxisVerdict(
         standing=VerdictKind.BAD,
-        word='Outside',
         sentence=f'axis {case.axis} ran outside its optimal zone for {time}, '
         f'with {counted(len(summary.events), "warning")}{more}.',
         why=_why(summary.events),

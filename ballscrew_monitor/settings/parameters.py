@@ -249,7 +249,7 @@ def _yaml(value: Any) -> str:
 
 
 def markdown_table() -> str:
-    """Return the table of all parameters for docs/guide/parameters.md."""
+    """Return the table of all parameters for docs/reference/parameters.md."""
     lines = [
         '| parameter | default | allowed | unit | changes | meaning |',
         '|---|---|---|---|---|---|',

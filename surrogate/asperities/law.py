@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-How contact grows as a rolling contact slows down, over the speed at which it begins.
+Law of asperity contact: its growth below the speed at which a rolling contact begins to touch.
 
 Strips that were marched at other pressures, temperatures and places of the raceway share one curve
 over the speed by that of the onset, and the onset comes at one film over the roughness that acts.

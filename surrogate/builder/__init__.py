@@ -1,3 +1,3 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""From a datasheet to a surface: the tiers, and sweeps over a catalogue."""
+"""Builders of surfaces from datasheets: the tiers, and sweeps over a catalogue."""

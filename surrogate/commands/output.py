@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What commands print: a page for people, or JSON for programs."""
+"""Output of commands: a page for people, or JSON for programs."""
 
 import argparse
 from collections.abc import Callable, Mapping

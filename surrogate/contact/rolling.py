@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""From a case whose roughness rolls to its averages: the surface, the nodes, the march."""
+"""March of a case whose roughness rolls: its surface, its nodes and its averages."""
 
 from dataclasses import replace
 import logging

@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-From a contact case to its solution: the rough surface, the grid, the solve.
+Solution of a contact case: the rough surface, the grid, the solve.
 
 The surface never follows the grid; a grid that the case does not state follows the surface, or the
 estimated error of a smooth film.

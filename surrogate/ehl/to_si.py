@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""From a grid solution in Hertz units to the result in SI, and back for a warm start."""
+"""Conversion of a grid solution from Hertz units to SI, and back for a warm start."""
 
 from dataclasses import dataclass
 import math

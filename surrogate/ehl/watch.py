@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Who watches a solve: told of every iteration, and able to end it by an exception.
+Watcher of a solve: it sees every iteration and can end the solve by an exception.
 
 A solve is many levels deep and its results must not depend on who looks on, so the watcher is not
 an argument of each of them: it belongs to the context in which a solve is called.

@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-From friction torque to driving torque and efficiency, and the classical comparators.
+Driving torque and efficiency from the friction torque, and the classical comparators.
 
 The normal force has the arm r_m exactly, so the load contributes F L / (2 pi) and friction adds to
 it. Plain arithmetic on floats or arrays, without further imports: the lookup uses it too.

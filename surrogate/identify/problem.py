@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-What is fitted to a run: torque on the screw by its parameters, with their ranges and scales.
+Model fitted to a run: torque on the screw by its parameters, with their ranges and scales.
 
 The parasitic parts and the offset are linear with exact derivatives; viscosity and asperity
 friction act through the contacts.

@@ -105,7 +105,7 @@ def _warnings(
     if touching and contacts.tier == closed_form.TIER:
         warnings.append(
             f'{touching} of {len(run.speed)} points have an asperity share above '
-            f'{CLOSED_FORM_SHARE:g}, which the closed-form tier overstates'
+            f'{CLOSED_FORM_SHARE:g}, which the closed-form tier misjudges'
         )
     scatter = math.sqrt(found.reduced_chi_square) if found.reduced_chi_square >= 0 else 1.0
     if not EXPECTED_SCATTER[0] <= scatter <= EXPECTED_SCATTER[1]:

@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-What the comparison with the published study solves: tasks, by the figure that needs them.
+Tasks that the comparison with the published study solves, by the figure that needs them.
 
 A task is one solve: a contact, smooth or with one draw of the study's roughness, which stands
 still; the whole screw in the full tier, whose roughness rolls, or stands still for comparison; or

@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What the rows of the comparison say over speed, load and draws: means, changes, crossings."""
+"""Curves of the comparison over speed, load and draws: means, changes, crossings."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass

@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What all pictures of the comparison with the published study share: captions and axes."""
+"""Captions and axes of all pictures of the comparison with the published study."""
 
 from functools import cache
 import textwrap

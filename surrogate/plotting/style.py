@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What all pictures share: colours, style sheet, empty figures and their files."""
+"""Style of all pictures: colours, style sheet, empty figures and their files."""
 
 from collections.abc import Callable
 from pathlib import Path

@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-What every rough raceway is to a contact, and the patch of it that a contact sees.
+Interface of every rough raceway to a contact, and the patch that a contact sees.
 
 A patch is levelled over a window about the contact centre and scaled once, whatever load, speed,
 grid or domain looks at it. Heights are positive out of the material.

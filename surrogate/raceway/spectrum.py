@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-What a datasheet or a drawing knows of a roughness: Rq with its filters, the slope, the lay.
+Roughness as a datasheet or a drawing states it: Rq with its filters, the slope, the lay.
 
 Waves run from the long cut-off, above which is form, to the short one: shorter ones are absent by
 assumption, not by measurement.

@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-What a stylus instrument reads of a surface: Gaussian profile filters, Rq and Rdq of a trace.
+Readings of a stylus instrument: Gaussian profile filters, Rq and Rdq of a trace.
 
 A roughness number is that of a profile between two cut-offs, not that of an area. A plane wave of
 wave number q whose direction is at the angle t to the trace is read as one of q cos t. The stylus

@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What a balance of one ball yields: loads, motion, lost power, and the torque by two ways."""
+"""Result of the balance of one ball: loads, motion, lost power, and the torque in two ways."""
 
 from dataclasses import dataclass
 from enum import Enum

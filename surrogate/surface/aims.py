@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What is aimed at: the optimal zone of a screw, and the accuracy of a surface."""
+"""Aims: the optimal zone of a screw, and the accuracy of a surface."""
 
 RCS_LIMIT, EFFICIENCY_LIMIT = 0.01, 0.85
 """Limits of the optimal zone unless others are stated [-]."""

@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""A looked-up or solved point as the rest of the product reads it."""
+"""Looked-up or solved point as the rest of the product reads it."""
 
 from collections.abc import Mapping
 import dataclasses

@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Where the surfaces lie that come with the package."""
+"""Paths of the surfaces that come with the package."""
 
 from pathlib import Path
 

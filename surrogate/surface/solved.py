@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What a solve says of one operating point, whatever the tier: surfaces are made of these."""
+"""Solution of one operating point, whatever the tier: surfaces are made of these."""
 
 from dataclasses import dataclass
 import math

@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What the lookup tabulates once, when a surface is loaded."""
+"""Tables that the lookup makes once, when a surface is loaded."""
 
 from collections.abc import Mapping
 import math

@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-How far off in speed a surface has the limit of RCS of the optimal zone.
+Error in speed of the limit of RCS on a surface.
 
 Measured at random points that lie on the limit by the lookup: what the solver of its tier finds
 there instead, over the slope of RCS, is a change of the logarithm of the speed.

@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What a surface says of operating points: a record, a page, and a table for a table."""
+"""Answers of a surface for operating points: a record, a page, and a table for a table."""
 
 from collections.abc import Iterable
 import csv

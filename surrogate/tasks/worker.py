@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-What runs in a worker process: one task after another, and nothing that outlives its parent.
+Worker process: it runs one task after another and never outlives its parent.
 
 Light to import, so that a worker starts fast; what a task needs is imported with the task.
 

@@ -14,7 +14,6 @@ import re
 import signal
 import subprocess
 import sys
-import time
 import types
 import warnings
 
@@ -57,7 +56,7 @@ os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
 SCANNED = 81  # loads of a surface of constants
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 START, STEP = 1000 * SECOND, SECOND // 100  # [ns] of the samples of `core.motion`
-DEADLINE = 120.0  # [s] for anything that another process has to do, however busy the machine
+DEADLINE = 120.0  # [s] for the end of a process, however busy the machine
 
 
 @dataclasses.dataclass(kw_only=True)
@@ -336,8 +335,9 @@ class NodeProcess:
 
     name = '/ballscrew_monitor'
 
-    def __init__(self, domain, folder):
+    def __init__(self, domain, folder, wait_for):
         self.domain = domain
+        self.wait_for = wait_for
         paths = (str(ROOT), os.environ.get('PYTHONPATH', ''))
         self.environment = child_environment(domain)
         self.environment['PYTHONPATH'] = os.pathsep.join(filter(None, paths))
@@ -352,6 +352,7 @@ class NodeProcess:
         self.executor = SingleThreadedExecutor(context=self.context)
         self.executor.add_node(self.node)
         self.stamp = 0
+        self.publishers = ()
 
     def start(self, *arguments, **parameters):
         """
@@ -371,15 +372,16 @@ class NodeProcess:
                 command, env=self.environment, stdout=output, stderr=output
             )
 
-    def until(self, condition, what='the condition', *, deadline=DEADLINE):
-        """Spin until `condition` gives something true, and return that."""
-        end = time.monotonic() + deadline
-        while time.monotonic() < end:
-            result = condition()
-            if result:
-                return result
-            self.executor.spin_once(timeout_sec=0.02)
-        raise AssertionError(f'{what} did not come, the node said:\n{self.output.read_text()}')
+    def until(self, condition, what='the condition', **deadline):
+        """Spin, a message at a time, until `condition` gives something true; return that."""
+        try:
+            return self.wait_for(condition, what, meanwhile=self.spin, **deadline)
+        except AssertionError as late:
+            raise AssertionError(f'{late}, the node said:\n{self.output.read_text()}') from late
+
+    def spin(self):
+        """Take a message, or wait a little for one."""
+        self.executor.spin_once(timeout_sec=0.02)
 
     def now(self):
         """Return the time [ns] on the clock of the machine."""
@@ -446,12 +448,14 @@ class NodeProcess:
         """
         Return a function that publishes a speed [rad/s] and a force [N], 10 ms later each.
 
-        The stamps run ahead of the clock, so that a slow machine makes no sample stale.
+        The stamps run ahead of the clock, so that a slow machine makes no sample stale. What is
+        listened to before this call is heard from the first sample on.
 
         """
         speeds = self.node.create_publisher(JointState, speed_topic, 100)
         loads = self.node.create_publisher(WrenchStamped, load_topic, 100)
-        self.until_matched(speeds, loads)
+        self.publishers = speeds, loads
+        self.until_matched(*self.publishers)
         self.stamp = self.now() + 100 * SECOND
 
         def publish(speed, force=-1000.0, *, step=SECOND // 100, joint='x_axis'):
@@ -497,6 +501,10 @@ class NodeProcess:
     def stop(self, number=signal.SIGINT):
         """Send a signal; return the exit code."""
         self.process.send_signal(number)
+        return self.end()
+
+    def end(self):
+        """Wait until the node has ended; return the exit code."""
         return self.process.wait(DEADLINE)
 
     def close(self):
@@ -519,10 +527,18 @@ def bound_addresses():
     def find(pid):
         process = pathlib.Path('/proc', str(pid))
         mine = {f'socket:[{line[9]}]': line[1] for line in socket_lines(process)}
-        links = [opened.readlink() for opened in (process / 'fd').iterdir()]
-        return {address_of(mine[str(link)]) for link in links if str(link) in mine}
+        links = {target_of(opened) for opened in (process / 'fd').iterdir()}
+        return {address_of(column) for socket, column in mine.items() if socket in links}
 
     return find
+
+
+def target_of(link):
+    """Return what a link names; nothing if it is gone."""
+    try:
+        return os.readlink(link)
+    except FileNotFoundError:
+        return ''
 
 
 def socket_lines(process):
@@ -551,10 +567,10 @@ def quick_surface(tmp_path_factory):
 
 
 @pytest.fixture
-def node(tmp_path):
+def node(tmp_path, wait_for):
     """Make a node process that is not started yet, in a DDS domain of its own."""
     with free_domain() as domain:
-        process = NodeProcess(domain, tmp_path)
+        process = NodeProcess(domain, tmp_path, wait_for)
         try:
             yield process
         finally:

@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What a full-tier surface covers, and how fine it is."""
+"""Settings of a full-tier surface: its ranges and its nodes."""
 
 from dataclasses import dataclass
 

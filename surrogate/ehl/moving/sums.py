@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What a step of a march is measured by, and the averages over its steps and places."""
+"""Measures of a step of a march, and their averages over its steps and places."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

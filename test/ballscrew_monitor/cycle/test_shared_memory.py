@@ -10,14 +10,12 @@ from pathlib import Path
 import re
 import subprocess
 import sys
-import time
 
 from ballscrew_monitor.cycle.domain import free_domain, port
 from ballscrew_monitor.cycle.node_process import child_environment
 from ballscrew_monitor.cycle.shared_memory import files_of, remove_stale, SHARED_MEMORY, stale
 import pytest
 
-DEADLINE = 60.0  # [s]
 SEGMENT = 'fastrtps_0123456789abcdef'
 SEGMENT_NAME = re.compile(r'fast(rtps|dds)_[0-9a-f]{16}')
 PORT = f'fastrtps_port{port(7, 0) + 1}'
@@ -121,15 +119,15 @@ def two():
         yield made
 
 
-def remove_until_gone(paths, domain):
-    """Remove what is stale; another process that does the same may hold a lock for a moment."""
-    end = time.monotonic() + DEADLINE
-    while any(path.exists() for path in paths):
-        assert time.monotonic() < end, 'what a killed process left is still there'
-        remove_stale({domain})
+def test_what_a_killed_process_leaves_is_removed_and_a_living_one_keeps_its_own(two, wait_for):
+    def remove_until_gone(paths, domain):
+        """Another process that removes what is stale may hold a lock for a moment."""
+        wait_for(
+            lambda: not any(path.exists() for path in paths),
+            'the end of what a killed process left',
+            meanwhile=lambda: remove_stale({domain}),
+        )
 
-
-def test_what_a_killed_process_leaves_is_removed_and_a_living_one_keeps_its_own(two):
     (killed, left, domain), (living, kept, other) = two
     killed.kill()
     killed.wait()

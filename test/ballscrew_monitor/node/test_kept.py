@@ -75,6 +75,13 @@ class Axis:
         ]
         return [now for now, before in zip(found, [None, *found], strict=False) if now != before]
 
+    def until_level(self, part, level):
+        """Wait until a status has a level at last; return its message."""
+        last = self.node.until(
+            lambda: [one for one in self.statuses(part)[-1:] if one[0] == level], part
+        )
+        return last[0][1]
+
     def kept(self):
         """Return the row of the axis on the disk."""
         if not (self.folder / FILE).exists():
@@ -95,6 +102,8 @@ class Axis:
             return kept and (kept['event'], kept['active']) == (number, True)
 
         self.node.until(active, 'the event on the disk')
+        # Nothing that the node has said before it is killed is heard after that.
+        self.node.until(lambda: self.events[-1].active, 'the event')
 
     def log(self):
         """Return the event log."""
@@ -174,7 +183,7 @@ def test_a_directory_that_is_mounted_later_is_taken_up(axis, tmp_path):
     state = axis.move(SLOW, lambda state: state.event_id == 42, 'the number that goes on')
     assert state.totals.running_time > 7.0
     assert state.totals.since.nanosec == 1
-    axis.node.until(lambda: axis.statuses('State directory')[-1][0] == DiagnosticStatus.OK)
+    axis.until_level('State directory', DiagnosticStatus.OK)
     assert [line['kind'] for line in axis.log()] == ['node_start', 'event_begin']
 
 
@@ -185,8 +194,8 @@ def test_a_damaged_file_is_one_sentence_and_begins_anew(axis):
     axis.start()
     state = axis.move(SLOW, lambda state: state.event_id == 1, 'the event')
     assert state.totals.running_time < 7.0
-    (level, message), *rest = axis.statuses('State directory')
-    assert (level, rest) == (DiagnosticStatus.WARN, [])
+    message = axis.until_level('State directory', DiagnosticStatus.WARN)
+    assert len(axis.statuses('State directory')) == 1
     damaged = f'{path} is damaged (file is not a database), moved to state.sqlite3.aside'
     assert message == damaged
     assert path.with_suffix('.sqlite3.aside').exists()
@@ -196,7 +205,7 @@ def test_a_shelved_warning_calls_nobody_and_outlives_the_node(axis):
     plain = axis.node.listen(Bool, f'{axis.node.name}/x/plain/out_of_zone')
     axis.start(x__plain_topics='true')
     axis.move(SLOW, lambda state: state.event_id == 1, 'the event')
-    axis.node.until(lambda: axis.statuses('x: Lubrication')[-1][0] == DiagnosticStatus.WARN)
+    axis.until_level('x: Lubrication', DiagnosticStatus.WARN)
     node, ask = axis.node, {'axis': 'x', 'duration': 3600.0, 'reason': 'nut is ordered'}
     refused = node.call(ShelveAlarm, 'shelve', **ask | {'reason': ''})
     assert (refused.success, refused.until.sec) == (False, 0)
@@ -212,18 +221,18 @@ def test_a_shelved_warning_calls_nobody_and_outlives_the_node(axis):
     node.until(
         lambda: axis.events[-1].shelved and axis.events[-1].active, 'the event that says so'
     )
-    level, message = axis.statuses('x: Lubrication')[-1]
-    assert level == DiagnosticStatus.OK
+    message = axis.until_level('x: Lubrication', DiagnosticStatus.OK)
     assert message.startswith('shelved until 2')
     assert message.endswith(' UTC: nut is ordered')
     axis.kill()
     axis.start()
     state = axis.move(SLOW, lambda state: state.event_id == 2, 'the next event')
     assert (state.shelved_until, state.shelve_reason) == (answer.until, 'nut is ordered')
+    assert not node.call(ShelveAlarm, 'shelve', axis='q').success  # the new node knows us now
     assert node.call(ShelveAlarm, 'shelve', duration=0.0).message == 'no longer shelved: x'
     axis.move(SLOW, lambda state: state.event_id == 2 and not state.shelved, 'the warning')
     assert node.call(ShelveAlarm, 'shelve', duration=0.5, reason='short').success
     node.until(lambda: axis.log()[-1]['kind'] == 'unshelve', 'its end by itself')
     assert axis.log()[-1]['reason'] == 'short'
     node.until(lambda: not axis.events[-1].shelved, 'the event that says so')
-    node.until(lambda: axis.statuses('x: Lubrication')[-1][0] == DiagnosticStatus.WARN)
+    axis.until_level('x: Lubrication', DiagnosticStatus.WARN)

@@ -76,18 +76,18 @@ def replayed(folder, messages):
 
 @pytest.fixture
 def drive(node):
-    """Return the publisher of a drive that the node listens to."""
+    """Return the publisher of a drive that the node listens to, and all states."""
     node.start(**{f'x__{name}': value for name, value in PARAMETERS.items()})
     publisher = node.node.create_publisher(JointState, 'joint_states', COUNT)
+    states = node.states()
     node.until_matched(publisher, inputs=('Speed', 'Torque'))
-    return publisher
+    return publisher, states
 
 
 def test_the_node_derives_what_a_replay_derives(node, drive, tmp_path):
-    states, messages = node.states(), list(motion(node.now() + 100 * SECOND))
-    node.until(lambda: node.node.count_publishers('/ballscrew_monitor/x/state'), 'the state')
+    (publisher, states), messages = drive, list(motion(node.now() + 100 * SECOND))
     for _, message in messages:
-        drive.publish(message)
+        publisher.publish(message)
     node.until(lambda: states and states[-1].judged >= COUNT - 2, 'the last state')
     last = states[-1]
     assert last.point.axial_load_source == OperatingPoint.SOURCE_DERIVED

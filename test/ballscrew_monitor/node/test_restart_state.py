@@ -5,7 +5,7 @@
 import threading
 
 from ballscrew_monitor.core.memory import AxisRecord
-from ballscrew_monitor.node import restart_state
+from ballscrew_monitor.node import restart_state, state_database
 from ballscrew_monitor.node.restart_state import PAUSE, RestartState, RETRY, state_directory
 from ballscrew_monitor.node.state_database import FILE, read_entries, StateDatabase
 from ballscrew_monitor.node.state_records import Corrections, entry_of, Kind
@@ -31,7 +31,7 @@ def record(number, axis='x'):
 
 def kept(state):
     """Return what is on the disk: the entries, and the last event of axis x."""
-    rows = state._database._database.execute('SELECT event FROM axes WHERE axis = "x"').fetchall()
+    rows = state._database._database.execute('SELECT event FROM axes').fetchall()
     return [one.stamp_ns for one in read_entries(state.folder)], [row[0] for row in rows]
 
 
@@ -58,6 +58,10 @@ def test_what_has_not_changed_is_not_written(state):
 
 def refuse(*args):
     raise OSError(28, 'No space left on device')
+
+
+def fail(*args):
+    raise RuntimeError('surprise')
 
 
 def test_what_cannot_be_written_waits(state, monkeypatch):
@@ -96,13 +100,10 @@ def test_what_waits_is_bounded_and_the_oldest_go(state, monkeypatch):
 
 
 def test_what_fails_unexpectedly_waits_and_is_told(state, monkeypatch):
-    def fail(*_):
-        raise ValueError('surprise')
-
     state.keep(record(1), entry(1))
     with monkeypatch.context() as broken:
         broken.setattr(StateDatabase, 'write', fail)
-        assert state.flush() == f'{state.folder} cannot be written, ValueError: surprise'
+        assert state.flush() == f'{state.folder} cannot be written, RuntimeError: surprise'
     assert state.flush() == ''
     assert kept(state) == ([1], [1])
 
@@ -150,6 +151,20 @@ def test_nobody_waits_for_a_disk_that_does_not_answer(state, monkeypatch):
     state.close()
     answer.set()
     thread.join()
+    state._database.close()
+
+
+def test_what_was_left_is_read_before_anything_is_written(state, monkeypatch):
+    state.keep(record(41))
+    state.close()
+    with monkeypatch.context() as broken:
+        broken.setattr(state_database, 'set_aside', fail)
+        again = RestartState(state.folder)
+        again.keep(record(1))
+        assert again.flush() == f'{state.folder} cannot be written, RuntimeError: surprise'
+    assert again.flush() == ''
+    assert kept(again) == ([], [41])
+    again.close()
 
 
 def test_a_second_node_takes_over_when_the_first_is_gone(state):

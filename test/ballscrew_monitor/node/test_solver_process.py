@@ -7,12 +7,10 @@ from pathlib import Path
 import signal
 import subprocess
 import sys
-import time
 
 from ballscrew_monitor.node.solver_process import SolverProcess, worker_environment
 import pytest
 
-DEADLINE = 60.0  # [s]
 BAD_REQUEST = {'solve': {'point': {}}}
 
 
@@ -23,26 +21,16 @@ def make_process():
     made.kill()
 
 
-def until(found, what='a frame'):
-    """Ask until there is something; return it."""
-    end = time.monotonic() + DEADLINE
-    while time.monotonic() < end:
-        if result := found():
-            return result
-        os.sched_yield()
-    raise AssertionError(f'{what} did not come')
-
-
-def test_a_request_that_cannot_be_solved_is_a_sentence_and_the_process_goes_on(process):
+def test_a_request_that_cannot_be_solved_is_a_sentence_and_the_process_goes_on(process, wait_for):
     for _ in range(2):
         process.send(BAD_REQUEST)
-        (frame,) = until(process.frames)
+        (frame,) = wait_for(process.frames, 'a frame')
         assert frame == {'failed': "KeyError: 'header'"}
 
 
-def test_it_holds_nothing_of_ros_and_runs_nicely(process):
+def test_it_holds_nothing_of_ros_and_runs_nicely(process, wait_for):
     process.send(BAD_REQUEST)
-    until(process.frames)
+    wait_for(process.frames, 'a frame')
     maps = Path(f'/proc/{process.pid}/maps').read_text()
     assert 'numba' in maps  # the solver is loaded
     assert 'rclpy' not in maps
@@ -65,21 +53,21 @@ def test_what_the_worker_imports_is_the_offline_half_alone():
     assert not names & {'rclpy', 'ballscrew_monitor', 'ballscrew_msgs', 'matplotlib'}
 
 
-def test_a_killed_process_says_so(process):
+def test_a_killed_process_says_so(process, wait_for):
     os.kill(process.pid, signal.SIGKILL)
-    (frame,) = until(process.frames)
+    (frame,) = wait_for(process.frames, 'a frame')
     assert frame == {'lost': 'the process of the solve was killed by signal 9'}
 
 
-def test_ctrl_c_is_not_for_it(process):
+def test_ctrl_c_is_not_for_it(process, wait_for):
     process.send(BAD_REQUEST)
-    until(process.frames)
+    wait_for(process.frames, 'a frame')
     os.kill(process.pid, signal.SIGINT)
     process.send(BAD_REQUEST)
-    assert 'failed' in until(process.frames)[0]
+    assert 'failed' in wait_for(process.frames, 'a frame')[0]
 
 
-def test_it_ends_with_whoever_started_it():
+def test_it_ends_with_whoever_started_it(wait_for):
     """The parent is killed, and can clean up nothing."""
     code = (
         'from ballscrew_monitor.node.solver_process import SolverProcess\n'
@@ -99,7 +87,7 @@ def test_it_ends_with_whoever_started_it():
     assert Path(f'/proc/{worker}').exists()
     parent.kill()
     parent.wait()
-    until(lambda: not _runs(worker), 'the end of the worker')
+    wait_for(lambda: not _runs(worker), 'the end of the worker')
     parent.stdin.close()
     parent.stdout.close()
 

@@ -10,11 +10,13 @@ from std_srvs.srv import Trigger
 from surrogate.surface import shipped_surface
 
 SLOW = 0.8  # [rad/s] outside the zone at 1 kN and 40 degC
+SAMPLES = 3
 
 
 def warned(states):
-    """Tell whether the last judged state is a warning."""
-    return [state.level for state in states if state.judged][-1:] == [BallScrewState.LEVEL_WARN]
+    """Tell whether the last of all samples is judged, and is a warning."""
+    judged = [(state.judged, state.level) for state in states]
+    return judged[-1:] == [(SAMPLES, BallScrewState.LEVEL_WARN)]
 
 
 @pytest.fixture
@@ -29,7 +31,7 @@ def two(node, tmp_path):
     )
     node.heard = {axis: node.states(axis) for axis in 'xy'}
     publish = node.machine()
-    for _ in range(3):
+    for _ in range(SAMPLES):
         publish(SLOW)
     node.until(lambda: all(map(warned, node.heard.values())), 'both warnings')
     return node, publish, surface

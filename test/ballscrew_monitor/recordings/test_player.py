@@ -7,7 +7,6 @@ import signal
 import subprocess
 import sys
 import threading
-import time
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.fields import message_class, stamp_of
@@ -29,7 +28,7 @@ from sensor_msgs.msg import JointState
 from surrogate.files import InputError
 
 ROOT = Path(__file__).resolve().parents[3]
-DEADLINE = 60.0  # [s]
+DEADLINE = 120.0  # [s]
 QOS = QoSProfile(depth=2000, reliability=QoSReliabilityPolicy.RELIABLE)
 CLOCK_QOS = QoSProfile(depth=2000, reliability=QoSReliabilityPolicy.BEST_EFFORT)
 
@@ -37,7 +36,8 @@ CLOCK_QOS = QoSProfile(depth=2000, reliability=QoSReliabilityPolicy.BEST_EFFORT)
 class Listener:
     """A subscriber of everything that the player sends, in this process."""
 
-    def __init__(self, domain, topics):
+    def __init__(self, domain, topics, wait_for):
+        self._wait_for = wait_for
         self.received = {topic: [] for topic in topics}
         self.clock = []
         self.order = []  # what came, in the order of its coming
@@ -56,10 +56,10 @@ class Listener:
         self.clock.append(message.clock.sec * 10**9 + message.clock.nanosec)
 
     def until(self, condition, what):
-        deadline = time.monotonic() + DEADLINE
-        while not condition():
-            assert time.monotonic() < deadline, what
-            self._executor.spin_once(timeout_sec=0.05)
+        self._wait_for(condition, what, meanwhile=self.spin)
+
+    def spin(self):
+        self._executor.spin_once(timeout_sec=0.05)
 
     def close(self):
         self._executor.shutdown()
@@ -77,9 +77,9 @@ def domain(monkeypatch):
 
 
 @pytest.fixture
-def listener(domain, short_bag):
+def listener(domain, short_bag, wait_for):
     """Return a listener to the topics of the short bag."""
-    made = Listener(domain, Bag(short_bag).topics)
+    made = Listener(domain, Bag(short_bag).topics, wait_for)
     yield made
     made.close()
 

@@ -1,8 +1,11 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Judged columns as a recording would give them, without a recording."""
+"""Judged columns as a recording would give them, without a recording, and a real browser."""
 
 import dataclasses
+import functools
+import shutil
+import subprocess
 import types
 
 from ballscrew_monitor.core.conversions import Direction, SECOND
@@ -22,6 +25,35 @@ from surrogate.surface import Regime
 
 BEGIN = 1_767_600_000 * SECOND
 """First stamp of what is made here [ns]."""
+BROWSERS = ('chromium', 'chromium-browser', 'google-chrome')
+
+
+@pytest.fixture
+def browse(tmp_path):
+    """Return what lets a browser without a window open a page, and gives what it prints."""
+    found = next(filter(None, map(shutil.which, BROWSERS)), None)
+    if found is None:
+        pytest.skip('no chromium to open the page in, install the package of that name')
+    return functools.partial(_browse, found, tmp_path / 'profile')
+
+
+def _browse(browser, profile, page, *options):
+    return subprocess.run(
+        [
+            browser,
+            '--headless',
+            '--no-sandbox',
+            '--disable-gpu',
+            f'--user-data-dir={profile}',
+            '--virtual-time-budget=8000',
+            *options,
+            page.as_uri(),
+        ],
+        check=True,
+        capture_output=True,
+        text=True,
+        timeout=120,
+    ).stdout
 
 
 def make_columns(begin=0, count=100, *, rate=100.0, axis='x', **changes):

@@ -3,10 +3,7 @@
 """The page in a browser: charts are drawn, nothing fails, hostile names stay text, it prints."""
 
 import html
-from pathlib import Path
 import re
-import shutil
-import subprocess
 
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.report.case import LogCase
@@ -14,31 +11,7 @@ from ballscrew_monitor.report.log_page import report_page
 from ballscrew_monitor.report.page import CHARTS
 import pytest
 
-BROWSER = (
-    shutil.which('chromium') or shutil.which('chromium-browser') or shutil.which('google-chrome')
-)
 HOSTILE = '</script><script>document.body.dataset.errors = 1</script><img src=x onerror=alert(1)>'
-browser = pytest.mark.skipif(BROWSER is None, reason='no chromium to open the page in')
-
-
-def browse(page, profile, *options):
-    """Let a browser without a window open a page; return what it prints."""
-    return subprocess.run(
-        [
-            BROWSER,
-            '--headless',
-            '--no-sandbox',
-            '--disable-gpu',
-            f'--user-data-dir={profile}',
-            '--virtual-time-budget=8000',
-            *options,
-            Path(page).as_uri(),
-        ],
-        check=True,
-        capture_output=True,
-        text=True,
-        timeout=120,
-    ).stdout
 
 
 @pytest.fixture
@@ -110,9 +83,8 @@ def test_tables_are_cut_and_say_so(judged):
     assert text.count('<tr data-begin') + text.count('<tr class="bad" data-begin') == 1000
 
 
-@browser
-def test_charts_are_drawn_without_an_error(written, tmp_path):
-    dom = browse(written[0], tmp_path / 'profile', '--dump-dom')
+def test_charts_are_drawn_without_an_error(written, browse):
+    dom = browse(written[0], '--dump-dom')
     body = re.search(r'<body[^>]*>', dom)[0]
     assert 'data-ready="true"' in body
     assert 'data-errors=""' in body
@@ -121,8 +93,7 @@ def test_charts_are_drawn_without_an_error(written, tmp_path):
     assert 'every sample around the worst warning.' in dom
 
 
-@browser
-def test_a_click_on_a_warning_leads_to_it_and_one_on_a_head_sorts(judged, tmp_path):
+def test_a_click_on_a_warning_leads_to_it_and_one_on_a_head_sorts(judged, tmp_path, browse):
     events = [judged.event(1, 10.0, 2.0), judged.event(2, 50.0, 5.0)]
     case = judged.case([judged.columns(count=20_000)], events)
     text = report_page(LogCase(name='log', parameters='', axes=[case]))
@@ -138,9 +109,9 @@ def test_a_click_on_a_warning_leads_to_it_and_one_on_a_head_sorts(judged, tmp_pa
         if not held:
             page = re.sub(r'<meta http-equiv="Content-Security-Policy"[^>]*>', '', page)
         (tmp_path / name).write_text(page)
-    held = browse(tmp_path / 'held.html', tmp_path / 'profile', '--dump-dom')
+    held = browse(tmp_path / 'held.html', '--dump-dom')
     assert 'Shown: 0.0 s to 3:20.0' in held
-    dom = browse(tmp_path / 'open.html', tmp_path / 'profile', '--dump-dom')
+    dom = browse(tmp_path / 'open.html', '--dump-dom')
     # Its row shows 49 to 56 s; half of that after one step in.
     assert 'Shown: 50.750 s to 54.250 s' in dom
     assert 'data-errors=""' in re.search(r'<body[^>]*>', dom)[0]
@@ -148,20 +119,18 @@ def test_a_click_on_a_warning_leads_to_it_and_one_on_a_head_sorts(judged, tmp_pa
     assert [float(begin) for begin in rows] == [49.0, 9.0]
 
 
-@browser
-def test_a_table_that_is_wider_than_the_screen_says_that_it_scrolls(written, tmp_path):
+def test_a_table_that_is_wider_than_the_screen_says_that_it_scrolls(written, browse):
     def told(width):
         window = f'--window-size={width},900'
-        return browse(written[0], tmp_path / 'profile', '--dump-dom', window).count('wide cut')
+        return browse(written[0], '--dump-dom', window).count('wide cut')
 
     assert told(500)
     assert not told(1200)
 
 
-@browser
-def test_it_prints(written, tmp_path):
+def test_it_prints(written, tmp_path, browse):
     paper = tmp_path / 'report.pdf'
-    browse(written[0], tmp_path / 'profile', f'--print-to-pdf={paper}')
+    browse(written[0], f'--print-to-pdf={paper}')
     assert paper.read_bytes().startswith(b'%PDF')
 
 

@@ -118,6 +118,14 @@ def test_a_law_without_scatter_has_no_deviation():
     assert many > contact_at(0.7 * ONSET).rcs_deviation > 0
 
 
+@given(over=st.floats(0.3, 3.0), deviation=st.floats(0.0, 0.5))
+def test_the_deviation_of_rcs_is_that_between_half_a_deviation_slower_and_faster(over, deviation):
+    """An onset that is higher by a factor is a speed that is lower by it."""
+    law, speed = replace(LAW, deviation=deviation), over * ONSET
+    slower, faster = (contact_at(speed * math.exp(side * deviation)).rcs for side in (-0.5, 0.5))
+    assert contact_at(speed, law=law).rcs_deviation == pytest.approx(slower - faster, abs=1e-12)
+
+
 def test_the_ratio_goes_with_the_cube_root_of_the_floor():
     """Eight times the floor doubles the film at the onset, which comes at a higher speed."""
     assert float(LAW.ratio(FLOOR, 0.9e9)) == 1.5

@@ -19,7 +19,7 @@ from surrogate.files import InputError
 from surrogate.parameters import DATA
 import yaml
 
-PAGE = Path(__file__).parents[3] / 'docs' / 'guide' / 'one_contact.md'
+PAGE = Path(__file__).parents[3] / 'docs' / 'reference' / 'contact.md'
 CASES = sorted(path.stem for path in (DATA / 'cases').glob('*.yaml'))
 SMALLEST = {
     'radius_x_mm': 2.5888,

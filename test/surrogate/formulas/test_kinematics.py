@@ -76,6 +76,23 @@ def test_slip_at_the_centre_is_the_helical_slip_and_the_curvature_offset(screw):
     assert slip_arm(screw, 'screw', 0.0, 0.0, 3e-4) > rates.helical_slip
 
 
+@pytest.mark.parametrize('side', ['screw', 'nut'])
+def test_curvature_slip_carries_a_free_ball_neither_on_nor_back(screw, side):
+    """Along the track its mean under Hertz pressure vanishes: where spin cancels helical slip."""
+    rates, semi_axis = no_slip_rates(screw), 3e-4
+    nodes, weights = np.polynomial.legendre.leggauss(20)
+    y = semi_axis * nodes
+    there, mirrored = slip_arm(
+        screw, side, rates.helical_slip / rates.spin, np.array([y, -y]), semi_axis
+    )
+    curvature = (there**2 - mirrored**2) / (
+        4 * rates.spin * y
+    )  # the even part of spin + curvature
+    pressure = weights * (1 - nodes**2)
+    assert pressure @ np.abs(curvature) > 1e-3 * rates.spin * semi_axis
+    assert pressure @ curvature == pytest.approx(0.0, abs=1e-9 * (pressure @ np.abs(curvature)))
+
+
 def test_helical_slip_is_two_percent_of_the_entrainment(screw):
     """The unavoidable sideways slip is 1.9 % of the entrainment, at every speed."""
     rates = no_slip_rates(screw)

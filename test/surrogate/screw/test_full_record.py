@@ -225,8 +225,8 @@ def test_normal_forces_are_those_of_the_solve():
 
 
 def test_the_page_lists_every_key():
-    """The guide has the keys of both tiers, with a star on those of the full one alone."""
-    page = Path(__file__).parents[3] / 'docs' / 'guide' / 'operating_point.md'
+    """The reference has the keys of both tiers, with a star on those of the full one alone."""
+    page = Path(__file__).parents[3] / 'docs' / 'reference' / 'point.md'
     table = page.read_text(encoding='utf-8').split('## Keys of `--json`')[1].split('## ')[0]
     (own,) = (line for line in table.splitlines() if line.startswith('| `contacts`'))
     point, found = record(60, 800.0)

@@ -263,7 +263,8 @@ def test_a_newer_solve_beside_a_node_replaces_both_sides_of_the_older():
         ((math.nan, 1000.0, 313.0), {'rcs': 0.1}, 'no answer: SPEED_BELOW_RANGE'),
         ((62.8, 0.0, 313.0), {'rcs': 0.1}, 'lies at 0 % of the width of its cell .* 1 % or more'),
         ((62.8, 1000.0, 313.0), {}, 'not converged: it has no numbers'),
-        ((62.8, 1000.0, 313.0), {'rcs': 1.5}, 'rcs is 1.5, allowed is 0 to 1'),
+        ((62.8, 1000.0, 313.0), {'rcs': 1.01}, 'rcs is 1.01, allowed is 0 to 1'),
+        ((62.8, -1e-4, 313.0), {'rcs': 0.1}, '% of the width of its cell .* 1 % or more'),
         ((62.8, 1000.0, 313.0), {'friction_torque': 0.0}, 'friction_torque is 0, allowed is fin'),
         ((62.8, 1000.0, 313.0), {'max_pressure': math.inf}, 'max_pressure is inf, allowed is'),
         (

@@ -50,6 +50,32 @@ def test_straight_lines_are_exact_and_nodes_are_hit():
         assert interpolate(nodes, values, node) == value
 
 
+@pytest.mark.parametrize('scale', [1e-3, -1e-3, 1.0, 1e3])
+def test_slopes_are_those_of_fritsch_and_butland(scale):
+    """
+    Closed forms: within, the weighted harmonic mean of two secants or 0 at an extremum.
+
+    At an end three points, exact for a parabola, but at most three secants, and never against one.
+
+    """
+    nodes = np.array([1.0, 2.0, 4.0, 5.0])
+    found = monotone_slopes(nodes, scale * nodes**2)
+    assert found[[0, -1]] == pytest.approx(scale * np.array([2.0, 10.0]))
+    # Widths 1, 2, 1 and secants 3, 6, 9.
+    expected = [9 / (5 / 3 + 4 / 6), 9 / (4 / 6 + 5 / 9)]
+    assert found[1:-1] == pytest.approx(scale * np.array(expected))
+    even = np.array([0.0, 1.0, 2.0])
+    for rises, slopes in (
+        ((1.0, -10.0), (3.0, 0.0, -15.5)),
+        ((10.0, -1.0), (15.5, 0.0, -3.0)),
+        ((1.0, 10.0), (0.0, 20 / 11, 14.5)),
+        ((0.0, 2.0), (0.0, 0.0, 3.0)),
+        ((2.0, -2.0), (4.0, 0.0, -4.0)),
+    ):
+        values = scale * np.concatenate([[0.0], np.cumsum(rises)])
+        assert monotone_slopes(even, values) == pytest.approx(scale * np.array(slopes))
+
+
 def test_smooth_monotone_data_converge_at_second_order_or_better():
     """Halving the cells of exp(x) cuts the error by more than four."""
 

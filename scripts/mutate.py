@@ -1,0 +1,194 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Mutation of the sources: a seeded sample of small changes, each of which some test has to notice.
+
+A mutant is run by the tests that mirror its file, in a process forked for it, with the compiler
+off; the tree is never touched. Of all sampled mutants at least 90 % must be caught. What changes
+nothing that can be seen is listed with its reason in test/data/equivalent_mutants.txt.
+
+"""
+
+import os
+
+os.environ |= {'NUMBA_DISABLE_JIT': '1', 'HYPOTHESIS_PROFILE': 'mutate'}
+
+import argparse  # noqa: E402  the compiler is off before anything is imported
+import ast  # noqa: E402
+from collections.abc import Iterator  # noqa: E402
+from importlib.machinery import SourceFileLoader  # noqa: E402
+from pathlib import Path  # noqa: E402
+import random  # noqa: E402
+import signal  # noqa: E402
+import sys  # noqa: E402
+import time  # noqa: E402
+from typing import Any, NamedTuple  # noqa: E402
+
+TREE = Path(__file__).resolve().parent.parent
+ROOMS = ('ballscrew_monitor/judge', 'surrogate/surface', 'surrogate/screw')
+EQUIVALENT = TREE / 'test' / 'data' / 'equivalent_mutants.txt'
+ENOUGH = 0.9  # part of the mutants that must be caught
+PATIENCE = 30.0, 5.0  # [s] for a run, and that many times what the tests take without a mutant
+SWAPS: dict[type, type] = {
+    ast.Add: ast.Sub,
+    ast.Sub: ast.Add,
+    ast.Mult: ast.Div,
+    ast.Div: ast.Mult,
+    ast.FloorDiv: ast.Mult,
+    ast.Mod: ast.Mult,
+    ast.Pow: ast.Mult,
+    ast.Lt: ast.LtE,
+    ast.LtE: ast.Lt,
+    ast.Gt: ast.GtE,
+    ast.GtE: ast.Gt,
+    ast.Eq: ast.NotEq,
+    ast.NotEq: ast.Eq,
+    ast.Is: ast.IsNot,
+    ast.IsNot: ast.Is,
+    ast.In: ast.NotIn,
+    ast.NotIn: ast.In,
+    ast.And: ast.Or,
+    ast.Or: ast.And,
+}
+
+
+class Mutant(NamedTuple):
+    """A change of a file: where, what is there, and what it becomes."""
+
+    path: str
+    function: str
+    begin: int  # [B] of the file
+    end: int
+    before: str
+    after: str
+
+    @property
+    def name(self) -> str:
+        """Return what names it in the list of equivalents, wherever its line moves."""
+        return f'{self.path} {self.function}: {self.before} -> {self.after}'
+
+
+def changed(node: ast.AST) -> ast.AST | None:
+    """Return what a node becomes, or None if it stays."""
+    swap = SWAPS.get(type(getattr(node, 'op', None)))
+    match node:
+        case ast.BinOp(left, _, right) if swap:
+            return ast.BinOp(left, swap(), right)
+        case ast.BoolOp(_, values) if swap:
+            return ast.BoolOp(swap(), values)
+        case ast.Compare(left, [first, *rest], others) if type(first) in SWAPS:
+            return ast.Compare(left, [SWAPS[type(first)](), *rest], others)
+        case ast.UnaryOp(ast.USub() | ast.Not(), operand):
+            return operand
+        case ast.Constant(bool() as value):
+            return ast.Constant(not value)
+        case ast.Constant(int() | float() as value):
+            return ast.Constant(value + 1 if isinstance(value, int) else 1.25 * value or 1.0)
+    return None
+
+
+def nodes(node: ast.AST, function: str = '') -> Iterator[tuple[str, ast.AST]]:
+    """Yield what can be changed with its function: no annotation, decorator or raised sentence."""
+    if isinstance(node, ast.Raise | ast.Assert | ast.JoinedStr):
+        return
+    if isinstance(node, ast.FunctionDef | ast.ClassDef):
+        function = f'{function}.{node.name}'.strip('.')
+    yield function, node
+    left_out = {'annotation', 'returns', 'decorator_list', 'type_params'}
+    for field, value in ast.iter_fields(node):
+        for child in value if isinstance(value, list) else [value]:
+            if isinstance(child, ast.AST) and field not in left_out:
+                yield from nodes(child, function)
+
+
+def mutants(path: Path) -> Iterator[Mutant]:
+    """Yield all mutants of a file."""
+    content = path.read_bytes()
+    starts = [0]
+    for line in content.splitlines(keepends=True):
+        starts.append(starts[-1] + len(line))
+    for function, node in nodes(ast.parse(content)):
+        after = changed(node)
+        if after is not None and isinstance(node, ast.expr):
+            begin = starts[node.lineno - 1] + node.col_offset
+            end = starts[(node.end_lineno or 0) - 1] + (node.end_col_offset or 0)
+            texts = ast.unparse(node), f'({ast.unparse(after)})'
+            yield Mutant(str(path.relative_to(TREE)), function, begin, end, *texts)
+
+
+def mirror(path: str) -> Path | None:
+    """Return the file of the tests of a source, if there is one."""
+    found = TREE / 'test' / Path(path).with_name(f'test_{Path(path).name}')
+    return found if found.exists() else None
+
+
+def substitute(mutant: Mutant) -> None:
+    """Have the file of a mutant imported as it is with the change, whatever is cached of it."""
+    target = TREE / mutant.path
+    content = target.read_bytes()
+    content = content[: mutant.begin] + mutant.after.encode() + content[mutant.end :]
+    original = SourceFileLoader.get_code
+
+    def get_code(loader: SourceFileLoader, name: str) -> Any:
+        if Path(loader.path) == target:
+            return compile(content, str(target), 'exec', dont_inherit=True)
+        return original(loader, name)
+
+    SourceFileLoader.get_code = get_code  # type: ignore[assignment, method-assign]
+
+
+def passes(tests: Path, mutant: Mutant | None, limit: float) -> bool:
+    """Tell whether the tests pass within `limit` [s] in a process of their own."""
+    process = os.fork()
+    if process == 0:
+        import pytest
+
+        signal.alarm(round(limit))  # which kills
+        for stream in (1, 2):
+            os.dup2(os.open(os.devnull, os.O_WRONLY), stream)
+        if mutant:
+            substitute(mutant)
+        options = ['-x', '-q', '-p', 'no:cacheprovider', '-p', 'no:xdist', '-p', 'no:randomly']
+        os._exit(int(pytest.main([*options, str(tests)])))
+    return os.waitpid(process, 0)[1] == 0
+
+
+def main() -> int:
+    """Run a sample of mutants; return 0 if enough of them are caught."""
+    parser = argparse.ArgumentParser(description=(__doc__ or '').strip().splitlines()[0])
+    parser.add_argument('paths', nargs='*', default=ROOMS, help='files or folders')
+    parser.add_argument('--sample', type=int, default=100, help='how many mutants')
+    parser.add_argument('--seed', type=int, default=1)
+    asked = parser.parse_args()
+    import numba  # noqa: F401  once, and not in each process
+    import scipy.optimize  # noqa: F401
+
+    sys.path.insert(0, str(TREE))
+    folders = [TREE / path for path in asked.paths]
+    files = [path for one in folders for path in ([one] if one.is_file() else one.glob('*.py'))]
+    lines = EQUIVALENT.read_text().splitlines()
+    equivalent = {line.partition('  # ')[0] for line in lines}
+    found = [one for path in sorted(files) for one in mutants(path) if mirror(str(one.path))]
+    found = [one for one in found if one.name not in equivalent]
+    chosen = random.Random(asked.seed).sample(found, min(asked.sample, len(found)))
+    limits: dict[Path, float] = {}
+    caught = 0
+    for number, mutant in enumerate(sorted(chosen), start=1):
+        tests = mirror(mutant.path)
+        assert tests is not None
+        if tests not in limits:
+            begin = time.monotonic()
+            if not passes(tests, None, 3600.0):
+                print(f'{tests.relative_to(TREE)} fails without any mutant', file=sys.stderr)
+                return 2
+            limits[tests] = PATIENCE[0] + PATIENCE[1] * (time.monotonic() - begin)
+        if passes(tests, mutant, limits[tests]):
+            print(f'{number} of {len(chosen)}, nothing notices: {mutant.name}', flush=True)
+        else:
+            caught += 1
+    print(f'{caught} of {len(chosen)} mutants caught, out of {len(found)} (seed {asked.seed})')
+    return 0 if caught >= ENOUGH * len(chosen) else 1
+
+
+if __name__ == '__main__':
+    sys.exit(main())
