@@ -20,7 +20,6 @@ from surrogate.surface.found import (
     on_face,
     onset_on_face,
     pulled,
-    slope_on_face,
     TORQUE,
     width_of,
 )
@@ -132,6 +131,6 @@ def remember(tables: SurfaceTables, at: int, i: int, row: int, k: int, heat: flo
     face: Face = patch_weights(load_weights(tables, i), across)
     corner = (row * tables.rows + tables.load_rows[tables.scan_cells[i]]) * heats + k
     corner = corner * WIDTH + TORQUE
-    tables.scan_values[2 * at] = on_face(tables.values, corner, heats * WIDTH, face)
-    tables.scan_values[2 * at + 1] = slope_on_face(tables.values, corner + 8, heats * WIDTH, face)
+    value, slope = on_face(tables.values, corner, heats * WIDTH, face)
+    tables.scan_values[2 * at], tables.scan_values[2 * at + 1] = value, slope
     tables.scan_filled[at] = True
