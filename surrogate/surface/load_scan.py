@@ -55,7 +55,7 @@ def is_inside(tables: SurfaceTables, speed: float, temperature: float) -> bool:
 def scan_part(
     tables: SurfaceTables, speed: float, temperature: float, begin: int, end: int
 ) -> int:
-    """Fill in the driving torques from a place of the scan to another; see `scan`."""
+    """Fill in driving torques between places of the scan at |w| [rad/s] and [K]; see `scan`."""
     heats = tables.heat_nodes
     k = cell_below(heats, temperature)
     w = fraction_of(heats, k, temperature)
