@@ -7,8 +7,8 @@ The axial load that a motor torque states: inertia is taken off, the surface is 
 
 The driving torque of a surface holds the friction of the nuts and the parasitic torque of its
 datasheet, so drag is not taken off a second time. It rises with the load but for a few newtons
-about the idle load of a nut, so all loads of the surface are scanned, and the first and the last
-crossing are refined. No clock. In the subset of Python that also compiles.
+about the idle load of a nut, so all loads that the torque may state are scanned, and the first and
+the last crossing are refined. No clock. In the subset of Python that also compiles.
 
 """
 
@@ -17,7 +17,15 @@ import math
 from typing import Any
 
 from ballscrew_monitor.judge.records import Settings
-from surrogate.surface import Found, look_up, look_up_rest, scan, SurfaceTables
+from surrogate.surface import (
+    Found,
+    is_inside,
+    look_up,
+    look_up_rest,
+    scan,
+    scan_part,
+    SurfaceTables,
+)
 from surrogate.units import TURN
 
 NAN = math.nan
@@ -123,25 +131,13 @@ def solve(
 
     """
     loads, torques = tables.scan_loads, tables.scan_torques
-    if scan(tables, speed, temperature) == 0:
-        validity = look_up(tables, speed, loads[len(loads) // 2], temperature, scratch)
-        validity = NO_ANSWER if validity == VALID else validity
-        no_load(found, validity, NO_NUMBER, NAN, NAN, NAN)
+    begin, end = part_of(tables, speed, temperature, driving, margin)
+    first, last, gap = crossings(torques, driving, begin, end)
+    if gap:
+        no_load(found, NO_ANSWER, NO_NUMBER, NAN, NAN, NAN)
         return
-    begin, first, last, before = -1, -1, -1, -1
-    for i in range(len(loads)):
-        if math.isnan(torques[i]):
-            continue
-        begin = i if begin < 0 else begin
-        if before >= 0 and (torques[i] - driving > 0.0) != (torques[before] - driving > 0.0):
-            if i - before > 1:
-                no_load(found, NO_ANSWER, NO_NUMBER, NAN, NAN, NAN)
-                return
-            first = before if first < 0 else first
-            last = before
-        before = i
     if first < 0:
-        no_load(found, OUTSIDE_LOADS, OUTSIDE, driving, loads[begin], loads[before])
+        nothing_crosses(tables, speed, temperature, driving, scratch, found)
         return
     low = root(tables, speed, temperature, driving, first, scratch)
     high = low if last == first else root(tables, speed, temperature, driving, last, scratch)
@@ -160,11 +156,92 @@ def solve(
     margin += stated + (error if math.isfinite(error) else 0.0)
     no_load(found, VALID, DERIVED_OK, NAN, NAN, NAN)
     found.axial_load = load
-    found.uncertainty = reach_of(loads, torques, driving, load, margin, per_newton)
+    found.uncertainty = reach_of(loads, torques, begin, end, driving, load, margin, per_newton)
+
+
+def part_of(
+    tables: SurfaceTables, speed: float, temperature: float, driving: float, margin: float
+) -> tuple[int, int]:
+    """
+    Scan the loads whose torque may be the driving one within the margin; return their places.
+
+    Speed |w| [rad/s], temperature [K], torques [N m]. A known torque stands at either side, unless
+    there is none: beyond it all torques are on the same side of the margin.
+
+    """
+    loads = tables.scan_loads
+    if not is_inside(tables, speed, temperature):
+        return 0, 0
+    per_newton, reach = tables.lead / TURN, margin + tables.torque_error
+    begin, end = 0, len(loads)
+    while begin < end and loads[begin] * per_newton + tables.torque_high < driving - reach:
+        begin += 1
+    while end > begin and loads[end - 1] * per_newton + tables.torque_low > driving + reach:
+        end -= 1
+    scan_part(tables, speed, temperature, begin, end)
+    known = False
+    while begin > 0 and not known:
+        begin -= 1
+        known = scan_part(tables, speed, temperature, begin, begin + 1) > 0
+    known = False
+    while end < len(loads) and not known:
+        end += 1
+        known = scan_part(tables, speed, temperature, end - 1, end) > 0
+    return begin, end
+
+
+def crossings(torques: Any, driving: float, begin: int, end: int) -> tuple[int, int, bool]:
+    """
+    Return the places before the first and the last crossing of the driving torque [N m].
+
+    -1 without one; and whether a torque that is not known lies within a crossing.
+
+    """
+    first, last, before = -1, -1, -1
+    for i in range(begin, end):
+        if math.isnan(torques[i]):
+            continue
+        if before >= 0 and (torques[i] - driving > 0.0) != (torques[before] - driving > 0.0):
+            if i - before > 1:
+                return first, last, True
+            first = before if first < 0 else first
+            last = before
+        before = i
+    return first, last, False
+
+
+def nothing_crosses(
+    tables: SurfaceTables,
+    speed: float,
+    temperature: float,
+    driving: float,
+    scratch: Found,
+    found: Derived,
+) -> None:
+    """Say why no load has a driving torque [N m] at a speed |w| [rad/s] and temperature [K]."""
+    loads, torques = tables.scan_loads, tables.scan_torques
+    if scan(tables, speed, temperature) == 0:
+        validity = look_up(tables, speed, loads[len(loads) // 2], temperature, scratch)
+        validity = NO_ANSWER if validity == VALID else validity
+        no_load(found, validity, NO_NUMBER, NAN, NAN, NAN)
+        return
+    begin, end = 0, len(loads) - 1
+    while math.isnan(torques[begin]):
+        begin += 1
+    while math.isnan(torques[end]):
+        end -= 1
+    no_load(found, OUTSIDE_LOADS, OUTSIDE, driving, loads[begin], loads[end])
 
 
 def reach_of(
-    loads: Any, torques: Any, driving: float, load: float, margin: float, per_newton: float
+    loads: Any,
+    torques: Any,
+    begin: int,
+    end: int,
+    driving: float,
+    load: float,
+    margin: float,
+    per_newton: float,
 ) -> float:
     """
     Return how far from `load` [N] a load may lie whose torque the margin cannot tell apart.
@@ -174,7 +251,7 @@ def reach_of(
 
     """
     reach, before = 0.0, -1
-    for i in range(len(loads)):
+    for i in range(begin, end):
         excess = torques[i] - driving
         if math.isnan(excess):
             continue

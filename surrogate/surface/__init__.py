@@ -13,7 +13,7 @@ from surrogate.surface.correction import Correction, HasOperatingPoint
 from surrogate.surface.fields import FIELDS
 from surrogate.surface.file import SurfaceError
 from surrogate.surface.found import Found, leave, look_up, look_up_rest
-from surrogate.surface.load_scan import scan
+from surrogate.surface.load_scan import is_inside, scan, scan_part
 from surrogate.surface.lookup import Surface
 from surrogate.surface.point import solved_point, SurfacePoint, Validity
 from surrogate.surface.regime import FILM_RATIO_LIMITS, Regime, regime_of, REGIMES
@@ -29,12 +29,14 @@ __all__ = [
     'Found',
     'find_surface',
     'HasOperatingPoint',
+    'is_inside',
     'leave',
     'LIGHT_LOAD',
     'look_up',
     'look_up_many',
     'look_up_rest',
     'scan',
+    'scan_part',
     'SurfaceTables',
     'RCS_LIMIT',
     'Regime',

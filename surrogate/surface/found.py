@@ -275,20 +275,21 @@ def field(
     a, da, b, db = fast
     across *= WIDTH
     low = WIDTH * node + name
-    high = low + along * across
-    return (
-        a * on_face(values, low, across, face)
-        + da * slope_on_face(values, low + 8, across, face)
-        + b * on_face(values, high, across, face)
-        + db * slope_on_face(values, high + 8, across, face)
-    )
+    value, slope = on_face(values, low, across, face)
+    other, other_slope = on_face(values, low + along * across, across, face)
+    return a * value + da * slope + b * other + db * other_slope
 
 
-def on_face(values: Any, i: int, across: int, face: Face) -> float:
-    """Interpolate one field on a face, out of its values and slopes at four corners."""
+def on_face(values: Any, i: int, across: int, face: Face) -> tuple[float, float]:
+    """
+    Interpolate one field on a face, out of its values and slopes at four corners.
+
+    Return it and its slope along the speed, whose own slopes count as zero.
+
+    """
     c0, dl0, dt0, c1, dl1, dt1, c2, dl2, dt2, c3, dl3, dt3 = face
     j = i + across
-    return (  # type: ignore[no-any-return]
+    return (
         c0 * values[i]
         + dl0 * values[i + 16]
         + dt0 * values[i + 24]
@@ -300,18 +301,8 @@ def on_face(values: Any, i: int, across: int, face: Face) -> float:
         + dt2 * values[j + 24]
         + c3 * values[j + 32]
         + dl3 * values[j + 48]
-        + dt3 * values[j + 56]
-    )
-
-
-def slope_on_face(values: Any, i: int, across: int, face: Face) -> float:
-    """Interpolate a slope along the speed on a face; its own slopes count as zero."""
-    j = i + across
-    return (  # type: ignore[no-any-return]
-        face[0] * values[i]
-        + face[3] * values[i + 32]
-        + face[6] * values[j]
-        + face[9] * values[j + 32]
+        + dt3 * values[j + 56],
+        c0 * values[i + 8] + c1 * values[i + 40] + c2 * values[j + 8] + c3 * values[j + 40],
     )
 
 

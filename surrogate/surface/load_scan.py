@@ -10,7 +10,6 @@ temperature changes.
 """
 
 import math
-from typing import Any
 
 from surrogate.formulas.torque import driving_torque
 from surrogate.surface.found import (
@@ -21,7 +20,6 @@ from surrogate.surface.found import (
     on_face,
     onset_on_face,
     pulled,
-    slope_on_face,
     TORQUE,
     width_of,
 )
@@ -38,72 +36,77 @@ def scan(tables: SurfaceTables, speed: float, temperature: float) -> int:
     Speed |w| [rad/s], temperature [K]; a torque [N m] is NaN where a lookup has no answer.
 
     """
-    torques, count = tables.scan_torques, len(tables.scan_loads)
-    if not (
-        tables.speed_low <= speed <= tables.speed_high
-        and tables.temperature_low <= temperature <= tables.temperature_high
-    ):
-        for i in range(count):
+    torques = tables.scan_torques
+    if not is_inside(tables, speed, temperature):
+        for i in range(len(torques)):
             torques[i] = NAN
         return 0
-    k = cell_below(tables.heat_nodes, temperature)
-    heat = fraction_of(tables.heat_nodes, k, temperature)
-    turn_to(tables, k, heat)
+    return scan_part(tables, speed, temperature, 0, len(torques))
+
+
+def is_inside(tables: SurfaceTables, speed: float, temperature: float) -> bool:
+    """Tell whether the surface covers a speed |w| [rad/s] and a temperature [K]."""
+    return bool(
+        tables.speed_low <= speed <= tables.speed_high
+        and tables.temperature_low <= temperature <= tables.temperature_high
+    )
+
+
+def scan_part(
+    tables: SurfaceTables, speed: float, temperature: float, begin: int, end: int
+) -> int:
+    """Fill in driving torques between places of the scan at |w| [rad/s] and [K]; see `scan`."""
+    heats = tables.heat_nodes
+    k = cell_below(heats, temperature)
+    w = fraction_of(heats, k, temperature)
+    if tables.scan_key[0] != k or tables.scan_key[1] != w:
+        turn_to(tables, k, w)
     nodes, onsets, values = tables.speed_nodes, tables.scan_onset, tables.scan_values
+    loads, cells, torques = tables.scan_loads, tables.scan_cells, tables.scan_torques
+    filled, of_cell, is_open = tables.scan_filled, tables.pull_of_cell, tables.open_cells
     low, high, last, log_speed = nodes[0], nodes[-1], len(nodes) - 2, math.log(speed)
-    cell, known = 0, 0
-    for i in range(count):
-        s = log_speed - onsets[i]
+    load_cells, heat_cells, lead = len(tables.load_nodes) - 1, len(heats) - 1, tables.lead
+    i, known = -1, 0
+    for place in range(begin, end):
+        s = log_speed - onsets[place]
         inside = min(max(s, low), high)
-        while cell > 0 and inside < nodes[cell]:
-            cell -= 1
-        while cell < last and inside >= nodes[cell + 1]:
-            cell += 1
-        if not (abs(inside - s) < ROUNDING and is_open(tables, cell, i, k)):
-            torques[i] = NAN
+        if i < 0:
+            i = cell_below(nodes, inside)
+        while i > 0 and inside < nodes[i]:
+            i -= 1
+        while i < last and inside >= nodes[i + 1]:
+            i += 1
+        cell = (i * load_cells + cells[place]) * heat_cells + k
+        if not (abs(inside - s) < ROUNDING and is_open[cell]):
+            torques[place] = NAN
             continue
         known += 1
-        at = i * (last + 2) + cell
-        if not tables.scan_filled[at]:
-            remember(tables, at, i, cell, k, heat)
-        if not tables.scan_filled[at + 1]:
-            remember(tables, at + 1, i, cell + 1, k, heat)
-        fraction = fraction_of(nodes, cell, inside)
-        a, da, b, db = hermite_weights(width_of(nodes, cell), fraction)
+        at = place * (last + 2) + i
+        if not (filled[at] and filled[at + 1]):
+            remember(tables, at, place, i, k, w)
+            remember(tables, at + 1, place, i + 1, k, w)
+        width = nodes[i + 1] - nodes[i]
+        u = (inside - nodes[i]) / width
+        a, da, b, db = hermite_weights(width, u)
         at += at
-        friction = a * values[at] + da * values[at + 1] + b * values[at + 2] + db * values[at + 3]
-        friction = corrected(tables, friction, i, cell, fraction, k, heat)
-        torques[i] = driving_torque(friction, tables.scan_loads[i], tables.lead)
+        torque = a * values[at] + da * values[at + 1] + b * values[at + 2] + db * values[at + 3]
+        if of_cell[cell] >= 0:
+            torque = corrected(tables, torque, of_cell[cell], u, tables.scan_fractions[place], w)
+        torques[place] = driving_torque(torque, loads[place], lead)
     return known
 
 
-def scan_cell(tables: SurfaceTables, cell: int, i: int, k: int) -> int:
-    """Return the number of a cell of a speed, at a load of the scan and a temperature."""
-    at = cell * (len(tables.load_nodes) - 1) + tables.scan_cells[i]
-    return at * (len(tables.heat_nodes) - 1) + k  # type: ignore[no-any-return]
-
-
-def is_open(tables: SurfaceTables, cell: int, i: int, k: int) -> Any:
-    """Tell whether a cell has an answer."""
-    return tables.open_cells[scan_cell(tables, cell, i, k)]
-
-
 def corrected(
-    tables: SurfaceTables, value: float, i: int, cell: int, fraction: float, k: int, heat: float
+    tables: SurfaceTables, value: float, pull: int, u: float, v: float, w: float
 ) -> float:
-    """Return a friction torque [N m] with the correction of its cell."""
-    pull, pulls = tables.pull_of_cell[scan_cell(tables, cell, i, k)], tables.pulls
-    if pull < 0:
-        return value
-    at = PULL * pull
-    weight = bump(fraction, pulls[at]) * bump(tables.scan_fractions[i], pulls[at + 1])
-    return pulled(pulls, pull, weight * bump(heat, pulls[at + 2]), TORQUE, value)
+    """Return a friction torque [N m] with a correction at fractions of its cell [-]."""
+    pulls, at = tables.pulls, PULL * pull
+    weight = bump(u, pulls[at]) * bump(v, pulls[at + 1]) * bump(w, pulls[at + 2])
+    return pulled(pulls, pull, weight, TORQUE, value)
 
 
 def turn_to(tables: SurfaceTables, k: int, heat: float) -> None:
     """Forget what holds at another temperature, and remember the onsets at this one."""
-    if tables.scan_key[0] == k and tables.scan_key[1] == heat:
-        return
     tables.scan_key[0], tables.scan_key[1] = float(k), heat
     for at in range(len(tables.scan_filled)):
         tables.scan_filled[at] = False
@@ -128,6 +131,6 @@ def remember(tables: SurfaceTables, at: int, i: int, row: int, k: int, heat: flo
     face: Face = patch_weights(load_weights(tables, i), across)
     corner = (row * tables.rows + tables.load_rows[tables.scan_cells[i]]) * heats + k
     corner = corner * WIDTH + TORQUE
-    tables.scan_values[2 * at] = on_face(tables.values, corner, heats * WIDTH, face)
-    tables.scan_values[2 * at + 1] = slope_on_face(tables.values, corner + 8, heats * WIDTH, face)
+    value, slope = on_face(tables.values, corner, heats * WIDTH, face)
+    tables.scan_values[2 * at], tables.scan_values[2 * at + 1] = value, slope
     tables.scan_filled[at] = True

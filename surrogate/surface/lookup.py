@@ -53,7 +53,7 @@ class Surface:
         self.header: Mapping[str, Any] = data.header
         self.sha256 = self._uncorrected = data.sha256
         self._pulls: dict[tuple[int, int, int], Correction] = {}
-        self.array_tables: SurfaceTables = tabulate(data)
+        self.array_tables = self._base_tables = tabulate(data)
         self.errors = {name: summary(error) for name, error in data.errors.items()}
 
     @classmethod
@@ -229,7 +229,7 @@ class Surface:
         }
         other = copy.copy(self)
         other._pulls = kept | made
-        other.array_tables = with_pulls(self.array_tables, other._pulls)
+        other.array_tables = with_pulls(self._base_tables, other._pulls)
         other.__dict__.pop('tables', None)
         other.sha256 = corrected_hash(self._uncorrected, other.corrections)
         return other

@@ -35,8 +35,10 @@ class SurfaceTables(NamedTuple):
     `spreads` standard deviation and standard error of each of them, empty unless `has_spreads`. A
     correction is its place in the cell, then gains and shifts of the FIELDS in `pulls`;
     `pull_of_cell` is its number, -1: none. `scan_*` are the loads of a scan [N], their cells,
-    fractions and weights, and what it remembers, see `load_scan`. lead [m], speeds [rad/s],
-    loads [N], temperatures [K], parasitic_torque [N m] and parasitic_torque_rate [N m s/rad].
+    fractions and weights, and what it remembers, see `load_scan`. Any friction torque lies between
+    torque_low and torque_high, and states at most torque_error of its errors and standard errors
+    [N m]. lead [m], speeds [rad/s], loads [N], temperatures [K], parasitic_torque [N m] and
+    parasitic_torque_rate [N m s/rad].
 
     """
 
@@ -70,6 +72,9 @@ class SurfaceTables(NamedTuple):
     load_high: float
     temperature_low: float
     temperature_high: float
+    torque_low: float
+    torque_high: float
+    torque_error: float
     parasitic_torque: float
     parasitic_torque_rate: float
 
@@ -85,11 +90,13 @@ def tabulate(data: SurfaceData) -> SurfaceTables:
     cells = open_cells(data.mask)
     screw = data.header['inputs']['screw']
     low, high = data.header['settings']['speed_range']
+    load_rows = np.array(first_rows(data.load, breaks))
+    torque_low, torque_high = _torque_bounds(axes, load_rows, values[..., 0])
     return SurfaceTables(
         speed_nodes=axes[0],
         load_nodes=axes[1],
         heat_nodes=axes[2],
-        load_rows=np.array(first_rows(data.load, breaks)),
+        load_rows=load_rows,
         onset=patch_table(axes[1:], cuts[1:], data.log_onset).ravel(),
         values=values.ravel(),
         errors=np.stack([data.errors[name] for name in MEASURED], axis=-1).ravel(),
@@ -108,9 +115,37 @@ def tabulate(data: SurfaceData) -> SurfaceTables:
         load_high=float(data.load[-1]),
         temperature_low=float(data.temperature[0]),
         temperature_high=float(data.temperature[-1]),
+        torque_low=torque_low,
+        torque_high=torque_high,
+        torque_error=_largest(data.errors[MEASURED[0]])
+        + _largest(data.standard_errors.get(MEASURED[0], np.empty(0))),
         parasitic_torque=float(screw['parasitic_torque']),
         parasitic_torque_rate=float(screw['parasitic_torque_rate']),
     )
+
+
+def _torque_bounds(
+    axes: tuple[Array, Array, Array], load_rows: NDArray[np.intp], table: Array
+) -> tuple[float, float]:
+    """Return two numbers between which every patch lies: the hull of its control points."""
+    reach = np.zeros(table.shape[:3])
+    for axis, nodes in enumerate(axes):
+        cells = load_rows if axis == 1 else np.arange(len(nodes) - 1)
+        width = np.zeros(table.shape[axis])
+        for side in (0, 1):
+            width[cells + side] = np.maximum(width[cells + side], np.diff(nodes))
+        shape = [1, 1, 1]
+        shape[axis] = -1
+        reach += np.abs(table[..., axis + 1]) * width.reshape(shape) / 3.0
+    low, high = np.nanmin(table[..., 0] - reach), np.nanmax(table[..., 0] + reach)
+    margin = ROUNDING * (1.0 + max(abs(low), abs(high)))
+    return float(low - margin), float(high + margin)
+
+
+def _largest(values: Array) -> float:
+    """Return the largest known number, 0 without any."""
+    known = values[np.isfinite(values)]
+    return float(known.max()) if known.size else 0.0
 
 
 def _scan(axes: tuple[Array, Array, Array]) -> dict[str, Any]:
@@ -140,7 +175,16 @@ def with_pulls(tables: SurfaceTables, pulls: Mapping[Cell, Correction]) -> Surfa
     for number, cell in enumerate(pulls):
         of_cell[np.ravel_multi_index(cell, counts)] = number
     rows = [[*pull.fractions, *pull.gains, *pull.shifts] for pull in pulls.values()]
-    return tables._replace(pull_of_cell=of_cell, pulls=np.array(rows, dtype=float).ravel())
+    ends = [tables.torque_low, tables.torque_high]
+    ends += [
+        end + pull.gains[0] * end + pull.shifts[0] for end in ends[:2] for pull in pulls.values()
+    ]
+    return tables._replace(
+        pull_of_cell=of_cell,
+        pulls=np.array(rows, dtype=float).ravel(),
+        torque_low=min(ends),
+        torque_high=max(ends),
+    )
 
 
 def as_lists(tables: SurfaceTables) -> SurfaceTables:
