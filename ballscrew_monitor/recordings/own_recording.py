@@ -293,8 +293,8 @@ def as_taken(entries: Entries) -> Entries:
     entries = entries.take(np.lexsort((entries.axis, entries.place)))
     count = np.arange(len(entries))
     other = entries.burst != np.roll(entries.burst, 1)
-    apart = other | (entries.kind == Kind.TICK) | (entries.kind == Kind.CHECK)
-    burst = np.cumsum(apart | np.roll(apart, 1))
+    alone = (entries.kind == Kind.TICK) | (entries.kind == Kind.CHECK)
+    burst = np.cumsum(other | alone | np.roll(alone, 1))
     order = np.lexsort((count, entries.stamp, burst))
     new = np.ones(len(order), dtype=bool)
     groups, stamps = burst[order], entries.stamp[order]
