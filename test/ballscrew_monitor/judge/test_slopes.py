@@ -1,7 +1,8 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The slope over a ring: that of its plain twin, interpreted and compiled."""
+"""The slope over a ring: closed forms, its plain twin, and compiled."""
 
+import cmath
 import math
 
 from ballscrew_monitor.core.conversions import SECOND
@@ -23,6 +24,7 @@ from surrogate.surface.compiled import compiled
 from surrogate.surface.records import as_array
 
 WINDOW, GAP, START = SECOND // 10, SECOND // 2, 1_767_600_000 * SECOND
+SHORT, STEP = SECOND // 20, SECOND // 1000
 STEPS = st.sampled_from([0, 1, 500_000, 10**6, 10**7, 5 * 10**7, GAP, GAP + 1, -1, -(10**9)])
 VALUES = st.floats(-300.0, 300.0)
 SAMPLES = st.lists(st.tuples(STEPS, VALUES), min_size=1, max_size=60)
@@ -118,3 +120,103 @@ def test_compiled_it_has_the_same_bits(steps):
 
 
 COMPILED = [compiled(each) for each in (slope_take, slope_of, slope_change)]
+
+
+def slopes(samples, window=SHORT, of=slope_of):
+    """Return the slope after each sample, or what else is `of` the ring."""
+    ring, found = SlopeRing(), []
+    for stamp, value in samples:
+        slope_take(ring, window, GAP, stamp, value)
+        found.append(of(ring))
+    return found
+
+
+@given(
+    st.floats(-1e3, 1e3),
+    st.floats(-1e3, 1e3),
+    st.lists(st.integers(1, SECOND // 50), min_size=1, max_size=60),
+)
+def test_a_ramp_is_exact_however_it_is_sampled(slope, offset, gaps):
+    stamps = [START + sum(gaps[:i]) for i in range(len(gaps) + 1)]
+    ramp = [(stamp, offset + slope * (stamp - START) / SECOND) for stamp in stamps]
+    found = slopes(ramp)
+    assert math.isnan(found[0])
+    # Rounding of the values over the time between the first two of them.
+    rounding = 4e-16 * (abs(offset) + abs(slope)) * SECOND / min(gaps)
+    assert found[1:] == pytest.approx([slope] * len(gaps), rel=1e-9, abs=1e-9 + 4 * rounding)
+
+
+@pytest.mark.parametrize('turn', [0.5, 2.0, 4.0])
+def test_a_sine_is_late_by_half_a_window_and_smaller_as_stated(turn):
+    omega = turn / (SHORT / SECOND)
+    times = [i * STEP // 10 for i in range(3000)]  # up to MOST samples in a window
+    samples = [(START + time, math.sin(omega * time / SECOND)) for time in times]
+    u = 0.5 * turn
+    gain = 3.0 * (math.sin(u) - u * math.cos(u)) / u**3
+    expected = [
+        omega * gain * math.cos(omega * (time - SHORT / 2) / SECOND) for time in times[600:]
+    ]
+    assert slopes(samples)[600:] == pytest.approx(expected, abs=1e-2 * omega * gain)
+
+
+@given(st.integers(3, 60), st.floats(1.0, 60.0))
+def test_the_response_of_few_samples_is_the_least_squares_line(count, omega):
+    """Against the normal equations of the samples in the window, as phasors."""
+    window = (count - 1) * STEP
+    times = [i * STEP / SECOND for i in range(-(count - 1), 1)]
+    arms = [time - sum(times) / count for time in times]
+    response = sum(arm * cmath.exp(1j * omega * time) for arm, time in zip(arms, times))
+    response /= sum(arm * arm for arm in arms)
+    wave = [
+        (START + i * STEP, cmath.exp(1j * omega * i * STEP / SECOND)) for i in range(2 * count)
+    ]
+    found = slopes([(stamp, value.real) for stamp, value in wave], window)[-1]
+    assert found == pytest.approx((response * wave[-1][1]).real, rel=1e-6, abs=1e-6 * omega)
+
+
+def changes(values, step=STEP):
+    """Return how the slope changes after each sample."""
+    samples = [(START + i * step, value) for i, value in enumerate(values)]
+    return slopes(samples, of=lambda ring: slope_change(ring, SHORT))
+
+
+def test_a_ramp_does_not_change():
+    found = changes([3.0 * i for i in range(100)])
+    assert math.isnan(found[0])
+    assert found[1:] == pytest.approx([0.0] * 99, abs=1e-9)
+
+
+def test_a_slope_that_sets_in_shows_until_the_window_knows_it():
+    sets_in = 60
+    values = [max(i - sets_in, 0) * STEP / SECOND for i in range(200)]
+    found = changes(values)
+    assert found[sets_in] == 0.0
+    after = sets_in + 13  # samples of a quarter of the window
+    slope = slopes([(START + i * STEP, value) for i, value in enumerate(values)])[after]
+    assert found[after] == pytest.approx(1.0 - slope, rel=1e-9)
+    assert found[-1] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_the_change_of_few_samples_is_that_of_the_last_two():
+    found = changes([0.0, 0.0, 0.0, 1.0], step=SHORT // 3)[-1]
+    assert found == pytest.approx(60.0 - 0.3 * 60.0)
+
+
+def test_sources_slower_than_the_window_give_the_last_difference():
+    assert slopes([(START, 0.0), (START + 2 * SHORT, 1.0)])[-1] == pytest.approx(10.0)
+
+
+@pytest.mark.parametrize('jump', [-1, -SECOND, GAP + 1])
+def test_a_step_back_and_a_hole_begin_anew(jump):
+    found = slopes([(START, 0.0), (START + STEP, 1.0), (START + STEP + jump, 9.0)])
+    assert math.isnan(found[-1])
+
+
+def test_an_equal_stamp_replaces_the_last_sample():
+    again = [(START, 0.0), (START + STEP, 5.0), (START + STEP, 1.0)]
+    assert slopes(again)[-1] == pytest.approx(1000.0)
+
+
+def test_a_fast_source_fills_no_more_memory():
+    found = slopes([(START + i, float(i)) for i in range(3 * MOST)], window=SECOND)
+    assert found[-1] == pytest.approx(SECOND, rel=1e-9)

@@ -8,7 +8,7 @@ import math
 from ballscrew_monitor.core.conversions import Direction, SECOND
 from ballscrew_monitor.core.estimate import PointSource, PointValidity
 from ballscrew_monitor.core.input_status import InputState
-from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, Why
+from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, StampSource, Why
 from ballscrew_monitor.core.judgement import Code, Gate, Level, Zone
 from ballscrew_monitor.core.state import PositionSettings
 from ballscrew_monitor.judge.monitor import Monitor
@@ -486,3 +486,38 @@ def test_after_a_hole_two_positions_are_needed(core):
     assert turn(monitor, 0.4, 200) is None
     assert monitor.tick(START + 2 * SECOND).inputs[0].why is Why.HOLE
     assert turn(monitor, 0.6, 201).point.speed == pytest.approx(20.0)
+
+
+@pytest.mark.parametrize('speed_of_all', [-45.0, 0.0, 45.0])
+@pytest.mark.parametrize('offset', [0.0, -7.0, 1e6])
+def test_a_constant_velocity_is_exact_through_every_wrap(core, speed_of_all, offset):
+    plain, wrapped = turning(core, wrap=0.0), turning(core)
+    for i in range(200):
+        angle = offset + speed_of_all * i * STEP / SECOND
+        for monitor, value in ((plain, angle), (wrapped, angle % math.tau)):
+            state = turn(monitor, value, i)
+            assert (state is None) is (i == 0)
+            if i:
+                assert state.point.speed == pytest.approx(speed_of_all, abs=1e-6)
+
+
+def test_a_wrap_that_is_not_stated_is_refused_with_its_cure(core):
+    monitor = turning(core, wrap=0.0)
+    states = [turn(monitor, angle, i) for i, angle in enumerate((6.0, 6.2, 0.1, 0.3, 0.5))]
+    assert [state is None for state in states] == [True, False, True, False, False]
+    assert states[4].point.speed == pytest.approx(20.0)
+    turn(monitor, 6.1, 5)
+    assert monitor.input_status(START)[0].refusal == (
+        'the position jumps by 5.6 rad of the screw within 0.01 s, plausible is a speed of '
+        '50 rad/s: mend the source, or set speed.wrap to the position at which it begins anew'
+    )
+
+
+@pytest.mark.parametrize('stamp_source', StampSource)
+def test_a_burst_of_unstamped_positions_is_no_jump(core, stamp_source):
+    monitor = turning(core)
+    for i in range(6):
+        stamp = START + i * STEP if i < 5 else START + 4 * STEP + 1000
+        monitor.update(core.sample(Source.SPEED, 0.2 * i, stamp, stamp_source=stamp_source))
+    refused = monitor.input_status(START)[0].implausible
+    assert (refused == 1) is (stamp_source is StampSource.HEADER)

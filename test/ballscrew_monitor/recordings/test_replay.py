@@ -176,7 +176,7 @@ def test_messages_of_other_joints_are_not_counted(tmp_path):
 def test_an_empty_type_is_that_of_the_bag(tmp_path):
     messages = [(BEGIN, load_message(BEGIN, 1.0)), (BEGIN + 1, speed_message(BEGIN + 1, 1.0))]
     bag = write(tmp_path, *messages)
-    assert judged(bag, **{'x.speed.type': '', 'x.load.type': ''}) == judged(bag)
+    assert repr(judged(bag, **{'x.speed.type': '', 'x.load.type': ''})) == repr(judged(bag))
     with pytest.raises(InputError, match='topic /nope .any type. is missing'):
         judged(bag, **{'x.speed.type': '', 'x.speed.topic': 'nope'})
 
@@ -245,29 +245,6 @@ def test_an_input_that_is_slower_than_its_timeout_is_named(tmp_path):
     assert silence(bag, build_axis('x', fast)) == ''
 
 
-def test_many_at_once_give_the_states_of_one_by_one(nominal_bag, values):
-    few = values | {'x.publish_period': 0.05}
-
-    def numbers(at_once):
-        return [
-            (
-                (stamp_of(state), state.zone, state.level, state.event_id, state.judged),
-                (event is not None, event and event.active, state.window.count),
-                [
-                    *(state.result.efficiency, state.result.rcs, state.torque_residual),
-                    *(state.window.rcs_mean, state.window.speed_max, state.inputs[0].rate),
-                    *(state.totals.energy_lost, state.totals.optimal_time),
-                ],
-            )
-            for state, event in replay(Bag(nominal_bag), few, at_once=at_once)
-        ]
-
-    found, expected = numbers(True), numbers(False)
-    assert [each[:2] for each in found] == [each[:2] for each in expected]
-    for one, other in zip(found, expected, strict=True):
-        assert one[2] == pytest.approx(other[2], rel=1e-12, nan_ok=True)
-
-
 def test_two_axes_come_in_the_order_of_their_samples(tmp_path):
     times = [BEGIN + 10_000_000 * number for number in range(5)]
     both = {'axes': ['x', 'y']}
@@ -278,9 +255,8 @@ def test_two_axes_come_in_the_order_of_their_samples(tmp_path):
         *((time + 1, speed_message(time, 100.0)) for time in times),
         *((time + 2, speed_message(time, 50.0, joint='y_axis')) for time in times),
     )
-    for at_once in (False, True):
-        found = [
-            (stamp_of(state), state.axis)
-            for state, _ in replay(bag, names | {'x.publish_period': 0.0}, at_once=at_once)
-        ]
-        assert found == [(time, axis) for time in times for axis in ('x', 'y')]
+    found = [
+        (stamp_of(state), state.axis)
+        for state, _ in replay(bag, names | {'x.publish_period': 0.0})
+    ]
+    assert found == [(time, axis) for time in times for axis in ('x', 'y')]

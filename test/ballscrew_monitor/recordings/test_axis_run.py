@@ -1,20 +1,29 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Rows hold what the states say, and more of them; the outcome is that of the states."""
+"""Rows hold what the states say, and more of them; all is what a monitor alone says."""
 
+import dataclasses
 import math
 from pathlib import Path
 
 from ballscrew_monitor.core.conversions import seconds
 from ballscrew_monitor.core.estimate import PointSource
-from ballscrew_monitor.core.fields import stamp_of
-from ballscrew_monitor.core.inputs import Source, Why
+from ballscrew_monitor.core.fields import OtherJoints, stamp_of
+from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, Why
+from ballscrew_monitor.core.judgement import Reason
+from ballscrew_monitor.judge.dump import dump, restored
+from ballscrew_monitor.judge.monitor import Monitor
+from ballscrew_monitor.recordings.axis_run import AxisRun, Due
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
-from ballscrew_monitor.recordings.columns import AxisOutcome, COLUMNS, joined, Reason
+from ballscrew_monitor.recordings.bulk.entries import entries_of
+from ballscrew_monitor.recordings.columns import AxisOutcome, COLUMNS, joined
 from ballscrew_monitor.recordings.replay import replay, replay_columns
 from ballscrew_monitor.recordings.summary import Summarizer
 from ballscrew_monitor.settings import parameters
+from ballscrew_monitor.settings.axis import build_axis
+from hypothesis import given, settings
+from hypothesis import strategies as st
 import numpy as np
 import pytest
 from rclpy.serialization import serialize_message
@@ -33,7 +42,7 @@ def values():
 @pytest.fixture(scope='module')
 def judged(nominal_bag, values):
     """Return the columns of the nominal cycle and its outcome."""
-    *blocks, outcome = replay_columns(Bag(nominal_bag), values, at_once=False)
+    *blocks, outcome = replay_columns(Bag(nominal_bag), values)
     assert isinstance(outcome, AxisOutcome)
     return joined(blocks), outcome
 
@@ -137,8 +146,7 @@ def test_a_derived_load_has_its_range_and_no_residual(derived):
     assert outcome.refused[Source.TORQUE] == {Why.NOT_A_NUMBER: 50}
 
 
-@pytest.mark.parametrize('at_once', [True, False])
-def test_a_screw_that_stands_stands_whether_or_not_its_load_is_known(tmp_path, at_once):
+def test_a_screw_that_stands_stands_whether_or_not_its_load_is_known(tmp_path):
     topic = Topic(name='/joint_states', type_name=JOINT, offer=Offer.SENSOR)
     with BagWriter(tmp_path, 'bag') as writer:
         writer.add_topic(topic)
@@ -154,8 +162,78 @@ def test_a_screw_that_stands_stands_whether_or_not_its_load_is_known(tmp_path, a
         'x.load.type': JOINT,
         'x.load.field': 'effort[x_axis]',
     }
-    *blocks, _ = replay_columns(Bag(tmp_path), values, at_once=at_once)
+    *blocks, _ = replay_columns(Bag(tmp_path), values)
     columns = joined(blocks)
     samples = columns.reason[~columns.tick]
     assert set(samples[:50]) == {Reason.NO_LOAD}
     assert set(samples[50:]) == {Reason.STANDSTILL}
+
+
+AXIS = build_axis('x', parameters.defaults(['x']) | {'x.limits.raise_delay': 0.03})
+STEP = 10_000_000  # [ns]
+
+
+def alone():
+    """Return the axis with a fresh monitor."""
+    monitor = Monitor(AXIS.surface, AXIS.monitor.settings)
+    return dataclasses.replace(AXIS, monitor=monitor)
+
+
+def event_of(now, source, choice):
+    """Return a sample, now and then a refusal or a tick."""
+    if choice == 7:
+        return now
+    if choice > 7:
+        joints = OtherJoints('velocity', 'x', (f'joint{choice}',)) if choice > 8 else None
+        why = Why.NOT_A_NUMBER if joints is None else Why.OTHER_JOINTS
+        return Refusal(source=source, why=why, text=f'at {now}', joints=joints, arrival=now)
+    value = (60.0, 3.0, 0.0, -1000.0, 900.0, 1e9, math.nan)[choice]
+    return InputSample(source=source, value=value, stamp=now)
+
+
+@settings(max_examples=30)
+@given(
+    st.lists(
+        st.tuples(
+            st.sampled_from([1, 1, 5, 80, -300]),
+            st.sampled_from([Source.SPEED, Source.LOAD]),
+            st.integers(0, 11),
+        ),
+        max_size=60,
+    ),
+    st.integers(0, 60),
+)
+def test_states_and_outcome_are_those_of_a_monitor_alone(happened, cut):
+    """In two parts, with an acknowledgement between them; joints are told at the ends of parts."""
+    now, told = 10**12, []
+    for step, source, choice in happened:
+        now += step * STEP
+        told.append((event_of(now, source, choice), now, 0, 0))
+    axis, other = alone(), alone().monitor
+    run, events, states, wanted = AxisRun(axis), [], [], []
+    for part in (told[:cut], told[cut:]):
+        for event, *_ in part:
+            state = other.tick(event) if isinstance(event, int) else other.update(event)
+            wanted += [] if state is None else [state]
+        found = [one for one in run.take(entries_of(part)) if isinstance(one, Due)]
+        states += [one.state for one in found]
+        events += [one.event for one in found if one.event is not None]
+        assert repr(axis.monitor.input_status(now)) == repr(other.input_status(now))
+        assert axis.monitor.kept == other.kept
+        changed = alone()
+        changed.monitor = restored(dump(axis.monitor), AXIS.surface, AXIS.monitor.settings)
+        ended = [one.acknowledge(now, 'seen') for one in (changed.monitor, other)]
+        assert repr(ended[0]) == repr(ended[1])
+        run.change(changed)
+        axis = changed
+    assert list(map(without_joints, states)) == list(map(without_joints, wanted))
+    assert sum(one.event is not None for one in wanted) <= len(events)
+    outcome = run.outcome()
+    assert (outcome.states, outcome.judged) == (len(wanted), other.judged)
+    assert len(outcome.events) == other.event.number
+
+
+def without_joints(state):
+    """Return a state as text, without the joints that its inputs name."""
+    inputs = tuple(dataclasses.replace(one, joints=None) for one in state.inputs)
+    return repr(dataclasses.replace(state, inputs=inputs))
