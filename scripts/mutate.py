@@ -9,20 +9,17 @@ nothing that can be seen is listed with its reason in test/data/equivalent_mutan
 
 """
 
+import argparse
+import ast
+from collections.abc import Iterator
+from importlib.machinery import SourceFileLoader
 import os
-
-os.environ |= {'NUMBA_DISABLE_JIT': '1', 'HYPOTHESIS_PROFILE': 'mutate'}
-
-import argparse  # noqa: E402  the compiler is off before anything is imported
-import ast  # noqa: E402
-from collections.abc import Iterator  # noqa: E402
-from importlib.machinery import SourceFileLoader  # noqa: E402
-from pathlib import Path  # noqa: E402
-import random  # noqa: E402
-import signal  # noqa: E402
-import sys  # noqa: E402
-import time  # noqa: E402
-from typing import Any, NamedTuple  # noqa: E402
+from pathlib import Path
+import random
+import signal
+import sys
+import time
+from typing import Any, NamedTuple
 
 TREE = Path(__file__).resolve().parent.parent
 ROOMS = ('ballscrew_monitor/judge', 'surrogate/surface', 'surrogate/screw')
@@ -125,8 +122,9 @@ def mirror(path: str) -> Path | None:
 def substitute(mutant: Mutant) -> None:
     """Have the file of a mutant imported as it is with the change, whatever is cached of it."""
     target = TREE / mutant.path
-    content = target.read_bytes()
-    content = content[: mutant.begin] + mutant.after.encode() + content[mutant.end :]
+    before = target.read_bytes()
+    head, tail = before[: mutant.begin], before[slice(mutant.end, None)]
+    content = head + mutant.after.encode() + tail
     original = SourceFileLoader.get_code
 
     def get_code(loader: SourceFileLoader, name: str) -> Any:
@@ -160,6 +158,7 @@ def main() -> int:
     parser.add_argument('--sample', type=int, default=100, help='how many mutants')
     parser.add_argument('--seed', type=int, default=1)
     asked = parser.parse_args()
+    os.environ |= {'NUMBA_DISABLE_JIT': '1', 'HYPOTHESIS_PROFILE': 'mutate'}
     import numba  # noqa: F401  once, and not in each process
     import scipy.optimize  # noqa: F401
 

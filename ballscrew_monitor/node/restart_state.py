@@ -211,7 +211,7 @@ class RestartState:
                     del self._changed[key]
 
     def _open(self, database: StateDatabase) -> None:
-        found = database.open()
+        found = database.load()
         with self._lock:
             self._found = found if self._found is None else self._found
             self._changed.update(self._latest)  # the file may be a new one

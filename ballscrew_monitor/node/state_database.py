@@ -75,7 +75,7 @@ class StateDatabase:
         """Tell whether the database is open, and still there."""
         return self._database is not None and self._file.exists()
 
-    def open(self) -> Records:
+    def load(self) -> Records:
         """
         Take the directory for this node alone, and return what it holds besides the event log.
 

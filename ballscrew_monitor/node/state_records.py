@@ -16,13 +16,8 @@ from ballscrew_monitor.core.state import Event
 from ballscrew_monitor.core.tally import Totals
 from surrogate.files import to_json
 
-EVENT = (
-    *('event', 'start_ns', 'worst_value', 'cause', 'severity', 'value', 'limit', 'unit', 'text'),
-    'ending',
-)
+EVENT = tuple('event start_ns worst_value cause severity value limit unit text ending'.split())
 """What an entry says of an event, by the names of its record."""
-
-
 SOLVE = {
     'speed': 'speed_rad_s',
     'opposing_load': 'opposing_load_N',

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which changes of a source are tried, and that a mutant is run without touching the tree."""
 
-import os
 from pathlib import Path
 import runpy
 
@@ -31,9 +30,8 @@ def test_half():
 
 
 @pytest.fixture
-def script(monkeypatch):
-    """Return the names of the script, which sets variables for itself alone."""
-    monkeypatch.setattr(os, 'environ', dict(os.environ))
+def script():
+    """Return the names of the script."""
     return runpy.run_path(str(TREE / 'scripts' / 'mutate.py'))
 
 

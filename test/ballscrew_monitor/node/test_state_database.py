@@ -24,7 +24,7 @@ class Opened(StateDatabase):
     def __init__(self, folder, limit=LIMIT):
         self.damage, self.notices = [], []
         super().__init__(folder, limit, damage=self.damage, notices=self.notices)
-        self.found = self.open()
+        self.found = self.load()
 
     def setting(self, name):
         """Return what a setting is."""
@@ -107,7 +107,8 @@ def test_a_power_cut_leaves_all_of_a_commit_or_nothing(make, tmp_path, limit):
         place = tmp_path / f'cut_{cut}'
         shutil.copytree(tmp_path / 'after_1', place)
         garbage = random.randbytes(min(600, end - cut))
-        torn = after[:cut] + garbage + before[cut + len(garbage) :]
+        rest = cut + len(garbage)
+        torn = after[:cut] + garbage + before[rest:]
         (place / f'{FILE}-wal').write_bytes(torn)
         last = 2 if cut == end else 1
         assert make(place).event == last
@@ -177,13 +178,13 @@ def test_what_no_node_has_left_is_kept_aside(make, tmp_path, statements, why, nu
         assert aside.execute('SELECT count(*) FROM events').fetchone() == (3,)
 
 
-@pytest.mark.parametrize('where', [0, 4096 * 3, -8192])
-def test_a_damaged_file_is_kept_aside(make, tmp_path, where):
+@pytest.mark.parametrize(('where', 'end'), [(0, 4096), (12288, 16384), (-8192, -4096)])
+def test_a_damaged_file_is_kept_aside(make, tmp_path, where, end):
     database = make()
     database.fill(*range(100))
     database.close()
     content = bytearray((tmp_path / FILE).read_bytes())
-    content[where : where + 4096 or None] = b'\xa5' * 4096
+    content[where:end] = b'\xa5' * 4096
     (tmp_path / FILE).write_bytes(content)
     again = make()
     assert 'is damaged (' in again.damage[0]
