@@ -115,7 +115,6 @@ def entries_of(told: Sequence[Told]) -> Entries:
     entries = made(len(told))
     for at, (event, log_time, place, axis) in enumerate(told):
         entries.log_time[at], entries.place[at], entries.axis[at] = log_time, place, axis
-        entries.value[at] = np.nan
         if isinstance(event, int):
             entries.source[at], entries.kind[at] = TICK_SOURCE, Kind.TICK
             entries.stamp[at] = entries.arrival[at] = event

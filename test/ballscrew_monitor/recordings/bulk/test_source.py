@@ -11,7 +11,7 @@ from ballscrew_monitor.judge.step import BACKWARD_JUMP
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bulk import batches as batches_module
 from ballscrew_monitor.recordings.bulk.decode import not_decoded
-from ballscrew_monitor.recordings.bulk.entries import Kind, TICK_SOURCE
+from ballscrew_monitor.recordings.bulk.entries import entries_of, joined, TICK_SOURCE
 from ballscrew_monitor.recordings.bulk.order import LONGEST_HOLE, REORDER
 from ballscrew_monitor.recordings.bulk.source import ordered_entries, places_of_axis
 from ballscrew_monitor.recordings.decoding import decode
@@ -180,19 +180,17 @@ def assert_same(bag, axes):
     """Compare the entries of each axis with those of the plain twin."""
     expected = list(alone(bag, axes))
     for number in range(len(axes)):
-        found = []
-        for entries in at_once(bag, axes):
-            part = entries.take(places_of_axis(entries, number))
-            ticks = part.kind == Kind.TICK
-            found += [
-                int(part.stamp[at]) if ticks[at] else part.event(at) for at in range(len(part))
+        found = joined([part.take(places_of_axis(part, number)) for part in at_once(bag, axes)])
+        wanted = entries_of(
+            [
+                (stamp if event is None else event, now, 0, 0)
+                for stamp, _, _, now, axis, event in expected
+                if axis in (None, number)
             ]
-        wanted = [
-            entry[0] if entry[5] is None else entry[5]
-            for entry in expected
-            if entry[4] in (None, number)
-        ]
-        np.testing.assert_equal(list(map(repr, found)), list(map(repr, wanted)))
+        )
+        for name in ('kind', 'source', 'stamp', 'arrival', 'value', 'header', 'lost', 'note'):
+            pair = (getattr(one, name).tolist() for one in (found, wanted))
+            np.testing.assert_equal(*(list(map(repr, column)) for column in pair), err_msg=name)
 
 
 LAYOUTS = {
