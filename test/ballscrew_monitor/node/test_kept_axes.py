@@ -96,7 +96,7 @@ class Machine:
     @property
     def running_time(self):
         """Return what the monitor knows [ns]."""
-        return self.monitor.memory.totals.running_time
+        return self.monitor.kept.totals.running_time
 
 
 def live(machine, pipe):
