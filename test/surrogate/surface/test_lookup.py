@@ -337,3 +337,47 @@ def test_an_unknown_spread_is_nan_beside_its_node_only(surface_data):
     assert math.isfinite(
         surface.lookup(node_speed(data, i + 1, j, k) * 1.01, load, kelvin).rcs_std
     )
+
+
+@pytest.mark.parametrize('axis', [0, 1, 2])
+@pytest.mark.parametrize('fraction', [0.45, 0.55])
+def test_the_worst_contact_is_that_of_the_nearest_node(surface_data, axis, fraction):
+    """Along each axis from the middle of a cell on that of its upper node."""
+    data = surface_data
+    turns = np.indices(data.mask.shape)[axis] % 2
+    patterned = Surface(replace(data, worst_contact=turns.astype(data.worst_contact.dtype)))
+    cell = [count // 2 for count in data.mask.shape]
+    fractions = [0.3, 0.3, 0.3]
+    fractions[axis] = fraction
+    s, load, heat = (
+        float(nodes[i] + part * (nodes[i + 1] - nodes[i]))
+        for nodes, i, part in zip(
+            (data.speed_coordinate, data.load, data.temperature), cell, fractions, strict=True
+        )
+    )
+    found = patterned.lookup(math.exp(s) * patterned.onset_speed(load, heat), load, heat)
+    assert found.validity is Validity.VALID
+    assert found.worst_contact == (cell[axis] + (fraction > 0.5)) % 2
+
+
+@pytest.mark.parametrize(
+    ('speed', 'validity'), [(1e-8, Validity.SPEED_BELOW_RANGE), (1e8, Validity.SPEED_ABOVE_RANGE)]
+)
+def test_a_speed_off_the_nodes_has_no_answer_whatever_range_is_stated(
+    surface_data, speed, validity
+):
+    """Nothing is extrapolated where the stated range is wider than the nodes."""
+    header = surface_data.header
+    settings = header['settings'] | {'speed_range': [1e-9, 1e9]}
+    wide = Surface(replace(surface_data, header=header | {'settings': settings}))
+    assert wide.lookup(speed, 1000.0, 313.15).validity is validity
+
+
+def test_driving_torques_are_those_of_the_points_over_the_load():
+    """From end to end at one speed; none at a temperature that the surface lacks."""
+    loads, torques = SHIPPED.driving_torques(62.8, 313.15)
+    assert (loads[0], loads[-1]) == SHIPPED.load_range
+    points = [SHIPPED.lookup(62.8, float(load), 313.15).driving_torque for load in loads[::9]]
+    assert torques[::9] == pytest.approx(points, rel=1e-9, nan_ok=True)
+    assert np.isfinite(torques).any()
+    assert np.isnan(SHIPPED.driving_torques(62.8, 200.0)[1]).all()
