@@ -244,15 +244,20 @@ def constant_or(constant, real):
     )
 
 
+def take_constants(patch):
+    """Let the judgement look surfaces of constants up, interpreted."""
+    for module in (point, step, derived_load):
+        for constant in (look_up, look_up_rest, is_inside, scan, scan_part):
+            name = constant.__name__
+            if hasattr(module, name):
+                patch.setattr(module, name, constant_or(constant, getattr(module, name)))
+
+
 @pytest.fixture(scope='module')
 def core():
     """Make the parts that tests of the core are built from; nothing compiles meanwhile."""
     with pytest.MonkeyPatch.context() as patch:
-        for module in (point, step, derived_load):
-            for constant in (look_up, look_up_rest, is_inside, scan, scan_part):
-                name = constant.__name__
-                if hasattr(module, name):
-                    patch.setattr(module, name, constant_or(constant, getattr(module, name)))
+        take_constants(patch)
         yield types.SimpleNamespace(
             surface=ConstantSurface,
             numbers=Numbers,

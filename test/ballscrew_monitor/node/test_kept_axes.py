@@ -136,6 +136,7 @@ def kill(folder):
     sys.path.insert(0, str(Path(__file__).parents[1]))
     import conftest
 
+    conftest.take_constants(pytest.MonkeyPatch())
     random.seed(1)
     core = types.SimpleNamespace(
         surface=conftest.ConstantSurface,
