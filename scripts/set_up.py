@@ -48,7 +48,14 @@ BAG_SOURCES = (
 # What the solver is compiled with.
 NUMERICAL = ('llvmlite', 'numba', 'numpy', 'pyyaml', 'scipy')
 # What is compiled, and what calls it.
-SOLVER_SOURCES = ('surrogate/ehl/kernels/*.py', 'surrogate/ehl/*.py')
+COMPILED = ('surrogate.ehl.solver', 'ballscrew_monitor.judge.many')
+SOLVER_SOURCES = (
+    'surrogate/ehl/kernels/*.py',
+    'surrogate/ehl/*.py',
+    'surrogate/surface/*.py',
+    'surrogate/formulas/torque.py',
+    f'{PACKAGE}/judge/*.py',
+)
 # An installer must neither ask nor follow a user's own idea of where packages go.
 PIP = (PYTHON, '-m', 'pip', '--disable-pip-version-check', '--no-input')
 # Bytecode is made when a module is first imported: most of what is installed never is.
@@ -233,9 +240,10 @@ def generate_bag() -> None:
 
 
 def compile_solver() -> None:
-    """Compile the contact solver, so that the first solve does not take minutes."""
+    """Compile contact solver and judgement: the first solve and recording do not wait for it."""
     SOLVER_LOG.write_text('')
-    run(PYTHON, '-c', 'from surrogate.ehl.solver import prepare; prepare()', log=SOLVER_LOG)
+    for module in COMPILED:
+        run(PYTHON, '-c', f'from {module} import prepare; prepare()', log=SOLVER_LOG)
 
 
 def steps() -> list[Step]:
@@ -259,7 +267,7 @@ def steps() -> list[Step]:
         ),
         Step(
             name='solver',
-            text='the contact solver, compiled',
+            text='the contact solver and the judgement, compiled',
             work=compile_solver,
             key=digest(environment, files=solver),
             made=any((TREE / 'surrogate' / 'ehl' / 'kernels' / '__pycache__').glob('*.nbc')),
