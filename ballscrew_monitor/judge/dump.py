@@ -5,18 +5,32 @@
 import base64
 import binascii
 from collections.abc import Mapping
+import enum
 from typing import Any
 
+from ballscrew_monitor.core.conversions import Direction
 from ballscrew_monitor.core.fields import OtherJoints
-from ballscrew_monitor.core.inputs import Source
+from ballscrew_monitor.core.inputs import Source, StampSource, Why
+from ballscrew_monitor.core.judgement import Code, Level, Zone
 from ballscrew_monitor.core.state import MonitorSettings
 from ballscrew_monitor.judge.monitor import Monitor
 from ballscrew_monitor.judge.records import Memory, MEMORY_VERSION
-from ballscrew_monitor.judge.slopes import SlopeRing
+from ballscrew_monitor.judge.slopes import MOST, SlopeRing
 import numpy as np
 from surrogate.files import InputError
-from surrogate.surface import Surface
+from surrogate.surface import Regime, Surface
 from surrogate.surface.records import as_array, dtype_of, from_array
+
+CODES: dict[str, type[enum.IntEnum]] = {
+    'direction': Direction,
+    'level': Level,
+    'event_code': Code,
+    'event_direction': Direction,
+    'moment_regime': Regime,
+    'moment_zone': Zone,
+    'stamp_source': StampSource,
+}
+"""Codes in a memory and what they are numbers of."""
 
 
 def dump(monitor: Monitor) -> dict[str, Any]:
@@ -65,9 +79,24 @@ def restored(dumped: Mapping[str, Any], surface: Surface, settings: MonitorSetti
             monitor.words.joints[Source[name]] = dict.fromkeys(others)
         monitor.shelve_reason = str(dumped['shelve_reason'])
         monitor.ending = str(dumped['ending'])
+        _check(monitor)
     except (AttributeError, KeyError, TypeError, ValueError, binascii.Error) as error:
         raise InputError(f'the memory is damaged: {error}') from None
     return monitor
+
+
+def _check(monitor: Monitor) -> None:
+    """Raise ValueError for a number that is no place in a list and no code of the judgement."""
+    memory = monitor.memory
+    for name, kind in CODES.items():
+        found = getattr(memory, name)
+        for number in found if isinstance(found, list) else [found]:
+            kind(number)
+    for why in memory.refusal:
+        Why(max(why, 0))
+    for ring in (monitor.speeds, monitor.positions):
+        if not (0 <= ring.begin < MOST and 0 <= ring.count <= MOST):
+            raise ValueError(f'a window of {ring.count} samples from {ring.begin} on')
 
 
 def _record(kind: type[Any], text: str) -> Any:

@@ -30,6 +30,7 @@ from ballscrew_monitor.core.inputs import (
 from ballscrew_monitor.core.judgement import (
     Code,
     Finding,
+    FROM_TORQUE,
     Gate,
     Limits,
     unjudged,
@@ -202,6 +203,7 @@ def keep_event(memory: Any, event: Event) -> None:
     memory.event_stamp, memory.event_start[ACTIVE] = event.stamp, event.start
     memory.event_code[ACTIVE] = int(event.cause.code)
     memory.event_worst[ACTIVE], memory.event_limit[ACTIVE] = event.worst_value, event.cause.limit
+    memory.event_derived[ACTIVE] = int(event.cause.text.endswith(FROM_TORQUE))
 
 
 def totals_of(memory: Any) -> Totals:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 import contextlib
 import dataclasses
 from typing import Any
+import weakref
 
 from ballscrew_monitor.core.conversions import (
     kelvin,
@@ -35,6 +36,8 @@ from surrogate.surface import find_surface, Surface, SurfaceError
 
 PLAUSIBLE = 3.0  # times the largest of the surface: what lies beyond is a glitch
 MOTOR_TORQUE = LOAD_SOURCES[1]
+_LOADED: weakref.WeakValueDictionary[str, Surface] = weakref.WeakValueDictionary()
+"""Surfaces in use by their hash: their tables take megabytes."""
 OPTIONAL = (Source.TEMPERATURE, Source.TORQUE)
 UNITS = {
     Source.SPEED: (*ROTARY_SPEED_UNITS, *LINEAR_SPEED_UNITS),
@@ -144,13 +147,19 @@ def _resolved(axis: str, source: Source, topic: str, resolve: Callable[[str], st
 
 
 def load_surface(name: str, values: Mapping[str, Any]) -> Surface:
-    """Return the verified surface of the axis `name`; raises InputError with the reason."""
+    """
+    Return the verified surface of the axis `name`, one for all axes with the same content.
+
+    Raises InputError with the reason.
+
+    """
     screw, oil = values[f'{name}.screw'], values[f'{name}.oil']
     try:
         path = find_surface(values[f'{name}.surface'], screw, oil)
-        return Surface.load(path, screw=screw, oil=oil)
+        surface = Surface.load(path, screw=screw, oil=oil)
     except SurfaceError as error:
         raise InputError(f'axis {name}: {error}') from None
+    return _LOADED.setdefault(surface.sha256, surface)
 
 
 def reload_surface(axis: Axis, values: Mapping[str, Any]) -> Surface:

@@ -114,3 +114,25 @@ def test_a_dump_that_lacks_a_part_or_repeats_a_record_is_refused(core):
                 monitor.surface,
                 monitor.settings,
             )
+
+
+@pytest.mark.parametrize(
+    ('name', 'number'),
+    [('level', 3), ('direction', -1), ('moment_regime', 4), ('moment_zone', 3), ('refusal', 99)],
+)
+def test_a_number_that_no_judgement_has_is_damage(core, name, number):
+    monitor = core.monitor(core.surface())
+    value = getattr(monitor.memory, name)
+    if isinstance(value, list):
+        value[-1] = number
+    else:
+        setattr(monitor.memory, name, number)
+    with pytest.raises(InputError, match='the memory is damaged'):
+        restored(dump(monitor), core.surface(), monitor.settings)
+
+
+def test_a_window_beyond_its_ring_is_damage(core):
+    monitor = core.monitor(core.surface())
+    monitor.speeds.count = 513
+    with pytest.raises(InputError, match='a window of 513 samples'):
+        restored(dump(monitor), core.surface(), monitor.settings)
