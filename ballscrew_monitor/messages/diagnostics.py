@@ -80,15 +80,11 @@ def defect_text(error: Exception, event: InputSample | Refusal | int) -> str:
     if isinstance(event, int):
         place = f'a tick at {event} ns'
     else:
-        value = (
-            f' of {event.value!r} (SI)' if isinstance(event, InputSample) else ' that is refused'
-        )
-        place = (
-            f'a message of the {event.source.name.lower()}{value}, arrived at {event.arrival} ns'
-        )
+        value = f'{event.value!r} (SI)' if isinstance(event, InputSample) else 'refused'
+        place = f'the {event.source.name.lower()} {value} that arrived at {event.arrival} ns'
     return (
-        f'a defect of the program at {place}: {type(error).__name__}: {error}; configure the node '
-        'again and report the log'
+        f'the program failed at {place}: {type(error).__name__}: {error}; report this line, and '
+        'configure the node again to clear it'
     )
 
 

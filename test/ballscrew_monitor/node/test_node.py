@@ -408,6 +408,32 @@ def test_axes_that_change_together_are_all_told_at_once(monkeypatch):
         rclpy.shutdown(context=context)
 
 
+def test_a_defect_at_a_sample_is_the_error_of_its_axis_alone(monkeypatch):
+    with free_domain() as domain:
+        context = rclpy.Context()
+        rclpy.init(context=context, domain_id=domain)
+        node = BallscrewMonitor(
+            context=context, parameter_overrides=[Parameter('axes', value=['x', 'y'])]
+        )
+        node.start()
+        broken, sound = (node._axis_publishers[name].axis for name in ('x', 'y'))
+        monkeypatch.setattr(broken.monitor, 'update', lambda event: 1 / 0)
+        stamp = node.get_clock().now().nanoseconds
+        for axis, value in ((broken, FAST), (sound, FAST), (broken, SLOW), (sound, SLOW)):
+            sample = InputSample(source=Source.SPEED, value=value, stamp=stamp)
+            node._on_event(axis, sample)
+        statuses = {one.name.split(': ', 1)[1]: one for one in node._statuses(['x', 'y'], 0)}
+        error = statuses['x: Lubrication']
+        assert error.level == DiagnosticStatus.ERROR
+        assert error.message.startswith(f'the program failed at the speed {FAST} (SI) that')
+        assert 'ZeroDivisionError: division by zero' in error.message
+        assert statuses['y: Lubrication'].level != DiagnosticStatus.ERROR
+        assert sound.monitor.input_status(stamp)[0].received == 2
+        node.finish()
+        node.destroy_node()
+        rclpy.shutdown(context=context)
+
+
 def test_a_clock_that_stops_is_told(node):
     node.start(use_sim_time='true', x__limits__clear_delay=0.0)
     states, told = node.states(), node.listen(DiagnosticArray, '/diagnostics')
