@@ -87,8 +87,8 @@ def defect_text(error: Exception, event: InputSample | Refusal | int) -> str:
             f'a message of the {event.source.name.lower()}{value}, arrived at {event.arrival} ns'
         )
     return (
-        f'a defect of the program at {place}: {type(error).__name__}: {error}; configure the node '
-        'again and report the log'
+        f'the program failed at {place}: {type(error).__name__}: {error}: report this line, and '
+        'configure the node again to clear it'
     )
 
 
