@@ -213,7 +213,7 @@ def jump_text(change: float, gap: float, most: float) -> str:
     return (
         f'the position jumps by {change:.4g} rad of the screw within {gap:.3g} s, '
         f'plausible is a speed of {most:.4g} rad/s: mend the source, or set speed.wrap to the '
-        'position at which it begins anew'
+        'position at which it starts over'
     )
 
 

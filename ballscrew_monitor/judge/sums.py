@@ -18,7 +18,7 @@ SPEED, AXIAL_LOAD, EFFICIENCY, RCS, FILM_RATIO = range(COLUMNS)
 
 
 def clear_window(memory: Any) -> None:
-    """Begin a window if a state has told of the last one."""
+    """Begin a window if a state has published the last one."""
     if not memory.window_told:
         return
     memory.window_told = False

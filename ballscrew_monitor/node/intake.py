@@ -144,7 +144,7 @@ class Intake(Waitable):
         )
 
     def take_data(self) -> None:
-        """Count the publishers anew, once what has come by then is taken."""
+        """Count the publishers again, once what has come by then is taken."""
         if self._changed:
             self.drain()
         for handler in self._changed:

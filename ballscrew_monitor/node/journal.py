@@ -48,7 +48,7 @@ class Journal:
         self._burst = 0
         self._pause = RESTART
         self._begun = False  # an axis has been described
-        self._hole = False  # frames were dropped: all must be said anew
+        self._hole = False  # frames were dropped: all must be said again
         self._hole_shown = False
         self._hole_over = -HOLE_SHOWN  # on the steady clock
         self._said: dict[str, int] = {}  # when each axis was, on the steady clock

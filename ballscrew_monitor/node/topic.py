@@ -33,7 +33,7 @@ class LossCounter:
         self.publishers = 1
 
     def match(self, publishers: int) -> None:
-        """Note how many publishers there are now; the count of each of them begins anew."""
+        """Note how many publishers there are now; each of them is counted from the beginning."""
         self.publishers = publishers
         self._last = None
 
@@ -42,7 +42,7 @@ class LossCounter:
         Return how many messages were lost just before the one of this publication number.
 
         None when that cannot be known: the numbers of several publishers are mixed, or there are
-        none. A number that falls back belongs to a publisher that has begun anew.
+        none. A number that falls back belongs to a publisher that has started again.
 
         """
         if self.publishers > 1 or number == NO_NUMBER:
@@ -156,7 +156,7 @@ def open_topic(
         _never_called,
         input_qos(),
         callback_group=group,
-        # One of another type would be told of by some middlewares only: the graph tells of it.
+        # Only some middlewares would name one of another type: the graph does.
         event_callbacks=SubscriptionEventCallbacks(
             matched=functools.partial(_count, loss), use_default_callbacks=False
         ),

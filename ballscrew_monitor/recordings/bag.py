@@ -46,7 +46,7 @@ class Bag:
         """
         Open the bag at `path`; raises InputError when it is not readable to its end.
 
-        With `salvage` what is whole of damaged files is read, and `notes` says how much that is.
+        With `salvage` the intact part of damaged files is read; `notes` says how much that is.
 
         """
         self.path = Path(path)

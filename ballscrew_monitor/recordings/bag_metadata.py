@@ -44,7 +44,7 @@ def metadata_text(
 
 
 def _span(first: int, last: int) -> dict[str, Any]:
-    """Return duration and begin; made anew each time, or YAML refers to the first one."""
+    """Return duration and begin; made again each time, or YAML refers to the first one."""
     return {
         'duration': {'nanoseconds': last - first},
         'starting_time': {'nanoseconds_since_epoch': first},

@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What is whole of a damaged MCAP file: its records, by the index of its chunks if it has one."""
+"""The intact part of a damaged MCAP file: records, by the index of its chunks if it has one."""
 
 from collections.abc import Container, Iterable, Iterator
 import contextlib

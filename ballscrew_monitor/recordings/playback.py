@@ -33,7 +33,7 @@ def playback(path: Path, choice: Choice, *, rate: float, patience: float, loop: 
     """
     Play the bag at `path` to whom listens within `patience` [s]; return the exit code.
 
-    Of a damaged bag it plays what is whole, and says how much that is.
+    Of a damaged bag it plays the intact part, and says how much that is.
 
     """
     bag = Bag(path, salvage=True)

@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Mends a recording whose writer was killed: what is whole of it becomes a complete bag.
+Mends a recording whose writer was killed: its intact part becomes a complete bag.
 
 The file itself is left as it is. Nothing is decoded, so the types need not be installed.
 
@@ -21,7 +21,7 @@ SUFFIX = '.mcap'
 
 def recover(path: Path) -> tuple[Path, int, float]:
     """
-    Write what is whole of a recording; return the new file, its messages and its seconds.
+    Write the intact part of a recording; return the new file, its messages and its seconds.
 
     `path` is an MCAP file, unfinished or damaged, or the folder of an unfinished one. A finished
     name is taken away from an unfinished file, any other gets `_recovered` behind its name. Raises

@@ -3,7 +3,7 @@
 """
 The sqlite3 files that a bag is made of: topics, time span and messages of each.
 
-A damaged file is refused, or salvaged when that is asked for: then what is whole is read, and
+A damaged file is refused, or salvaged when that is asked for: then its intact part is read, and
 `note` says how much it was.
 
 """
@@ -28,7 +28,7 @@ from surrogate.files import InputError
 
 
 class SqliteStorage:
-    """One sqlite3 file of rosbag2; `salvage` takes what is whole of a damaged one."""
+    """One sqlite3 file of rosbag2; `salvage` takes the intact part of a damaged one."""
 
     def __init__(self, file: Path, *, salvage: bool = False) -> None:
         """Read the topics; raises InputError when nothing can be had of the file."""

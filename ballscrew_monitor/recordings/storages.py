@@ -3,7 +3,7 @@
 """
 The MCAP files that a bag is made of: topics, time span and messages of each.
 
-A damaged MCAP file is refused, or salvaged when that is asked for: then what is whole is read, and
+A damaged MCAP file is refused, or salvaged when that is asked for: its intact part is read, and
 `note` says how much it was.
 
 """
@@ -49,7 +49,7 @@ class TopicInfo:
 
 
 class McapStorage:
-    """One MCAP file; `salvage` takes what is whole of a damaged one."""
+    """One MCAP file; `salvage` takes the intact part of a damaged one."""
 
     def __init__(self, file: Path, *, salvage: bool = False) -> None:
         """Read the topics; raises InputError when nothing can be had of the file."""
@@ -57,7 +57,7 @@ class McapStorage:
         self.topics: dict[str, TopicInfo] = {}
         self.span = (0, 0)
         self.note = ''
-        self._channels: dict[int, Channel] = {}  # a damaged chunk may have told of them
+        self._channels: dict[int, Channel] = {}  # a damaged chunk may have named them
         self._lost: frozenset[int] = frozenset()  # where damaged chunks begin [bytes]
         self.has_summary = True
         with damage_is_input(file):
@@ -94,7 +94,7 @@ class McapStorage:
         except InputError as error:
             if not self.salvage:
                 raise
-            self.note = f'{error}; what is whole of it is used'
+            self.note = f'{error}; its intact part is used'
             self._lost = damaged_chunks(self.file)
             # What came before the damage comes first here too.
             yield from itertools.islice(self._rest(wanted, reorder=reorder), count, None)

@@ -32,8 +32,9 @@ class EventRecord:
     """
     One stay outside the optimal zone; start [ns], duration [s], worst value and limit [-].
 
-    `speed` [rad/s] and `axial_load` [N] are those that raised the warning, NaN where only its
-    message is known; `target_speed` and `target_load` those of the advice, NaN if there is none.
+    `speed` [rad/s] and `axial_load` [N] are those of the worst value, NaN where only the message
+    of the warning is known; `target_speed` and `target_load` are those of the advice,
+    NaN if there is none.
 
     """
 
@@ -53,7 +54,7 @@ class EventRecord:
 
     @property
     def place(self) -> str:
-        """Return in words where it was raised, empty where that is not known."""
+        """Return in words where the worst value was, empty where that is not known."""
         if not math.isfinite(self.speed + self.axial_load):
             return ''
         return f'{_rounded(self.speed / RPM)} rev/min and {_rounded(self.axial_load)} N'
@@ -152,7 +153,7 @@ class Summary:
 
     def _event_line(self, event: EventRecord) -> str:
         end = 'still on' if event.active else f'{self.since_first(event.end):5.1f} s'
-        place = f'; raised at {event.place}' if event.place else ''
+        place = f' at {event.place}' if event.place else ''
         advice = f': {event.what_to_do}' if place else f'; {event.advice}' if event.advice else ''
         return (
             f'  {event.event_id:2d}  {self.since_first(event.start):5.1f} s to {end}  '

@@ -170,7 +170,7 @@ def _event_row(case: AxisCase, event: EventRecord, worst: bool) -> TableRow:
                 text=f'{SIGNS.get(event.relation, event.relation)} {event.shown(event.limit)}',
                 kind='short',
             ),
-            TableCell(text=f'raised at {event.place}: {todo}' if event.place else todo or NONE),
+            TableCell(text=f'at {event.place}: {todo}' if event.place else todo or NONE),
         ),
         begin=begin - margin,
         end=end + margin,

@@ -23,8 +23,8 @@ REMEDIES = {
     Reason.LOAD_OUT_OF_RANGE: 'build a surface for higher loads, or check the unit of the load',
     Reason.TEMPERATURE_OUT_OF_RANGE: 'build a surface for these oil temperatures, '
     'or check their unit',
-    Reason.MASKED: 'build the surface anew, its model did not converge there',
-    Reason.NO_NUMBER: 'build the surface anew, it holds no number there',
+    Reason.MASKED: 'build the surface again, its model did not converge there',
+    Reason.NO_NUMBER: 'build the surface again, it holds no number there',
     Reason.NO_SPEED: 'record the speed without interruption',
     Reason.NO_LOAD: 'record the axial load, or a torque that it can be worked out from',
     Reason.NO_TEMPERATURE: 'record the oil temperature, or state a default one',
@@ -200,7 +200,7 @@ def _of(events: Sequence[EventRecord], rank: str) -> str:
     """Return what to do about the first of some events, and what it is among them."""
     first = events[0]
     others = f', the {rank} of {len(events)}' if len(events) > 1 else ''
-    place = f' (raised at {first.place})' if first.place else ''
+    place = f' (at {first.place})' if first.place else ''
     return f'in warning {first.event_id}{others}{place}, {first.what_to_do}'
 
 

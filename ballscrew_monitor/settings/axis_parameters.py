@@ -125,7 +125,7 @@ AXIS_ROWS = (
         default=0.0,
         low=0.0,
         high=1e12,
-        text='Position, in the unit above, at which it begins anew, such as 360.0; 0: never.',
+        text='Position, in the unit above, at which it starts over, such as 360.0; 0: never.',
     ),
     *_input_rows(
         'load',
@@ -260,7 +260,8 @@ AXIS_ROWS = (
         low=0.0,
         high=4.0,
         change=Change.LIVE,
-        text='Part of the preload below which efficiency is not judged.',
+        text='Part of the preload below which efficiency is not judged; it is judged again from '
+        '(1 + hysteresis) times that load on.',
     ),
     ParameterRow(
         name='limits.standstill_speed',
@@ -296,7 +297,8 @@ AXIS_ROWS = (
         low=0.0,
         high=0.9,
         change=Change.LIVE,
-        text='Part by which RCS and loss must be below their limits to clear the warning.',
+        text='Part by which RCS and loss must be below their limits to clear the warning, and the '
+        'load above the light one to be judged again.',
     ),
     ParameterRow(
         name='limits.plausible_speed',

@@ -60,7 +60,7 @@ def batches(bag: Bag, topics: Collection[str], *, as_written: bool = False) -> I
     """
     Yield the messages of `topics`, by log time or in the order in which they were written.
 
-    Raises InputError for a damaged bag, unless what is whole of it is to be salvaged; then the
+    Raises InputError for a damaged bag, unless its intact part is to be salvaged; then the
     file that holds a damaged chunk has a note on it.
 
     """

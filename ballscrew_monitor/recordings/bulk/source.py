@@ -26,7 +26,7 @@ def ordered_entries(
     Yield the entries of `axes` in the order in which they are judged, a tick each `period` [ns].
 
     `on_done` is told how far the bag is judged [-]. Raises InputError for a damaged bag, unless
-    what is whole of it is to be salvaged.
+    its intact part is to be salvaged.
 
     """
     decoders = {topic: TopicDecoder(bag, readers) for topic, readers in _readers(axes).items()}

@@ -11,7 +11,7 @@ class MapFrame {
     this.canvas = Format.element('canvas');
   }
 
-  /** Begin anew, as large as there is room. */
+  /** Start over, as large as there is room. */
   clear() {
     const width = this.canvas.parentElement.clientWidth;
     const height = Math.round(Math.min(520, Math.max(300, 0.55 * width)));

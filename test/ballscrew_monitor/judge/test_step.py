@@ -509,7 +509,7 @@ def test_a_wrap_that_is_not_stated_is_refused_with_its_cure(core):
     turn(monitor, 6.1, 5)
     assert monitor.input_status(START)[0].refusal == (
         'the position jumps by 5.6 rad of the screw within 0.01 s, plausible is a speed of '
-        '50 rad/s: mend the source, or set speed.wrap to the position at which it begins anew'
+        '50 rad/s: mend the source, or set speed.wrap to the position at which it starts over'
     )
 
 

@@ -255,6 +255,31 @@ def test_the_state_directory():
     assert good.name == bad.name == 'cell/node: State directory'
 
 
+@pytest.mark.parametrize(
+    ('event', 'place'),
+    [
+        (LOAD, f'a message of the load of -1000.0 (SI), arrived at {START} ns'),
+        (
+            Refusal(source=Source.SPEED, why=Why.FUTURE, arrival=START),
+            f'a message of the speed that is refused, arrived at {START} ns',
+        ),
+        (START, f'a tick at {START} ns'),
+    ],
+)
+def test_a_defect_says_where_it_came_up_and_what_to_do(core, event, place):
+    monitor = core.monitor()
+    sentence = diagnostics.defect_text(ZeroDivisionError('by 0'), event)
+    assert sentence == (
+        f'the program failed at {place}: ZeroDivisionError: by 0: report this line, and configure '
+        'the node again to clear it'
+    )
+    made = diagnostics.statuses(
+        'node', 'x', None, monitor.event, monitor.surface, links=LINKS, defect=sentence
+    )
+    assert (made[0].level, made[0].message) == (ERROR, sentence)
+    assert all(status.message != sentence for status in made[1:])
+
+
 def test_values_carry_their_unit(core):
     made = after(core, LOAD, SPEED)
     values = {pair.key: pair.value for pair in made['Lubrication'].values}
@@ -286,6 +311,7 @@ SENTENCES = [
     diagnostics.INACTIVE,
     diagnostics.NOT_DERIVED,
     diagnostics.KEPT,
+    'the program failed at',
     *(state_database.UNWRITABLE, state_database.IN_USE),
     *(state_database.DAMAGED, state_database.OTHER_VERSION, restart_state.SILENT),
 ]

@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What is whole of a recording whose writer was killed becomes a complete bag."""
+"""The intact part of a recording whose writer was killed becomes a complete bag."""
 
 import os
 from pathlib import Path

@@ -72,7 +72,7 @@ def test_why_and_what_to_do_have_their_lines(judged):
     case = judged.case([judged.columns()], [judged.event(1, 0.1, 0.2)])
     assert lines_of(case, 'why')[0].startswith('The oil film was too thin')
     assert 'at this load run at 60 rad/s' in lines_of(case, 'what to do')[0]
-    assert any('raised at 430 rev/min and -1200 N: at this' in line for line in axis_lines(case))
+    assert any(' at 430 rev/min and -1200 N: at this' in line for line in axis_lines(case))
 
 
 def test_inputs_tell_source_span_rate_and_troubles(judged):

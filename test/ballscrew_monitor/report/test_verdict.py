@@ -61,7 +61,7 @@ def test_outside_says_how_long_why_and_what_to_do(judged):
     )
     assert 'the efficiency fell to 60 %, the limit is 85 %' in verdict.why
     assert (
-        'as in warning 1 (raised at 430 rev/min and -1200 N), at this load run at 60 rad/s'
+        'as in warning 1 (at 430 rev/min and -1200 N), at this load run at 60 rad/s'
         in verdict.remedy
     )
     assert 'at this speed load with -1500 N' in verdict.remedy
@@ -72,7 +72,7 @@ def remedy(judged, *events):
 
 
 def advised(judged, number, speed, target, **changes):
-    """Return an event raised at a speed [rad/s], with another one as advice."""
+    """Return an event whose worst value is at a speed [rad/s], with another one as advice."""
     advice = f'run at {target:g} rad/s'
     return judged.event(
         number, 0.1 * number, 0.05, speed=speed, target_speed=target, advice=advice, **changes
@@ -83,8 +83,7 @@ def test_the_strictest_advice_of_a_cause_stands_for_the_others(judged):
     mild = advised(judged, 1, 10.0, 44.0, worst_value=0.98)
     strict = advised(judged, 2, -47.0, -98.0, axial_load=1600.0)
     assert remedy(judged, mild, strict) == (
-        'as in warning 2, the strictest of 2 (raised at -449 rev/min and 1600 N), '
-        'run at -98 rad/s.'
+        'as in warning 2, the strictest of 2 (at -449 rev/min and 1600 N), run at -98 rad/s.'
     )
 
 
@@ -102,7 +101,7 @@ def test_advice_to_run_faster_and_advice_to_run_slower_stand_apart(judged):
 def test_without_advice_no_more_is_said_than_was_looked_for(judged):
     helpless = {'advice': '', 'target_speed': math.nan}
     assert remedy(judged, judged.event(1, 0.1, 0.2, **helpless)) == (
-        'in warning 1 (raised at 430 rev/min and -1200 N), neither another speed at this load nor '
+        'in warning 1 (at 430 rev/min and -1200 N), neither another speed at this load nor '
         'another load at this speed within the surface would clear it: change both, or look at '
         'oil and temperature.'
     )
