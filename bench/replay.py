@@ -5,28 +5,32 @@ Measure how many times faster than real time recordings are judged, on one core.
 
 Usage: python bench/replay.py [--seconds S] [--long L] [--repeats N]. Makes a recording of one axis
 at 1 kHz of S seconds and one at 100 Hz of L seconds in a temporary folder, and prints duration
-over processor time, which other work on the machine changes little: judged alone, and end to end
-as `ballscrew replay --out` does it, with table, page and judged bag. Beside them the time of one
-Python call, measured in the same run, and the lookup of points all over the surface.
+over processor time, which other work on the machine changes little: judged alone, with the load
+out of the torque, with the speed out of positions, of the recording that a node makes of itself,
+and end to end as `ballscrew replay --out` does it, with table, page and judged bag. Beside them
+the time of one Python call, measured in the same run, and of a lookup all over the surface.
 
 """
 
 import argparse
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Iterator
 import os
 from pathlib import Path
 import sys
 import tempfile
 import time
 import timeit
+from typing import Any, NamedTuple
 
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
+from ballscrew_monitor.recordings.own_recording import recorded_values
 from ballscrew_monitor.recordings.replay import replay, replay_columns
 from ballscrew_monitor.report.log_report import LogResult, report_log
 from ballscrew_monitor.report.parameters import LogParameters
 from ballscrew_monitor.settings import parameters
 from geometry_msgs.msg import WrenchStamped
+from node_parts.alone import record_alone
 import numpy as np
 from rclpy.serialization import serialize_message
 from sensor_msgs.msg import JointState
@@ -35,6 +39,16 @@ from surrogate.surface import look_up_many, shipped_surface, Surface
 BEGIN = 1_700_000_000_000_000_000  # [ns]
 CYCLE = 20.0  # [s] of a motion to and fro
 POINTS = 200_000
+TORQUE = {
+    'load__source': 'motor_torque',
+    'torque__topic': 'joint_states',
+    'torque__type': 'sensor_msgs/msg/JointState',
+    'torque__field': 'effort[x_axis]',
+    'torque__unit': 'N m',
+    'torque__uncertainty': 0.02,
+    'inertia': 0.0012,
+}
+POSITION = {'speed__field': 'position[x_axis]', 'speed__unit': 'rad'}
 TYPES = {'/joint_states': 'sensor_msgs/msg/JointState', '/load': 'geometry_msgs/msg/WrenchStamped'}
 
 
@@ -52,43 +66,46 @@ def signals(duration: float, rate: float) -> dict[str, np.ndarray]:
     }
 
 
-def write(folder: Path, duration: float, rate: float, field: str = 'velocity') -> Bag:
-    """Return a recording of a `field` of the joint and of the load, at a rate [Hz]."""
+def bursts(duration: float, rate: float) -> Iterator[tuple[int, list[tuple[str, Any]]]]:
+    """Yield stamps [ns] with a load and a joint state, at a rate [Hz]; these are reused."""
+    joint, wrench = JointState(name=['x_axis']), WrenchStamped()
     made = signals(duration, rate)
-    joint = JointState(name=['x_axis'], velocity=[0.0], position=[0.0], effort=[0.0])
-    wrench = WrenchStamped()
+    for at, speed, position, load, effort in zip(
+        *(column.tolist() for column in made.values()), strict=True
+    ):
+        joint.velocity, joint.position, joint.effort = [speed], [position], [effort]
+        wrench.wrench.force.x = load
+        stamp = BEGIN + round(at * 1e9)
+        for message in (wrench, joint):
+            clock = message.header.stamp
+            clock.sec, clock.nanosec = divmod(stamp, 10**9)
+        yield stamp, [('/load', wrench), ('/joint_states', joint)]
+
+
+def write(folder: Path, duration: float, rate: float) -> Bag:
+    """Return a recording of loads and joint states at a rate [Hz]."""
     with BagWriter(folder, 'bag') as writer:
         for name, kind in TYPES.items():
             writer.add_topic(Topic(name=name, type_name=kind, offer=Offer.SENSOR))
-        for row in zip(*(column.tolist() for column in made.values()), strict=True):
-            at, joint.velocity, joint.position, load, joint.effort = (
-                row[0],
-                [row[1]],
-                [row[2]],
-                row[3],
-                [row[4]],
-            )
-            wrench.wrench.force.x = load
-            stamp = BEGIN + round(at * 1e9)
-            for topic, message in (('/load', wrench), ('/joint_states', joint)):
-                clock = message.header.stamp
-                clock.sec, clock.nanosec = divmod(stamp, 10**9)
+        for stamp, messages in bursts(duration, rate):
+            for topic, message in messages:
                 data = serialize_message(message)
                 writer.write(topic, data, log_time=stamp + 200_000, publish_time=stamp)
     return Bag(folder)
 
 
-def values(period: float) -> dict[str, object]:
-    """Return the parameters; states each `period` [s]."""
-    return parameters.defaults(['x']) | {'x.load.topic': 'load', 'x.publish_period': period}
+def values(period: float, **changes: object) -> dict[str, object]:
+    """Return the parameters with `changes` of those of the axis; states each `period` [s]."""
+    made = parameters.defaults(['x']) | {'x.load.topic': 'load', 'x.publish_period': period}
+    return made | {f'x.{name.replace("__", ".")}': value for name, value in changes.items()}
 
 
-def spent(repeats: int, make: object) -> float:
+def spent(repeats: int, make: Callable[[], Iterable[object]]) -> float:
     """Return the least processor time [s] of running through what `make` returns."""
     best = float('inf')
     for _ in range(repeats):
         begin = time.process_time()
-        run_through(make())  # type: ignore[operator]
+        run_through(make())
         best = min(best, time.process_time() - begin)
     return best
 
@@ -116,25 +133,47 @@ def lookups(repeats: int) -> float:
     return POINTS / spent(repeats, lambda: [look_up_many(surface, *points)])
 
 
-def measure(asked: argparse.Namespace, folder: Path) -> None:
-    """Print the table."""
+class Row(NamedTuple):
+    """A way to judge a bag, and how many times faster than real time it is to be."""
+
+    name: str
+    aim: int
+    bag: Bag
+    run: Callable[[], Iterable[object]]
+
+
+def rows_of(asked: argparse.Namespace, folder: Path) -> list[Row]:
+    """Return what is measured, its recordings written."""
     quick = write(folder / 'quick', asked.seconds, 1000.0)
     long = write(folder / 'long', asked.long, 100.0)
-    rows = (
-        ('1 kHz, columns', 100, quick, lambda: replay_columns(quick, values(0.1))),
-        ('1 kHz, states each 0.1 s', 20, quick, lambda: replay(quick, values(0.1), at_once=True)),
-        ('1 kHz, report, end to end', 60, quick, lambda: [report(quick, folder / 'report')]),
-        ('1 kHz, sample by sample', 10, quick, lambda: replay(quick, values(0.1))),
-        ('100 Hz, columns', 1000, long, lambda: replay_columns(long, values(0.1))),
-    )
+    own = record_alone(folder / 'own', values(0.1), bursts(asked.seconds, 1000.0))
+    recorded = recorded_values(own)
+    torque, position = values(0.1, **TORQUE), values(0.1, **POSITION)
+    return [
+        Row('1 kHz, columns', 2000, quick, lambda: replay_columns(quick, values(0.1))),
+        Row('1 kHz, states each 0.1 s', 0, quick, lambda: replay(quick, values(0.1))),
+        Row('1 kHz, report, end to end', 150, quick, lambda: [report(quick, folder / 'report')]),
+        Row('100 Hz, columns', 10000, long, lambda: replay_columns(long, values(0.1))),
+        Row('1 kHz, load of torque', 1000, quick, lambda: replay_columns(quick, torque)),
+        Row('1 kHz, speed of positions', 1000, quick, lambda: replay_columns(quick, position)),
+        Row('1 kHz, own recording', 500, own, lambda: replay_columns(own, recorded)),
+    ]
+
+
+def measure(asked: argparse.Namespace, folder: Path) -> None:
+    """Print the table."""
+    rows = rows_of(asked, folder)
+    print(f'first run, which compiles: {spent(1, rows[0].run):.1f} s')
     print(f'{"":28} {"x real time":>12} {"aim":>6} {"us a sample":>12}')
-    for name, aim, bag, make in rows:
-        cost = spent(asked.repeats, make)
-        samples = bag.topics['/joint_states'].count
-        print(f'{name:28} {bag.duration / cost:12.0f} {aim:6d} {1e6 * cost / samples:12.2f}')
+    for row in rows:
+        run_through(row.run())
+        cost = spent(asked.repeats, row.run)
+        each = 1e6 * cost / row.bag.topics['/joint_states'].count
+        print(f'{row.name:28} {row.bag.duration / cost:12.0f} {row.aim or "":>6} {each:12.2f}')
     call = min(timeit.repeat(lambda: None, number=100_000, repeat=7)) / 100_000
     print(f'one Python call takes {1e6 * call:.3f} us')
-    print(f'{1e-6 * lookups(asked.repeats):.2f} million points a second looked up, aim 0.5')
+    run_through([lookups(1)])
+    print(f'one lookup takes {1e6 / lookups(asked.repeats):.2f} us, aim 1')
 
 
 def main() -> None:
