@@ -57,7 +57,8 @@ def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
     # A file of its own in the cache: other sources are compiled again, and what was compiled from
     # these does not name what is gone.
     entry.__qualname__ = f'{function.__name__}_{digest}'
-    made: Callable[..., Any] = numba.njit(cache=True, _nrt=False)(entry)
+    options: dict[str, Any] = {'cache': True, '_nrt': False}
+    made: Callable[..., Any] = numba.njit(**options)(entry)
     return made
 
 
