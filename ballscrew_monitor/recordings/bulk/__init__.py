@@ -1,3 +1,3 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Recordings judged by arrays: the same judgements as sample by sample, many at once."""
+"""The messages of a recording as arrays of entries, in the order of judging."""
