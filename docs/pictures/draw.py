@@ -37,10 +37,10 @@ OFFLINE_ROOMS = (
 )
 ONLINE_ROOMS = (
     ('node', 'topics'),
-    ('core', 'inputs, point'),
+    ('judge', 'inputs, point'),
     ('surface', 'lookup'),
-    ('core', 'zone, level, advice'),
-    ('node', 'state, warning,\ndiagnostics'),
+    ('judge', 'zone, level'),
+    ('messages   node', 'state, warning,\ndiagnostics'),
 )
 
 BROWSERS = ('chromium', 'chromium-browser', 'google-chrome')
