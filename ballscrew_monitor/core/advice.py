@@ -178,7 +178,7 @@ def _first(
                     good = middle
                 else:
                     bad = middle
-            return good  # type: ignore[no-any-return]
+            return good
         bad = good
     return NAN
 

@@ -10,7 +10,7 @@ Names of joints, sentences and advice stay out of the step; they are kept here.
 import dataclasses
 import math
 
-from ballscrew_monitor.core.advice import interpreted
+from ballscrew_monitor.core.advice import interpreted, Nearest
 from ballscrew_monitor.core.estimate import MachinePoint, PointSource, PointValidity
 from ballscrew_monitor.core.input_status import InputStatus
 from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, Why
@@ -71,7 +71,7 @@ class Monitor:
         self.shelve_reason = ''
         self.ending = ''
         self.words = InputWords()
-        self.nearest = interpreted
+        self.nearest: Nearest = interpreted
         self._event = EventRecord()
         self._derived = Derived()
         self._row = Row()

@@ -106,7 +106,7 @@ def at_once(monitor, events):
     rows, memories = [np.empty(0, ROW)], [np.empty(0, MEMORY)]
     for judged in judge.judge(events, states=True):
         assert len(judged.memories) == len(judged.told)
-        rows.append(judged.rows)
+        rows.append(judged.rows.copy())
         memories.append(judged.memories.copy())
     judge.give_back()
     return np.concatenate(rows), np.concatenate(memories)
