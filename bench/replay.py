@@ -16,7 +16,6 @@ import argparse
 from collections.abc import Callable, Iterable, Iterator
 import os
 from pathlib import Path
-import sys
 import tempfile
 import time
 import timeit
@@ -188,4 +187,4 @@ def main() -> None:
 
 if __name__ == '__main__':
     os.environ.pop('ROS_PYTHON_CHECK_FIELDS', None)  # as a user has it
-    sys.exit(main())
+    main()

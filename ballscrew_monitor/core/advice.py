@@ -7,24 +7,27 @@ To be just optimal is not enough: the advised point keeps the hysteresis, or who
 advice would be warned for ever. The surface is scanned along one axis at a time with the other
 two quantities kept, and the border of the nearest good stretch is bisected. A stretch narrower
 than the scan can be missed. This takes a few hundred lookups, so it is done once for an event, and
-only when the advice is asked for: the state that raises the warning is not to wait for it.
+only when the advice is asked for: the state that raises the warning is not to wait for it. The
+scan is in the subset of Python that also compiles.
 
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 import dataclasses
 import functools
 import math
+from typing import Any, NamedTuple
 
 from ballscrew_monitor.core.conversions import axial_load, opposing_load, signed_speed
 from ballscrew_monitor.core.estimate import MachinePoint
-from ballscrew_monitor.core.judgement import clears, Limits
-from surrogate.surface import Surface, Validity
+from ballscrew_monitor.core.judgement import Limits
+from surrogate.surface import Found, look_up, Surface, Validity
 from surrogate.units import RPM
 
 SCAN_POINTS = 64
 HALVINGS = 20
 NAN = math.nan
+VALID = int(Validity.VALID)
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -48,6 +51,32 @@ class Advice:
         return ' or '.join(parts)
 
 
+class Criterion(NamedTuple):
+    """
+    When a place along one axis is good: its RCS is below, its efficiency at least a number [-].
+
+    Places are speeds [rad/s] at the load `other` [N] if `along_speed`, else loads at that speed;
+    temperature [K]. The efficiency is left out under `light_load` [N].
+
+    """
+
+    along_speed: bool
+    other: float
+    temperature: float
+    rcs: float
+    efficiency: float
+    light_load: float
+
+
+Nearest = Callable[[Surface, Criterion, float, list[float]], float]
+"""Return of `nearest` on a surface, with a criterion, from a place, by the ascending `places`."""
+
+
+def interpreted(surface: Surface, criterion: Criterion, here: float, places: list[float]) -> float:
+    """Return the good place nearest to `here` by scan and bisection; NaN if there is none."""
+    return nearest(surface.tables, criterion, here, places, [Found()])
+
+
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class Advisor:
     """What an event was raised by, and the advice on it, worked out when first asked for."""
@@ -55,22 +84,27 @@ class Advisor:
     point: MachinePoint
     surface: Surface
     limits: Limits
+    nearest: Nearest = dataclasses.field(default=interpreted, compare=False)
 
     @functools.cached_property
     def advice(self) -> Advice:
         """Return the nearest speed and load that clear."""
-        return advise(self.point, self.surface, self.limits)
+        return advise(self.point, self.surface, self.limits, self.nearest)
 
 
-def advise(point: MachinePoint, surface: Surface, limits: Limits) -> Advice:
+def advise(
+    point: MachinePoint, surface: Surface, limits: Limits, nearest: Nearest = interpreted
+) -> Advice:
     """Return the nearest speed and load that clear at `point`, its direction kept."""
     return Advice(
-        target_speed=optimal_speed(point, surface, limits),
-        target_load=optimal_load(point, surface, limits),
+        target_speed=optimal_speed(point, surface, limits, nearest),
+        target_load=optimal_load(point, surface, limits, nearest),
     )
 
 
-def optimal_speed(point: MachinePoint, surface: Surface, limits: Limits) -> float:
+def optimal_speed(
+    point: MachinePoint, surface: Surface, limits: Limits, nearest: Nearest = interpreted
+) -> float:
     """Return the nearest screw speed [rad/s] that clears at this load; NaN if there is none."""
     slowest, fastest = surface.speed_range
     slowest = max(slowest, limits.standstill_speed)
@@ -78,19 +112,15 @@ def optimal_speed(point: MachinePoint, surface: Surface, limits: Limits) -> floa
         return NAN
     ratio = fastest / slowest
     grid = (slowest * ratio ** (i / (SCAN_POINTS - 1)) for i in range(SCAN_POINTS))
-
-    light = _light(point.axial_load, limits)
     load = opposing_load(point.axial_load, point.direction)
-
-    def good(speed: float) -> bool:
-        return _good(speed, load, point.temperature, surface, limits, light=light)
-
-    return signed_speed(
-        _nearest(abs(point.speed), (min(s, fastest) for s in grid), good), point.direction
-    )
+    criterion = _criterion(load, limits, point, along_speed=True)
+    places = [min(speed, fastest) for speed in grid]
+    return signed_speed(nearest(surface, criterion, abs(point.speed), places), point.direction)
 
 
-def optimal_load(point: MachinePoint, surface: Surface, limits: Limits) -> float:
+def optimal_load(
+    point: MachinePoint, surface: Surface, limits: Limits, nearest: Nearest = interpreted
+) -> float:
     """
     Return the nearest axial load [N] that clears at this speed; NaN if there is none.
 
@@ -99,51 +129,70 @@ def optimal_load(point: MachinePoint, surface: Surface, limits: Limits) -> float
 
     """
     low, high = surface.load_range
-    was_light = _light(point.axial_load, limits)
-    grid = (low + (high - low) * i / (SCAN_POINTS - 1) for i in range(SCAN_POINTS))
-    speed = abs(point.speed)
-
-    def good(load: float) -> bool:
-        light = was_light and _light(load, limits)
-        return _good(speed, load, point.temperature, surface, limits, light=light)
-
+    places = [low + (high - low) * i / (SCAN_POINTS - 1) for i in range(SCAN_POINTS)]
+    criterion = _criterion(abs(point.speed), limits, point, along_speed=False)
+    if not abs(point.axial_load) < limits.light_load:
+        criterion = criterion._replace(light_load=0.0)
     here = opposing_load(point.axial_load, point.direction)
-    return axial_load(_nearest(here, grid, good), point.direction)
+    return axial_load(nearest(surface, criterion, here, places), point.direction)
 
 
-def _light(load: float, limits: Limits) -> bool:
-    return abs(load) < limits.light_load
+def _criterion(
+    other: float, limits: Limits, point: MachinePoint, *, along_speed: bool
+) -> Criterion:
+    return Criterion(
+        along_speed=along_speed,
+        other=float(other),
+        temperature=float(point.temperature),
+        rcs=float(limits.rcs_to_clear),
+        efficiency=float(limits.efficiency_to_clear),
+        light_load=float(limits.light_load),
+    )
 
 
-def _good(
-    speed: float, load: float, temperature: float, surface: Surface, limits: Limits, *, light: bool
-) -> bool:
-    """Tell whether the warning clears at a speed [rad/s] and an opposing load [N]."""
-    numbers = surface.lookup(speed, load, temperature)
-    if numbers.validity != Validity.VALID or math.isnan(numbers.rcs + numbers.efficiency):
-        return False
-    return clears(numbers, limits, light=light)
-
-
-def _nearest(here: float, grid: Iterable[float], is_good: Callable[[float], bool]) -> float:
-    """Return the good place nearest to `here` by scan and bisection; NaN if there is none."""
-    if is_good(here):
+def nearest(tables: Any, criterion: Criterion, here: float, places: Any, room: Any) -> float:
+    """Return what `Nearest` does, on `tables`; `room` holds one record of `Found`."""
+    found = room[0]
+    if _is_good(tables, criterion, here, found):
         return here
-    places = sorted(grid)
-    below = [here] + [place for place in reversed(places) if place < here]
-    above = [here] + [place for place in places if place > here]
-    found = [
-        place for place in (_first(below, is_good), _first(above, is_good)) if place is not None
-    ]
-    return min(found, key=lambda place: abs(place - here), default=NAN)
+    below = _first(tables, criterion, here, places, -1, found)
+    above = _first(tables, criterion, here, places, 1, found)
+    if math.isnan(below) or abs(above - here) < abs(below - here):
+        return above
+    return below
 
 
-def _first(places: list[float], is_good: Callable[[float], bool]) -> float | None:
-    """Return the good end of the first border along `places`, the first of which is not."""
-    for bad, good in zip(places, places[1:]):
-        if is_good(good):
+def _first(
+    tables: Any, criterion: Criterion, here: float, places: Any, step: int, found: Any
+) -> float:
+    """Return the good end of the first border beyond `here`, which is not good; NaN for none."""
+    bad = here
+    for count in range(len(places)):
+        good = places[count] if step > 0 else places[len(places) - 1 - count]
+        if not (good - here) * step > 0.0:
+            continue
+        if _is_good(tables, criterion, good, found):
             for _ in range(HALVINGS):
                 middle = 0.5 * (bad + good)
-                bad, good = (bad, middle) if is_good(middle) else (middle, good)
+                if _is_good(tables, criterion, middle, found):
+                    good = middle
+                else:
+                    bad = middle
             return good
-    return None
+        bad = good
+    return NAN
+
+
+def _is_good(tables: Any, criterion: Criterion, place: float, found: Any) -> bool:
+    """Tell whether the warning clears at a place."""
+    speed, load = place, criterion.other
+    if not criterion.along_speed:
+        speed, load = load, speed
+    if look_up(tables, speed, load, criterion.temperature, found) != VALID:
+        return False
+    if math.isnan(found.rcs + found.efficiency):
+        return False
+    light = abs(load) < criterion.light_load
+    return found.rcs < criterion.rcs and (  # type: ignore[no-any-return]
+        light or found.efficiency >= criterion.efficiency
+    )

@@ -8,7 +8,6 @@ import math
 
 from ballscrew_monitor.core.estimate import PointEstimate, PointValidity
 from surrogate.files import InputError
-from surrogate.surface import SurfacePoint
 
 NAN = math.nan
 FROM_TORQUE = ', efficiency judged from a load derived of the motor torque'
@@ -172,13 +171,6 @@ class Verdict:
     gates: tuple[Gate, ...] = ()
     findings: tuple[Finding, ...] = ()
     clear: bool = False
-
-
-def clears(estimate: PointEstimate | SurfacePoint, limits: Limits, *, light: bool) -> bool:
-    """Tell whether an estimate counts towards clearing; efficiency is left out if `light`."""
-    return estimate.rcs < limits.rcs_to_clear and (
-        light or estimate.efficiency >= limits.efficiency_to_clear
-    )
 
 
 def violation(code: Code, value: float, limit: float, *, derived: bool = False) -> Finding:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 import functools
 from typing import Any, NamedTuple
 
+from ballscrew_monitor.core.advice import Criterion, Nearest, nearest
 from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.core.state import MonitorSettings
 from ballscrew_monitor.judge.derived_load import Derived
@@ -15,7 +16,14 @@ from ballscrew_monitor.judge.slopes import SlopeRing
 from ballscrew_monitor.judge.step import step_many
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.surface import EFFICIENCY_LIMIT, look_up_many, RCS_LIMIT, shipped_surface, Surface
+from surrogate.surface import (
+    EFFICIENCY_LIMIT,
+    Found,
+    look_up_many,
+    RCS_LIMIT,
+    shipped_surface,
+    Surface,
+)
 from surrogate.surface.compiled import compiled
 from surrogate.surface.records import as_array, dtype_of, from_array
 
@@ -30,7 +38,7 @@ class Judged(NamedTuple):
     """
     Rows, the places of their events, and the memory after some of them.
 
-    Memories are those of `told`, places among the rows.
+    Memories are those of `told`, places among the rows. The next one overwrites the rows.
 
     """
 
@@ -46,12 +54,27 @@ def compiled_step() -> Callable[..., tuple[int, int, int]]:
     return compiled(step_many)
 
 
+@functools.cache
+def compiled_nearest() -> Nearest:
+    """Return the scan for advice compiled; raises ImportError without numba."""
+    entry, room = compiled(nearest), np.zeros(1, dtype=dtype_of(Found))
+
+    def scan(surface: Surface, criterion: Criterion, here: float, places: list[float]) -> float:
+        tables = surface.array_tables
+        return float(entry(tables, criterion, float(here), np.array(places), room))
+
+    return scan
+
+
 class ManyJudge:
     """Judges arrays of events in the place of a monitor."""
 
     def __init__(self, monitor: Monitor) -> None:
         """Begin with what the monitor remembers."""
         self._monitor = monitor
+        monitor.nearest = compiled_nearest()
+        self._rows = np.empty(AT_ONCE, dtype=ROW)
+        self._places = np.empty(AT_ONCE, dtype=np.int64)
         self.take_over()
 
     def take_over(self) -> None:
@@ -94,12 +117,10 @@ class ManyJudge:
         while at < len(events):
             end = at + AT_ONCE
             some = events[at:end]
-            rows = np.empty(len(some), dtype=ROW)
-            places = np.empty(len(some), dtype=np.int64)
             taken, made, told = compiled_step()(
-                self._tables, *self._arrays, some, rows, places, memories, states
+                self._tables, *self._arrays, some, self._rows, self._places, memories, states
             )
-            rows = rows[:made]
+            rows, places = self._rows[:made], self._places
             which = np.flatnonzero(rows['published'] if states else rows['edge'])
             yield Judged(rows, places[:made] + at, memories[:told], which)
             at += taken

@@ -10,6 +10,7 @@ Names of joints, sentences and advice stay out of the step; they are kept here.
 import dataclasses
 import math
 
+from ballscrew_monitor.core.advice import interpreted, Nearest
 from ballscrew_monitor.core.estimate import MachinePoint, PointSource, PointValidity
 from ballscrew_monitor.core.input_status import InputStatus
 from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, Why
@@ -70,6 +71,7 @@ class Monitor:
         self.shelve_reason = ''
         self.ending = ''
         self.words = InputWords()
+        self.nearest: Nearest = interpreted
         self._event = EventRecord()
         self._derived = Derived()
         self._row = Row()
@@ -161,7 +163,9 @@ class Monitor:
     @property
     def event(self) -> Event:
         """Return the event that is active, or the last one."""
-        made = views.event_of(self.memory, self.surface, self._settings.limits, self.ending)
+        made = views.event_of(
+            self.memory, self.surface, self._settings.limits, self.ending, self.nearest
+        )
         if made != self._told:  # the advice of one event is worked out once
             self._told = made
         return self._told

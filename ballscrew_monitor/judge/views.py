@@ -6,7 +6,7 @@ from collections.abc import Mapping
 import math
 from typing import Any
 
-from ballscrew_monitor.core.advice import Advisor
+from ballscrew_monitor.core.advice import Advisor, interpreted, Nearest
 from ballscrew_monitor.core.conversions import Direction, Nut, seconds
 from ballscrew_monitor.core.estimate import (
     ContactState,
@@ -171,8 +171,15 @@ def gates_of(bits: int) -> tuple[Gate, ...]:
     return tuple(gate for bit, gate in pairs if bits & bit)
 
 
-def event_of(memory: Any, surface: Surface, limits: Limits, ending: str = '') -> Event:
-    """Return the excursion that is active or was the last; `ending` is why the node ended it."""
+def event_of(
+    memory: Any, surface: Surface, limits: Limits, ending: str = '', nearest: Nearest = interpreted
+) -> Event:
+    """
+    Return the excursion that is active or was the last; `ending` is why the node ended it.
+
+    Advice on it is found by `nearest`.
+
+    """
     if not memory.event_number:
         return Event()
     code = Code(int(memory.event_code[ACTIVE]))
@@ -185,6 +192,7 @@ def event_of(memory: Any, surface: Surface, limits: Limits, ending: str = '') ->
         direction=Direction(int(memory.event_direction[ACTIVE])),
     )
     known = math.isfinite(point.speed + point.axial_load + point.temperature)
+    advisor = Advisor(point=point, surface=surface, limits=limits, nearest=nearest)
     return Event(
         number=int(memory.event_number),
         active=bool(memory.event_active),
@@ -192,7 +200,7 @@ def event_of(memory: Any, surface: Surface, limits: Limits, ending: str = '') ->
         start=int(memory.event_start[ACTIVE]),
         worst_value=worst,
         cause=cause,
-        advisor=Advisor(point=point, surface=surface, limits=limits) if known else None,
+        advisor=advisor if known else None,
         ending=ending,
     )
 

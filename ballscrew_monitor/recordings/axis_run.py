@@ -14,7 +14,7 @@ from ballscrew_monitor.judge.words import EARLIEST, LATEST, MOST_OTHERS
 from ballscrew_monitor.recordings.bulk.entries import Entries, Kind
 from ballscrew_monitor.recordings.bulk.source import places_of_axis
 from ballscrew_monitor.recordings.columns import AxisOutcome, COLUMNS, JudgedColumns
-from ballscrew_monitor.recordings.summary import event_record, EventRecord
+from ballscrew_monitor.recordings.summary import event_record
 from ballscrew_monitor.settings.axis import Axis
 import numpy as np
 from numpy.typing import NDArray
@@ -88,7 +88,7 @@ class AxisRun:
         """Begin with what the monitor of `axis` remembers."""
         self.axis = axis
         self._judge = ManyJudge(axis.monitor)
-        self._events: dict[int, EventRecord] = {}
+        self._events: dict[int, tuple[Event, int]] = {}  # and until when it is known
         self._rows = self._states = self._first = self._last = 0
         self._last_row: Any = None
         self._ended: Event | None = None  # by something else than a sample, and not told yet
@@ -157,7 +157,10 @@ class AxisRun:
             states=self._states,
             judged=monitor.judged,
             totals=monitor.totals,
-            events=tuple(self._events[number] for number in sorted(self._events)),
+            events=tuple(
+                event_record(event, until=until)
+                for _, (event, until) in sorted(self._events.items())
+            ),
             inputs=monitor.input_status(0 if row is None else int(row.now)),
             refused=monitor.refused,
             limits=monitor.settings.limits,
@@ -175,9 +178,7 @@ class AxisRun:
             yield int(judged.places[at]), from_array(records.Row, judged.rows[at])
 
     def _note(self, event: Event, *, until: int | None = None) -> None:
-        self._events[event.number] = event_record(
-            event, until=event.stamp if until is None else until
-        )
+        self._events[event.number] = event, event.stamp if until is None else until
 
     def _count(self, rows: NDArray[Any]) -> None:
         """Count rows, at least one."""

@@ -9,7 +9,7 @@ time the node wrote down what it remembered of an axis, the replay must remember
 
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 import dataclasses
 import functools
 import json
@@ -67,7 +67,11 @@ def recorded_values(bag: Bag) -> dict[str, Any]:
     Raises InputError for a recording that describes no axis.
 
     """
-    found = {entry['axis']: _values(entry, bag.types) for entry in _first_entries(bag)}
+    return _values_of(bag, _first_entries(bag))
+
+
+def _values_of(bag: Bag, described: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
+    found = {entry['axis']: _values(entry, bag.types) for entry in described}
     values = parameters.defaults(list(found))
     for one in found.values():
         values |= one
@@ -84,18 +88,18 @@ def is_as_recorded(bag: Bag, values: Mapping[str, Any]) -> bool:
     """
     if not journal_of(bag):
         return False
-    if any(entry['version'] != VERSION for entry in _first_entries(bag)):
+    described = _first_entries(bag)
+    if any(entry['version'] != VERSION for entry in described):
         if OTHER_VERSION not in bag.remarks:
             bag.remarks.append(OTHER_VERSION)
         return False
-    return recorded_values(bag) == dict(values)
+    return _values_of(bag, described) == dict(values)
 
 
 def _first_entries(bag: Bag) -> list[Mapping[str, Any]]:
     """Return the first description of each axis; raises InputError if there is none."""
     found: dict[str, Mapping[str, Any]] = {}
-    for message in bag.as_written([journal_of(bag)]):
-        entry = _entry_of(message.data, message.topic)
+    for entry in _journal_of(bag):
         if entry['kind'] == 'axis':
             if entry['axis'] in found:
                 break
@@ -103,6 +107,21 @@ def _first_entries(bag: Bag) -> list[Mapping[str, Any]]:
     if not found:
         raise InputError(f'bag {bag.path}: its journal describes no axis')
     return list(found.values())
+
+
+def _journal_of(bag: Bag) -> Iterator[Mapping[str, Any]]:
+    """Yield the entries of a journal in the order of the file."""
+    journal = journal_of(bag)
+    for batch in batches(bag, [journal], as_written=True):
+        if journal in batch.topics:
+            yield from (entry for _, entry in _noted(batch.topics[journal], journal))
+
+
+def _noted(messages: Messages, journal: str) -> Iterator[Noted]:
+    """Yield messages of a journal as entries, each with its place."""
+    messages = messages.some(np.argsort(messages.place))
+    for place, data in zip(messages.place.tolist(), messages.contents(), strict=True):
+        yield place, _entry_of(data, journal)
 
 
 class OwnRecording:
@@ -135,9 +154,9 @@ class OwnRecording:
 
     def _segments(self, topics: dict[str, Messages]) -> Iterator[Entries]:
         """Yield the entries of a batch, in parts between changes of what is read."""
-        journal = self._journal_entries(topics.pop(self._journal, None))
+        journal = topics.pop(self._journal, None)
         begin, waiting = -1, list[Noted]()
-        for place, entry in journal:
+        for place, entry in [] if journal is None else _noted(journal, self._journal):
             if not self._changes(entry):
                 waiting.append((place, entry))
                 continue
@@ -145,15 +164,6 @@ class OwnRecording:
             begin, waiting = place, []
             self._change(entry)
         yield self._ordered(topics, begin, END, waiting)
-
-    def _journal_entries(self, messages: Messages | None) -> list[Noted]:
-        """Return the entries of the journal in a batch, each with its place."""
-        if messages is None:
-            return []
-        order = np.argsort(messages.place)
-        contents = messages.some(order).contents()
-        found = (_entry_of(data, self._journal) for data in contents)
-        return list(zip(messages.place[order].tolist(), found, strict=True))
 
     def _changes(self, entry: Mapping[str, Any]) -> bool:
         """Tell whether an entry changes what is read, so that all before is judged first."""

@@ -19,6 +19,8 @@ import types
 from typing import Any
 
 DIGITS = 16
+WITHOUT_COUNTS: dict[str, Any] = {'_nrt': False}
+"""What tells numba to keep no counts of references."""
 _REGISTERED: set[types.FunctionType] = set()
 
 
@@ -47,7 +49,7 @@ def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
     parts = called_by(function)
     for part in parts:
         if part not in _REGISTERED:
-            register_jitable(_nrt=False)(part)
+            register_jitable(**WITHOUT_COUNTS)(part)
             _REGISTERED.add(part)
     digest = _digest(parts)
 
@@ -57,8 +59,7 @@ def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
     # A file of its own in the cache: other sources are compiled again, and what was compiled from
     # these does not name what is gone.
     entry.__qualname__ = f'{function.__name__}_{digest}'
-    options: dict[str, Any] = {'cache': True, '_nrt': False}
-    made: Callable[..., Any] = numba.njit(**options)(entry)
+    made: Callable[..., Any] = numba.njit(cache=True, **WITHOUT_COUNTS)(entry)
     return made
 
 

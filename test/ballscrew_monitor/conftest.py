@@ -17,6 +17,7 @@ import sys
 import types
 import warnings
 
+from ballscrew_monitor.core import advice
 from ballscrew_monitor.core.conversions import direction_of, SECOND
 from ballscrew_monitor.core.estimate import MachinePoint, PointSource, PointValidity
 from ballscrew_monitor.core.fields import message_class
@@ -246,7 +247,7 @@ def constant_or(constant, real):
 
 def take_constants(patch):
     """Let the judgement look surfaces of constants up, interpreted."""
-    for module in (point, step, derived_load):
+    for module in (advice, point, step, derived_load):
         for constant in (look_up, look_up_rest, is_inside, scan, scan_part):
             name = constant.__name__
             if hasattr(module, name):

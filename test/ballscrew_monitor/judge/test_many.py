@@ -2,16 +2,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """The step compiled over arrays and interpreted event by event: the same bits."""
 
+import dataclasses
 import math
 import sys
 
-from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.core.advice import advise
+from ballscrew_monitor.core.conversions import direction_of, SECOND
+from ballscrew_monitor.core.estimate import MachinePoint
 from ballscrew_monitor.core.inputs import Source, Why
 from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.core.state import LoadDerivation, MonitorSettings, PositionSettings
 from ballscrew_monitor.judge import many
 from ballscrew_monitor.judge.derived_load import Derived
-from ballscrew_monitor.judge.many import EVENT, ManyJudge, MEMORY, ROW
+from ballscrew_monitor.judge.many import compiled_nearest, EVENT, ManyJudge, MEMORY, ROW
 from ballscrew_monitor.judge.monitor import Monitor
 from ballscrew_monitor.judge.records import Event, Memory, REFUSAL, Row, SAMPLE, TICK
 from ballscrew_monitor.judge.step import NOTHING, STATE, step
@@ -103,7 +106,7 @@ def at_once(monitor, events):
     rows, memories = [np.empty(0, ROW)], [np.empty(0, MEMORY)]
     for judged in judge.judge(events, states=True):
         assert len(judged.memories) == len(judged.told)
-        rows.append(judged.rows)
+        rows.append(judged.rows.copy())
         memories.append(judged.memories.copy())
     judge.give_back()
     return np.concatenate(rows), np.concatenate(memories)
@@ -229,3 +232,19 @@ def test_a_memory_has_the_fields_of_its_slots():
         again = from_array(kind, made[0])
         assert repr(again) == repr(kind())
         assert as_array(again).tobytes() == made.tobytes()
+
+
+@given(
+    speed=st.floats(-400.0, 400.0),
+    load=st.floats(-4000.0, 4000.0),
+    temperature=st.floats(280.0, 360.0),
+    efficiency=st.sampled_from([0.5, 0.85, 0.95]),
+)
+@settings(max_examples=30, deadline=None)
+def test_advice_comes_out_the_same(speed, load, temperature, efficiency):
+    limits = dataclasses.replace(LIMITS, efficiency=efficiency)
+    point = MachinePoint(
+        speed=speed, axial_load=load, temperature=temperature, direction=direction_of(speed)
+    )
+    advice = advise(point, SURFACE, limits, compiled_nearest())
+    assert repr(advice) == repr(advise(point, SURFACE, limits))
