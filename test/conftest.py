@@ -106,7 +106,6 @@ class Skipper(MetaPathFinder):
 
 sys.meta_path.append(Skipper())
 sys.path.append(str(ROOT / 'bags'))  # the generators are scripts beside each other
-sys.path.append(str(ROOT / 'test' / 'twins'))  # plain twins of what is compiled
 
 
 def pytest_collection_modifyitems(items):
