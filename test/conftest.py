@@ -39,7 +39,6 @@ SLOW = (
     'ballscrew_monitor/node/test_loss.py',
     'ballscrew_monitor/node/test_motor_torque.py',
     'ballscrew_monitor/node/test_faults.py',
-    'ballscrew_monitor/node/test_loss.py',
     'ballscrew_monitor/settings/test_middleware.py',
     'ballscrew_monitor/node/test_node.py',
     'ballscrew_monitor/node/test_solve.py',
@@ -77,9 +76,8 @@ SLOW = (
     'surrogate/tasks/test_store.py',
     'surrogate/test_cli.py',
     'test_conftest.py',
-    'test_flake8.py',
     'test_interfaces.py',
-    'test_pep257.py',
+    'test_linters.py',
 )
 SLOW_FIXTURES = {'nominal_bag', 'short_bag'}
 

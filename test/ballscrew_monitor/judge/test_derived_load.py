@@ -259,22 +259,6 @@ def test_a_torque_beyond_the_surface(straight, torque):
     )
 
 
-@pytest.mark.parametrize(
-    ('changes', 'validity'),
-    [
-        ({'speed': 0.05}, Validity.SPEED_BELOW_RANGE),
-        ({'speed': 200.0}, Validity.SPEED_ABOVE_RANGE),
-        ({'temperature': 200.0}, Validity.TEMPERATURE_OUT_OF_RANGE),
-    ],
-)
-def test_speed_and_temperature_outside_the_surface(straight, changes, validity):
-    values = {'speed': 10.0, 'temperature': 313.15} | changes
-    found = derived(
-        at(values['speed'], 1.0, temperature=values['temperature']), straight, told(inertia=0.0)
-    )
-    assert (found.validity, found.reason) == (validity, '')
-
-
 def test_a_gap_of_the_surface_that_may_hold_the_load(core):
     surface = core.surface(
         driving_torque=lambda speed, load: (
