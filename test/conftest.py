@@ -39,7 +39,6 @@ SLOW = (
     'ballscrew_monitor/node/test_loss.py',
     'ballscrew_monitor/node/test_motor_torque.py',
     'ballscrew_monitor/node/test_faults.py',
-    'ballscrew_monitor/node/test_loss.py',
     'ballscrew_monitor/settings/test_middleware.py',
     'ballscrew_monitor/node/test_node.py',
     'ballscrew_monitor/node/test_solve.py',
@@ -77,9 +76,8 @@ SLOW = (
     'surrogate/tasks/test_store.py',
     'surrogate/test_cli.py',
     'test_conftest.py',
-    'test_flake8.py',
     'test_interfaces.py',
-    'test_pep257.py',
+    'test_linters.py',
 )
 SLOW_FIXTURES = {'nominal_bag', 'short_bag'}
 
@@ -106,7 +104,6 @@ class Skipper(MetaPathFinder):
 
 sys.meta_path.append(Skipper())
 sys.path.append(str(ROOT / 'bags'))  # the generators are scripts beside each other
-sys.path.append(str(ROOT / 'test' / 'twins'))  # plain twins of what is compiled
 
 
 def pytest_collection_modifyitems(items):

@@ -90,7 +90,6 @@ THEMES = {
     'bags/test_identity.py',
     'ballscrew_monitor/judge/test_edge_floats.py',
     'ballscrew_monitor/judge/test_golden.py',
-    'ballscrew_monitor/judge/test_load_closed_forms.py',
     'ballscrew_monitor/node/test_clocks.py',
     'ballscrew_monitor/node/test_cures.py',
     'ballscrew_monitor/node/test_deadline.py',
@@ -257,8 +256,6 @@ def test_manifest_names_what_is_imported() -> None:
 def test_every_file_of_tests_is_collected() -> None:
     """Each holds a test, under a name that pytest looks for, and no test hides another."""
     for path in sorted((TREE / 'test').rglob('*.py')):
-        if path.parent.name == 'twins':  # plain twins of what is compiled
-            continue
         names = [
             node.name
             for node in ast.walk(ast.parse(path.read_text()))

@@ -179,11 +179,20 @@ def test_surrogate_loads_no_ros() -> None:
     assert 'ballscrew_monitor' not in loaded
 
 
-def test_lookup_loads_numpy_alone() -> None:
-    """Light enough for any process."""
-    loaded = loaded_by('import surrogate.surface')
-    assert 'surrogate.surface' in loaded
-    assert not loaded & {'matplotlib', 'rclpy', 'scipy', 'yaml'}
+@pytest.mark.parametrize(
+    ('module', 'heavy'),
+    [
+        ('surrogate.surface', {'matplotlib', 'numba', 'rclpy', 'scipy', 'yaml'}),
+        ('surrogate.formulas.record', {'matplotlib', 'numba'}),
+        ('surrogate.builder.tiers', {'distributed', 'numba', 'scipy'}),
+        ('ballscrew_monitor.report.command', {'contourpy', 'polars', 'scipy'}),
+    ],
+)
+def test_what_must_start_quickly_loads_nothing_heavy(module: str, heavy: set[str]) -> None:
+    """The lookup in any process, a point by formulas, the table of tiers, a printed replay."""
+    loaded = loaded_by(f'import {module}')
+    assert module in loaded
+    assert not loaded & heavy
 
 
 def test_node_loads_of_surrogate_what_the_lookup_needs() -> None:

@@ -14,16 +14,15 @@ from ballscrew_monitor.core.tick_grid import TickGrid
 from ballscrew_monitor.messages import diagnostics
 from ballscrew_monitor.node.alarm import end_all
 from ballscrew_monitor.node.axis_publisher import AxisPublisher, STATE_QOS
+from ballscrew_monitor.node.axis_services import AxisServices, not_built
 from ballscrew_monitor.node.chronicle import Chronicle
 from ballscrew_monitor.node.intake import Intake
 from ballscrew_monitor.node.kept_axes import KeptAxes
 from ballscrew_monitor.node.output_topics import LatchedTopics
 from ballscrew_monitor.node.parameter_store import ParameterStore
 from ballscrew_monitor.node.restart_state import RestartState, state_directory
-from ballscrew_monitor.node.shelve_service import ShelveService
 from ballscrew_monitor.node.solve_server import SolveServer
 from ballscrew_monitor.node.solver_process import SolverProcess
-from ballscrew_monitor.node.trigger_services import not_built, TriggerServices
 from ballscrew_monitor.settings import parameters
 from ballscrew_monitor.settings.axis import Axis, build_axes, named_topics
 from ballscrew_monitor.settings.qos import check_overrides, longest_period
@@ -84,14 +83,14 @@ class BallscrewMonitor(LifecycleNode):
             self, state, lambda: self._axis_publishers, self._on_kept, clock=self._steady
         )
         self._solves = SolveServer(self, SolverProcess, self._find_publisher)
-        TriggerServices(
+        AxisServices(
             self,
             self._values,
             lambda: self._axis_publishers,
             lambda: self._failed,
+            self._unknown,
             self._on_service,
         )
-        ShelveService(self, lambda: self._axis_publishers, self._unknown, self._on_service)
 
     def start(self) -> None:
         """Configure and activate, if the node is to do so itself."""

@@ -1,12 +1,19 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The run of the node process, from its arguments to its exit code."""
+"""
+The run of the node process, from its arguments to its exit code.
 
-from collections.abc import Sequence
+The ports are bound when ROS starts, so `localhost` must be known earlier. Only this one parameter
+is looked for; whatever is wrong with an argument ROS says itself.
+
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+import re
 import signal
 import sys
+from typing import Any
 
-from ballscrew_monitor.node.arguments import wants_localhost
 from ballscrew_monitor.node.node import BallscrewMonitor
 from ballscrew_monitor.node.solve_server import MOST_SOLVES
 from ballscrew_monitor.settings import middleware, parameters
@@ -15,8 +22,11 @@ from rclpy.exceptions import ParameterException
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.signals import SignalHandlerOptions
 from surrogate.files import InputError
+import yaml
 
 BAD_INPUT = 2
+NAME = 'localhost'
+_TAKES_VALUE = {'-p': '-p', '--param': '-p', '-r': '-r', '--remap': '-r', '--params-file': 'file'}
 POLL = 0.2  # [s] longest wait before a signal is noticed
 
 
@@ -65,3 +75,82 @@ def _end(node: BallscrewMonitor, executor: SingleThreadedExecutor) -> None:
     executor.shutdown()
     node.destroy_node()
     rclpy.shutdown()
+
+
+def wants_localhost(arguments: Sequence[str]) -> bool:
+    """Tell whether the arguments of the node set `localhost`; the last one counts."""
+    given = list(_ros_arguments(arguments))
+    node = _full_name(value for kind, value in given if kind == '-r')
+    wanted = False
+    for kind, value in given:
+        found = _of_file(value, node) if kind == 'file' else {}
+        if kind == '-p':
+            found = _of_rule(value, node)
+        wanted = bool(found.get(NAME, wanted))
+    return wanted
+
+
+def _ros_arguments(arguments: Sequence[str]) -> Iterator[tuple[str, str]]:
+    """Yield kind and value of the arguments between `--ros-args` and `--`."""
+    inside, kind = False, ''
+    for argument in arguments:
+        if kind:
+            yield kind, argument
+            kind = ''
+        elif argument in ('--ros-args', '--'):
+            inside = argument == '--ros-args'
+        elif inside:
+            kind = _TAKES_VALUE.get(argument, '')
+
+
+def _full_name(remaps: Iterator[str]) -> str:
+    """Return the full name of the node; of two rules the first one counts."""
+    found: dict[str, str] = {}
+    for rule in remaps:
+        place, _, value = rule.partition(':=')
+        what = place.rpartition(':')[2]
+        found.setdefault('__node' if what == '__name' else what, value)
+    namespace = found.get('__ns', '').strip('/')
+    name = found.get('__node', parameters.NODE_NAME)
+    return f'/{namespace}/{name}' if namespace else f'/{name}'
+
+
+def _of_rule(rule: str, node: str) -> dict[str, Any]:
+    place, _, text = rule.partition(':=')
+    target, _, name = place.rpartition(':')
+    if name != NAME or (target and target != node.rpartition('/')[2]):
+        return {}
+    try:
+        return {NAME: yaml.safe_load(text) is True}
+    except yaml.YAMLError:
+        return {}
+
+
+def _of_file(path: str, node: str) -> dict[str, Any]:
+    try:
+        sections = parameters.sections(path)
+    except InputError:
+        return {}
+    found: dict[str, Any] = {}
+    for pattern, values in _patterns(sections):
+        if NAME in values and _matches(pattern, node):
+            found = {NAME: values[NAME] is True}
+    return found
+
+
+def _patterns(
+    section: Mapping[str, Any], prefix: str = ''
+) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Yield the pattern of each node that a file speaks of, and its parameters."""
+    for key, inner in section.items():
+        if key == 'ros__parameters' and isinstance(inner, dict):
+            yield prefix, inner
+        elif isinstance(inner, dict):
+            yield from _patterns(inner, f'{prefix}/{str(key).strip("/")}')
+
+
+def _matches(pattern: str, node: str) -> bool:
+    """Tell whether a pattern means the node; `*` stands for one part of a name, `**` for any."""
+    parts = {'*': '/[^/]+', '**': '(?:/[^/]+)*'}
+    form = ''.join(parts.get(part, f'/{re.escape(part)}') for part in pattern[1:].split('/'))
+    return re.fullmatch(form, node) is not None

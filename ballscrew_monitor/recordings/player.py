@@ -17,18 +17,21 @@ import dataclasses
 import itertools
 import threading
 import time
+from typing import Any
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.fields import message_class
 from ballscrew_monitor.recordings.bag import Bag, Message
-from ballscrew_monitor.recordings.stamps import shifted
+from builtin_interfaces.msg import Time
 from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.qos import QoSDurabilityPolicy, QoSHistoryPolicy, QoSProfile, QoSReliabilityPolicy
+from rclpy.serialization import deserialize_message, serialize_message
 from rosgraph_msgs.msg import Clock
 from surrogate.files import InputError
 
 CLOCK = '/clock'
+LAST = 2**31 * SECOND  # [ns] first stamp that a message cannot hold
 CLOCK_PERIOD = 0.01  # [s] of wall time
 MATCH_POLL = 0.02  # [s] between two looks at who has matched
 PAUSE = SECOND // 10  # [ns] of bag time from the last message of a pass to the first of the next
@@ -184,3 +187,30 @@ class Player:
         message = Clock()
         message.clock.sec, message.clock.nanosec = divmod(self._now, SECOND)
         self._clock.publish(message)
+
+
+def shifted(data: bytes, message_type: Any, by: int) -> bytes:
+    """
+    Return a serialised message whose stamps are later `by` [ns].
+
+    A stamp of 0 is none, and stays.
+
+    """
+    message = deserialize_message(data, message_type)
+    for stamp in _times(message):
+        before = stamp.sec * SECOND + stamp.nanosec
+        if before and before + by < LAST:
+            stamp.sec, stamp.nanosec = divmod(before + by, SECOND)
+    return bytes(serialize_message(message))
+
+
+def _times(part: Any) -> Iterator[Time]:
+    """Yield every time in a message, in a list of them, or in anything else, which holds none."""
+    if isinstance(part, Time):
+        yield part
+    elif isinstance(part, list):
+        for one in part:
+            yield from _times(one)
+    elif hasattr(part, 'get_fields_and_field_types'):
+        for name in part.get_fields_and_field_types():
+            yield from _times(getattr(part, name))

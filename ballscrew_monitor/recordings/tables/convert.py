@@ -8,13 +8,16 @@ Topics are `joint_states` with speed, position and torque of each screw, `<axis>
 
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 import dataclasses
 import itertools
 import math
 from pathlib import Path
+import struct
 from typing import Any
 
+from ballscrew_monitor.core.cdr import serialized
+from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.messages.reasons import enough_timeout
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic, whole_bag
 from ballscrew_monitor.recordings.log_facts import Assumption, LogFacts
@@ -22,13 +25,13 @@ from ballscrew_monitor.recordings.progress import Shown, silent
 from ballscrew_monitor.recordings.tables.agreement import Agreement
 from ballscrew_monitor.recordings.tables.cells import Array
 from ballscrew_monitor.recordings.tables.mapping import AxisMap, TableMap
-from ballscrew_monitor.recordings.tables.rows import marks, RowTemplate
 from ballscrew_monitor.recordings.tables.series import Block, read_series, Series
 from ballscrew_monitor.settings import parameters
 from ballscrew_monitor.settings.axis import load_surface, MOTOR_TORQUE
 from ballscrew_monitor.settings.topics import absolute
 from geometry_msgs.msg import WrenchStamped
 import numpy as np
+from numpy.typing import NDArray
 from sensor_msgs.msg import JointState, Temperature
 from surrogate.files import InputError
 from surrogate.units import MILLI
@@ -42,6 +45,8 @@ JOINT, WRENCH, TEMPERATURE = (
 SLOW = 0.5  # of the timeout: rows that far apart leave no room for a late one
 PASSES = 3  # over a table, at most, of which each is shown
 SAME = 1e-6  # part by which two leads may differ
+BLOCK = 4096  # rows that are made at a time
+_STAMP = (1_234_567_891, 987_654_321)  # [s], [ns]
 
 
 def convert(path: Path, mapping: TableMap, out: Path, *, shown: Shown = silent) -> LogFacts:
@@ -204,3 +209,51 @@ def _all(block: Block, found: list[Array | None]) -> list[Array]:
         return []
     unknown = np.full(len(block.stamps), math.nan)
     return [unknown if one is None else one for one in found]
+
+
+def marks(count: int) -> list[float]:
+    """Return numbers that stand in a message for those of its rows, in their order."""
+    return [1.234567890123e200 * (number + 1) for number in range(count)]
+
+
+class RowTemplate:
+    """
+    One message with a header, and `count` numbers in it that are `marks`.
+
+    Messages of one shape differ in their stamp and their numbers alone: these are put into the
+    bytes of one of them.
+
+    """
+
+    def __init__(self, message: Any, count: int) -> None:
+        """Find where the stamp and the marks stand in the bytes of `message`."""
+        message.header.stamp.sec, message.header.stamp.nanosec = _STAMP
+        data = serialized(message)
+        self._bytes = np.frombuffer(data, np.uint8)
+        self._stamp = data.index(struct.pack('<iI', *_STAMP))
+        self._places = [data.index(struct.pack('<d', mark)) for mark in marks(count)]
+
+    def rows(
+        self, stamps: NDArray[np.int64], numbers: Sequence[NDArray[np.float64]]
+    ) -> Iterator[bytes]:
+        """Yield the message of each row, of its stamp [ns] and its numbers."""
+        for begin in range(0, len(stamps), BLOCK):
+            part = slice(begin, begin + BLOCK)
+            yield from self._block(stamps[part], [values[part] for values in numbers])
+
+    def _block(
+        self, stamps: NDArray[np.int64], numbers: Sequence[NDArray[np.float64]]
+    ) -> Iterator[bytes]:
+        data = np.tile(self._bytes, (len(stamps), 1))
+        times = np.stack([stamps // SECOND, stamps % SECOND], axis=1).astype('<u4')
+        _put(data, self._stamp, times)
+        for place, values in zip(self._places, numbers, strict=True):
+            _put(data, place, np.array(values, dtype='<f8').reshape(-1, 1))
+        return (row.tobytes() for row in data)
+
+
+def _put(data: NDArray[np.uint8], begin: int, numbers: NDArray[Any]) -> None:
+    """Write the numbers of each row to its bytes."""
+    parts = numbers.view(np.uint8)
+    end = begin + parts.shape[1]
+    data[:, begin:end] = parts

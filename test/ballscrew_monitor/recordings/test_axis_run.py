@@ -110,20 +110,25 @@ def test_blocks_of_one_axis_join(judged):
         assert getattr(twice, name).dtype == kind
 
 
-@pytest.fixture
-def derived(tmp_path):
-    """Return the columns of an axis whose load is derived, the torque lost at the end."""
+def drive_bag(folder, samples):
+    """Return a bag of pairs of speed [rad/s] and effort, at 200 Hz."""
     topic = Topic(name='/joint_states', type_name=JOINT, offer=Offer.SENSOR)
-    with BagWriter(tmp_path, 'bag') as writer:
+    with BagWriter(folder, 'bag') as writer:
         writer.add_topic(topic)
-        for number in range(200):
+        for number, (speed, effort) in enumerate(samples):
             stamp = 10**9 + number * 5_000_000
-            message = JointState(name=['x_axis'], velocity=[60.0], effort=[3.0])
-            if number >= 150:
-                message.effort = [math.nan]
+            message = JointState(name=['x_axis'], velocity=[speed], effort=[effort])
             message.header.stamp.sec, message.header.stamp.nanosec = divmod(stamp, 10**9)
             data = serialize_message(message)
             writer.write(topic.name, data, log_time=stamp, publish_time=stamp)
+    return Bag(folder)
+
+
+@pytest.fixture
+def derived(tmp_path):
+    """Return the columns of an axis whose load is derived, the torque lost at the end."""
+    efforts = [3.0] * 150 + [math.nan] * 50
+    bag = drive_bag(tmp_path, [(60.0, effort) for effort in efforts])
     values = parameters.defaults(['x']) | {
         'x.load.source': 'motor_torque',
         'x.torque.topic': 'joint_states',
@@ -131,7 +136,7 @@ def derived(tmp_path):
         'x.torque.field': 'effort[x_axis]',
         'x.torque.uncertainty': 0.1,
     }
-    *blocks, outcome = replay_columns(Bag(tmp_path), values)
+    *blocks, outcome = replay_columns(bag, values)
     return joined(blocks), outcome
 
 
@@ -147,22 +152,14 @@ def test_a_derived_load_has_its_range_and_no_residual(derived):
 
 
 def test_a_screw_that_stands_stands_whether_or_not_its_load_is_known(tmp_path):
-    topic = Topic(name='/joint_states', type_name=JOINT, offer=Offer.SENSOR)
-    with BagWriter(tmp_path, 'bag') as writer:
-        writer.add_topic(topic)
-        for number in range(200):
-            stamp = 10**9 + number * 5_000_000
-            speed = 60.0 if number < 50 else 0.0
-            message = JointState(name=['x_axis'], velocity=[speed], effort=[math.nan])
-            message.header.stamp.sec, message.header.stamp.nanosec = divmod(stamp, 10**9)
-            data = serialize_message(message)
-            writer.write(topic.name, data, log_time=stamp, publish_time=stamp)
+    speeds = [60.0] * 50 + [0.0] * 150
+    bag = drive_bag(tmp_path, [(speed, math.nan) for speed in speeds])
     values = parameters.defaults(['x']) | {
         'x.load.topic': 'joint_states',
         'x.load.type': JOINT,
         'x.load.field': 'effort[x_axis]',
     }
-    *blocks, _ = replay_columns(Bag(tmp_path), values)
+    *blocks, _ = replay_columns(bag, values)
     columns = joined(blocks)
     samples = columns.reason[~columns.tick]
     assert set(samples[:50]) == {Reason.NO_LOAD}

@@ -2,9 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """A recording judged in one pass, for a page or for a terminal on a machine without its tools."""
 
-import subprocess
-import sys
-
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.report.judging import judge_log
 from ballscrew_monitor.report.parameters import parameters_for
@@ -31,14 +28,3 @@ def test_rows_are_kept_where_they_are_asked_for(short_bag, parameters, tmp_path)
 
 def test_a_recording_that_no_node_made_numbers_no_messages(short_bag, parameters):
     assert not judge_log(Bag(short_bag), parameters).axes[0].numbered
-
-
-def test_printing_needs_neither_polars_nor_contourpy():
-    code = (
-        'import ballscrew_monitor.report.command, sys; '
-        'print(*(name for name in ("polars", "contourpy", "scipy") if name in sys.modules))'
-    )
-    loaded = subprocess.run(
-        [sys.executable, '-c', code], check=True, capture_output=True, text=True, timeout=60
-    )
-    assert loaded.stdout.split() == []

@@ -4,7 +4,6 @@
 
 from dataclasses import asdict, replace
 import json
-import subprocess
 import sys
 
 import pytest
@@ -70,15 +69,3 @@ def test_a_builder_that_spreads_its_solves_gets_pool_and_file(monkeypatch, screw
     monkeypatch.setitem(TIERS, 'closed_form', tier)
     build_surface('closed_form', screw, oil, None, pool='workers', out=tmp_path)
     assert seen == {'pool': 'workers', 'out': tmp_path}
-
-
-def test_the_table_loads_no_solver():
-    """A command that builds nothing starts without scipy and numba."""
-    code = (
-        'import sys, surrogate.builder.tiers; '
-        'print({"scipy", "numba", "distributed"} & {*sys.modules})'
-    )
-    found = subprocess.run(
-        [sys.executable, '-c', code], capture_output=True, text=True, check=True, timeout=60
-    )
-    assert found.stdout.strip() == 'set()'

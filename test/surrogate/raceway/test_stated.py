@@ -22,27 +22,18 @@ X, Y = np.linspace(-1e-4, 1e-4, 20), np.linspace(-4e-4, 4e-4, 15)
 
 def test_every_number_of_a_sheet_reaches_the_spectrum():
     """Each under its own name; those of the generator too."""
-    sheet = Roughness(
-        rms=0.2e-6,
-        cutoff_long=0.8e-3,
-        cutoff_short=8e-6,
-        rms_slope=math.radians(1.0),
-        lay='longitudinal',
-        fan_angle=math.radians(20.0),
-        scale_ratio=1.4,
-        ridges=7,
-        asperity_friction=0.12,
-    )
-    assert spectrum_of(sheet) == RoughnessSpectrum(
-        rms=0.2e-6,
-        cutoff_long=0.8e-3,
-        cutoff_short=8e-6,
-        rms_slope=math.radians(1.0),
-        lay='longitudinal',
-        fan_angle=math.radians(20.0),
-        scale_ratio=1.4,
-        ridges=7,
-    )
+    numbers = {
+        'rms': 0.2e-6,
+        'cutoff_long': 0.8e-3,
+        'cutoff_short': 8e-6,
+        'rms_slope': math.radians(1.0),
+        'lay': 'longitudinal',
+        'fan_angle': math.radians(20.0),
+        'scale_ratio': 1.4,
+        'ridges': 7,
+    }
+    sheet = Roughness(**numbers, asperity_friction=0.12)
+    assert spectrum_of(sheet) == RoughnessSpectrum(**numbers)
     nominal = scale_spectrum(spectrum_of(STATED))
     assert (nominal.rms, nominal.fractal_dimension) == (0.12e-6, 2.68)
     assert nominal.band.cutoff_long == pytest.approx(0.25e-3)

@@ -41,4 +41,5 @@ def test_bands_are_in_order(first, second):
 
 def test_every_regime_has_its_word():
     assert [regime.word for regime in REGIMES] == ['boundary', 'mixed', 'hydrodynamic']
+    assert regime_of(math.nan).word == 'unknown'
     assert [*REGIMES] == [regime for regime in Regime if regime is not Regime.UNKNOWN]

@@ -6,6 +6,8 @@ import contextlib
 import os
 from pathlib import Path
 
+from ballscrew_monitor.core.cdr import serialized
+from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.log_facts import (
     facts_of,
@@ -15,7 +17,7 @@ from ballscrew_monitor.recordings.log_facts import (
 )
 from ballscrew_monitor.recordings.replay import replay
 from ballscrew_monitor.recordings.tables import cells, read
-from ballscrew_monitor.recordings.tables.convert import convert
+from ballscrew_monitor.recordings.tables.convert import BLOCK, convert, marks, RowTemplate
 from ballscrew_monitor.recordings.tables.guess import guess
 from ballscrew_monitor.recordings.tables.mapping import make_map
 from ballscrew_monitor.settings import parameters
@@ -27,6 +29,7 @@ import polars as pl
 import pytest
 from rosbags.highlevel import AnyReader
 from rosbags.typesys import get_typestore, Stores
+from sensor_msgs.msg import JointState
 from surrogate.files import InputError
 
 ROOT = Path(__file__).resolve().parents[4]
@@ -288,3 +291,19 @@ def test_every_sample_of_the_real_log_is_judged_or_refused_with_a_reason(tmp_pat
     bag = converted(log, tmp_path / 'bag')
     assert bag.types == TYPES
     check_every_sample(bag, 1055)
+
+
+def test_rows_are_those_of_one_by_one_to_the_last_bit():
+    count = BLOCK + 3
+    stamps = np.arange(count, dtype=np.int64) * 123_456_789 + 1_999_999_999 * SECOND
+    numbers = [np.linspace(-1e3, 1e3, count), np.full(count, np.nan), np.arange(2.0 * count)[::2]]
+    first, second, third = marks(3)
+    shape = JointState(name=['x', 'long_name'], velocity=[first, second], effort=[third])
+    made = list(RowTemplate(shape, 3).rows(stamps, numbers))
+    assert len(made) == count
+    for row in (0, 1, BLOCK - 1, BLOCK, count - 1):
+        message = JointState(name=['x', 'long_name'])
+        message.header.stamp.sec, message.header.stamp.nanosec = divmod(int(stamps[row]), SECOND)
+        message.velocity = [float(numbers[0][row]), float(numbers[1][row])]
+        message.effort = [float(numbers[2][row])]
+        assert made[row] == serialized(message)

@@ -1,13 +1,23 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The services without a request: for all axes at once, and for each under its name."""
+"""
+The services that change axes.
+
+Those without a request act on all axes at once, and on each under its name; `shelve` names its
+axis.
+
+"""
 
 from collections.abc import Callable, Mapping
 import functools
 from typing import Any
 
+from ballscrew_monitor.core.conversions import clock_text
+from ballscrew_monitor.core.shelving import shelve
+from ballscrew_monitor.messages.state_messages import fill_time
 from ballscrew_monitor.node.axis_publisher import AxisPublisher
 from ballscrew_monitor.settings.axis import reload_surface
+from ballscrew_msgs.srv import ShelveAlarm
 from rclpy.node import Node
 from std_srvs.srv import Trigger
 from surrogate.files import InputError
@@ -17,8 +27,8 @@ Publishers = Mapping[str, AxisPublisher]
 Act = Callable[[Publishers], str]
 
 
-class TriggerServices:
-    """Reload of the surface, reset of the totals, acknowledgement of the warning."""
+class AxisServices:
+    """Reload of the surface, reset of the totals, acknowledgement and shelving of the warning."""
 
     def __init__(
         self,
@@ -26,14 +36,16 @@ class TriggerServices:
         values: Mapping[str, Any],
         find: Callable[[], Publishers],
         find_failed: Callable[[], Mapping[str, str]],
+        why_unknown: Callable[[str], str],
         changed: Callable[[Publishers, str], str],
     ) -> None:
         """
         Make the services.
 
         `find` returns the publishers, none while the node is unconfigured, and `find_failed` why
-        other axes have none. `changed` takes the publishers that a service has changed, and its
-        name; it keeps them and returns why that failed, or nothing.
+        other axes have none. `why_unknown` says why there is none of a name. `changed` takes the
+        publishers that a service has changed, and its name; it keeps them and returns why that
+        failed, or nothing.
 
         """
         self._node = node
@@ -41,6 +53,7 @@ class TriggerServices:
         self._values = values
         self._find = find
         self._find_failed = find_failed
+        self._why_unknown = why_unknown
         acts: dict[str, Act] = {
             'reload_surface': self._reload,
             'reset_totals': self._reset,
@@ -50,6 +63,7 @@ class TriggerServices:
             self._make(f'~/{name}', act, values['axes'])
             for axis in values['axes']:
                 self._make(f'~/{axis}/{name}', act, [axis])
+        node.create_service(ShelveAlarm, '~/shelve', self._serve_shelve)
 
     def _make(self, name: str, act: Act, axes: list[str]) -> None:
         self._node.create_service(Trigger, name, functools.partial(self._serve, act, axes))
@@ -98,6 +112,36 @@ class TriggerServices:
         for publisher in publishers.values():
             publisher.alarm.acknowledge()
         return f'acknowledged of {_names(publishers)}'
+
+    def _serve_shelve(self, request: Any, response: Any) -> Any:
+        publishers = self._find()
+        axes = [request.axis] if request.axis else list(publishers)
+        unknown = [axis for axis in axes if axis not in publishers]
+        if not publishers:
+            response.message = 'the node is not configured'
+        elif unknown:
+            response.message = self._why_unknown(unknown[0])
+        else:
+            self._shelve({axis: publishers[axis] for axis in axes}, request, response)
+        return response
+
+    def _shelve(self, publishers: Publishers, request: Any, response: Any) -> None:
+        now = self._node.get_clock().now().nanoseconds
+        try:
+            shelving = shelve(now, request.duration, request.reason)
+        except InputError as error:
+            response.message = str(error)
+            return
+        for publisher in publishers.values():
+            publisher.shelve(shelving)
+        names = _names(publishers)
+        response.success = True
+        response.message = f'no longer shelved: {names}'
+        if shelving.until:
+            response.message = f'shelved until {clock_text(shelving.until)}: {names}'
+        fill_time(response.until, shelving.until)
+        problem = self._changed(publishers, 'shelve')
+        response.message += f', not kept: {problem}' if problem else ''
 
 
 def not_built(axis: str, reason: str) -> str:

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The one parameter that is read before ROS is there, from wherever ROS takes it."""
 
-from ballscrew_monitor.node.arguments import wants_localhost
+from ballscrew_monitor.node.run import wants_localhost
 import pytest
 
 FILES = {

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The usual time between rows, out of bins that do not grow with the rows."""
 
-from ballscrew_monitor.recordings.tables.steps import Steps, WIDTH
+from ballscrew_monitor.recordings.tables.times import Steps, WIDTH
 import numpy as np
 import pytest
 

@@ -1,0 +1,50 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The whole tree passes the linters of a machine with ROS 2."""
+
+from pathlib import Path
+
+from ament_flake8.main import main_with_errors
+from ament_pep257.main import main
+import pytest
+
+TREE = Path(__file__).resolve().parent.parent
+FOLDERS = (
+    'ballscrew_monitor',
+    'bags',
+    'bench',
+    'docs',
+    'launch',
+    'scripts',
+    'studies',
+    'surrogate',
+    'test',
+)
+PATHS = [str(TREE / name) for name in ('setup.py', *FOLDERS) if (TREE / name).exists()]
+
+
+@pytest.mark.flake8
+@pytest.mark.linter
+def test_flake8(capsys: pytest.CaptureFixture[str]) -> None:
+    """No finding: the text of a finding is what the assertion shows."""
+    code, findings = main_with_errors(argv=PATHS)
+    capsys.readouterr()
+    assert code == 0, '\n'.join(findings)
+
+
+@pytest.mark.linter
+@pytest.mark.pep257
+def test_pep257(capsys: pytest.CaptureFixture[str]) -> None:
+    """No finding: the text of a finding is what the assertion shows."""
+    code = main(argv=PATHS)
+    assert code == 0, capsys.readouterr().err
+
+
+@pytest.mark.linter
+@pytest.mark.xmllint
+def test_xmllint() -> None:
+    """The manifests follow the schema of package format 3; needs ROS 2 and the net."""
+    xmllint = pytest.importorskip(
+        'ament_xmllint.main', reason='ament_xmllint is not in the wheels'
+    )
+    assert xmllint.main(argv=[str(TREE / 'package.xml'), str(TREE / 'msg_defs')]) == 0
