@@ -178,7 +178,7 @@ def _first(
                     good = middle
                 else:
                     bad = middle
-            return good
+            return float(good)
         bad = good
     return NAN
 
@@ -193,6 +193,4 @@ def _is_good(tables: Any, criterion: Criterion, place: float, found: Any) -> boo
     if math.isnan(found.rcs + found.efficiency):
         return False
     light = abs(load) < criterion.light_load
-    return found.rcs < criterion.rcs and (  # type: ignore[no-any-return]
-        light or found.efficiency >= criterion.efficiency
-    )
+    return bool(found.rcs < criterion.rcs and (light or found.efficiency >= criterion.efficiency))
