@@ -17,7 +17,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from surrogate.surface import file as surface_file
 from surrogate.surface.correction import (
     corrected_hash,
@@ -40,7 +39,6 @@ from surrogate.surface.found import (
     width_of,
 )
 from surrogate.surface.hermite import hermite_weights
-from surrogate.surface.load_scan import scan
 from surrogate.surface.point import SurfacePoint, VALIDITIES, Validity
 from surrogate.surface.tables import as_lists, summary, SurfaceTables, tabulate, with_pulls
 
@@ -172,24 +170,6 @@ class Surface:
         look_up_rest(self.tables, opposing_load, found)
         found.validity = VALIDITIES[validity]
         return found
-
-    def driving_torques(
-        self, speed: float, temperature: float
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """
-        Return opposing loads [N] from end to end, and the torques that drive the screw there.
-
-        Speed |w| [rad/s], temperature [K]; a torque [N m] is along the motion, and NaN where a
-        lookup has no answer. The loads are the nodes and places between them.
-
-        """
-        scan(self.tables, speed, temperature)
-        return np.array(self.tables.scan_loads), np.array(self.tables.scan_torques)
-
-    def drag(self, speed: float) -> float:
-        """Return the parasitic part [N m] of the friction torque at a speed [rad/s]."""
-        tables = self.array_tables
-        return float(tables.parasitic_torque + tables.parasitic_torque_rate * abs(speed))
 
     @property
     def corrections(self) -> tuple[Correction, ...]:

@@ -135,15 +135,6 @@ class ConstantSurface:
     def tables(self):
         return self
 
-    def driving_torques(self, speed, temperature):
-        loads = np.linspace(*self.load_range, SCANNED)
-        points = [self.lookup(speed, float(load), temperature) for load in loads]
-        valid = [point.validity is PointValidity.VALID for point in points]
-        return loads, np.where(valid, [point.driving_torque for point in points], math.nan)
-
-    def drag(self, speed):
-        return self.parasitic_torque
-
 
 def make_limits(**changes):
     """Return limits whose numbers are exact in binary, changed as asked."""
@@ -229,7 +220,9 @@ def is_inside(surface, speed, temperature):
 
 def scan_part(surface, speed, temperature, begin, end):
     """Fill in the driving torques of a surface of constants."""
-    surface.scan_loads[:], surface.scan_torques[:] = surface.driving_torques(speed, temperature)
+    points = [surface.lookup(speed, float(load), temperature) for load in surface.scan_loads]
+    valid = [point.validity is PointValidity.VALID for point in points]
+    surface.scan_torques[:] = np.where(valid, [one.driving_torque for one in points], math.nan)
     return np.count_nonzero(np.isfinite(surface.scan_torques[begin:end]))
 
 

@@ -6,14 +6,7 @@ import math
 import re
 
 from ballscrew_monitor.core.conversions import Direction, Nut
-from ballscrew_monitor.core.estimate import (
-    contact_state_of,
-    ContactState,
-    estimate,
-    PointSource,
-    PointValidity,
-)
-from ballscrew_msgs.msg import OperatingPoint, PointResult
+from ballscrew_monitor.core.estimate import contact_state_of, ContactState, estimate, PointValidity
 from hypothesis import given
 from hypothesis import strategies as st
 import pytest
@@ -142,22 +135,6 @@ def test_turning_everything_round_changes_nothing_but_the_signs(core, speed, loa
     assert (here.rcs, here.efficiency, here.regime) == (there.rcs, there.efficiency, there.regime)
     assert here.machine_torque == -there.machine_torque
     assert {here.worst_nut, there.worst_nut} in ({Nut.POSITIVE, Nut.NEGATIVE}, {Nut.UNKNOWN})
-
-
-@pytest.mark.parametrize(
-    ('enumeration', 'message', 'prefix'),
-    [
-        (PointValidity, PointResult, 'VALIDITY_'),
-        (Regime, PointResult, 'REGIME_'),
-        (ContactState, PointResult, 'CONTACT_'),
-        (Nut, PointResult, 'NUT_'),
-        (PointSource, OperatingPoint, 'SOURCE_'),
-        (Direction, OperatingPoint, 'DIRECTION_'),
-    ],
-)
-def test_enumerations_have_the_numbers_of_the_messages(enumeration, message, prefix):
-    for member in enumeration:
-        assert getattr(message, f'{prefix}{member.name}') == member
 
 
 def test_validity_repeats_that_of_a_surface():

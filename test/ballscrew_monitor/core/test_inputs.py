@@ -17,7 +17,6 @@ from ballscrew_monitor.core.inputs import (
     Why,
     YEAR,
 )
-from ballscrew_msgs.msg import InputHealth
 import pytest
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
@@ -149,11 +148,6 @@ def test_an_open_input_is_closed_by_a_type():
     assert closed.read(Float64(data=3.0), now=NOW, max_future=0).value == 6.0
     with pytest.raises(InputError, match='JointState has no field .data.'):
         opened.close('sensor_msgs/msg/JointState')
-
-
-def test_stamp_sources_have_the_numbers_of_the_messages():
-    for member in StampSource:
-        assert getattr(InputHealth, f'STAMP_{member.name}') == member
 
 
 def test_of_equal_stamps_the_speed_is_last_and_all_else_stays_in_order():

@@ -4,10 +4,15 @@
 
 import math
 
+from ballscrew_monitor.core.conversions import Direction, Nut
+from ballscrew_monitor.core.estimate import ContactState, PointSource, PointValidity
+from ballscrew_monitor.core.input_status import InputState
+from ballscrew_monitor.core.inputs import StampSource
 from ballscrew_monitor.core.judgement import Code, Gate, Level, Reason, Severity, Zone
-from ballscrew_msgs.msg import BallScrewState, Finding
+from ballscrew_msgs.msg import BallScrewState, Finding, InputHealth, OperatingPoint, PointResult
 import pytest
 from surrogate.files import InputError
+from surrogate.surface import Regime
 
 
 @pytest.mark.parametrize(
@@ -30,6 +35,14 @@ def test_limits_without_meaning_are_refused(core, changes, match):
 @pytest.mark.parametrize(
     ('enumeration', 'message', 'prefix'),
     [
+        (PointValidity, PointResult, 'VALIDITY_'),
+        (Regime, PointResult, 'REGIME_'),
+        (ContactState, PointResult, 'CONTACT_'),
+        (Nut, PointResult, 'NUT_'),
+        (PointSource, OperatingPoint, 'SOURCE_'),
+        (Direction, OperatingPoint, 'DIRECTION_'),
+        (InputState, InputHealth, 'STATE_'),
+        (StampSource, InputHealth, 'STAMP_'),
         (Level, BallScrewState, 'LEVEL_'),
         (Zone, BallScrewState, 'ZONE_'),
         (Gate, BallScrewState, 'GATE_'),

@@ -10,7 +10,6 @@ from ballscrew_monitor.core.inputs import Source, StampSource, Why
 from ballscrew_monitor.judge import inputs
 from ballscrew_monitor.judge.records import Event, INPUTS, Memory, RATE_SAMPLES, Settings, SHOWN
 from ballscrew_monitor.judge.views import input_status_of, refused_of
-from ballscrew_msgs.msg import InputHealth
 from hypothesis import given
 from hypothesis import strategies as st
 import pytest
@@ -88,11 +87,6 @@ def test_rate_is_the_mean_over_the_last_samples(count):
     assert load.status().rate == 32.0
     inputs.forget(load.memory, LOAD)
     assert math.isnan(load.status().rate)
-
-
-def test_states_have_the_numbers_of_the_messages():
-    for member in InputState:
-        assert getattr(InputHealth, f'STATE_{member.name}') == member
 
 
 @given(st.lists(st.integers(-1000, 1000), min_size=1, max_size=70))

@@ -47,8 +47,8 @@ def counting(samples):
         elif run and not 0 < stamp - run[-1][0] <= GAP:
             run = []
         run.append((stamp, value))
-    within = sum(run[-1][0] - stamp <= WINDOW for stamp, _ in run)
-    return run[-min(max(within, 2), MOST) :]
+    within = [sample for sample in run if run[-1][0] - sample[0] <= WINDOW]
+    return (within if len(within) > 1 else run[-2:])[-MOST:]
 
 
 def least_squares(samples):
