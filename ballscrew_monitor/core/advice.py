@@ -84,7 +84,7 @@ class Advisor:
     point: MachinePoint
     surface: Surface
     limits: Limits
-    nearest: Nearest = dataclasses.field(default=interpreted, compare=False)
+    nearest: Nearest = dataclasses.field(default=interpreted, compare=False, repr=False)
 
     @functools.cached_property
     def advice(self) -> Advice:
@@ -178,7 +178,7 @@ def _first(
                     good = middle
                 else:
                     bad = middle
-            return good
+            return good  # type: ignore[no-any-return]
         bad = good
     return NAN
 
@@ -193,6 +193,5 @@ def _is_good(tables: Any, criterion: Criterion, place: float, found: Any) -> boo
     if math.isnan(found.rcs + found.efficiency):
         return False
     light = abs(load) < criterion.light_load
-    return found.rcs < criterion.rcs and (  # type: ignore[no-any-return]
-        light or found.efficiency >= criterion.efficiency
-    )
+    fit = light or found.efficiency >= criterion.efficiency
+    return bool(found.rcs < criterion.rcs and fit)
