@@ -37,6 +37,7 @@ from surrogate.surface import look_up_many, shipped_surface, Surface
 
 BEGIN = 1_700_000_000_000_000_000  # [ns]
 CYCLE = 20.0  # [s] of a motion to and fro
+CHUNK = 768 * 1024  # [bytes] as `ros2 bag record` writes them
 POINTS = 200_000
 TORQUE = {
     'load__source': 'motor_torque',
@@ -83,7 +84,7 @@ def bursts(duration: float, rate: float) -> Iterator[tuple[int, list[tuple[str, 
 
 def write(folder: Path, duration: float, rate: float) -> Bag:
     """Return a recording of loads and joint states at a rate [Hz]."""
-    with BagWriter(folder, 'bag') as writer:
+    with BagWriter(folder, 'bag', chunk_size=CHUNK) as writer:
         for name, kind in TYPES.items():
             writer.add_topic(Topic(name=name, type_name=kind, offer=Offer.SENSOR))
         for stamp, messages in bursts(duration, rate):

@@ -84,7 +84,7 @@ class Advisor:
     point: MachinePoint
     surface: Surface
     limits: Limits
-    nearest: Nearest = dataclasses.field(default=interpreted, compare=False)
+    nearest: Nearest = dataclasses.field(default=interpreted, compare=False, repr=False)
 
     @functools.cached_property
     def advice(self) -> Advice:
@@ -193,4 +193,5 @@ def _is_good(tables: Any, criterion: Criterion, place: float, found: Any) -> boo
     if math.isnan(found.rcs + found.efficiency):
         return False
     light = abs(load) < criterion.light_load
-    return bool(found.rcs < criterion.rcs and (light or found.efficiency >= criterion.efficiency))
+    fit = light or found.efficiency >= criterion.efficiency
+    return bool(found.rcs < criterion.rcs and fit)

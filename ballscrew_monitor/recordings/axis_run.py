@@ -202,10 +202,10 @@ class AxisRun:
         which = entries.kind == Kind.OTHER_JOINTS
         for source in Source:
             at = np.flatnonzero(which & (entries.source == source))
-            count = min(others[source], len(at))
+            first = max(len(at) - others[source], 0)
             if others[source] <= len(at):
                 words.joints[source].clear()
-            for joints in dict.fromkeys(entries.note[at[len(at) - count :]].tolist()):
+            for joints in dict.fromkeys(entries.note[at[first:]].tolist()):
                 if len(words.joints[source]) < MOST_OTHERS:
                     words.joints[source][joints] = None
 

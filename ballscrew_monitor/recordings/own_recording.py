@@ -219,7 +219,7 @@ class OwnRecording:
             if count == UNKNOWN_LOSS:
                 found[first:] = UNKNOWN_LOSS
             elif first < len(places):
-                found[first], found[first + 1 :] = count, 0
+                found[first:], found[first] = 0, count
             self._lost[topic] = count if count == UNKNOWN_LOSS or first == len(places) else 0
         return found
 
