@@ -7,7 +7,7 @@ A function and all that it calls are compiled by numba where many rows wait. The
 numbers, records and flat sequences; powers are written out, logarithms, roots and exponentials
 are guarded, calls go by the bare names of functions, and nothing is cleverer than the order in
 which it is written (no fastmath). They make no array and no list, so they are compiled without
-counts of references: those of some twenty tables cost four times what is computed with them.
+counts of references: those of some twenty tables cost more than what is computed with them.
 
 """
 
