@@ -357,13 +357,3 @@ def test_a_speed_off_the_nodes_has_no_answer_whatever_range_is_stated(
     settings = header['settings'] | {'speed_range': [1e-9, 1e9]}
     wide = Surface(replace(surface_data, header=header | {'settings': settings}))
     assert wide.lookup(speed, 1000.0, 313.15).validity is validity
-
-
-def test_driving_torques_are_those_of_the_points_over_the_load():
-    """From end to end at one speed; none at a temperature that the surface lacks."""
-    loads, torques = SHIPPED.driving_torques(62.8, 313.15)
-    assert (loads[0], loads[-1]) == SHIPPED.load_range
-    points = [SHIPPED.lookup(62.8, float(load), 313.15).driving_torque for load in loads[::9]]
-    assert torques[::9] == pytest.approx(points, rel=1e-9, nan_ok=True)
-    assert np.isfinite(torques).any()
-    assert np.isnan(SHIPPED.driving_torques(62.8, 200.0)[1]).all()
