@@ -10,6 +10,7 @@ import sys
 import time
 
 from hypothesis import HealthCheck, Phase, settings
+from hypothesis.database import DirectoryBasedExampleDatabase
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -86,7 +87,14 @@ UNHURRIED = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow]
 # `make test` draws the same examples each time: whoever did not change the code sees no failure.
 settings.register_profile('same', UNHURRIED, derandomize=True, database=None)
 # `make fuzz` draws others each time, more of them, and begins with those that failed before.
-settings.register_profile('fuzz', UNHURRIED, max_examples=1000, print_blob=True)
+settings.register_profile(
+    'fuzz',
+    UNHURRIED,
+    derandomize=False,
+    database=DirectoryBasedExampleDatabase(ROOT / '.hypothesis' / 'examples'),
+    max_examples=1000,
+    print_blob=True,
+)
 # `make mutate` asks whether a mutant fails, not for the smallest example of it.
 settings.register_profile(
     'mutate', settings.get_profile('same'), phases=[Phase.explicit, Phase.generate]

@@ -24,14 +24,12 @@ from ballscrew_monitor.judge.derived_load import (
 )
 from ballscrew_monitor.judge.records import Row, Settings
 from ballscrew_monitor.judge.views import derived_text
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 import numpy as np
 import pytest
 from surrogate.surface import Found, scan, shipped_surface, Surface, Validity
-from surrogate.surface.compiled import compiled
 from surrogate.surface.file import read
-from surrogate.surface.records import as_array
 
 
 def masked():
@@ -325,20 +323,3 @@ DERIVATIONS = st.builds(
     parts_uncertainty=st.sampled_from([0.0, 0.2]),
     largest_share=st.sampled_from([0.5, 100.0]),
 )
-
-
-numba_derive = compiled(derive_load)
-
-
-@settings(max_examples=80)
-@given(st.sampled_from(SURFACES), DERIVATIONS, COURSES)
-def test_compiled_it_has_the_same_bits(surface, derivation, course):
-    pytest.importorskip('numba')
-    kept, scratch = as_array(Derived()), as_array(Found())
-    direction = int(direction_of(course[0]))
-    numba_derive(
-        surface.array_tables, as_array(derivation)[0], *course, direction, scratch[0], kept[0]
-    )
-    plain = derived_number(surface, derivation, course)
-    for name in kept.dtype.names:
-        np.testing.assert_array_equal(kept[0][name], getattr(plain, name), err_msg=name)

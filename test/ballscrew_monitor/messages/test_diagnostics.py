@@ -258,10 +258,10 @@ def test_the_state_directory():
 @pytest.mark.parametrize(
     ('event', 'place'),
     [
-        (LOAD, f'a message of the load of -1000.0 (SI), arrived at {START} ns'),
+        (LOAD, f'the load -1000.0 (SI) that arrived at {START} ns'),
         (
             Refusal(source=Source.SPEED, why=Why.FUTURE, arrival=START),
-            f'a message of the speed that is refused, arrived at {START} ns',
+            f'the speed refused that arrived at {START} ns',
         ),
         (START, f'a tick at {START} ns'),
     ],
@@ -270,7 +270,7 @@ def test_a_defect_says_where_it_came_up_and_what_to_do(core, event, place):
     monitor = core.monitor()
     sentence = diagnostics.defect_text(ZeroDivisionError('by 0'), event)
     assert sentence == (
-        f'the program failed at {place}: ZeroDivisionError: by 0: report this line, and configure '
+        f'the program failed at {place}: ZeroDivisionError: by 0; report this line, and configure '
         'the node again to clear it'
     )
     made = diagnostics.statuses(
