@@ -132,6 +132,7 @@ def test_a_constant_lag_is_judged_and_told_and_a_warning_clears(node):
     source.until(lambda: heard.level == OK, 'its end')
     # Many ticks later nothing has changed.
     source.until(lambda: heard.has_judged(source.sent // 2 + 100), 'more states')
+    source.until(lambda: heard.faults_of_both(LAGS), 'the lag of both')
     node.until(lambda: heard.has_judged(source.sent), 'the last state')
     found = judged_of(heard.states)
     assert stamps_of(found) == sorted(stamps_of(found))
@@ -139,7 +140,6 @@ def test_a_constant_lag_is_judged_and_told_and_a_warning_clears(node):
     assert found[-1].judged == source.sent
     assert found[-1].level == OK
     assert found[-1].inputs[0].lag == pytest.approx(LAG / SECOND, abs=10.0)
-    assert heard.faults_of_both(LAGS)
 
 
 def test_silence_of_a_lagging_source_stays_on_its_line_of_time(node):
@@ -161,9 +161,10 @@ def test_a_lead_beyond_what_is_allowed_is_refused_and_clears_nothing(node):
     source.until(lambda: heard.level == WARN, 'the warning', SLOW)
     assert heard.faults() == set()
     source.clock = lambda: node.now() + LAG
-    source.until(lambda: heard.faults(), 'the refusal')
+    refusals = {f'speed {AHEAD}', f'load {AHEAD}'}
+    source.until(lambda: heard.faults() >= refusals, 'the refusals')
     source.until(lambda: heard.states[-1].inputs[0].dropped > 100, 'more of it')
-    assert heard.faults() == {f'speed {AHEAD}', f'load {AHEAD}'}
+    assert heard.faults() == refusals
     assert heard.level == WARN
     for health in heard.states[-1].inputs[:2]:
         assert health.state == InputHealth.STATE_BAD
@@ -178,12 +179,11 @@ def test_a_drift_is_told_when_it_has_grown(node):
     heard, source = Listener(node), Source(node, node.now)
     begin = node.now()
     source.clock = lambda: begin + source.sent * SECOND // 1000
-    source.until(lambda: heard.faults() and heard.level == OK, 'lag and level')
+    source.until(lambda: heard.faults_of_both(LAGS) and heard.level == OK, 'lag and level')
     node.until(lambda: heard.has_judged(source.sent), 'the last state')
     found = judged_of(heard.states)
     assert stamps_of(found) == sorted(stamps_of(found))
     assert {state.result.validity for state in found} == {PointResult.VALIDITY_VALID}
-    assert heard.faults_of_both(LAGS)
 
 
 def test_a_lagging_source_beside_one_without_stamps(node):
@@ -210,6 +210,7 @@ def test_a_lagging_source_beside_one_without_stamps(node):
     assert speed.stamp_source == InputHealth.STAMP_HEADER
     assert load.stamp_source == InputHealth.STAMP_RECEIVE
     assert load.lag != load.lag
+    node.until(lambda: go_on() or heard.faults(), 'the lag')
     assert heard.faults() == {'speed ' + LAGS}
 
 
@@ -250,8 +251,9 @@ def test_stamps_of_the_wall_clock_on_simulated_time(node):
     source.until(
         lambda: heard.states[-1].inputs[0].state == InputHealth.STATE_BAD, 'the refusal', FAST
     )
-    source.until(lambda: WALL in ''.join(heard.sentences()), 'the sentence')
-    assert heard.faults() - {diagnostics.CLOCK_STANDS} == {f'speed {WALL}', f'load {WALL}'}
+    refusals = {f'speed {WALL}', f'load {WALL}'}
+    source.until(lambda: heard.faults() >= refusals, 'the sentences')
+    assert heard.faults() - {diagnostics.CLOCK_STANDS} == refusals
     assert heard.states[-1].inputs[0].refusal == (
         'the stamps are of the wall clock and the node runs on simulated time: '
         'set use_sim_time to false, or stamp with /clock'
@@ -263,8 +265,7 @@ def test_stamps_of_simulated_time_on_the_wall_clock(node):
     node.start(**TIMEOUTS, **QUICK)
     heard, source = Listener(node), Source(node, lambda: node.stamp + SECOND // 100)
     source.until(lambda: heard.level == WARN, 'the warning', SLOW)
-    source.until(lambda: heard.level == OK, 'its end')
+    source.until(lambda: heard.level == OK and heard.faults_of_both(SIMULATED), 'its end')
     found = judged_of(heard.states)
     assert stamps_of(found) == sorted(stamps_of(found))
     assert {state.result.validity for state in found} == {PointResult.VALIDITY_VALID}
-    assert heard.faults_of_both(SIMULATED)

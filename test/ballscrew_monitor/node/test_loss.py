@@ -3,6 +3,7 @@
 """Messages that are sent and never arrive, over the real middleware: each of them is counted."""
 
 import dataclasses
+import math
 import signal
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
@@ -42,15 +43,15 @@ class Machine:
         speed = FAST + STEP * self.sent
         (publisher or self.speeds).publish(JointState(name=['x_axis'], velocity=[speed]))
 
+    @property
+    def judged(self):
+        """Return the states about a speed; those of ticks before the first one are about none."""
+        return [state for state in self.states if not math.isnan(state.point.speed)]
+
     @staticmethod
     def number(state):
         """Return the number of the speed that a state is about: the first one is 1."""
         return round((state.point.speed - FAST) / STEP)
-
-    @property
-    def last(self):
-        """Return the number of the last speed that was judged."""
-        return self.number(self.states[-1])
 
     @property
     def speed(self):
@@ -63,9 +64,9 @@ class Machine:
 
     def judge(self, publisher=None):
         """Publish one speed and wait for the state that it gives."""
-        before = len(self.states)
+        before = self.states[-1].judged if self.states else 0
         self.publish(publisher)
-        self.node.until(lambda: len(self.states) > before, 'a state')
+        self.node.until(lambda: self.states and self.states[-1].judged > before, 'a state')
 
     def said(self):
         """Return the levels and messages of the inputs, in order, without repetition."""
@@ -95,9 +96,11 @@ def test_each_message_of_a_burst_is_received_or_counted_as_lost(node):
         machine.publish()
     node.process.send_signal(signal.SIGCONT)
     # What was sent last may be lost too, which the next ones tell.
-    node.until(lambda: machine.publish() or machine.last > BURST, 'a speed after the burst')
-    # Those of ticks before the first speed are about none.
-    for state in (one for one in machine.states if one.judged):
+    node.until(
+        lambda: machine.publish() or machine.number(machine.judged[-1]) > BURST,
+        'a speed after the burst',
+    )
+    for state in machine.judged:
         assert state.inputs[0].received + state.inputs[0].lost == machine.number(state)
     assert machine.speed.lost_known
     assert machine.speed.lost > 0
@@ -142,5 +145,5 @@ def test_a_publisher_that_returns_begins_anew(node, count):
         return machine.has(lambda speed: speed.received > received + 100)
 
     node.until(is_back, 'samples of the new publisher')
-    assert before < len(machine.told)
+    node.until(lambda: len(machine.told) > before, 'a diagnostic')
     assert (machine.speed.lost_known, machine.speed.lost) == (True, 0)

@@ -329,7 +329,9 @@ def test_no_worker_outlives_its_parent(tasks, tmp_path: Path, pipes, number):
         errors = process.communicate(timeout=DEADLINE)[1]
     assert process.returncode == -number
     assert not list(tmp_path.glob(f'*{HALF_MADE}'))
-    assert errors.count('Traceback') == (number == signal.SIGINT)
+    # Ctrl-C may arrive while the parent handles that nothing has ended yet.
+    chained = errors.count('During handling of the above exception')
+    assert errors.count('Traceback') - chained == (number == signal.SIGINT)
     assert errors.endswith('KeyboardInterrupt\n') == (number == signal.SIGINT)
 
 
