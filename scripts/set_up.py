@@ -242,8 +242,12 @@ def generate_bag() -> None:
 def compile_solver() -> None:
     """Compile contact solver and judgement: the first solve and recording do not wait for it."""
     SOLVER_LOG.write_text('')
-    for module in COMPILED:
+
+    def prepare(module: str) -> None:
         run(PYTHON, '-c', f'from {module} import prepare; prepare()', log=SOLVER_LOG)
+
+    with ThreadPoolExecutor() as pool:
+        list(pool.map(prepare, COMPILED))
 
 
 def steps() -> list[Step]:
