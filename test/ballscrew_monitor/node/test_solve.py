@@ -228,7 +228,7 @@ def test_a_killed_worker_ends_its_goal_alone_and_no_message_is_missed(node):
     def until(condition):
         return node.until(lambda: samples.go_on() or condition())
 
-    for turn in range(10):
+    for turn in range(4):
         goal = solves.ask(**LONG)
         assert goal.accepted
         # At its first steps, or as soon as it is there.
