@@ -30,7 +30,7 @@ from ballscrew_monitor.core.inputs import Input, make_input, OpenInput, Source
 from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.core.state import LoadDerivation, MonitorSettings, PositionSettings
 from ballscrew_monitor.judge.monitor import Monitor
-from ballscrew_monitor.settings.axis_parameters import LOAD_SOURCES
+from ballscrew_monitor.settings.parameter_table import LOAD_SOURCES
 from surrogate.files import InputError
 from surrogate.surface import find_surface, Surface, SurfaceError
 
