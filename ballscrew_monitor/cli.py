@@ -14,18 +14,8 @@ import signal
 import sys
 from typing import Any
 
+from ballscrew_monitor import options
 from ballscrew_monitor.core.interrupts import FAILED, leave_to_python, raise_signals, SIGNALLED
-from ballscrew_monitor.options import (
-    add_doctor,
-    add_events,
-    add_import,
-    add_play,
-    add_recover,
-    add_replay,
-    add_run,
-    add_solve,
-    PARAMS,
-)
 from ballscrew_monitor.settings.middleware import check_middleware
 from surrogate.cli import add_commands
 from surrogate.files import InputError
@@ -89,17 +79,10 @@ def _parser() -> argparse.ArgumentParser:
         'files, and the monitor at work on a recorded cycle.',
     )
     subparsers = parser.add_subparsers(required=True, metavar='COMMAND')
-    for add, handler in (
-        (add_run, _run),
-        (add_replay, _replay),
-        (add_import, _import),
-        (add_solve, _solve),
-        (add_doctor, _doctor),
-        (add_events, _events),
-        (add_play, _play),
-        (add_recover, _recover),
-    ):
-        add(subparsers).set_defaults(handler=handler)
+    for name, (handler, text) in COMMANDS.items():
+        command = subparsers.add_parser(name, help=text)
+        command.set_defaults(handler=handler)
+        getattr(options, f'add_{name}')(command)
     add_commands(subparsers, _read_bag)
     return parser
 
@@ -117,7 +100,7 @@ def _replay(args: argparse.Namespace) -> int:
     from ballscrew_monitor.report.command import replay_command
 
     raise_signals()
-    return replay_command(args, PARAMS)
+    return replay_command(args, options.PARAMS)
 
 
 def _import(args: argparse.Namespace) -> int:
@@ -205,6 +188,17 @@ def _play(args: argparse.Namespace) -> int:
     )
 
 
+COMMANDS = {
+    'run': (_run, 'play a bag into the real node over DDS and record what it says'),
+    'replay': (_replay, 'judge a log without DDS, faster than real time'),
+    'import': (_import, 'make a bag of a machine log, CSV or Parquet'),
+    'solve': (_solve, 'ask the running node for a full solve of a point'),
+    'doctor': (_doctor, 'compare the running ROS graph with a parameter file, and say the cure'),
+    'events': (_events, 'print the event log of a node out of its state_dir'),
+    'play': (_play, 'play the inputs of the node from a bag over DDS, with /clock'),
+    'recover': (_recover, 'mend a recording whose writer was killed'),
+}
+"""Handler and help of each command; `options` adds what it may be told."""
 DISCOVERING = (_solve, _doctor, _play)
 """Commands that need others in the ROS graph."""
 WITH_ROS = (_run, _replay, _import, *DISCOVERING)

@@ -4,7 +4,6 @@
 
 import argparse
 from pathlib import Path
-from typing import Any
 
 from surrogate.cli import add_workers
 
@@ -13,11 +12,10 @@ TREE = Path(__file__).resolve().parent.parent
 BAG, PARAMS = TREE / 'bags' / 'nominal_cycle', TREE / 'config' / 'nominal_cycle.yaml'
 BAG_TEXT, PARAMS_TEXT = (f'{path.relative_to(TREE)} of the repository' for path in (BAG, PARAMS))
 OUT = Path('out')
-Commands = Any
-"""What `argparse` gives for subcommands; its class is private."""
+Parser = argparse.ArgumentParser
 
 
-def _add_params(parser: argparse.ArgumentParser) -> None:
+def _add_params(parser: Parser) -> None:
     parser.add_argument(
         '--params',
         type=Path,
@@ -27,17 +25,14 @@ def _add_params(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def _add_rate(parser: argparse.ArgumentParser) -> None:
+def _add_rate(parser: Parser) -> None:
     parser.add_argument(
         '--rate', type=float, default=1.0, help='bag time over wall time (default 1)'
     )
 
 
-def add_run(commands: Commands) -> argparse.ArgumentParser:
-    """Add `ballscrew run`."""
-    parser: argparse.ArgumentParser = commands.add_parser(
-        'run', help='play a bag into the real node over DDS and record what it says'
-    )
+def add_run(parser: Parser) -> None:
+    """Add what `ballscrew run` may be told."""
     parser.add_argument('--bag', type=Path, default=BAG, help=f'bag to play (default {BAG_TEXT})')
     _add_params(parser)
     parser.add_argument(
@@ -48,14 +43,10 @@ def add_run(commands: Commands) -> argparse.ArgumentParser:
         help='directory for recording, report and log (default %(default)s)',
     )
     _add_rate(parser)
-    return parser
 
 
-def add_replay(commands: Commands) -> argparse.ArgumentParser:
-    """Add `ballscrew replay`."""
-    parser: argparse.ArgumentParser = commands.add_parser(
-        'replay', help='judge a log without DDS, faster than real time'
-    )
+def add_replay(parser: Parser) -> None:
+    """Add what `ballscrew replay` may be told."""
     parser.add_argument(
         'logs',
         type=Path,
@@ -77,28 +68,20 @@ def add_replay(commands: Commands) -> argparse.ArgumentParser:
     )
     parser.add_argument('--json', action='store_true', help='print JSON')
     add_workers(parser)
-    return parser
 
 
-def add_import(commands: Commands) -> argparse.ArgumentParser:
-    """Add `ballscrew import`."""
-    parser: argparse.ArgumentParser = commands.add_parser(
-        'import', help='make a bag of a machine log, CSV or Parquet'
-    )
+def add_import(parser: Parser) -> None:
+    """Add what `ballscrew import` may be told."""
     parser.add_argument('log', type=Path, metavar='LOG', help='CSV or Parquet file')
     parser.add_argument(
         '--guess', action='store_true', help='print a first map of the columns, and nothing else'
     )
     parser.add_argument('--config', type=Path, metavar='MAP', help='map of the columns')
     parser.add_argument('--out', type=Path, metavar='BAG', help='directory of the bag to be made')
-    return parser
 
 
-def add_play(commands: Commands) -> argparse.ArgumentParser:
-    """Add `ballscrew play`."""
-    parser: argparse.ArgumentParser = commands.add_parser(
-        'play', help='play the inputs of the node from a bag over DDS, with /clock'
-    )
+def add_play(parser: Parser) -> None:
+    """Add what `ballscrew play` may be told."""
     parser.add_argument('bag', type=Path, metavar='BAG', help='bag directory or MCAP file')
     _add_params(parser)
     chosen = parser.add_mutually_exclusive_group()
@@ -122,25 +105,17 @@ def add_play(commands: Commands) -> argparse.ArgumentParser:
         metavar='SECONDS',
         help='longest wait for a subscriber of every topic (default 10)',
     )
-    return parser
 
 
-def add_recover(commands: Commands) -> argparse.ArgumentParser:
-    """Add `ballscrew recover`."""
-    parser: argparse.ArgumentParser = commands.add_parser(
-        'recover', help='mend a recording whose writer was killed'
-    )
+def add_recover(parser: Parser) -> None:
+    """Add what `ballscrew recover` may be told."""
     parser.add_argument(
         'file', type=Path, metavar='FILE', help='MCAP file, or the folder of an unfinished one'
     )
-    return parser
 
 
-def add_events(commands: Commands) -> argparse.ArgumentParser:
-    """Add `ballscrew events`."""
-    parser: argparse.ArgumentParser = commands.add_parser(
-        'events', help='print the event log of a node out of its state_dir'
-    )
+def add_events(parser: Parser) -> None:
+    """Add what `ballscrew events` may be told."""
     parser.add_argument(
         'folder',
         type=Path,
@@ -149,14 +124,10 @@ def add_events(commands: Commands) -> argparse.ArgumentParser:
         help='state_dir of the node (default that of /ballscrew_monitor of this user)',
     )
     parser.add_argument('--json', action='store_true', help='print a line of JSON for each entry')
-    return parser
 
 
-def add_doctor(commands: Commands) -> argparse.ArgumentParser:
-    """Add `ballscrew doctor`."""
-    parser: argparse.ArgumentParser = commands.add_parser(
-        'doctor', help='compare the running ROS graph with a parameter file, and say the cure'
-    )
+def add_doctor(parser: Parser) -> None:
+    """Add what `ballscrew doctor` may be told."""
     _add_params(parser)
     parser.add_argument(
         '--seconds',
@@ -166,14 +137,10 @@ def add_doctor(commands: Commands) -> argparse.ArgumentParser:
         help='how long to listen (default 3); longer for slow topics',
     )
     parser.add_argument('--json', action='store_true', help='print JSON')
-    return parser
 
 
-def add_solve(commands: Commands) -> argparse.ArgumentParser:
-    """Add `ballscrew solve`."""
-    parser: argparse.ArgumentParser = commands.add_parser(
-        'solve', help='ask the running node for a full solve of a point'
-    )
+def add_solve(parser: Parser) -> None:
+    """Add what `ballscrew solve` may be told."""
     parser.add_argument('--axis', required=True, help='name of the axis, such as x')
     parser.add_argument(
         '--speed-rpm',
@@ -211,4 +178,3 @@ def add_solve(commands: Commands) -> argparse.ArgumentParser:
         help='longest wait for the node (default 10)',
     )
     parser.add_argument('--json', action='store_true', help='print JSON')
-    return parser

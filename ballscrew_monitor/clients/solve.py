@@ -14,25 +14,22 @@ import math
 import signal
 import sys
 import threading
-import time
 from typing import Any
 
+from ballscrew_monitor.clients.surroundings import spun, started_node
 from ballscrew_monitor.core.conversions import axial_load, direction_of
 from ballscrew_monitor.core.interrupts import interrupts, SIGNALLED
 from ballscrew_monitor.settings.middleware import notice
 from ballscrew_msgs.action import SolveOperatingPoint
 from ballscrew_msgs.msg import OperatingPoint, PointResult
-import rclpy
 from rclpy.action import ActionClient
 from rclpy.action.graph import get_action_names_and_types
-from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
-from rclpy.signals import SignalHandlerOptions
 from surrogate.files import InputError, json_text
 
 ACTION_TYPE = 'ballscrew_msgs/action/SolveOperatingPoint'
 SOLVED, NOT_SOLVED, INTERRUPTED = 0, 1, SIGNALLED + signal.SIGINT
-POLL = 0.1  # [s]
+LAST_WORD = 1.0  # [s] for the node to know that a goal is cancelled
 REJECTED = 'the node takes no more solves now, its queue is full'
 SIDES = {PointResult.SIDE_SCREW: 'screw', PointResult.SIDE_NUT: 'nut'}
 NUTS = {PointResult.NUT_POSITIVE: 'positive nut', PointResult.NUT_NEGATIVE: 'negative nut'}
@@ -46,6 +43,11 @@ LINES = (
     ('friction torque', 'friction_torque', 1.0, 'N m'),
     ('driving torque', 'driving_torque', 1.0, 'N m'),
 )
+FACTS = (
+    *('efficiency_difference', 'rcs_difference', 'efficiency_stderr', 'rcs_stderr'),
+    *('within_stated_error', 'corrected', 'correction'),
+)
+"""Fields of a result that are printed as they are."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -94,37 +96,19 @@ def ask(question: Question, *, wait: float, as_json: bool) -> int:
     with interrupts(threading.Event()) as interrupted:
         if said := notice():
             print(f'ballscrew: {said}', file=sys.stderr)
-        rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
-        node = rclpy.create_node('ballscrew_solve', enable_rosout=False)
-        executor = SingleThreadedExecutor()
-        executor.add_node(node)
-
-        def until(condition: Callable[[], Any], seconds: float = math.inf) -> Any:
-            """Spin until a condition gives something; None after a time or an interrupt."""
-            end = time.monotonic() + seconds
-            while time.monotonic() < end and not interrupted:
-                executor.spin_once(timeout_sec=POLL)
-                if found := condition():
-                    return found
-            return None
-
-        try:
-            code = _Conversation(node, question, until, interrupted).run(wait, as_json=as_json)
-        finally:
-            executor.shutdown()
-            node.destroy_node()
-            rclpy.shutdown()
+        with started_node('ballscrew_solve') as node:
+            code = _Conversation(node, question, interrupted).run(wait, as_json=as_json)
         return SIGNALLED + interrupted[0] if interrupted else code
 
 
 class _Conversation:
     """One goal, from finding the node to its result."""
 
-    def __init__(
-        self, node: Node, question: Question, until: Callable[..., Any], interrupted: Sequence[int]
-    ) -> None:
-        self._node, self._question = node, question
-        self._until, self._interrupted = until, interrupted
+    def __init__(self, node: Node, question: Question, interrupted: Sequence[int]) -> None:
+        self._node, self._question, self._interrupted = node, question, interrupted
+
+    def _until(self, condition: Callable[[], Any], seconds: float = math.inf) -> Any:
+        return spun(self._node, condition, seconds, self._interrupted)
 
     def run(self, wait: float, *, as_json: bool) -> int:
         """Ask and print; return the exit code unless interrupted."""
@@ -175,20 +159,13 @@ class _Conversation:
         return found[0] if found else None
 
     def _take_back(self, handle: Any) -> None:
-        """Cancel a goal, and wait until the node knows."""
-        self._spin_until(handle.cancel_goal_async().done)
+        """Cancel a goal, and wait a little until the node knows, whatever interrupts."""
+        spun(self._node, handle.cancel_goal_async().done, LAST_WORD)
 
     def _take_back_late(self, sent: Any) -> None:
         """Cancel a goal that may be accepted only now, as nobody waits for it any more."""
-        self._spin_until(sent.done)
-        if sent.done() and sent.result().accepted:
+        if spun(self._node, sent.done, LAST_WORD) and sent.result().accepted:
             self._take_back(sent.result())
-
-    def _spin_until(self, condition: Callable[[], bool]) -> None:
-        """Spin until something is done, for a second at most, whatever interrupts."""
-        executor, end = self._node.executor, time.monotonic() + 1.0
-        while executor and not condition() and time.monotonic() < end:
-            executor.spin_once(timeout_sec=POLL)
 
 
 def _where() -> str:
@@ -226,20 +203,9 @@ def _print(axis: str, result: Any, *, as_json: bool) -> int:
 
 def record_of(axis: str, result: Any) -> dict[str, Any]:
     """Return a result as plain numbers, SI units but degC, NaN where unknown."""
-    return {
-        'axis': axis,
-        'status': result.status,
-        'full': _numbers(result.full),
-        'surface': _numbers(result.surface),
-        'efficiency_difference': result.efficiency_difference,
-        'rcs_difference': result.rcs_difference,
-        'efficiency_stderr': result.efficiency_stderr,
-        'rcs_stderr': result.rcs_stderr,
-        'within_stated_error': result.within_stated_error,
-        'corrected': result.corrected,
-        'correction': result.correction,
-        'wall_s': result.wall_time,
-    }
+    points = {name: _numbers(getattr(result, name)) for name in ('full', 'surface')}
+    facts = {name: getattr(result, name) for name in FACTS}
+    return {'axis': axis, 'status': result.status} | points | facts | {'wall_s': result.wall_time}
 
 
 def _numbers(point: Any) -> dict[str, Any]:

@@ -2,9 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """What is seen and heard in a ROS graph: domain, nodes, topics, and an input as nodes take it."""
 
+from collections.abc import Callable, Iterator, Sequence
+import contextlib
 import math
 import os
 from pathlib import Path
+import time
 from typing import Any
 
 from ballscrew_monitor.core.conversions import seconds
@@ -13,12 +16,46 @@ from ballscrew_monitor.judge.inputs import accept, take_refusal
 from ballscrew_monitor.judge.records import Event, Memory, Settings
 from ballscrew_monitor.judge.words import fill, InputWords
 from ballscrew_monitor.messages.doctor import Heard, Surroundings
+import rclpy
 from rclpy.clock import Clock
+from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
+from rclpy.signals import SignalHandlerOptions
+from surrogate.files import InputError
 
 UDP = Path('/proc/net/udp')
 PORTS, PER_DOMAIN, OFFSETS = 7400, 250, range(10, 60)  # DDSI-RTPS 2.3, 9.6.1
+POLL = 0.05  # [s] longest wait before a signal is noticed
 MOST_DOMAIN = 101  # above, the ports may be those of any client
+
+
+@contextlib.contextmanager
+def started_node(name: str, **options: Any) -> Iterator[Node]:
+    """Start ROS and a node with an executor, until the end; raises InputError where that fails."""
+    try:
+        rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
+    except RuntimeError as error:  # such as a domain that is no number
+        raise InputError(f'ROS cannot start: {" ".join(str(error).split())}') from None
+    node = rclpy.create_node(name, enable_rosout=False, start_parameter_services=False, **options)
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    try:
+        yield node
+    finally:
+        executor.shutdown()
+        node.destroy_node()
+        rclpy.shutdown()
+
+
+def spun(
+    node: Node, condition: Callable[[], Any], seconds: float, interrupted: Sequence[int] = ()
+) -> Any:
+    """Spin for some `seconds` [s] until a condition gives something, or until interrupted."""
+    assert node.executor is not None
+    end = time.monotonic() + seconds
+    while not (found := condition()) and time.monotonic() < end and not interrupted:
+        node.executor.spin_once(timeout_sec=POLL)
+    return found
 
 
 def surroundings(node: Node) -> Surroundings:

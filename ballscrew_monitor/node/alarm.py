@@ -60,11 +60,12 @@ class Alarm:
         self._record(f'~/{self._axis.name}/out_of_zone', message)
 
     def follow(self, state: State) -> None:
-        """Speak of the event that a state has begun or ended."""
+        """Keep the event that a state has begun or ended, and then speak of it."""
         event, monitor = self._axis.monitor.event, self._axis.monitor
-        self.publish()
+        # First: who is killed meanwhile must not have said a number that is not kept.
         kind = Kind.EVENT_BEGIN if event.active else Kind.EVENT_END
         self._note_event(kind, point=point_facts(state.point))
+        self.publish()
         if event.active:
             advice = f'; {event.advice.text}' if event.advice.text else ''
             self._warn(f'event {event.number}: {event.cause.text}{advice}')

@@ -102,15 +102,15 @@ class AxisPublisher:
             self._plain.close()
 
     def publish_state(self, state: State) -> None:
-        """Publish a state, and the event that it begins or ends."""
+        """Publish a state, and before it the event that it begins or ends."""
         self._last = state
+        if state.event is not None:
+            self.alarm.follow(state)
         message = self._writer.write(state)
         self._state.publish(message)
         self._record(f'~/{self.name}/state', message)
         if self._plain is not None:
             self._plain.publish(state)
-        if state.event is not None:
-            self.alarm.follow(state)
 
     def shelve(self, shelving: Shelving) -> None:
         """Shelve the warning, or no longer, and let the last state say so."""

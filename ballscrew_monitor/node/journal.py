@@ -13,15 +13,20 @@ one, and each of those that come with time alone proves the replay up to there.
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 import json
+from pathlib import Path
 from typing import Any
 
 from ballscrew_monitor.core.cdr import serialized
 from ballscrew_monitor.core.conversions import nanoseconds
 from ballscrew_monitor.judge.dump import dump
-from ballscrew_monitor.node.recording_process import RecordingProcess
+from ballscrew_monitor.messages import diagnostics
+from ballscrew_monitor.node.recording_process import recording, RecordingProcess
 from ballscrew_monitor.node.topic import Arrival
 from ballscrew_monitor.recordings.frames import Frame, FrameKind, MOST_SEQUENCE, STRING, VERSION
 from ballscrew_monitor.settings.axis import Axis
+from ballscrew_msgs.msg import OutOfZone
+from diagnostic_msgs.msg import DiagnosticStatus
+from rclpy.node import Node
 from std_msgs.msg import String
 
 LATCHED = ('OutOfZone', 'SurfaceInfo')
@@ -62,7 +67,7 @@ class Journal:
 
     def hear(self, batch: Sequence[Heard]) -> None:
         """Take messages that were taken in one burst."""
-        if self._process is None:
+        if not self.on:
             return
         self._burst = (self._burst + 1) % MOST_SEQUENCE
         for arrival, now, lost in batch:
@@ -86,16 +91,14 @@ class Journal:
 
     def tick(self, grid: int, now: int) -> None:
         """Note a tick of all axes at `grid` [ns]."""
-        if self._process is not None:
-            self._note(now, {'kind': 'tick', 'stamp': grid})
+        self._note(now, {'kind': 'tick', 'stamp': grid})
 
     def say(self, topic: str, message: Any, now: int) -> None:
         """Take a message that the node publishes at `now` [ns] of its clock."""
-        if self._process is not None:
-            kind = type(message)
-            type_name = f'{kind.__module__.split(".")[0]}/msg/{kind.__name__}'
-            offer = 'LATCHED' if kind.__name__ in LATCHED else 'RELIABLE'
-            self._put(topic, type_name, offer, serialized(message), now, now, 0)
+        kind = type(message)
+        type_name = f'{kind.__module__.split(".")[0]}/msg/{kind.__name__}'
+        offer = 'LATCHED' if kind.__name__ in LATCHED else 'RELIABLE'
+        self._put(topic, type_name, offer, serialized(message), now, now)
 
     def trigger(self, now: int) -> None:
         """Let a recording around events show what has just happened."""
@@ -164,17 +167,18 @@ class Journal:
             self._process = None
 
     def _restart(self) -> None:
-        assert self._process is not None
         assert self._start is not None
-        self._process.close()
+        self.close()
         self._process, self._lost_at = self._start(), None
         self._pause = min(2 * self._pause, LONGEST_RESTART)
         self._topics.clear()
         self._hole = True
 
     def _note(self, now: int, entry: Mapping[str, Any]) -> None:
+        if self._process is None:
+            return
         text = json.dumps(entry, allow_nan=False, separators=(',', ':'))
-        self._put(self._name, STRING, 'RELIABLE', serialized(String(data=text)), now, now, 0)
+        self._put(self._name, STRING, 'RELIABLE', serialized(String(data=text)), now, now)
 
     def _put(
         self,
@@ -184,10 +188,10 @@ class Journal:
         data: bytes,
         log_time: int,
         publish_time: int,
-        sequence: int,
+        sequence: int = 0,
     ) -> None:
-        assert self._process is not None
-        if self._hole or not self._begun:  # means nothing before all is said of an axis
+        # What is heard before all is said of an axis means nothing.
+        if self._process is None or self._hole or not self._begun:
             return
         number = self._topics.get(topic)
         if number is None:
@@ -198,12 +202,59 @@ class Journal:
                 self._hole = True
                 return
         frame = Frame(FrameKind.MESSAGE, number, log_time, publish_time, sequence, data)
-        if not self._process.put(frame):
-            self._hole = True
+        self._hole = not self._process.put(frame)
 
 
 SILENT = Journal('', None)
 """Keeps nothing."""
+
+
+class NodeJournal:
+    """The journal of a node while it is active: what the node says, and how its axes are."""
+
+    def __init__(self, node: Node, values: Mapping[str, Any], find: Callable[[str], Axis]) -> None:
+        """Keep silent at first; `find` returns an axis."""
+        self.journal = SILENT
+        self._node, self._values, self._find = node, values, find
+        self._start: Callable[[], RecordingProcess] | None = None
+
+    def configure(self, folder: Path | None) -> None:
+        """Take over the parameters; raises InputError when there is no place for a recording."""
+        self._start = recording(self._values, folder)
+
+    def begin(self) -> None:
+        """Begin a recording, if there is to be one."""
+        self.journal = Journal(self._node.resolve_topic_name('~/journal'), self._start)
+
+    def close(self) -> None:
+        """Let the recording be finished."""
+        self.journal.close()
+        self.journal = SILENT
+
+    def describe(self, axes: Iterable[str], because: str) -> None:
+        """Let a recording know all about some axes."""
+        for axis in map(self._find, axes if self.journal.on else ()):
+            topics = {
+                source.name.lower(): self._node.resolve_topic_name(topic)
+                for source, topic in axis.topics.items()
+            }
+            self.journal.describe(axis, self._values, topics, because, self._now)
+
+    def record(self, topic: str, message: Any) -> None:
+        """Let a recording show what the node publishes; a warning is an event of it."""
+        if self.journal.on:
+            self.journal.say(self._node.resolve_topic_name(topic), message, self._now)
+            if isinstance(message, OutOfZone) and message.event_id:
+                self.journal.trigger(self._now)
+
+    def statuses(self) -> list[DiagnosticStatus]:
+        """Return how the recording is, if there is one."""
+        name = self._node.get_fully_qualified_name()
+        return [diagnostics.recording(name, self.journal.problem)] if self.journal.on else []
+
+    @property
+    def _now(self) -> int:
+        return self._node.get_clock().now().nanoseconds
 
 
 def values_of(axis: str, values: Mapping[str, Any]) -> dict[str, Any]:

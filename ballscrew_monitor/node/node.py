@@ -15,8 +15,8 @@ from ballscrew_monitor.messages import diagnostics
 from ballscrew_monitor.node.alarm import end_all
 from ballscrew_monitor.node.axis_publisher import AxisPublisher, STATE_QOS
 from ballscrew_monitor.node.axis_services import AxisServices, not_built
-from ballscrew_monitor.node.chronicle import Chronicle
 from ballscrew_monitor.node.intake import Intake
+from ballscrew_monitor.node.journal import NodeJournal
 from ballscrew_monitor.node.kept_axes import KeptAxes
 from ballscrew_monitor.node.output_topics import LatchedTopics
 from ballscrew_monitor.node.parameter_store import ParameterStore
@@ -66,7 +66,9 @@ class BallscrewMonitor(LifecycleNode):
         self._steady = Clock(clock_type=ClockType.STEADY_TIME)
         self._store = ParameterStore(self, self._on_parameters)
         self._values = self._store.values
-        self._chronicle = Chronicle(self, self._values, lambda: self._axis_publishers)
+        self._recording = NodeJournal(
+            self, self._values, lambda name: self._axis_publishers[name].axis
+        )
         self._grid = TickGrid(nanoseconds(self._values['tick_period']))
         self._diagnostics = self.create_publisher(DiagnosticArray, '/diagnostics', STATE_QOS)
         # On the steady clock: it speaks while a simulated one stands.
@@ -106,7 +108,7 @@ class BallscrewMonitor(LifecycleNode):
         for name in groups & self._axis_publishers.keys():
             self._axis_publishers[name].axis.adapt(self._values)
             self._axis_publishers[name].publish_info()
-            self._chronicle.describe([name], 'parameters')
+            self._recording.describe([name], 'parameters')
 
     @_reported
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
@@ -115,7 +117,7 @@ class BallscrewMonitor(LifecycleNode):
             resolve = self.resolve_topic_name
             check_overrides(self._store.given, named_topics(self._values, resolve))
             axes, reasons = build_axes(self._values, resolve)
-            self._chronicle.configure(self._kept.state.folder)
+            self._recording.configure(self._kept.state.folder)
         except InputError as error:
             axes, reasons = [], dict.fromkeys(self._values['axes'], str(error))
         self._failed = {name: f'not configured: {why}' for name, why in reasons.items()}
@@ -131,8 +133,8 @@ class BallscrewMonitor(LifecycleNode):
                 self._values,
                 latched=self._latched[axis.name],
                 kept=self._kept,
-                record=self._chronicle.record,
-                changed=self._chronicle.describe,
+                record=self._recording.record,
+                changed=self._recording.describe,
             )
             for axis in axes
         }
@@ -165,13 +167,13 @@ class BallscrewMonitor(LifecycleNode):
         """Subscribe and begin to judge."""
         result = super().on_activate(state)
         self._active = True
-        self._chronicle.begin()
+        self._recording.begin()
         for publisher in self._axis_publishers.values():
             publisher.publish_info()
             publisher.alarm.publish()
         axes = [publisher.axis for publisher in self._axis_publishers.values()]
-        self._chronicle.describe(self._axis_publishers, 'begin')
-        self._intake = Intake(self, axes, self._on_event, self._chronicle.journal)
+        self._recording.describe(self._axis_publishers, 'begin')
+        self._intake = Intake(self, axes, self._on_event, self._recording.journal)
         self._tick_timer = self.create_timer(
             self._values['tick_period'], self._on_tick, clock=self._tick_clock()
         )
@@ -218,12 +220,12 @@ class BallscrewMonitor(LifecycleNode):
 
     def _on_kept(self, axes: Iterable[str]) -> None:
         """Say what has changed by itself in what is kept of some axes."""
-        self._chronicle.describe(axes, 'kept')
+        self._recording.describe(axes, 'kept')
         self._publish_diagnostics(list(axes))
 
     def _on_service(self, axes: Iterable[str], name: str) -> str:
         """Keep what a service has changed at once; return why that failed, or nothing."""
-        self._chronicle.describe(axes, name)
+        self._recording.describe(axes, name)
         self._publish_diagnostics(list(axes))
         return self._kept.state.flush()
 
@@ -237,7 +239,7 @@ class BallscrewMonitor(LifecycleNode):
         if reason:
             alarms = [publisher.alarm for publisher in self._axis_publishers.values()]
             end_all(alarms, reason, self._steady)
-        self._chronicle.close()
+        self._recording.close()
         if self._tick_timer is not None:
             self.destroy_timer(self._tick_timer)
             self._tick_timer = None
@@ -273,13 +275,13 @@ class BallscrewMonitor(LifecycleNode):
             return
         self._intake.discover()
         self._intake.drain()
-        journal = self._chronicle.journal
+        journal = self._recording.journal
         journal.tick(grid, self.get_clock().now().nanoseconds)
         for publisher in self._axis_publishers.values():
             self._judge(publisher, publisher.axis.monitor.tick, grid)
         steady, now = self._steady.now().nanoseconds, self.get_clock().now().nanoseconds
         due = journal.due(self._axis_publishers, steady, now)
-        self._chronicle.describe(due, 'time')
+        self._recording.describe(due, 'time')
 
     def _publish(self, publisher: AxisPublisher, state: State | None) -> None:
         """Publish a state, and diagnostics for what it changes, though these not in a flood."""
@@ -306,7 +308,7 @@ class BallscrewMonitor(LifecycleNode):
         message = DiagnosticArray(status=statuses)
         message.header.stamp = now.to_msg()
         self._diagnostics.publish(message)
-        self._chronicle.record('/diagnostics', message)
+        self._recording.record('/diagnostics', message)
 
     def _statuses(self, axes: Sequence[str], stood: int) -> list[DiagnosticStatus]:
         made, node = [], self.get_fully_qualified_name()
@@ -317,7 +319,7 @@ class BallscrewMonitor(LifecycleNode):
                 made += publisher.statuses(links=links, stood=stood)
             else:
                 made += diagnostics.failed(node, name, self._failed.get(name, self._reason))
-        return made + self._chronicle.statuses()
+        return made + self._recording.statuses()
 
     def _on_evaluate(self, request: Any, response: Any) -> Any:
         """Answer what the surface says of the points; nothing is judged meanwhile."""

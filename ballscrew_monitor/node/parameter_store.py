@@ -6,8 +6,8 @@ from collections.abc import Callable
 from typing import Any
 
 from ballscrew_monitor.settings import parameters
-from ballscrew_monitor.settings.node_parameters import NODE_ROWS
 from ballscrew_monitor.settings.parameter_row import Change, ParameterRow
+from ballscrew_monitor.settings.parameter_table import NODE_ROWS
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.node import Node
 from rclpy.parameter import Parameter

@@ -30,7 +30,7 @@ from ballscrew_monitor.core.inputs import Input, make_input, OpenInput, Source
 from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.core.state import LoadDerivation, MonitorSettings, PositionSettings
 from ballscrew_monitor.judge.monitor import Monitor
-from ballscrew_monitor.settings.axis_parameters import LOAD_SOURCES
+from ballscrew_monitor.settings.parameter_table import LOAD_SOURCES
 from surrogate.files import InputError
 from surrogate.surface import find_surface, Surface, SurfaceError
 
@@ -117,7 +117,7 @@ def check_topics(axes: Iterable[Axis], resolve: Callable[[str], str]) -> None:
     types: dict[str, str] = {}
     for axis in axes:
         for source, topic in axis.topics.items():
-            _resolved(axis.name, source, topic, resolve)
+            resolved_topic(axis.name, source, topic, resolve)
         for one in axis.inputs:
             name = resolve(one.topic)
             if types.setdefault(name, one.type_name) != one.type_name:
@@ -133,13 +133,14 @@ def named_topics(values: Mapping[str, Any], resolve: Callable[[str], str]) -> se
         for source in Source:
             if topic := values[f'{axis}.{source.name.lower()}.topic']:
                 with contextlib.suppress(InputError):
-                    found.add(_resolved(axis, source, topic, resolve))
+                    found.add(resolved_topic(axis, source, topic, resolve))
     return found
 
 
-def _resolved(axis: str, source: Source, topic: str, resolve: Callable[[str], str]) -> str:
+def resolved_topic(axis: str, source: Source, topic: str, resolve: Callable[[str], str]) -> str:
+    """Return the full name of the topic of an input; raises InputError for what is no name."""
     try:
-        return resolve(topic)
+        return str(resolve(topic))
     except RuntimeError:
         raise InputError(
             f'parameter {axis}.{source.name.lower()}.topic is {topic!r}, no topic name'

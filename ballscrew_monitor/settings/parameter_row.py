@@ -30,7 +30,10 @@ class Change(enum.Enum):
     NEVER = 'at start only'
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+LIVE, NEVER = Change.LIVE, Change.NEVER
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
 class ParameterRow:
     """
     One parameter: numbers lie from `low` to `high`, texts are one of `choices` if there are.
@@ -41,14 +44,19 @@ class ParameterRow:
 
     name: str
     default: Value
-    text: str
     unit: str = ''
     low: float = -math.inf
     high: float = math.inf
+    change: Change = Change.UNCONFIGURED
+    _: dataclasses.KW_ONLY
     choices: tuple[str, ...] = ()
     nonzero: bool = False
     rule: Callable[[Any], None] | None = None
-    change: Change = Change.UNCONFIGURED
+    text: str = ''
+
+    def says(self, text: str) -> 'ParameterRow':
+        """Return the row with the sentence that describes it."""
+        return dataclasses.replace(self, text=text)
 
     @property
     def allowed(self) -> str:

@@ -7,14 +7,14 @@ The rows of `AXIS_ROWS` hold for every axis, under its name; `{axis}` in a defau
 
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+import contextlib
 import pathlib
 import re
 from typing import Any
 
-from ballscrew_monitor.settings.axis_parameters import AXIS_ROWS
-from ballscrew_monitor.settings.node_parameters import NODE_ROWS
 from ballscrew_monitor.settings.parameter_row import BARE_LETTERS, BARE_WORDS, ParameterRow
+from ballscrew_monitor.settings.parameter_table import AXIS_ROWS, NODE_ROWS
 from surrogate.files import InputError
 
 NODE_NAME = 'ballscrew_monitor'
@@ -85,15 +85,13 @@ def read_file(path: str | pathlib.Path, node: str = NODE_NAME) -> dict[str, Any]
 
 def read_text(text: str, origin: str, node: str = NODE_NAME) -> dict[str, Any]:
     """Return what `read_file` does, of the text of such a file; `origin` names it in errors."""
-    try:
-        given = _given(_sections(text), node)
+    with _named(origin):
+        given = _given(text, node)
         axes = given.get('axes', NODE_ROWS[0].default)
         NODE_ROWS[0].check('axes', axes)
         rows = table(axes)
         check(rows, given)
         given = {name: rows[name].read(value) for name, value in given.items()}
-    except InputError as error:
-        raise InputError(f'{origin}: {error}') from None
     return defaults(axes) | given
 
 
@@ -104,10 +102,8 @@ def names_in_file(path: str | pathlib.Path, node: str = NODE_NAME) -> frozenset[
 
 def names_in_text(text: str, origin: str, node: str = NODE_NAME) -> frozenset[str]:
     """Return what `names_in_file` does, of the text of such a file, which `origin` names."""
-    try:
-        return frozenset(_given(_sections(text), node))
-    except InputError as error:
-        raise InputError(f'{origin}: {error}') from None
+    with _named(origin):
+        return frozenset(_given(text, node))
 
 
 def read_ros_parameters(path: str | pathlib.Path, node: str = NODE_NAME) -> dict[str, Any]:
@@ -118,11 +114,13 @@ def read_ros_parameters(path: str | pathlib.Path, node: str = NODE_NAME) -> dict
 
     """
     text = _text_of(path)
-    try:
-        given = _addressed(_sections(text), node)
-    except InputError as error:
-        raise InputError(f'{path}: {error}') from None
-    return {name: value for name, value in given.items() if is_of_ros(name)}
+    with _named(path):
+        return _given(text, node, of_ros=True)
+
+
+def sections(path: str | pathlib.Path) -> dict[str, Any]:
+    """Return what the file at `path` says by nodes; raises InputError if it cannot be read."""
+    return _sections(_text_of(path))
 
 
 def explain(error: Exception) -> str:
@@ -132,14 +130,19 @@ def explain(error: Exception) -> str:
     return f'{sentence}, {BARE_WORDS}' if mixed else sentence
 
 
-def _given(nodes: Mapping[str, Any], node: str) -> dict[str, Any]:
-    given = _addressed(nodes, node)
-    return {name: value for name, value in given.items() if not is_of_ros(name)}
+@contextlib.contextmanager
+def _named(origin: object) -> Iterator[None]:
+    """Let an error begin with the name of what is read."""
+    try:
+        yield
+    except InputError as error:
+        raise InputError(f'{origin}: {error}') from None
 
 
-def _addressed(nodes: Mapping[str, Any], node: str) -> dict[str, Any]:
+def _given(text: str, node: str, *, of_ros: bool = False) -> dict[str, Any]:
+    """Return what a text says to a node: parameters of the table, or those of any ROS node."""
     given: dict[str, Any] = {}
-    for key, section in nodes.items():
+    for key, section in _sections(text).items():
         if key.lstrip('/') in ('**', node, f'**/{node}'):
             values = section.get('ros__parameters')
             if not isinstance(values, dict):
@@ -149,12 +152,7 @@ def _addressed(nodes: Mapping[str, Any], node: str) -> dict[str, Any]:
             given |= _flatten(values)
     if not given:
         raise InputError(f'it says nothing to the node, begin it with /**/{node}:')
-    return given
-
-
-def sections(path: str | pathlib.Path) -> dict[str, Any]:
-    """Return what the file at `path` says by nodes; raises InputError if it cannot be read."""
-    return _sections(_text_of(path))
+    return {name: value for name, value in given.items() if is_of_ros(name) is of_ros}
 
 
 def _text_of(path: str | pathlib.Path) -> str:
@@ -214,7 +212,7 @@ def example_yaml() -> str:
     """Return the example parameter file: every parameter of one axis, with its comment."""
     lines = [
         '# Every parameter of ballscrew_monitor with its default, made from the table in',
-        '# ballscrew_monitor/settings/parameters.py. Numbers need a decimal point.',
+        '# ballscrew_monitor/settings/parameter_table.py. Numbers need a decimal point.',
         f'/**/{NODE_NAME}:',
         '  ros__parameters:',
     ]
@@ -233,12 +231,10 @@ def example_yaml() -> str:
 
 def _example_lines(row: ParameterRow, name: str, leaf: str, indent: int) -> list[str]:
     space = ' ' * indent
-    facts = [row.text.rstrip('.') + '.']
-    if row.unit:
-        facts.append(f'[{row.unit}]')
-    if row.allowed:
-        facts.append(f'Allowed: {row.allowed}.')
-    facts.append(f'Changes {row.change.value}.')
+    unit = f'[{row.unit}]' if row.unit else ''
+    allowed = f'Allowed: {row.allowed}.' if row.allowed else ''
+    said = (f'{row.text.rstrip(".")}.', unit, allowed, f'Changes {row.change.value}.')
+    facts = filter(None, said)
     return [f'{space}# {" ".join(facts)}', f'{space}{leaf}: {_yaml(default_of(name, row))}']
 
 

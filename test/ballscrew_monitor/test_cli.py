@@ -61,7 +61,7 @@ def test_a_full_disk_is_named(monkeypatch, capsys):
     def fill(args):
         raise OSError(28, 'No space left on device')
 
-    monkeypatch.setattr(cli, '_run', fill)
+    monkeypatch.setitem(cli.COMMANDS, 'run', (fill, ''))
     assert cli.main(['run', '--out', 'there']) == 1
     assert capsys.readouterr().err == (
         'ballscrew: there cannot be read or written, No space left on device\n'
@@ -73,7 +73,7 @@ def test_bad_input_is_a_sentence_and_exit_code_2(error, monkeypatch, capsys):
     def refuse(args):
         raise error('oil: viscosity is -1 Pa s, allowed is above 0')
 
-    monkeypatch.setattr(cli, '_replay', refuse)
+    monkeypatch.setitem(cli.COMMANDS, 'replay', (refuse, ''))
     assert cli.main(['replay', 'x']) == 2
     captured = capsys.readouterr()
     assert captured.err == 'ballscrew: oil: viscosity is -1 Pa s, allowed is above 0\n'
@@ -116,7 +116,7 @@ def test_an_interrupt_is_exit_code_130(monkeypatch, capsys):
     def interrupt(args):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(cli, '_replay', interrupt)
+    monkeypatch.setitem(cli.COMMANDS, 'replay', (interrupt, ''))
     assert cli.main(['replay', 'x']) == 130
     assert capsys.readouterr().err == 'ballscrew: interrupted\n'
 

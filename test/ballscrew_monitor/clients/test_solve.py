@@ -184,7 +184,7 @@ def test_a_goal_that_is_accepted_too_late_is_taken_back():
             cancelled.set_result('cancelled')
 
     node = SimpleNamespace(executor=SimpleNamespace(spin_once=spin_once))
-    _Conversation(node, None, None, ())._take_back_late(sent)
+    _Conversation(node, None, [signal.SIGINT])._take_back_late(sent)
     assert cancelled.done()
     assert len(calls) == 5
 
@@ -201,12 +201,14 @@ def test_a_server_that_is_never_ready_is_sent_no_goal(
     monkeypatch.setattr(
         solve, 'get_action_names_and_types', lambda node: [('/m/solve', [solve.ACTION_TYPE])]
     )
-    talk = _Conversation(None, Question(axis='x'), lambda given, wait: given(), interrupted)
+    monkeypatch.setattr(_Conversation, '_until', lambda self, given, wait: given())
+    talk = _Conversation(None, Question(axis='x'), interrupted)
     assert talk.run(2.0, as_json=False) == code
     assert capsys.readouterr() == ('', sentence)
 
 
-def test_an_interrupt_before_a_node_is_found_needs_no_words(capsys):
-    talk = _Conversation(None, Question(axis='x'), lambda condition, wait: None, [signal.SIGTERM])
+def test_an_interrupt_before_a_node_is_found_needs_no_words(monkeypatch, capsys):
+    monkeypatch.setattr(_Conversation, '_until', lambda self, given, wait: None)
+    talk = _Conversation(None, Question(axis='x'), [signal.SIGTERM])
     assert talk.run(2.0, as_json=False) == 130
     assert capsys.readouterr() == ('', '')

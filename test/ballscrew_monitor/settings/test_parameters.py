@@ -7,8 +7,8 @@ import pathlib
 import re
 
 from ballscrew_monitor.settings import parameters
-from ballscrew_monitor.settings.axis_parameters import AXIS_ROWS
 from ballscrew_monitor.settings.parameter_row import Change
+from ballscrew_monitor.settings.parameter_table import AXIS_ROWS
 import pytest
 from surrogate.files import InputError
 import yaml
