@@ -22,7 +22,7 @@ usable() {
     "$1" -I -S -c "$probe" 2>/dev/null
 }
 
-# The one that .venv was made of comes first: another order on PATH is no reason to start anew.
+# The one that .venv was made of comes first: another order on PATH is no reason to start again.
 find_python() {
     if [ -n "${PYTHON:-}" ]; then
         usable "$PYTHON"

@@ -140,7 +140,7 @@ def run(
 
 
 def make_environment() -> None:
-    """Make the environment anew with what the solver is compiled with."""
+    """Remake the environment with what the solver is compiled with."""
     run(sys.executable, '-m', 'venv', '--clear', VENV)
     # What has no wheel is built with the pinned setuptools too.
     run(*INSTALL, '--constraint', PINS, 'setuptools', *NUMERICAL)
@@ -234,7 +234,7 @@ def files_below(folder: Path) -> list[Path]:
 
 
 def generate_bag() -> None:
-    """Generate the bag of the nominal cycle anew."""
+    """Regenerate the bag of the nominal cycle."""
     shutil.rmtree(BAG, ignore_errors=True)
     run(PYTHON, BAG_GENERATOR)
 

@@ -6,8 +6,8 @@ Identify a synthetic recording of known parasitic torque in both tiers, and draw
 Run `python studies/identify.py [--out DIR]`: the nominal screw without load, ISO VG 68 at 40 degC,
 torque of the full tier with 0.12 N m, 0.4 mN m s/rad, an offset of 0.03 N m and normal noise of
 4 mN m, 12 speeds in both directions. Prints how often intervals hold the truth, how far balls
-balanced anew are from a fresh solve, the parameters by tier and by what is fitted, and how far the
-table of the full tier is from contacts solved at the point itself. Some minutes.
+balanced again are from a fresh solve, the parameters by tier and by what is fitted, and how far
+the table of the full tier is from contacts solved at the point itself. Some minutes.
 
 """
 
@@ -82,7 +82,7 @@ def check_table(screw, oil, model, contacts):
 
 
 def check_balance(screw, oil):
-    """Print how far balls balanced anew on contacts of another oil are from a solve with it."""
+    """Print how far balls balanced again on contacts of another oil are from a solve with it."""
     warm = anchored(oil, WARM)
     hot = lubricant_state(oil, HOT)
     cases = [(rpm, thickened(warm, 2.0), 2.0, WARM) for rpm in HALF_SPEEDS]
@@ -96,7 +96,7 @@ def check_balance(screw, oil):
         found = rebalance_screw(screw, thick, point, solved).friction_torque
         print(
             f'{rpm:5.0f} rev/min at {kelvin:g} K, viscosity times {factor:.3g}: the product alone '
-            f'{100 * (solved.friction_torque / exact - 1):6.2f} %, balls balanced anew '
+            f'{100 * (solved.friction_torque / exact - 1):6.2f} %, balls balanced again '
             f'{100 * (found / exact - 1):6.2f} %',
             flush=True,
         )

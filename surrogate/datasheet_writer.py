@@ -13,7 +13,7 @@ from surrogate.parameters import Lubricant, Screw
 import yaml
 
 DIGITS = 12
-"""Digits of a number on file: the rounding of a change of unit is none of them."""
+"""Digits of a number on file, few enough to hide the rounding of a change of unit."""
 WIDTH = 99
 
 

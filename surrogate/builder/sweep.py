@@ -165,7 +165,7 @@ def sweep(
     """
     Build and write a surface per item to the directory `out`; return what became of each.
 
-    A failed item is a sentence and never stops the rest. `report` is told of each as it comes.
+    A failed item is a sentence and never stops the rest. `report` receives each as it comes.
 
     """
     found: dict[str, Built] = {}

@@ -15,7 +15,7 @@ JSON_NAME, PAGE_NAME = 'sweep.json', 'sweep.md'
 
 
 class SweepReport:
-    """What has become of every item so far; both files are written anew after each."""
+    """What has become of every item so far; both files are rewritten after each."""
 
     def __init__(self, catalogue: Path, items: list[Item], out: Path) -> None:
         """Begin with all items waiting."""

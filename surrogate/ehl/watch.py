@@ -43,7 +43,7 @@ _PLACE: ContextVar[Iteration] = ContextVar('place', default=NOWHERE)
 
 @contextmanager
 def watched(watcher: Watcher) -> Iterator[None]:
-    """Let `watcher` be told of every iteration of the solves in this context."""
+    """Call `watcher` at every iteration of the solves in this context."""
     token = _WATCHER.set(watcher)
     try:
         yield

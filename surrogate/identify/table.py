@@ -5,7 +5,7 @@ Friction torque of solved contacts at the points of a run, from a small table.
 
 Pressure and film of a contact follow the product of viscosity and speed, so contacts are solved
 once per node of that product. Shear does not: the pressure-viscosity law bends with the oil, and
-boundary friction acts in the balance of the balls. So the balls are balanced anew on the solved
+boundary friction acts in the balance of the balls. So the balls are balanced again on the solved
 contacts for every viscosity and every friction coefficient of the table, which is cheap.
 
 """

@@ -59,8 +59,8 @@ def solve_point(
     Solve the point of a request by the full tier.
 
     `request` holds the `header` of a surface and the `point` with speed [rad/s], opposing load [N]
-    and temperature [K]. `progress` is told of each iteration; `cancel` is asked at each, and ends
-    the solve with `Cancelled`. Raises InputError for inputs that no screw has.
+    and temperature [K]. Each iteration calls `progress` and asks `cancel`,
+    which ends the solve with `Cancelled`. Raises InputError for inputs that no screw has.
 
     """
     header, place = request['header'], request['point']

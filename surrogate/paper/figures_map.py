@@ -71,7 +71,7 @@ def figure_maps(screw: Screw, rows: Sequence[StudyRow]) -> Figure:
         6.9,
         'Nominal screw, ISO VG 68 at 40 °C, rolling roughness, the nodes (dots) solved, torque '
         'interpolated between them and efficiency derived from it. RCS is that '
-        f'of the worst of four contacts; below {NO_CONTACT:g} it is none. (c) Friction '
+        f'of the worst of four contacts; below {NO_CONTACT:g} it counts as 0. (c) Friction '
         f'coefficient {CONSTANT_FRICTION:g} for constant friction, an assumption.',
     )
     places = figure.subplot_mosaic([['rcs', 'eta'], ['load', 'load']], height_ratios=(1.25, 1))

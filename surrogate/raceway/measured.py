@@ -147,6 +147,6 @@ def _check_heights(raw: Array, source: str) -> None:
     missing = raw.size - int(np.isfinite(raw).sum())
     if missing:
         raise InputError(
-            f'{source}: {missing} of {raw.size} heights are not finite numbers, allowed is none: '
+            f'{source}: {missing} of {raw.size} heights are not finite numbers, allowed is 0: '
             'fill the gaps with the software of the instrument'
         )

@@ -46,8 +46,8 @@ def periodic_across(surface: FractalSurface, width: float) -> PeriodicSurface:
     """
     Return a surface with period `width` [m] along y; amplitudes and phases stay.
 
-    Raises InputError for a width that is none, and for a surface whose plane slopes across the
-    track, as that of a patch does: no such surface is periodic.
+    Raises InputError for a width that is not positive, and for a surface whose plane slopes across
+    the track, as that of a patch does: no such surface is periodic.
 
     """
     if not 0 < width < math.inf:

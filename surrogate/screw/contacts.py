@@ -46,10 +46,10 @@ class ScrewSettings:
     """
     How to solve a screw.
 
-    What the roughness does: it rolls, it stands still, or there is none. `law` of asperity contact
-    where it rolls, None for the shipped one. Settings of the smooth and of the rough contacts, but
-    for the film floor, which is that of the oil. Of roughness that stands: its draw, shortest
-    wavelength on the grid [m], shorter ones raise the floor, None to solve them all; nodes per
+    What the roughness does: it rolls, it stands still, or the raceway is smooth. `law` of asperity
+    contact where it rolls, None for the shipped one. Settings of the smooth and of the rough
+    contacts, but for the film floor, which is that of the oil. Of roughness that stands: its draw,
+    shortest wavelength on the grid [m], shorter ones raise the floor, None to solve all; nodes per
     such wave across the track, up to `MOST_NODES`, if that is more than the rough settings have
     [-]. `inlet_heating` thins films by shear heating of the inlet; contacts are solved again where
     friction changes their normal force by more than `coupling_tolerance` [-].

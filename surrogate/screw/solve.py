@@ -161,7 +161,7 @@ def rebalance_screw(
     settings: ScrewSettings | None = None,
 ) -> ScrewSolution:
     """
-    Balance the balls anew on the contacts of `found`: faster than a solve by far.
+    Balance the balls again on the contacts of `found`: faster than a solve by far.
 
     For another asperity friction or parasitic torque, which no contact knows of, this is what a
     solve gives. Another oil or speed must keep the product of viscosity and speed, which pressure
@@ -213,7 +213,7 @@ def _check_same_load(screw: Screw, point: OperatingPoint, found: ScrewSolution) 
 
 
 def _nut_loads(screw: Screw, point: OperatingPoint) -> tuple[NutLoad, NutLoad]:
-    """Return what both nuts carry; a share too small to hold its balls is none."""
+    """Return what both nuts carry; a share too small to hold its balls counts as no load."""
     ahead: Flank = 1 if point.opposing_load >= 0 else -1
     behind: Flank = -1 if ahead == 1 else 1
     loaded, relieved = (float(force) for force in nut_forces(point.opposing_load, screw.preload))

@@ -66,7 +66,7 @@ class Correction:
 
 
 def solved_values(solution: object) -> dict[str, float]:
-    """Return the fields that a solution has; raises SurfaceError when it is none."""
+    """Return the fields that a solution has; raises SurfaceError when nothing was solved."""
     found = {name: float(getattr(solution, name, math.nan)) for name in FIELDS}
     known = {name: value for name, value in found.items() if not math.isnan(value)}
     if not getattr(solution, 'converged', True) or not known:

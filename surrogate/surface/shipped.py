@@ -32,8 +32,7 @@ def shipped_surface(
     """
     Return where the shipped surface of `screw` and `oil` lies.
 
-    Without a tier it is of solved contacts where such a one is shipped. Raises SurfaceError if
-    there is none.
+    Without a tier, a surface of solved contacts comes first. Raises SurfaceError if no file fits.
 
     """
     for kind in SHIPPED_TIERS if tier is None else (tier,):

@@ -74,7 +74,7 @@ def run_tasks(
     Run `task` on every one of the named inputs and return the outcomes in the order of the names.
 
     With a `store`, results that it has are taken from there, and new ones are kept as they come;
-    failures are not, they are tried again by the next run. `report` is told of each outcome, in
+    failures are not, they are tried again by the next run. `report` receives each outcome, in
     any order. Raises SurfaceError when a cluster is lost or the store cannot be written.
 
     """

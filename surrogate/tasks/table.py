@@ -17,7 +17,7 @@ KINDS: dict[Any, Callable[[str], Any]] = {bool: lambda word: word == 'True'}
 
 def read_table(path: Path, kind: type[Row]) -> list[Row]:
     """
-    Return the rows of a table, none where there is none.
+    Return the rows of a table; an absent table has no rows.
 
     Columns that are missing keep their defaults. Raises InputError for anything else.
 

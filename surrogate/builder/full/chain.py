@@ -104,7 +104,7 @@ def _turned(
     if not all(one.converged for one in found.loaded_contacts):
         return found
     against = replace(point, load=-point.load)
-    # Balls that float on one side may hold on the other: an idle nut is solved anew.
+    # Balls that float on one side may hold on the other: an idle nut is solved again.
     if all(found.normal_forces) and found.load_change <= settings.coupling_tolerance:
         balanced = rebalance_screw(screw, lubricant, against, found, settings=settings)
         if balanced.load_change <= settings.coupling_tolerance:

@@ -115,7 +115,7 @@ def test_info_is_strict_json_even_without_errors(tmp_path: Path, capsys):
 
 
 def test_check_without_time_is_a_failure(capsys):
-    """Nothing solved of the default surface is nothing shown; a time that is none is refused."""
+    """Time for no point at all is a failure; a time that is not positive is refused."""
     assert run('surface', 'check', '--max-seconds', '1e-9') == 1
     out = capsys.readouterr().out
     assert str(shipped_surface(tier='full')) in out

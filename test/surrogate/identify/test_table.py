@@ -134,7 +134,7 @@ def test_a_run_that_one_table_cannot_hold_is_refused(formulas):
 
 
 def test_a_speed_that_is_not_solved_is_named(formulas, monkeypatch):
-    """Nothing is fitted to a number that is none."""
+    """A failed solve refuses the fit and says why."""
     failed = Stub(math.nan, converged=False, status='It stalled.')
     monkeypatch.setattr('surrogate.identify.table.solve_screw', lambda *given, **options: failed)
     with pytest.raises(InputError, match='at 60 rev/min was not solved: It stalled'):

@@ -85,7 +85,7 @@ def test_ridges_along_the_track_stay_so():
 
 
 def test_what_has_no_period_is_refused():
-    """A width that is none, and a surface that slopes."""
+    """A width that is not positive, and a surface that slopes."""
     with pytest.raises(InputError, match='strip: width is -1 mm, allowed is above 0'):
         periodic_across(one_wave(1.0, 1.0), -1e-3)
     with pytest.raises(InputError, match='slopes across the track, allowed is a level one'):

@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Shipped surfaces: found by tier, the full one first, and listed when there is none."""
+"""Shipped surfaces: found by tier, the full one first, and listed when nothing fits."""
 
 from pathlib import Path
 
