@@ -117,6 +117,7 @@ def test_the_end_of_an_event_by_the_node_is_recorded(node, start):
 def test_after_a_kill_of_the_node_the_recording_is_complete(node, start):
     folder, machine = start()
     states = node.states()
+    node.until(lambda: states, 'a state of a tick, which notes what the axis remembers')
     node.until(lambda: machine(FAST) or len(states) > 30, 'states')
     node.process.kill()
     node.process.wait()
