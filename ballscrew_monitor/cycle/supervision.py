@@ -20,8 +20,7 @@ from ballscrew_monitor.cycle.plan import Plan
 from ballscrew_monitor.cycle.status import progress_bar, state_cells, StatusLine
 from ballscrew_monitor.recordings.bag_writer import BagWriter
 from ballscrew_monitor.recordings.player import Played, Player
-from ballscrew_monitor.recordings.recorded_topics import recorded_topics
-from ballscrew_monitor.recordings.recorder import Recorder
+from ballscrew_monitor.recordings.recorder import recorded_topics, Recorder
 from ballscrew_monitor.settings.topics import absolute, input_topics, output
 from ballscrew_msgs.msg import BallScrewState
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus

@@ -20,7 +20,7 @@ from ballscrew_monitor.node.solver_process import worker_environment
 from ballscrew_monitor.recordings.frames import Frame, FrameSender
 from surrogate.files import InputError
 
-MODULE = 'ballscrew_monitor.recordings.black_box'
+MODULE = 'ballscrew_monitor.recordings.retention'
 PIPE_SIZE = 2**20  # [B]
 MEGABYTE = 1e6
 LONGEST_LINE = 2**16  # [B]

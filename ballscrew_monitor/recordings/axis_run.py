@@ -12,7 +12,7 @@ from ballscrew_monitor.judge import records, views
 from ballscrew_monitor.judge.many import EVENT, Judged, ManyJudge
 from ballscrew_monitor.judge.words import EARLIEST, LATEST, MOST_OTHERS
 from ballscrew_monitor.recordings.bulk.entries import Entries, Kind
-from ballscrew_monitor.recordings.bulk.source import places_of_axis
+from ballscrew_monitor.recordings.bulk.order import places_of_axis
 from ballscrew_monitor.recordings.columns import AxisOutcome, COLUMNS, JudgedColumns
 from ballscrew_monitor.recordings.summary import event_record
 from ballscrew_monitor.settings.axis import Axis
@@ -41,18 +41,8 @@ KINDS = np.array([records.SAMPLE, records.REFUSAL, records.REFUSAL, records.TICK
 """Kind of an event by that of an entry."""
 HEADER, RECEIVE = 1, 2
 """Sources of a stamp."""
-
-
-class Due(NamedTuple):
-    """A state, the place of the entry it is due at, and the event that it tells of."""
-
-    place: int
-    state: State
-    event: Event | None
-
-    def later(self, places: int) -> 'Due':
-        """Return the same at a place that lies further on."""
-        return self._replace(place=self.place + places)
+Due = tuple[int, TimedState]
+"""The place of an entry, and the state that is due at it."""
 
 
 def events_of(entries: Entries) -> NDArray[Any]:
@@ -101,7 +91,7 @@ class AxisRun:
         for end in [*np.flatnonzero(entries.kind == Kind.CHECK).tolist(), len(entries)]:
             part = entries.take(slice(begin, end))
             for made in self._take(part, columns=columns, states=states):
-                yield made if isinstance(made, JudgedColumns) else made.later(begin)
+                yield made if isinstance(made, JudgedColumns) else (made[0] + begin, made[1])
             if end < len(entries):
                 entries.note[end]()
             begin = end + 1
@@ -113,7 +103,8 @@ class AxisRun:
         for judged in self._judge.judge(events_of(entries), states=states):
             for place, row in self._told(judged):
                 self._hear(refusals, entries, place)
-                yield from self._state(place, row, states=states)
+                log_time = int(entries.log_time[place])
+                yield from ((place, one) for one in self._state(log_time, row, states=states))
             if len(judged.rows):
                 self._count(judged.rows)
                 if columns:
@@ -122,7 +113,7 @@ class AxisRun:
         self._judge.give_back()
         self._hear_others(entries)
 
-    def _state(self, place: int, row: records.Row, *, states: bool) -> Iterator[Due]:
+    def _state(self, log_time: int, row: records.Row, *, states: bool) -> Iterator[TimedState]:
         """Yield the state of a row if states are wanted, and keep the event that it tells of."""
         state = self.axis.monitor.state(row)
         event = state.event
@@ -131,7 +122,7 @@ class AxisRun:
         elif states:
             event, self._ended = self._ended, None
         if states:
-            yield Due(place, state, event)
+            yield TimedState(log_time, self.axis, state, event)
 
     def change(self, axis: Axis) -> None:
         """Go on with an axis as it is described now; an event may have been ended meanwhile."""
@@ -221,7 +212,5 @@ def judged_parts(
             if isinstance(part, JudgedColumns):
                 yield part
                 continue
-            place = int(places[part.place])
-            log_time = int(entries.log_time[place])
-            found.append((place, number, TimedState(log_time, run.axis, part.state, part.event)))
+            found.append((int(places[part[0]]), number, part[1]))
     yield from (state for _, _, state in sorted(found, key=operator.itemgetter(0, 1)))

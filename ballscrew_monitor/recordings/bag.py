@@ -20,7 +20,13 @@ import weakref
 
 from ballscrew_monitor.recordings.bag_files import kind_of, manifest, OWN, unpack, unpacked, ZSTD
 from ballscrew_monitor.recordings.sqlite_storage import SqliteStorage
-from ballscrew_monitor.recordings.storages import damage_is_input, McapStorage, Message, TopicInfo
+from ballscrew_monitor.recordings.storages import (
+    damage_is_input,
+    McapStorage,
+    Message,
+    Storage,
+    TopicInfo,
+)
 from mcap.reader import make_reader
 from surrogate.files import InputError
 from zstandard import ZstdError
@@ -55,10 +61,10 @@ class Bag:
         self._salvage = salvage
         self._missing: list[str] = []
         found = manifest(self.path, salvage=salvage)
-        self._storages = [one for one in map(self._open, found.files) if one is not None]
-        self.files = [one.file for one in self._storages]
+        self.storages = [one for one in map(self._open, found.files) if one is not None]
+        self.files = [one.file for one in self.storages]
         self.topics = self._all_topics()
-        spans = [one.span for one in self._storages if one.span[1]]
+        spans = [one.span for one in self.storages if one.span[1]]
         if not self.topics or not spans:
             what = '; '.join(self._missing) or 'at least one is needed'
             raise InputError(f'bag {self.path} holds no message, {what}')
@@ -77,14 +83,9 @@ class Bag:
         return {name: info.type_name for name, info in self.topics.items()}
 
     @property
-    def storages(self) -> tuple[McapStorage | SqliteStorage, ...]:
-        """Return the files that are read."""
-        return tuple(self._storages)
-
-    @property
     def notes(self) -> list[str]:
         """Return a sentence for each file and topic of which not all could be read so far."""
-        salvaged = [one.note for one in self._storages if one.note]
+        salvaged = [one.note for one in self.storages if one.note]
         refused = [
             one.sentence + (f'; {one.count} such messages were refused' if one.count > 1 else '')
             for one in self.refused.values()
@@ -117,9 +118,8 @@ class Bag:
     def as_written(self, topics: Collection[str] | None = None) -> Iterator[Message]:
         """Yield messages of `topics` in the order of the files; raises InputError on damage."""
         wanted = set(self.topics if topics is None else topics)
-        for one in self._storages:
-            for message in one.messages(wanted, as_written=True):
-                yield _whole(message) if message.data[:4] == ZSTD else message
+        for one in self.storages:
+            yield from map(_whole, one.messages(wanted, as_written=True))
 
     def messages(self, topics: Collection[str] | None = None) -> Iterator[Message]:
         """Yield messages of `topics` (None: all) by log time; raises InputError on damage."""
@@ -127,18 +127,11 @@ class Bag:
         with contextlib.ExitStack() as stack:
             streams = [
                 stack.enter_context(contextlib.closing(one.messages(wanted)))
-                for one in self._storages
+                for one in self.storages
             ]
-            merged = heapq.merge(*streams, key=lambda message: message.log_time)
-            for message in merged:
-                yield _whole(message) if message.data[:4] == ZSTD else message
+            yield from map(_whole, heapq.merge(*streams, key=lambda one: one.log_time))
 
-    def verify(self) -> None:
-        """Read everything once; raises InputError when something is damaged."""
-        for _ in self.messages():
-            pass
-
-    def _open(self, file: Path) -> McapStorage | SqliteStorage | None:
+    def _open(self, file: Path) -> Storage | None:
         """Return an opened file; None for one that is lost, if that is allowed."""
         try:
             return self._storage(file)
@@ -148,7 +141,7 @@ class Bag:
             self._missing.append(f'{error}; it is left out')
             return None
 
-    def _storage(self, file: Path) -> McapStorage | SqliteStorage:
+    def _storage(self, file: Path) -> Storage:
         if not file.is_file():
             raise InputError(
                 f'bag {self.path}: its metadata.yaml names {file.name}, which is missing'
@@ -172,7 +165,7 @@ class Bag:
 
     def _all_topics(self) -> dict[str, TopicInfo]:
         topics: dict[str, TopicInfo] = {}
-        for one in self._storages:
+        for one in self.storages:
             for name, info in one.topics.items():
                 known = topics.get(name)
                 count = info.count + (known.count if known else 0)
@@ -181,7 +174,7 @@ class Bag:
 
     def _own_metadata(self) -> dict[str, str]:
         """Return the record of this program in the first MCAP file, if it is whole."""
-        first = self._storages[0]
+        first = self.storages[0]
         if not isinstance(first, McapStorage) or first.note:
             return {}
         found: dict[str, str] = {}
@@ -197,7 +190,9 @@ class Bag:
 
 
 def _whole(message: Message) -> Message:
-    """Return a message that was packed alone; one that is damaged stays, and does not decode."""
+    """Return a message, unpacked if it was packed alone; damage stays, and does not decode."""
+    if message.data[:4] != ZSTD:
+        return message
     try:
         return dataclasses.replace(message, data=unpacked(message.data))
     except ZstdError:

@@ -2,11 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which files a bag is made of, and what they are: by metadata.yaml and by their first bytes."""
 
-from collections.abc import Iterator
 import dataclasses
 from pathlib import Path, PurePath
 import re
-from typing import Any
 
 from surrogate.files import InputError
 import yaml
@@ -25,6 +23,7 @@ ENDINGS = ('.mcap', '.db3', '.mcap.zstd', '.db3.zstd')
 ACTIVE = '.mcap.active'
 TABLES = ('.csv', '.tsv', '.txt', '.parquet')
 STORAGES = ('mcap', 'sqlite3')
+NO_METADATA = (OSError, UnicodeDecodeError, yaml.YAMLError, KeyError, TypeError, AttributeError)
 OWN = 'ballscrew_monitor'
 """Name of the metadata record in which an MCAP file holds what this program says of it."""
 
@@ -47,7 +46,7 @@ def kind_of(file: Path) -> str:
 def is_bag(path: Path) -> bool:
     """Tell whether something is to be opened as a bag: a directory of one, or a file of it."""
     if path.is_dir():
-        return (path / 'metadata.yaml').is_file() or any(_bag_files(path))
+        return (path / 'metadata.yaml').is_file() or bool(_bag_files(path))
     return path.name.endswith((*ENDINGS, ACTIVE)) or (
         path.is_file() and kind_of(path) in (*STORAGES, 'zstd')
     )
@@ -100,9 +99,8 @@ def unpacked(data: bytes) -> bytes:
     return ZstdDecompressor().decompressobj().decompress(data) if data[:4] == ZSTD else data
 
 
-def _bag_files(path: Path) -> Iterator[Path]:
-    files = (file for file in path.iterdir() if file.name.endswith(ENDINGS))
-    return iter(sorted(files, key=_by_number))
+def _bag_files(path: Path) -> list[Path]:
+    return sorted((file for file in path.iterdir() if file.name.endswith(ENDINGS)), key=_by_number)
 
 
 def _by_number(file: Path) -> list[str | int]:
@@ -117,14 +115,7 @@ def _read_metadata(metadata: Path) -> Manifest:
         kind, names = content['storage_identifier'], content['relative_file_paths']
         packing = content.get('compression_format') or 'zstd'
         custom = content.get('custom_data') or {}
-    except (
-        OSError,
-        UnicodeDecodeError,
-        yaml.YAMLError,
-        KeyError,
-        TypeError,
-        AttributeError,
-    ) as error:
+    except NO_METADATA as error:
         reason = ' '.join(str(error).split())
         raise InputError(f'{metadata} is not a rosbag2 metadata file: {reason}') from None
     bag = metadata.parent
@@ -134,14 +125,12 @@ def _read_metadata(metadata: Path) -> Manifest:
         raise InputError(f'bag {bag} is compressed as {packing}, it must be zstd')
     if not isinstance(names, list):
         raise InputError(f'{metadata} is not a rosbag2 metadata file: it names no list of files')
-    return Manifest(files=tuple(_place(bag, name) for name in names), custom=_texts(custom))
+    return Manifest(
+        files=tuple(_place(bag, str(name)) for name in names),
+        custom={str(key): str(value) for key, value in custom.items()} if custom else {},
+    )
 
 
-def _place(bag: Path, name: Any) -> Path:
+def _place(bag: Path, name: str) -> Path:
     """Return where a file is: old metadata name the folder of the bag, too."""
-    file = bag / str(name)
-    return file if file.is_file() else bag / PurePath(str(name)).name
-
-
-def _texts(custom: Any) -> dict[str, str]:
-    return {str(key): str(value) for key, value in custom.items()} if custom else {}
+    return bag / name if (bag / name).is_file() else bag / PurePath(name).name

@@ -22,7 +22,6 @@ import tempfile
 from typing import Any, BinaryIO
 
 from ballscrew_monitor.recordings.bag_files import OWN
-from ballscrew_monitor.recordings.bag_metadata import METADATA, metadata_text
 from ballscrew_monitor.recordings.mcap_file import Integers, McapFile
 from ballscrew_monitor.recordings.message_definitions import message_definition, type_hash
 import numpy as np
@@ -30,6 +29,7 @@ from surrogate.files import InputError, replace_file
 import yaml
 
 ACTIVE = '.active'
+METADATA, VERSION = 'metadata.yaml', 9
 CHUNK_SIZE = 64 * 1024  # [bytes] of what grows while others read it
 WHOLE_CHUNK_SIZE = 1024 * 1024  # [bytes] of what is complete or not there
 FOREVER = {'sec': 9223372036, 'nsec': 854775807}
@@ -78,49 +78,28 @@ class Announced:
     type_hash: str
     profiles: list[dict[str, Any]]
 
-    @property
-    def metadata(self) -> dict[str, Any]:
-        """Return the topic in the words of rosbag2, metadata version 9."""
-        return {
-            'name': self.name,
-            'type': self.type_name,
-            'serialization_format': 'cdr',
-            'offered_qos_profiles': self.profiles,
-            'type_description_hash': self.type_hash,
-        }
 
+class BagWriter(contextlib.AbstractContextManager['BagWriter']):
+    """
+    One growing bag; use it as a context manager or call `close`.
 
-class BagWriter:
-    """One growing bag; use it as a context manager or call `close`."""
+    `first` and `last` are log times of what was written so far [ns].
+
+    """
 
     def __init__(
         self, directory: Path, name: str, *, compress: bool = True, chunk_size: int = CHUNK_SIZE
     ) -> None:
-        """
-        Begin `directory/name.mcap.active`, in chunks of a size [bytes].
-
-        Raises InputError when that is impossible.
-
-        """
+        """Begin `directory/name.mcap.active`, in chunks of a size [bytes]; raises InputError."""
         self.path = directory / f'{name}.mcap'
         self._topics: dict[str, Announced] = {}
         self._channels: dict[str, int] = {}
         self._counts: Counter[str] = Counter()
         self._custom: dict[str, str] = {}
-        self._first = self._last = 0
+        self.first = self.last = 0
         self._chunk = 0
         self._file = self._open(directory)
-        self._writer = McapFile(
-            self._file,
-            chunk_size=chunk_size,
-            compress=compress,
-            profile='ros2',
-            library='ballscrew_monitor',
-        )
-
-    def __enter__(self) -> 'BagWriter':
-        """Return the writer itself."""
-        return self
+        self._writer = McapFile(self._file, chunk_size=chunk_size, compress=compress)
 
     def __exit__(self, *unused: object) -> None:
         """Close the bag; what was written before an error is kept."""
@@ -146,12 +125,10 @@ class BagWriter:
 
     def announce(self, topic: Announced) -> None:
         """Announce a topic by all that is said of it, whether or not its type is installed."""
-        schema = self._writer.register_schema(
-            name=topic.type_name, encoding='ros2msg', data=topic.definition
-        )
-        self._channels[topic.name] = self._writer.register_channel(
+        self._channels[topic.name] = self._writer.add_channel(
             topic=topic.name,
-            schema_id=schema,
+            kind=topic.type_name,
+            definition=topic.definition,
             metadata={
                 'offered_qos_profiles': yaml.safe_dump(topic.profiles, sort_keys=False),
                 'topic_type_hash': topic.type_hash,
@@ -202,13 +179,9 @@ class BagWriter:
 
     def _note(self, topic: str, count: int, first: int, last: int) -> None:
         """Count messages and widen the span of log times [ns]."""
-        self._first = min(self._first, first) if self._counts else first
-        self._last = max(self._last, last)
+        self.first = min(self.first, first) if self._counts else first
+        self.last = max(self.last, last)
         self._counts[topic] += count
-
-    def count(self, topic: str) -> int:
-        """Return the number of messages written of `topic`."""
-        return self._counts[topic]
 
     @property
     def total(self) -> int:
@@ -222,14 +195,45 @@ class BagWriter:
         self._writer.finish()
         self._file.close()
         Path(f'{self.path}{ACTIVE}').replace(self.path)
-        text = metadata_text(
-            self.path.name,
-            [(self._counts[one.name], one.metadata) for one in self._topics.values()],
-            first=self._first,
-            last=self._last,
-            custom=self._custom,
-        )
+        text = yaml.safe_dump({'rosbag2_bagfile_information': self._metadata()}, sort_keys=False)
         replace_file(self.path.with_name(METADATA), text.encode())
+
+    def _metadata(self) -> dict[str, Any]:
+        """Return what the bag says of itself in the words of rosbag2, metadata version 9."""
+        topics = [
+            {
+                'topic_metadata': {
+                    'name': one.name,
+                    'type': one.type_name,
+                    'serialization_format': 'cdr',
+                    'offered_qos_profiles': one.profiles,
+                    'type_description_hash': one.type_hash,
+                },
+                'message_count': self._counts[one.name],
+            }
+            for one in self._topics.values()
+        ]
+        name = self.path.name
+        return {
+            'version': VERSION,
+            'storage_identifier': 'mcap',
+            **self._span(),
+            'message_count': self.total,
+            'topics_with_message_count': topics,
+            'compression_format': '',
+            'compression_mode': '',
+            'relative_file_paths': [name],
+            'files': [{'path': name, **self._span(), 'message_count': self.total}],
+            'custom_data': self._custom or None,
+            'ros_distro': 'jazzy',
+        }
+
+    def _span(self) -> dict[str, Any]:
+        """Return duration and begin; made again each time, or YAML refers to the first one."""
+        return {
+            'duration': {'nanoseconds': self.last - self.first},
+            'starting_time': {'nanoseconds_since_epoch': self.first},
+        }
 
     def sync(self) -> None:
         """Let the disk have what was written; a chunk that still grows is not."""

@@ -74,22 +74,17 @@ def named_instead(bag: Bag, one: Input) -> str:
 
 def _absence(bag: Bag, one: Input) -> OtherJoints | TooShort | None:
     """Return what the first messages of the topic of an input hold, if not its field."""
-    readings = _readings(bag, absolute(one.topic), one)
-    if not readings or any(isinstance(value, float) for value in readings):
-        return None
-    return _joined(readings)
-
-
-def _readings(bag: Bag, topic: str, one: Input) -> list[Any]:
-    """Return what the field of an input gives of the first messages of its topic."""
-    readings = []
-    for message in bag.messages([topic]):
+    readings: list[OtherJoints | TooShort] = []
+    for message in bag.messages([absolute(one.topic)]):
         decoded = _decoded(message, one.message_type)
         if decoded is not None:
-            readings.append(one.read_field(decoded))
+            reading = one.read_field(decoded)
+            if isinstance(reading, float):
+                return None
+            readings.append(reading)
         if len(readings) == SEEN:
             break
-    return readings
+    return _joined(readings) if readings else None
 
 
 def _joined(readings: Sequence[OtherJoints | TooShort]) -> OtherJoints | TooShort:

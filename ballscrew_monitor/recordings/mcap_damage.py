@@ -53,7 +53,11 @@ def whole_records(file: Path) -> Iterator[Any]:
             return
         stream.seek(0)
         for record in StreamReader(stream, emit_chunks=True).records:
-            yield from _inside(record) if isinstance(record, Chunk) else [record]
+            if not isinstance(record, Chunk):
+                yield record
+                continue
+            with contextlib.suppress(*DAMAGE):
+                yield from breakup_chunk(record, validate_crc=True)
 
 
 def _summary(stream: BinaryIO) -> Summary | None:
@@ -87,11 +91,3 @@ def _chunk_at(stream: BinaryIO, offset: int) -> Iterable[Any] | None:
         return breakup_chunk(Chunk.read(ReadDataStream(stream)), validate_crc=True)
     except DAMAGE:
         return None
-
-
-def _inside(chunk: Chunk) -> Iterable[Any]:
-    """Return the records of a chunk, none of a damaged one."""
-    try:
-        return breakup_chunk(chunk, validate_crc=True)
-    except DAMAGE:
-        return ()

@@ -14,22 +14,9 @@ import struct
 from typing import BinaryIO
 import zlib
 
+from mcap import records
 from mcap.data_stream import RecordBuilder
 from mcap.opcode import Opcode
-from mcap.records import (
-    Channel,
-    Chunk,
-    ChunkIndex,
-    DataEnd,
-    Footer,
-    Header,
-    McapRecord,
-    Metadata,
-    MetadataIndex,
-    Schema,
-    Statistics,
-    SummaryOffset,
-)
 from mcap.writer import MCAP0_MAGIC
 import numpy as np
 from numpy.typing import NDArray
@@ -56,44 +43,37 @@ Integers = NDArray[np.int64]
 class McapFile:
     """One growing MCAP file; times [ns]."""
 
-    def __init__(
-        self, stream: BinaryIO, *, chunk_size: int, compress: bool, profile: str, library: str
-    ) -> None:
+    def __init__(self, stream: BinaryIO, *, chunk_size: int, compress: bool) -> None:
         """Begin a file in `stream`, with chunks that end once they exceed a size [bytes]."""
         self._stream, self._chunk_size, self._compress = stream, chunk_size, compress
-        self._schemas: list[Schema] = []
-        self._channels: list[Channel] = []
-        self._chunks: list[ChunkIndex] = []
-        self._metadata: list[MetadataIndex] = []
+        self._schemas: list[records.Schema] = []
+        self._channels: list[records.Channel] = []
+        self._chunks: list[records.ChunkIndex] = []
+        self._metadata: list[records.MetadataIndex] = []
         self._counts: Counter[int] = Counter()
         self._begin = self._end = 0  # log times of the messages in the chunk
         self._clear()
-        stream.write(MCAP0_MAGIC + _bytes(Header(profile, library)))
+        stream.write(MCAP0_MAGIC + _bytes(records.Header('ros2', 'ballscrew_monitor')))
 
-    def register_schema(self, *, name: str, encoding: str, data: bytes) -> int:
-        """Add a schema; return its number."""
-        schema = Schema(id=len(self._schemas) + 1, data=data, encoding=encoding, name=name)
+    def add_channel(
+        self, *, topic: str, kind: str, definition: bytes, metadata: dict[str, str]
+    ) -> int:
+        """Add a channel of messages in CDR, of a kind that is defined here; return its number."""
+        number = len(self._channels) + 1
+        schema = records.Schema(id=number, data=definition, encoding='ros2msg', name=kind)
+        channel = records.Channel(
+            id=number, topic=topic, message_encoding='cdr', schema_id=number, metadata=metadata
+        )
         self._schemas.append(schema)
         self._grow(_bytes(schema))
-        return schema.id
-
-    def register_channel(self, *, topic: str, schema_id: int, metadata: dict[str, str]) -> int:
-        """Add a channel of messages in CDR; return its number."""
-        channel = Channel(
-            id=len(self._channels) + 1,
-            topic=topic,
-            message_encoding='cdr',
-            schema_id=schema_id,
-            metadata=metadata,
-        )
         self._channels.append(channel)
         self._grow(_bytes(channel))
-        return channel.id
+        return number
 
     def add_metadata(self, name: str, texts: Mapping[str, str]) -> None:
         """Add metadata, which stand before the chunk that still grows."""
-        raw = _bytes(Metadata(name=name, metadata=dict(texts)))
-        place = MetadataIndex(offset=self._stream.tell(), length=len(raw), name=name)
+        raw = _bytes(records.Metadata(name=name, metadata=dict(texts)))
+        place = records.MetadataIndex(offset=self._stream.tell(), length=len(raw), name=name)
         self._metadata.append(place)
         self._stream.write(raw)
 
@@ -131,17 +111,17 @@ class McapFile:
     def finish(self) -> None:
         """End the file; what it is made of stands once more behind the data."""
         self._end_chunk()
-        self._stream.write(_bytes(DataEnd(0)))
+        self._stream.write(_bytes(records.DataEnd(0)))
         begin = self._stream.tell()
         raw, offsets = b'', []
-        for code, records in self._summary():
-            group = b''.join(map(_bytes, records))
-            offsets.append(SummaryOffset(code, begin + len(raw), len(group)))
+        for code, members in self._summary():
+            group = b''.join(map(_bytes, members))
+            offsets.append(records.SummaryOffset(code, begin + len(raw), len(group)))
             raw += group
         at = begin + len(raw)
         raw += b''.join(map(_bytes, offsets))
         crc = zlib.crc32(struct.pack('<BQQQ', Opcode.FOOTER, 20, begin, at), zlib.crc32(raw))
-        self._stream.write(raw + _bytes(Footer(begin, at, crc)) + MCAP0_MAGIC)
+        self._stream.write(raw + _bytes(records.Footer(begin, at, crc)) + MCAP0_MAGIC)
 
     def _add_part(self, heads: NDArray[np.void], contents: Sequence[bytes]) -> None:
         """Append messages that the chunk has room for, but for the last of them."""
@@ -181,7 +161,7 @@ class McapFile:
         if not self._pairs:
             return
         packed = zstandard.compress(self._data) if self._compress else bytes(self._data)
-        chunk = Chunk(
+        chunk = records.Chunk(
             compression='zstd' if self._compress else '',
             data=packed,
             message_start_time=self._begin,
@@ -197,7 +177,7 @@ class McapFile:
             indexes += INDEX.pack(Opcode.MESSAGE_INDEX, length, number, len(pairs)) + pairs
         self._stream.write(raw + indexes)
         self._chunks.append(
-            ChunkIndex(
+            records.ChunkIndex(
                 message_start_time=self._begin,
                 message_end_time=self._end,
                 chunk_start_offset=begin,
@@ -211,9 +191,9 @@ class McapFile:
         )
         self._clear()
 
-    def _summary(self) -> Sequence[tuple[Opcode, Sequence[McapRecord]]]:
+    def _summary(self) -> Sequence[tuple[Opcode, Sequence[records.McapRecord]]]:
         """Return the groups of records that end the file."""
-        statistics = Statistics(
+        statistics = records.Statistics(
             attachment_count=0,
             channel_count=len(self._channels),
             channel_message_counts=dict(self._counts),
@@ -234,7 +214,7 @@ class McapFile:
         )
 
 
-def _bytes(record: McapRecord) -> bytes:
+def _bytes(record: records.McapRecord) -> bytes:
     """Return a record as it stands in a file."""
     builder = RecordBuilder()
     record.write(builder)

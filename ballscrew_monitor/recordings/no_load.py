@@ -15,13 +15,7 @@ import dataclasses
 import itertools
 import math
 
-from ballscrew_monitor.core.conversions import (
-    Scaling,
-    seconds,
-    speed_scaling,
-    temperature_scaling,
-    torque_scaling,
-)
+from ballscrew_monitor.core import conversions
 from ballscrew_monitor.core.inputs import Input, InputSample, make_input, Source, Why
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.decoding import decode, named_instead
@@ -47,7 +41,7 @@ class Channel:
 
     topic: str
     field: str
-    scaling: Scaling
+    scaling: conversions.Scaling
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -74,19 +68,19 @@ class Series:
 
 def speed_channel(topic: str, field: str, unit: str, lead: float) -> Channel:
     """Return the speed in `unit`; a linear one is turned by the lead [m]."""
-    scaling = speed_scaling(unit, scale=1.0, offset=0.0, lead=lead, handedness='right')
+    scaling = conversions.speed_scaling(unit, scale=1.0, offset=0.0, lead=lead, handedness='right')
     return Channel(topic=absolute(topic), field=field, scaling=scaling)
 
 
 def torque_channel(topic: str, field: str, scale: float) -> Channel:
     """Return the torque, `scale` times the field [N m]."""
-    scaling = torque_scaling(1.0, scale=scale, offset=0.0, handedness='right')
+    scaling = conversions.torque_scaling(1.0, scale=scale, offset=0.0, handedness='right')
     return Channel(topic=absolute(topic), field=field, scaling=scaling)
 
 
 def temperature_channel(topic: str, field: str) -> Channel:
     """Return the temperature in [degC] as [K]."""
-    scaling = temperature_scaling('degC', scale=1.0, offset=0.0)
+    scaling = conversions.temperature_scaling('degC', scale=1.0, offset=0.0)
     return Channel(topic=absolute(topic), field=field, scaling=scaling)
 
 
@@ -162,7 +156,7 @@ def _input(bag: Bag, source: Source, channel: Channel) -> Input:
 def _series(samples: list[tuple[int, float]]) -> Series:
     ordered = sorted(samples)
     return Series(
-        time=np.array([seconds(stamp) for stamp, _ in ordered]),
+        time=np.array([conversions.seconds(stamp) for stamp, _ in ordered]),
         value=np.array([value for _, value in ordered]),
     )
 

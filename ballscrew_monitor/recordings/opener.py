@@ -26,18 +26,13 @@ def opened_log(
 
     """
     with tempfile.TemporaryDirectory(prefix='ballscrew_log_') as folder:
-        bag = Bag(bag_of(path, mapping, Path(folder), shown), salvage=True)
+        bag = Bag(_bag_of(path, mapping, Path(folder), shown), salvage=True)
         bag.path = path  # what is said is said of the log
         yield bag
 
 
-def bag_of(path: Path, mapping: Path | None, folder: Path, shown: Shown) -> Path:
-    """
-    Return where the log at `path` is as a bag: itself, or made of a table below `folder`.
-
-    Raises InputError as `opened_log` does.
-
-    """
+def _bag_of(path: Path, mapping: Path | None, folder: Path, shown: Shown) -> Path:
+    """Return where the log at `path` is as a bag: itself, or made of a table below `folder`."""
     if not path.exists():
         raise InputError(f'log {path} does not exist, it must be a bag, a CSV or a Parquet file')
     if path.is_dir() or is_bag(path):

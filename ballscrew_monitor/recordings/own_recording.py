@@ -21,17 +21,17 @@ from ballscrew_monitor.judge.dump import dump, restored
 from ballscrew_monitor.recordings.axis_run import AxisRun
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bulk.batches import batches, END
-from ballscrew_monitor.recordings.bulk.chunks import Integers
-from ballscrew_monitor.recordings.bulk.decode import Messages, Reader, TopicDecoder
+from ballscrew_monitor.recordings.bulk.chunks import Integers, Messages
+from ballscrew_monitor.recordings.bulk.decode import Reader, TopicDecoder
 from ballscrew_monitor.recordings.bulk.entries import (
     Entries,
     joined,
     Kind,
     made,
-    TICK_SOURCE,
+    ticks,
     UNKNOWN_LOSS,
 )
-from ballscrew_monitor.recordings.bulk.source import OnDone
+from ballscrew_monitor.recordings.bulk.order import OnDone
 from ballscrew_monitor.recordings.decoding import UNDECODABLE
 from ballscrew_monitor.recordings.frames import STRING, VERSION
 from ballscrew_monitor.settings import parameters
@@ -180,7 +180,7 @@ class OwnRecording:
         readers: dict[str, list[Reader]] = {}
         for number in self._numbers.values():
             axis = self.runs[number].axis
-            for one in axis.inputs:
+            for one in axis.inputs:  # by the full names that the node stated
                 readers.setdefault(one.topic, []).append((number, axis, one))
         self._decoders = {
             topic: TopicDecoder(self._bag, wanted) for topic, wanted in readers.items()
@@ -226,17 +226,8 @@ class OwnRecording:
     def _of_journal(self, place: int, entry: Mapping[str, Any]) -> Entries:
         """Return an entry of the journal that changes nothing as an entry to be judged."""
         if entry['kind'] == 'tick':
-            stamp = int(entry['stamp'])
-            return made(
-                len(self._numbers),
-                log_time=stamp,
-                place=place,
-                axis=list(self._numbers.values()),
-                source=TICK_SOURCE,
-                kind=Kind.TICK,
-                stamp=stamp,
-                arrival=stamp,
-            )
+            axes = list(self._numbers.values())
+            return ticks(len(axes), int(entry['stamp']), place=place, axis=axes)
         if entry['kind'] != 'axis':
             return made(0)
         found = made(1, place=place, axis=self._numbers[entry['axis']], kind=Kind.CHECK)

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Just the player: a bag over DDS in the domain of the environment, for whoever listens."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 import dataclasses
 from pathlib import Path
 import sys
@@ -66,11 +66,11 @@ def chosen(bag: Bag, choice: Choice) -> list[str]:
     missing = [topic for topic in wanted if topic not in bag.topics]
     if missing and (choice.topics or len(missing) == len(wanted)):
         raise InputError(
-            f'bag {bag.path}: of {whose} it holds no {_names(missing)}, it holds '
-            f'{_names(sorted(bag.topics))}: give --topics, --all or another --params'
+            f'bag {bag.path}: of {whose} it holds no {", ".join(missing)}, it holds '
+            f'{", ".join(sorted(bag.topics))}: give --topics, --all or another --params'
         )
     if missing:
-        print(f'the bag holds no {_names(missing)}', flush=True)
+        print(f'the bag holds no {", ".join(missing)}', flush=True)
     return [topic for topic in dict.fromkeys(wanted) if topic in bag.topics]
 
 
@@ -98,10 +98,6 @@ def _problem(bag: Bag, topic: str) -> str:
     return ''
 
 
-def _names(topics: Iterable[str]) -> str:
-    return ', '.join(topics)
-
-
 def _say(*notes: str) -> None:
     for note in notes:
         print(f'ballscrew: {note}', file=sys.stderr)
@@ -114,13 +110,13 @@ def _play(
     if stop.is_set():
         return FAILED
     if set(topics) <= set(missing):
-        _say(f'nobody subscribed to {_names(topics)} within {patience:g} s')
+        _say(f'nobody subscribed to {", ".join(topics)} within {patience:g} s')
         return FAILED
     if missing:
-        print(f'nobody listens to {_names(missing)}', flush=True)
+        print(f'nobody listens to {", ".join(missing)}', flush=True)
     played = player.play(stop, loop=loop)
     print(
-        f'{sum(played.sent.values())} messages in {player.elapsed:.1f} s of bag time, '
+        f'{player.sent.total()} messages in {player.elapsed:.1f} s of bag time, '
         f'at most {1e3 * played.lateness:.1f} ms late'
     )
     return DONE

@@ -25,7 +25,7 @@ from ballscrew_monitor.recordings.bag import Bag, Message
 from builtin_interfaces.msg import Time
 from rclpy.duration import Duration
 from rclpy.node import Node
-from rclpy.qos import QoSDurabilityPolicy, QoSHistoryPolicy, QoSProfile, QoSReliabilityPolicy
+from rclpy.qos import QoSProfile, QoSReliabilityPolicy
 from rclpy.serialization import deserialize_message, serialize_message
 from rosgraph_msgs.msg import Clock
 from surrogate.files import InputError
@@ -37,31 +37,24 @@ MATCH_POLL = 0.02  # [s] between two looks at who has matched
 PAUSE = SECOND // 10  # [ns] of bag time from the last message of a pass to the first of the next
 DELIVERY = 5.0  # [s] that the last messages may take
 CLOCK_QOS = QoSProfile(depth=1, reliability=QoSReliabilityPolicy.BEST_EFFORT)
-DATA_QOS = QoSProfile(
-    history=QoSHistoryPolicy.KEEP_LAST,
-    depth=1000,
-    reliability=QoSReliabilityPolicy.RELIABLE,
-    durability=QoSDurabilityPolicy.VOLATILE,
-)
+DATA_QOS = QoSProfile(depth=1000, reliability=QoSReliabilityPolicy.RELIABLE)
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Played:
-    """
-    What has been played.
+    """Whether the end of a bag was reached; the longest time by which a message was late [s]."""
 
-    Messages sent by topic; whether the end of the bag was reached; the longest time by which a
-    message was late [s].
-
-    """
-
-    sent: Counter[str]
     complete: bool
     lateness: float
 
 
 class Player:
-    """Publishes the messages of a bag on a node, which need not be spun."""
+    """
+    Publishes the messages of a bag on a node, which need not be spun.
+
+    `now` is the time that `/clock` shows [ns], `sent` the number of messages so far by topic.
+
+    """
 
     def __init__(
         self, node: Node, bag: Bag, *, rate: float = 1.0, topics: Sequence[str] | None = None
@@ -70,8 +63,8 @@ class Player:
         if not 0.0 < rate < float('inf'):
             raise InputError(f'rate is {rate:g}, it must be above 0')
         self._bag, self._rate = bag, rate
-        self._sent: Counter[str] = Counter()
-        self._now = bag.start_time
+        self.sent: Counter[str] = Counter()
+        self.now = bag.start_time
         self._publishers = {
             topic: node.create_publisher(
                 message_class(bag.topics[topic].type_name), topic, DATA_QOS
@@ -83,19 +76,9 @@ class Player:
         self._clock = node.create_publisher(Clock, CLOCK, CLOCK_QOS)
 
     @property
-    def now(self) -> int:
-        """Return the time that `/clock` shows [ns]."""
-        return self._now
-
-    @property
     def elapsed(self) -> float:
         """Return the bag time played so far [s]."""
-        return (self._now - self._bag.start_time) / SECOND
-
-    @property
-    def sent(self) -> Counter[str]:
-        """Return the number of messages sent so far, by topic."""
-        return self._sent
+        return (self.now - self._bag.start_time) / SECOND
 
     def unmatched(self, wanted: int = 1) -> list[str]:
         """Return the topics with fewer than `wanted` subscribers, and /clock if it has none."""
@@ -119,23 +102,18 @@ class Player:
         self._tick(self._bag.start_time)
 
     def play(self, stop: threading.Event, *, loop: bool = False) -> Played:
-        """
-        Publish the bag until its end, again and again in a `loop`, or until `stop` is set.
-
-        Raises InputError on damage.
-
-        """
+        """Publish the bag, again and again in a `loop`, until `stop`; InputError on damage."""
         begin, latest = time.monotonic(), 0.0
         for message in self._messages(loop):
             due = begin + (message.log_time - self._bag.start_time) / SECOND / self._rate
             if not self._wait(due, stop, begin):
-                return Played(sent=self._sent, complete=False, lateness=latest)
+                return Played(complete=False, lateness=latest)
             self._tick(message.log_time)
             self._publishers[message.topic].publish(message.data)
-            self._sent[message.topic] += 1
+            self.sent[message.topic] += 1
             latest = max(latest, time.monotonic() - due)
         self._deliver()
-        return Played(sent=self._sent, complete=True, lateness=latest)
+        return Played(complete=True, lateness=latest)
 
     def _messages(self, loop: bool) -> Iterator[Message]:
         """Yield the messages of the bag, those of a further pass later by whole passes."""
@@ -164,7 +142,7 @@ class Player:
         notice that the data have ended.
 
         """
-        begin, base = time.monotonic(), self._now
+        begin, base = time.monotonic(), self.now
         while not finished() and time.monotonic() < begin + timeout:
             if stop.wait(CLOCK_PERIOD):
                 break
@@ -183,19 +161,14 @@ class Player:
 
     def _tick(self, now: int) -> None:
         """Publish the time `now` [ns], which never goes back."""
-        self._now = max(now, self._now)
+        self.now = max(now, self.now)
         message = Clock()
-        message.clock.sec, message.clock.nanosec = divmod(self._now, SECOND)
+        message.clock.sec, message.clock.nanosec = divmod(self.now, SECOND)
         self._clock.publish(message)
 
 
 def shifted(data: bytes, message_type: Any, by: int) -> bytes:
-    """
-    Return a serialised message whose stamps are later `by` [ns].
-
-    A stamp of 0 is none, and stays.
-
-    """
+    """Return a serialised message with stamps later `by` [ns]; a stamp of 0 is none, and stays."""
     message = deserialize_message(data, message_type)
     for stamp in _times(message):
         before = stamp.sec * SECOND + stamp.nanosec

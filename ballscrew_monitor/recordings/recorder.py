@@ -14,10 +14,34 @@ from typing import Any
 
 from ballscrew_monitor.core.fields import message_class
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
+from ballscrew_monitor.settings.topics import input_topics, output
 from rclpy.node import Node
 from rclpy.qos import QoSDurabilityPolicy, QoSHistoryPolicy, QoSProfile, QoSReliabilityPolicy
 
 DEPTH = 2000  # messages that may wait for the recorder
+DIAGNOSTICS = Topic(
+    name='/diagnostics', type_name='diagnostic_msgs/msg/DiagnosticArray', offer=Offer.RELIABLE
+)
+LATCHED = {'out_of_zone': 'OutOfZone', 'surface_info': 'SurfaceInfo'}
+
+
+def recorded_topics(values: Mapping[str, Any]) -> list[Topic]:
+    """Return what a run records: inputs, outputs, and the latched outputs last."""
+    inputs = [
+        Topic(name=name, type_name=kind, offer=Offer.SENSOR)
+        for name, kind in input_topics(values).items()
+    ]
+    states = [_topic(axis, 'state', 'BallScrewState', Offer.RELIABLE) for axis in values['axes']]
+    latched = [
+        _topic(axis, name, kind, Offer.LATCHED)
+        for name, kind in LATCHED.items()
+        for axis in values['axes']
+    ]
+    return [*inputs, *states, DIAGNOSTICS, *latched]
+
+
+def _topic(axis: str, name: str, kind: str, offer: Offer) -> Topic:
+    return Topic(name=output(axis, name), type_name=f'ballscrew_msgs/msg/{kind}', offer=offer)
 
 
 def _qos(offer: Offer) -> QoSProfile:

@@ -38,8 +38,8 @@ def recover(path: Path) -> tuple[Path, int, float]:
     if not topics:
         raise InputError(f'{file} holds no message that is whole, nothing can be recovered')
     with whole_bag(target.parent, target.name.removesuffix(SUFFIX)) as writer:
-        times = _copy(file, topics, writer)
-    return target, writer.total, (times[1] - times[0]) * 1e-9
+        _copy(file, topics, writer)
+    return target, writer.total, (writer.last - writer.first) * 1e-9
 
 
 def _unfinished(folder: Path) -> Path:
@@ -76,21 +76,19 @@ def _topics(file: Path) -> dict[int, Announced]:
 
 
 def _announced(channel: Channel, schema: Schema) -> Announced:
-    profiles = yaml.safe_load(channel.metadata.get('offered_qos_profiles', '')) or []
     return Announced(
         name=channel.topic,
         type_name=schema.name,
         definition=schema.data,
         type_hash=channel.metadata.get('topic_type_hash', ''),
-        profiles=profiles,
+        profiles=yaml.safe_load(channel.metadata.get('offered_qos_profiles', '')) or [],
     )
 
 
-def _copy(file: Path, topics: dict[int, Announced], writer: BagWriter) -> tuple[int, int]:
-    """Copy messages and what the file says of itself; return first and last log time [ns]."""
+def _copy(file: Path, topics: dict[int, Announced], writer: BagWriter) -> None:
+    """Copy messages and what the file says of itself."""
     for topic in topics.values():
         writer.announce(topic)
-    first = last = None
     for message in whole_records(file):
         if isinstance(message, Metadata):
             writer.add_metadata(message.metadata, name=message.name)
@@ -103,6 +101,3 @@ def _copy(file: Path, topics: dict[int, Announced], writer: BagWriter) -> tuple[
             publish_time=message.publish_time,
             sequence=message.sequence,
         )
-        first = message.log_time if first is None else min(first, message.log_time)
-        last = message.log_time if last is None else max(last, message.log_time)
-    return first or 0, last or 0

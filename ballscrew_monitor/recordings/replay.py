@@ -16,13 +16,12 @@ from typing import Any, NamedTuple
 
 from ballscrew_monitor.core.conversions import nanoseconds
 from ballscrew_monitor.core.fields import OtherJoints
-from ballscrew_monitor.core.inputs import Input
-from ballscrew_monitor.core.state import Event, State
 from ballscrew_monitor.messages.state_messages import out_of_zone_message, StateWriter, TIERS
 from ballscrew_monitor.recordings.axis_run import AxisRun, judged_parts, Part, TimedState
 from ballscrew_monitor.recordings.bag import Bag
+from ballscrew_monitor.recordings.bulk.decode import readers_by_topic
 from ballscrew_monitor.recordings.bulk.entries import Entries
-from ballscrew_monitor.recordings.bulk.source import OnDone, ordered_entries
+from ballscrew_monitor.recordings.bulk.order import OnDone, ordered_entries
 from ballscrew_monitor.recordings.columns import AxisOutcome, JudgedColumns
 from ballscrew_monitor.recordings.decoding import decode, named_instead
 from ballscrew_monitor.recordings.own_recording import is_as_recorded, OwnRecording
@@ -53,16 +52,13 @@ def speed_messages(bag: Bag, axes: Sequence[Axis]) -> dict[str, int]:
     """
     speed = {axis.name: axis.inputs[-1] for axis in axes}
     counts = dict.fromkeys(speed, 0)
-    readers: dict[str, list[tuple[str, Input]]] = {}
-    for axis in axes:
-        for source in axis.inputs:
-            readers.setdefault(absolute(source.topic), []).append((axis.name, source))
+    readers = readers_by_topic(axes)
     for message in bag.messages():
         wanted = readers.get(message.topic, [])
-        decoded = decode(bag, message, wanted[0][1].message_type)[0] if wanted else None
-        for name, source in wanted if decoded is not None else ():
-            if source is speed[name]:
-                counts[name] += not isinstance(source.read_field(decoded), OtherJoints)
+        decoded = decode(bag, message, wanted[0][2].message_type)[0] if wanted else None
+        for _, axis, source in wanted if decoded is not None else ():
+            if source is speed[axis.name]:
+                counts[axis.name] += not isinstance(source.read_field(decoded), OtherJoints)
     for name, count in counts.items():
         if not count:
             raise InputError(
@@ -116,10 +112,11 @@ def replay_parts(
     """Yield what `replay_columns` and `replay` do before messages are made, judged once."""
     if is_as_recorded(bag, values):
         own = OwnRecording(bag)
-        return _parts(own.entries(on_done), own.runs, columns=columns, states=states)
-    axes = axes_for(bag, values)
-    batches = ordered_entries(bag, axes, nanoseconds(values['tick_period']), on_done=on_done)
-    runs = [AxisRun(axis) for axis in axes]
+        batches, runs = own.entries(on_done), own.runs
+    else:
+        axes = axes_for(bag, values)
+        batches = ordered_entries(bag, axes, nanoseconds(values['tick_period']), on_done=on_done)
+        runs = [AxisRun(axis) for axis in axes]
     return _parts(batches, runs, columns=columns, states=states)
 
 
@@ -149,11 +146,8 @@ def _messages(states: Iterator[TimedState]) -> Iterator[Judged]:
         name, tier = one.axis.name, TIERS[one.axis.surface.tier]
         writer = writers.setdefault(name, StateWriter(name, tier))
         writer.tier = tier  # the node may have taken another one
-        yield _judged(writer, name, one.state, one.event)
-
-
-def _judged(writer: StateWriter, axis: str, state: State, event: Event | None) -> Judged:
-    message = None
-    if event is not None:
-        message = out_of_zone_message(axis, event, shelved=state.shelving.until != 0)
-    return Judged(state=writer.write(state), event=message)
+        message = None
+        if one.event is not None:
+            shelved = one.state.shelving.until != 0
+            message = out_of_zone_message(name, one.event, shelved=shelved)
+        yield Judged(state=writer.write(one.state), event=message)

@@ -3,6 +3,11 @@
 """
 What of a stream of frames is kept on the disk, in which files, and for how long.
 
+Run `python -P -m ballscrew_monitor.recordings.retention FOLDER SETTINGS`, the settings as JSON:
+this process writes the recording of a node, so that no judgement waits for a disk. Frames come in
+on standard input, and each change of what is wrong goes out as a line. The process is deaf to
+Ctrl-C, finishes its recording when the node is gone, however that ended, and knows no ROS.
+
 Always: everything, in recordings of limited length. Around events: the last seconds before each
 trigger, from memory, and those after it. Either way the oldest recordings make room for new ones.
 Each recording is a bag of its own. Time is an argument.
@@ -10,16 +15,19 @@ Each recording is a bag of its own. Time is an argument.
 """
 
 import collections
-from collections.abc import Iterator
 import dataclasses
 import datetime
 import json
+import os
 from pathlib import Path
 import re
+import signal
+import sys
+import time
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.recordings.bag_writer import ACTIVE, BagWriter, Offer, Topic
-from ballscrew_monitor.recordings.frames import Frame, FrameKind
+from ballscrew_monitor.recordings.frames import Frame, FrameKind, read_frames
 from surrogate.files import InputError
 
 NAME = re.compile(r'\d{8}T\d{6}Z(?:_\d+)?')
@@ -27,6 +35,7 @@ OURS = ('.mcap', f'.mcap{ACTIVE}', 'metadata.yaml')  # how files of a recording 
 MOST_RING = 64 * 2**20  # [B] of frames in memory
 SYNC = 1.0  # [s] between two times that the disk is made to have all
 RETRY = 10.0  # [s] after which writing is tried again
+NICENESS = 5
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -183,7 +192,9 @@ class Retention:
     def _make_room(self) -> None:
         """Remove the oldest recordings until all are below the limit with one more."""
         sizes = {
-            path: sum(file.stat().st_size for file in path.iterdir()) for path in self._kept()
+            path: sum(file.stat().st_size for file in path.iterdir())
+            for path in self._folder.glob('*')
+            if path.is_dir() and NAME.fullmatch(path.name)
         }
         room = self._settings.total - self._settings.largest
         for path in sorted(sizes, key=lambda path: path.stat().st_mtime):
@@ -196,13 +207,6 @@ class Retention:
                 path.rmdir()
             del sizes[path]
 
-    def _kept(self) -> Iterator[Path]:
-        if not self._folder.is_dir():
-            return
-        for path in self._folder.iterdir():
-            if path.is_dir() and NAME.fullmatch(path.name):
-                yield path
-
 
 def _is_made(path: Path) -> bool:
     """Make a folder; return False if somebody has made it before, another process perhaps."""
@@ -211,3 +215,31 @@ def _is_made(path: Path) -> bool:
     except FileExistsError:
         return False
     return True
+
+
+def main() -> None:
+    """Keep what comes until the input ends."""
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, signal.SIG_IGN)
+    os.nice(NICENESS)
+    retention = Retention(Path(sys.argv[1]), KeepSettings(**json.loads(sys.argv[2])))
+    said = ''
+    for frame in read_frames(sys.stdin.buffer):
+        retention.take(frame, time.monotonic())
+        said = _say(retention.problem, said)
+    retention.close()
+    _say(retention.problem, said)
+
+
+def _say(problem: str, said: str) -> str:
+    """Tell the node of a change; it may be gone."""
+    if problem != said:
+        try:
+            print(problem, flush=True)
+        except OSError:
+            pass
+    return problem
+
+
+if __name__ == '__main__':
+    main()

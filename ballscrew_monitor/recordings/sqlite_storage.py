@@ -1,64 +1,54 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-The sqlite3 files that a bag is made of: topics, time span and messages of each.
+The sqlite3 files that a bag is made of, and the messages in the pages of one that is not whole.
 
-A damaged file is refused, or salvaged when that is asked for: then its intact part is read, and
-`note` says how much it was.
+The tree over the pages is of no use there: its upper pages may be those that are lost. So each
+page is looked at by itself; one that is a leaf of the table `messages` holds rows of id, topic,
+time and data, and data that are long go on in further pages. The format of pages and rows is that
+of https://www.sqlite.org/fileformat.html, sections 1.6 and 2.1.
 
 """
 
-from collections import Counter
 from collections.abc import Collection, Generator, Iterator
 import contextlib
 from pathlib import Path
-from typing import Any
+import struct
+from typing import Any, BinaryIO
 
-from ballscrew_monitor.recordings.sqlite_pages import ends_with_a_page, whole_messages
-from ballscrew_monitor.recordings.storages import (
-    by_log_time,
-    Message,
-    REORDER,
-    salvage_note,
-    TopicInfo,
-)
+from ballscrew_monitor.recordings.storages import by_log_time, Message, REORDER, Storage, TopicInfo
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.files import InputError
 
+HEADER = 100  # [bytes] of a file
+LEAF = 0x0D  # a page of rows begins so
+CELLS = 8  # [bytes] before the places of the rows of a page
+INTEGERS = {1: 1, 2: 2, 3: 3, 4: 4, 5: 6, 6: 8, 8: 0, 9: 0}  # [bytes] by the type of a value
+NO_ROW = (IndexError, ValueError, struct.error, EOFError)
 
-class SqliteStorage:
-    """One sqlite3 file of rosbag2; `salvage` takes the intact part of a damaged one."""
 
-    def __init__(self, file: Path, *, salvage: bool = False) -> None:
-        """Read the topics; raises InputError when nothing can be had of the file."""
-        self.file, self.salvage = file, salvage
-        self.topics: dict[str, TopicInfo] = {}
-        self.span = (0, 0)
-        self.note = ''
-        self._strays: frozenset[int] = frozenset()  # places of rows with a garbled time
-        try:
-            self._read_topics()
-        except InputError:
-            if not salvage or not self._read_whole():
-                raise
+class SqliteStorage(Storage):
+    """One sqlite3 file of rosbag2."""
+
+    _strays: frozenset[int] = frozenset()  # places of rows with a garbled time
 
     def messages(
         self, wanted: Collection[str], *, as_written: bool = False
     ) -> Generator[Message, None, None]:
-        """
-        Yield the messages of the topics `wanted` by log time; raises InputError on damage.
-
-        They were written in that order too.
-
-        """
-        found = by_log_time(self._whole()) if self.note else self._indexed(wanted)
+        """Yield the messages, see `Storage`; they were written by log time, too."""
+        found = self._indexed(wanted) if self.is_indexed else by_log_time(self._whole())
         yield from (one for one in found if one.topic in wanted)
 
     def _read_topics(self) -> None:
+        import apsw
+
         with self._opened() as reader:
-            if self.salvage:
-                self._check()
+            if self.salvage:  # rows and index must agree: damage may look like a message
+                with self._database() as database:
+                    ((fault,),) = database.execute('PRAGMA integrity_check(1)')
+                if fault != 'ok':
+                    raise apsw.CorruptError(fault)
             self.topics = {
                 connection.topic: TopicInfo(
                     type_name=connection.msgtype,
@@ -69,15 +59,6 @@ class SqliteStorage:
             }
             self.span = (reader.start_time, reader.end_time - 1) if reader.duration else (0, 0)
 
-    def _check(self) -> None:
-        """Raise apsw.Error unless rows and index agree: damage may look like a message."""
-        import apsw
-
-        with self._database() as database:
-            ((fault,),) = database.execute('PRAGMA integrity_check(1)')
-        if fault != 'ok':
-            raise apsw.CorruptError(fault)
-
     def _indexed(self, wanted: Collection[str]) -> Iterator[Message]:
         with self._opened() as reader:
             chosen = [one for one in reader.connections if one.topic in wanted]
@@ -85,24 +66,15 @@ class SqliteStorage:
             for connection, time, data in reader.messages(chosen) if chosen else ():
                 yield Message(topic=connection.topic, data=data, log_time=time, publish_time=time)
 
-    def _read_whole(self) -> bool:
-        """Read all that is whole once, for topics, span and the note; tell if there is some."""
+    def _read_whole(self) -> None:
         rows = [row[:2] for row in whole_messages(self.file)]
         self._strays = strays(np.array(rows, dtype=np.float64).reshape(-1, 2))
-        counts: Counter[str] = Counter()
-        begin = end = 0
-        for message in self._whole():
-            begin = min(begin, message.log_time) if counts else message.log_time
-            end = max(end, message.log_time)
-            counts[message.topic] += 1
+        counts = self._counted(self._whole())
         self.topics = {
             name: TopicInfo(type_name=type_name, encoding=encoding, count=counts[name])
             for name, type_name, encoding in self._topic_rows().values()
             if counts[name]
         }
-        self.span = (begin, end)
-        self.note = salvage_note(self.file, counts.total(), self.span) if counts else ''
-        return bool(counts)
 
     def _whole(self) -> Iterator[Message]:
         """Yield the messages that are whole, as written."""
@@ -171,3 +143,115 @@ def _outside(times: NDArray[np.float64]) -> NDArray[np.bool_]:
     low, high = np.minimum(times[:-2], times[2:]), np.maximum(times[:-2], times[2:])
     found[1:-1] = (times[1:-1] < low - REORDER) | (times[1:-1] > high + REORDER)
     return found
+
+
+def whole_messages(file: Path) -> Iterator[tuple[int, int, bytes]]:
+    """Yield topic number, time [ns] and data of each message that is whole, as written."""
+    with file.open('rb') as stream:
+        pages = _Pages(stream)
+        for number in range(2, pages.count + 1):  # the first one is that of the schema
+            page = pages.read(number)
+            if page[0] == LEAF:
+                yield from _rows(pages, page)
+
+
+def ends_with_a_page(file: Path) -> bool:
+    """Tell whether a file is made of whole pages."""
+    with file.open('rb') as stream:
+        return not _Pages(stream).surplus
+
+
+class _Pages:
+    """The whole pages of a file, counted from 1; `surplus` bytes come after them."""
+
+    def __init__(self, stream: BinaryIO) -> None:
+        header = stream.read(HEADER)
+        size = int.from_bytes(header[16:18], 'big')
+        self.size = 65536 if size == 1 else max(size, 512)
+        self.usable = self.size - (header[20] if len(header) == HEADER else 0)
+        self.count, self.surplus = divmod(stream.seek(0, 2), self.size)
+        self._stream = stream
+
+    def read(self, number: int) -> bytes:
+        """Return a page; raises EOFError where there is none."""
+        if not 1 <= number <= self.count:
+            raise EOFError
+        self._stream.seek((number - 1) * self.size)
+        return self._stream.read(self.size)
+
+
+def _rows(pages: _Pages, page: bytes) -> Iterator[tuple[int, int, bytes]]:
+    """Yield the messages of a page; what is no whole one is passed over."""
+    (count,) = struct.unpack_from('>H', page, 3)
+    for number in range(min(count, (pages.usable - CELLS) // 2)):
+        try:
+            (place,) = struct.unpack_from('>H', page, CELLS + 2 * number)
+            yield _message(_payload(pages, page, place))
+        except NO_ROW:
+            continue
+
+
+def _payload(pages: _Pages, page: bytes, place: int) -> bytes:
+    """Return the bytes of the row at a place of a page, those of further pages included."""
+    length, place = _varint(page, place)
+    _, place = _varint(page, place)  # the number of the row
+    if length > pages.count * pages.size:  # damaged: pages might lead in a circle
+        raise EOFError
+    local = _local(length, pages.usable)
+    end = place + local
+    found = bytearray(page[place:end])
+    if local < length:
+        (following,) = struct.unpack_from('>I', page, end)
+        while len(found) < length:
+            page = pages.read(following)
+            (following,) = struct.unpack_from('>I', page)
+            end = min(pages.usable, 4 + length - len(found))
+            found += page[4:end]
+    if len(found) != length:
+        raise EOFError
+    return bytes(found)
+
+
+def _local(length: int, usable: int) -> int:
+    """Return how many bytes of a row are in its page itself."""
+    most = usable - 35
+    if length <= most:
+        return length
+    least = (usable - 12) * 32 // 255 - 23
+    local = least + (length - least) % (usable - 4)
+    return local if local <= most else least
+
+
+def _message(row: bytes) -> tuple[int, int, bytes]:
+    """Return topic, time and data of a row; raises ValueError when it is of another table."""
+    end, place = _varint(row, 0)
+    kinds = []
+    while place < end:
+        kind, place = _varint(row, place)
+        kinds.append(kind)
+    if len(kinds) != 4 or kinds[0] or kinds[3] < 12 or kinds[3] % 2:
+        raise ValueError
+    topic, place = _integer(row, end, kinds[1])
+    time, place = _integer(row, place, kinds[2])
+    if len(row) - place != (kinds[3] - 12) // 2:
+        raise ValueError
+    return topic, time, row[place:]
+
+
+def _integer(row: bytes, place: int, kind: int) -> tuple[int, int]:
+    """Return an integer of a row, and where the next value begins."""
+    if kind not in INTEGERS:
+        raise ValueError
+    end = place + INTEGERS[kind]
+    return (1 if kind == 9 else int.from_bytes(row[place:end], 'big', signed=True)), end
+
+
+def _varint(data: bytes, place: int) -> tuple[int, int]:
+    """Return an integer of one to nine bytes, and where the next one begins."""
+    value = 0
+    for number in range(8):
+        byte = data[place + number]
+        value = value << 7 | byte & 0x7F
+        if byte < 0x80:
+            return value, place + number + 1
+    return value << 8 | data[place + 8], place + 9

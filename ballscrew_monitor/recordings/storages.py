@@ -1,10 +1,10 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-The MCAP files that a bag is made of: topics, time span and messages of each.
+The files that a bag is made of, above all those of MCAP: topics, time span and messages of each.
 
-A damaged MCAP file is refused, or salvaged when that is asked for: its intact part is read, and
-`note` says how much it was.
+A damaged file is refused, or salvaged when that is asked for: its intact part is read, and `note`
+says how much it was.
 
 """
 
@@ -48,8 +48,8 @@ class TopicInfo:
     count: int
 
 
-class McapStorage:
-    """One MCAP file; `salvage` takes the intact part of a damaged one."""
+class Storage:
+    """One file of a bag; `salvage` takes the intact part of a damaged one."""
 
     def __init__(self, file: Path, *, salvage: bool = False) -> None:
         """Read the topics; raises InputError when nothing can be had of the file."""
@@ -57,18 +57,13 @@ class McapStorage:
         self.topics: dict[str, TopicInfo] = {}
         self.span = (0, 0)
         self.note = ''
-        self._channels: dict[int, Channel] = {}  # a damaged chunk may have named them
-        self._lost: frozenset[int] = frozenset()  # where damaged chunks begin [bytes]
-        self.has_summary = True
-        with damage_is_input(file):
-            _check_head(file)
+        self.is_indexed = True
         try:
-            with damage_is_input(file):
-                self._read_summary()
+            self._read_topics()
         except InputError:
             if not salvage or not file.is_file():
                 raise
-            self.has_summary = False
+            self.is_indexed = False
             self._read_whole()
             if not self.topics:
                 raise
@@ -82,8 +77,51 @@ class McapStorage:
         Those of the recording of a node are wanted `as_written`.
 
         """
+        raise NotImplementedError
+
+    def _read_topics(self) -> None:
+        """Read what the file says of its topics; raises InputError on damage."""
+        raise NotImplementedError
+
+    def _read_whole(self) -> None:
+        """Read all that is whole once, for topics, span and the note."""
+        raise NotImplementedError
+
+    def _counted(self, messages: Iterable[Message]) -> Counter[str]:
+        """Count the messages that are whole by topic, and take down their span in the note."""
+        counts: Counter[str] = Counter()
+        begin = end = 0
+        for message in messages:
+            begin = min(begin, message.log_time) if counts else message.log_time
+            end = max(end, message.log_time)
+            counts[message.topic] += 1
+        if counts:
+            self.span = (begin, end)
+            self.note = (
+                f'bag {self.file} is truncated or damaged: used are the {counts.total()} messages '
+                f'of {(end - begin) * 1e-9:.1f} s that are whole'
+            )
+        return counts
+
+
+class McapStorage(Storage):
+    """One MCAP file."""
+
+    def __init__(self, file: Path, *, salvage: bool = False) -> None:
+        """Read the topics; raises InputError when nothing can be had of the file."""
+        self._schemas: dict[int, Schema] = {}
+        self._channels: dict[int, Channel] = {}  # a damaged chunk may have named them
+        self._lost: frozenset[int] = frozenset()  # where damaged chunks begin [bytes]
+        with damage_is_input(file):
+            _check_head(file)
+        super().__init__(file, salvage=salvage)
+
+    def messages(
+        self, wanted: Collection[str], *, as_written: bool = False
+    ) -> Generator[Message, None, None]:
+        """Yield the messages, see `Storage`; what has been salvaged meanwhile is noted."""
         reorder = not as_written
-        if not self.has_summary:
+        if not self.is_indexed:
             yield from self._whole(wanted, reorder=reorder)
             return
         count = 0
@@ -96,12 +134,10 @@ class McapStorage:
                 raise
             self.note = f'{error}; its intact part is used'
             self._lost = damaged_chunks(self.file)
+            # A file without chunks has no index to go on by.
+            rest = self._indexed if self._lost else self._whole
             # What came before the damage comes first here too.
-            yield from itertools.islice(self._rest(wanted, reorder=reorder), count, None)
-
-    def _rest(self, wanted: Collection[str], *, reorder: bool) -> Iterator[Message]:
-        """Return all that can be had; a file without chunks has no index to go on by."""
-        return (self._indexed if self._lost else self._whole)(wanted, reorder=reorder)
+            yield from itertools.islice(rest(wanted, reorder=reorder), count, None)
 
     def _indexed(self, wanted: Collection[str], *, reorder: bool) -> Iterator[Message]:
         with damage_is_input(self.file), self.file.open('rb') as stream:
@@ -113,59 +149,46 @@ class McapStorage:
             ):
                 yield _message(channel, message)
 
-    def _read_summary(self) -> None:
-        with self.file.open('rb') as stream:
+    def _read_topics(self) -> None:
+        with damage_is_input(self.file), self.file.open('rb') as stream:
             summary = make_reader(stream, validate_crcs=True).get_summary()
-        if summary is None or summary.statistics is None:
-            raise McapError('it has no summary')
-        self._channels = summary.channels
-        counts = summary.statistics.channel_message_counts
-        for number, channel in summary.channels.items():
-            self._add_topic(channel, summary.schemas.get(channel.schema_id), counts.get(number, 0))
+            if summary is None or summary.statistics is None:
+                raise McapError('it has no summary')
         statistics = summary.statistics
+        self._schemas, self._channels = summary.schemas, summary.channels
+        counts: Counter[str] = Counter()
+        for number, channel in summary.channels.items():
+            counts[channel.topic] += statistics.channel_message_counts.get(number, 0)
+        self._take_topics(counts)
         self.span = (statistics.message_start_time, statistics.message_end_time)
 
-    def _add_topic(self, channel: Channel, schema: Schema | None, count: int) -> None:
-        known = self.topics.get(channel.topic)
-        self.topics[channel.topic] = TopicInfo(
-            type_name=schema.name if schema else '',
-            encoding=channel.message_encoding,
-            count=(known.count if known else 0) + count,
-        )
-
     def _read_whole(self) -> None:
-        """Read all that is whole once, for topics, span and the note."""
-        counts: Counter[int] = Counter()
-        channels: dict[int, Channel] = {}
-        schemas: dict[int, Schema] = {}
-        times: list[int] = []
-        for record in whole_records(self.file):
-            if isinstance(record, Schema):
-                schemas[record.id] = record
-            elif isinstance(record, Channel):
-                channels[record.id] = record
-            elif isinstance(record, McapMessage):
-                counts[record.channel_id] += 1
-                times[:] = [min([*times, record.log_time]), max([*times, record.log_time])]
-        for number, channel in channels.items():
-            self._add_topic(channel, schemas.get(channel.schema_id), counts[number])
-        if times:
-            self.span = (times[0], times[1])
-            self.note = salvage_note(self.file, counts.total(), self.span)
+        self._take_topics(self._counted(self._written()))
+
+    def _take_topics(self, counts: Counter[str]) -> None:
+        """Take the topics of all channels, with the number of the messages of each."""
+        for channel in self._channels.values():
+            schema = self._schemas.get(channel.schema_id)
+            self.topics[channel.topic] = TopicInfo(
+                type_name=schema.name if schema else '',
+                encoding=channel.message_encoding,
+                count=counts[channel.topic],
+            )
 
     def _whole(self, wanted: Collection[str], *, reorder: bool) -> Iterator[Message]:
         """Yield the messages of whole chunks by log time, as far as chunks do not overlap more."""
-        found = self._whole_as_written(wanted)
+        found = (one for one in self._written() if one.topic in wanted)
         return by_log_time(found) if reorder else found
 
-    def _whole_as_written(self, wanted: Collection[str]) -> Iterator[Message]:
-        channels = dict(self._channels)
+    def _written(self) -> Iterator[Message]:
+        """Yield all messages of whole chunks in the order of the file."""
         for record in whole_records(self.file):
-            if isinstance(record, Channel):
-                channels[record.id] = record
-            channel = channels.get(record.channel_id) if isinstance(record, McapMessage) else None
-            if channel is not None and channel.topic in wanted:
-                yield _message(channel, record)
+            if isinstance(record, Schema):
+                self._schemas[record.id] = record
+            elif isinstance(record, Channel):
+                self._channels[record.id] = record
+            elif isinstance(record, McapMessage) and record.channel_id in self._channels:
+                yield _message(self._channels[record.channel_id], record)
 
 
 def _check_head(file: Path) -> None:
@@ -185,14 +208,6 @@ def by_log_time(messages: Iterable[Message]) -> Iterator[Message]:
             yield heapq.heappop(waiting)[2]
     while waiting:
         yield heapq.heappop(waiting)[2]
-
-
-def salvage_note(file: Path, count: int, span: tuple[int, int]) -> str:
-    """Return how many messages of a damaged file are used, and their first and last time [ns]."""
-    return (
-        f'bag {file} is truncated or damaged: used are the {count} messages of '
-        f'{(span[1] - span[0]) * 1e-9:.1f} s that are whole'
-    )
 
 
 def _without(reader: McapReader, lost: Collection[int]) -> bool:

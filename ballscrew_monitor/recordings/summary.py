@@ -130,19 +130,16 @@ class Summary:
     def lines(self) -> list[str]:
         """Return the summary in words."""
         span = self.since_first(self.last)
+        no_events = 'none, for no motion was judged' if self.says_nothing else 'none'
         return [
             f'in motion   {self.running_time:.1f} s of {span:.1f} s, '
             f'{self.revolutions:.0f} revolutions, '
             f'{number(self.energy_lost, 4)} J lost to friction',
             'regime      ' + self._shares(*(regime.word for regime in REGIMES)),
             'zone        ' + self._shares('optimal', 'outside', 'unjudged'),
-            f'events      {len(self.events) or self._no_events}',
+            f'events      {len(self.events) or no_events}',
             *(self._event_line(event) for event in self.events),
         ]
-
-    @property
-    def _no_events(self) -> str:
-        return 'none, for no motion was judged' if self.says_nothing else 'none'
 
     def _shares(self, *names: str) -> str:
         parts = []

@@ -17,16 +17,10 @@ from typing import BinaryIO
 from ballscrew_monitor.core.conversions import seconds
 from ballscrew_monitor.recordings.bag import Bag, Message
 from ballscrew_monitor.recordings.bag_files import ZSTD
-from ballscrew_monitor.recordings.bulk.chunks import (
-    chunk_places,
-    ChunkDamage,
-    Found,
-    LATEST,
-    Place,
-    read_chunk,
-)
-from ballscrew_monitor.recordings.bulk.decode import Messages
+from ballscrew_monitor.recordings.bulk import chunks as bulk_chunks
+from ballscrew_monitor.recordings.bulk.chunks import ChunkDamage, Messages, read_chunk
 from ballscrew_monitor.recordings.storages import damage_is_input, McapStorage
+from mcap.records import ChunkIndex
 import numpy as np
 from surrogate.files import InputError
 
@@ -49,7 +43,7 @@ class Batch:
 class _Chunk:
     """A chunk, the rank that orders messages of equal log time, and where it is read."""
 
-    place: Place
+    place: ChunkIndex
     rank: int
     storage: McapStorage
     stream: BinaryIO
@@ -68,32 +62,33 @@ def batches(bag: Bag, topics: Collection[str], *, as_written: bool = False) -> I
         chunks = _chunks(stack, bag, topics)
         if chunks is None:
             messages = bag.as_written(topics) if as_written else bag.messages(topics)
-            yield from _by_message(bag, messages)
+            yield from _by_message(bag, messages, list(topics))
         elif as_written:
-            yield from _by_chunk(sorted(chunks, key=operator.attrgetter('rank')))
+            yield from _by_chunk(sorted(chunks, key=operator.attrgetter('rank')), list(topics))
         else:
-            yield from _by_chunk(chunks)
+            yield from _by_chunk(chunks, list(topics))
 
 
 def _chunks(stack: contextlib.ExitStack, bag: Bag, topics: Collection[str]) -> list[_Chunk] | None:
     """Return the chunks of all files by their first times, None if one is not read by chunks."""
     found: list[_Chunk] = []
     for storage in bag.storages:
-        if not isinstance(storage, McapStorage) or not storage.has_summary:
+        if not isinstance(storage, McapStorage) or not storage.is_indexed:
             return None
         with damage_is_input(storage.file):
             stream = stack.enter_context(storage.file.open('rb'))
-            places, channels = chunk_places(stream, topics)
+            places, channels = bulk_chunks.chunk_indexes(stream, topics)
             if channels and (not places or _is_packed(stream, places[0])):
                 return None
+        places.sort(key=operator.attrgetter('chunk_start_offset'))
         found += [
             _Chunk(place=place, rank=rank, storage=storage, stream=stream, channels=channels)
-            for rank, place in enumerate(sorted(places, key=lambda each: each.offset), len(found))
+            for rank, place in enumerate(places, len(found))
         ]
-    return sorted(found, key=lambda each: (each.place.first, each.rank))
+    return sorted(found, key=lambda each: (each.place.message_start_time, each.rank))
 
 
-def _is_packed(stream: BinaryIO, place: Place) -> bool:
+def _is_packed(stream: BinaryIO, place: ChunkIndex) -> bool:
     """Tell whether the messages of a chunk are compressed each by itself."""
     try:
         found = read_chunk(stream, place)
@@ -102,29 +97,30 @@ def _is_packed(stream: BinaryIO, place: Place) -> bool:
     return any(found.data.startswith(ZSTD, begin) for begin in found.begin.tolist())
 
 
-def _by_chunk(chunks: Sequence[_Chunk]) -> Iterator[Batch]:
-    waiting: list[tuple[_Chunk, Found]] = []
+def _by_chunk(chunks: Sequence[_Chunk], names: Sequence[str]) -> Iterator[Batch]:
+    waiting: list[Messages] = []
     size = 0
     for number, chunk in enumerate(chunks, 1):
         try:
-            found = read_chunk(chunk.stream, chunk.place)
+            found = _placed(chunk, names)
         except ChunkDamage as damage:
             _note(chunk, damage)
         else:
-            waiting.append((chunk, found))
+            waiting.append(found)
             size += len(found.data)
         if size >= BATCH or number == len(chunks):
-            until = END if number == len(chunks) else chunks[number].place.first
-            yield Batch(topics=_topics(waiting), until=until, done=number / len(chunks))
+            until = END if number == len(chunks) else chunks[number].place.message_start_time
+            yield Batch(topics=_by_topic(waiting, names), until=until, done=number / len(chunks))
             waiting, size = [], 0
 
 
 def _note(chunk: _Chunk, damage: ChunkDamage) -> None:
     """Note a damaged chunk; raise InputError unless the rest is to be salvaged."""
     place, storage = chunk.place, chunk.storage
+    span = seconds(place.message_end_time - place.message_start_time)
     text = (
-        f'bag {storage.file} is truncated or damaged: {seconds(place.last - place.first):.3g} s '
-        f'of data in the chunk at byte {place.offset} cannot be read ({damage})'
+        f'bag {storage.file} is truncated or damaged: {span:.3g} s '
+        f'of data in the chunk at byte {place.chunk_start_offset} cannot be read ({damage})'
     )
     if not storage.salvage:
         raise InputError(text)
@@ -132,71 +128,44 @@ def _note(chunk: _Chunk, damage: ChunkDamage) -> None:
         storage.note = f'{storage.note}; {text}' if storage.note else text
 
 
-def _topics(waiting: Sequence[tuple[_Chunk, Found]]) -> dict[str, Messages]:
-    """Return the messages of some chunks by topic."""
-    if not waiting:
+def _placed(chunk: _Chunk, names: Sequence[str]) -> Messages:
+    """Return the messages of a chunk at their places in the bag, as channels their topics."""
+    found = read_chunk(chunk.stream, chunk.place)
+    numbers = np.full(65536, -1)  # of a topic that is not wanted
+    for number, name in chunk.channels.items():
+        numbers[number] = names.index(name)
+    place = (chunk.rank << PLACES) + found.begin
+    return dataclasses.replace(found, channel=numbers[found.channel], place=place)
+
+
+def _by_topic(parts: Sequence[Messages], names: Sequence[str]) -> dict[str, Messages]:
+    """Return messages, as channels the numbers of their topics, by the names of these."""
+    if not parts:
         return {}
-    ends = itertools.accumulate(len(found.data) for _, found in waiting)
-    shifts = [0, *ends][:-1]
-    data = b''.join(found.data for _, found in waiting)
-    names: dict[str, int] = {}
-    topic, begin, size, log_time, place, sequence = zip(
-        *(
-            (
-                _numbers_of(found.channel, chunk.channels, names),
-                found.begin + shift,
-                found.size,
-                found.log_time,
-                (chunk.rank << PLACES) + found.begin,
-                found.sequence,
-            )
-            for (chunk, found), shift in zip(waiting, shifts, strict=True)
-        )
-    )
-    numbers = np.concatenate(topic)
-    everything = Messages(
-        data=data,
-        begin=np.concatenate(begin),
-        size=np.concatenate(size),
-        log_time=np.concatenate(log_time),
-        place=np.concatenate(place),
-        sequence=np.concatenate(sequence),
-    )
-    return {name: everything.some(np.flatnonzero(numbers == at)) for name, at in names.items()}
+    everything = bulk_chunks.joined(parts)
+    return {
+        name: everything.some(np.flatnonzero(everything.channel == number))
+        for number, name in enumerate(names)
+    }
 
 
-def _numbers_of(
-    channel: np.ndarray, channels: dict[int, str], names: dict[str, int]
-) -> np.ndarray:
-    """Return the number of the topic of each message, -1 for a topic that is not wanted."""
-    numbers = np.full(65536, -1)
-    for number, name in channels.items():
-        numbers[number] = names.setdefault(name, len(names))
-    return numbers[channel]
-
-
-def _by_message(bag: Bag, messages: Iterator[Message]) -> Iterator[Batch]:
+def _by_message(bag: Bag, messages: Iterator[Message], names: Sequence[str]) -> Iterator[Batch]:
     """Yield the messages of a bag that has no chunks, as its reader gives them."""
     span = max(bag.end_time - bag.start_time, 1)
     first = 0
     while part := list(itertools.islice(messages, MESSAGES)):
-        found: dict[str, list[int]] = {}
-        for at, message in enumerate(part):
-            found.setdefault(message.topic, []).append(at)
         size = np.array([len(message.data) for message in part])
-        everything = Messages(
+        found = Messages(
             data=b''.join(message.data for message in part),
+            channel=np.array([names.index(message.topic) for message in part]),
             begin=np.cumsum(size) - size,
             size=size,
-            log_time=np.array([min(message.log_time, LATEST) for message in part]),
+            log_time=np.array([min(message.log_time, bulk_chunks.LATEST) for message in part]),
             place=np.arange(first, first + len(part)),
             sequence=np.array([message.sequence for message in part]),
         )
         first += len(part)
         until = part[-1].log_time
-        yield Batch(
-            topics={name: everything.some(np.array(at)) for name, at in found.items()},
-            until=until,
-            done=(until - bag.start_time) / span,
-        )
+        done = (until - bag.start_time) / span
+        yield Batch(topics=_by_topic([found], names), until=until, done=done)
     yield Batch(topics={}, until=END, done=1.0)

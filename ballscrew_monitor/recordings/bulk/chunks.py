@@ -8,13 +8,15 @@ what else stands there fill the chunk without a gap. Otherwise the records are w
 
 """
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 import dataclasses
+import itertools
 import struct
 from typing import Any, BinaryIO
 import zlib
 
 from mcap.reader import make_reader
+from mcap.records import ChunkIndex
 import numpy as np
 from numpy.typing import NDArray
 import zstandard
@@ -33,23 +35,16 @@ class ChunkDamage(ValueError):
     """A chunk that cannot be used, and why."""
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Place:
-    """Where a chunk stands in its file, and which times [ns] its messages span."""
-
-    offset: int
-    length: int
-    index_length: int
-    first: int
-    last: int
+ARRAYS = ('channel', 'begin', 'size', 'log_time', 'place', 'sequence')
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Found:
+class Messages:
     """
     Messages within `data`: where each begins and how long it is [bytes].
 
-    `channel` and `sequence` are their numbers in the file, `log_time` in [ns].
+    `channel` and `sequence` are their numbers in the file, `log_time` in [ns]. `place` is that in
+    what they were read from: a chunk, or the bag as it is written.
 
     """
 
@@ -58,10 +53,40 @@ class Found:
     begin: Integers
     size: Integers
     log_time: Integers
+    place: Integers
     sequence: Integers
 
+    def __len__(self) -> int:
+        """Return the number of messages."""
+        return len(self.begin)
 
-def chunk_places(stream: BinaryIO, topics: Collection[str]) -> tuple[list[Place], dict[int, str]]:
+    def some(self, which: NDArray[Any]) -> 'Messages':
+        """Return some of the messages."""
+        return Messages(data=self.data, **{name: getattr(self, name)[which] for name in ARRAYS})
+
+    def contents(self) -> list[bytes]:
+        """Return all messages."""
+        spans = zip(self.begin.tolist(), (self.begin + self.size).tolist(), strict=True)
+        return [self.data[begin:end] for begin, end in spans]
+
+    def content(self, at: int) -> bytes:
+        """Return one message."""
+        begin = int(self.begin[at])
+        end = begin + int(self.size[at])
+        return self.data[begin:end]
+
+
+def joined(parts: Sequence[Messages]) -> Messages:
+    """Return all messages of `parts`, at least one, one part after the other."""
+    shifts = [0, *itertools.accumulate(len(part.data) for part in parts)]
+    arrays = {name: np.concatenate([getattr(part, name) for part in parts]) for name in ARRAYS}
+    arrays['begin'] += np.repeat(shifts[:-1], [len(part) for part in parts])
+    return Messages(data=b''.join(part.data for part in parts), **arrays)
+
+
+def chunk_indexes(
+    stream: BinaryIO, topics: Collection[str]
+) -> tuple[list[ChunkIndex], dict[int, str]]:
     """Return the chunks with messages of `topics` and these topics by channel number."""
     stream.seek(0)
     summary = make_reader(stream, validate_crcs=True).get_summary()
@@ -71,26 +96,20 @@ def chunk_places(stream: BinaryIO, topics: Collection[str]) -> tuple[list[Place]
         for number, channel in summary.channels.items()
         if channel.topic in topics
     }
-    places = [
-        Place(
-            offset=index.chunk_start_offset,
-            length=index.chunk_length,
-            index_length=index.message_index_length,
-            first=index.message_start_time,
-            last=index.message_end_time,
-        )
+    indexes = [
+        index
         for index in summary.chunk_indexes
         if not index.message_index_offsets or channels.keys() & index.message_index_offsets.keys()
     ]
-    return places, channels
+    return indexes, channels
 
 
-def read_chunk(stream: BinaryIO, place: Place) -> Found:
+def read_chunk(stream: BinaryIO, place: ChunkIndex) -> Messages:
     """Return the messages of a chunk as they stand in it; raises ChunkDamage."""
-    stream.seek(place.offset)
-    raw = stream.read(place.length + place.index_length)
+    stream.seek(place.chunk_start_offset)
+    raw = stream.read(place.chunk_length + place.message_index_length)
     try:
-        chunk, indexes = raw[: place.length], raw[slice(place.length, None)]
+        chunk, indexes = raw[: place.chunk_length], raw[slice(place.chunk_length, None)]
         data = _records(chunk)
         starts = _indexed(data, indexes)
     except (struct.error, zstandard.ZstdError, RuntimeError, MemoryError) as error:
@@ -180,16 +199,18 @@ def _walked(data: bytes) -> Integers:
     return np.array(starts, dtype=np.int64)
 
 
-def _messages(data: bytes, starts: Integers) -> Found:
+def _messages(data: bytes, starts: Integers) -> Messages:
     length = unaligned(data, '<i8')[starts + 1]
     if (length < MESSAGE_HEAD).any():
         raise ChunkDamage('a message has no head')
-    return Found(
+    begin = starts + RECORD.size + MESSAGE_HEAD
+    return Messages(
         data=data,
         channel=unaligned(data, '<u2')[starts + CHANNEL_NUMBER].astype(np.int64),
-        begin=starts + RECORD.size + MESSAGE_HEAD,
+        begin=begin,
         size=length - MESSAGE_HEAD,
         log_time=np.minimum(unaligned(data, '<u8')[starts + LOG_TIME], LATEST).astype(np.int64),
+        place=begin,
         sequence=unaligned(data, '<u4')[starts + SEQUENCE].astype(np.int64),
     )
 

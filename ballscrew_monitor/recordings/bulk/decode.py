@@ -7,63 +7,34 @@ What has no layout, and whatever is to be refused, is decoded one by one as the 
 
 """
 
-import dataclasses
-from typing import Any
+from collections.abc import Iterable
 
 from ballscrew_monitor.core.fields import OtherJoints
-from ballscrew_monitor.core.inputs import Input, InputSample, Refusal, Source, Why
+from ballscrew_monitor.core.inputs import Input, InputSample, Refusal, Why
 from ballscrew_monitor.recordings.bag import Bag, Message
-from ballscrew_monitor.recordings.bulk.chunks import Integers
+from ballscrew_monitor.recordings.bulk.chunks import Messages
 from ballscrew_monitor.recordings.bulk.entries import Entries, entries_of, joined, Kind, made, Told
 from ballscrew_monitor.recordings.bulk.layout import Layout, NoLayout, reads_alike
 from ballscrew_monitor.recordings.decoding import decode, UNDECODABLE
 from ballscrew_monitor.settings.axis import Axis
 from ballscrew_monitor.settings.topics import absolute
 import numpy as np
-from numpy.typing import NDArray
 from rclpy.serialization import deserialize_message
 
 MOST_LAYOUTS = 32  # of a topic; what is still different then is decoded one by one
 NEW_LAYOUTS = 4  # that are looked for in a batch
 
 Reader = tuple[int, Axis, Input]
+"""The number of an axis, the axis, and an input of it."""
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Messages:
-    """
-    Messages of one topic within `data`; `begin` and `size` [bytes], `log_time` [ns].
-
-    `place` is that in the bag as it is written, `sequence` the number that the writer gave.
-
-    """
-
-    data: bytes
-    begin: Integers
-    size: Integers
-    log_time: Integers
-    place: Integers
-    sequence: Integers
-
-    def __len__(self) -> int:
-        """Return the number of messages."""
-        return len(self.begin)
-
-    def some(self, which: NDArray[Any]) -> 'Messages':
-        """Return some of the messages."""
-        arrays = ('begin', 'size', 'log_time', 'place', 'sequence')
-        return Messages(data=self.data, **{name: getattr(self, name)[which] for name in arrays})
-
-    def contents(self) -> list[bytes]:
-        """Return all messages."""
-        spans = zip(self.begin.tolist(), (self.begin + self.size).tolist(), strict=True)
-        return [self.data[begin:end] for begin, end in spans]
-
-    def content(self, at: int) -> bytes:
-        """Return one message."""
-        begin = int(self.begin[at])
-        end = begin + int(self.size[at])
-        return self.data[begin:end]
+def readers_by_topic(axes: Iterable[Axis]) -> dict[str, list[Reader]]:
+    """Return the inputs of axes by the full name of their topic."""
+    readers: dict[str, list[Reader]] = {}
+    for number, axis in enumerate(axes):
+        for source in axis.inputs:
+            readers.setdefault(absolute(source.topic), []).append((number, axis, source))
+    return readers
 
 
 class TopicDecoder:
@@ -112,7 +83,19 @@ class TopicDecoder:
             if isinstance(found, int):
                 parts += self._samples(layout, messages, found, (number, axis, source))
             elif isinstance(found, OtherJoints):
-                parts.append(_others(messages, found, number, source))
+                parts.append(
+                    made(
+                        len(messages),
+                        log_time=messages.log_time,
+                        place=messages.place,
+                        axis=number,
+                        source=source.source,
+                        kind=Kind.OTHER_JOINTS,
+                        stamp=messages.log_time,
+                        arrival=messages.log_time,
+                        note=found,
+                    )
+                )
             else:
                 parts.append(self._one_by_one(messages, [(number, axis, source)]))
         return parts
@@ -158,30 +141,10 @@ class TopicDecoder:
             for number, axis, source in readers or self._readers:
                 event: InputSample | Refusal
                 if decoded is None:
-                    event = not_decoded(source.source, why, now)
+                    event = Refusal(
+                        source=source.source, why=Why.NOT_DECODED, text=why, arrival=now
+                    )
                 else:
                     event = source.read(decoded, now=now, max_future=axis.max_future)
                 told.append((event, now, place, number))
         return entries_of(told)
-
-
-def _others(messages: Messages, joints: OtherJoints, axis: int, source: Input) -> Entries:
-    """Return entries of messages that speak of other joints."""
-    note = np.empty(len(messages), dtype=object)
-    note[:] = [joints] * len(messages)
-    return made(
-        len(messages),
-        log_time=messages.log_time,
-        place=messages.place,
-        axis=axis,
-        source=source.source,
-        kind=Kind.OTHER_JOINTS,
-        stamp=messages.log_time,
-        arrival=messages.log_time,
-        note=note,
-    )
-
-
-def not_decoded(source: Source, text: str, arrival: int) -> Refusal:
-    """Return the refusal of a message that does not decode, at its arrival [ns], and why."""
-    return Refusal(source=source, why=Why.NOT_DECODED, text=text, arrival=arrival)

@@ -30,6 +30,11 @@ TICK_SOURCE = max(Source) + 1
 """Place of a tick among the sources: after the samples of equal stamp."""
 
 
+def _column(kind: Any) -> Any:
+    """Declare an array by the type of its numbers."""
+    return dataclasses.field(metadata={'kind': kind})
+
+
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Entries:
     """
@@ -42,18 +47,18 @@ class Entries:
 
     """
 
-    log_time: NDArray[np.int64]
-    place: NDArray[np.int64]
-    axis: NDArray[np.uint8]
-    source: NDArray[np.uint8]
-    kind: NDArray[np.uint8]
-    stamp: NDArray[np.int64]
-    arrival: NDArray[np.int64]
-    value: NDArray[np.float64]
-    header: NDArray[np.bool_]
-    lost: NDArray[np.int64]
-    burst: NDArray[np.int64]
-    note: NDArray[Any]
+    log_time: NDArray[np.int64] = _column(np.int64)
+    place: NDArray[np.int64] = _column(np.int64)
+    axis: NDArray[np.uint8] = _column(np.uint8)
+    source: NDArray[np.uint8] = _column(np.uint8)
+    kind: NDArray[np.uint8] = _column(np.uint8)
+    stamp: NDArray[np.int64] = _column(np.int64)
+    arrival: NDArray[np.int64] = _column(np.int64)
+    value: NDArray[np.float64] = _column(np.float64)
+    header: NDArray[np.bool_] = _column(np.bool_)
+    lost: NDArray[np.int64] = _column(np.int64)
+    burst: NDArray[np.int64] = _column(np.int64)
+    note: NDArray[Any] = _column(np.object_)
 
     def __len__(self) -> int:
         """Return the number of entries."""
@@ -61,24 +66,10 @@ class Entries:
 
     def take(self, which: Selection) -> 'Entries':
         """Return some of the entries, or all in another order."""
-        return Entries(**{name: getattr(self, name)[which] for name in NAMES})
+        return Entries(**{name: getattr(self, name)[which] for name in TYPES})
 
 
-NAMES = tuple(field.name for field in dataclasses.fields(Entries))
-_TYPES = {
-    'log_time': np.int64,
-    'place': np.int64,
-    'axis': np.uint8,
-    'source': np.uint8,
-    'kind': np.uint8,
-    'stamp': np.int64,
-    'arrival': np.int64,
-    'value': np.float64,
-    'header': np.bool_,
-    'lost': np.int64,
-    'burst': np.int64,
-    'note': np.object_,
-}
+TYPES = {field.name: field.metadata['kind'] for field in dataclasses.fields(Entries)}
 
 
 def joined(parts: Sequence[Entries]) -> Entries:
@@ -89,14 +80,14 @@ def joined(parts: Sequence[Entries]) -> Entries:
     if not parts:
         return made(0)
     return Entries(
-        **{name: np.concatenate([getattr(part, name) for part in parts]) for name in NAMES}
+        **{name: np.concatenate([getattr(part, name) for part in parts]) for name in TYPES}
     )
 
 
 def made(count: int, **columns: Any) -> Entries:
     """Return `count` entries of these columns, arrays or one value for all; the rest is zero."""
     arrays = {}
-    for name, kind in _TYPES.items():
+    for name, kind in TYPES.items():
         given = columns.get(name, None if name == 'note' else 0)
         if isinstance(given, np.ndarray) and given.dtype == kind:
             arrays[name] = given
@@ -104,6 +95,12 @@ def made(count: int, **columns: Any) -> Entries:
             arrays[name] = np.empty(count, dtype=kind)
             arrays[name][:] = given
     return Entries(**arrays)
+
+
+def ticks(count: int, stamp: Any, **columns: Any) -> Entries:
+    """Return `count` ticks at one stamp or an array of stamps [ns]; `columns` as in `made`."""
+    times = {'log_time': stamp, 'stamp': stamp, 'arrival': stamp}
+    return made(count, source=TICK_SOURCE, kind=Kind.TICK, **times, **columns)
 
 
 Told = tuple[InputSample | Refusal | int, int, int, int]

@@ -9,7 +9,6 @@ A layout is taken from one message and trusted for all others whose deciding byt
 """
 
 from collections.abc import Iterator, Sequence
-import contextlib
 import math
 import re
 import struct
@@ -49,8 +48,10 @@ class Layout:
     def __init__(self, example: bytes, message_type: MessageClass) -> None:
         """Learn from one message; raises NoLayout when that is not possible."""
         walk = _Walk(example)
-        with _damage_is_no_layout():
+        try:
             self._places = walk.message(message_type)
+        except (struct.error, UnicodeDecodeError, MemoryError):
+            raise NoLayout from None
         self.size = len(example)
         self._kinds = walk.kinds
         self._words = list(_words(example, walk.fixed))
@@ -160,14 +161,6 @@ class _Walk:
         self._at += size
         if self._at > len(self._data):
             raise NoLayout
-
-
-@contextlib.contextmanager
-def _damage_is_no_layout() -> Iterator[None]:
-    try:
-        yield
-    except (struct.error, UnicodeDecodeError, MemoryError):
-        raise NoLayout from None
 
 
 def _words(example: bytes, fixed: NDArray[np.bool_]) -> Iterator[tuple[int, Any, Any]]:

@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-The order in which entries are judged, and the ticks between them; all that knows of either.
+The entries of a whole bag in the order in which they are judged, and the ticks between them.
 
 Entries arrive by their log times and are judged by their stamps, as far as these are out of order
 by less than `REORDER`; a clock that is set back begins a new time line. Ticks lie on a grid of log
@@ -9,11 +9,23 @@ time, after the samples of equal stamp.
 
 """
 
+from collections.abc import Callable, Iterator
 import heapq
 
 from ballscrew_monitor.core.conversions import nanoseconds
 from ballscrew_monitor.judge.step import BACKWARD_JUMP
-from ballscrew_monitor.recordings.bulk.entries import Entries, joined, Kind, made, TICK_SOURCE
+from ballscrew_monitor.recordings.bag import Bag
+from ballscrew_monitor.recordings.bulk.batches import batches
+from ballscrew_monitor.recordings.bulk.decode import readers_by_topic, TopicDecoder
+from ballscrew_monitor.recordings.bulk.entries import (
+    Entries,
+    joined,
+    Kind,
+    made,
+    TICK_SOURCE,
+    ticks,
+)
+from ballscrew_monitor.settings.axis import Axis
 import numpy as np
 from numpy.typing import NDArray
 
@@ -23,6 +35,33 @@ ALL_AXES = 255  # whose turn a tick is
 LAST = 2**63 - 1  # place of a tick among what is logged at the same time
 LOWEST = -(2**62)
 RANGE = 2**59  # [ns] of stamps that fit into one key with the source
+OnDone = Callable[[float], None]
+"""Told which share of a bag is done [-]."""
+
+
+def ordered_entries(
+    bag: Bag, axes: list[Axis], period: int, *, on_done: OnDone
+) -> Iterator[Entries]:
+    """
+    Yield the entries of `axes` in the order in which they are judged, a tick each `period` [ns].
+
+    `on_done` is told how far the bag is judged [-]. Raises InputError for a damaged bag, unless
+    its intact part is to be salvaged.
+
+    """
+    readers = readers_by_topic(axes)
+    decoders = {topic: TopicDecoder(bag, wanted) for topic, wanted in readers.items()}
+    arrivals, order = Arrivals(period), StampOrder()
+    for batch in batches(bag, decoders.keys()):
+        decoded = [decoders[topic].entries(found) for topic, found in batch.topics.items()]
+        yield order.push(arrivals.push(joined(decoded), batch.until))
+        on_done(batch.done)
+    yield order.finish()
+
+
+def places_of_axis(entries: Entries, number: int) -> NDArray[np.intp]:
+    """Return the places of the entries of an axis, ticks among them."""
+    return np.flatnonzero((entries.axis == number) | (entries.axis == ALL_AXES))
 
 
 class Arrivals:
@@ -42,8 +81,7 @@ class Arrivals:
         arrived = everything.take(ready)
         if not len(arrived):
             return arrived
-        ticks = self._ticks(np.sort(arrived.log_time))
-        arrived = joined([arrived, ticks])
+        arrived = joined([arrived, self._ticks(np.sort(arrived.log_time))])
         return arrived.take(np.lexsort((arrived.place, arrived.log_time)))
 
     def _ticks(self, times: NDArray[np.int64]) -> Entries:
@@ -59,16 +97,7 @@ class Arrivals:
             begin, end = int(times[hole]), int(times[hole + 1])
             grids.append(self._grid(begin, min(end, self._ceiling(begin) + LONGEST_HOLE)))
         stamps = np.concatenate(grids)
-        return made(
-            len(stamps),
-            log_time=stamps,
-            place=LAST,
-            axis=ALL_AXES,
-            source=TICK_SOURCE,
-            kind=Kind.TICK,
-            stamp=stamps,
-            arrival=stamps,
-        )
+        return ticks(len(stamps), stamps, place=LAST, axis=ALL_AXES)
 
     def _grid(self, begin: int, end: int) -> NDArray[np.int64]:
         return np.arange(self._ceiling(begin), end, self._period, dtype=np.int64)

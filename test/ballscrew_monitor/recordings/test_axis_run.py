@@ -13,7 +13,7 @@ from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, Why
 from ballscrew_monitor.core.judgement import Reason
 from ballscrew_monitor.judge.dump import dump, restored
 from ballscrew_monitor.judge.monitor import Monitor
-from ballscrew_monitor.recordings.axis_run import AxisRun, Due
+from ballscrew_monitor.recordings.axis_run import AxisRun
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
 from ballscrew_monitor.recordings.bulk.entries import entries_of
@@ -212,7 +212,7 @@ def test_states_and_outcome_are_those_of_a_monitor_alone(happened, cut):
         for event, *_ in part:
             state = other.tick(event) if isinstance(event, int) else other.update(event)
             wanted += [] if state is None else [state]
-        found = [one for one in run.take(entries_of(part)) if isinstance(one, Due)]
+        found = [one[1] for one in run.take(entries_of(part)) if isinstance(one, tuple)]
         states += [one.state for one in found]
         events += [one.event for one in found if one.event is not None]
         assert repr(axis.monitor.input_status(now)) == repr(other.input_status(now))

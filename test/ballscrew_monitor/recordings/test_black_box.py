@@ -140,7 +140,7 @@ def test_a_writer_that_is_killed_is_told_started_again_and_recovered(node, start
             pid
             for pid in os.listdir('/proc')
             if pid.isdigit()
-            and b'recordings.black_box' in command_of(pid)
+            and b'recordings.retention' in command_of(pid)
             and str(folder).encode() in command_of(pid)
         )
     )

@@ -11,7 +11,7 @@ from ballscrew_monitor.core.cdr import serialized
 from ballscrew_monitor.core.fields import message_class, stamp_of
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter
-from ballscrew_monitor.recordings.recorded_topics import recorded_topics
+from ballscrew_monitor.recordings.recorder import recorded_topics
 from ballscrew_monitor.recordings.replay import replay
 from ballscrew_monitor.settings.parameters import read_file
 from mcap.reader import make_reader

@@ -27,7 +27,7 @@ def theirs(compress, *, count=COUNT):
         chunk_size=CHUNK_SIZE,
         compression=CompressionType.ZSTD if compress else CompressionType.NONE,
     )
-    writer.start(profile='ros2', library='own')
+    writer.start(profile='ros2', library='ballscrew_monitor')
     writer.add_metadata('before', {'a': 'b', 'ü': 'ö'})
     for topic in TOPICS:
         schema = writer.register_schema(name='Kind', encoding='ros2msg', data=bytes(800))
@@ -41,13 +41,10 @@ def theirs(compress, *, count=COUNT):
 
 def ours(compress, add):
     stream = io.BytesIO()
-    file = McapFile(
-        stream, chunk_size=CHUNK_SIZE, compress=compress, profile='ros2', library='own'
-    )
+    file = McapFile(stream, chunk_size=CHUNK_SIZE, compress=compress)
     file.add_metadata('before', {'a': 'b', 'ü': 'ö'})
     for topic in TOPICS:
-        schema = file.register_schema(name='Kind', encoding='ros2msg', data=bytes(800))
-        file.register_channel(topic=topic, schema_id=schema, metadata={'of': topic})
+        file.add_channel(topic=topic, kind='Kind', definition=bytes(800), metadata={'of': topic})
     add(file)
     file.add_metadata('behind', {})
     file.finish()

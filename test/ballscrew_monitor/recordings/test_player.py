@@ -287,10 +287,11 @@ def test_a_stop_ends_it_at_once(short_bag):
     stop = threading.Event()
     stop.set()
     node = Publishers()
-    played = Player(node, Bag(short_bag)).play(stop)
+    player = Player(node, Bag(short_bag))
+    played = player.play(stop)
     assert not played.complete
     assert not node.awaited
-    assert sum(played.sent.values()) == 0
+    assert not player.sent
 
 
 def test_a_rate_that_is_no_number_is_refused(short_bag):

@@ -10,7 +10,9 @@ from ballscrew_monitor.cycle.domain import free_domain
 from ballscrew_monitor.cycle.node_process import child_environment, ros_environment
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
-from ballscrew_monitor.recordings.recorder import Recorder
+from ballscrew_monitor.recordings.recorder import recorded_topics, Recorder
+from ballscrew_monitor.settings.parameters import defaults
+from ballscrew_monitor.settings.topics import output
 import pytest
 import rclpy
 from rclpy.executors import SingleThreadedExecutor
@@ -80,3 +82,13 @@ def clock():
     from rosgraph_msgs.msg import Clock
 
     return Clock, '/clock', lambda message: None, CLOCK_QOS
+
+
+def test_the_latched_topics_come_last():
+    topics = recorded_topics(defaults(['x', 'y']))
+    names = [topic.name for topic in topics]
+    assert names[:2] == ['/joint_states', '/axial_load']
+    assert names[-1] == output('y', 'surface_info') == '/ballscrew_monitor/y/surface_info'
+    latched = [topic.offer is Offer.LATCHED for topic in topics]
+    assert latched == sorted(latched)
+    assert len(names) == len(set(names)) == 2 + 2 + 1 + 4

@@ -5,7 +5,7 @@
 import io
 import struct
 
-from ballscrew_monitor.recordings.bulk.chunks import chunk_places, ChunkDamage, read_chunk
+from ballscrew_monitor.recordings.bulk.chunks import chunk_indexes, ChunkDamage, read_chunk
 from mcap.writer import CompressionType, Writer
 import numpy as np
 import pytest
@@ -27,7 +27,7 @@ def written():
         data = bytes([number]) * (number + 1)
         writer.add_message(channels[number % 2], log_time=number, data=data, publish_time=0)
     writer.finish()
-    (place,), _ = chunk_places(stream, ['/a'])
+    (place,), _ = chunk_indexes(stream, ['/a'])
     return stream, place
 
 
@@ -54,29 +54,33 @@ def test_all_messages_of_a_chunk_are_found(written):
 
 
 def test_channels_are_those_of_the_topics(written):
-    assert list(chunk_places(written[0], ['/b'])[1].values()) == ['/b']
-    assert chunk_places(written[0], ['/c']) == ([], {})
+    assert list(chunk_indexes(written[0], ['/b'])[1].values()) == ['/b']
+    assert chunk_indexes(written[0], ['/c']) == ([], {})
 
 
 @pytest.mark.parametrize('offset', [0, 5, 10**6, 2**63])
 def test_an_index_that_lies_is_not_believed(written, offset):
     stream, place = written
     # Behind the heads of the record and of its list, and the log time of the first message.
-    change(stream, place.offset + place.length + 9 + 6 + 8, struct.pack('<Q', offset))
+    change(
+        stream,
+        place.chunk_start_offset + place.chunk_length + 9 + 6 + 8,
+        struct.pack('<Q', offset),
+    )
     assert contents(read_chunk(stream, place)) == EXPECTED
 
 
 def test_an_index_of_a_part_is_not_believed(written):
     stream, place = written
-    change(stream, place.offset + place.length, b'\x0f')
+    change(stream, place.chunk_start_offset + place.chunk_length, b'\x0f')
     assert contents(read_chunk(stream, place)) == EXPECTED
 
 
 def test_damage_is_told(written):
     stream, place = written
-    change(stream, place.offset + place.length - 3, b'\xff')
+    change(stream, place.chunk_start_offset + place.chunk_length - 3, b'\xff')
     with pytest.raises(ChunkDamage, match='its checksum is wrong'):
         read_chunk(stream, place)
-    change(stream, place.offset, b'\x01')
+    change(stream, place.chunk_start_offset, b'\x01')
     with pytest.raises(ChunkDamage, match='no chunk stands'):
         read_chunk(stream, place)

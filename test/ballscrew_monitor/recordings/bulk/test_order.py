@@ -1,18 +1,295 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Entries are put into order by arrays as one by one."""
+"""
+The entries of a bag are what its messages say one by one, in the same order.
+
+They are put into order by arrays as one by one.
+
+"""
 
 import heapq
+import itertools
+import shutil
 
+from ballscrew_monitor.core.inputs import InputSample, Refusal, Why
 from ballscrew_monitor.judge.step import BACKWARD_JUMP
-from ballscrew_monitor.recordings.bulk.entries import joined, Kind, made
-from ballscrew_monitor.recordings.bulk.order import Arrivals, REORDER, StampOrder
+from ballscrew_monitor.recordings.bag import Bag
+from ballscrew_monitor.recordings.bulk import batches as batches_module
+from ballscrew_monitor.recordings.bulk.entries import entries_of, joined, Kind, made, TICK_SOURCE
+from ballscrew_monitor.recordings.bulk.order import (
+    Arrivals,
+    LONGEST_HOLE,
+    ordered_entries,
+    places_of_axis,
+    REORDER,
+    StampOrder,
+)
+from ballscrew_monitor.recordings.decoding import decode
+from ballscrew_monitor.recordings.message_definitions import message_definition
+from ballscrew_monitor.settings import parameters
+from ballscrew_monitor.settings.axis import build_axis
+from ballscrew_monitor.settings.topics import absolute
+from geometry_msgs.msg import WrenchStamped
 from hypothesis import given
 from hypothesis import strategies as st
+from mcap.writer import CompressionType, IndexType, Writer
 import numpy as np
+import pytest
+from rclpy.serialization import serialize_message
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Float32, Float64
+from surrogate.files import InputError
 
 MS = 1_000_000
 BEGIN = 1_700_000_000_000 * MS
+PERIOD = 100 * MS
+TYPES = {
+    '/joint_states': 'sensor_msgs/msg/JointState',
+    '/axial_load': 'geometry_msgs/msg/WrenchStamped',
+    '/y/load': 'std_msgs/msg/Float64',
+    '/oil': 'std_msgs/msg/Float32',
+}
+VALUES = parameters.defaults(['x', 'y']) | {
+    'x.torque.topic': 'joint_states',
+    'x.torque.type': 'sensor_msgs/msg/JointState',
+    'x.torque.field': 'effort[x_axis]',
+    'y.load.topic': 'y/load',
+    'y.load.type': 'std_msgs/msg/Float64',
+    'y.load.field': 'data',
+    'y.temperature.topic': 'oil',
+    'y.temperature.type': 'std_msgs/msg/Float32',
+    'y.temperature.field': 'data',
+}
+
+
+@pytest.fixture(scope='module')
+def axes():
+    """Return two axes whose speeds share a topic."""
+    return [build_axis(name, VALUES) for name in ('x', 'y')]
+
+
+def joints(stamp, *, names=('x_axis', 'y_axis'), speeds=(1.0, 2.0), efforts=(0.5, 0.25), frame=''):
+    message = JointState(name=names, velocity=speeds, effort=efforts)
+    message.header.frame_id = frame
+    message.header.stamp.sec, message.header.stamp.nanosec = divmod(stamp, 10**9)
+    return '/joint_states', message
+
+
+def load(stamp, value):
+    message = WrenchStamped()
+    message.wrench.force.x = value
+    message.header.stamp.sec, message.header.stamp.nanosec = divmod(stamp, 10**9)
+    return '/axial_load', message
+
+
+def write(path, timed, **options):
+    """Write pairs of a log time and (topic, message) to one MCAP file."""
+    with path.open('wb') as stream:
+        writer = Writer(stream, **{'compression': CompressionType.ZSTD, **options})
+        writer.start(profile='ros2', library='test')
+        channels = {}
+        for name, kind in TYPES.items():
+            schema = writer.register_schema(kind, 'ros2msg', message_definition(kind).encode())
+            channels[name] = writer.register_channel(name, 'cdr', schema)
+        for log_time, (topic, message) in timed:
+            data = message if isinstance(message, bytes) else serialize_message(message)
+            writer.add_message(
+                channels[topic], log_time=log_time, data=data, publish_time=log_time
+            )
+        writer.finish()
+
+
+def steady(count):
+    """Return speeds and loads of a quiet recording."""
+    timed = []
+    for number in range(count):
+        stamp = BEGIN + number * MS
+        timed.append((stamp + 200_000, load(stamp, -100.0 - number)))
+        timed.append((stamp + 300_000, joints(stamp, speeds=(float(number), -float(number)))))
+        timed.append((stamp + 300_000, ('/y/load', Float64(data=float(number)))))
+        if number % 50 == 0:
+            timed.append((stamp, ('/oil', Float32(data=20.0 + number))))
+    return timed
+
+
+def faulty():
+    """Return a recording with everything that may go wrong and still be read."""
+    timed, drawn = [], np.random.default_rng(3)
+    now = BEGIN
+    for number in range(600):
+        now += int(drawn.choice([0, 1, 2, 7])) * MS
+        if number % 150 == 149:
+            now += int(drawn.choice([1500, 40_000, 70_000])) * MS
+        stamp = now - int(drawn.choice([0, 0, 0, 1, 400, 3000, -50, -10_000])) * MS
+        stamp = 0 if number % 37 == 5 else stamp
+        stamp = -now if number % 37 == 6 else stamp
+        kind = drawn.integers(10)
+        if kind < 3:
+            timed.append((now, joints(stamp, speeds=(float(number), 1.0), frame='f' * kind)))
+        elif kind == 3:
+            other = {'names': ('y_axis',), 'speeds': (3.0,), 'efforts': ()}
+            timed.append((now, joints(stamp, **other)))
+        elif kind == 4:
+            swapped = {'names': ('y_axis', 'a', 'x_axis'), 'speeds': (3.0, 4.0, float(number))}
+            timed.append((now, joints(stamp, **swapped, efforts=())))
+        elif kind == 5:
+            timed.append((now, load(stamp, float(drawn.choice([np.nan, np.inf, 1e300, 5.0])))))
+        elif kind == 6:
+            timed.append((now, ('/y/load', Float64(data=float(number)))))
+        elif kind == 7:
+            whole = serialize_message(load(stamp, 5.0)[1])
+            short = [b'', whole[:20], whole[:-9], whole + b'more', b'\0\0' + whole[2:], whole[:4]]
+            timed.append((now, ('/axial_load', short[number % len(short)])))
+        else:
+            timed.append((now, load(stamp, float(number))))
+    return timed
+
+
+def alone(bag, axes):
+    """Yield (stamp, source, axis, event) message by message, a tick with neither."""
+    readers = {}
+    for number, axis in enumerate(axes):
+        for source in axis.inputs:
+            readers.setdefault(absolute(source.topic), []).append((number, axis, source))
+    numbers, grid, waiting, last = itertools.count(), None, [], {}
+
+    def late(log_time):
+        while log_time - waiting[0][3] > REORDER:
+            yield heapq.heappop(waiting)
+
+    for message in bag.messages(readers):
+        now = message.log_time
+        if grid is not None:
+            for tick in range(grid, min(now, grid + LONGEST_HOLE), PERIOD):
+                heapq.heappush(waiting, (tick, TICK_SOURCE, next(numbers), tick, None, None))
+                yield from late(tick)
+        grid = max(grid or 0, -(-now // PERIOD) * PERIOD)
+        decoded, why = decode(bag, message, readers[message.topic][0][2].message_type)
+        for number, axis, source in readers[message.topic]:
+            line = number, source.source
+            event = Refusal(source=source.source, why=Why.NOT_DECODED, text=why, arrival=now)
+            if decoded is not None:
+                event = source.read(decoded, now=now, max_future=axis.max_future)
+            stamp = event.stamp if isinstance(event, InputSample) else now
+            if isinstance(event, InputSample):
+                if last.get(line, stamp) - stamp > BACKWARD_JUMP:
+                    yield from sorted(waiting)
+                    waiting.clear()
+                last[line] = stamp
+            entry = (stamp, event.source, next(numbers), now, number, event)
+            heapq.heappush(waiting, entry)
+            yield from late(now)
+    while waiting:
+        yield heapq.heappop(waiting)
+
+
+def at_once(bag, axes):
+    """Return the batches of entries."""
+    return list(ordered_entries(bag, axes, PERIOD, on_done=lambda share: None))
+
+
+def assert_same(bag, axes):
+    """Compare the entries of each axis with those of the plain twin."""
+    expected = list(alone(bag, axes))
+    for number in range(len(axes)):
+        found = joined([part.take(places_of_axis(part, number)) for part in at_once(bag, axes)])
+        wanted = entries_of(
+            [
+                (stamp if event is None else event, now, 0, 0)
+                for stamp, _, _, now, axis, event in expected
+                if axis in (None, number)
+            ]
+        )
+        for name in ('kind', 'source', 'stamp', 'arrival', 'value', 'header', 'lost', 'note'):
+            pair = (getattr(one, name).tolist() for one in (found, wanted))
+            np.testing.assert_equal(*(list(map(repr, column)) for column in pair), err_msg=name)
+
+
+LAYOUTS = {
+    'zstd': {'chunk_size': 2000},
+    'lz4': {'chunk_size': 2000, 'compression': CompressionType.LZ4},
+    'one plain chunk': {'compression': CompressionType.NONE},
+    'no message index': {'chunk_size': 2000, 'index_types': IndexType.CHUNK},
+    'no chunks': {'use_chunking': False},
+    'no checksums': {'chunk_size': 2000, 'enable_crcs': False},
+}
+
+
+@pytest.mark.parametrize('layout', LAYOUTS)
+def test_a_steady_recording(tmp_path, axes, layout, monkeypatch):
+    monkeypatch.setattr(batches_module, 'BATCH', 20_000)
+    monkeypatch.setattr(batches_module, 'MESSAGES', 100)
+    write(tmp_path / 'bag.mcap', steady(250), **LAYOUTS[layout])
+    assert_same(Bag(tmp_path / 'bag.mcap'), axes)
+
+
+@pytest.mark.parametrize('size', [500, 20_000, 10**9])
+def test_a_faulty_recording(tmp_path, axes, size, monkeypatch):
+    monkeypatch.setattr(batches_module, 'BATCH', size)
+    write(tmp_path / 'bag.mcap', faulty(), chunk_size=1000)
+    assert_same(Bag(tmp_path / 'bag.mcap'), axes)
+
+
+def test_files_that_overlap_and_chunks_out_of_order(tmp_path, axes, monkeypatch):
+    monkeypatch.setattr(batches_module, 'BATCH', 5000)
+    timed = faulty()
+    drawn = np.random.default_rng(5)
+    shuffled = [timed[at] for at in np.argsort(np.arange(len(timed)) + drawn.normal(0, 9, 600))]
+    write(tmp_path / 'one.mcap', shuffled[::2], chunk_size=700)
+    write(tmp_path / 'two.mcap', shuffled[1::2], chunk_size=1500)
+    assert_same(Bag(tmp_path), axes)
+
+
+def damaged(path, at):
+    """Change one byte of a file."""
+    data = bytearray(path.read_bytes())
+    data[at] ^= 0x55
+    path.write_bytes(data)
+
+
+@pytest.mark.parametrize('layout', ['zstd', 'lz4', 'one plain chunk'])
+def test_a_damaged_chunk_is_named_and_the_rest_is_used(tmp_path, axes, layout):
+    options = {**LAYOUTS[layout], 'chunk_size': 20_000}
+    write(tmp_path / 'bag.mcap', steady(500), **options)
+    shutil.copy(tmp_path / 'bag.mcap', tmp_path / 'whole.mcap')
+    damaged(tmp_path / 'bag.mcap', 3000)
+    bag = Bag(tmp_path / 'bag.mcap', salvage=True)
+    entries = at_once(bag, axes)
+    (note,) = bag.notes
+    assert 's of data in the chunk at byte' in note
+    assert '\n' not in note
+    found = sum(map(len, entries))
+    whole = sum(map(len, at_once(Bag(tmp_path / 'whole.mcap'), axes)))
+    assert 0.6 * whole < found < whole
+
+
+def test_damage_that_is_read_twice_is_noted_once(tmp_path, axes):
+    write(tmp_path / 'bag.mcap', steady(400), chunk_size=2000)
+    damaged(tmp_path / 'bag.mcap', 2500)
+    bag = Bag(tmp_path / 'bag.mcap', salvage=True)
+    list(ordered_entries(bag, axes, PERIOD, on_done=print))
+    once = list(bag.notes)
+    list(ordered_entries(bag, axes, PERIOD, on_done=print))
+    assert bag.notes == once
+    assert len(once) == 1
+
+
+def test_damage_is_an_error_unless_it_is_asked_for(tmp_path, axes):
+    write(tmp_path / 'bag.mcap', steady(100), chunk_size=2000)
+    damaged(tmp_path / 'bag.mcap', 2500)
+    with pytest.raises(InputError, match='truncated or damaged: .* in the chunk at byte'):
+        at_once(Bag(tmp_path / 'bag.mcap'), axes)
+
+
+def test_the_share_that_is_done_rises_to_one(tmp_path, axes, monkeypatch):
+    monkeypatch.setattr(batches_module, 'BATCH', 5000)
+    write(tmp_path / 'bag.mcap', steady(200), chunk_size=2000)
+    shares = []
+    bag = Bag(tmp_path / 'bag.mcap')
+    list(ordered_entries(bag, axes, PERIOD, on_done=shares.append))
+    assert shares == sorted(shares)
+    assert len(shares) > 3
+    assert shares[-1] == 1.0
 
 
 def entries(log_times, lags, sources):

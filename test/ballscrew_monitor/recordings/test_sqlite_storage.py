@@ -6,7 +6,7 @@ import contextlib
 import os
 import sqlite3
 
-from ballscrew_monitor.recordings.sqlite_pages import ends_with_a_page, whole_messages
+from ballscrew_monitor.recordings.sqlite_storage import ends_with_a_page, whole_messages
 import pytest
 
 TABLE = (
