@@ -275,7 +275,10 @@ def whole_bag(directory: Path, name: str, *, compress: bool = True) -> Iterator[
             writer.close()
         finally:
             writer.abandon()
-        _move(Path(folder), directory)
+        directory.mkdir(exist_ok=True)
+        (directory / METADATA).unlink(missing_ok=True)  # not of this bag until its own comes
+        for file in sorted(Path(folder).iterdir()):
+            file.replace(directory / file.name)
 
 
 def _growing(directory: Path, name: str) -> 'tempfile.TemporaryDirectory[str]':
@@ -288,14 +291,6 @@ def _growing(directory: Path, name: str) -> 'tempfile.TemporaryDirectory[str]':
         return tempfile.TemporaryDirectory(dir=place, prefix=f'.{name}.')
     except OSError as error:
         raise _unwritable(directory, error) from None
-
-
-def _move(made: Path, directory: Path) -> None:
-    """Move the files of a bag into `directory`, metadata that are not theirs out of the way."""
-    directory.mkdir(exist_ok=True)
-    (directory / METADATA).unlink(missing_ok=True)
-    for file in sorted(made.iterdir()):
-        file.replace(directory / file.name)
 
 
 def _unwritable(directory: Path, error: OSError) -> InputError:

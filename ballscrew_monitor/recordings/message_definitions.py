@@ -52,16 +52,10 @@ def _share_file(type_name: str, suffix: str) -> Path:
     parts = type_name.split('/')
     if len(parts) != 3:
         raise InputError(f'message type {type_name!r} is not of the form package/msg/Name')
-    prefixes = [
-        Path(prefix)
-        for prefix in os.environ.get('AMENT_PREFIX_PATH', '').split(os.pathsep)
-        if prefix
-    ] + [Path(sys.prefix)]
+    paths = os.environ.get('AMENT_PREFIX_PATH', '').split(os.pathsep)
+    prefixes = [*filter(None, paths), sys.prefix]
     for prefix in prefixes:
-        path = prefix / 'share' / parts[0] / parts[1] / f'{parts[2]}.{suffix}'
+        path = Path(prefix) / 'share' / parts[0] / parts[1] / f'{parts[2]}.{suffix}'
         if path.is_file():
             return path
-    raise InputError(
-        f'message type {type_name} is not installed below '
-        f'{" or ".join(str(prefix) for prefix in prefixes)}'
-    )
+    raise InputError(f'message type {type_name} is not installed below {" or ".join(prefixes)}')

@@ -77,11 +77,7 @@ def replay(bag: Bag, values: Mapping[str, Any], *, on_done: OnDone = ignore) -> 
     damaged one.
 
     """
-    return _messages(
-        part
-        for part in replay_parts(bag, values, columns=False, on_done=on_done)
-        if isinstance(part, TimedState)
-    )
+    return _messages(replay_parts(bag, values, columns=False, on_done=on_done))
 
 
 def replay_columns(
@@ -140,9 +136,11 @@ def _parts(
     yield from (run.outcome() for run in runs)
 
 
-def _messages(states: Iterator[TimedState]) -> Iterator[Judged]:
+def _messages(parts: Iterator[Part]) -> Iterator[Judged]:
     writers: dict[str, StateWriter] = {}
-    for one in states:
+    for one in parts:
+        if not isinstance(one, TimedState):
+            continue
         name, tier = one.axis.name, TIERS[one.axis.surface.tier]
         writer = writers.setdefault(name, StateWriter(name, tier))
         writer.tier = tier  # the node may have taken another one

@@ -10,13 +10,14 @@ of https://www.sqlite.org/fileformat.html, sections 1.6 and 2.1.
 
 """
 
-from collections.abc import Collection, Generator, Iterator
+from collections.abc import Collection, Iterator
 import contextlib
 from pathlib import Path
 import struct
 from typing import Any, BinaryIO
 
-from ballscrew_monitor.recordings.storages import by_log_time, Message, REORDER, Storage, TopicInfo
+from ballscrew_monitor.recordings import storages
+from ballscrew_monitor.recordings.storages import Message, Storage, TopicInfo
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.files import InputError
@@ -33,11 +34,9 @@ class SqliteStorage(Storage):
 
     _strays: frozenset[int] = frozenset()  # places of rows with a garbled time
 
-    def messages(
-        self, wanted: Collection[str], *, as_written: bool = False
-    ) -> Generator[Message, None, None]:
+    def messages(self, wanted: Collection[str], *, as_written: bool = False) -> storages.Stream:
         """Yield the messages, see `Storage`; they were written by log time, too."""
-        found = self._indexed(wanted) if self.is_indexed else by_log_time(self._whole())
+        found = self._indexed(wanted) if self.is_indexed else storages.by_log_time(self._whole())
         yield from (one for one in found if one.topic in wanted)
 
     def _read_topics(self) -> None:
@@ -141,7 +140,7 @@ def _outside(times: NDArray[np.float64]) -> NDArray[np.bool_]:
     """Tell which times are outside of their neighbours; the first and the last count as inside."""
     found = np.zeros(len(times), dtype=np.bool_)
     low, high = np.minimum(times[:-2], times[2:]), np.maximum(times[:-2], times[2:])
-    found[1:-1] = (times[1:-1] < low - REORDER) | (times[1:-1] > high + REORDER)
+    found[1:-1] = (times[1:-1] < low - storages.REORDER) | (times[1:-1] > high + storages.REORDER)
     return found
 
 

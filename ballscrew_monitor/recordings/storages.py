@@ -19,7 +19,7 @@ from pathlib import Path
 from ballscrew_monitor.recordings.bag_files import MAGIC
 from ballscrew_monitor.recordings.mcap_damage import DAMAGE, damaged_chunks, whole_records
 from mcap.exceptions import McapError
-from mcap.reader import make_reader, McapReader
+from mcap.reader import make_reader
 from mcap.records import Channel, Schema
 from mcap.records import Message as McapMessage
 from surrogate.files import InputError
@@ -48,6 +48,9 @@ class TopicInfo:
     count: int
 
 
+Stream = Generator[Message, None, None]
+
+
 class Storage:
     """One file of a bag; `salvage` takes the intact part of a damaged one."""
 
@@ -68,9 +71,7 @@ class Storage:
             if not self.topics:
                 raise
 
-    def messages(
-        self, wanted: Collection[str], *, as_written: bool = False
-    ) -> Generator[Message, None, None]:
+    def messages(self, wanted: Collection[str], *, as_written: bool = False) -> Stream:
         """
         Yield the messages of the topics `wanted` by log time; raises InputError on damage.
 
@@ -112,13 +113,14 @@ class McapStorage(Storage):
         self._schemas: dict[int, Schema] = {}
         self._channels: dict[int, Channel] = {}  # a damaged chunk may have named them
         self._lost: frozenset[int] = frozenset()  # where damaged chunks begin [bytes]
-        with damage_is_input(file):
-            _check_head(file)
+        with damage_is_input(file), file.open('rb') as stream:
+            if not MCAP.startswith(stream.read(len(MCAP))):  # an empty file is cut short
+                raise InputError(
+                    f'bag {file} is neither an MCAP nor a sqlite3 file by its first bytes'
+                )
         super().__init__(file, salvage=salvage)
 
-    def messages(
-        self, wanted: Collection[str], *, as_written: bool = False
-    ) -> Generator[Message, None, None]:
+    def messages(self, wanted: Collection[str], *, as_written: bool = False) -> Stream:
         """Yield the messages, see `Storage`; what has been salvaged meanwhile is noted."""
         reorder = not as_written
         if not self.is_indexed:
@@ -142,8 +144,17 @@ class McapStorage(Storage):
     def _indexed(self, wanted: Collection[str], *, reorder: bool) -> Iterator[Message]:
         with damage_is_input(self.file), self.file.open('rb') as stream:
             reader = make_reader(stream, validate_crcs=True)
-            if self._lost and not _without(reader, self._lost):
-                return
+            if self._lost:
+                summary = reader.get_summary()
+                assert summary is not None  # there is one where chunks are known
+                whole = [
+                    one
+                    for one in summary.chunk_indexes
+                    if one.chunk_start_offset not in self._lost
+                ]
+                if not whole:
+                    return
+                summary.chunk_indexes = whole
             for _, channel, message in reader.iter_messages(
                 topics=list(wanted), log_time_order=reorder
             ):
@@ -191,14 +202,6 @@ class McapStorage(Storage):
                 yield _message(self._channels[record.channel_id], record)
 
 
-def _check_head(file: Path) -> None:
-    """Raise InputError for a file that begins as no MCAP file does; an empty one is cut short."""
-    with file.open('rb') as stream:
-        head = stream.read(len(MCAP))
-    if not MCAP.startswith(head):
-        raise InputError(f'bag {file} is neither an MCAP nor a sqlite3 file by its first bytes')
-
-
 def by_log_time(messages: Iterable[Message]) -> Iterator[Message]:
     """Yield messages by log time, as far as they are not mixed over more than `REORDER`."""
     waiting: list[tuple[int, int, Message]] = []
@@ -208,16 +211,6 @@ def by_log_time(messages: Iterable[Message]) -> Iterator[Message]:
             yield heapq.heappop(waiting)[2]
     while waiting:
         yield heapq.heappop(waiting)[2]
-
-
-def _without(reader: McapReader, lost: Collection[int]) -> bool:
-    """Make a reader pass over chunks; tell if others are left."""
-    summary = reader.get_summary()
-    assert summary is not None  # there is one where chunks are known
-    summary.chunk_indexes = [
-        one for one in summary.chunk_indexes if one.chunk_start_offset not in lost
-    ]
-    return bool(summary.chunk_indexes)
 
 
 def _message(channel: Channel, message: McapMessage) -> Message:

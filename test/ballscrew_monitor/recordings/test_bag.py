@@ -15,6 +15,7 @@ TYPES = {
     '/joint_states': 'sensor_msgs/msg/JointState',
     '/axial_load': 'geometry_msgs/msg/WrenchStamped',
 }
+OF_MCAP = {'storage_identifier': 'mcap'}
 
 
 @pytest.fixture
@@ -99,22 +100,13 @@ def test_a_truncated_file_is_refused_when_it_is_opened(copy, part):
     assert 'is truncated or damaged' in sentence(lambda: Bag(copy))
 
 
-def test_something_else_is_refused(tmp_path):
-    (tmp_path / 'text.mcap').write_text('speed, load\n1, 2\n' * 100)
-    assert 'is neither an MCAP nor a sqlite3 file' in sentence(lambda: Bag(tmp_path / 'text.mcap'))
-
-
 @pytest.mark.parametrize('part', [0.05, 0.2, 0.4])
 def test_damage_inside_is_found_when_it_is_read(copy, part):
     path = copy / 'short.mcap'
     data = bytearray(path.read_bytes())
     data[int(part * len(data))] ^= 0x55
     path.write_bytes(data)
-
-    def read():
-        list(Bag(copy).messages())
-
-    assert 'is truncated or damaged' in sentence(read)
+    assert 'is truncated or damaged' in sentence(lambda: list(Bag(copy).messages()))
 
 
 @pytest.mark.parametrize(
@@ -123,16 +115,9 @@ def test_damage_inside_is_found_when_it_is_read(copy, part):
         ('][', 'is not a rosbag2 metadata file'),
         ('a: 1', 'is not a rosbag2 metadata file'),
         ({'storage_identifier': 'x', 'relative_file_paths': []}, 'must be mcap or sqlite3'),
-        (
-            {
-                'storage_identifier': 'mcap',
-                'relative_file_paths': ['a'],
-                'compression_format': 'lz4',
-            },
-            'must be zstd',
-        ),
-        ({'storage_identifier': 'mcap', 'relative_file_paths': ['x.mcap']}, 'x.mcap, which is'),
-        ({'storage_identifier': 'mcap', 'relative_file_paths': []}, 'holds no MCAP file'),
+        (OF_MCAP | {'relative_file_paths': ['a'], 'compression_format': 'lz4'}, 'must be zstd'),
+        (OF_MCAP | {'relative_file_paths': ['x.mcap']}, 'x.mcap, which is'),
+        (OF_MCAP | {'relative_file_paths': []}, 'holds no MCAP file'),
     ],
 )
 def test_bad_metadata_is_one_sentence(copy, content, expected):

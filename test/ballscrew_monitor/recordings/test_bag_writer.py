@@ -22,14 +22,20 @@ LATCHED = Topic(name='/b', type_name='std_msgs/msg/Header', offer=Offer.LATCHED)
 DATA = bytes(100)
 
 
-def write(writer, count, *, topic='/a', begin=1000):
+def write(writer, count, *, topic=HEADERS, begin=1000):
+    """Announce a topic, and write messages of it."""
+    writer.add_topic(topic)
     for number in range(count):
-        writer.write(topic, DATA, log_time=begin + number, publish_time=begin + number - 1)
+        writer.write(topic.name, DATA, log_time=begin + number, publish_time=begin + number - 1)
+
+
+def information(folder):
+    content = yaml.safe_load((folder / 'metadata.yaml').read_text())
+    return content['rosbag2_bagfile_information']
 
 
 def test_it_has_the_layout_of_rosbag2(tmp_path):
     with BagWriter(tmp_path, 'bag') as writer:
-        writer.add_topic(HEADERS)
         write(writer, 3)
     with (tmp_path / 'bag.mcap').open('rb') as stream:
         reader = make_reader(stream, validate_crcs=True)
@@ -46,12 +52,9 @@ def test_it_has_the_layout_of_rosbag2(tmp_path):
 
 def test_the_metadata_says_what_is_inside(tmp_path):
     with BagWriter(tmp_path, 'bag') as writer:
-        writer.add_topic(HEADERS)
-        writer.add_topic(LATCHED)
         write(writer, 3)
-        write(writer, 1, topic='/b', begin=500)
-    content = yaml.safe_load((tmp_path / 'metadata.yaml').read_text())
-    info = content['rosbag2_bagfile_information']
+        write(writer, 1, topic=LATCHED, begin=500)
+    info = information(tmp_path)
     assert (info['version'], info['storage_identifier']) == (9, 'mcap')
     assert info['relative_file_paths'] == ['bag.mcap']
     assert info['message_count'] == 4
@@ -70,7 +73,6 @@ def test_the_metadata_says_what_is_inside(tmp_path):
 def test_many_messages_count_as_each_does(tmp_path):
     times = np.array([700, 500, 900, 600])
     with BagWriter(tmp_path, 'bag') as writer:
-        writer.add_topic(HEADERS)
         writer.add_topic(LATCHED)
         write(writer, 1)
         writer.write_many(
@@ -87,8 +89,7 @@ def test_many_messages_count_as_each_does(tmp_path):
         ('/b', 900, 0, b'three'),
         ('/a', 1000, 0, DATA),
     ]
-    content = yaml.safe_load((tmp_path / 'metadata.yaml').read_text())
-    info = content['rosbag2_bagfile_information']
+    info = information(tmp_path)
     assert info['message_count'] == 5
     assert info['starting_time'] == {'nanoseconds_since_epoch': 500}
     assert info['duration'] == {'nanoseconds': 500}
@@ -97,7 +98,6 @@ def test_many_messages_count_as_each_does(tmp_path):
 def test_it_gets_its_name_when_it_is_closed(tmp_path):
     writer = BagWriter(tmp_path / 'new' / 'out', 'bag')
     folder = tmp_path / 'new' / 'out'
-    writer.add_topic(HEADERS)
     write(writer, 1)
     assert [path.name for path in folder.iterdir()] == ['bag.mcap.active']
     writer.close()
@@ -147,7 +147,6 @@ def test_an_unknown_type_and_a_bad_directory_are_one_sentence(tmp_path):
 def break_off(folder, error):
     """Fail in the middle of a bag."""
     with whole_bag(folder, 'bag') as writer:
-        writer.add_topic(HEADERS)
         write(writer, 1)
         raise error
 
@@ -158,7 +157,6 @@ def test_a_whole_bag_is_there_when_it_is_complete_or_not_at_all(tmp_path):
         break_off(folder, KeyboardInterrupt)
     assert not [*folder.parent.iterdir()]
     with whole_bag(folder, 'bag') as writer:
-        writer.add_topic(HEADERS)
         write(writer, 2)
         assert not folder.exists()
     assert [*folder.parent.iterdir()] == [folder]
@@ -170,7 +168,6 @@ def test_an_older_bag_and_what_is_beside_it_stay_until_the_next_is_whole(tmp_pat
     (tmp_path / 'notes.txt').write_text('of the mill')
     for count in (2, 3):
         with whole_bag(tmp_path, 'bag') as writer:
-            writer.add_topic(HEADERS)
             write(writer, count)
     with pytest.raises(ValueError, match='in the middle'):
         break_off(tmp_path, ValueError('in the middle'))

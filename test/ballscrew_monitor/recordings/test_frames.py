@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Frames arrive as they were sent, and the sender waits for nobody."""
 
+import contextlib
 import io
 import os
 
@@ -36,10 +37,8 @@ def pipe():
     ends = os.pipe()
     yield ends
     for end in ends:
-        try:
+        with contextlib.suppress(OSError):
             os.close(end)
-        except OSError:
-            pass
 
 
 def frame(number, size=1000):

@@ -166,6 +166,14 @@ def masked(states):
     return [re.sub('surface=<[^>]*>', '', state) for state in states]
 
 
+def assert_given_again(node, folder):
+    """Close a node, and hold a replay of its recording against what it said."""
+    node.close()
+    states, said = again(bag_in(folder))
+    assert masked(states) == masked(node.said)
+    assert 'agrees with all' in said
+
+
 def test_every_state_comes_again_bit_for_bit_and_is_proven(tmp_path):
     node = SmallNode(tmp_path)
     live(node, seconds=35)
@@ -206,10 +214,7 @@ def test_changes_of_parameters_and_acknowledgements_are_followed(tmp_path):
         axis.monitor.reset_totals()
     node.describe('acknowledge')
     live(node, seconds=12, begin=BEGIN + 10 * SECOND, seed=3)
-    node.close()
-    states, said = again(bag_in(tmp_path))
-    assert masked(states) == masked(node.said)
-    assert 'agrees with all' in said
+    assert_given_again(node, tmp_path)
 
 
 def test_a_recording_around_events_begins_where_an_axis_is_described(tmp_path):
@@ -265,10 +270,7 @@ def test_corrections_of_the_surface_are_taken_up(tmp_path):
     axis.use_surface(axis.surface.with_correction(where, better), node.values)
     node.describe('surface', ['x'])
     live(node, seconds=12)
-    node.close()
-    states, said = again(bag_in(tmp_path))
-    assert masked(states) == masked(node.said)
-    assert 'agrees with all' in said
+    assert_given_again(node, tmp_path)
 
 
 def test_a_replay_that_differs_is_refuted(tmp_path):

@@ -10,8 +10,7 @@ import threading
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.fields import message_class, stamp_of
-from ballscrew_monitor.cycle.domain import free_domain
-from ballscrew_monitor.cycle.node_process import child_environment, ros_environment
+from ballscrew_monitor.cycle.node_process import child_environment
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.playback import Choice, chosen, playable
 from ballscrew_monitor.recordings.player import PAUSE, Player
@@ -40,7 +39,6 @@ class Listener:
         self._wait_for = wait_for
         self.received = {topic: [] for topic in topics}
         self.clock = []
-        self.order = []  # what came, in the order of its coming
         self._context = rclpy.Context()
         rclpy.init(context=self._context, domain_id=domain)
         self.node = rclpy.create_node('listener', context=self._context)
@@ -58,6 +56,14 @@ class Listener:
     def until(self, condition, what):
         self._wait_for(condition, what, meanwhile=self.spin)
 
+    def until_all_of(self, bag):
+        self.until(
+            lambda: all(
+                len(found) == bag.topics[topic].count for topic, found in self.received.items()
+            ),
+            'the last message',
+        )
+
     def spin(self):
         self._executor.spin_once(timeout_sec=0.05)
 
@@ -65,15 +71,6 @@ class Listener:
         self._executor.shutdown()
         self.node.destroy_node()
         rclpy.shutdown(context=self._context)
-
-
-@pytest.fixture
-def domain(monkeypatch):
-    """Return a free domain, set in the environment."""
-    with free_domain() as number:
-        for name, value in ros_environment(number).items():
-            monkeypatch.setenv(name, value)
-        yield number
 
 
 @pytest.fixture
@@ -99,12 +96,7 @@ def play(domain, *arguments):
 def test_everything_arrives_as_it_was_recorded(domain, listener, short_bag):
     bag = Bag(short_bag)
     with play(domain, short_bag, '--rate', 4) as player:
-        listener.until(
-            lambda: all(
-                len(found) == bag.topics[topic].count for topic, found in listener.received.items()
-            ),
-            'the last message',
-        )
+        listener.until_all_of(bag)
         out, err = player.communicate(timeout=DEADLINE)
     assert (player.returncode, err) == (0, '')
     for topic, found in listener.received.items():
@@ -122,12 +114,7 @@ def test_of_a_damaged_bag_it_plays_what_is_whole(domain, listener, short_bag, tm
     (tmp_path / 'cut.mcap').write_bytes(data[: 3 * len(data) // 4])
     bag = Bag(tmp_path / 'cut.mcap', salvage=True)
     with play(domain, tmp_path / 'cut.mcap', '--rate', 20) as player:
-        listener.until(
-            lambda: all(
-                len(found) == bag.topics[topic].count for topic, found in listener.received.items()
-            ),
-            'the last message',
-        )
+        listener.until_all_of(bag)
         _, err = player.communicate(timeout=DEADLINE)
     assert (player.returncode, err) == (0, f'ballscrew: {bag.notes[0]}\n')
     assert 'is truncated or damaged: used are the ' in err
@@ -292,8 +279,3 @@ def test_a_stop_ends_it_at_once(short_bag):
     assert not played.complete
     assert not node.awaited
     assert not player.sent
-
-
-def test_a_rate_that_is_no_number_is_refused(short_bag):
-    with pytest.raises(InputError, match='rate is nan'):
-        Player(Publishers(), Bag(short_bag), rate=float('nan'))

@@ -6,40 +6,38 @@ from pathlib import Path
 import subprocess
 import sys
 
-from ballscrew_monitor.cycle.domain import free_domain
-from ballscrew_monitor.cycle.node_process import child_environment, ros_environment
+from ballscrew_monitor.cycle.node_process import child_environment
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
+from ballscrew_monitor.recordings.player import CLOCK, CLOCK_QOS
 from ballscrew_monitor.recordings.recorder import recorded_topics, Recorder
 from ballscrew_monitor.settings.parameters import defaults
 from ballscrew_monitor.settings.topics import output
 import pytest
 import rclpy
 from rclpy.executors import SingleThreadedExecutor
+from rosgraph_msgs.msg import Clock
 
 ROOT = Path(__file__).resolve().parents[3]
 DEADLINE = 120.0  # [s]
 
 
 @pytest.fixture
-def spinner(monkeypatch):
-    """Return a node in a free domain, a way to spin it, and the domain."""
-    with free_domain() as domain:
-        for name, value in ros_environment(domain).items():
-            monkeypatch.setenv(name, value)
-        context = rclpy.Context()
-        rclpy.init(context=context, domain_id=domain)
-        node = rclpy.create_node('recorder', context=context)
-        executor = SingleThreadedExecutor(context=context)
-        executor.add_node(node)
-        yield node, executor, domain
-        executor.shutdown()
-        node.destroy_node()
-        rclpy.shutdown(context=context)
+def spinner(domain):
+    """Return a node in a free domain, and a way to spin it."""
+    context = rclpy.Context()
+    rclpy.init(context=context, domain_id=domain)
+    node = rclpy.create_node('recorder', context=context)
+    executor = SingleThreadedExecutor(context=context)
+    executor.add_node(node)
+    yield node, executor
+    executor.shutdown()
+    node.destroy_node()
+    rclpy.shutdown(context=context)
 
 
-def test_what_is_played_is_recorded(spinner, short_bag, tmp_path, wait_for):
-    node, executor, domain = spinner
+def test_what_is_played_is_recorded(spinner, domain, short_bag, tmp_path, wait_for):
+    node, executor = spinner
     bag, heard, ticks = Bag(short_bag), [], iter(range(10**9))
     # Reliable: a best-effort reader misses what is sent before it has found the writer, and here,
     # unlike in a run, nobody waits for that.
@@ -53,7 +51,7 @@ def test_what_is_played_is_recorded(spinner, short_bag, tmp_path, wait_for):
         recorder = Recorder(
             node, writer, topics, lambda: next(ticks), {'/axial_load': heard.append}
         )
-        node.create_subscription(*clock())
+        node.create_subscription(Clock, CLOCK, lambda message: None, CLOCK_QOS)
         with subprocess.Popen(
             command, cwd=ROOT, env=child_environment(domain), stdout=subprocess.DEVNULL
         ) as player:
@@ -74,14 +72,6 @@ def test_what_is_played_is_recorded(spinner, short_bag, tmp_path, wait_for):
         ]
     assert [message.log_time for message in copy.messages()] == list(range(total))
     assert heard == [message.data for message in bag.messages(['/axial_load'])]
-
-
-def clock():
-    """Return the arguments of a subscription to the clock that ignores it."""
-    from ballscrew_monitor.recordings.player import CLOCK_QOS
-    from rosgraph_msgs.msg import Clock
-
-    return Clock, '/clock', lambda message: None, CLOCK_QOS
 
 
 def test_the_latched_topics_come_last():

@@ -181,13 +181,6 @@ def test_an_empty_type_is_that_of_the_bag(tmp_path):
         judged(bag, **{'x.speed.type': '', 'x.speed.topic': 'nope'})
 
 
-def test_a_bag_that_says_nothing_of_an_axis_is_refused(tmp_path):
-    values = parameters.defaults(['x'])
-    bag = write(tmp_path, (BEGIN, speed_message(BEGIN, 1.0, joint='y_axis')))
-    with pytest.raises(InputError, match='no message of /joint_states holds the speed of axis x'):
-        speed_messages(bag, [build_axis('x', values)])
-
-
 @pytest.mark.parametrize(
     'damage',
     [lambda data: b'', lambda data: data[:21], lambda data: data[:4] + b'\xff' * len(data)],
@@ -227,7 +220,8 @@ def test_the_joints_that_are_there_are_named_instead_of_a_wrong_one(tmp_path):
         (BEGIN + 1, speed_message(BEGIN, 100.0, joint='a')),
     )
     axis = build_axis('x', every_state())
-    with pytest.raises(InputError, match='they name a, b and no joint x_axis'):
+    nothing = 'no message of /joint_states holds the speed of axis x'
+    with pytest.raises(InputError, match=f'{nothing}.*they name a, b and no joint x_axis'):
         speed_messages(bag, [axis])
     assert 'name a, b and no joint x_axis, set x.speed.field to velocity[a]' in silence(bag, axis)
 

@@ -24,11 +24,12 @@ SETTINGS = {
     'total': 1e9,
 }
 DATA = serialize_message(Float64(data=1.0))
-TOPIC = Frame(
-    FrameKind.TOPIC,
-    topic=3,
-    body=json.dumps({'name': '/a', 'type': 'std_msgs/msg/Float64', 'offer': 'SENSOR'}).encode(),
-)
+
+
+def topic(number, name, offer='SENSOR'):
+    """Return what announces a topic."""
+    stated = {'name': name, 'type': 'std_msgs/msg/Float64', 'offer': offer}
+    return Frame(FrameKind.TOPIC, topic=number, body=json.dumps(stated).encode())
 
 
 def retention_in(folder, **changes):
@@ -43,7 +44,7 @@ def message(second, body=DATA):
 
 def feed(retention, seconds, triggers=()):
     """Give a message each second, and triggers just before those of some seconds."""
-    retention.take(TOPIC, 0.0)
+    retention.take(topic(3, '/a'), 0.0)
     for second in seconds:
         if second in triggers:
             retention.take(Frame(FrameKind.TRIGGER, log_time=EPOCH), float(second))
@@ -54,7 +55,7 @@ def seconds_in(folder):
     """Return the seconds of the messages in each recording, by its name."""
     return {
         path.name: [(one.log_time - EPOCH) // SECOND for one in Bag(path).messages()]
-        for path in sorted(folder.iterdir())
+        for path in sorted(folder.glob('*'))
     }
 
 
@@ -72,25 +73,24 @@ def test_always_is_everything_in_recordings_of_limited_length(tmp_path):
     assert retention.problem == ''
 
 
-def test_a_recording_that_is_large_enough_is_finished(tmp_path):
-    retention = retention_in(tmp_path, largest=4.0 * len(DATA))
-    feed(retention, range(9))
+@pytest.mark.parametrize(
+    ('changes', 'count', 'triggers', 'expected'),
+    [
+        ({'largest': 4.0 * len(DATA)}, 9, (), [[*range(4)], [*range(4, 8)], [8]]),
+        ({'always': False}, 40, (8, 10, 30), [[*range(2, 13)], [*range(24, 33)]]),
+        ({'always': False}, 40, (20, 25), [[*range(14, 23)], [*range(19, 28)]]),
+        ({'always': False}, 40, (), []),
+    ],
+    ids=['large enough is finished', 'around each event', 'one soon after another', 'no event'],
+)
+def test_the_messages_of_each_recording(tmp_path, changes, count, triggers, expected):
+    """Around events, the seconds before and after each are kept, and without one nothing is."""
+    folder = tmp_path / 'some'
+    retention = retention_in(folder, **changes)
+    feed(retention, range(count), triggers)
     retention.close()
-    assert [len(found) for found in seconds_in(tmp_path).values()] == [4, 4, 1]
-
-
-def test_around_events_the_seconds_before_and_after_each_are_kept(tmp_path):
-    retention = retention_in(tmp_path, always=False)
-    feed(retention, range(40), triggers=(8, 10, 30))
-    retention.close()
-    assert [*seconds_in(tmp_path).values()] == [[*range(2, 13)], [*range(24, 33)]]
-
-
-def test_without_an_event_nothing_is_written(tmp_path):
-    retention = retention_in(tmp_path / 'none', always=False)
-    feed(retention, range(40))
-    retention.close()
-    assert not (tmp_path / 'none').exists()
+    assert folder.exists() == bool(expected)
+    assert [*seconds_in(folder).values()] == expected
 
 
 def test_the_oldest_recordings_make_room_and_nothing_else_does(tmp_path):
@@ -99,7 +99,7 @@ def test_the_oldest_recordings_make_room_and_nothing_else_does(tmp_path):
     (tmp_path / '20200101T000000Z').mkdir()
     (tmp_path / '20200101T000000Z' / 'mine.txt').write_text('kept')
     retention = retention_in(tmp_path, largest=2e4, total=8e4)
-    retention.take(TOPIC, 0.0)
+    retention.take(topic(3, '/a'), 0.0)
     for second in range(200):
         retention.take(message(second, os.urandom(2000)), 0.01 * second)
     retention.close()
@@ -151,19 +151,11 @@ def test_a_full_disk_is_told_and_tried_again(tmp_path, monkeypatch):
 def test_a_topic_that_comes_later_is_recorded_too(tmp_path, always):
     retention = retention_in(tmp_path, always=always)
     feed(retention, range(3), triggers=(2,))
-    body = json.dumps({'name': '/b', 'type': 'std_msgs/msg/Float64', 'offer': 'LATCHED'})
-    retention.take(Frame(FrameKind.TOPIC, topic=4, body=body.encode()), 3.0)
+    retention.take(topic(4, '/b', 'LATCHED'), 3.0)
     retention.take(Frame(FrameKind.MESSAGE, 4, EPOCH + 3 * SECOND, 0, 0, DATA), 3.0)
     retention.close()
     (path,) = tmp_path.iterdir()
     assert [one.topic for one in Bag(path).messages()] == ['/a'] * 3 + ['/b']
-
-
-def test_an_event_soon_after_another_is_shown_with_what_was_before_it(tmp_path):
-    retention = retention_in(tmp_path, always=False)
-    feed(retention, range(40), triggers=(20, 25))
-    retention.close()
-    assert [*seconds_in(tmp_path).values()] == [[*range(14, 23)], [*range(19, 28)]]
 
 
 def test_a_topic_that_is_announced_while_nothing_can_be_written_is_known_later(
@@ -177,8 +169,7 @@ def test_a_topic_that_is_announced_while_nothing_can_be_written_is_known_later(
     with monkeypatch.context() as context:
         context.setattr(retention, '_write', refuse)
         feed(retention, [0])
-    body = json.dumps({'name': '/b', 'type': 'std_msgs/msg/Float64', 'offer': 'LATCHED'})
-    retention.take(Frame(FrameKind.TOPIC, topic=4, body=body.encode()), 1.0)
+    retention.take(topic(4, '/b', 'LATCHED'), 1.0)
     retention.take(Frame(FrameKind.MESSAGE, 4, EPOCH + 20 * SECOND, 0, 0, DATA), 20.0)
     retention.close()
     assert retention.problem == ''

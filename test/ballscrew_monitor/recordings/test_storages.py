@@ -4,6 +4,7 @@
 
 import dataclasses
 import itertools
+import os
 import shutil
 
 from ballscrew_monitor.recordings.bag import Bag
@@ -20,6 +21,11 @@ import yaml
 import zstandard
 
 KINDS = list(itertools.product(StoragePlugin, CompressionMode))
+TYPES = {
+    '/joint_states': 'sensor_msgs/msg/JointState',
+    '/axial_load': 'geometry_msgs/msg/WrenchStamped',
+    '/oil_temperature': 'sensor_msgs/msg/Temperature',
+}
 
 
 @pytest.fixture(scope='module')
@@ -37,8 +43,8 @@ def plain(messages):
     return [(one.topic, one.log_time, one.data) for one in messages]
 
 
-def write(path, messages, types, storage, compression):
-    """Write messages by rosbags."""
+def write(path, messages, storage, compression=CompressionMode.NONE):
+    """Write messages of the topics of the short bag by rosbags."""
     store = get_typestore(Stores.ROS2_JAZZY)
     writer = Writer(path, version=9, storage_plugin=storage)
     if compression is not CompressionMode.NONE:
@@ -46,11 +52,29 @@ def write(path, messages, types, storage, compression):
     with writer:
         connections = {
             topic: writer.add_connection(topic, kind, typestore=store)
-            for topic, kind in types.items()
+            for topic, kind in TYPES.items()
         }
         for one in messages:
             writer.write(connections[one.topic], one.log_time, one.data)
     return path
+
+
+@pytest.fixture
+def sqlite_file(messages, tmp_path):
+    """Return a sqlite3 file of the messages."""
+    return next(write(tmp_path / 'bag', messages, StoragePlugin.SQLITE3).glob('*.db3'))
+
+
+def overwrite(file, begin, content):
+    """Write over some bytes of a file."""
+    with file.open('r+b') as stream:
+        stream.seek(begin)
+        stream.write(content)
+
+
+def flip(file, at):
+    """Change one byte of a file."""
+    overwrite(file, at, bytes([file.read_bytes()[at] ^ 0x55]))
 
 
 @pytest.mark.parametrize(
@@ -59,22 +83,21 @@ def write(path, messages, types, storage, compression):
     ids=lambda word: word.name,
 )
 def test_every_storage_and_compression_of_rosbags_is_read(
-    storage, compression, messages, short_bag, tmp_path
+    storage, compression, messages, tmp_path
 ):
-    types = Bag(short_bag).types
-    bag = Bag(write(tmp_path / 'bag', messages, types, storage, compression))
+    bag = Bag(write(tmp_path / 'bag', messages, storage, compression))
     assert content(bag) == plain(messages)
-    assert bag.types == types
+    assert bag.types == TYPES
     assert (bag.start_time, bag.end_time) == (messages[0].log_time, messages[-1].log_time)
     assert len(list(bag.messages(['/axial_load']))) == bag.topics['/axial_load'].count > 100
     assert not list(bag.messages([]))
 
 
 @pytest.mark.parametrize('storage', list(StoragePlugin), ids=lambda word: word.name)
-def test_a_split_bag_is_one(storage, messages, short_bag, tmp_path):
-    types, half = Bag(short_bag).types, len(messages) // 2
+def test_a_split_bag_is_one(storage, messages, tmp_path):
+    half = len(messages) // 2
     parts = [
-        write(tmp_path / name, some, types, storage, CompressionMode.NONE)
+        write(tmp_path / name, some, storage)
         for name, some in (('one', messages[:half]), ('two', messages[half:]))
     ]
     whole, names = tmp_path / 'whole', []
@@ -96,12 +119,12 @@ def test_a_split_bag_is_one(storage, messages, short_bag, tmp_path):
     assert left.notes[0].endswith('it is left out')
 
 
-def test_the_tenth_part_of_a_bag_comes_after_the_second(messages, short_bag, tmp_path):
+def test_the_tenth_part_of_a_bag_comes_after_the_second(messages, tmp_path):
     half, whole = len(messages) // 2, tmp_path / 'whole'
     whole.mkdir()
     for number, some in ((2, messages[:half]), (10, messages[half:])):
         part = tmp_path / f'part_{number}'
-        write(part, some, Bag(short_bag).types, StoragePlugin.MCAP, CompressionMode.NONE)
+        write(part, some, StoragePlugin.MCAP)
         shutil.copy(next(part.glob('*.mcap')), whole / f'whole_{number}.mcap')
     assert [file.name for file in Bag(whole).files] == ['whole_2.mcap', 'whole_10.mcap']
     assert plain(Bag(whole).as_written()) == plain(messages)
@@ -121,19 +144,17 @@ def test_a_lone_file_may_be_packed(short_bag, messages, tmp_path):
         Bag(packed)
 
 
-def test_what_a_bag_says_of_itself_may_be_damaged(short_bag, messages, tmp_path):
+def test_what_a_bag_says_of_itself_may_be_damaged(messages, tmp_path):
     with BagWriter(tmp_path, 'own') as writer:
         writer.add_metadata({'source': 'mill.csv'})
-        for name, info in Bag(short_bag).topics.items():
-            writer.add_topic(Topic(name=name, type_name=info.type_name, offer=Offer.SENSOR))
+        for name, kind in TYPES.items():
+            writer.add_topic(Topic(name=name, type_name=kind, offer=Offer.SENSOR))
         for one in messages:
             writer.write(one.topic, one.data, log_time=one.log_time, publish_time=one.log_time)
     path = tmp_path / 'own.mcap'
     assert Bag(path).metadata == {'source': 'mill.csv'}
-    data = bytearray(path.read_bytes())
-    at = data.index(b'source') - 8  # the length of all texts
-    data[slice(at, at + 4)] = b'\xff' * 4
-    path.write_bytes(data)
+    at = path.read_bytes().index(b'source') - 8  # the length of all texts
+    overwrite(path, at, b'\xff' * 4)
     with pytest.raises(InputError, match='truncated or damaged'):
         Bag(path)
     bag = Bag(path, salvage=True)
@@ -158,10 +179,8 @@ def test_what_is_whole_of_a_truncated_file_is_read_and_counted(
 
 
 def test_a_damaged_chunk_is_left_out(short_bag, messages, tmp_path):
-    data = bytearray((short_bag / 'short.mcap').read_bytes())
-    data[int(0.2 * len(data))] ^= 0x55
-    path = tmp_path / 'bad.mcap'
-    path.write_bytes(data)
+    path = shutil.copy(short_bag / 'short.mcap', tmp_path / 'bad.mcap')
+    flip(path, int(0.2 * path.stat().st_size))
     bag = Bag(path, salvage=True)
     found = content(bag)
     assert 0 < len(found) < len(messages)
@@ -189,10 +208,7 @@ def test_what_follows_damage_over_the_border_of_chunks_is_read(messages, tmp_pat
     path, written = tmp_path / 'bad.mcap', plain(messages)
     begins = chunks(path, written)
     assert len(begins) > 5
-    data = bytearray(path.read_bytes())
-    begin, end = begins[2] - 100, begins[2] + 100
-    data[begin:end] = b'\xff' * 200
-    path.write_bytes(data)
+    overwrite(path, begins[2] - 100, b'\xff' * 200)
     bag = Bag(path, salvage=True)
     found = content(bag)
     assert len(written) * (1 - 2 / len(begins)) - 5 < len(found) < len(written)
@@ -207,9 +223,7 @@ def test_a_message_of_the_time_before_the_damage_is_read(messages, tmp_path):
     path = tmp_path / 'bad.mcap'
     same = [(topic, 10**18, data) for topic, _, data in plain(messages)]
     begins = chunks(path, same)
-    data = bytearray(path.read_bytes())
-    data[begins[3] + 100] ^= 0x55
-    path.write_bytes(data)
+    flip(path, begins[3] + 100)
     bag = Bag(path, salvage=True)
     found = content(bag)
     assert len(same) * (1 - 1 / len(begins)) - 5 < len(found) < len(same)
@@ -219,17 +233,15 @@ def test_a_message_of_the_time_before_the_damage_is_read(messages, tmp_path):
 @pytest.mark.parametrize('part', [0.5, 0.8, 0.95, 0.999])
 @pytest.mark.parametrize('size', [0, 20_000], ids=['short', 'over several pages'])
 def test_what_is_whole_of_a_truncated_sqlite3_file_is_read_and_counted(
-    size, part, messages, short_bag, tmp_path
+    size, part, messages, tmp_path
 ):
     some = [
         dataclasses.replace(one, data=one.data + bytes([number % 256]) * size)
         for number, one in enumerate(messages)
     ][: 150 if size else None]
-    types = Bag(short_bag).types
-    path = write(tmp_path / 'bag', some, types, StoragePlugin.SQLITE3, CompressionMode.NONE)
+    path = write(tmp_path / 'bag', some, StoragePlugin.SQLITE3)
     file = next(path.glob('*.db3'))
-    data = file.read_bytes()
-    file.write_bytes(data[: int(part * len(data))])
+    os.truncate(file, int(part * file.stat().st_size))
     with pytest.raises(InputError, match='truncated or damaged'):
         Bag(path)
     bag = Bag(path, salvage=True)
@@ -245,51 +257,33 @@ def test_what_is_whole_of_a_truncated_sqlite3_file_is_read_and_counted(
 
 
 @pytest.mark.parametrize('size', [50, 2000, 4096, 20_000])
-def test_a_sqlite3_file_that_ends_before_its_messages_is_one_sentence(
-    size, messages, short_bag, tmp_path
-):
-    types = Bag(short_bag).types
-    path = write(tmp_path / 'bag', messages, types, StoragePlugin.SQLITE3, CompressionMode.NONE)
-    file = next(path.glob('*.db3'))
-    file.write_bytes(file.read_bytes()[:size])
+def test_a_sqlite3_file_that_ends_before_its_messages_is_one_sentence(size, sqlite_file):
+    os.truncate(sqlite_file, size)
     with pytest.raises(InputError, match=r'truncated or damaged, it must be a complete sqlite3'):
-        Bag(file, salvage=True)
+        Bag(sqlite_file, salvage=True)
 
 
-def test_a_page_of_a_sqlite3_file_that_is_damaged_is_left_out(messages, short_bag, tmp_path):
-    types = Bag(short_bag).types
-    path = write(tmp_path / 'bag', messages, types, StoragePlugin.SQLITE3, CompressionMode.NONE)
-    file = next(path.glob('*.db3'))
-    data = bytearray(file.read_bytes())
-    begin = len(data) // 8192 * 4096
-    end = begin + 4096
-    data[begin:end] = b'\xff' * 4096
-    file.write_bytes(data)
-    bag = Bag(path, salvage=True)
+def test_a_page_of_a_sqlite3_file_that_is_damaged_is_left_out(messages, sqlite_file):
+    overwrite(sqlite_file, sqlite_file.stat().st_size // 8192 * 4096, b'\xff' * 4096)
+    bag = Bag(sqlite_file.parent, salvage=True)
     found = content(bag)
     assert 0.8 * len(messages) < len(found) < len(messages)
     assert set(found) < set(plain(messages))
-    assert bag.notes[0].startswith(f'bag {file} is truncated or damaged')
+    assert bag.notes[0].startswith(f'bag {sqlite_file} is truncated or damaged')
 
 
 @pytest.mark.parametrize('at', [0.5, 0.55, 0.6])
 @pytest.mark.parametrize('kind', ['zeros', 'noise'])
 def test_a_sqlite3_file_damaged_within_gives_true_messages_whenever_it_is_read(
-    at, kind, messages, short_bag, tmp_path
+    at, kind, messages, sqlite_file
 ):
-    types = Bag(short_bag).types
-    path = write(tmp_path / 'bag', messages, types, StoragePlugin.SQLITE3, CompressionMode.NONE)
-    file = next(path.glob('*.db3'))
-    data = bytearray(file.read_bytes())
-    begin = int(at * len(data))
+    begin = int(at * sqlite_file.stat().st_size)
     if kind == 'zeros':
-        end = begin + 500
-        data[begin:end] = bytes(500)
+        overwrite(sqlite_file, begin, bytes(500))
     else:
         for number in range(20):
-            data[begin + 150 * number] ^= 0x55
-    file.write_bytes(data)
-    bag = Bag(path, salvage=True)
+            flip(sqlite_file, begin + 150 * number)
+    bag = Bag(sqlite_file.parent, salvage=True)
     found = content(bag)
     assert content(bag) == found
     assert 0.8 * len(messages) < len(found) <= len(messages)

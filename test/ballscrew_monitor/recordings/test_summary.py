@@ -29,6 +29,18 @@ def make_summary():
     return summarizer.result()
 
 
+def summary_of(event=None, **totals):
+    """Return the summary of one state, and of an event."""
+    summarizer = Summarizer()
+    state = BallScrewState(axis='x', judged=100)
+    for name, value in totals.items():
+        setattr(state.totals, name, value)
+    summarizer.add_state(state)
+    if event is not None:
+        summarizer.add_event(event)
+    return summarizer.result()
+
+
 def test_totals_are_those_of_the_last_state():
     summary = make_summary()
     assert (summary.states, summary.judged, summary.running_time) == (2, 1000, 8.0)
@@ -51,10 +63,7 @@ def test_an_event_is_listed_once_with_its_last_word():
 def test_an_efficiency_is_told_in_percent():
     event = OutOfZone(event_id=1, worst_value=0.0656)
     event.cause = Finding(code=Finding.CODE_EFFICIENCY_LOW, limit=0.85)
-    summarizer = Summarizer()
-    summarizer.add_state(BallScrewState(axis='x', judged=1))
-    summarizer.add_event(event)
-    found = summarizer.result()
+    found = summary_of(event)
     assert found.lines()[-1].endswith('efficiency < 85 %, worst 6.6 %')
     assert found.events[0].shown(math.nan) == '–'
 
@@ -65,23 +74,10 @@ def test_an_event_that_is_still_on_lasts_to_the_last_state():
 
 
 def test_json_has_units_and_no_nan():
-    summarizer = Summarizer()
-    state = BallScrewState(axis='x')
-    state.totals.energy_lost = math.nan
-    summarizer.add_state(state)
-    record = json.loads(json_text(summarizer.result().record()))
+    record = json.loads(json_text(summary_of(energy_lost=math.nan).record()))
     assert record['energy_lost_J'] is None
     assert record['running_time_s'] == 0.0
     assert record['events'] == []
-
-
-def summary_of(**times):
-    summarizer = Summarizer()
-    state = BallScrewState(axis='x', judged=100)
-    for name, value in times.items():
-        setattr(state.totals, name, value)
-    summarizer.add_state(state)
-    return summarizer.result()
 
 
 def test_no_event_reads_well_only_where_a_motion_was_judged():

@@ -2,14 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Times and shares in the words of a person."""
 
-from ballscrew_monitor.recordings.words import (
-    duration,
-    list_of,
-    number,
-    percent,
-    share,
-    shown_unit,
-)
+from ballscrew_monitor.recordings import words
 import pytest
 
 
@@ -18,7 +11,7 @@ import pytest
     [(0.0, '0 s'), (14.86, '14.9 s'), (600.0, '10 min'), (9000.0, '2.5 h'), (float('nan'), '–')],
 )
 def test_durations(seconds, text):
-    assert duration(seconds) == text
+    assert words.duration(seconds) == text
 
 
 @pytest.mark.parametrize(
@@ -36,27 +29,18 @@ def test_durations(seconds, text):
     ],
 )
 def test_percents_are_never_all_or_nothing_by_rounding(part, text):
-    assert percent(part) == text
+    assert words.percent(part) == text
 
 
-def test_numbers_are_not_in_powers_of_ten_where_they_need_not():
-    assert [number(value) for value in (1234.0, 1.5e9, 0.00012, float('inf'))] == [
-        '1230',
-        '1.5e+09',
-        '0.00012',
-        '–',
-    ]
+@pytest.mark.parametrize(
+    ('value', 'text'),
+    [(1234.0, '1230'), (1.5e9, '1.5e+09'), (0.00012, '0.00012'), (float('inf'), '–')],
+)
+def test_numbers_are_not_in_powers_of_ten_where_they_need_not(value, text):
+    assert words.number(value) == text
 
 
-def test_a_share_of_nothing_is_not_known():
-    assert (share(1.0, 0.0), share(1.0, 4.0)) == ('–', '25 %')
-
-
-def test_lists():
-    assert list_of(['a']) == 'a'
-    assert list_of(['a', 'b', 'c']) == 'a; b; and c'
-
-
-def test_a_unit_is_shown_with_its_sign():
-    assert shown_unit('degC') == '°C'
-    assert shown_unit('mm/s') == 'mm/s'
+def test_shares_lists_and_units():
+    assert (words.share(1.0, 0.0), words.share(1.0, 4.0)) == ('–', '25 %')
+    assert (words.list_of(['a']), words.list_of(['a', 'b', 'c'])) == ('a', 'a; b; and c')
+    assert (words.shown_unit('degC'), words.shown_unit('mm/s')) == ('°C', 'mm/s')

@@ -93,15 +93,8 @@ def test_only_messages_with_equal_lengths_and_texts_fit():
     moved = JointState(name=['a', 'b'], position=[3.0, 4.0])
     longer = JointState(name=['a', 'b'], velocity=[3.0, 4.0, 5.0])
     big_endian = b'\0\0' + serialize_message(first)[2:]
-    assert fits(layout, first, others, renamed, moved, longer, big_endian, b'') == [
-        True,
-        True,
-        False,
-        False,
-        False,
-        False,
-        False,
-    ]
+    different = (renamed, moved, longer, big_endian, b'')
+    assert fits(layout, first, others, *different) == [True] * 2 + [False] * 5
 
 
 def test_stamps_are_read_from_the_header():

@@ -267,9 +267,9 @@ def test_damage_that_is_read_twice_is_noted_once(tmp_path, axes):
     write(tmp_path / 'bag.mcap', steady(400), chunk_size=2000)
     damaged(tmp_path / 'bag.mcap', 2500)
     bag = Bag(tmp_path / 'bag.mcap', salvage=True)
-    list(ordered_entries(bag, axes, PERIOD, on_done=print))
+    at_once(bag, axes)
     once = list(bag.notes)
-    list(ordered_entries(bag, axes, PERIOD, on_done=print))
+    at_once(bag, axes)
     assert bag.notes == once
     assert len(once) == 1
 
