@@ -19,11 +19,10 @@ import sys
 import threading
 
 from ballscrew_monitor.core.interrupts import DONE, FAILED, interrupts, SIGNALLED
-from ballscrew_monitor.cycle.domain import free_domain, is_free
+from ballscrew_monitor.cycle import outcome as outcomes
+from ballscrew_monitor.cycle.domain import free_domain, is_free, remove_stale
 from ballscrew_monitor.cycle.node_process import confined, NodeProcess, ros_environment
-from ballscrew_monitor.cycle.outcome import facts, LOG, losses, Outcome, report
-from ballscrew_monitor.cycle.plan import Plan, RECORDING
-from ballscrew_monitor.cycle.shared_memory import remove_stale
+from ballscrew_monitor.cycle.outcome import LOG, Outcome, Plan, RECORDING
 from ballscrew_monitor.cycle.supervision import RunFailure, Supervision
 from ballscrew_monitor.recordings.bag_writer import BagWriter
 from ballscrew_monitor.report.products import remove_report
@@ -50,7 +49,7 @@ def run(made: Plan) -> int:
         return SIGNALLED + interrupted[0]
     for sentence in outcome.failures:
         print(f'ballscrew: {sentence}', file=sys.stderr)
-    report(made, outcome)
+    outcomes.report(made, outcome)
     return FAILED if outcome.failures else DONE
 
 
@@ -71,10 +70,10 @@ def _supervise(made: Plan, stop: threading.Event) -> Outcome:
         try:
             outcome = supervision.carry_out(stop)
             if not stop.is_set():
-                outcome = dataclasses.replace(outcome, failures=losses(made, outcome))
+                outcome = dataclasses.replace(outcome, failures=outcomes.losses(made, outcome))
         except RunFailure as failure:
             outcome = supervision.outcome(str(failure))
-        writer.add_metadata(facts(made, outcome))
+        writer.add_metadata(outcomes.facts(made, outcome))
         return outcome
 
 

@@ -15,8 +15,7 @@ import time
 from typing import Any
 
 from ballscrew_monitor.cycle.node_process import NodeProcess
-from ballscrew_monitor.cycle.outcome import Outcome, speed_health
-from ballscrew_monitor.cycle.plan import Plan
+from ballscrew_monitor.cycle.outcome import Outcome, Plan, speed_health
 from ballscrew_monitor.cycle.status import progress_bar, state_cells, StatusLine
 from ballscrew_monitor.recordings.bag_writer import BagWriter
 from ballscrew_monitor.recordings.player import Played, Player

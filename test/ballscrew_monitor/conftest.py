@@ -24,9 +24,9 @@ from ballscrew_monitor.core.fields import message_class
 from ballscrew_monitor.core.inputs import InputSample, Source
 from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.core.state import MonitorSettings
-from ballscrew_monitor.cycle.domain import DOMAINS, free_domain, held
+from ballscrew_monitor.cycle import domain as domains
+from ballscrew_monitor.cycle.domain import free_domain, SHARED_MEMORY
 from ballscrew_monitor.cycle.node_process import child_environment
-from ballscrew_monitor.cycle.shared_memory import remove_stale, SHARED_MEMORY
 from ballscrew_monitor.judge import derived_load, point, step
 from ballscrew_monitor.judge.monitor import Monitor
 from ballscrew_monitor.node.solver_process import MODULE
@@ -289,7 +289,8 @@ def last_one_cleans(folder, clean):
 def remove_stale_segments():
     """Remove what killed nodes have left in the shared memory."""
     with contextlib.ExitStack() as stack:
-        remove_stale({domain for domain in DOMAINS if stack.enter_context(held(domain))})
+        held = {one for one in domains.DOMAINS if stack.enter_context(domains.held(one))}
+        domains.remove_stale(held)
 
 
 @pytest.fixture(scope='session')

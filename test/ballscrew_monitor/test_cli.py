@@ -9,6 +9,8 @@ import sys
 
 from ballscrew_monitor import cli
 from ballscrew_monitor.cycle.node_process import child_environment
+from ballscrew_monitor.node.restart_state import RestartState
+from ballscrew_monitor.node.state_records import entry_of, Kind
 import pytest
 from surrogate.files import InputError
 from surrogate.surface import SurfaceError
@@ -179,3 +181,35 @@ def test_a_reader_that_has_seen_enough_is_no_crash(short_bag):
     process.stderr.close()
     process.wait()
     assert 'Traceback' not in errors
+
+
+@pytest.fixture(name='state')
+def make_state(tmp_path):
+    state = RestartState(tmp_path / 'ballscrew_monitor' / 'ballscrew_monitor')
+    state.keep(None, entry_of(Kind.NODE_START, None, 1, {}))
+    facts = {'event': 4, 'text': '', 'ending': 'ended', 'worst_value': float('nan')}
+    state.keep(None, entry_of(Kind.EVENT_END, 'x', 2, facts))
+    state.flush()
+    yield state
+    state.close()
+
+
+def test_the_event_log_is_printed_for_people(state, capsys):
+    assert cli.main(['events', str(state.folder)]) == 0
+    start, end = capsys.readouterr().out.splitlines()
+    assert start.split()[1:] == ['-', 'node_start']
+    assert end.split()[1:] == ['x', 'event_end', 'event', '4:', 'ended']
+
+
+def test_the_event_log_is_exported_as_lines_of_json(state, capsys, monkeypatch, tmp_path):
+    monkeypatch.setenv('XDG_STATE_HOME', str(tmp_path))
+    state.close()
+    assert cli.main(['events', '--json']) == 0
+    start, end = map(json.loads, capsys.readouterr().out.splitlines())
+    assert (start['kind'], start['axis'], start['stamp_ns']) == ('node_start', None, 1)
+    assert (end['event'], end['worst_value'], end['ending']) == (4, None, 'ended')
+
+
+def test_a_folder_without_an_event_log_is_refused(capsys, tmp_path):
+    assert cli.main(['events', str(tmp_path)]) == 2
+    assert f'{tmp_path} has no state.sqlite3' in capsys.readouterr().err

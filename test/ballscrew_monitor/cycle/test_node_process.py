@@ -11,7 +11,8 @@ import sys
 
 from ballscrew_monitor.cycle import node_process
 from ballscrew_monitor.cycle.domain import free_domain
-from ballscrew_monitor.cycle.node_process import child_environment, NodeProcess, path_to_this_code
+from ballscrew_monitor.cycle.node_process import child_environment, NodeProcess
+from ballscrew_monitor.node.solver_process import path_to_this_code
 from ballscrew_monitor.settings.middleware import loopback
 from diagnostic_msgs.msg import DiagnosticArray
 import pytest

@@ -17,7 +17,7 @@ from ballscrew_monitor.cli import main
 from ballscrew_monitor.core.fields import stamp_of
 from ballscrew_monitor.cycle import node_process
 from ballscrew_monitor.cycle.node_process import child_environment, ros_environment
-from ballscrew_monitor.cycle.plan import plan
+from ballscrew_monitor.cycle.outcome import plan
 from ballscrew_monitor.cycle.run import run
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.replay import replay
