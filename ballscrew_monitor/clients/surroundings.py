@@ -60,7 +60,9 @@ def spun(
 
 def surroundings(node: Node) -> Surroundings:
     """Return what is seen around the node."""
-    domain = node.context.get_domain_id()
+    domain, udp_table = node.context.get_domain_id(), ''
+    with contextlib.suppress(OSError):
+        udp_table = UDP.read_text()
     published = {
         name: tuple(types)
         for name, types in node.get_topic_names_and_types()
@@ -72,16 +74,9 @@ def surroundings(node: Node) -> Surroundings:
         localhost_only=os.environ.get('ROS_LOCALHOST_ONLY') == '1',
         nodes=tuple(sorted(name for name in node.get_node_names() if name != node.get_name())),
         topics=published,
-        domains=tuple(other for other in domains_of(_udp_table()) if other != domain),
+        domains=tuple(other for other in domains_of(udp_table) if other != domain),
         use_sim_time=bool(node.get_parameter('use_sim_time').value),
     )
-
-
-def _udp_table() -> str:
-    try:
-        return UDP.read_text()
-    except OSError:
-        return ''
 
 
 def domains_of(udp_table: str) -> list[int]:
@@ -121,16 +116,13 @@ class Hearing:
         fill(self._record, event)
         if isinstance(event, InputSample):
             accept(self._memory, self._settings, self._record, event.value)
-            self._keep(event, now)
+            scaling = self._source.scaling
+            self._numbers.append((event.value - scaling.shift) / scaling.factor)
+            self._longest_gap = max(self._longest_gap, self._silence(now))
+            self._last = now
         else:
             self._words.hear(event, self._memory)
             take_refusal(self._memory, self._record)
-
-    def _keep(self, sample: InputSample, now: int) -> None:
-        scaling = self._source.scaling
-        self._numbers.append((sample.value - scaling.shift) / scaling.factor)
-        self._longest_gap = max(self._longest_gap, self._silence(now))
-        self._last = now
 
     def _silence(self, now: int) -> int:
         """Return the time since the last sample [ns], 0 before the first."""

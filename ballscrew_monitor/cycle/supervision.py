@@ -9,6 +9,7 @@ active, and announces its subscriptions after that.
 
 """
 
+import functools
 import sys
 import threading
 import time
@@ -52,26 +53,18 @@ class Supervision:
         self._played: Played | None = None
         self._broken: BaseException | None = None
         self._context = rclpy.Context()
+        quiet: dict[str, Any] = {'start_parameter_services': False, 'enable_rosout': False}
         rclpy.init(
             context=self._context, domain_id=domain, signal_handler_options=SignalHandlerOptions.NO
         )
-        self._node = rclpy.create_node(
-            'ballscrew_run',
-            context=self._context,
-            start_parameter_services=False,
-            enable_rosout=False,
-        )
+        self._node = rclpy.create_node('ballscrew_run', context=self._context, **quiet)
         self._executor = SingleThreadedExecutor(context=self._context)
         self._executor.add_node(self._node)
-        self._player = Player(
-            self._node, plan.bag, rate=plan.rate, topics=list(input_topics(plan.values))
-        )
+        topics = list(input_topics(plan.values))
+        self._player = Player(self._node, plan.bag, rate=plan.rate, topics=topics)
+        recorded, listeners = recorded_topics(plan.values), self._listeners()
         self._recorder = Recorder(
-            self._node,
-            writer,
-            recorded_topics(plan.values),
-            lambda: self._player.now,
-            self._listeners(),
+            self._node, writer, recorded, lambda: self._player.now, listeners
         )
 
     def __enter__(self) -> 'Supervision':
@@ -119,9 +112,7 @@ class Supervision:
     def _listeners(self) -> dict[str, Any]:
         found: dict[str, Any] = {'/diagnostics': self._on_diagnostics}
         for axis in self._plan.values['axes']:
-            found[output(axis, 'state')] = lambda data, axis=axis: self._states.update(
-                {axis: data}
-            )
+            found[output(axis, 'state')] = functools.partial(self._states.__setitem__, axis)
             found[output(axis, 'surface_info')] = lambda data, axis=axis: self._active.add(axis)
         return found
 
@@ -154,10 +145,7 @@ class Supervision:
                     return
                 self._player.show_begin()
             if time.monotonic() > deadline:
-                raise RunFailure(
-                    f'the node did not become active within {START_PATIENCE:g} s'
-                    + self._last_words()
-                )
+                raise self._failure(f'did not become active within {START_PATIENCE:g} s')
 
     def _play(self, stop: threading.Event) -> None:
         try:
@@ -207,7 +195,7 @@ class Supervision:
     def _check_node(self) -> None:
         code = self._process.returncode
         if code is not None:
-            raise RunFailure(f'the node ended with exit code {code}' + self._last_words())
+            raise self._failure(f'ended with exit code {code}')
 
     def _stop_node(self) -> None:
         """Stop the node and record what it says at last."""
@@ -219,11 +207,10 @@ class Supervision:
             if self._writer.total == before:
                 break
         if code != 0:
-            raise RunFailure(
-                f'the node ended with exit code {code} when it was asked to stop'
-                + self._last_words()
-            )
+            raise self._failure(f'ended with exit code {code} when it was asked to stop')
 
-    def _last_words(self) -> str:
+    def _failure(self, what: str) -> RunFailure:
+        """Return what the node did, with its last words."""
         words = self._process.last_words()
-        return f'; {self._process.log} ends with: {words}' if words else ''
+        said = f'; {self._process.log} ends with: {words}' if words else ''
+        return RunFailure(f'the node {what}{said}')

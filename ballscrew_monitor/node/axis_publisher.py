@@ -15,24 +15,12 @@ from ballscrew_monitor.core.inputs import InputSample, Refusal, Source
 from ballscrew_monitor.core.links import Link
 from ballscrew_monitor.core.shelving import Shelving
 from ballscrew_monitor.core.state import State
-from ballscrew_monitor.messages import diagnostics
-from ballscrew_monitor.messages.state_messages import (
-    fill_result,
-    read_point,
-    StateWriter,
-    surface_info_message,
-    TIERS,
-)
+from ballscrew_monitor.messages import diagnostics, state_messages
+from ballscrew_monitor.messages.state_messages import TIERS
 from ballscrew_monitor.node.alarm import Alarm
 from ballscrew_monitor.node.kept_axes import KeptAxes
 from ballscrew_monitor.node.output_topics import LatchedTopics, PlainTopics, quiet_publishers
-from ballscrew_monitor.node.state_records import (
-    Corrections,
-    corrections_of,
-    Kind,
-    point_facts,
-    solves_of,
-)
+from ballscrew_monitor.node.state_records import Corrections, Kind, point_facts
 from ballscrew_monitor.settings.axis import Axis
 from ballscrew_monitor.settings.qos import state_qos
 from ballscrew_msgs.msg import BallScrewState, OperatingPoint, PointResult
@@ -78,7 +66,7 @@ class AxisPublisher:
         self._record = record
         self._changed = changed
         self._node = node
-        self._writer = StateWriter(axis.name, TIERS[axis.surface.tier])
+        self._writer = state_messages.StateWriter(axis.name, TIERS[axis.surface.tier])
         self._last: State | None = None
         self._links: Mapping[Source, Link] = {}
         self._said: tuple[diagnostics.StatusSummary, ...] = ()
@@ -91,15 +79,13 @@ class AxisPublisher:
         self._state = make(BallScrewState, f'~/{axis.name}/state', promise)
         self.alarm = Alarm(node, axis, latched.event, kept, record)
         self._info = latched.info
-        self._plain = None
-        if values[f'{axis.name}.plain_topics']:
-            self._plain = PlainTopics(node, axis.name, make, STATE_QOS)
+        plain = values[f'{axis.name}.plain_topics']
+        self._plain = PlainTopics(node, axis.name, make, STATE_QOS, wanted=plain)
 
     def close(self) -> None:
         """Destroy the publishers, but for those that outlive the axis."""
         self._node.destroy_lifecycle_publisher(self._state)
-        if self._plain is not None:
-            self._plain.close()
+        self._plain.close()
 
     def publish_state(self, state: State) -> None:
         """Publish a state, and before it the event that it begins or ends."""
@@ -109,8 +95,7 @@ class AxisPublisher:
         message = self._writer.write(state)
         self._state.publish(message)
         self._record(f'~/{self.name}/state', message)
-        if self._plain is not None:
-            self._plain.publish(state)
+        self._plain.publish(state)
 
     def shelve(self, shelving: Shelving) -> None:
         """Shelve the warning, or no longer, and let the last state say so."""
@@ -125,16 +110,14 @@ class AxisPublisher:
         return over
 
     def _show_shelving(self) -> None:
-        if self._last is None:
-            return
-        self._last = dataclasses.replace(self._last, shelving=self.axis.monitor.shelving)
-        if self._plain is not None:
+        if self._last is not None:
+            self._last = dataclasses.replace(self._last, shelving=self.axis.monitor.shelving)
             self._plain.publish(self._last)
 
     def publish_info(self) -> None:
         """Publish what the surface and the limits are."""
         settings = self.axis.monitor.settings
-        message = surface_info_message(
+        message = state_messages.surface_info_message(
             self.axis.name,
             self.axis.surface,
             settings.limits,
@@ -197,13 +180,13 @@ class AxisPublisher:
     def _save(self) -> str:
         """Keep the corrections; return why that failed, or nothing."""
         surface = self.surface
-        kept = corrections_of(self.name, surface.base_sha256, surface.corrections)
+        kept = Corrections.of(self.name, surface.base_sha256, surface.corrections)
         return self._kept.state.keep_corrections(kept)
 
     def restore(self, *, late: bool) -> str:
         """Take up corrections of before; return what became of them, if there are any."""
         found = self._kept.state.recall(Corrections(self.name), late=late)
-        kept = solves_of(found)
+        kept = found.read_solves()
         if not kept:
             return ''
         if found.surface != self.surface.base_sha256:
@@ -254,10 +237,10 @@ class AxisPublisher:
         response.results = [self._evaluate(point) for point in points]
 
     def _evaluate(self, point: OperatingPoint) -> PointResult:
-        settings, result = self.axis.monitor.settings, PointResult()
-        asked = read_point(point, default_temperature=settings.default_temperature)
-        answer = estimate(asked, self.axis.surface, rcs_limit=settings.limits.rcs)
-        fill_result(result, answer, TIERS[self.axis.surface.tier])
+        result = PointResult()
+        asked = state_messages.read_point(point, default_temperature=self.default_temperature)
+        answer = estimate(asked, self.surface, rcs_limit=self.rcs_limit)
+        state_messages.fill_result(result, answer, TIERS[self.surface.tier])
         return result
 
     def has_news(self, now: int) -> bool:
@@ -286,12 +269,11 @@ class AxisPublisher:
 
     def note_defect(self, error: Exception, event: InputSample | Refusal | int) -> bool:
         """Keep and log that a defect of the program met an event; tell whether it is new."""
-        sentence = diagnostics.defect_text(error, event)
         if self.defect:
             return False
-        self.defect = sentence
+        self.defect = diagnostics.defect_text(error, event)
         trace = ''.join(traceback.format_exception(error))
-        self._node.get_logger().error(f'axis {self.name}: {sentence}\n{trace}')
+        self._node.get_logger().error(f'axis {self.name}: {self.defect}\n{trace}')
         return True
 
     def statuses(

@@ -66,7 +66,7 @@ class Intake(Waitable):
             self._open += [(axis, one) for one in axis.open_inputs]
         self._clock: Topic | None = None
         if node.get_parameter('use_sim_time').value:
-            self._clock = open_topic(node, CLOCK, Clock, self._apart, overridable=False)
+            self._clock = open_topic(node, CLOCK, Clock, self._apart, overridable=False, raw=False)
         node.add_waitable(self)
         self.discover()
 
@@ -80,7 +80,9 @@ class Intake(Waitable):
         name = self._node.resolve_topic_name(source.topic)
         if name not in self.topics:
             kind, raw = source.message_type, self._journal.on
-            self.topics[name] = open_topic(self._node, name, kind, self._apart, raw=raw)
+            self.topics[name] = open_topic(
+                self._node, name, kind, self._apart, overridable=True, raw=raw
+            )
         self.topics[name].readers.append((axis, source))
 
     def discover(self) -> None:

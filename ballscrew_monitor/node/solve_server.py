@@ -18,13 +18,8 @@ from typing import Any
 from ballscrew_monitor.core.estimate import MachinePoint
 from ballscrew_monitor.core.full_point import request_of
 from ballscrew_monitor.core.solver import Done, End, Job, MOST_WAITING, Process, Solver
-from ballscrew_monitor.messages.solve_messages import (
-    empty_result,
-    feedback_message,
-    requested_point,
-    result_message,
-    SolvableAxis,
-)
+from ballscrew_monitor.messages import solve_messages
+from ballscrew_monitor.messages.solve_messages import SolvableAxis
 from ballscrew_msgs.action import SolveOperatingPoint
 from rclpy.action import ActionServer, CancelResponse, GoalResponse
 from rclpy.action.server import ServerGoalHandle
@@ -118,10 +113,11 @@ class SolveServer:
     def _on_accepted(self, handle: ServerGoalHandle) -> None:
         request = handle.request
         axis = self._find_axis(request.axis)
-        point = axis if isinstance(axis, str) else requested_point(request, axis)
+        point = axis if isinstance(axis, str) else solve_messages.requested_point(request, axis)
         handle.execute()
         if isinstance(axis, str) or isinstance(point, str):
-            self._answer(handle, empty_result(str(point)), End.FAILED)
+            refused = solve_messages.empty_result(str(point))
+            self._answer(handle, refused, End.FAILED)
             return
         timeout = request.timeout or DEFAULT_TIMEOUT
         self._begin(axis, point, timeout, handle)
@@ -168,12 +164,13 @@ class SolveServer:
         if goal.handle is None or now - goal.told < FEEDBACK_PERIOD:
             return
         goal.told = now
-        goal.handle.publish_feedback(feedback_message(goal.job.step, goal.point))
+        message = solve_messages.feedback_message(goal.job.step, goal.point)
+        goal.handle.publish_feedback(message)
 
     def _finish(self, goal: _Goal, done: Done) -> None:
         """Answer a goal that has ended."""
         del self._goals[goal.job]
-        result = result_message(goal.axis, goal.point, done)
+        result = solve_messages.result_message(goal.axis, goal.point, done)
         end = End.FAILED if done.end is End.SOLVED and not result.success else done.end
         if goal.handle is not None:
             self._answer(goal.handle, result, end)

@@ -29,7 +29,7 @@ class SolverProcess:
     def __init__(self) -> None:
         """Start the worker."""
         self._frames: queue.Queue[dict[str, Any]] = queue.Queue(maxsize=MOST_FRAMES)
-        self._process = subprocess.Popen(
+        self._process: Any = subprocess.Popen(
             # By name: plain spawn would import the console script again, and rclpy with it.
             [sys.executable, '-P', '-m', MODULE, str(os.getpid())],
             stdin=subprocess.PIPE,
@@ -44,11 +44,10 @@ class SolverProcess:
     @property
     def pid(self) -> int:
         """Return the number of the process."""
-        return self._process.pid
+        return int(self._process.pid)
 
     def send(self, frame: dict[str, Any]) -> None:
         """Send a frame; one that is gone is noticed by the next `frames`."""
-        assert self._process.stdin is not None
         with contextlib.suppress(OSError):
             self._process.stdin.write(json.dumps(frame, allow_nan=False) + '\n')
             self._process.stdin.flush()
@@ -65,12 +64,10 @@ class SolverProcess:
         self._process.kill()
         self._process.wait(PATIENCE)
         for pipe in (self._process.stdin, self._process.stdout):
-            if pipe is not None:
-                with contextlib.suppress(OSError):  # what was not written is for nobody
-                    pipe.close()
+            with contextlib.suppress(OSError):  # what was not written is for nobody
+                pipe.close()
 
     def _read(self) -> None:
-        assert self._process.stdout is not None
         with contextlib.suppress(OSError, ValueError):  # killed in the middle of a line
             while line := self._process.stdout.readline(LONGEST_FRAME):
                 self._frames.put(json.loads(line))
