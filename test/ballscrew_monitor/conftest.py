@@ -30,7 +30,7 @@ from ballscrew_monitor.cycle.node_process import child_environment
 from ballscrew_monitor.judge import derived_load, point, step
 from ballscrew_monitor.judge.monitor import Monitor
 from ballscrew_monitor.node.solver_process import MODULE
-from ballscrew_msgs.msg import BallScrewState
+from ballscrew_msgs.msg import BallScrewState, OutOfZone, SurfaceInfo
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import WrenchStamped
 from lifecycle_msgs.srv import ChangeState, GetState
@@ -40,7 +40,8 @@ from rcl_interfaces.srv import SetParametersAtomically
 import rclpy
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.parameter import Parameter
-from rclpy.qos import QoSProfile, QoSReliabilityPolicy
+from rclpy.qos import QoSDurabilityPolicy, QoSProfile, QoSReliabilityPolicy
+from rosgraph_msgs.msg import Clock
 from rosidl_parser import definition
 from sensor_msgs.msg import JointState
 from surrogate.surface import file as surface_file
@@ -58,6 +59,7 @@ SCANNED = 81  # loads of a surface of constants
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 START, STEP = 1000 * SECOND, SECOND // 100  # [ns] of the samples of `core.motion`
 DEADLINE = 120.0  # [s] for the end of a process, however busy the machine
+LATCHED = QoSProfile(depth=10, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL)
 
 
 @dataclasses.dataclass(kw_only=True)
@@ -365,6 +367,7 @@ class NodeProcess:
         self.executor.add_node(self.node)
         self.stamp = 0
         self.publishers = ()
+        self.told = self.listen(DiagnosticArray, '/diagnostics')
 
     def start(self, *arguments, **parameters):
         """
@@ -379,6 +382,7 @@ class NodeProcess:
         defaults |= {'diagnostics_period': 0.1, 'state_dir': "''"}
         for name, value in (defaults | parameters).items():
             command += ['-p', f'{name.replace("__", ".")}:={value}']
+        self.told.clear()
         with open(self.output, 'w') as output:
             self.process = subprocess.Popen(
                 command, env=self.environment, stdout=output, stderr=output
@@ -409,6 +413,24 @@ class NodeProcess:
         """Return the list to which the states of an axis are appended."""
         qos = QoSProfile(depth=1000, reliability=QoSReliabilityPolicy.RELIABLE)
         return self.listen(BallScrewState, f'{self.name}/{axis}/state', qos)
+
+    def events(self, axis='x'):
+        """Return the list to which the events of an axis are appended, from the last one on."""
+        return self.listen(OutOfZone, f'{self.name}/{axis}/out_of_zone', LATCHED)
+
+    def infos(self, axis='x'):
+        """Return the list to which what is said of a surface is appended, from the last on."""
+        return self.listen(SurfaceInfo, f'{self.name}/{axis}/surface_info', LATCHED)
+
+    def levels(self, part='x: Inputs'):
+        """Return the levels and messages that a diagnostic status went through."""
+        found = [
+            (status.level, status.message)
+            for message in self.told
+            for status in message.status
+            if status.name == f'ballscrew_monitor: {part}'
+        ]
+        return [now for now, before in zip(found, [None, *found], strict=False) if now != before]
 
     def call(self, kind, service, **request):
         """
@@ -473,27 +495,46 @@ class NodeProcess:
         def publish(speed, force=-1000.0, *, step=SECOND // 100, joint='x_axis'):
             self.stamp += step
             load, joints = WrenchStamped(), JointState(name=[joint], velocity=[speed])
-            for message in (load, joints):
-                stamp = message.header.stamp
-                stamp.sec, stamp.nanosec = divmod(self.stamp, SECOND)
             load.wrench.force.x = force
-            loads.publish(load)
-            speeds.publish(joints)
+            loads.publish(self.stamped(load, self.stamp))
+            speeds.publish(self.stamped(joints, self.stamp))
 
         return publish
 
+    def watched(self):
+        """Return the states of axis x, and what publishes its samples; all of them are heard."""
+        states = self.states()
+        return states, self.machine()
+
+    def clock(self):
+        """Return a function that shows a time [ns] on the simulated clock."""
+        publisher = self.node.create_publisher(Clock, '/clock', 10)
+        self.until(publisher.get_subscription_count, 'the subscription of the clock')
+
+        def show(stamp):
+            message = Clock()
+            message.clock.sec, message.clock.nanosec = divmod(stamp, SECOND)
+            publisher.publish(message)
+
+        return show
+
+    @staticmethod
+    def stamped(message, stamp):
+        """Return a message with a stamp [ns]."""
+        message.header.stamp.sec, message.header.stamp.nanosec = divmod(stamp, SECOND)
+        return message
+
     def until_matched(self, *publishers, inputs=('Speed', 'Load')):
         """Wait until the inputs have one publisher each, and these their node."""
-        told = self.listen(DiagnosticArray, '/diagnostics')
         # A best-effort sample is lost unless both sides know of each other.
         self.until(
             lambda: (
                 all(publisher.get_subscription_count() for publisher in publishers)
-                and told
+                and self.told
                 and {f'{name} publishers [-]' for name in inputs}
                 <= {
                     pair.key
-                    for status in told[-1].status
+                    for status in self.told[-1].status
                     for pair in status.values
                     if pair.value == '1'
                 }

@@ -103,7 +103,7 @@ def test_a_page_about_the_current_point_is_for_a_person(node):
         x__load__timeout=60.0,
         x__correct_surface=False,
     )
-    states, publish = node.states(), node.machine()
+    states, publish = node.watched()
     publish(100.0, -500.0)
     node.until(lambda: states and states[-1].judged, 'the judged point')
     code, out, err = ask(node, '--axis', 'x')

@@ -4,7 +4,7 @@
 
 from ballscrew_msgs.msg import BallScrewState
 from ballscrew_msgs.srv import EvaluateOperatingPoint
-from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from diagnostic_msgs.msg import DiagnosticStatus
 import pytest
 from std_srvs.srv import Trigger
 from surrogate.surface import shipped_surface
@@ -68,13 +68,12 @@ def test_an_axis_that_cannot_be_built_leaves_the_other_at_work(node):
     node.start(
         axes="['x','y']", y__oil='olive', y__speed__field='velocity[x_axis]', x__max_future=3600.0
     )
-    told, states = node.listen(DiagnosticArray, '/diagnostics'), node.states()
-    publish = node.machine()
+    states, publish = node.watched()
     node.until(lambda: publish(100.0) or (states and states[-1].judged), 'a judged sample')
 
     def said_of_y():
         """Return what all diagnostics say of y; those of a change are of its own axis alone."""
-        found = [status for message in told for status in message.status]
+        found = [status for message in node.told for status in message.status]
         return {one.message for one in found if ': y: ' in one.name and one.level}
 
     said = node.until(said_of_y, 'diagnostics of y')
@@ -95,14 +94,13 @@ def test_an_axis_that_cannot_be_built_leaves_the_other_at_work(node):
 
 def test_an_axis_parked_since_it_was_switched_on_is_well(node):
     node.start(x__max_future=3600.0)
-    told = node.listen(DiagnosticArray, '/diagnostics')
     publish = node.machine()
 
     def parked():
         publish(0.0)
-        return told and [
+        return node.told and [
             status
-            for status in told[-1].status
+            for status in node.told[-1].status
             if status.message == 'standstill, not judged for long enough yet'
         ]
 

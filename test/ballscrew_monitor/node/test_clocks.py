@@ -11,11 +11,10 @@ is that the lag is longer than the timeout.
 import re
 import time
 
+from ballscrew_monitor.core.fields import stamp_of
 from ballscrew_monitor.messages import diagnostics
 from ballscrew_msgs.msg import BallScrewState, InputHealth, PointResult
-from diagnostic_msgs.msg import DiagnosticArray
 import pytest
-from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
 
@@ -70,7 +69,7 @@ class Listener:
 
     def __init__(self, node):
         self.states = node.states()
-        self._told = node.listen(DiagnosticArray, '/diagnostics')
+        self._node = node
 
     @property
     def level(self):
@@ -81,15 +80,9 @@ class Listener:
         """Tell whether a number of samples has been judged."""
         return bool(self.states) and self.states[-1].judged >= count
 
-    def sentences(self, part='Inputs'):
-        """Return the messages of a status since the first sample, without repetition."""
-        found = [
-            status.message
-            for message in self._told
-            for status in message.status
-            if status.name == f'ballscrew_monitor: x: {part}'
-        ]
-        return list(dict.fromkeys(found))
+    def sentences(self):
+        """Return what was said of the inputs, without repetition."""
+        return list(dict.fromkeys(text for _, text in self._node.levels()))
 
     def faults(self):
         """
@@ -98,13 +91,8 @@ class Listener:
         Between a message of one input and that of the other the fault of one alone may be told.
 
         """
-        begin = (
-            'speed was never',
-            'load was never',
-            diagnostics.INACTIVE,
-            diagnostics.NOTHING_YET,
-            GOOD,
-        )
+        never = ('speed was never', 'load was never')
+        begin = (*never, diagnostics.INACTIVE, diagnostics.NOTHING_YET, GOOD)
         found = [part for one in self.sentences() for part in re.split('; (?=load )', one)]
         return {one for one in found if not one.startswith(begin)}
 
@@ -116,7 +104,7 @@ class Listener:
 
 def stamps_of(states):
     """Return the stamps of states [ns]."""
-    return [state.header.stamp.sec * SECOND + state.header.stamp.nanosec for state in states]
+    return list(map(stamp_of, states))
 
 
 def judged_of(states):
@@ -199,9 +187,8 @@ def test_a_lagging_source_beside_one_without_stamps(node):
 
     def go_on():
         joints = JointState(name=['x_axis'], velocity=[FAST])
-        joints.header.stamp.sec, joints.header.stamp.nanosec = divmod(node.now() - LAG, SECOND)
         loads.publish(Float64(data=-1000.0))
-        speeds.publish(joints)
+        speeds.publish(node.stamped(joints, node.now() - LAG))
 
     node.until(lambda: go_on() or heard.level == OK, 'the level')
     found = judged_of(heard.states)
@@ -229,16 +216,13 @@ class Simulated:
     """A simulated clock that runs from 60 s on by 10 ms at each sample."""
 
     def __init__(self, node):
-        self._publisher = node.node.create_publisher(Clock, '/clock', 10)
+        self._show = node.clock()
         self.now = 60 * SECOND
-        node.until(self._publisher.get_subscription_count)
 
     def __call__(self):
         """Let the clock run on; return the time [ns]."""
         self.now += SECOND // 100
-        message = Clock()
-        message.clock.sec, message.clock.nanosec = divmod(self.now, SECOND)
-        self._publisher.publish(message)
+        self._show(self.now)
         return self.now
 
 

@@ -14,16 +14,14 @@ from ballscrew_monitor.core.full_point import request_of
 from ballscrew_monitor.messages.state_messages import read_point
 from ballscrew_monitor.node.solve_server import SERVICE_QOS
 from ballscrew_msgs.action import SolveOperatingPoint
-from ballscrew_msgs.msg import OperatingPoint, PointResult, SurfaceInfo
+from ballscrew_msgs.msg import OperatingPoint, PointResult
 from ballscrew_msgs.srv import EvaluateOperatingPoint
 import pytest
 from rclpy.action import ActionClient
-from rclpy.qos import QoSDurabilityPolicy, QoSProfile
 from std_srvs.srv import Trigger
 from surrogate.on_demand.solve import solve_point
 from surrogate.surface import FIELDS, shipped_surface, Surface
 
-LATCHED = QoSProfile(depth=1, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL)
 AHEAD = {'x__max_future': 3600.0}  # the stamps of a test run ahead of the clock
 PLACE = OperatingPoint(speed=100.0, axial_load=-500.0, temperature=40.0)
 SUCCEEDED, CANCELED = GoalStatus.STATUS_SUCCEEDED, GoalStatus.STATUS_CANCELED
@@ -170,7 +168,7 @@ def test_a_solve_corrects_the_surface_and_outlives_the_node(node, quick_surface,
     kept = {'x__surface': quick_surface, 'state_dir': tmp_path / 'state'}
     node.start(**kept)
     states = node.states()
-    infos = node.listen(SurfaceInfo, f'{node.name}/x/surface_info', LATCHED)
+    infos = node.infos()
     solves = Solves(node)
     base = node.until(lambda: infos and infos[-1].sha256, 'the surface')
     status, result = solves.ask().end()
