@@ -29,7 +29,7 @@ from ballscrew_monitor.cycle.domain import free_domain, SHARED_MEMORY
 from ballscrew_monitor.cycle.node_process import child_environment
 from ballscrew_monitor.judge import derived_load, point, step
 from ballscrew_monitor.judge.monitor import Monitor
-from ballscrew_monitor.node.solver_process import MODULE
+from ballscrew_monitor.node.solver_process import MODULE, path_to_this_code
 from ballscrew_msgs.msg import BallScrewState, OutOfZone, SurfaceInfo
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import WrenchStamped
@@ -56,7 +56,6 @@ with warnings.catch_warnings():
 os.environ['ROS_PYTHON_CHECK_FIELDS'] = '1'
 os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
 SCANNED = 81  # loads of a surface of constants
-ROOT = pathlib.Path(__file__).resolve().parents[2]
 START, STEP = 1000 * SECOND, SECOND // 100  # [ns] of the samples of `core.motion`
 DEADLINE = 120.0  # [s] for the end of a process, however busy the machine
 LATCHED = QoSProfile(depth=10, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL)
@@ -352,9 +351,7 @@ class NodeProcess:
     def __init__(self, domain, folder, wait_for):
         self.domain = domain
         self.wait_for = wait_for
-        paths = (str(ROOT), os.environ.get('PYTHONPATH', ''))
-        self.environment = child_environment(domain)
-        self.environment['PYTHONPATH'] = os.pathsep.join(filter(None, paths))
+        self.environment = child_environment(domain) | {'PYTHONPATH': path_to_this_code()}
         self.output = folder / 'node.log'
         self.process = None
         self.clients = {}
@@ -571,6 +568,17 @@ class NodeProcess:
         self.executor.shutdown()
         self.node.destroy_node()
         rclpy.shutdown(context=self.context)
+
+
+@pytest.fixture(scope='session')
+def is_alive():
+    """Return what tells whether a process runs; one that nobody has reaped yet does not."""
+
+    def alive(pid):
+        stat = content_of(pathlib.Path('/proc', str(pid), 'stat')).rpartition(b')')[2].split()
+        return bool(stat) and stat[0] != b'Z'
+
+    return alive
 
 
 @pytest.fixture(scope='session')

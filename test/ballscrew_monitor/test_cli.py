@@ -19,6 +19,18 @@ ROOT = Path(__file__).resolve().parents[2]
 PARAMS = ROOT / 'config' / 'nominal_cycle.yaml'
 
 
+def python(*arguments, **environment):
+    """Run Python on this code; return what came of it."""
+    return subprocess.run(
+        [sys.executable, *map(str, arguments)],
+        cwd=ROOT,
+        env=child_environment(0) | environment,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
 def test_a_replay_prints_the_summary(short_bag, capsys):
     assert cli.main(['replay', str(short_bag), '--params', str(PARAMS)]) == 0
     out = capsys.readouterr().out
@@ -34,15 +46,9 @@ def test_a_replay_prints_json(short_bag, capsys):
 
 
 def test_a_terminal_that_lacks_a_character_shows_a_mark(short_bag):
-    done = subprocess.run(
-        [sys.executable, '-m', 'ballscrew_monitor', 'replay', str(short_bag)],
-        cwd=ROOT,
-        env=child_environment(0) | {'PYTHONIOENCODING': 'ascii'},
-        capture_output=True,
-        check=False,
-    )
+    done = python('-m', 'ballscrew_monitor', 'replay', short_bag, PYTHONIOENCODING='ascii')
     assert done.returncode == 0, done.stderr
-    assert b' ?C, ' in done.stdout
+    assert ' ?C, ' in done.stdout
 
 
 def test_a_replay_that_judges_nothing_is_a_failure(short_bag, tmp_path, capsys):
@@ -100,14 +106,7 @@ def test_what_is_not_installed_is_named_with_its_cure(module, command, short_bag
         'from ballscrew_monitor.cli import main\n'
         f'sys.exit(main({[command, *arguments]!r}))\n'
     )
-    done = subprocess.run(
-        [sys.executable, '-c', script],
-        cwd=ROOT,
-        env=child_environment(0),
-        check=False,
-        capture_output=True,
-        text=True,
-    )
+    done = python('-c', script)
     assert (done.returncode, done.stdout) == (1, '')
     assert done.stderr == (
         f'ballscrew: {module} is not installed, this command needs it: {cli.NEEDED[module]}\n'
@@ -156,14 +155,8 @@ def test_offline_commands_import_no_ros():
         "print(code, [name for name in sys.modules if name.split('.')[0] in\n"
         "      ('rclpy', 'ballscrew_msgs', 'mcap', 'matplotlib')])\n"
     )
-    done = subprocess.run(
-        [sys.executable, '-c', script],
-        cwd=ROOT,
-        env=child_environment(0),
-        check=True,
-        capture_output=True,
-        text=True,
-    )
+    done = python('-c', script)
+    assert done.returncode == 0, done.stderr
     assert done.stdout.splitlines()[-1] == '0 []'
 
 

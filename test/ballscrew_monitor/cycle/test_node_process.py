@@ -4,7 +4,6 @@
 
 import os
 from pathlib import Path
-import select
 import signal
 import subprocess
 import sys
@@ -40,27 +39,6 @@ def listen_for_a_sign(domain, wait_for):
         rclpy.shutdown(context=context)
 
 
-def wait_for_the_end(pid):
-    """Wait until a process, which may be the child of another one, has ended."""
-    try:
-        ending = os.pidfd_open(pid)
-    except ProcessLookupError:
-        return
-    try:
-        assert select.select([ending], [], [], DEADLINE)[0]
-    finally:
-        os.close(ending)
-
-
-def is_alive(pid):
-    """Tell whether a process runs; one that nobody has reaped yet does not."""
-    try:
-        state = Path(f'/proc/{pid}/stat').read_text().rpartition(')')[2].split()[0]
-    except FileNotFoundError:
-        return False
-    return state != 'Z'
-
-
 @pytest.fixture
 def node(tmp_path, monkeypatch, wait_for):
     """Return the node as a child, with its signal handlers in place."""
@@ -74,14 +52,14 @@ def node(tmp_path, monkeypatch, wait_for):
             process.stop()
 
 
-def test_it_ends_when_it_is_asked(node):
+def test_it_ends_when_it_is_asked(node, is_alive):
     assert node.returncode is None
     assert node.stop() == 0
     assert node.stop() == 0
     assert not is_alive(node.pid)
 
 
-def test_it_is_killed_when_it_does_not_listen(node, monkeypatch):
+def test_it_is_killed_when_it_does_not_listen(node, monkeypatch, is_alive):
     patience = ((signal.SIGINT, 0.01), (signal.SIGTERM, 0.01), (signal.SIGKILL, DEADLINE))
     monkeypatch.setattr(node_process, 'PATIENCE', patience)
     os.kill(node.pid, signal.SIGSTOP)
@@ -89,7 +67,7 @@ def test_it_is_killed_when_it_does_not_listen(node, monkeypatch):
     assert not is_alive(node.pid)
 
 
-def test_it_dies_with_its_parent(tmp_path, monkeypatch, wait_for):
+def test_it_dies_with_its_parent(tmp_path, monkeypatch, wait_for, is_alive):
     monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
     script = (
         'import sys, pathlib\n'
@@ -110,15 +88,15 @@ def test_it_dies_with_its_parent(tmp_path, monkeypatch, wait_for):
             pid = int(parent.stdout.readline())
             listen_for_a_sign(domain, wait_for)
             parent.kill()
-            wait_for_the_end(pid)
+            wait_for(lambda: not is_alive(pid), 'the end of the node')
 
 
-def test_its_words_are_kept(tmp_path):
+def test_its_words_are_kept(tmp_path, wait_for, is_alive):
     with free_domain() as domain:
         bad = tmp_path / 'bad.yaml'
         bad.write_text('/**/ballscrew_monitor:\n  ros__parameters:\n    axes: 3\n')
         with NodeProcess(bad, tmp_path / 'node.log', domain=domain) as node:
-            wait_for_the_end(node.pid)
+            wait_for(lambda: not is_alive(node.pid), 'the end of the node')
             assert node.returncode == 2
             assert node.last_words().startswith('ballscrew_monitor: ')
 

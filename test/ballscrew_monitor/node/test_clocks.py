@@ -102,14 +102,11 @@ class Listener:
         return BOTH + fault in found and found <= {f'{one} {fault}' for one in INPUTS}
 
 
-def stamps_of(states):
-    """Return the stamps of states [ns]."""
-    return list(map(stamp_of, states))
-
-
-def judged_of(states):
-    """Return the states from the first judged one on."""
+def in_order(states):
+    """Return the states from the first judged one on, whose stamps follow each other."""
     first = next(i for i, state in enumerate(states) if state.judged)
+    stamps = list(map(stamp_of, states[first:]))
+    assert stamps == sorted(stamps)
     return states[first:]
 
 
@@ -122,8 +119,7 @@ def test_a_constant_lag_is_judged_and_told_and_a_warning_clears(node):
     source.until(lambda: heard.has_judged(source.sent // 2 + 100), 'more states')
     source.until(lambda: heard.faults_of_both(LAGS), 'the lag of both')
     node.until(lambda: heard.has_judged(source.sent), 'the last state')
-    found = judged_of(heard.states)
-    assert stamps_of(found) == sorted(stamps_of(found))
+    found = in_order(heard.states)
     assert {state.result.validity for state in found} == {PointResult.VALIDITY_VALID}
     assert found[-1].judged == source.sent
     assert found[-1].level == OK
@@ -138,9 +134,8 @@ def test_silence_of_a_lagging_source_stays_on_its_line_of_time(node):
         lambda: heard.states[-1].result.validity == PointResult.VALIDITY_NO_INPUT, 'the silence'
     )
     assert heard.level == WARN
-    assert stamps_of(heard.states[-1:])[0] < node.now() - LAG // 2
-    found = stamps_of(judged_of(heard.states))
-    assert found == sorted(found)
+    assert stamp_of(heard.states[-1]) < node.now() - LAG // 2
+    in_order(heard.states)
 
 
 def test_a_lead_beyond_what_is_allowed_is_refused_and_clears_nothing(node):
@@ -169,8 +164,7 @@ def test_a_drift_is_told_when_it_has_grown(node):
     source.clock = lambda: begin + source.sent * SECOND // 1000
     source.until(lambda: heard.faults_of_both(LAGS) and heard.level == OK, 'lag and level')
     node.until(lambda: heard.has_judged(source.sent), 'the last state')
-    found = judged_of(heard.states)
-    assert stamps_of(found) == sorted(stamps_of(found))
+    found = in_order(heard.states)
     assert {state.result.validity for state in found} == {PointResult.VALIDITY_VALID}
 
 
@@ -191,8 +185,7 @@ def test_a_lagging_source_beside_one_without_stamps(node):
         speeds.publish(node.stamped(joints, node.now() - LAG))
 
     node.until(lambda: go_on() or heard.level == OK, 'the level')
-    found = judged_of(heard.states)
-    assert stamps_of(found) == sorted(stamps_of(found))
+    found = in_order(heard.states)
     speed, load = found[-1].inputs[:2]
     assert speed.stamp_source == InputHealth.STAMP_HEADER
     assert load.stamp_source == InputHealth.STAMP_RECEIVE
@@ -250,6 +243,5 @@ def test_stamps_of_simulated_time_on_the_wall_clock(node):
     heard, source = Listener(node), Source(node, lambda: node.stamp + SECOND // 100)
     source.until(lambda: heard.level == WARN, 'the warning', SLOW)
     source.until(lambda: heard.level == OK and heard.faults_of_both(SIMULATED), 'its end')
-    found = judged_of(heard.states)
-    assert stamps_of(found) == sorted(stamps_of(found))
+    found = in_order(heard.states)
     assert {state.result.validity for state in found} == {PointResult.VALIDITY_VALID}

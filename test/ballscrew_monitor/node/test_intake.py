@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """All that waits is taken at once, in the order of arrival, and what was lost is counted."""
 
+import functools
 import threading
 import time
 import types
@@ -48,6 +49,10 @@ class Watch:
             self.now += pause
 
 
+def nothing():
+    """Do nothing between two looks at a condition."""
+
+
 def turns(intake):
     """Let the intake have a turn."""
     with pytest.raises(StopIteration):
@@ -57,7 +62,8 @@ def turns(intake):
 class Bench:
     """A node with an intake, publishers beside it, and what was taken."""
 
-    def __init__(self, domain):
+    def __init__(self, domain, wait_for):
+        self.wait_for = wait_for
         self.context = rclpy.Context()
         rclpy.init(context=self.context, domain_id=domain)
         self.node = rclpy.create_node('taker', context=self.context, enable_rosout=False)
@@ -69,22 +75,31 @@ class Bench:
             name='x', inputs=inputs, open_inputs=(), topics=topics, max_future=0
         )
         self.taken = []
-        self.intake = Intake(self.node, [self.axis], lambda axis, event: self.taken.append(event))
+        self.intake = Intake(self.node, [self.axis], self.take)
         self.publishers = {
             name: self.node.create_publisher(Float64, name, 300) for name in ('load', 'speed')
         }
         self.until(lambda: self.matched() == {Source.LOAD: 1, Source.SPEED: 1})
         self.drain_events()
 
+    def take(self, axis, event):
+        self.taken.append(event)
+
+    def begin_anew(self, take):
+        """Let another intake hand its events to `take`, with a publisher of the speed."""
+        self.intake.close()
+        self.intake = Intake(self.node, [self.axis], take)
+        self.until(lambda: self.matched()[Source.SPEED] == 1)
+        self.drain_events()
+
     def matched(self):
         """Return how many publishers each input is matched with."""
         return {source: link.matched for source, link in self.intake.links(self.axis).items()}
 
-    def until(self, condition):
-        end = time.monotonic() + DEADLINE
-        while not condition():
-            assert time.monotonic() < end, 'the condition did not come'
-            self.executor.spin_once(timeout_sec=0.02)
+    def until(self, condition, meanwhile=None):
+        """Wait for a condition; meanwhile the executor spins, or else what is given."""
+        spin = functools.partial(self.executor.spin_once, timeout_sec=0.02)
+        return self.wait_for(condition, meanwhile=meanwhile or spin)
 
     def drain_events(self):
         """Let the executor hand over what the match of the publishers has left."""
@@ -101,9 +116,9 @@ class Bench:
 
 
 @pytest.fixture(name='bench')
-def make_bench():
+def make_bench(wait_for):
     with free_domain() as domain:
-        made = Bench(domain)
+        made = Bench(domain, wait_for)
         yield made
         made.close()
 
@@ -124,9 +139,7 @@ def test_one_wake_up_takes_all_topics_in_the_order_of_arrival(bench):
 
 def test_what_waits_is_taken_without_a_wake_up(bench):
     bench.publish('speed', 1)
-    end = time.monotonic() + DEADLINE
-    while not bench.taken and time.monotonic() < end:
-        bench.intake.drain()
+    bench.until(lambda: bench.taken, meanwhile=bench.intake.drain)
     assert [event.value for event in bench.taken] == [1.0]
     bench.executor.spin_once(timeout_sec=0.0)  # finds nothing left
     assert len(bench.taken) == 1
@@ -160,13 +173,10 @@ def test_a_second_publisher_is_noticed_before_the_executor_tells_of_it(bench):
     bench.publish('speed', 1)
     bench.until(lambda: bench.taken)
     second = bench.node.create_publisher(Float64, 'speed', 10)
-    end = time.monotonic() + DEADLINE
-    while bench.matched()[Source.SPEED] < 2 and time.monotonic() < end:
-        pass
+    bench.until(lambda: bench.matched()[Source.SPEED] == 2, meanwhile=nothing)
     second.publish(Float64(data=2.0))
     bench.publish('speed', 3)
-    while len(bench.taken) < 3 and time.monotonic() < end:
-        bench.intake.drain()
+    bench.until(lambda: len(bench.taken) == 3, meanwhile=bench.intake.drain)
     assert [event.lost for event in bench.taken] == [0, None, None]
 
 
@@ -184,9 +194,7 @@ def test_what_waits_is_taken_before_the_publishers_are_counted_anew(bench, monke
 def test_a_look_tells_whether_anything_has_come(bench):
     assert not bench.intake.drain()
     bench.publish('speed', 1)
-    end = time.monotonic() + DEADLINE
-    while not bench.intake.drain() and time.monotonic() < end:
-        pass
+    bench.until(bench.intake.drain, meanwhile=nothing)
     assert [event.value for event in bench.taken] == [1.0]
     assert not bench.intake.drain()
 
@@ -264,10 +272,7 @@ def test_a_message_that_comes_within_a_turn_is_taken_within_it(bench, monkeypatc
         if len(taken) == 1:
             bench.publish('speed', 2)
 
-    bench.intake.close()
-    bench.intake = Intake(bench.node, [bench.axis], take)
-    bench.until(lambda: bench.matched()[Source.SPEED] == 1)
-    bench.drain_events()
+    bench.begin_anew(take)
     bench.publish('speed', 1)
     Watch(monkeypatch, may_go_on=lambda: len(taken) != 1)
     bench.until(lambda: taken)
@@ -287,10 +292,7 @@ def test_messages_without_end_leave_the_others_their_turn(bench, monkeypatch):
         seen[:] = taken
         return come
 
-    bench.intake.close()
-    bench.intake = Intake(bench.node, [bench.axis], take)
-    bench.until(lambda: bench.matched()[Source.SPEED] == 1)
-    bench.drain_events()
+    bench.begin_anew(take)
     bench.publish('speed', 0)
     watch = Watch(monkeypatch, has_come)
     bench.until(lambda: taken)
@@ -312,7 +314,7 @@ def open_bench(bench, *fields):
     bench.intake.close()
     bench.axis.inputs, bench.axis.open_inputs = (), opened
     bench.axis.topics = {one.source: one.topic for one in opened}
-    bench.intake = Intake(bench.node, [bench.axis], lambda axis, event: bench.taken.append(event))
+    bench.intake = Intake(bench.node, [bench.axis], bench.take)
 
 
 def discovered(bench, condition):

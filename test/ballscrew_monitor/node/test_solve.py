@@ -91,11 +91,6 @@ class Solves:
         return Goal(self._node, self._client, SolveOperatingPoint.Goal(**request))
 
 
-def is_alive(pid):
-    """Tell whether a process is there."""
-    return os.path.exists(f'/proc/{pid}')
-
-
 def test_a_solve_is_told_beside_the_surface(node):
     node.start(x__correct_surface=False)
     goal = Solves(node).ask()
@@ -293,7 +288,7 @@ def test_an_overdue_solve_says_how_far_it_came(node):
     assert not node.solvers()
 
 
-def test_a_signal_during_a_solve_ends_goal_worker_and_node(node):
+def test_a_signal_during_a_solve_ends_goal_worker_and_node(node, is_alive):
     node.start()
     goal, worker = solving(node)
     assert node.stop() == 0
@@ -303,7 +298,7 @@ def test_a_signal_during_a_solve_ends_goal_worker_and_node(node):
     assert 'Traceback' not in node.output.read_text()
 
 
-def test_a_killed_node_leaves_no_worker(node):
+def test_a_killed_node_leaves_no_worker(node, is_alive):
     node.start()
     _, worker = solving(node)
     node.stop(signal.SIGKILL)
