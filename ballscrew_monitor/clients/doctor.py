@@ -187,7 +187,6 @@ def _numbers_of(type_name: str) -> tuple[str, ...]:
 
 
 def _page(found: list[str], facts: list[InputFacts], around: Surroundings) -> str:
-    """Return what was seen and found, for a person."""
     lines = [
         f'ROS domain {around.domain}, discovery range {around.discovery}: '
         f'nodes {len(around.nodes)}, topics {len(around.topics)}'
@@ -212,7 +211,6 @@ def _line(facts: InputFacts) -> str:
 
 
 def _record(found: list[str], facts: list[InputFacts]) -> str:
-    """Return the same as JSON."""
     inputs = {
         one.parameter: {
             'topic': one.link.topic,

@@ -10,7 +10,6 @@ import resource
 import signal
 import subprocess
 import sys
-from typing import Any
 
 from ballscrew_monitor.node.solver_process import path_to_this_code, WHEEL_VARIABLES
 from ballscrew_monitor.settings.middleware import loopback
@@ -20,7 +19,7 @@ PR_SET_PDEATHSIG = 1
 
 
 class NodeProcess:
-    """The node, its log in a file; use it as a context manager, then it is gone at the end."""
+    """The node, its log in a file; it is gone after `stop`."""
 
     def __init__(self, params: Path, log: Path, *, domain: int) -> None:
         """Start the node on simulated time in `domain`; call this from the main thread."""
@@ -44,14 +43,6 @@ class NodeProcess:
                 # The kernel kills the child when this process dies, whatever kills it.
                 preexec_fn=lambda: libc.prctl(PR_SET_PDEATHSIG, signal.SIGKILL),
             )
-
-    def __enter__(self) -> 'NodeProcess':
-        """Return the process itself."""
-        return self
-
-    def __exit__(self, *unused: Any) -> None:
-        """Stop the node."""
-        self.stop()
 
     @property
     def returncode(self) -> int | None:

@@ -56,8 +56,10 @@ def run(made: Plan) -> int:
 def _supervise(made: Plan, stop: threading.Event) -> Outcome:
     with free_domain() as domain, contextlib.ExitStack() as stack:
         os.environ |= confined(domain)
-        stack.enter_context(_clean_shared_memory(domain))
-        node = stack.enter_context(NodeProcess(made.params, made.out / LOG, domain=domain))
+        remove_stale({domain})  # it has just been found free; at the end somebody may be in it
+        stack.callback(lambda: remove_stale({domain} if is_free(domain) else ()))
+        node = NodeProcess(made.params, made.out / LOG, domain=domain)
+        stack.callback(node.stop)
         print(
             f'node ballscrew_monitor: process {node.pid}, ROS_DOMAIN_ID={domain} '
             'ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST',
@@ -66,7 +68,8 @@ def _supervise(made: Plan, stop: threading.Event) -> Outcome:
             flush=True,
         )
         writer = stack.enter_context(BagWriter(made.out, RECORDING))
-        supervision = stack.enter_context(Supervision(made, node, writer, domain))
+        supervision = Supervision(made, node, writer, domain)
+        stack.callback(supervision.close)
         try:
             outcome = supervision.carry_out(stop)
             if not stop.is_set():
@@ -75,16 +78,6 @@ def _supervise(made: Plan, stop: threading.Event) -> Outcome:
             outcome = supervision.outcome(str(failure))
         writer.add_metadata(outcomes.facts(made, outcome))
         return outcome
-
-
-@contextlib.contextmanager
-def _clean_shared_memory(domain: int) -> Iterator[None]:
-    """Remove what killed processes have left, before and after; somebody may be in `domain`."""
-    remove_stale({domain})  # it has just been found free
-    try:
-        yield
-    finally:
-        remove_stale({domain} if is_free(domain) else ())
 
 
 def solve_lines(made: Plan, domain: int) -> list[str]:

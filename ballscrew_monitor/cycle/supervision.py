@@ -9,6 +9,7 @@ active, and announces its subscriptions after that.
 
 """
 
+import contextlib
 import functools
 import sys
 import threading
@@ -41,7 +42,7 @@ class RunFailure(Exception):
 
 
 class Supervision:
-    """The ROS side of a run; a context manager that leaves no thread and no context behind."""
+    """The ROS side of a run; once closed it leaves no thread and no context behind."""
 
     def __init__(self, plan: Plan, node: NodeProcess, writer: BagWriter, domain: int) -> None:
         """Join the domain and subscribe to the outputs before the node can have any."""
@@ -67,11 +68,7 @@ class Supervision:
             self._node, writer, recorded, lambda: self._player.now, listeners
         )
 
-    def __enter__(self) -> 'Supervision':
-        """Return the supervision itself."""
-        return self
-
-    def __exit__(self, *unused: Any) -> None:
+    def close(self) -> None:
         """Leave the domain."""
         self._recorder.close()
         self._executor.shutdown()
@@ -158,8 +155,7 @@ class Supervision:
 
     def _watch(self, thread: threading.Thread) -> None:
         """Record and show until the player has come to its end."""
-        status = StatusLine(sys.stdout)
-        try:
+        with contextlib.closing(StatusLine(sys.stdout)) as status:
             while thread.is_alive():
                 self._executor.spin_once(timeout_sec=POLL)
                 now = time.monotonic()
@@ -168,14 +164,11 @@ class Supervision:
                     self._show(status, now)
                 if self._player.elapsed >= self._plan.bag.duration and self._all_received():
                     self._settled.set()
-        finally:
-            status.close()
 
     def _show(self, status: StatusLine, now: float) -> None:
         duration, elapsed = self._plan.bag.duration, self._player.elapsed
-        bar = progress_bar(
-            elapsed / duration if duration else 1.0, (duration - elapsed) / self._plan.rate
-        )
+        part = elapsed / duration if duration else 1.0
+        bar = progress_bar(part, (duration - elapsed) / self._plan.rate)
         axis = min(self._states)
         name = [] if len(self._plan.expected) == 1 else [axis]
         status.show([bar, *name, *state_cells(self._state(axis))], now)

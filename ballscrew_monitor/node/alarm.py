@@ -44,11 +44,8 @@ class Alarm:
         record: Callable[[str, Any], None],
     ) -> None:
         """Speak through a `publisher` of the node; `record` is given each message and topic."""
-        self._node = node
-        self._axis = axis
-        self._publisher = publisher
-        self._kept = kept
-        self._record = record
+        self._node, self._axis, self._publisher = node, axis, publisher
+        self._kept, self._record = kept, record
 
     def publish(self) -> None:
         """Publish the event that is active, or the last one."""

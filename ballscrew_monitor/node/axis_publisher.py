@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the node keeps of one axis: the axis, its publishers, and what it last said."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 import dataclasses
 import traceback
 from typing import Any
@@ -18,6 +18,7 @@ from ballscrew_monitor.core.state import State
 from ballscrew_monitor.messages import diagnostics, state_messages
 from ballscrew_monitor.messages.state_messages import TIERS
 from ballscrew_monitor.node.alarm import Alarm
+from ballscrew_monitor.node.journal import NodeJournal
 from ballscrew_monitor.node.kept_axes import KeptAxes
 from ballscrew_monitor.node.output_topics import LatchedTopics, PlainTopics, quiet_publishers
 from ballscrew_monitor.node.state_records import Corrections, Kind, point_facts
@@ -46,26 +47,20 @@ class AxisPublisher:
         *,
         latched: LatchedTopics,
         kept: KeptAxes,
-        record: Callable[[str, Any], None],
-        changed: Callable[[Iterable[str], str], None],
+        recording: NodeJournal,
     ) -> None:
         """
         Make the publishers, which stay silent until the node is active; `latched` are there.
 
         `values` are the parameters as they are at any time; `kept` keeps corrections and what
-        happens. `record` is given each message with its topic, `changed` the axis and what has
-        changed it.
+        happens, `recording` each message and what has changed the axis.
 
         """
         self.axis = axis
         self.dwell = Dwell()
         self.refused = ''  # why the last reload of the surface was
         self.defect = ''  # of the program, at a sample that it could not judge
-        self._values = values
-        self._kept = kept
-        self._record = record
-        self._changed = changed
-        self._node = node
+        self._node, self._values, self._kept, self._recording = node, values, kept, recording
         self._writer = state_messages.StateWriter(axis.name, TIERS[axis.surface.tier])
         self._last: State | None = None
         self._links: Mapping[Source, Link] = {}
@@ -77,7 +72,7 @@ class AxisPublisher:
         simulated = node.get_parameter('use_sim_time').value
         promise = state_qos(axis.name, values, simulated=simulated)
         self._state = make(BallScrewState, f'~/{axis.name}/state', promise)
-        self.alarm = Alarm(node, axis, latched.event, kept, record)
+        self.alarm = Alarm(node, axis, latched.event, kept, recording.record)
         self._info = latched.info
         plain = values[f'{axis.name}.plain_topics']
         self._plain = PlainTopics(node, axis.name, make, STATE_QOS, wanted=plain)
@@ -94,7 +89,7 @@ class AxisPublisher:
             self.alarm.follow(state)
         message = self._writer.write(state)
         self._state.publish(message)
-        self._record(f'~/{self.name}/state', message)
+        self._recording.record(f'~/{self.name}/state', message)
         self._plain.publish(state)
 
     def shelve(self, shelving: Shelving) -> None:
@@ -125,7 +120,7 @@ class AxisPublisher:
             default_temperature=settings.default_temperature,
         )
         self._info.publish(message)
-        self._record(f'~/{self.name}/surface_info', message)
+        self._recording.record(f'~/{self.name}/surface_info', message)
 
     @property
     def name(self) -> str:
@@ -225,7 +220,7 @@ class AxisPublisher:
         self.axis.use_surface(surface, self._values)
         self._writer.tier = TIERS[surface.tier]
         self.publish_info()
-        self._changed([self.name], 'surface')
+        self._recording.describe([self.name], 'surface')
 
     def evaluate(self, points: Sequence[OperatingPoint], response: Any) -> None:
         """Fill the response with what the surface says of the points, if they are not too many."""

@@ -97,7 +97,6 @@ class AxisServices:
             raise
 
     def _reset(self, publishers: Publishers) -> str:
-        """Set the totals to zero."""
         for publisher in publishers.values():
             publisher.alarm.reset_totals()
         return f'set the totals to zero of {_names(publishers)}'

@@ -48,9 +48,7 @@ class Intake(Waitable):
     ) -> None:
         """Subscribe once to each topic, however many inputs read it; the journal hears all."""
         super().__init__(node.default_callback_group)
-        self._node = node
-        self._take = take
-        self._journal = journal
+        self._node, self._take, self._journal = node, take, journal
         self._apart = Apart()
         self._simulated = 0  # the last `/clock` [ns]
         self._places: list[int] = []  # of the subscriptions in the wait set
@@ -141,9 +139,8 @@ class Intake(Waitable):
     def is_ready(self, wait_set: Any) -> bool:
         """Tell whether anything has come."""
         self._changed = [handler for handler in self._matches if handler.is_ready(wait_set)]
-        return bool(self._changed) or any(
-            wait_set.is_ready('subscription', place) for place in self._places
-        )
+        come = any(wait_set.is_ready('subscription', place) for place in self._places)
+        return come or bool(self._changed)
 
     def take_data(self) -> None:
         """Count the publishers again, once what has come by then is taken."""

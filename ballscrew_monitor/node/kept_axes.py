@@ -33,12 +33,9 @@ class KeptAxes:
         clock: Clock,
     ) -> None:
         """Keep it in a `state`, with a look now and then on a steady `clock`."""
-        self._node = node
         self.state = state
-        self._publishers = publishers
-        self._say = say
-        self._looks = 0
-        self._said = ''
+        self._node, self._publishers, self._say = node, publishers, say
+        self._looks, self._said = 0, ''
         node.create_timer(LOOK, self._look, clock=clock)
         self.note(Kind.NODE_START)
         state.start()

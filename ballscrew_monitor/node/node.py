@@ -57,8 +57,7 @@ class BallscrewMonitor(LifecycleNode):
         """Declare everything; raises InputError for a bad parameter."""
         super().__init__(parameters.NODE_NAME, **kwargs)
         self._axis_publishers: dict[str, AxisPublisher] = {}
-        self._active = False
-        self._finalized = False
+        self._active = self._finalized = False
         self._reason = 'not configured'
         self._failed: dict[str, str] = {}  # axes that could not be built, and why
         self._intake: Intake | None = None
@@ -124,8 +123,7 @@ class BallscrewMonitor(LifecycleNode):
                 self._values,
                 latched=self._latched[axis.name],
                 kept=self._kept,
-                record=self._recording.record,
-                changed=self._recording.describe,
+                recording=self._recording,
             )
             for axis in axes
         }

@@ -51,14 +51,9 @@ def recording(
                 'record_dir to the directory of the recordings'
             )
         folder = state / 'recordings'
-    settings = {
-        'always': values['record'] == 'always',
-        'before': values['record_before'],
-        'after': values['record_after'],
-        'longest': values['record_longest'],
-        'largest': values['record_largest'] * MEGABYTE,
-        'total': values['record_total'] * MEGABYTE,
-    }
+    settings = {name: values[f'record_{name}'] for name in ('before', 'after', 'longest')}
+    settings |= {name: values[f'record_{name}'] * MEGABYTE for name in ('largest', 'total')}
+    settings['always'] = values['record'] == 'always'
     return functools.partial(RecordingProcess, folder, settings)
 
 

@@ -116,11 +116,9 @@ class SolveServer:
         point = axis if isinstance(axis, str) else solve_messages.requested_point(request, axis)
         handle.execute()
         if isinstance(axis, str) or isinstance(point, str):
-            refused = solve_messages.empty_result(str(point))
-            self._answer(handle, refused, End.FAILED)
-            return
-        timeout = request.timeout or DEFAULT_TIMEOUT
-        self._begin(axis, point, timeout, handle)
+            self._answer(handle, solve_messages.empty_result(str(point)), End.FAILED)
+        else:
+            self._begin(axis, point, request.timeout or DEFAULT_TIMEOUT, handle)
 
     def _begin(
         self,
@@ -140,7 +138,6 @@ class SolveServer:
         self._poll()
 
     def _poll(self) -> None:
-        """Look after the goals."""
         now = time.monotonic()
         for goal in self._goals.values():
             taken_back = goal.handle is not None and goal.handle.is_cancel_requested
@@ -168,7 +165,6 @@ class SolveServer:
         goal.handle.publish_feedback(message)
 
     def _finish(self, goal: _Goal, done: Done) -> None:
-        """Answer a goal that has ended."""
         del self._goals[goal.job]
         result = solve_messages.result_message(goal.axis, goal.point, done)
         end = End.FAILED if done.end is End.SOLVED and not result.success else done.end
@@ -189,7 +185,6 @@ def _answer_nothing(handle: ServerGoalHandle) -> Any:
 
 
 def _end_goal(handle: ServerGoalHandle, *, result: Any, end: End) -> Any:
-    """Set the last state of a goal and return its result."""
     if end is End.SOLVED:
         handle.succeed()
     elif end is End.CANCELLED and handle.is_cancel_requested:

@@ -158,9 +158,8 @@ def open_topic(
 def link_of(node: Node, name: str, topic: Topic | None, *, problem: str = '') -> Link:
     """Return how the topic of a full name is connected; None: its type is not known yet."""
     if topic is None:
-        return Link(
-            topic=name, type_name='', publishers=publishers_on(node, name), problem=problem
-        )
+        found = publishers_on(node, name)
+        return Link(topic=name, type_name='', publishers=found, problem=problem)
     matched = topic.subscription.get_publisher_count()
     qos = topic.subscription.qos_profile
     return Link(

@@ -343,25 +343,41 @@ def content_of(path):
         return b''
 
 
+@contextlib.contextmanager
+def joined_node(domain, name='tester'):
+    """Join a domain with a small node, which has an executor."""
+    context = rclpy.Context()
+    rclpy.init(context=context, domain_id=domain)
+    quiet = {'enable_rosout': False, 'start_parameter_services': False}
+    node = rclpy.create_node(name, context=context, **quiet)
+    executor = SingleThreadedExecutor(context=context)
+    executor.add_node(node)
+    try:
+        yield node
+    finally:
+        executor.shutdown()
+        node.destroy_node()
+        rclpy.shutdown(context=context)
+
+
+@pytest.fixture(scope='session')
+def joined():
+    """Return what joins a domain with a small node."""
+    return joined_node
+
+
 class NodeProcess:
-    """The node in a process of its own, and a small node here that talks to it."""
+    """The node in a process of its own, and a small `node` here that talks to it."""
 
     name = '/ballscrew_monitor'
 
-    def __init__(self, domain, folder, wait_for):
-        self.domain = domain
+    def __init__(self, domain, node, folder, wait_for):
+        self.domain, self.node = domain, node
         self.wait_for = wait_for
         self.environment = child_environment(domain) | {'PYTHONPATH': path_to_this_code()}
         self.output = folder / 'node.log'
         self.process = None
         self.clients = {}
-        self.context = rclpy.Context()
-        rclpy.init(context=self.context, domain_id=domain)
-        self.node = rclpy.create_node(
-            'tester', context=self.context, enable_rosout=False, start_parameter_services=False
-        )
-        self.executor = SingleThreadedExecutor(context=self.context)
-        self.executor.add_node(self.node)
         self.stamp = 0
         self.publishers = ()
         self.told = self.listen(DiagnosticArray, '/diagnostics')
@@ -394,7 +410,7 @@ class NodeProcess:
 
     def spin(self):
         """Take a message, or wait a little for one."""
-        self.executor.spin_once(timeout_sec=0.02)
+        self.node.executor.spin_once(timeout_sec=0.02)
 
     def now(self):
         """Return the time [ns] on the clock of the machine."""
@@ -565,9 +581,6 @@ class NodeProcess:
                 self.process.wait(DEADLINE)
             finally:
                 self.process.kill()
-        self.executor.shutdown()
-        self.node.destroy_node()
-        rclpy.shutdown(context=self.context)
 
 
 @pytest.fixture(scope='session')
@@ -630,9 +643,6 @@ def quick_surface(tmp_path_factory):
 @pytest.fixture
 def node(tmp_path, wait_for):
     """Make a node process that is not started yet, in a DDS domain of its own."""
-    with free_domain() as domain:
-        process = NodeProcess(domain, tmp_path, wait_for)
-        try:
+    with free_domain() as domain, joined_node(domain) as tester:
+        with contextlib.closing(NodeProcess(domain, tester, tmp_path, wait_for)) as process:
             yield process
-        finally:
-            process.close()

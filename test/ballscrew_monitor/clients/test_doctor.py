@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Parameter files that are wrong, against a machine over the real middleware."""
 
+import contextlib
 import json
 import threading
 import time
@@ -11,7 +12,6 @@ from ballscrew_monitor.clients.doctor import doctor
 from ballscrew_monitor.cycle.domain import free_domain
 from geometry_msgs.msg import WrenchStamped
 import pytest
-import rclpy
 from rclpy.qos import QoSProfile, QoSReliabilityPolicy
 from sensor_msgs.msg import JointState, Temperature
 from std_msgs.msg import Float64
@@ -102,10 +102,8 @@ EXTRA = {
 class Machine:
     """Topics of a machine, some of them as they should not be, until it is stopped."""
 
-    def __init__(self, domain):
-        self.context = rclpy.Context()
-        rclpy.init(context=self.context, domain_id=domain)
-        self.node = rclpy.create_node('machine', context=self.context, enable_rosout=False)
+    def __init__(self, node):
+        self.node = node
         self.stopped = threading.Event()
         make = self.node.create_publisher
         self.joints = make(JointState, 'joint_states', BEST_EFFORT)
@@ -146,16 +144,13 @@ class Machine:
     def close(self):
         self.stopped.set()
         self.thread.join()
-        self.node.destroy_node()
-        rclpy.shutdown(context=self.context)
 
 
 @pytest.fixture(scope='module', name='domain')
-def make_domain():
-    with free_domain() as domain:
-        machine = Machine(domain)
-        yield domain
-        machine.close()
+def make_domain(joined):
+    with free_domain() as domain, joined(domain, 'machine') as node:
+        with contextlib.closing(Machine(node)):
+            yield domain
 
 
 def write(folder, changes, extra=''):

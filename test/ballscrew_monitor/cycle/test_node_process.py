@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The child process that never outlives its parent."""
 
+import functools
 import os
 from pathlib import Path
 import signal
@@ -15,38 +16,34 @@ from ballscrew_monitor.node.solver_process import path_to_this_code
 from ballscrew_monitor.settings.middleware import loopback
 from diagnostic_msgs.msg import DiagnosticArray
 import pytest
-import rclpy
-from rclpy.executors import SingleThreadedExecutor
 
 ROOT = Path(__file__).resolve().parents[3]
 PARAMS = ROOT / 'config' / 'nominal_cycle.yaml'
 DEADLINE = 120.0  # [s]
 
 
-def listen_for_a_sign(domain, wait_for):
-    """Wait until the node says something; by then its signal handlers are in place."""
-    context, heard = rclpy.Context(), []
-    rclpy.init(context=context, domain_id=domain)
-    node = rclpy.create_node('listener', context=context)
-    node.create_subscription(DiagnosticArray, '/diagnostics', heard.append, 10)
-    executor = SingleThreadedExecutor(context=context)
-    executor.add_node(node)
-    try:
-        wait_for(lambda: heard, 'a sign', meanwhile=lambda: executor.spin_once(timeout_sec=0.1))
-    finally:
-        executor.shutdown()
-        node.destroy_node()
-        rclpy.shutdown(context=context)
+@pytest.fixture
+def listen_for_a_sign(joined, wait_for):
+    """Return what waits until the node says something; then its signal handlers are in place."""
+
+    def listen(domain):
+        heard = []
+        with joined(domain) as node:
+            node.create_subscription(DiagnosticArray, '/diagnostics', heard.append, 10)
+            spin = functools.partial(node.executor.spin_once, timeout_sec=0.1)
+            wait_for(lambda: heard, 'a sign', meanwhile=spin)
+
+    return listen
 
 
 @pytest.fixture
-def node(tmp_path, monkeypatch, wait_for):
+def node(tmp_path, monkeypatch, listen_for_a_sign):
     """Return the node as a child, with its signal handlers in place."""
     monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
     with free_domain() as domain:
         process = NodeProcess(PARAMS, tmp_path / 'node.log', domain=domain)
         try:
-            listen_for_a_sign(domain, wait_for)
+            listen_for_a_sign(domain)
             yield process
         finally:
             process.stop()
@@ -67,7 +64,7 @@ def test_it_is_killed_when_it_does_not_listen(node, monkeypatch, is_alive):
     assert not is_alive(node.pid)
 
 
-def test_it_dies_with_its_parent(tmp_path, monkeypatch, wait_for, is_alive):
+def test_it_dies_with_its_parent(tmp_path, monkeypatch, listen_for_a_sign, wait_for, is_alive):
     monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
     script = (
         'import sys, pathlib\n'
@@ -86,7 +83,7 @@ def test_it_dies_with_its_parent(tmp_path, monkeypatch, wait_for, is_alive):
             cwd=ROOT,
         ) as parent:
             pid = int(parent.stdout.readline())
-            listen_for_a_sign(domain, wait_for)
+            listen_for_a_sign(domain)
             parent.kill()
             wait_for(lambda: not is_alive(pid), 'the end of the node')
 
@@ -95,10 +92,10 @@ def test_its_words_are_kept(tmp_path, wait_for, is_alive):
     with free_domain() as domain:
         bad = tmp_path / 'bad.yaml'
         bad.write_text('/**/ballscrew_monitor:\n  ros__parameters:\n    axes: 3\n')
-        with NodeProcess(bad, tmp_path / 'node.log', domain=domain) as node:
-            wait_for(lambda: not is_alive(node.pid), 'the end of the node')
-            assert node.returncode == 2
-            assert node.last_words().startswith('ballscrew_monitor: ')
+        node = NodeProcess(bad, tmp_path / 'node.log', domain=domain)
+        wait_for(lambda: not is_alive(node.pid), 'the end of the node')
+        assert node.stop() == node.returncode == 2
+        assert node.last_words().startswith('ballscrew_monitor: ')
 
 
 def test_the_node_is_of_this_very_code(monkeypatch):

@@ -13,9 +13,7 @@ from ballscrew_monitor.cycle.domain import free_domain
 from ballscrew_monitor.node import intake as intake_module
 from ballscrew_monitor.node.intake import Intake, PAUSE, QUIET, STAY
 import pytest
-import rclpy
 from rclpy.clock import Clock, ClockType
-from rclpy.executors import SingleThreadedExecutor
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
 
@@ -62,13 +60,8 @@ def turns(intake):
 class Bench:
     """A node with an intake, publishers beside it, and what was taken."""
 
-    def __init__(self, domain, wait_for):
-        self.wait_for = wait_for
-        self.context = rclpy.Context()
-        rclpy.init(context=self.context, domain_id=domain)
-        self.node = rclpy.create_node('taker', context=self.context, enable_rosout=False)
-        self.executor = SingleThreadedExecutor(context=self.context)
-        self.executor.add_node(self.node)
+    def __init__(self, node, wait_for):
+        self.node, self.executor, self.wait_for = node, node.executor, wait_for
         inputs = (float_input(Source.LOAD, 'load'), float_input(Source.SPEED, 'speed'))
         topics = {one.source: one.topic for one in inputs}
         self.axis = types.SimpleNamespace(
@@ -109,18 +102,11 @@ class Bench:
     def publish(self, name, value):
         self.publishers[name].publish(Float64(data=float(value)))
 
-    def close(self):
-        self.executor.shutdown()
-        self.node.destroy_node()
-        rclpy.shutdown(context=self.context)
-
 
 @pytest.fixture(name='bench')
-def make_bench(wait_for):
-    with free_domain() as domain:
-        made = Bench(domain, wait_for)
-        yield made
-        made.close()
+def make_bench(joined, wait_for):
+    with free_domain() as domain, joined(domain) as node:
+        yield Bench(node, wait_for)
 
 
 def test_one_wake_up_takes_all_topics_in_the_order_of_arrival(bench):
@@ -351,21 +337,18 @@ def test_an_open_input_whose_field_is_not_in_the_type_says_so_and_waits_on(bench
     assert bench.taken[0].value == 3.0
 
 
-def test_of_two_types_on_a_topic_an_open_input_takes_none(bench):
+def test_of_two_types_on_a_topic_an_open_input_takes_none(bench, joined):
     open_bench(bench, 'data')
     bench.node.create_publisher(Float64, 'late', 10)
-    context = rclpy.Context()  # one process may not give a topic two types
-    rclpy.init(context=context, domain_id=bench.context.get_domain_id())
-    other = rclpy.create_node('other', context=context, enable_rosout=False)
-    other.create_publisher(JointState, 'late', 10)
 
     def types():
         link = bench.intake.links(bench.axis)[Source.SPEED]
         return {publisher.type_name for publisher in link.publishers}
 
-    bench.until(lambda: len(types()) == 2)
-    bench.intake.discover()
-    assert bench.intake.topics == {}
-    other.destroy_node()
-    rclpy.shutdown(context=context)
+    # One participant may not give a topic two types.
+    with joined(bench.node.context.get_domain_id(), 'other') as other:
+        other.create_publisher(JointState, 'late', 10)
+        bench.until(lambda: len(types()) == 2)
+        bench.intake.discover()
+        assert bench.intake.topics == {}
     discovered(bench, lambda: bench.matched() == {Source.SPEED: 1})

@@ -315,24 +315,14 @@ def solving(node):
     return goal, worker
 
 
-@contextlib.contextmanager
-def other_of(node, tmp_path):
-    """Make another node in the same domain."""
-    folder = tmp_path / 'other'
-    folder.mkdir()
-    made = type(node)(node.domain, folder, node.wait_for)
-    try:
-        yield made
-    finally:
-        made.close()
-
-
 def test_of_two_nodes_of_one_name_the_second_keeps_nothing_and_says_so(node, tmp_path):
-    kept = {'state_dir': tmp_path / 'state'}
+    kept, folder = {'state_dir': tmp_path / 'state'}, tmp_path / 'other'
+    folder.mkdir()
     in_use = f'state_dir: {tmp_path / "state"} is in use by another node of this name'
     node.start(**kept)
     node.until(lambda: node.lifecycle() == 'active')
-    with other_of(node, tmp_path) as second:
+    second = type(node)(node.domain, node.node, folder, node.wait_for)
+    with contextlib.closing(second):
         second.start(**kept)
         second.until(lambda: in_use in second.output.read_text(), 'the warning')
     assert in_use not in node.output.read_text()
