@@ -17,6 +17,8 @@ from surrogate.surface import SurfaceError
 
 ROOT = Path(__file__).resolve().parents[2]
 PARAMS = ROOT / 'config' / 'nominal_cycle.yaml'
+UNREADABLE = 'cannot be read or written'
+VISCOSITY = 'oil: viscosity is -1 Pa s, allowed is above 0'
 
 
 def python(*arguments, **environment):
@@ -65,27 +67,28 @@ def test_defaults_hold_in_any_working_directory(short_bag, tmp_path, monkeypatch
     assert '300 speed samples judged' in capsys.readouterr().out
 
 
-def test_a_full_disk_is_named(monkeypatch, capsys):
-    def fill(args):
-        raise OSError(28, 'No space left on device')
+@pytest.mark.parametrize(
+    ('error', 'code', 'sentence'),
+    [
+        (
+            OSError(28, 'No space left on device'),
+            1,
+            f'there {UNREADABLE}, No space left on device',
+        ),
+        (InputError(VISCOSITY), 2, VISCOSITY),
+        (SurfaceError(VISCOSITY), 2, VISCOSITY),
+        (KeyboardInterrupt(), 130, 'interrupted'),
+    ],
+)
+def test_what_ends_a_command_is_a_sentence_and_an_exit_code(
+    error, code, sentence, monkeypatch, capsys
+):
+    def fail(args):
+        raise error
 
-    monkeypatch.setitem(cli.COMMANDS, 'run', (fill, ''))
-    assert cli.main(['run', '--out', 'there']) == 1
-    assert capsys.readouterr().err == (
-        'ballscrew: there cannot be read or written, No space left on device\n'
-    )
-
-
-@pytest.mark.parametrize('error', [InputError, SurfaceError])
-def test_bad_input_is_a_sentence_and_exit_code_2(error, monkeypatch, capsys):
-    def refuse(args):
-        raise error('oil: viscosity is -1 Pa s, allowed is above 0')
-
-    monkeypatch.setitem(cli.COMMANDS, 'replay', (refuse, ''))
-    assert cli.main(['replay', 'x']) == 2
-    captured = capsys.readouterr()
-    assert captured.err == 'ballscrew: oil: viscosity is -1 Pa s, allowed is above 0\n'
-    assert captured.out == ''
+    monkeypatch.setitem(cli.COMMANDS, 'run', (fail, ''))
+    assert cli.main(['run', '--out', 'there']) == code
+    assert capsys.readouterr() == ('', f'ballscrew: {sentence}\n')
 
 
 @pytest.mark.parametrize(
@@ -111,15 +114,6 @@ def test_what_is_not_installed_is_named_with_its_cure(module, command, short_bag
     assert done.stderr == (
         f'ballscrew: {module} is not installed, this command needs it: {cli.NEEDED[module]}\n'
     )
-
-
-def test_an_interrupt_is_exit_code_130(monkeypatch, capsys):
-    def interrupt(args):
-        raise KeyboardInterrupt
-
-    monkeypatch.setitem(cli.COMMANDS, 'replay', (interrupt, ''))
-    assert cli.main(['replay', 'x']) == 130
-    assert capsys.readouterr().err == 'ballscrew: interrupted\n'
 
 
 def test_a_bag_that_does_not_exist(capsys):

@@ -227,26 +227,23 @@ def test_a_wrong_file_has_its_sentence(name, domain, tmp_path, monkeypatch, caps
 @pytest.mark.parametrize(
     ('text', 'sentence'),
     [
-        ('x: {speed: {field: "velocity[-1]"}}', 'the index -1 has a sign'),
-        ('x: {speed: {timeout: 1}}', 'is 1, it must be a number with a decimal point'),
-        ('x: {sped: {timeout: 1.0}}', 'parameter x.sped.timeout is unknown'),
-        ('x: {speed: {topic: "a b"}}', "parameter x.speed.topic is '/a b', no topic name"),
+        ('/**: {%s: {x: {speed: {field: "velocity[-1]"}}}}', 'the index -1 has a sign'),
+        (
+            '/**: {%s: {x: {speed: {timeout: 1}}}}',
+            'is 1, it must be a number with a decimal point',
+        ),
+        ('/**: {%s: {x: {sped: {timeout: 1.0}}}}', 'parameter x.sped.timeout is unknown'),
+        ('/**: {%s: {x: {speed: {topic: "a b"}}}}', "x.speed.topic is '/a b', no topic name"),
+        ('monitor: {%s: {axes: [x]}}', 'says nothing to the node, begin it with'),
     ],
 )
 def test_a_file_that_the_node_refuses_is_bad_input(text, sentence, domain, tmp_path, monkeypatch):
     monkeypatch.setenv('ROS_DOMAIN_ID', str(domain))
     path = tmp_path / 'params.yaml'
-    path.write_text(f'/**:\n  ros__parameters:\n    {text}\n', encoding='utf-8')
+    path.write_text(text % 'ros__parameters', encoding='utf-8')
     with pytest.raises(InputError, match='.*') as caught:
         doctor(path, seconds=0.1)
     assert sentence in str(caught.value)
-
-
-def test_a_file_for_another_node_is_bad_input(tmp_path):
-    path = tmp_path / 'params.yaml'
-    path.write_text('monitor:\n  ros__parameters:\n    axes: [x]\n', encoding='utf-8')
-    with pytest.raises(InputError, match='says nothing to the node, begin it with'):
-        doctor(path, seconds=1.0)
 
 
 def test_a_time_that_is_none_is_bad_input(tmp_path):

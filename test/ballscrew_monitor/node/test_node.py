@@ -297,10 +297,8 @@ def test_several_axes_share_one_topic(node):
     )
 
 
-def test_the_small_services(node, tmp_path):
-    surface = tmp_path / 'surface.npz'
-    surface.write_bytes(shipped_surface().read_bytes())
-    node.start(x__surface=surface, x__limits__raise_delay=0.0, **AHEAD)
+def test_totals_and_warning_begin_anew_when_they_are_asked_to(node):
+    node.start(x__limits__raise_delay=0.0, **AHEAD)
     states, publish = node.watched()
     feed(node, publish, states, SLOW, 3)
     assert states[-1].level == BallScrewState.LEVEL_WARN
@@ -310,13 +308,6 @@ def test_the_small_services(node, tmp_path):
     feed(node, publish, states, FAST, 1)
     assert states[-1].level == BallScrewState.LEVEL_UNKNOWN
     assert states[-1].totals.running_time == pytest.approx(0.01)
-    assert node.call(Trigger, 'reload_surface').success
-    surface.write_bytes(b'no surface')
-    kept = node.call(Trigger, 'reload_surface')
-    assert not kept.success
-    assert kept.message.startswith('kept the old surface: axis x: ')
-    feed(node, publish, states, FAST, 1)
-    assert states[-1].result.validity == PointResult.VALIDITY_VALID
 
 
 def test_a_glitch_is_refused_and_no_total_knows_of_it(node):
