@@ -30,21 +30,30 @@ MOST_DOMAIN = 101  # above, the ports may be those of any client
 
 
 @contextlib.contextmanager
-def started_node(name: str, **options: Any) -> Iterator[Node]:
-    """Start ROS and a node with an executor, until the end; raises InputError where that fails."""
+def started_node(name: str, domain: int | None = None, **options: Any) -> Iterator[Node]:
+    """
+    Start ROS and a node with an executor, until the end; raises InputError where that fails.
+
+    The `domain` is that of the environment unless stated.
+
+    """
+    context = rclpy.Context()
     try:
-        rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
+        rclpy.init(
+            context=context, domain_id=domain, signal_handler_options=SignalHandlerOptions.NO
+        )
     except RuntimeError as error:  # such as a domain that is no number
         raise InputError(f'ROS cannot start: {" ".join(str(error).split())}') from None
-    node = rclpy.create_node(name, enable_rosout=False, start_parameter_services=False, **options)
-    executor = SingleThreadedExecutor()
+    options |= {'context': context, 'enable_rosout': False, 'start_parameter_services': False}
+    node = rclpy.create_node(name, **options)
+    executor = SingleThreadedExecutor(context=context)
     executor.add_node(node)
     try:
         yield node
     finally:
         executor.shutdown()
         node.destroy_node()
-        rclpy.shutdown()
+        rclpy.shutdown(context=context)
 
 
 def spun(

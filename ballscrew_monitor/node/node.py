@@ -56,6 +56,7 @@ class BallscrewMonitor(LifecycleNode):
     def __init__(self, **kwargs: Any) -> None:
         """Declare everything; raises InputError for a bad parameter."""
         super().__init__(parameters.NODE_NAME, **kwargs)
+        # Held by others too, so both are filled and cleared and never replaced.
         self._axis_publishers: dict[str, AxisPublisher] = {}
         self._active = self._finalized = False
         self._reason = 'not configured'

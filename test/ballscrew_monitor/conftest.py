@@ -17,6 +17,7 @@ import sys
 import types
 import warnings
 
+from ballscrew_monitor.clients.surroundings import started_node
 from ballscrew_monitor.core import advice
 from ballscrew_monitor.core.conversions import direction_of, SECOND
 from ballscrew_monitor.core.estimate import MachinePoint, PointSource, PointValidity
@@ -37,8 +38,6 @@ from lifecycle_msgs.srv import ChangeState, GetState
 import numpy as np
 import pytest
 from rcl_interfaces.srv import SetParametersAtomically
-import rclpy
-from rclpy.executors import SingleThreadedExecutor
 from rclpy.parameter import Parameter
 from rclpy.qos import QoSDurabilityPolicy, QoSProfile, QoSReliabilityPolicy
 from rosgraph_msgs.msg import Clock
@@ -343,29 +342,6 @@ def content_of(path):
         return b''
 
 
-@contextlib.contextmanager
-def joined_node(domain, name='tester'):
-    """Join a domain with a small node, which has an executor."""
-    context = rclpy.Context()
-    rclpy.init(context=context, domain_id=domain)
-    quiet = {'enable_rosout': False, 'start_parameter_services': False}
-    node = rclpy.create_node(name, context=context, **quiet)
-    executor = SingleThreadedExecutor(context=context)
-    executor.add_node(node)
-    try:
-        yield node
-    finally:
-        executor.shutdown()
-        node.destroy_node()
-        rclpy.shutdown(context=context)
-
-
-@pytest.fixture(scope='session')
-def joined():
-    """Return what joins a domain with a small node."""
-    return joined_node
-
-
 class NodeProcess:
     """The node in a process of its own, and a small `node` here that talks to it."""
 
@@ -643,6 +619,6 @@ def quick_surface(tmp_path_factory):
 @pytest.fixture
 def node(tmp_path, wait_for):
     """Make a node process that is not started yet, in a DDS domain of its own."""
-    with free_domain() as domain, joined_node(domain) as tester:
+    with free_domain() as domain, started_node('tester', domain) as tester:
         with contextlib.closing(NodeProcess(domain, tester, tmp_path, wait_for)) as process:
             yield process

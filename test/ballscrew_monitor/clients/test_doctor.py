@@ -9,6 +9,7 @@ import time
 
 from ballscrew_monitor import cli
 from ballscrew_monitor.clients.doctor import doctor
+from ballscrew_monitor.clients.surroundings import started_node
 from ballscrew_monitor.cycle.domain import free_domain
 from geometry_msgs.msg import WrenchStamped
 import pytest
@@ -147,8 +148,8 @@ class Machine:
 
 
 @pytest.fixture(scope='module', name='domain')
-def make_domain(joined):
-    with free_domain() as domain, joined(domain, 'machine') as node:
+def make_domain():
+    with free_domain() as domain, started_node('machine', domain) as node:
         with contextlib.closing(Machine(node)):
             yield domain
 

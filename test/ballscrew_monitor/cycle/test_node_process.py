@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 
+from ballscrew_monitor.clients.surroundings import started_node
 from ballscrew_monitor.cycle import node_process
 from ballscrew_monitor.cycle.domain import free_domain
 from ballscrew_monitor.cycle.node_process import child_environment, NodeProcess
@@ -22,28 +23,23 @@ PARAMS = ROOT / 'config' / 'nominal_cycle.yaml'
 DEADLINE = 120.0  # [s]
 
 
-@pytest.fixture
-def listen_for_a_sign(joined, wait_for):
-    """Return what waits until the node says something; then its signal handlers are in place."""
-
-    def listen(domain):
-        heard = []
-        with joined(domain) as node:
-            node.create_subscription(DiagnosticArray, '/diagnostics', heard.append, 10)
-            spin = functools.partial(node.executor.spin_once, timeout_sec=0.1)
-            wait_for(lambda: heard, 'a sign', meanwhile=spin)
-
-    return listen
+def listen_for_a_sign(domain, wait_for):
+    """Wait until the node says something; by then its signal handlers are in place."""
+    heard = []
+    with started_node('listener', domain) as node:
+        node.create_subscription(DiagnosticArray, '/diagnostics', heard.append, 10)
+        spin = functools.partial(node.executor.spin_once, timeout_sec=0.1)
+        wait_for(lambda: heard, 'a sign', meanwhile=spin)
 
 
 @pytest.fixture
-def node(tmp_path, monkeypatch, listen_for_a_sign):
+def node(tmp_path, monkeypatch, wait_for):
     """Return the node as a child, with its signal handlers in place."""
     monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
     with free_domain() as domain:
         process = NodeProcess(PARAMS, tmp_path / 'node.log', domain=domain)
         try:
-            listen_for_a_sign(domain)
+            listen_for_a_sign(domain, wait_for)
             yield process
         finally:
             process.stop()
@@ -64,7 +60,7 @@ def test_it_is_killed_when_it_does_not_listen(node, monkeypatch, is_alive):
     assert not is_alive(node.pid)
 
 
-def test_it_dies_with_its_parent(tmp_path, monkeypatch, listen_for_a_sign, wait_for, is_alive):
+def test_it_dies_with_its_parent(tmp_path, monkeypatch, wait_for, is_alive):
     monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
     script = (
         'import sys, pathlib\n'
@@ -83,7 +79,7 @@ def test_it_dies_with_its_parent(tmp_path, monkeypatch, listen_for_a_sign, wait_
             cwd=ROOT,
         ) as parent:
             pid = int(parent.stdout.readline())
-            listen_for_a_sign(domain)
+            listen_for_a_sign(domain, wait_for)
             parent.kill()
             wait_for(lambda: not is_alive(pid), 'the end of the node')
 

@@ -7,6 +7,7 @@ import threading
 import time
 import types
 
+from ballscrew_monitor.clients.surroundings import started_node
 from ballscrew_monitor.core.conversions import Scaling
 from ballscrew_monitor.core.inputs import make_input, OpenInput, Source
 from ballscrew_monitor.cycle.domain import free_domain
@@ -104,8 +105,8 @@ class Bench:
 
 
 @pytest.fixture(name='bench')
-def make_bench(joined, wait_for):
-    with free_domain() as domain, joined(domain) as node:
+def make_bench(wait_for):
+    with free_domain() as domain, started_node('taker', domain) as node:
         yield Bench(node, wait_for)
 
 
@@ -337,7 +338,7 @@ def test_an_open_input_whose_field_is_not_in_the_type_says_so_and_waits_on(bench
     assert bench.taken[0].value == 3.0
 
 
-def test_of_two_types_on_a_topic_an_open_input_takes_none(bench, joined):
+def test_of_two_types_on_a_topic_an_open_input_takes_none(bench):
     open_bench(bench, 'data')
     bench.node.create_publisher(Float64, 'late', 10)
 
@@ -346,7 +347,7 @@ def test_of_two_types_on_a_topic_an_open_input_takes_none(bench, joined):
         return {publisher.type_name for publisher in link.publishers}
 
     # One participant may not give a topic two types.
-    with joined(bench.node.context.get_domain_id(), 'other') as other:
+    with started_node('other', bench.node.context.get_domain_id()) as other:
         other.create_publisher(JointState, 'late', 10)
         bench.until(lambda: len(types()) == 2)
         bench.intake.discover()
