@@ -8,8 +8,10 @@ Subcommands that need ROS import it in their handlers, so that the offline ones 
 """
 
 import argparse
+import json
 import math
 import os
+from pathlib import Path
 import signal
 import sys
 from typing import Any
@@ -23,6 +25,9 @@ from surrogate.surface import SurfaceError
 from surrogate.units import RPM
 
 BAD_INPUT, INTERRUPTED = 2, SIGNALLED + signal.SIGINT
+NODE = 'ballscrew_monitor'  # the default name of the node
+# Facts of the event log that are sentences or words: the first that is not empty is printed.
+TOLD = ('text', 'ending', 'advice', 'reason', 'until', 'result', 'sha256')
 # What some commands need beyond the rest, and how to get it.
 NEEDED = {
     'mcap': 'pip install mcap zstandard',
@@ -88,7 +93,7 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _run(args: argparse.Namespace) -> int:
-    from ballscrew_monitor.cycle.plan import plan
+    from ballscrew_monitor.cycle.outcome import plan
     from ballscrew_monitor.cycle.run import run
 
     # The log files of ROS belong to this run, not to the home directory.
@@ -163,9 +168,20 @@ def _doctor(args: argparse.Namespace) -> int:
 
 
 def _events(args: argparse.Namespace) -> int:
-    from ballscrew_monitor.clients.events import print_events
+    """Print the event log of a folder, else that of the node by its default name."""
+    from ballscrew_monitor.node.restart_state import AUTO, state_directory
+    from ballscrew_monitor.node.state_database import read_entries
 
-    return print_events(args.folder, as_json=args.json)
+    for entry in read_entries(args.folder or state_directory(AUTO, NODE) or Path()):
+        record = entry.record()
+        if args.json:
+            print(json.dumps(record))
+            continue
+        event = f'event {record["event"]}' if 'event' in record else ''
+        told = next((str(record[name]) for name in TOLD if record.get(name)), '')
+        words = ': '.join(filter(None, (event, told)))
+        print(f'{entry.time}  {entry.axis or "-":<8}  {entry.kind:<14}  {words}'.rstrip())
+    return 0
 
 
 def _recover(args: argparse.Namespace) -> int:

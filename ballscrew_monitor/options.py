@@ -4,6 +4,7 @@
 
 import argparse
 from pathlib import Path
+from typing import Any
 
 from surrogate.cli import add_workers
 
@@ -15,166 +16,104 @@ OUT = Path('out')
 Parser = argparse.ArgumentParser
 
 
+def _add_file(parser: Parser, name: str, metavar: str | None, text: str, **more: Any) -> None:
+    parser.add_argument(name, type=Path, metavar=metavar, help=text, **more)
+
+
+def _add_number(parser: Parser, name: str, metavar: str | None, text: str, **more: Any) -> None:
+    parser.add_argument(name, type=float, metavar=metavar, help=text, **more)
+
+
+def _add_switch(parser: Parser, name: str, text: str) -> None:
+    parser.add_argument(name, action='store_true', help=text)
+
+
 def _add_params(parser: Parser) -> None:
-    parser.add_argument(
-        '--params',
-        type=Path,
-        default=PARAMS,
-        metavar='FILE',
-        help=f'parameters of the node (default {PARAMS_TEXT})',
-    )
+    text = f'parameters of the node (default {PARAMS_TEXT})'
+    _add_file(parser, '--params', 'FILE', text, default=PARAMS)
 
 
 def _add_rate(parser: Parser) -> None:
-    parser.add_argument(
-        '--rate', type=float, default=1.0, help='bag time over wall time (default 1)'
-    )
+    _add_number(parser, '--rate', None, 'bag time over wall time (default 1)', default=1.0)
+
+
+def _add_wait(parser: Parser, whom: str) -> None:
+    _add_number(parser, '--wait', 'SECONDS', f'longest wait for {whom} (default 10)', default=10.0)
 
 
 def add_run(parser: Parser) -> None:
     """Add what `ballscrew run` may be told."""
-    parser.add_argument('--bag', type=Path, default=BAG, help=f'bag to play (default {BAG_TEXT})')
+    _add_file(parser, '--bag', None, f'bag to play (default {BAG_TEXT})', default=BAG)
     _add_params(parser)
-    parser.add_argument(
-        '--out',
-        type=Path,
-        default=OUT,
-        metavar='DIR',
-        help='directory for recording, report and log (default %(default)s)',
-    )
+    text = 'directory for recording, report and log (default %(default)s)'
+    _add_file(parser, '--out', 'DIR', text, default=OUT)
     _add_rate(parser)
 
 
 def add_replay(parser: Parser) -> None:
     """Add what `ballscrew replay` may be told."""
-    parser.add_argument(
-        'logs',
-        type=Path,
-        nargs='+',
-        metavar='LOG',
-        help='bag directory or file, a folder of them; CSV or Parquet with --map',
-    )
-    parser.add_argument(
-        '--map', type=Path, metavar='FILE', help='map of the columns of a CSV or Parquet file'
-    )
-    parser.add_argument(
-        '--params',
-        type=Path,
-        metavar='FILE',
-        help=f'parameters of the node (default those that the log carries, else {PARAMS_TEXT})',
-    )
-    parser.add_argument(
-        '--out', type=Path, metavar='DIR', help='directory for the report, its tables and data'
-    )
-    parser.add_argument('--json', action='store_true', help='print JSON')
+    text = 'bag directory or file, a folder of them; CSV or Parquet with --map'
+    _add_file(parser, 'logs', 'LOG', text, nargs='+')
+    _add_file(parser, '--map', 'FILE', 'map of the columns of a CSV or Parquet file')
+    text = f'parameters of the node (default those that the log carries, else {PARAMS_TEXT})'
+    _add_file(parser, '--params', 'FILE', text)
+    _add_file(parser, '--out', 'DIR', 'directory for the report, its tables and data')
+    _add_switch(parser, '--json', 'print JSON')
     add_workers(parser)
 
 
 def add_import(parser: Parser) -> None:
     """Add what `ballscrew import` may be told."""
-    parser.add_argument('log', type=Path, metavar='LOG', help='CSV or Parquet file')
-    parser.add_argument(
-        '--guess', action='store_true', help='print a first map of the columns, and nothing else'
-    )
-    parser.add_argument('--config', type=Path, metavar='MAP', help='map of the columns')
-    parser.add_argument('--out', type=Path, metavar='BAG', help='directory of the bag to be made')
+    _add_file(parser, 'log', 'LOG', 'CSV or Parquet file')
+    _add_switch(parser, '--guess', 'print a first map of the columns, and nothing else')
+    _add_file(parser, '--config', 'MAP', 'map of the columns')
+    _add_file(parser, '--out', 'BAG', 'directory of the bag to be made')
 
 
 def add_play(parser: Parser) -> None:
     """Add what `ballscrew play` may be told."""
-    parser.add_argument('bag', type=Path, metavar='BAG', help='bag directory or MCAP file')
+    _add_file(parser, 'bag', 'BAG', 'bag directory or MCAP file')
     _add_params(parser)
     chosen = parser.add_mutually_exclusive_group()
-    chosen.add_argument(
-        '--topics',
-        nargs='+',
-        metavar='TOPIC',
-        help='play these topics (default: the inputs in the parameter file)',
-    )
+    text = 'play these topics (default: the inputs in the parameter file)'
+    chosen.add_argument('--topics', nargs='+', metavar='TOPIC', help=text)
     chosen.add_argument('--all', action='store_true', help='play every topic of the bag')
-    parser.add_argument(
-        '--loop',
-        action='store_true',
-        help='play again and again until Ctrl-C; the stamps go on from one pass to the next',
-    )
+    text = 'play again and again until Ctrl-C; the stamps go on from one pass to the next'
+    _add_switch(parser, '--loop', text)
     _add_rate(parser)
-    parser.add_argument(
-        '--wait',
-        type=float,
-        default=10.0,
-        metavar='SECONDS',
-        help='longest wait for a subscriber of every topic (default 10)',
-    )
+    _add_wait(parser, 'a subscriber of every topic')
 
 
 def add_recover(parser: Parser) -> None:
     """Add what `ballscrew recover` may be told."""
-    parser.add_argument(
-        'file', type=Path, metavar='FILE', help='MCAP file, or the folder of an unfinished one'
-    )
+    _add_file(parser, 'file', 'FILE', 'MCAP file, or the folder of an unfinished one')
 
 
 def add_events(parser: Parser) -> None:
     """Add what `ballscrew events` may be told."""
-    parser.add_argument(
-        'folder',
-        type=Path,
-        nargs='?',
-        metavar='STATE_DIR',
-        help='state_dir of the node (default that of /ballscrew_monitor of this user)',
-    )
-    parser.add_argument('--json', action='store_true', help='print a line of JSON for each entry')
+    text = 'state_dir of the node (default that of /ballscrew_monitor of this user)'
+    _add_file(parser, 'folder', 'STATE_DIR', text, nargs='?')
+    _add_switch(parser, '--json', 'print a line of JSON for each entry')
 
 
 def add_doctor(parser: Parser) -> None:
     """Add what `ballscrew doctor` may be told."""
     _add_params(parser)
-    parser.add_argument(
-        '--seconds',
-        type=float,
-        default=3.0,
-        metavar='T',
-        help='how long to listen (default 3); longer for slow topics',
-    )
-    parser.add_argument('--json', action='store_true', help='print JSON')
+    text = 'how long to listen (default 3); longer for slow topics'
+    _add_number(parser, '--seconds', 'T', text, default=3.0)
+    _add_switch(parser, '--json', 'print JSON')
 
 
 def add_solve(parser: Parser) -> None:
     """Add what `ballscrew solve` may be told."""
     parser.add_argument('--axis', required=True, help='name of the axis, such as x')
-    parser.add_argument(
-        '--speed-rpm',
-        type=float,
-        metavar='N',
-        help='screw speed [rev/min]; none: the current point',
-    )
-    parser.add_argument(
-        '--load-N',
-        type=float,
-        dest='load',
-        metavar='F',
-        help='axial load [N]; it opposes the motion when it has the sign of the speed',
-    )
-    parser.add_argument(
-        '--temperature-degC',
-        type=float,
-        dest='temperature',
-        metavar='T',
-        help='oil temperature [degC] (default that of the axis)',
-    )
-    parser.add_argument(
-        '--timeout',
-        type=float,
-        default=0.0,
-        metavar='SECONDS',
-        help="longest solve (default the node's)",
-    )
+    _add_number(parser, '--speed-rpm', 'N', 'screw speed [rev/min]; none: the current point')
+    text = 'axial load [N]; it opposes the motion when it has the sign of the speed'
+    _add_number(parser, '--load-N', 'F', text, dest='load')
+    text = 'oil temperature [degC] (default that of the axis)'
+    _add_number(parser, '--temperature-degC', 'T', text, dest='temperature')
+    text = "longest solve (default the node's)"
+    _add_number(parser, '--timeout', 'SECONDS', text, default=0.0)
     parser.add_argument('--node', default='', help='full name of the node, if there are several')
-    parser.add_argument(
-        '--wait',
-        type=float,
-        default=10.0,
-        metavar='SECONDS',
-        help='longest wait for the node (default 10)',
-    )
-    parser.add_argument('--json', action='store_true', help='print JSON')
+    _add_wait(parser, 'the node')
+    _add_switch(parser, '--json', 'print JSON')

@@ -32,7 +32,6 @@ SLOW = (
     'ballscrew_monitor/cycle/test_domain.py',
     'ballscrew_monitor/cycle/test_node_process.py',
     'ballscrew_monitor/cycle/test_run.py',
-    'ballscrew_monitor/cycle/test_shared_memory.py',
     'ballscrew_monitor/clients/test_solve.py',
     'ballscrew_monitor/judge/test_many.py',
     'ballscrew_monitor/node/test_clocks.py',

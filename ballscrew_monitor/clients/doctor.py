@@ -21,15 +21,8 @@ from ballscrew_monitor.core.inputs import Input, make_input, Source
 from ballscrew_monitor.core.interrupts import interrupts, SIGNALLED
 from ballscrew_monitor.core.links import Link, types_of
 from ballscrew_monitor.messages.doctor import findings, InputFacts, known_range, Surroundings
+from ballscrew_monitor.settings import axis as axis_settings
 from ballscrew_monitor.settings import parameters
-from ballscrew_monitor.settings.axis import (
-    derivation_of,
-    is_configured,
-    load_surface,
-    resolved_topic,
-    scaling_of,
-    scalings_of,
-)
 from ballscrew_monitor.settings.middleware import notice
 from ballscrew_monitor.settings.qos import check_overrides, input_qos, overridden, publishers_on
 from ballscrew_monitor.settings.topics import absolute
@@ -82,14 +75,16 @@ class Examination:
             (axis, source)
             for axis in values['axes']
             for source in reversed(Source)
-            if is_configured(axis, values, source)
-            and self._try(scaling_of, axis, values, source, 1.0) is not None
+            if axis_settings.is_configured(axis, values, source)
+            and self._try(axis_settings.scaling_of, axis, values, source, 1.0) is not None
         ]
         for axis in values['axes']:
-            self._try(derivation_of, axis, values)
+            self._try(axis_settings.derivation_of, axis, values)
         topics = {self._topic(*wanted) for wanted in self._wanted}
         self._try(check_overrides, given, topics)
-        self._surfaces = {axis: self._try(load_surface, axis, values) for axis in values['axes']}
+        self._surfaces = {
+            axis: self._try(axis_settings.load_surface, axis, values) for axis in values['axes']
+        }
         self._spin(lambda: all(map(node.count_publishers, topics)), DISCOVERY)
 
     def _try(self, make: Callable[..., Any], *given: Any) -> Any:
@@ -106,7 +101,7 @@ class Examination:
 
     def _topic(self, axis: str, source: Source) -> str:
         topic = absolute(self._value(axis, source, 'topic'))
-        return resolved_topic(axis, source, topic, self._node.resolve_topic_name)
+        return axis_settings.resolved_topic(axis, source, topic, self._node.resolve_topic_name)
 
     def listen(self, seconds: float) -> list[InputFacts]:
         """Return the facts of every input after listening to those that can be."""
@@ -143,7 +138,7 @@ class Examination:
                 topic=topic,
                 type_name=type_name,
                 field=self._value(axis, source, 'field'),
-                scaling=scaling_of(axis, self._values, source, lead),
+                scaling=axis_settings.scaling_of(axis, self._values, source, lead),
             )
             return link, type_name, made
         except InputError as error:
@@ -174,7 +169,9 @@ class Examination:
             link=link,
             timeout=self._value(axis, source, 'timeout'),
             unit=unit,
-            scalings=scalings_of(axis, self._values, source, surface.lead) if scaled else {},
+            scalings=axis_settings.scalings_of(axis, self._values, source, surface.lead)
+            if scaled
+            else {},
             known=known_range(surface, source, unit),
             heard=hearing.heard() if hearing else None,
             problem=made if isinstance(made, str) else '',
@@ -190,7 +187,6 @@ def _numbers_of(type_name: str) -> tuple[str, ...]:
 
 
 def _page(found: list[str], facts: list[InputFacts], around: Surroundings) -> str:
-    """Return what was seen and found, for a person."""
     lines = [
         f'ROS domain {around.domain}, discovery range {around.discovery}: '
         f'nodes {len(around.nodes)}, topics {len(around.topics)}'
@@ -215,7 +211,6 @@ def _line(facts: InputFacts) -> str:
 
 
 def _record(found: list[str], facts: list[InputFacts]) -> str:
-    """Return the same as JSON."""
     inputs = {
         one.parameter: {
             'topic': one.link.topic,

@@ -31,6 +31,7 @@ ACTION_TYPE = 'ballscrew_msgs/action/SolveOperatingPoint'
 SOLVED, NOT_SOLVED, INTERRUPTED = 0, 1, SIGNALLED + signal.SIGINT
 LAST_WORD = 1.0  # [s] for the node to know that a goal is cancelled
 REJECTED = 'the node takes no more solves now, its queue is full'
+WHERE = 'start one, and mind ROS_DOMAIN_ID and ROS_AUTOMATIC_DISCOVERY_RANGE'
 SIDES = {PointResult.SIDE_SCREW: 'screw', PointResult.SIDE_NUT: 'nut'}
 NUTS = {PointResult.NUT_POSITIVE: 'positive nut', PointResult.NUT_NEGATIVE: 'negative nut'}
 # Words, field of a PointResult, factor, unit.
@@ -114,7 +115,7 @@ class _Conversation:
         """Ask and print; return the exit code unless interrupted."""
         action = self._find(wait)
         if action is None:
-            return self._give_up(f'no node offers {ACTION_TYPE} within {wait:g} s: {_where()}')
+            return self._give_up(f'no node offers {ACTION_TYPE} within {wait:g} s: {WHERE}')
         client = ActionClient(self._node, SolveOperatingPoint, action)
         silence = f'{action} does not answer within {wait:g} s'
         if not self._until(client.server_is_ready, wait):
@@ -145,12 +146,11 @@ class _Conversation:
         wanted = f'{self._question.node.rstrip("/")}/solve' if self._question.node else ''
 
         def offered() -> list[str]:
-            names = [
+            return [
                 name
                 for name, types in get_action_names_and_types(self._node)
-                if ACTION_TYPE in types
+                if ACTION_TYPE in types and wanted in ('', name)
             ]
-            return [name for name in names if not wanted or name == wanted]
 
         found: list[str] | None = self._until(offered, wait)
         if found and len(found) > 1:
@@ -166,10 +166,6 @@ class _Conversation:
         """Cancel a goal that may be accepted only now, as nobody waits for it any more."""
         if spun(self._node, sent.done, LAST_WORD) and sent.result().accepted:
             self._take_back(sent.result())
-
-
-def _where() -> str:
-    return 'start one, and mind ROS_DOMAIN_ID and ROS_AUTOMATIC_DISCOVERY_RANGE'
 
 
 def _complain(sentence: str) -> int:
@@ -203,13 +199,13 @@ def _print(axis: str, result: Any, *, as_json: bool) -> int:
 
 def record_of(axis: str, result: Any) -> dict[str, Any]:
     """Return a result as plain numbers, SI units but degC, NaN where unknown."""
-    points = {name: _numbers(getattr(result, name)) for name in ('full', 'surface')}
+    points = {'full': result.full, 'surface': result.surface}
+    numbers = {
+        part: {name: getattr(point, name) for name in point.get_fields_and_field_types()}
+        for part, point in points.items()
+    }
     facts = {name: getattr(result, name) for name in FACTS}
-    return {'axis': axis, 'status': result.status} | points | facts | {'wall_s': result.wall_time}
-
-
-def _numbers(point: Any) -> dict[str, Any]:
-    return {name: getattr(point, name) for name in point.get_fields_and_field_types()}
+    return {'axis': axis, 'status': result.status, **numbers, **facts, 'wall_s': result.wall_time}
 
 
 def page_of(axis: str, result: Any) -> str:

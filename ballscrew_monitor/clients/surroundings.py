@@ -30,21 +30,30 @@ MOST_DOMAIN = 101  # above, the ports may be those of any client
 
 
 @contextlib.contextmanager
-def started_node(name: str, **options: Any) -> Iterator[Node]:
-    """Start ROS and a node with an executor, until the end; raises InputError where that fails."""
+def started_node(name: str, domain: int | None = None, **options: Any) -> Iterator[Node]:
+    """
+    Start ROS and a node with an executor, until the end; raises InputError where that fails.
+
+    The `domain` is that of the environment unless stated.
+
+    """
+    context = rclpy.Context()
     try:
-        rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
+        rclpy.init(
+            context=context, domain_id=domain, signal_handler_options=SignalHandlerOptions.NO
+        )
     except RuntimeError as error:  # such as a domain that is no number
         raise InputError(f'ROS cannot start: {" ".join(str(error).split())}') from None
-    node = rclpy.create_node(name, enable_rosout=False, start_parameter_services=False, **options)
-    executor = SingleThreadedExecutor()
+    options |= {'context': context, 'enable_rosout': False, 'start_parameter_services': False}
+    node = rclpy.create_node(name, **options)
+    executor = SingleThreadedExecutor(context=context)
     executor.add_node(node)
     try:
         yield node
     finally:
         executor.shutdown()
         node.destroy_node()
-        rclpy.shutdown()
+        rclpy.shutdown(context=context)
 
 
 def spun(
@@ -60,7 +69,9 @@ def spun(
 
 def surroundings(node: Node) -> Surroundings:
     """Return what is seen around the node."""
-    domain = node.context.get_domain_id()
+    domain, udp_table = node.context.get_domain_id(), ''
+    with contextlib.suppress(OSError):
+        udp_table = UDP.read_text()
     published = {
         name: tuple(types)
         for name, types in node.get_topic_names_and_types()
@@ -72,16 +83,9 @@ def surroundings(node: Node) -> Surroundings:
         localhost_only=os.environ.get('ROS_LOCALHOST_ONLY') == '1',
         nodes=tuple(sorted(name for name in node.get_node_names() if name != node.get_name())),
         topics=published,
-        domains=tuple(other for other in domains_of(_udp_table()) if other != domain),
+        domains=tuple(other for other in domains_of(udp_table) if other != domain),
         use_sim_time=bool(node.get_parameter('use_sim_time').value),
     )
-
-
-def _udp_table() -> str:
-    try:
-        return UDP.read_text()
-    except OSError:
-        return ''
 
 
 def domains_of(udp_table: str) -> list[int]:
@@ -121,16 +125,13 @@ class Hearing:
         fill(self._record, event)
         if isinstance(event, InputSample):
             accept(self._memory, self._settings, self._record, event.value)
-            self._keep(event, now)
+            scaling = self._source.scaling
+            self._numbers.append((event.value - scaling.shift) / scaling.factor)
+            self._longest_gap = max(self._longest_gap, self._silence(now))
+            self._last = now
         else:
             self._words.hear(event, self._memory)
             take_refusal(self._memory, self._record)
-
-    def _keep(self, sample: InputSample, now: int) -> None:
-        scaling = self._source.scaling
-        self._numbers.append((sample.value - scaling.shift) / scaling.factor)
-        self._longest_gap = max(self._longest_gap, self._silence(now))
-        self._last = now
 
     def _silence(self, now: int) -> int:
         """Return the time since the last sample [ns], 0 before the first."""

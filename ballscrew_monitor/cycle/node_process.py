@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The monitor node as a child process that never outlives its parent."""
 
+import contextlib
 import ctypes
 import os
 from pathlib import Path
@@ -9,9 +10,8 @@ import resource
 import signal
 import subprocess
 import sys
-from typing import Any
 
-from ballscrew_monitor.node.solver_process import WHEEL_VARIABLES
+from ballscrew_monitor.node.solver_process import path_to_this_code, WHEEL_VARIABLES
 from ballscrew_monitor.settings.middleware import loopback
 
 PATIENCE = ((signal.SIGINT, 8.0), (signal.SIGTERM, 3.0), (signal.SIGKILL, 5.0))  # [s] after each
@@ -19,24 +19,17 @@ PR_SET_PDEATHSIG = 1
 
 
 class NodeProcess:
-    """The node, its log in a file; use it as a context manager, then it is gone at the end."""
+    """The node, its log in a file; it is gone after `stop`."""
 
     def __init__(self, params: Path, log: Path, *, domain: int) -> None:
         """Start the node on simulated time in `domain`; call this from the main thread."""
         self.log = log
         command = [
-            sys.executable,
-            '-P',  # this very code, whatever lies in the working directory
-            '-m',
-            'ballscrew_monitor.node',
-            '--ros-args',
-            '--params-file',
-            str(params),
-            '-p',
-            'use_sim_time:=true',
+            # This very code, whatever lies in the working directory.
+            *(sys.executable, '-P', '-m', 'ballscrew_monitor.node', '--ros-args'),
+            *('--params-file', str(params), '-p', 'use_sim_time:=true'),
             # Every run is the same: none takes up what solves of an earlier one have corrected.
-            '-p',
-            "state_dir:=''",
+            *('-p', "state_dir:=''"),
         ]
         libc = ctypes.CDLL(None)
         with log.open('wb') as stream:
@@ -50,14 +43,6 @@ class NodeProcess:
                 # The kernel kills the child when this process dies, whatever kills it.
                 preexec_fn=lambda: libc.prctl(PR_SET_PDEATHSIG, signal.SIGKILL),
             )
-
-    def __enter__(self) -> 'NodeProcess':
-        """Return the process itself."""
-        return self
-
-    def __exit__(self, *unused: Any) -> None:
-        """Stop the node."""
-        self.stop()
 
     @property
     def returncode(self) -> int | None:
@@ -75,10 +60,8 @@ class NodeProcess:
             if self._process.poll() is not None:
                 break
             self._signal(number)
-            try:
+            with contextlib.suppress(subprocess.TimeoutExpired):
                 self._process.wait(patience)
-            except subprocess.TimeoutExpired:
-                continue
         self._signal(signal.SIGKILL)  # what is left of its group
         return self._process.wait()
 
@@ -94,16 +77,8 @@ class NodeProcess:
         return lines[-1].strip() if lines else ''
 
     def _signal(self, number: signal.Signals) -> None:
-        try:
+        with contextlib.suppress(ProcessLookupError):
             os.killpg(self._process.pid, number)
-        except ProcessLookupError:
-            pass
-
-
-def path_to_this_code() -> str:
-    """Return a PYTHONPATH that begins with the folder of both packages."""
-    folder = Path(__file__).resolve().parents[2]
-    return os.pathsep.join(filter(None, (str(folder), os.environ.get('PYTHONPATH', ''))))
 
 
 def child_environment(domain: int) -> dict[str, str]:

@@ -19,11 +19,10 @@ import sys
 import threading
 
 from ballscrew_monitor.core.interrupts import DONE, FAILED, interrupts, SIGNALLED
-from ballscrew_monitor.cycle.domain import free_domain, is_free
+from ballscrew_monitor.cycle import outcome as outcomes
+from ballscrew_monitor.cycle.domain import free_domain, is_free, remove_stale
 from ballscrew_monitor.cycle.node_process import confined, NodeProcess, ros_environment
-from ballscrew_monitor.cycle.outcome import facts, LOG, losses, Outcome, report
-from ballscrew_monitor.cycle.plan import Plan, RECORDING
-from ballscrew_monitor.cycle.shared_memory import remove_stale
+from ballscrew_monitor.cycle.outcome import LOG, Outcome, Plan, RECORDING
 from ballscrew_monitor.cycle.supervision import RunFailure, Supervision
 from ballscrew_monitor.recordings.bag_writer import BagWriter
 from ballscrew_monitor.report.products import remove_report
@@ -50,15 +49,17 @@ def run(made: Plan) -> int:
         return SIGNALLED + interrupted[0]
     for sentence in outcome.failures:
         print(f'ballscrew: {sentence}', file=sys.stderr)
-    report(made, outcome)
+    outcomes.report(made, outcome)
     return FAILED if outcome.failures else DONE
 
 
 def _supervise(made: Plan, stop: threading.Event) -> Outcome:
     with free_domain() as domain, contextlib.ExitStack() as stack:
         os.environ |= confined(domain)
-        stack.enter_context(_clean_shared_memory(domain))
-        node = stack.enter_context(NodeProcess(made.params, made.out / LOG, domain=domain))
+        remove_stale({domain})  # it has just been found free; at the end somebody may be in it
+        stack.callback(lambda: remove_stale({domain} if is_free(domain) else ()))
+        node = NodeProcess(made.params, made.out / LOG, domain=domain)
+        stack.callback(node.stop)
         print(
             f'node ballscrew_monitor: process {node.pid}, ROS_DOMAIN_ID={domain} '
             'ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST',
@@ -67,25 +68,16 @@ def _supervise(made: Plan, stop: threading.Event) -> Outcome:
             flush=True,
         )
         writer = stack.enter_context(BagWriter(made.out, RECORDING))
-        supervision = stack.enter_context(Supervision(made, node, writer, domain))
+        supervision = Supervision(made, node, writer, domain)
+        stack.callback(supervision.close)
         try:
             outcome = supervision.carry_out(stop)
             if not stop.is_set():
-                outcome = dataclasses.replace(outcome, failures=losses(made, outcome))
+                outcome = dataclasses.replace(outcome, failures=outcomes.losses(made, outcome))
         except RunFailure as failure:
             outcome = supervision.outcome(str(failure))
-        writer.add_metadata(facts(made, outcome))
+        writer.add_metadata(outcomes.facts(made, outcome))
         return outcome
-
-
-@contextlib.contextmanager
-def _clean_shared_memory(domain: int) -> Iterator[None]:
-    """Remove what killed processes have left, before and after; somebody may be in `domain`."""
-    remove_stale({domain})  # it has just been found free
-    try:
-        yield
-    finally:
-        remove_stale({domain} if is_free(domain) else ())
 
 
 def solve_lines(made: Plan, domain: int) -> list[str]:

@@ -9,14 +9,15 @@ active, and announces its subscriptions after that.
 
 """
 
+import contextlib
+import functools
 import sys
 import threading
 import time
 from typing import Any
 
 from ballscrew_monitor.cycle.node_process import NodeProcess
-from ballscrew_monitor.cycle.outcome import Outcome, speed_health
-from ballscrew_monitor.cycle.plan import Plan
+from ballscrew_monitor.cycle.outcome import Outcome, Plan, speed_health
 from ballscrew_monitor.cycle.status import progress_bar, state_cells, StatusLine
 from ballscrew_monitor.recordings.bag_writer import BagWriter
 from ballscrew_monitor.recordings.player import Played, Player
@@ -40,7 +41,7 @@ class RunFailure(Exception):
 
 
 class Supervision:
-    """The ROS side of a run; a context manager that leaves no thread and no context behind."""
+    """The ROS side of a run; once closed it leaves no thread and no context behind."""
 
     def __init__(self, plan: Plan, node: NodeProcess, writer: BagWriter, domain: int) -> None:
         """Join the domain and subscribe to the outputs before the node can have any."""
@@ -52,33 +53,21 @@ class Supervision:
         self._played: Played | None = None
         self._broken: BaseException | None = None
         self._context = rclpy.Context()
+        quiet: dict[str, Any] = {'start_parameter_services': False, 'enable_rosout': False}
         rclpy.init(
             context=self._context, domain_id=domain, signal_handler_options=SignalHandlerOptions.NO
         )
-        self._node = rclpy.create_node(
-            'ballscrew_run',
-            context=self._context,
-            start_parameter_services=False,
-            enable_rosout=False,
-        )
+        self._node = rclpy.create_node('ballscrew_run', context=self._context, **quiet)
         self._executor = SingleThreadedExecutor(context=self._context)
         self._executor.add_node(self._node)
-        self._player = Player(
-            self._node, plan.bag, rate=plan.rate, topics=list(input_topics(plan.values))
-        )
+        topics = list(input_topics(plan.values))
+        self._player = Player(self._node, plan.bag, rate=plan.rate, topics=topics)
+        recorded, listeners = recorded_topics(plan.values), self._listeners()
         self._recorder = Recorder(
-            self._node,
-            writer,
-            recorded_topics(plan.values),
-            lambda: self._player.now,
-            self._listeners(),
+            self._node, writer, recorded, lambda: self._player.now, listeners
         )
 
-    def __enter__(self) -> 'Supervision':
-        """Return the supervision itself."""
-        return self
-
-    def __exit__(self, *unused: Any) -> None:
+    def close(self) -> None:
         """Leave the domain."""
         self._recorder.close()
         self._executor.shutdown()
@@ -119,9 +108,7 @@ class Supervision:
     def _listeners(self) -> dict[str, Any]:
         found: dict[str, Any] = {'/diagnostics': self._on_diagnostics}
         for axis in self._plan.values['axes']:
-            found[output(axis, 'state')] = lambda data, axis=axis: self._states.update(
-                {axis: data}
-            )
+            found[output(axis, 'state')] = functools.partial(self._states.__setitem__, axis)
             found[output(axis, 'surface_info')] = lambda data, axis=axis: self._active.add(axis)
         return found
 
@@ -154,10 +141,7 @@ class Supervision:
                     return
                 self._player.show_begin()
             if time.monotonic() > deadline:
-                raise RunFailure(
-                    f'the node did not become active within {START_PATIENCE:g} s'
-                    + self._last_words()
-                )
+                raise self._failure(f'did not become active within {START_PATIENCE:g} s')
 
     def _play(self, stop: threading.Event) -> None:
         try:
@@ -170,8 +154,7 @@ class Supervision:
 
     def _watch(self, thread: threading.Thread) -> None:
         """Record and show until the player has come to its end."""
-        status = StatusLine(sys.stdout)
-        try:
+        with contextlib.closing(StatusLine(sys.stdout)) as status:
             while thread.is_alive():
                 self._executor.spin_once(timeout_sec=POLL)
                 now = time.monotonic()
@@ -180,14 +163,11 @@ class Supervision:
                     self._show(status, now)
                 if self._player.elapsed >= self._plan.bag.duration and self._all_received():
                     self._settled.set()
-        finally:
-            status.close()
 
     def _show(self, status: StatusLine, now: float) -> None:
         duration, elapsed = self._plan.bag.duration, self._player.elapsed
-        bar = progress_bar(
-            elapsed / duration if duration else 1.0, (duration - elapsed) / self._plan.rate
-        )
+        part = elapsed / duration if duration else 1.0
+        bar = progress_bar(part, (duration - elapsed) / self._plan.rate)
         axis = min(self._states)
         name = [] if len(self._plan.expected) == 1 else [axis]
         status.show([bar, *name, *state_cells(self._state(axis))], now)
@@ -207,7 +187,7 @@ class Supervision:
     def _check_node(self) -> None:
         code = self._process.returncode
         if code is not None:
-            raise RunFailure(f'the node ended with exit code {code}' + self._last_words())
+            raise self._failure(f'ended with exit code {code}')
 
     def _stop_node(self) -> None:
         """Stop the node and record what it says at last."""
@@ -219,11 +199,10 @@ class Supervision:
             if self._writer.total == before:
                 break
         if code != 0:
-            raise RunFailure(
-                f'the node ended with exit code {code} when it was asked to stop'
-                + self._last_words()
-            )
+            raise self._failure(f'ended with exit code {code} when it was asked to stop')
 
-    def _last_words(self) -> str:
+    def _failure(self, what: str) -> RunFailure:
+        """Return what the node did, with its last words."""
         words = self._process.last_words()
-        return f'; {self._process.log} ends with: {words}' if words else ''
+        said = f'; {self._process.log} ends with: {words}' if words else ''
+        return RunFailure(f'the node {what}{said}')

@@ -44,18 +44,17 @@ class Alarm:
         record: Callable[[str, Any], None],
     ) -> None:
         """Speak through a `publisher` of the node; `record` is given each message and topic."""
-        self._node = node
-        self._axis = axis
-        self._publisher = publisher
-        self._kept = kept
-        self._record = record
+        self._node, self._axis, self._publisher = node, axis, publisher
+        self._kept, self._record = kept, record
 
     def publish(self) -> None:
         """Publish the event that is active, or the last one."""
         self._speak(self._publisher.publish)
 
     def _speak(self, publish: Callable[[OutOfZone], None]) -> None:
-        message = self._message()
+        monitor = self._axis.monitor
+        shelved = bool(monitor.shelving.at(self._now).until)
+        message = out_of_zone_message(self._axis.name, monitor.event, shelved=shelved)
         publish(message)
         self._record(f'~/{self._axis.name}/out_of_zone', message)
 
@@ -110,13 +109,8 @@ class Alarm:
             until = clock_text(shelving.until)
             self._warn(f'the warning is shelved until {until}: {shelving.reason}')
             duration = seconds(shelving.until - self._now)
-            self._note(
-                Kind.SHELVE,
-                duration_s=duration,
-                until=until,
-                until_ns=shelving.until,
-                reason=shelving.reason,
-            )
+            when = {'duration_s': duration, 'until': until, 'until_ns': shelving.until}
+            self._note(Kind.SHELVE, **when, reason=shelving.reason)
         elif before.until:
             self._say('the warning is no longer shelved')
             self._note(Kind.UNSHELVE, reason=before.reason)
@@ -137,11 +131,6 @@ class Alarm:
     @property
     def _now(self) -> int:
         return self._node.get_clock().now().nanoseconds
-
-    def _message(self) -> OutOfZone:
-        monitor = self._axis.monitor
-        shelved = bool(monitor.shelving.at(self._now).until)
-        return out_of_zone_message(self._axis.name, monitor.event, shelved=shelved)
 
     def _note_event(self, kind: Kind, **facts: Any) -> None:
         event = self._axis.monitor.event

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the node keeps of one axis: the axis, its publishers, and what it last said."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 import dataclasses
 import traceback
 from typing import Any
@@ -15,24 +15,13 @@ from ballscrew_monitor.core.inputs import InputSample, Refusal, Source
 from ballscrew_monitor.core.links import Link
 from ballscrew_monitor.core.shelving import Shelving
 from ballscrew_monitor.core.state import State
-from ballscrew_monitor.messages import diagnostics
-from ballscrew_monitor.messages.state_messages import (
-    fill_result,
-    read_point,
-    StateWriter,
-    surface_info_message,
-    TIERS,
-)
+from ballscrew_monitor.messages import diagnostics, state_messages
+from ballscrew_monitor.messages.state_messages import TIERS
 from ballscrew_monitor.node.alarm import Alarm
+from ballscrew_monitor.node.journal import NodeJournal
 from ballscrew_monitor.node.kept_axes import KeptAxes
 from ballscrew_monitor.node.output_topics import LatchedTopics, PlainTopics, quiet_publishers
-from ballscrew_monitor.node.state_records import (
-    Corrections,
-    corrections_of,
-    Kind,
-    point_facts,
-    solves_of,
-)
+from ballscrew_monitor.node.state_records import Corrections, Kind, point_facts
 from ballscrew_monitor.settings.axis import Axis
 from ballscrew_monitor.settings.qos import state_qos
 from ballscrew_msgs.msg import BallScrewState, OperatingPoint, PointResult
@@ -58,27 +47,21 @@ class AxisPublisher:
         *,
         latched: LatchedTopics,
         kept: KeptAxes,
-        record: Callable[[str, Any], None],
-        changed: Callable[[Iterable[str], str], None],
+        recording: NodeJournal,
     ) -> None:
         """
         Make the publishers, which stay silent until the node is active; `latched` are there.
 
         `values` are the parameters as they are at any time; `kept` keeps corrections and what
-        happens. `record` is given each message with its topic, `changed` the axis and what has
-        changed it.
+        happens, `recording` each message and what has changed the axis.
 
         """
         self.axis = axis
         self.dwell = Dwell()
         self.refused = ''  # why the last reload of the surface was
         self.defect = ''  # of the program, at a sample that it could not judge
-        self._values = values
-        self._kept = kept
-        self._record = record
-        self._changed = changed
-        self._node = node
-        self._writer = StateWriter(axis.name, TIERS[axis.surface.tier])
+        self._node, self._values, self._kept, self._recording = node, values, kept, recording
+        self._writer = state_messages.StateWriter(axis.name, TIERS[axis.surface.tier])
         self._last: State | None = None
         self._links: Mapping[Source, Link] = {}
         self._said: tuple[diagnostics.StatusSummary, ...] = ()
@@ -89,17 +72,15 @@ class AxisPublisher:
         simulated = node.get_parameter('use_sim_time').value
         promise = state_qos(axis.name, values, simulated=simulated)
         self._state = make(BallScrewState, f'~/{axis.name}/state', promise)
-        self.alarm = Alarm(node, axis, latched.event, kept, record)
+        self.alarm = Alarm(node, axis, latched.event, kept, recording.record)
         self._info = latched.info
-        self._plain = None
-        if values[f'{axis.name}.plain_topics']:
-            self._plain = PlainTopics(node, axis.name, make, STATE_QOS)
+        plain = values[f'{axis.name}.plain_topics']
+        self._plain = PlainTopics(node, axis.name, make, STATE_QOS, wanted=plain)
 
     def close(self) -> None:
         """Destroy the publishers, but for those that outlive the axis."""
         self._node.destroy_lifecycle_publisher(self._state)
-        if self._plain is not None:
-            self._plain.close()
+        self._plain.close()
 
     def publish_state(self, state: State) -> None:
         """Publish a state, and before it the event that it begins or ends."""
@@ -108,9 +89,8 @@ class AxisPublisher:
             self.alarm.follow(state)
         message = self._writer.write(state)
         self._state.publish(message)
-        self._record(f'~/{self.name}/state', message)
-        if self._plain is not None:
-            self._plain.publish(state)
+        self._recording.record(f'~/{self.name}/state', message)
+        self._plain.publish(state)
 
     def shelve(self, shelving: Shelving) -> None:
         """Shelve the warning, or no longer, and let the last state say so."""
@@ -125,16 +105,14 @@ class AxisPublisher:
         return over
 
     def _show_shelving(self) -> None:
-        if self._last is None:
-            return
-        self._last = dataclasses.replace(self._last, shelving=self.axis.monitor.shelving)
-        if self._plain is not None:
+        if self._last is not None:
+            self._last = dataclasses.replace(self._last, shelving=self.axis.monitor.shelving)
             self._plain.publish(self._last)
 
     def publish_info(self) -> None:
         """Publish what the surface and the limits are."""
         settings = self.axis.monitor.settings
-        message = surface_info_message(
+        message = state_messages.surface_info_message(
             self.axis.name,
             self.axis.surface,
             settings.limits,
@@ -142,7 +120,7 @@ class AxisPublisher:
             default_temperature=settings.default_temperature,
         )
         self._info.publish(message)
-        self._record(f'~/{self.name}/surface_info', message)
+        self._recording.record(f'~/{self.name}/surface_info', message)
 
     @property
     def name(self) -> str:
@@ -197,13 +175,13 @@ class AxisPublisher:
     def _save(self) -> str:
         """Keep the corrections; return why that failed, or nothing."""
         surface = self.surface
-        kept = corrections_of(self.name, surface.base_sha256, surface.corrections)
+        kept = Corrections.of(self.name, surface.base_sha256, surface.corrections)
         return self._kept.state.keep_corrections(kept)
 
     def restore(self, *, late: bool) -> str:
         """Take up corrections of before; return what became of them, if there are any."""
         found = self._kept.state.recall(Corrections(self.name), late=late)
-        kept = solves_of(found)
+        kept = found.read_solves()
         if not kept:
             return ''
         if found.surface != self.surface.base_sha256:
@@ -242,7 +220,7 @@ class AxisPublisher:
         self.axis.use_surface(surface, self._values)
         self._writer.tier = TIERS[surface.tier]
         self.publish_info()
-        self._changed([self.name], 'surface')
+        self._recording.describe([self.name], 'surface')
 
     def evaluate(self, points: Sequence[OperatingPoint], response: Any) -> None:
         """Fill the response with what the surface says of the points, if they are not too many."""
@@ -254,10 +232,10 @@ class AxisPublisher:
         response.results = [self._evaluate(point) for point in points]
 
     def _evaluate(self, point: OperatingPoint) -> PointResult:
-        settings, result = self.axis.monitor.settings, PointResult()
-        asked = read_point(point, default_temperature=settings.default_temperature)
-        answer = estimate(asked, self.axis.surface, rcs_limit=settings.limits.rcs)
-        fill_result(result, answer, TIERS[self.axis.surface.tier])
+        result = PointResult()
+        asked = state_messages.read_point(point, default_temperature=self.default_temperature)
+        answer = estimate(asked, self.surface, rcs_limit=self.rcs_limit)
+        state_messages.fill_result(result, answer, TIERS[self.surface.tier])
         return result
 
     def has_news(self, now: int) -> bool:
@@ -286,12 +264,11 @@ class AxisPublisher:
 
     def note_defect(self, error: Exception, event: InputSample | Refusal | int) -> bool:
         """Keep and log that a defect of the program met an event; tell whether it is new."""
-        sentence = diagnostics.defect_text(error, event)
         if self.defect:
             return False
-        self.defect = sentence
+        self.defect = diagnostics.defect_text(error, event)
         trace = ''.join(traceback.format_exception(error))
-        self._node.get_logger().error(f'axis {self.name}: {sentence}\n{trace}')
+        self._node.get_logger().error(f'axis {self.name}: {self.defect}\n{trace}')
         return True
 
     def statuses(

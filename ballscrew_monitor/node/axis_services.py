@@ -34,26 +34,23 @@ class AxisServices:
         self,
         node: Node,
         values: Mapping[str, Any],
-        find: Callable[[], Publishers],
-        find_failed: Callable[[], Mapping[str, str]],
+        publishers: Publishers,
+        failed: Mapping[str, str],
         why_unknown: Callable[[str], str],
         changed: Callable[[Publishers, str], str],
     ) -> None:
         """
         Make the services.
 
-        `find` returns the publishers, none while the node is unconfigured, and `find_failed` why
-        other axes have none. `why_unknown` says why there is none of a name. `changed` takes the
-        publishers that a service has changed, and its name; it keeps them and returns why that
-        failed, or nothing.
+        `publishers` are those of now, none while the node is unconfigured; `failed` says why other
+        axes have none, `why_unknown` why there is none of a name. `changed` takes the publishers
+        that a service has changed, and its name; it keeps them and returns why that failed, or
+        nothing.
 
         """
-        self._node = node
-        self._changed = changed
-        self._values = values
-        self._find = find
-        self._find_failed = find_failed
-        self._why_unknown = why_unknown
+        self._node, self._values = node, values
+        self._publishers, self._failed = publishers, failed
+        self._why_unknown, self._changed = why_unknown, changed
         acts: dict[str, Act] = {
             'reload_surface': self._reload,
             'reset_totals': self._reset,
@@ -69,10 +66,8 @@ class AxisServices:
         self._node.create_service(Trigger, name, functools.partial(self._serve, act, axes))
 
     def _serve(self, act: Act, axes: list[str], request: Any, response: Any) -> Any:
-        publishers = {name: one for name, one in self._find().items() if name in axes}
-        failed = [
-            not_built(name, why) for name, why in self._find_failed().items() if name in axes
-        ]
+        publishers = {name: one for name, one in self._publishers.items() if name in axes}
+        failed = [not_built(name, why) for name, why in self._failed.items() if name in axes]
         if not publishers:
             response.message = '; '.join(failed) or 'the node is not configured'
             return response
@@ -102,7 +97,6 @@ class AxisServices:
             raise
 
     def _reset(self, publishers: Publishers) -> str:
-        """Set the totals to zero."""
         for publisher in publishers.values():
             publisher.alarm.reset_totals()
         return f'set the totals to zero of {_names(publishers)}'
@@ -114,7 +108,7 @@ class AxisServices:
         return f'acknowledged of {_names(publishers)}'
 
     def _serve_shelve(self, request: Any, response: Any) -> Any:
-        publishers = self._find()
+        publishers = self._publishers
         axes = [request.axis] if request.axis else list(publishers)
         unknown = [axis for axis in axes if axis not in publishers]
         if not publishers:

@@ -10,15 +10,7 @@ import re
 from typing import Any
 
 from ballscrew_monitor.core.memory import AxisRecord, LARGEST, read_record
-from ballscrew_monitor.node.state_records import (
-    by_key,
-    Entry,
-    EVENT,
-    Kind,
-    read_corrections,
-    Record,
-    Records,
-)
+from ballscrew_monitor.node.state_records import Corrections, Entry, EVENT, Kind, Record, Records
 
 NAMES = re.compile(r'([^.].*)\.(memory|corrections)\.json|events(\.[0-9]+)?\.jsonl')
 PLACE = 'before_sqlite3'
@@ -39,7 +31,8 @@ def read_former(folder: Path) -> tuple[Iterator[Entry], Records, list[str]]:
     for path, axis, kind in _files(folder):
         try:
             if kind != 'events':
-                records |= by_key([READ[kind](axis, _content(path))])
+                record = READ[kind](axis, _content(path))
+                records[type(record), axis] = record
         except BAD as error:
             damage.append(f'{path} is damaged ({error}), and not taken over')
     return _entries(folder, records), records, damage
@@ -81,7 +74,7 @@ def _record(axis: str, content: Mapping[str, Any]) -> Record:
 
 def _corrections(axis: str, content: Mapping[str, Any]) -> Record:
     solves = json.dumps(content['corrections'])
-    return read_corrections({'axis': axis, 'surface': content['surface'], 'solves': solves})
+    return Corrections.read({'axis': axis, 'surface': content['surface'], 'solves': solves})
 
 
 READ = {'memory': _record, 'corrections': _corrections}

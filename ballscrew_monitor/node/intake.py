@@ -48,9 +48,7 @@ class Intake(Waitable):
     ) -> None:
         """Subscribe once to each topic, however many inputs read it; the journal hears all."""
         super().__init__(node.default_callback_group)
-        self._node = node
-        self._take = take
-        self._journal = journal
+        self._node, self._take, self._journal = node, take, journal
         self._apart = Apart()
         self._simulated = 0  # the last `/clock` [ns]
         self._places: list[int] = []  # of the subscriptions in the wait set
@@ -66,7 +64,7 @@ class Intake(Waitable):
             self._open += [(axis, one) for one in axis.open_inputs]
         self._clock: Topic | None = None
         if node.get_parameter('use_sim_time').value:
-            self._clock = open_topic(node, CLOCK, Clock, self._apart, overridable=False)
+            self._clock = open_topic(node, CLOCK, Clock, self._apart, overridable=False, raw=False)
         node.add_waitable(self)
         self.discover()
 
@@ -80,7 +78,9 @@ class Intake(Waitable):
         name = self._node.resolve_topic_name(source.topic)
         if name not in self.topics:
             kind, raw = source.message_type, self._journal.on
-            self.topics[name] = open_topic(self._node, name, kind, self._apart, raw=raw)
+            self.topics[name] = open_topic(
+                self._node, name, kind, self._apart, overridable=True, raw=raw
+            )
         self.topics[name].readers.append((axis, source))
 
     def discover(self) -> None:
@@ -139,9 +139,8 @@ class Intake(Waitable):
     def is_ready(self, wait_set: Any) -> bool:
         """Tell whether anything has come."""
         self._changed = [handler for handler in self._matches if handler.is_ready(wait_set)]
-        return bool(self._changed) or any(
-            wait_set.is_ready('subscription', place) for place in self._places
-        )
+        come = any(wait_set.is_ready('subscription', place) for place in self._places)
+        return come or bool(self._changed)
 
     def take_data(self) -> None:
         """Count the publishers again, once what has come by then is taken."""

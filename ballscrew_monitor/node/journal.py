@@ -30,6 +30,7 @@ from rclpy.node import Node
 from std_msgs.msg import String
 
 LATCHED = ('OutOfZone', 'SurfaceInfo')
+CORRECTION = ('speed', 'opposing_load', 'temperature', 'solved')  # of a full solve
 AXIS_PERIOD = nanoseconds(10.0)  # [ns] after which all is said of an axis again
 RESTART = nanoseconds(2.0)  # [ns] after which a lost process is started again, then twice as long
 LONGEST_RESTART = nanoseconds(60.0)  # [ns]
@@ -73,7 +74,8 @@ class Journal:
         for arrival, now, lost in batch:
             name, kind = arrival.topic.name, arrival.topic.type_name
             self._tell_loss(name, lost, now)
-            self._put(name, kind, 'SENSOR', arrival.data, now, arrival.received, self._burst)
+            times = (now, arrival.received, self._burst)
+            self._put(name, kind, 'SENSOR', arrival.data, times)
         self.flush()  # whatever becomes of the node with these messages
 
     def flush(self) -> None:
@@ -98,7 +100,7 @@ class Journal:
         kind = type(message)
         type_name = f'{kind.__module__.split(".")[0]}/msg/{kind.__name__}'
         offer = 'LATCHED' if kind.__name__ in LATCHED else 'RELIABLE'
-        self._put(topic, type_name, offer, serialized(message), now, now)
+        self._put(topic, type_name, offer, serialized(message), (now, now, 0))
 
     def trigger(self, now: int) -> None:
         """Let a recording around events show what has just happened."""
@@ -123,17 +125,21 @@ class Journal:
         if self._process is None or not now:
             return
         self._begun = True
+        mine = {name: one for name, one in values.items() if name.startswith(f'{axis.name}.')}
         entry = {
             'kind': 'axis',
             'version': VERSION,
             'axis': axis.name,
             'because': because,
-            'values': values_of(axis.name, values),
+            'values': mine | {'axes': [axis.name], 'tick_period': values['tick_period']},
             'topics': dict(topics),
             'loss_unknown': sorted(self._unknown_loss),
             'surface': {
                 'base_sha256': axis.surface.base_sha256,
-                'corrections': [correction_entry(one) for one in axis.surface.corrections],
+                'corrections': [
+                    {name: getattr(one, name) for name in CORRECTION}
+                    for one in axis.surface.corrections
+                ],
             },
             'monitor': dump(axis.monitor),
         }
@@ -178,18 +184,12 @@ class Journal:
         if self._process is None:
             return
         text = json.dumps(entry, allow_nan=False, separators=(',', ':'))
-        self._put(self._name, STRING, 'RELIABLE', serialized(String(data=text)), now, now)
+        self._put(self._name, STRING, 'RELIABLE', serialized(String(data=text)), (now, now, 0))
 
     def _put(
-        self,
-        topic: str,
-        type_name: str,
-        offer: str,
-        data: bytes,
-        log_time: int,
-        publish_time: int,
-        sequence: int = 0,
+        self, topic: str, type_name: str, offer: str, data: bytes, times: tuple[int, int, int]
     ) -> None:
+        """Put a message; its times are log time and publish time [ns], and its burst."""
         # What is heard before all is said of an axis means nothing.
         if self._process is None or self._hole or not self._begun:
             return
@@ -201,8 +201,7 @@ class Journal:
                 del self._topics[topic]
                 self._hole = True
                 return
-        frame = Frame(FrameKind.MESSAGE, number, log_time, publish_time, sequence, data)
-        self._hole = not self._process.put(frame)
+        self._hole = not self._process.put(Frame(FrameKind.MESSAGE, number, *times, data))
 
 
 SILENT = Journal('', None)
@@ -212,10 +211,12 @@ SILENT = Journal('', None)
 class NodeJournal:
     """The journal of a node while it is active: what the node says, and how its axes are."""
 
-    def __init__(self, node: Node, values: Mapping[str, Any], find: Callable[[str], Axis]) -> None:
-        """Keep silent at first; `find` returns an axis."""
+    def __init__(
+        self, node: Node, values: Mapping[str, Any], publishers: Mapping[str, Any]
+    ) -> None:
+        """Keep silent at first; `publishers` have the axes by name."""
         self.journal = SILENT
-        self._node, self._values, self._find = node, values, find
+        self._node, self._values, self._publishers = node, values, publishers
         self._start: Callable[[], RecordingProcess] | None = None
 
     def configure(self, folder: Path | None) -> None:
@@ -233,7 +234,8 @@ class NodeJournal:
 
     def describe(self, axes: Iterable[str], because: str) -> None:
         """Let a recording know all about some axes."""
-        for axis in map(self._find, axes if self.journal.on else ()):
+        for name in axes if self.journal.on else ():
+            axis = self._publishers[name].axis
             topics = {
                 source.name.lower(): self._node.resolve_topic_name(topic)
                 for source, topic in axis.topics.items()
@@ -255,19 +257,3 @@ class NodeJournal:
     @property
     def _now(self) -> int:
         return self._node.get_clock().now().nanoseconds
-
-
-def values_of(axis: str, values: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the parameters that one axis is judged with."""
-    mine = {name: value for name, value in values.items() if name.startswith(f'{axis}.')}
-    return mine | {'axes': [axis], 'tick_period': values['tick_period']}
-
-
-def correction_entry(one: Any) -> dict[str, Any]:
-    """Return a full solve that corrects a surface, as JSON takes it."""
-    return {
-        'speed': one.speed,
-        'opposing_load': one.opposing_load,
-        'temperature': one.temperature,
-        'solved': dict(one.solved),
-    }

@@ -21,24 +21,21 @@ PERIOD = 4.0  # [s] between two records of the sums: with the write below 5 s
 
 
 class KeptAxes:
-    """What the axes that `find` returns keep; `say` is called with those that have news."""
+    """What the axes of some publishers keep; `say` is called with those that have news."""
 
     def __init__(
         self,
         node: Node,
         state: RestartState,
-        find: Callable[[], Mapping[str, 'AxisPublisher']],
+        publishers: Mapping[str, 'AxisPublisher'],
         say: Callable[[list[str]], None],
         *,
         clock: Clock,
     ) -> None:
         """Keep it in a `state`, with a look now and then on a steady `clock`."""
-        self._node = node
         self.state = state
-        self._find = find
-        self._say = say
-        self._looks = 0
-        self._said = ''
+        self._node, self._publishers, self._say = node, publishers, say
+        self._looks, self._said = 0, ''
         node.create_timer(LOOK, self._look, clock=clock)
         self.note(Kind.NODE_START)
         state.start()
@@ -73,7 +70,7 @@ class KeptAxes:
 
     def restore(self, axes: Iterable[str] | None = None) -> None:
         """Take up what was kept of all axes, or late of some, and say what came of that."""
-        publishers, late = self._find(), axes is not None
+        publishers, late = self._publishers, axes is not None
         for name in publishers if axes is None else axes:
             monitor = publishers[name].axis.monitor
             monitor.take_up(self._recall(name, late=late))
@@ -94,7 +91,7 @@ class KeptAxes:
 
     def remember_all(self) -> None:
         """Keep the sums, events and shelvings of all axes."""
-        for publisher in self._find().values():
+        for publisher in self._publishers.values():
             publisher.alarm.remember()
 
     def close(self) -> None:
@@ -103,7 +100,7 @@ class KeptAxes:
         self.state.close()
 
     def _look(self) -> None:
-        publishers = self._find()
+        publishers = self._publishers
         late = [name for name in publishers if self.state.is_late(name)]
         self.restore(late)
         over = [name for name, publisher in publishers.items() if publisher.end_shelving()]

@@ -56,9 +56,9 @@ class BallscrewMonitor(LifecycleNode):
     def __init__(self, **kwargs: Any) -> None:
         """Declare everything; raises InputError for a bad parameter."""
         super().__init__(parameters.NODE_NAME, **kwargs)
+        # Held by others too, so both are filled and cleared and never replaced.
         self._axis_publishers: dict[str, AxisPublisher] = {}
-        self._active = False
-        self._finalized = False
+        self._active = self._finalized = False
         self._reason = 'not configured'
         self._failed: dict[str, str] = {}  # axes that could not be built, and why
         self._intake: Intake | None = None
@@ -66,9 +66,7 @@ class BallscrewMonitor(LifecycleNode):
         self._steady = Clock(clock_type=ClockType.STEADY_TIME)
         self._store = ParameterStore(self, self._on_parameters)
         self._values = self._store.values
-        self._recording = NodeJournal(
-            self, self._values, lambda name: self._axis_publishers[name].axis
-        )
+        self._recording = NodeJournal(self, self._values, self._axis_publishers)
         self._grid = TickGrid(nanoseconds(self._values['tick_period']))
         self._diagnostics = self.create_publisher(DiagnosticArray, '/diagnostics', STATE_QOS)
         # On the steady clock: it speaks while a simulated one stands.
@@ -81,18 +79,10 @@ class BallscrewMonitor(LifecycleNode):
             state_directory(self._values['state_dir'], self.get_fully_qualified_name()),
             limit=round(self._values['state_limit'] * MEGABYTE),
         )
-        self._kept = KeptAxes(
-            self, state, lambda: self._axis_publishers, self._on_kept, clock=self._steady
-        )
+        publishers = self._axis_publishers
+        self._kept = KeptAxes(self, state, publishers, self._on_kept, clock=self._steady)
         self._solves = SolveServer(self, SolverProcess, self._find_publisher)
-        AxisServices(
-            self,
-            self._values,
-            lambda: self._axis_publishers,
-            lambda: self._failed,
-            self._unknown,
-            self._on_service,
-        )
+        AxisServices(self, self._values, publishers, self._failed, self._unknown, self._on_service)
 
     def start(self) -> None:
         """Configure and activate, if the node is to do so itself."""
@@ -120,21 +110,21 @@ class BallscrewMonitor(LifecycleNode):
             self._recording.configure(self._kept.state.folder)
         except InputError as error:
             axes, reasons = [], dict.fromkeys(self._values['axes'], str(error))
-        self._failed = {name: f'not configured: {why}' for name, why in reasons.items()}
+        self._failed.clear()
+        self._failed |= {name: f'not configured: {why}' for name, why in reasons.items()}
         for reason in dict.fromkeys(self._failed.values()):
             self.get_logger().error(reason)
         if not axes:
             self._publish_diagnostics()
             return FAILURE
-        self._axis_publishers = {
+        self._axis_publishers |= {
             axis.name: AxisPublisher(
                 self,
                 axis,
                 self._values,
                 latched=self._latched[axis.name],
                 kept=self._kept,
-                record=self._recording.record,
-                changed=self._recording.describe,
+                recording=self._recording,
             )
             for axis in axes
         }
@@ -150,11 +140,9 @@ class BallscrewMonitor(LifecycleNode):
         """Return what a solve of an axis needs, or why there is none."""
         if axis not in self._axis_publishers:
             return self._unknown(axis)
-        return (
-            self._axis_publishers[axis]
-            if self._active
-            else 'the node is inactive, activate it first'
-        )
+        if not self._active:
+            return 'the node is inactive, activate it first'
+        return self._axis_publishers[axis]
 
     def _unknown(self, axis: str) -> str:
         if axis in self._failed:
@@ -248,7 +236,8 @@ class BallscrewMonitor(LifecycleNode):
         self._stop(reason)
         for publisher in self._axis_publishers.values():
             publisher.close()
-        self._axis_publishers, self._failed = {}, {}
+        self._axis_publishers.clear()
+        self._failed.clear()
         self._kept.state.flush()
         self._kept.state.forget_problems()
         self._store.locked = False

@@ -51,18 +51,21 @@ class LatchedTopics:
 
 
 class PlainTopics:
-    """The plain topics of one axis."""
+    """The plain topics of one axis, none unless they are `wanted`."""
 
-    def __init__(self, node: LifecycleNode, axis: str, make: Callable[..., Any], qos: Any) -> None:
+    def __init__(
+        self, node: LifecycleNode, axis: str, make: Callable[..., Any], qos: Any, *, wanted: bool
+    ) -> None:
         """Make the publishers by `make`, which is given type, name and `qos`."""
         self._node = node
+        kinds = TYPES if wanted else {}
         self._publishers = {
-            name: make(kind, f'~/{axis}/plain/{name}', qos) for name, kind in TYPES.items()
+            name: make(kind, f'~/{axis}/plain/{name}', qos) for name, kind in kinds.items()
         }
 
     def publish(self, state: State) -> None:
         """Publish a state."""
-        for name, value in plain_values(state).items():
+        for name, value in plain_values(state).items() if self._publishers else ():
             self._publishers[name].publish(TYPES[name](data=value))
 
     def close(self) -> None:

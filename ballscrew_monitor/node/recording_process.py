@@ -13,7 +13,7 @@ import select
 import subprocess
 import sys
 import time
-from typing import Any, IO
+from typing import Any
 
 from ballscrew_monitor.node.restart_state import AUTO
 from ballscrew_monitor.node.solver_process import worker_environment
@@ -51,14 +51,9 @@ def recording(
                 'record_dir to the directory of the recordings'
             )
         folder = state / 'recordings'
-    settings = {
-        'always': values['record'] == 'always',
-        'before': values['record_before'],
-        'after': values['record_after'],
-        'longest': values['record_longest'],
-        'largest': values['record_largest'] * MEGABYTE,
-        'total': values['record_total'] * MEGABYTE,
-    }
+    settings = {name: values[f'record_{name}'] for name in ('before', 'after', 'longest')}
+    settings |= {name: values[f'record_{name}'] * MEGABYTE for name in ('largest', 'total')}
+    settings['always'] = values['record'] == 'always'
     return functools.partial(RecordingProcess, folder, settings)
 
 
@@ -68,13 +63,13 @@ class RecordingProcess:
     def __init__(self, folder: Path, settings: Mapping[str, Any]) -> None:
         """Start the writer for recordings in `folder`; one that cannot be started is lost."""
         self._problem = ''
-        self._process: subprocess.Popen[bytes] | None = None
+        self._process: Any = None  # with pipes at both ends
         try:
             self._process = _started(folder, settings)
         except OSError as error:
             self._problem = f'the process that records cannot be started, {error.strerror}'
             return
-        self._sender = FrameSender(_input(self._process).fileno())
+        self._sender = FrameSender(self._process.stdin.fileno())
 
     @property
     def lost(self) -> bool:
@@ -91,7 +86,7 @@ class RecordingProcess:
         if self.lost:
             return 'nothing is recorded: the process that records has ended, it is started again'
         try:
-            lines = os.read(_output(self._process).fileno(), LONGEST_LINE)
+            lines = os.read(self._process.stdout.fileno(), LONGEST_LINE)
         except BlockingIOError:
             lines = b''
         if lines:
@@ -110,17 +105,17 @@ class RecordingProcess:
         """Send what is left and let the process finish its recording, which may take its time."""
         if self._process is None:
             return
-        pipe, end = _input(self._process), time.monotonic() + PATIENCE
+        pipe, end = self._process.stdin, time.monotonic() + PATIENCE
         while not self._sender.flush() and (left := end - time.monotonic()) > 0:
             select.select([], [pipe], [], left)
         pipe.close()
         with contextlib.suppress(subprocess.TimeoutExpired):
             self._process.wait(max(end - time.monotonic(), 0.0))
-        _output(self._process).close()
+        self._process.stdout.close()
 
 
-def _started(folder: Path, settings: Mapping[str, Any]) -> subprocess.Popen[bytes]:
-    process = subprocess.Popen(
+def _started(folder: Path, settings: Mapping[str, Any]) -> Any:
+    process: Any = subprocess.Popen(
         [sys.executable, '-P', '-m', MODULE, str(folder), json.dumps(dict(settings))],
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
@@ -129,16 +124,6 @@ def _started(folder: Path, settings: Mapping[str, Any]) -> subprocess.Popen[byte
         start_new_session=True,
     )
     with contextlib.suppress(OSError):  # the limit of this machine may be lower
-        fcntl.fcntl(_input(process), fcntl.F_SETPIPE_SZ, PIPE_SIZE)
-    os.set_blocking(_output(process).fileno(), False)
+        fcntl.fcntl(process.stdin, fcntl.F_SETPIPE_SZ, PIPE_SIZE)
+    os.set_blocking(process.stdout.fileno(), False)
     return process
-
-
-def _input(process: subprocess.Popen[bytes]) -> IO[bytes]:
-    assert process.stdin is not None
-    return process.stdin
-
-
-def _output(process: subprocess.Popen[bytes]) -> IO[bytes]:
-    assert process.stdout is not None
-    return process.stdout

@@ -18,13 +18,8 @@ from typing import Any
 from ballscrew_monitor.core.estimate import MachinePoint
 from ballscrew_monitor.core.full_point import request_of
 from ballscrew_monitor.core.solver import Done, End, Job, MOST_WAITING, Process, Solver
-from ballscrew_monitor.messages.solve_messages import (
-    empty_result,
-    feedback_message,
-    requested_point,
-    result_message,
-    SolvableAxis,
-)
+from ballscrew_monitor.messages import solve_messages
+from ballscrew_monitor.messages.solve_messages import SolvableAxis
 from ballscrew_msgs.action import SolveOperatingPoint
 from rclpy.action import ActionServer, CancelResponse, GoalResponse
 from rclpy.action.server import ServerGoalHandle
@@ -118,13 +113,12 @@ class SolveServer:
     def _on_accepted(self, handle: ServerGoalHandle) -> None:
         request = handle.request
         axis = self._find_axis(request.axis)
-        point = axis if isinstance(axis, str) else requested_point(request, axis)
+        point = axis if isinstance(axis, str) else solve_messages.requested_point(request, axis)
         handle.execute()
         if isinstance(axis, str) or isinstance(point, str):
-            self._answer(handle, empty_result(str(point)), End.FAILED)
-            return
-        timeout = request.timeout or DEFAULT_TIMEOUT
-        self._begin(axis, point, timeout, handle)
+            self._answer(handle, solve_messages.empty_result(str(point)), End.FAILED)
+        else:
+            self._begin(axis, point, request.timeout or DEFAULT_TIMEOUT, handle)
 
     def _begin(
         self,
@@ -144,7 +138,6 @@ class SolveServer:
         self._poll()
 
     def _poll(self) -> None:
-        """Look after the goals."""
         now = time.monotonic()
         for goal in self._goals.values():
             taken_back = goal.handle is not None and goal.handle.is_cancel_requested
@@ -168,12 +161,12 @@ class SolveServer:
         if goal.handle is None or now - goal.told < FEEDBACK_PERIOD:
             return
         goal.told = now
-        goal.handle.publish_feedback(feedback_message(goal.job.step, goal.point))
+        message = solve_messages.feedback_message(goal.job.step, goal.point)
+        goal.handle.publish_feedback(message)
 
     def _finish(self, goal: _Goal, done: Done) -> None:
-        """Answer a goal that has ended."""
         del self._goals[goal.job]
-        result = result_message(goal.axis, goal.point, done)
+        result = solve_messages.result_message(goal.axis, goal.point, done)
         end = End.FAILED if done.end is End.SOLVED and not result.success else done.end
         if goal.handle is not None:
             self._answer(goal.handle, result, end)
@@ -192,7 +185,6 @@ def _answer_nothing(handle: ServerGoalHandle) -> Any:
 
 
 def _end_goal(handle: ServerGoalHandle, *, result: Any, end: End) -> Any:
-    """Set the last state of a goal and return its result."""
     if end is End.SOLVED:
         handle.succeed()
     elif end is End.CANCELLED and handle.is_cancel_requested:

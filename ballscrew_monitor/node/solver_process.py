@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The process that does the full solves of a node: started, asked, listened to and ended here."""
 
+import contextlib
 import json
 import os
 from pathlib import Path
@@ -28,7 +29,7 @@ class SolverProcess:
     def __init__(self) -> None:
         """Start the worker."""
         self._frames: queue.Queue[dict[str, Any]] = queue.Queue(maxsize=MOST_FRAMES)
-        self._process = subprocess.Popen(
+        self._process: Any = subprocess.Popen(
             # By name: plain spawn would import the console script again, and rclpy with it.
             [sys.executable, '-P', '-m', MODULE, str(os.getpid())],
             stdin=subprocess.PIPE,
@@ -43,25 +44,17 @@ class SolverProcess:
     @property
     def pid(self) -> int:
         """Return the number of the process."""
-        return self._process.pid
+        return int(self._process.pid)
 
     def send(self, frame: dict[str, Any]) -> None:
         """Send a frame; one that is gone is noticed by the next `frames`."""
-        assert self._process.stdin is not None
-        try:
+        with contextlib.suppress(OSError):
             self._process.stdin.write(json.dumps(frame, allow_nan=False) + '\n')
             self._process.stdin.flush()
-        except OSError:
-            pass
 
     def frames(self) -> list[dict[str, Any]]:
         """Return the frames that have come; the last one of a process that has ended is `lost`."""
-        found = []
-        while True:
-            try:
-                found.append(self._frames.get_nowait())
-            except queue.Empty:
-                break
+        found = [self._frames.get_nowait() for _ in range(self._frames.qsize())]
         if not found and not self._reader.is_alive():
             found.append({'lost': self._describe_end()})
         return found
@@ -71,19 +64,13 @@ class SolverProcess:
         self._process.kill()
         self._process.wait(PATIENCE)
         for pipe in (self._process.stdin, self._process.stdout):
-            if pipe is not None:
-                try:
-                    pipe.close()
-                except OSError:  # what was not written is for nobody
-                    pass
+            with contextlib.suppress(OSError):  # what was not written is for nobody
+                pipe.close()
 
     def _read(self) -> None:
-        assert self._process.stdout is not None
-        try:
+        with contextlib.suppress(OSError, ValueError):  # killed in the middle of a line
             while line := self._process.stdout.readline(LONGEST_FRAME):
                 self._frames.put(json.loads(line))
-        except (OSError, ValueError):  # killed in the middle of a line
-            pass
 
     def _describe_end(self) -> str:
         code = self._process.wait(PATIENCE)
@@ -94,6 +81,10 @@ class SolverProcess:
 def worker_environment() -> dict[str, str]:
     """Return the environment of the worker: one thread, this very code, no libraries of ROS."""
     kept = {name: value for name, value in os.environ.items() if name not in WHEEL_VARIABLES}
-    code = str(Path(surrogate.__file__).parents[1])
-    paths = os.pathsep.join(filter(None, (code, os.environ.get('PYTHONPATH', ''))))
-    return kept | dict.fromkeys(ONE_THREAD, '1') | {'PYTHONPATH': paths}
+    return kept | dict.fromkeys(ONE_THREAD, '1') | {'PYTHONPATH': path_to_this_code()}
+
+
+def path_to_this_code() -> str:
+    """Return a PYTHONPATH that begins with the folder of both packages."""
+    folder = str(Path(surrogate.__file__).parents[1])
+    return os.pathsep.join(filter(None, (folder, os.environ.get('PYTHONPATH', ''))))

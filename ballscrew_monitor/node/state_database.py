@@ -20,14 +20,7 @@ from typing import Any
 
 from ballscrew_monitor.core.memory import AxisRecord, read_record, TYPES
 from ballscrew_monitor.node.former_files import read_former, set_aside
-from ballscrew_monitor.node.state_records import (
-    by_key,
-    Corrections,
-    Entry,
-    read_corrections,
-    Record,
-    Records,
-)
+from ballscrew_monitor.node.state_records import by_key, Corrections, Entry, Record, Records
 from surrogate.files import InputError
 
 FILE = 'state.sqlite3'
@@ -55,7 +48,7 @@ SELECT (page_count - freelist_count) * page_size
     FROM pragma_page_count, pragma_freelist_count, pragma_page_size
 """
 """Bytes of the pages in use."""
-READ: dict[str, Any] = {'axes': read_record, 'corrections': read_corrections}
+READ: dict[str, Any] = {'axes': read_record, 'corrections': Corrections.read}
 TABLE_OF = {AxisRecord: 'axes', Corrections: 'corrections'}
 
 

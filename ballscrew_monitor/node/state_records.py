@@ -69,9 +69,32 @@ class Corrections(NamedTuple):
     surface: str = ''
     solves: str = '[]'
 
+    @classmethod
+    def of(cls, axis: str, surface: str, solves: Iterable[Solve]) -> 'Corrections':
+        """Return the solves that correct the `surface` of a hash, as they are kept."""
+        rows = [{key: getattr(one, name) for name, key in SOLVE.items()} for one in solves]
+        return cls(axis, surface, json.dumps(rows))
+
+    @classmethod
+    def read(cls, row: Mapping[str, Any]) -> 'Corrections':
+        """Return the corrections of a row; raises as `read_solves` does."""
+        kept = cls(*(str(row[name]) for name in cls._fields))
+        kept.read_solves()
+        return kept
+
     def row(self) -> dict[str, Any]:
         """Return the values by name."""
         return self._asdict()
+
+    def read_solves(self) -> list[KeptSolve]:
+        """Return the solves; ValueError, KeyError or TypeError for what no node has written."""
+        return [
+            KeptSolve(
+                **{name: float(one[key]) for name, key in SOLVE.items() if name != 'solved'},
+                solved={name: float(value) for name, value in one['solved'].items()},
+            )
+            for one in json.loads(self.solves)
+        ]
 
 
 Record = AxisRecord | Corrections
@@ -88,30 +111,6 @@ def entry_of(kind: Kind, axis: str | None, stamp: int, facts: Mapping[str, Any])
 def by_key(records: Iterable[Record]) -> Records:
     """Return records by what they are and their axis."""
     return {(type(one), one.axis): one for one in records}
-
-
-def corrections_of(axis: str, surface: str, solves: Iterable[Solve]) -> Corrections:
-    """Return the solves that correct the `surface` of a hash, as they are kept."""
-    rows = [{key: getattr(one, name) for name, key in SOLVE.items()} for one in solves]
-    return Corrections(axis, surface, json.dumps(rows))
-
-
-def read_corrections(row: Mapping[str, Any]) -> Corrections:
-    """Return the corrections of a row; raises as `solves_of` does."""
-    kept = Corrections(*(str(row[name]) for name in Corrections._fields))
-    solves_of(kept)
-    return kept
-
-
-def solves_of(kept: Corrections) -> list[KeptSolve]:
-    """Return the solves; raises ValueError, KeyError or TypeError for what no node has written."""
-    return [
-        KeptSolve(
-            **{name: float(one[key]) for name, key in SOLVE.items() if name != 'solved'},
-            solved={name: float(value) for name, value in one['solved'].items()},
-        )
-        for one in json.loads(kept.solves)
-    ]
 
 
 def event_facts(event: Event) -> dict[str, Any]:

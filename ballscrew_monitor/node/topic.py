@@ -87,13 +87,8 @@ class Topic:
         """Return what was taken with what the middleware says of it."""
         data = taken if self.subscription.raw else b''
         message = self._decoded(data) if self.subscription.raw else taken
-        return Arrival(
-            info['received_timestamp'],
-            message,
-            info['publication_sequence_number'] or NO_NUMBER,
-            self,
-            data,
-        )
+        number = info['publication_sequence_number'] or NO_NUMBER
+        return Arrival(info['received_timestamp'], message, number, self, data)
 
     def _decoded(self, data: bytes) -> Any:
         """Return the message of some bytes, None if they are of another definition of its type."""
@@ -135,13 +130,7 @@ class Apart(CallbackGroup):
 
 
 def open_topic(
-    node: Node,
-    name: str,
-    kind: Any,
-    group: CallbackGroup,
-    *,
-    overridable: bool = True,
-    raw: bool = False,
+    node: Node, name: str, kind: Any, group: CallbackGroup, *, overridable: bool, raw: bool
 ) -> Topic:
     """
     Subscribe to messages of a `kind`; where `overridable`, parameters may change the QoS.
@@ -169,9 +158,8 @@ def open_topic(
 def link_of(node: Node, name: str, topic: Topic | None, *, problem: str = '') -> Link:
     """Return how the topic of a full name is connected; None: its type is not known yet."""
     if topic is None:
-        return Link(
-            topic=name, type_name='', publishers=publishers_on(node, name), problem=problem
-        )
+        found = publishers_on(node, name)
+        return Link(topic=name, type_name='', publishers=found, problem=problem)
     matched = topic.subscription.get_publisher_count()
     qos = topic.subscription.qos_profile
     return Link(

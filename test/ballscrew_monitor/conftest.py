@@ -17,6 +17,7 @@ import sys
 import types
 import warnings
 
+from ballscrew_monitor.clients.surroundings import started_node
 from ballscrew_monitor.core import advice
 from ballscrew_monitor.core.conversions import direction_of, SECOND
 from ballscrew_monitor.core.estimate import MachinePoint, PointSource, PointValidity
@@ -24,23 +25,22 @@ from ballscrew_monitor.core.fields import message_class
 from ballscrew_monitor.core.inputs import InputSample, Source
 from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.core.state import MonitorSettings
-from ballscrew_monitor.cycle.domain import DOMAINS, free_domain, held
+from ballscrew_monitor.cycle import domain as domains
+from ballscrew_monitor.cycle.domain import free_domain, SHARED_MEMORY
 from ballscrew_monitor.cycle.node_process import child_environment
-from ballscrew_monitor.cycle.shared_memory import remove_stale, SHARED_MEMORY
 from ballscrew_monitor.judge import derived_load, point, step
 from ballscrew_monitor.judge.monitor import Monitor
-from ballscrew_monitor.node.solver_process import MODULE
-from ballscrew_msgs.msg import BallScrewState
+from ballscrew_monitor.node.solver_process import MODULE, path_to_this_code
+from ballscrew_msgs.msg import BallScrewState, OutOfZone, SurfaceInfo
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import WrenchStamped
 from lifecycle_msgs.srv import ChangeState, GetState
 import numpy as np
 import pytest
 from rcl_interfaces.srv import SetParametersAtomically
-import rclpy
-from rclpy.executors import SingleThreadedExecutor
 from rclpy.parameter import Parameter
-from rclpy.qos import QoSProfile, QoSReliabilityPolicy
+from rclpy.qos import QoSDurabilityPolicy, QoSProfile, QoSReliabilityPolicy
+from rosgraph_msgs.msg import Clock
 from rosidl_parser import definition
 from sensor_msgs.msg import JointState
 from surrogate.surface import file as surface_file
@@ -55,9 +55,9 @@ with warnings.catch_warnings():
 os.environ['ROS_PYTHON_CHECK_FIELDS'] = '1'
 os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
 SCANNED = 81  # loads of a surface of constants
-ROOT = pathlib.Path(__file__).resolve().parents[2]
 START, STEP = 1000 * SECOND, SECOND // 100  # [ns] of the samples of `core.motion`
 DEADLINE = 120.0  # [s] for the end of a process, however busy the machine
+LATCHED = QoSProfile(depth=10, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL)
 
 
 @dataclasses.dataclass(kw_only=True)
@@ -289,7 +289,8 @@ def last_one_cleans(folder, clean):
 def remove_stale_segments():
     """Remove what killed nodes have left in the shared memory."""
     with contextlib.ExitStack() as stack:
-        remove_stale({domain for domain in DOMAINS if stack.enter_context(held(domain))})
+        held = {one for one in domains.DOMAINS if stack.enter_context(domains.held(one))}
+        domains.remove_stale(held)
 
 
 @pytest.fixture(scope='session')
@@ -342,28 +343,20 @@ def content_of(path):
 
 
 class NodeProcess:
-    """The node in a process of its own, and a small node here that talks to it."""
+    """The node in a process of its own, and a small `node` here that talks to it."""
 
     name = '/ballscrew_monitor'
 
-    def __init__(self, domain, folder, wait_for):
-        self.domain = domain
+    def __init__(self, domain, node, folder, wait_for):
+        self.domain, self.node = domain, node
         self.wait_for = wait_for
-        paths = (str(ROOT), os.environ.get('PYTHONPATH', ''))
-        self.environment = child_environment(domain)
-        self.environment['PYTHONPATH'] = os.pathsep.join(filter(None, paths))
+        self.environment = child_environment(domain) | {'PYTHONPATH': path_to_this_code()}
         self.output = folder / 'node.log'
         self.process = None
         self.clients = {}
-        self.context = rclpy.Context()
-        rclpy.init(context=self.context, domain_id=domain)
-        self.node = rclpy.create_node(
-            'tester', context=self.context, enable_rosout=False, start_parameter_services=False
-        )
-        self.executor = SingleThreadedExecutor(context=self.context)
-        self.executor.add_node(self.node)
         self.stamp = 0
         self.publishers = ()
+        self.told = self.listen(DiagnosticArray, '/diagnostics')
 
     def start(self, *arguments, **parameters):
         """
@@ -378,6 +371,7 @@ class NodeProcess:
         defaults |= {'diagnostics_period': 0.1, 'state_dir': "''"}
         for name, value in (defaults | parameters).items():
             command += ['-p', f'{name.replace("__", ".")}:={value}']
+        self.told.clear()
         with open(self.output, 'w') as output:
             self.process = subprocess.Popen(
                 command, env=self.environment, stdout=output, stderr=output
@@ -392,7 +386,7 @@ class NodeProcess:
 
     def spin(self):
         """Take a message, or wait a little for one."""
-        self.executor.spin_once(timeout_sec=0.02)
+        self.node.executor.spin_once(timeout_sec=0.02)
 
     def now(self):
         """Return the time [ns] on the clock of the machine."""
@@ -408,6 +402,24 @@ class NodeProcess:
         """Return the list to which the states of an axis are appended."""
         qos = QoSProfile(depth=1000, reliability=QoSReliabilityPolicy.RELIABLE)
         return self.listen(BallScrewState, f'{self.name}/{axis}/state', qos)
+
+    def events(self, axis='x'):
+        """Return the list to which the events of an axis are appended, from the last one on."""
+        return self.listen(OutOfZone, f'{self.name}/{axis}/out_of_zone', LATCHED)
+
+    def infos(self, axis='x'):
+        """Return the list to which what is said of a surface is appended, from the last on."""
+        return self.listen(SurfaceInfo, f'{self.name}/{axis}/surface_info', LATCHED)
+
+    def levels(self, part='x: Inputs'):
+        """Return the levels and messages that a diagnostic status went through."""
+        found = [
+            (status.level, status.message)
+            for message in self.told
+            for status in message.status
+            if status.name == f'ballscrew_monitor: {part}'
+        ]
+        return [now for now, before in zip(found, [None, *found], strict=False) if now != before]
 
     def call(self, kind, service, **request):
         """
@@ -472,27 +484,46 @@ class NodeProcess:
         def publish(speed, force=-1000.0, *, step=SECOND // 100, joint='x_axis'):
             self.stamp += step
             load, joints = WrenchStamped(), JointState(name=[joint], velocity=[speed])
-            for message in (load, joints):
-                stamp = message.header.stamp
-                stamp.sec, stamp.nanosec = divmod(self.stamp, SECOND)
             load.wrench.force.x = force
-            loads.publish(load)
-            speeds.publish(joints)
+            loads.publish(self.stamped(load, self.stamp))
+            speeds.publish(self.stamped(joints, self.stamp))
 
         return publish
 
+    def watched(self):
+        """Return the states of axis x, and what publishes its samples; all of them are heard."""
+        states = self.states()
+        return states, self.machine()
+
+    def clock(self):
+        """Return a function that shows a time [ns] on the simulated clock."""
+        publisher = self.node.create_publisher(Clock, '/clock', 10)
+        self.until(publisher.get_subscription_count, 'the subscription of the clock')
+
+        def show(stamp):
+            message = Clock()
+            message.clock.sec, message.clock.nanosec = divmod(stamp, SECOND)
+            publisher.publish(message)
+
+        return show
+
+    @staticmethod
+    def stamped(message, stamp):
+        """Return a message with a stamp [ns]."""
+        message.header.stamp.sec, message.header.stamp.nanosec = divmod(stamp, SECOND)
+        return message
+
     def until_matched(self, *publishers, inputs=('Speed', 'Load')):
         """Wait until the inputs have one publisher each, and these their node."""
-        told = self.listen(DiagnosticArray, '/diagnostics')
         # A best-effort sample is lost unless both sides know of each other.
         self.until(
             lambda: (
                 all(publisher.get_subscription_count() for publisher in publishers)
-                and told
+                and self.told
                 and {f'{name} publishers [-]' for name in inputs}
                 <= {
                     pair.key
-                    for status in told[-1].status
+                    for status in self.told[-1].status
                     for pair in status.values
                     if pair.value == '1'
                 }
@@ -526,9 +557,17 @@ class NodeProcess:
                 self.process.wait(DEADLINE)
             finally:
                 self.process.kill()
-        self.executor.shutdown()
-        self.node.destroy_node()
-        rclpy.shutdown(context=self.context)
+
+
+@pytest.fixture(scope='session')
+def is_alive():
+    """Return what tells whether a process runs; one that nobody has reaped yet does not."""
+
+    def alive(pid):
+        stat = content_of(pathlib.Path('/proc', str(pid), 'stat')).rpartition(b')')[2].split()
+        return bool(stat) and stat[0] != b'Z'
+
+    return alive
 
 
 @pytest.fixture(scope='session')
@@ -580,9 +619,6 @@ def quick_surface(tmp_path_factory):
 @pytest.fixture
 def node(tmp_path, wait_for):
     """Make a node process that is not started yet, in a DDS domain of its own."""
-    with free_domain() as domain:
-        process = NodeProcess(domain, tmp_path, wait_for)
-        try:
+    with free_domain() as domain, started_node('tester', domain) as tester:
+        with contextlib.closing(NodeProcess(domain, tester, tmp_path, wait_for)) as process:
             yield process
-        finally:
-            process.close()

@@ -9,12 +9,28 @@ import sys
 
 from ballscrew_monitor import cli
 from ballscrew_monitor.cycle.node_process import child_environment
+from ballscrew_monitor.node.restart_state import RestartState
+from ballscrew_monitor.node.state_records import entry_of, Kind
 import pytest
 from surrogate.files import InputError
 from surrogate.surface import SurfaceError
 
 ROOT = Path(__file__).resolve().parents[2]
 PARAMS = ROOT / 'config' / 'nominal_cycle.yaml'
+UNREADABLE = 'cannot be read or written'
+VISCOSITY = 'oil: viscosity is -1 Pa s, allowed is above 0'
+
+
+def python(*arguments, **environment):
+    """Run Python on this code; return what came of it."""
+    return subprocess.run(
+        [sys.executable, *map(str, arguments)],
+        cwd=ROOT,
+        env=child_environment(0) | environment,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
 
 
 def test_a_replay_prints_the_summary(short_bag, capsys):
@@ -32,15 +48,9 @@ def test_a_replay_prints_json(short_bag, capsys):
 
 
 def test_a_terminal_that_lacks_a_character_shows_a_mark(short_bag):
-    done = subprocess.run(
-        [sys.executable, '-m', 'ballscrew_monitor', 'replay', str(short_bag)],
-        cwd=ROOT,
-        env=child_environment(0) | {'PYTHONIOENCODING': 'ascii'},
-        capture_output=True,
-        check=False,
-    )
+    done = python('-m', 'ballscrew_monitor', 'replay', short_bag, PYTHONIOENCODING='ascii')
     assert done.returncode == 0, done.stderr
-    assert b' ?C, ' in done.stdout
+    assert ' ?C, ' in done.stdout
 
 
 def test_a_replay_that_judges_nothing_is_a_failure(short_bag, tmp_path, capsys):
@@ -57,27 +67,28 @@ def test_defaults_hold_in_any_working_directory(short_bag, tmp_path, monkeypatch
     assert '300 speed samples judged' in capsys.readouterr().out
 
 
-def test_a_full_disk_is_named(monkeypatch, capsys):
-    def fill(args):
-        raise OSError(28, 'No space left on device')
+@pytest.mark.parametrize(
+    ('error', 'code', 'sentence'),
+    [
+        (
+            OSError(28, 'No space left on device'),
+            1,
+            f'there {UNREADABLE}, No space left on device',
+        ),
+        (InputError(VISCOSITY), 2, VISCOSITY),
+        (SurfaceError(VISCOSITY), 2, VISCOSITY),
+        (KeyboardInterrupt(), 130, 'interrupted'),
+    ],
+)
+def test_what_ends_a_command_is_a_sentence_and_an_exit_code(
+    error, code, sentence, monkeypatch, capsys
+):
+    def fail(args):
+        raise error
 
-    monkeypatch.setitem(cli.COMMANDS, 'run', (fill, ''))
-    assert cli.main(['run', '--out', 'there']) == 1
-    assert capsys.readouterr().err == (
-        'ballscrew: there cannot be read or written, No space left on device\n'
-    )
-
-
-@pytest.mark.parametrize('error', [InputError, SurfaceError])
-def test_bad_input_is_a_sentence_and_exit_code_2(error, monkeypatch, capsys):
-    def refuse(args):
-        raise error('oil: viscosity is -1 Pa s, allowed is above 0')
-
-    monkeypatch.setitem(cli.COMMANDS, 'replay', (refuse, ''))
-    assert cli.main(['replay', 'x']) == 2
-    captured = capsys.readouterr()
-    assert captured.err == 'ballscrew: oil: viscosity is -1 Pa s, allowed is above 0\n'
-    assert captured.out == ''
+    monkeypatch.setitem(cli.COMMANDS, 'run', (fail, ''))
+    assert cli.main(['run', '--out', 'there']) == code
+    assert capsys.readouterr() == ('', f'ballscrew: {sentence}\n')
 
 
 @pytest.mark.parametrize(
@@ -98,27 +109,11 @@ def test_what_is_not_installed_is_named_with_its_cure(module, command, short_bag
         'from ballscrew_monitor.cli import main\n'
         f'sys.exit(main({[command, *arguments]!r}))\n'
     )
-    done = subprocess.run(
-        [sys.executable, '-c', script],
-        cwd=ROOT,
-        env=child_environment(0),
-        check=False,
-        capture_output=True,
-        text=True,
-    )
+    done = python('-c', script)
     assert (done.returncode, done.stdout) == (1, '')
     assert done.stderr == (
         f'ballscrew: {module} is not installed, this command needs it: {cli.NEEDED[module]}\n'
     )
-
-
-def test_an_interrupt_is_exit_code_130(monkeypatch, capsys):
-    def interrupt(args):
-        raise KeyboardInterrupt
-
-    monkeypatch.setitem(cli.COMMANDS, 'replay', (interrupt, ''))
-    assert cli.main(['replay', 'x']) == 130
-    assert capsys.readouterr().err == 'ballscrew: interrupted\n'
 
 
 def test_a_bag_that_does_not_exist(capsys):
@@ -154,14 +149,8 @@ def test_offline_commands_import_no_ros():
         "print(code, [name for name in sys.modules if name.split('.')[0] in\n"
         "      ('rclpy', 'ballscrew_msgs', 'mcap', 'matplotlib')])\n"
     )
-    done = subprocess.run(
-        [sys.executable, '-c', script],
-        cwd=ROOT,
-        env=child_environment(0),
-        check=True,
-        capture_output=True,
-        text=True,
-    )
+    done = python('-c', script)
+    assert done.returncode == 0, done.stderr
     assert done.stdout.splitlines()[-1] == '0 []'
 
 
@@ -179,3 +168,35 @@ def test_a_reader_that_has_seen_enough_is_no_crash(short_bag):
     process.stderr.close()
     process.wait()
     assert 'Traceback' not in errors
+
+
+@pytest.fixture(name='state')
+def make_state(tmp_path):
+    state = RestartState(tmp_path / 'ballscrew_monitor' / 'ballscrew_monitor')
+    state.keep(None, entry_of(Kind.NODE_START, None, 1, {}))
+    facts = {'event': 4, 'text': '', 'ending': 'ended', 'worst_value': float('nan')}
+    state.keep(None, entry_of(Kind.EVENT_END, 'x', 2, facts))
+    state.flush()
+    yield state
+    state.close()
+
+
+def test_the_event_log_is_printed_for_people(state, capsys):
+    assert cli.main(['events', str(state.folder)]) == 0
+    start, end = capsys.readouterr().out.splitlines()
+    assert start.split()[1:] == ['-', 'node_start']
+    assert end.split()[1:] == ['x', 'event_end', 'event', '4:', 'ended']
+
+
+def test_the_event_log_is_exported_as_lines_of_json(state, capsys, monkeypatch, tmp_path):
+    monkeypatch.setenv('XDG_STATE_HOME', str(tmp_path))
+    state.close()
+    assert cli.main(['events', '--json']) == 0
+    start, end = map(json.loads, capsys.readouterr().out.splitlines())
+    assert (start['kind'], start['axis'], start['stamp_ns']) == ('node_start', None, 1)
+    assert (end['event'], end['worst_value'], end['ending']) == (4, None, 'ended')
+
+
+def test_a_folder_without_an_event_log_is_refused(capsys, tmp_path):
+    assert cli.main(['events', str(tmp_path)]) == 2
+    assert f'{tmp_path} has no state.sqlite3' in capsys.readouterr().err

@@ -34,33 +34,34 @@ def domain():
 
 
 @pytest.fixture
-def until(wait_for):
-    """Return what waits for a condition, or for the end of a process."""
+def end(domain, wait_for):
+    """
+    Return what starts a program and sends it a signal when a condition of its number holds.
 
-    def reached(process, condition):
-        wait_for(lambda: process.poll() is not None or condition(), 'the moment of the signal')
+    Not before it takes SIGTERM, as Python does not. Gives its exit code and what it said.
 
-    return reached
+    """
 
+    def run(command, *more, number, folder, when=lambda pid: True, **environment):
+        with subprocess.Popen(
+            [sys.executable, '-m', *command, *map(str, more)],
+            env=child_environment(domain)
+            | {'PYTHONPATH': str(ROOT), 'ROS_LOG_DIR': str(folder), **environment},
+            cwd=folder,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        ) as process:
+            for reached in (functools.partial(takes, number=signal.SIGTERM), when):
+                wait_for(
+                    lambda reached=reached: process.poll() is not None or reached(process.pid),
+                    'the moment of the signal',
+                )
+            process.send_signal(number)
+            out, err = process.communicate(timeout=DEADLINE)  # which workers hold, too
+        return process.returncode, out, err
 
-@pytest.fixture
-def start(domain, until):
-    """Return what starts a program, and waits until it takes SIGTERM, as Python does not."""
-    return functools.partial(_start, domain, until)
-
-
-def _start(domain, until, command, *more, folder, **environment):
-    process = subprocess.Popen(
-        [sys.executable, '-m', *command, *more],
-        env=child_environment(domain)
-        | {'PYTHONPATH': str(ROOT), 'ROS_LOG_DIR': str(folder), **environment},
-        cwd=folder,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    )
-    until(process, lambda: takes(process.pid, signal.SIGTERM))
-    return process
+    return run
 
 
 def takes(pid, number):
@@ -73,10 +74,10 @@ def takes(pid, number):
     return bool(int(caught.split()[1], 16) >> (number - 1) & 1)
 
 
-def has_mapped(pid, text):
-    """Tell whether a process has mapped a file of a name."""
+def has_mapped(pid, stage):
+    """Tell whether a process has mapped what belongs to a stage of its start."""
     try:
-        return text in Path(f'/proc/{pid}/maps').read_text()
+        return STAGES[stage] in Path(f'/proc/{pid}/maps').read_text()
     except OSError:
         return False
 
@@ -90,13 +91,13 @@ def has_mapped(pid, text):
         ('participant', signal.SIGINT),
     ],
 )
-def test_the_node_ends_with_0(start, until, tmp_path, stage, number):
+def test_the_node_ends_with_0(end, tmp_path, stage, number):
     arguments = ['--ros-args', '-p', "state_dir:=''"]
-    with start(['ballscrew_monitor.node'], *arguments, folder=tmp_path) as process:
-        until(process, lambda: has_mapped(process.pid, STAGES[stage]))
-        process.send_signal(number)
-        out, err = process.communicate(timeout=DEADLINE)
-    assert (process.returncode, out) == (0, '')
+    reached = functools.partial(has_mapped, stage=stage)
+    code, out, err = end(
+        ['ballscrew_monitor.node'], *arguments, number=number, folder=tmp_path, when=reached
+    )
+    assert (code, out) == (0, '')
     assert 'Traceback' not in err
 
 
@@ -112,29 +113,27 @@ def test_the_node_ends_with_0(start, until, tmp_path, stage, number):
         ('solve', 'participant'),
     ],
 )
-def test_a_command_ends_with_130(start, until, tmp_path, short_bag, command, stage):
-    more = [str(short_bag)] if command in ('run', 'play', 'replay') else []
-    with start(COMMANDS[command], *more, folder=tmp_path) as process:
-        until(process, lambda: has_mapped(process.pid, STAGES[stage]))
-        process.send_signal(signal.SIGINT)
-        out, err = process.communicate(timeout=DEADLINE)
-    assert process.returncode == 130
+def test_a_command_ends_with_130(end, tmp_path, short_bag, command, stage):
+    more = [short_bag] if command in ('run', 'play', 'replay') else []
+    reached = functools.partial(has_mapped, stage=stage)
+    code, _, err = end(
+        COMMANDS[command], *more, number=signal.SIGINT, folder=tmp_path, when=reached
+    )
+    assert code == 130
     assert 'Traceback' not in err
     assert not err or err.startswith('ballscrew: interrupted')
 
 
 @pytest.mark.parametrize(('number', 'code'), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
 def test_a_report_that_is_ended_leaves_nothing_unfinished(
-    start, until, tmp_path, nominal_bag, number, code
+    end, tmp_path, nominal_bag, number, code
 ):
     out, scratch = tmp_path / 'out', tmp_path / 'scratch'
     scratch.mkdir()
-    more = [str(nominal_bag), '--out', str(out)]  # long enough to be met at work
-    with start(COMMANDS['replay'], *more, folder=tmp_path, TMPDIR=str(scratch)) as process:
-        until(process, lambda: any(out.glob('.rows-*')))
-        process.send_signal(number)
-        _, err = process.communicate(timeout=DEADLINE)
-    assert process.returncode == code
+    more = [nominal_bag, '--out', out]  # long enough to be met at work
+    at_work = {'when': lambda pid: any(out.glob('.rows-*')), 'TMPDIR': str(scratch)}
+    found, _, err = end(COMMANDS['replay'], *more, number=number, folder=tmp_path, **at_work)
+    assert found == code
     assert err.splitlines()[-1] == 'ballscrew: interrupted'
     assert 'Traceback' not in err
     assert not [*out.iterdir(), *scratch.iterdir()]
@@ -143,26 +142,19 @@ def test_a_report_that_is_ended_leaves_nothing_unfinished(
 @pytest.mark.parametrize(
     ('number', 'code'), [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGKILL, -9)]
 )
-def test_workers_that_are_ended_leave_nothing_unfinished(
-    start, until, tmp_path, short_bag, number, code
-):
+def test_workers_that_are_ended_leave_nothing_unfinished(end, tmp_path, short_bag, number, code):
     """Whoever ends them: the program that is interrupted, or they themselves when it is gone."""
     logs, out, scratch = (tmp_path / name for name in ('logs', 'out', 'scratch'))
     scratch.mkdir()
     for name in 'abcd':
         shutil.copytree(short_bag, logs / name)
-    more = [str(logs), '--out', str(out), '--workers', '2']
-    with start(COMMANDS['replay'], *more, folder=tmp_path, TMPDIR=str(scratch)) as process:
-        until(process, lambda: any(out.glob('*/.rows-*/*')))
-        process.send_signal(number)
-        _, err = process.communicate(timeout=DEADLINE)  # which the workers hold, too
-    assert process.returncode == code
+    more = [logs, '--out', out, '--workers', '2']
+    at_work = {'when': lambda pid: any(out.glob('*/.rows-*/*')), 'TMPDIR': str(scratch)}
+    found, _, err = end(COMMANDS['replay'], *more, number=number, folder=tmp_path, **at_work)
+    assert found == code
     assert 'Traceback' not in err
     assert not [*out.rglob('.*'), *scratch.iterdir()]
 
 
-def test_sigterm_has_its_own_exit_code(start, tmp_path):
-    with start(COMMANDS['doctor'], folder=tmp_path) as process:
-        process.terminate()
-        process.communicate(timeout=DEADLINE)
-    assert process.returncode == 143
+def test_sigterm_has_its_own_exit_code(end, tmp_path):
+    assert end(COMMANDS['doctor'], number=signal.SIGTERM, folder=tmp_path)[0] == 143

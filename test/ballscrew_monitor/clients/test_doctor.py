@@ -2,16 +2,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """Parameter files that are wrong, against a machine over the real middleware."""
 
+import contextlib
 import json
 import threading
 import time
 
 from ballscrew_monitor import cli
 from ballscrew_monitor.clients.doctor import doctor
+from ballscrew_monitor.clients.surroundings import started_node
 from ballscrew_monitor.cycle.domain import free_domain
 from geometry_msgs.msg import WrenchStamped
 import pytest
-import rclpy
 from rclpy.qos import QoSProfile, QoSReliabilityPolicy
 from sensor_msgs.msg import JointState, Temperature
 from std_msgs.msg import Float64
@@ -102,10 +103,8 @@ EXTRA = {
 class Machine:
     """Topics of a machine, some of them as they should not be, until it is stopped."""
 
-    def __init__(self, domain):
-        self.context = rclpy.Context()
-        rclpy.init(context=self.context, domain_id=domain)
-        self.node = rclpy.create_node('machine', context=self.context, enable_rosout=False)
+    def __init__(self, node):
+        self.node = node
         self.stopped = threading.Event()
         make = self.node.create_publisher
         self.joints = make(JointState, 'joint_states', BEST_EFFORT)
@@ -146,16 +145,13 @@ class Machine:
     def close(self):
         self.stopped.set()
         self.thread.join()
-        self.node.destroy_node()
-        rclpy.shutdown(context=self.context)
 
 
 @pytest.fixture(scope='module', name='domain')
 def make_domain():
-    with free_domain() as domain:
-        machine = Machine(domain)
-        yield domain
-        machine.close()
+    with free_domain() as domain, started_node('machine', domain) as node:
+        with contextlib.closing(Machine(node)):
+            yield domain
 
 
 def write(folder, changes, extra=''):
@@ -232,26 +228,23 @@ def test_a_wrong_file_has_its_sentence(name, domain, tmp_path, monkeypatch, caps
 @pytest.mark.parametrize(
     ('text', 'sentence'),
     [
-        ('x: {speed: {field: "velocity[-1]"}}', 'the index -1 has a sign'),
-        ('x: {speed: {timeout: 1}}', 'is 1, it must be a number with a decimal point'),
-        ('x: {sped: {timeout: 1.0}}', 'parameter x.sped.timeout is unknown'),
-        ('x: {speed: {topic: "a b"}}', "parameter x.speed.topic is '/a b', no topic name"),
+        ('/**: {%s: {x: {speed: {field: "velocity[-1]"}}}}', 'the index -1 has a sign'),
+        (
+            '/**: {%s: {x: {speed: {timeout: 1}}}}',
+            'is 1, it must be a number with a decimal point',
+        ),
+        ('/**: {%s: {x: {sped: {timeout: 1.0}}}}', 'parameter x.sped.timeout is unknown'),
+        ('/**: {%s: {x: {speed: {topic: "a b"}}}}', "x.speed.topic is '/a b', no topic name"),
+        ('monitor: {%s: {axes: [x]}}', 'says nothing to the node, begin it with'),
     ],
 )
 def test_a_file_that_the_node_refuses_is_bad_input(text, sentence, domain, tmp_path, monkeypatch):
     monkeypatch.setenv('ROS_DOMAIN_ID', str(domain))
     path = tmp_path / 'params.yaml'
-    path.write_text(f'/**:\n  ros__parameters:\n    {text}\n', encoding='utf-8')
+    path.write_text(text % 'ros__parameters', encoding='utf-8')
     with pytest.raises(InputError, match='.*') as caught:
         doctor(path, seconds=0.1)
     assert sentence in str(caught.value)
-
-
-def test_a_file_for_another_node_is_bad_input(tmp_path):
-    path = tmp_path / 'params.yaml'
-    path.write_text('monitor:\n  ros__parameters:\n    axes: [x]\n', encoding='utf-8')
-    with pytest.raises(InputError, match='says nothing to the node, begin it with'):
-        doctor(path, seconds=1.0)
 
 
 def test_a_time_that_is_none_is_bad_input(tmp_path):

@@ -13,12 +13,10 @@ from types import SimpleNamespace
 
 from ballscrew_monitor.clients import solve
 from ballscrew_monitor.clients.solve import _Conversation, Question
-from ballscrew_monitor.cycle.node_process import child_environment
 from ballscrew_monitor.node.solver_process import worker_environment
 import pytest
 from rclpy.task import Future
 
-ROOT = Path(__file__).resolve().parents[3]
 SCRIPT = Path(sys.executable).with_name('ballscrew')
 DEADLINE = 120.0  # [s] the node solves at low priority
 SIGNS = tuple(itertools.product((955.0, -955.0), (500.0, -500.0)))  # [rev/min], [N]
@@ -38,11 +36,9 @@ POINTS = (
 
 def begin(node, *arguments):
     """Start the command in the domain of a node."""
-    environment = child_environment(node.domain)
-    environment['PYTHONPATH'] = str(ROOT)
     return subprocess.Popen(
         [SCRIPT, 'solve', *map(str, arguments)],
-        env=environment,
+        env=node.environment,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
@@ -103,7 +99,7 @@ def test_a_page_about_the_current_point_is_for_a_person(node):
         x__load__timeout=60.0,
         x__correct_surface=False,
     )
-    states, publish = node.states(), node.machine()
+    states, publish = node.watched()
     publish(100.0, -500.0)
     node.until(lambda: states and states[-1].judged, 'the judged point')
     code, out, err = ask(node, '--axis', 'x')

@@ -2,21 +2,21 @@
 # SPDX-License-Identifier: Apache-2.0
 """The child process that never outlives its parent."""
 
+import functools
 import os
 from pathlib import Path
-import select
 import signal
 import subprocess
 import sys
 
+from ballscrew_monitor.clients.surroundings import started_node
 from ballscrew_monitor.cycle import node_process
 from ballscrew_monitor.cycle.domain import free_domain
-from ballscrew_monitor.cycle.node_process import child_environment, NodeProcess, path_to_this_code
+from ballscrew_monitor.cycle.node_process import child_environment, NodeProcess
+from ballscrew_monitor.node.solver_process import path_to_this_code
 from ballscrew_monitor.settings.middleware import loopback
 from diagnostic_msgs.msg import DiagnosticArray
 import pytest
-import rclpy
-from rclpy.executors import SingleThreadedExecutor
 
 ROOT = Path(__file__).resolve().parents[3]
 PARAMS = ROOT / 'config' / 'nominal_cycle.yaml'
@@ -25,39 +25,11 @@ DEADLINE = 120.0  # [s]
 
 def listen_for_a_sign(domain, wait_for):
     """Wait until the node says something; by then its signal handlers are in place."""
-    context, heard = rclpy.Context(), []
-    rclpy.init(context=context, domain_id=domain)
-    node = rclpy.create_node('listener', context=context)
-    node.create_subscription(DiagnosticArray, '/diagnostics', heard.append, 10)
-    executor = SingleThreadedExecutor(context=context)
-    executor.add_node(node)
-    try:
-        wait_for(lambda: heard, 'a sign', meanwhile=lambda: executor.spin_once(timeout_sec=0.1))
-    finally:
-        executor.shutdown()
-        node.destroy_node()
-        rclpy.shutdown(context=context)
-
-
-def wait_for_the_end(pid):
-    """Wait until a process, which may be the child of another one, has ended."""
-    try:
-        ending = os.pidfd_open(pid)
-    except ProcessLookupError:
-        return
-    try:
-        assert select.select([ending], [], [], DEADLINE)[0]
-    finally:
-        os.close(ending)
-
-
-def is_alive(pid):
-    """Tell whether a process runs; one that nobody has reaped yet does not."""
-    try:
-        state = Path(f'/proc/{pid}/stat').read_text().rpartition(')')[2].split()[0]
-    except FileNotFoundError:
-        return False
-    return state != 'Z'
+    heard = []
+    with started_node('listener', domain) as node:
+        node.create_subscription(DiagnosticArray, '/diagnostics', heard.append, 10)
+        spin = functools.partial(node.executor.spin_once, timeout_sec=0.1)
+        wait_for(lambda: heard, 'a sign', meanwhile=spin)
 
 
 @pytest.fixture
@@ -73,14 +45,14 @@ def node(tmp_path, monkeypatch, wait_for):
             process.stop()
 
 
-def test_it_ends_when_it_is_asked(node):
+def test_it_ends_when_it_is_asked(node, is_alive):
     assert node.returncode is None
     assert node.stop() == 0
     assert node.stop() == 0
     assert not is_alive(node.pid)
 
 
-def test_it_is_killed_when_it_does_not_listen(node, monkeypatch):
+def test_it_is_killed_when_it_does_not_listen(node, monkeypatch, is_alive):
     patience = ((signal.SIGINT, 0.01), (signal.SIGTERM, 0.01), (signal.SIGKILL, DEADLINE))
     monkeypatch.setattr(node_process, 'PATIENCE', patience)
     os.kill(node.pid, signal.SIGSTOP)
@@ -88,7 +60,7 @@ def test_it_is_killed_when_it_does_not_listen(node, monkeypatch):
     assert not is_alive(node.pid)
 
 
-def test_it_dies_with_its_parent(tmp_path, monkeypatch, wait_for):
+def test_it_dies_with_its_parent(tmp_path, monkeypatch, wait_for, is_alive):
     monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
     script = (
         'import sys, pathlib\n'
@@ -109,17 +81,17 @@ def test_it_dies_with_its_parent(tmp_path, monkeypatch, wait_for):
             pid = int(parent.stdout.readline())
             listen_for_a_sign(domain, wait_for)
             parent.kill()
-            wait_for_the_end(pid)
+            wait_for(lambda: not is_alive(pid), 'the end of the node')
 
 
-def test_its_words_are_kept(tmp_path):
+def test_its_words_are_kept(tmp_path, wait_for, is_alive):
     with free_domain() as domain:
         bad = tmp_path / 'bad.yaml'
         bad.write_text('/**/ballscrew_monitor:\n  ros__parameters:\n    axes: 3\n')
-        with NodeProcess(bad, tmp_path / 'node.log', domain=domain) as node:
-            wait_for_the_end(node.pid)
-            assert node.returncode == 2
-            assert node.last_words().startswith('ballscrew_monitor: ')
+        node = NodeProcess(bad, tmp_path / 'node.log', domain=domain)
+        wait_for(lambda: not is_alive(node.pid), 'the end of the node')
+        assert node.stop() == node.returncode == 2
+        assert node.last_words().startswith('ballscrew_monitor: ')
 
 
 def test_the_node_is_of_this_very_code(monkeypatch):

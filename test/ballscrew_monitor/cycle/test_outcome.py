@@ -7,6 +7,7 @@ from pathlib import Path
 
 from ballscrew_monitor.cycle.outcome import loss, Outcome
 from ballscrew_msgs.msg import BallScrewState, InputHealth
+import pytest
 
 
 def make_outcome(**states):
@@ -22,43 +23,44 @@ def make_outcome(**states):
     )
 
 
-def last_state(*, received, judged, dropped=0):
-    """Return the last state of an axis."""
+def words(*, received, judged, dropped=0, sent=10, rate=1.0):
+    """Return the sentence on axis x, of which ten messages were expected, by its last state."""
     health = InputHealth(name='speed', received=received, dropped=dropped)
-    return BallScrewState(judged=judged, inputs=[health])
-
-
-def words(state, *, sent=10, expected=10, rate=1.0):
-    """Return the sentence on axis x."""
-    return loss(make_outcome(x=state), 'x', sent, expected, rate)
+    state = BallScrewState(judged=judged, inputs=[health])
+    return loss(make_outcome(x=state), 'x', sent, 10, rate)
 
 
 def test_nothing_lost_is_nothing_said():
-    assert words(last_state(received=10, judged=10)) == ''
-    assert words(last_state(received=12, judged=10, dropped=2), sent=12) == ''
+    assert words(received=10, judged=10) == ''
+    assert words(received=12, judged=10, dropped=2, sent=12) == ''
 
 
-def test_it_says_what_did_not_arrive_what_was_refused_and_what_had_no_verdict():
-    state = last_state(received=9, judged=3, dropped=1)
-    assert words(state) == (
-        'axis x: 3 of 10 speed messages were judged; 1 did not reach the node, the node refused '
-        '1, 5 had no verdict, the recorded states name the reason'
-    )
+@pytest.mark.parametrize(
+    ('health', 'sentence'),
+    [
+        (
+            {'received': 9, 'judged': 3, 'dropped': 1},
+            '3 of 10 speed messages were judged; 1 did not reach the node, the node refused 1, '
+            '5 had no verdict, the recorded states name the reason',
+        ),
+        (  # messages of other joints are not called refused
+            {'received': 12, 'judged': 9, 'dropped': 2, 'sent': 12},
+            '9 of 10 speed messages were judged; 1 had no verdict, the recorded states name the '
+            'reason',
+        ),
+        (
+            {'received': 9, 'judged': 9, 'rate': 20.0},
+            '9 of 10 speed messages were judged; 1 did not reach the node; at 20x messages may be '
+            'lost, a lower rate helps',
+        ),
+    ],
+)
+def test_it_says_what_did_not_arrive_what_was_refused_and_what_had_no_verdict(health, sentence):
+    assert words(**health) == f'axis x: {sentence}'
 
 
-def test_messages_of_other_joints_are_not_called_refused():
-    state = last_state(received=12, judged=9, dropped=2)
-    assert words(state, sent=12) == (
-        'axis x: 9 of 10 speed messages were judged; 1 had no verdict, the recorded states name '
-        'the reason'
-    )
-
-
-def test_a_fast_run_is_told_why_messages_were_lost():
-    assert words(last_state(received=9, judged=9), rate=20.0).endswith(
-        '1 did not reach the node; at 20x messages may be lost, a lower rate helps'
-    )
-    assert 'lower rate' not in words(last_state(received=10, judged=9), rate=20.0)
+def test_a_fast_run_that_lost_nothing_on_the_way_is_not_told_to_be_slower():
+    assert 'lower rate' not in words(received=10, judged=9, rate=20.0)
 
 
 def test_a_silent_axis_has_lost_everything():

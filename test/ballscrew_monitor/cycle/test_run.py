@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The main job from end to end, on a short bag: the real node, the real middleware."""
 
+import contextlib
 import dataclasses
 import json
 import os
@@ -17,7 +18,7 @@ from ballscrew_monitor.cli import main
 from ballscrew_monitor.core.fields import stamp_of
 from ballscrew_monitor.cycle import node_process
 from ballscrew_monitor.cycle.node_process import child_environment, ros_environment
-from ballscrew_monitor.cycle.plan import plan
+from ballscrew_monitor.cycle.outcome import plan
 from ballscrew_monitor.cycle.run import run
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.replay import replay
@@ -47,18 +48,15 @@ def start(*arguments):
     )
 
 
-def is_alive(pid):
-    """Tell whether a process runs; one that nobody has reaped yet does not."""
-    try:
-        state = Path(f'/proc/{pid}/stat').read_text().rpartition(')')[2].split()[0]
-    except FileNotFoundError:
-        return False
-    return state != 'Z'
-
-
-def children(pid):
-    """Return the children of a process."""
-    return [int(found) for found in Path(f'/proc/{pid}/task/{pid}/children').read_text().split()]
+@contextlib.contextmanager
+def running(bag, out):
+    """Start a run and wait for its status; give its process and the number of its node."""
+    with start('--bag', bag, '--params', PARAMS, '--out', out) as process:
+        for line in process.stdout:
+            if line.startswith('['):
+                break
+        children = Path(f'/proc/{process.pid}/task/{process.pid}/children').read_text()
+        yield process, int(children)
 
 
 @pytest.fixture(scope='module')
@@ -74,16 +72,8 @@ def test_it_succeeds_and_leaves_its_products(finished):
     out, text, errors, code = finished
     assert (code, errors) == (0, '')
     assert {path.name for path in out.iterdir() if not path.name.startswith('.')} == {
-        'cycle.mcap',
-        'cycle.png',
-        'events.csv',
-        'judged',
-        'metadata.yaml',
-        'node.log',
-        'report.html',
-        'ros_log',
-        'states.parquet',
-        'summary.json',
+        *('cycle.mcap', 'metadata.yaml', 'node.log', 'ros_log'),
+        *('cycle.png', 'events.csv', 'judged', 'report.html', 'states.parquet', 'summary.json'),
     }
     assert '300 sent, 300 judged' in text
     assert re.search(r'^\[#+\.*\] 0:\d\d left .* rev/min .* RCS ', text, flags=re.MULTILINE)
@@ -116,7 +106,7 @@ def test_its_page_shows_what_the_node_judged(finished):
     assert note.startswith('axis x: during the run the node judged 300 speed samples and raised ')
 
 
-def test_no_process_is_left(finished):
+def test_no_process_is_left(finished, is_alive):
     pid = int(re.search(r'process (\d+)', finished[1]).group(1))
     assert not is_alive(pid)
 
@@ -163,12 +153,8 @@ def what_was_judged(state):
     return (stamp_of(state), state.judged), str(state.point), str((state.zone, state.result))
 
 
-def test_an_interrupt_ends_everything_in_order(nominal_bag, tmp_path, bound_addresses):
-    with start('--bag', nominal_bag, '--params', PARAMS, '--out', tmp_path / 'out') as process:
-        for line in process.stdout:
-            if line.startswith('['):
-                break
-        [node] = children(process.pid)
+def test_an_interrupt_ends_everything_in_order(nominal_bag, tmp_path, bound_addresses, is_alive):
+    with running(nominal_bag, tmp_path / 'out') as (process, node):
         for pid in (process.pid, node):  # nothing that another machine could reach
             assert {address for address, _ in bound_addresses(pid)} == {'127.0.0.1'}
         process.send_signal(signal.SIGINT)
@@ -181,12 +167,8 @@ def test_an_interrupt_ends_everything_in_order(nominal_bag, tmp_path, bound_addr
     assert recorded.topics[STATE].count >= 1
 
 
-def test_a_reader_that_goes_away_ends_it(nominal_bag, tmp_path):
-    with start('--bag', nominal_bag, '--params', PARAMS, '--out', tmp_path / 'out') as process:
-        for line in process.stdout:
-            if line.startswith('['):
-                break
-        [node] = children(process.pid)
+def test_a_reader_that_goes_away_ends_it(nominal_bag, tmp_path, is_alive):
+    with running(nominal_bag, tmp_path / 'out') as (process, node):
         process.stdout.close()
         errors = process.stderr.read()
         process.wait(DEADLINE)
@@ -196,11 +178,7 @@ def test_a_reader_that_goes_away_ends_it(nominal_bag, tmp_path):
 
 
 def test_a_node_that_dies_is_a_failure(nominal_bag, tmp_path):
-    with start('--bag', nominal_bag, '--params', PARAMS, '--out', tmp_path / 'out') as process:
-        for line in process.stdout:
-            if line.startswith('['):
-                break
-        [node] = children(process.pid)
+    with running(nominal_bag, tmp_path / 'out') as (process, node):
         os.kill(node, signal.SIGKILL)
         _, errors = process.communicate(timeout=DEADLINE)
     assert process.returncode == 1
@@ -280,10 +258,7 @@ def test_the_bag_is_not_overwritten_by_its_recording(finished):
 
 def test_two_runs_do_not_share_a_directory(short_bag, nominal_bag, tmp_path):
     out = tmp_path / 'out'
-    with start('--bag', nominal_bag, '--params', PARAMS, '--out', out) as process:
-        for line in process.stdout:
-            if line.startswith('node'):
-                break
+    with running(nominal_bag, out) as (process, _):
         with pytest.raises(InputError, match='in use by another run'):
             run(plan(short_bag, PARAMS, out, 1.0))
         process.send_signal(signal.SIGTERM)

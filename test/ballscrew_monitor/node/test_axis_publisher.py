@@ -5,13 +5,10 @@
 import types
 
 from ballscrew_monitor.node.alarm import end_all
-from ballscrew_msgs.msg import OutOfZone
 import pytest
 import rclpy.clock
 from rclpy.duration import Duration
-from rclpy.qos import QoSDurabilityPolicy, QoSProfile
 
-LATCHED = QoSProfile(depth=10, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL)
 SLOW = 0.8  # [rad/s] outside the zone at 1 kN and 40 degC
 
 
@@ -19,7 +16,7 @@ SLOW = 0.8  # [rad/s] outside the zone at 1 kN and 40 degC
 def outside(node):
     """Start the node and leave the zone; return the node and what it says of events."""
     node.start(x__max_future=3600.0, x__limits__raise_delay=0.0)
-    heard = node.listen(OutOfZone, f'{node.name}/x/out_of_zone', LATCHED)
+    heard = node.events()
     publish = node.machine()
     publish(SLOW)
     node.until(lambda: heard and heard[-1].active, 'the event')
@@ -42,7 +39,7 @@ def test_on_cleanup(outside):
         'ended by the node, not by the axis, nothing is judged any more: not configured'
     )
     assert advice in node.output.read_text()
-    late = node.listen(OutOfZone, f'{node.name}/x/out_of_zone', LATCHED)
+    late = node.events()
     node.until(lambda: late, 'the last word for one who comes late')
     assert (late[0].active, late[0].advice) == (False, advice)
     assert node.transition('configure')

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The services of one axis leave the other one alone; the node-wide ones act on all."""
 
-from ballscrew_msgs.msg import BallScrewState
+from ballscrew_msgs.msg import BallScrewState, PointResult
 from ballscrew_msgs.srv import EvaluateOperatingPoint
-from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from diagnostic_msgs.msg import DiagnosticStatus
 import pytest
 from std_srvs.srv import Trigger
 from surrogate.surface import shipped_surface
@@ -26,6 +26,8 @@ def two(node, tmp_path):
     surface.write_bytes(shipped_surface().read_bytes())
     limits = {f'{axis}__limits__raise_delay': 0.0 for axis in 'xy'}
     ahead = {f'{axis}__max_future': 3600.0 for axis in 'xy'}
+    # A busy machine makes no sample stale.
+    ahead |= {f'{axis}__{name}__timeout': 60.0 for axis in 'xy' for name in ('speed', 'load')}
     node.start(
         axes="['x','y']", y__speed__field='velocity[x_axis]', x__surface=surface, **limits, **ahead
     )
@@ -61,6 +63,7 @@ def test_an_axis_is_served_by_itself(two):
     kept = node.call(Trigger, 'x/reload_surface')
     assert not kept.success
     assert kept.message.startswith('kept the old surface: axis x: ')
+    assert last_after(node, publish)['x'].result.validity == PointResult.VALIDITY_VALID
     assert node.call(Trigger, 'acknowledge').message == 'acknowledged of x, y'
 
 
@@ -68,13 +71,12 @@ def test_an_axis_that_cannot_be_built_leaves_the_other_at_work(node):
     node.start(
         axes="['x','y']", y__oil='olive', y__speed__field='velocity[x_axis]', x__max_future=3600.0
     )
-    told, states = node.listen(DiagnosticArray, '/diagnostics'), node.states()
-    publish = node.machine()
+    states, publish = node.watched()
     node.until(lambda: publish(100.0) or (states and states[-1].judged), 'a judged sample')
 
     def said_of_y():
         """Return what all diagnostics say of y; those of a change are of its own axis alone."""
-        found = [status for message in told for status in message.status]
+        found = [status for message in node.told for status in message.status]
         return {one.message for one in found if ': y: ' in one.name and one.level}
 
     said = node.until(said_of_y, 'diagnostics of y')
@@ -95,14 +97,13 @@ def test_an_axis_that_cannot_be_built_leaves_the_other_at_work(node):
 
 def test_an_axis_parked_since_it_was_switched_on_is_well(node):
     node.start(x__max_future=3600.0)
-    told = node.listen(DiagnosticArray, '/diagnostics')
     publish = node.machine()
 
     def parked():
         publish(0.0)
-        return told and [
+        return node.told and [
             status
-            for status in told[-1].status
+            for status in node.told[-1].status
             if status.message == 'standstill, not judged for long enough yet'
         ]
 

@@ -11,11 +11,10 @@ is that the lag is longer than the timeout.
 import re
 import time
 
+from ballscrew_monitor.core.fields import stamp_of
 from ballscrew_monitor.messages import diagnostics
 from ballscrew_msgs.msg import BallScrewState, InputHealth, PointResult
-from diagnostic_msgs.msg import DiagnosticArray
 import pytest
-from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
 
@@ -70,7 +69,7 @@ class Listener:
 
     def __init__(self, node):
         self.states = node.states()
-        self._told = node.listen(DiagnosticArray, '/diagnostics')
+        self._node = node
 
     @property
     def level(self):
@@ -81,15 +80,9 @@ class Listener:
         """Tell whether a number of samples has been judged."""
         return bool(self.states) and self.states[-1].judged >= count
 
-    def sentences(self, part='Inputs'):
-        """Return the messages of a status since the first sample, without repetition."""
-        found = [
-            status.message
-            for message in self._told
-            for status in message.status
-            if status.name == f'ballscrew_monitor: x: {part}'
-        ]
-        return list(dict.fromkeys(found))
+    def sentences(self):
+        """Return what was said of the inputs, without repetition."""
+        return list(dict.fromkeys(text for _, text in self._node.levels()))
 
     def faults(self):
         """
@@ -98,13 +91,8 @@ class Listener:
         Between a message of one input and that of the other the fault of one alone may be told.
 
         """
-        begin = (
-            'speed was never',
-            'load was never',
-            diagnostics.INACTIVE,
-            diagnostics.NOTHING_YET,
-            GOOD,
-        )
+        never = ('speed was never', 'load was never')
+        begin = (*never, diagnostics.INACTIVE, diagnostics.NOTHING_YET, GOOD)
         found = [part for one in self.sentences() for part in re.split('; (?=load )', one)]
         return {one for one in found if not one.startswith(begin)}
 
@@ -114,14 +102,11 @@ class Listener:
         return BOTH + fault in found and found <= {f'{one} {fault}' for one in INPUTS}
 
 
-def stamps_of(states):
-    """Return the stamps of states [ns]."""
-    return [state.header.stamp.sec * SECOND + state.header.stamp.nanosec for state in states]
-
-
-def judged_of(states):
-    """Return the states from the first judged one on."""
+def in_order(states):
+    """Return the states from the first judged one on, whose stamps follow each other."""
     first = next(i for i, state in enumerate(states) if state.judged)
+    stamps = list(map(stamp_of, states[first:]))
+    assert stamps == sorted(stamps)
     return states[first:]
 
 
@@ -134,8 +119,7 @@ def test_a_constant_lag_is_judged_and_told_and_a_warning_clears(node):
     source.until(lambda: heard.has_judged(source.sent // 2 + 100), 'more states')
     source.until(lambda: heard.faults_of_both(LAGS), 'the lag of both')
     node.until(lambda: heard.has_judged(source.sent), 'the last state')
-    found = judged_of(heard.states)
-    assert stamps_of(found) == sorted(stamps_of(found))
+    found = in_order(heard.states)
     assert {state.result.validity for state in found} == {PointResult.VALIDITY_VALID}
     assert found[-1].judged == source.sent
     assert found[-1].level == OK
@@ -150,9 +134,8 @@ def test_silence_of_a_lagging_source_stays_on_its_line_of_time(node):
         lambda: heard.states[-1].result.validity == PointResult.VALIDITY_NO_INPUT, 'the silence'
     )
     assert heard.level == WARN
-    assert stamps_of(heard.states[-1:])[0] < node.now() - LAG // 2
-    found = stamps_of(judged_of(heard.states))
-    assert found == sorted(found)
+    assert stamp_of(heard.states[-1]) < node.now() - LAG // 2
+    in_order(heard.states)
 
 
 def test_a_lead_beyond_what_is_allowed_is_refused_and_clears_nothing(node):
@@ -181,8 +164,7 @@ def test_a_drift_is_told_when_it_has_grown(node):
     source.clock = lambda: begin + source.sent * SECOND // 1000
     source.until(lambda: heard.faults_of_both(LAGS) and heard.level == OK, 'lag and level')
     node.until(lambda: heard.has_judged(source.sent), 'the last state')
-    found = judged_of(heard.states)
-    assert stamps_of(found) == sorted(stamps_of(found))
+    found = in_order(heard.states)
     assert {state.result.validity for state in found} == {PointResult.VALIDITY_VALID}
 
 
@@ -199,13 +181,11 @@ def test_a_lagging_source_beside_one_without_stamps(node):
 
     def go_on():
         joints = JointState(name=['x_axis'], velocity=[FAST])
-        joints.header.stamp.sec, joints.header.stamp.nanosec = divmod(node.now() - LAG, SECOND)
         loads.publish(Float64(data=-1000.0))
-        speeds.publish(joints)
+        speeds.publish(node.stamped(joints, node.now() - LAG))
 
     node.until(lambda: go_on() or heard.level == OK, 'the level')
-    found = judged_of(heard.states)
-    assert stamps_of(found) == sorted(stamps_of(found))
+    found = in_order(heard.states)
     speed, load = found[-1].inputs[:2]
     assert speed.stamp_source == InputHealth.STAMP_HEADER
     assert load.stamp_source == InputHealth.STAMP_RECEIVE
@@ -229,16 +209,13 @@ class Simulated:
     """A simulated clock that runs from 60 s on by 10 ms at each sample."""
 
     def __init__(self, node):
-        self._publisher = node.node.create_publisher(Clock, '/clock', 10)
+        self._show = node.clock()
         self.now = 60 * SECOND
-        node.until(self._publisher.get_subscription_count)
 
     def __call__(self):
         """Let the clock run on; return the time [ns]."""
         self.now += SECOND // 100
-        message = Clock()
-        message.clock.sec, message.clock.nanosec = divmod(self.now, SECOND)
-        self._publisher.publish(message)
+        self._show(self.now)
         return self.now
 
 
@@ -266,6 +243,5 @@ def test_stamps_of_simulated_time_on_the_wall_clock(node):
     heard, source = Listener(node), Source(node, lambda: node.stamp + SECOND // 100)
     source.until(lambda: heard.level == WARN, 'the warning', SLOW)
     source.until(lambda: heard.level == OK and heard.faults_of_both(SIMULATED), 'its end')
-    found = judged_of(heard.states)
-    assert stamps_of(found) == sorted(stamps_of(found))
+    found = in_order(heard.states)
     assert {state.result.validity for state in found} == {PointResult.VALIDITY_VALID}

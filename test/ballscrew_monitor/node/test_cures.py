@@ -5,7 +5,6 @@
 import math
 
 from ballscrew_monitor.messages import diagnostics
-from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import WrenchStamped
 from rcl_interfaces.srv import GetParameters
 from rclpy.qos import QoSProfile, QoSReliabilityPolicy
@@ -31,25 +30,17 @@ class Source:
 
     def __init__(self, node, kind=JointState, topic='joint_states', qos=10):
         self.node = node
-        self.told = node.listen(DiagnosticArray, '/diagnostics')
         self.publisher = node.node.create_publisher(kind, topic, qos)
 
     def joints(self, name='x_axis', *velocity, ahead=0):
         """Return a message of now, or of `ahead` [ns] from now."""
         message = JointState(name=[name], position=[0.0], velocity=list(velocity))
-        stamp = message.header.stamp
-        stamp.sec, stamp.nanosec = divmod(self.node.now() + ahead, SECOND)
-        return message
+        return self.node.stamped(message, self.node.now() + ahead)
 
     def says(self):
         """Return the faults that the node names now."""
-        found = [
-            status.message
-            for array in self.told
-            for status in array.status
-            if status.name == 'ballscrew_monitor: x: Inputs'
-        ]
-        sentences = found[-1].split('; ') if found else []
+        levels = self.node.levels()
+        sentences = levels[-1][1].split('; ') if levels else []
         of_speed = [text for text in sentences if text.startswith('speed')]
         assert len(of_speed) <= 1, 'one fault has one sentence'
         return sentences
@@ -127,9 +118,7 @@ def test_a_timeout_shorter_than_the_period_is_told_with_one_that_would_do(node):
         if node.now() < due:
             return None
         sent.append(due)
-        message = JointState(name=['x_axis'], velocity=[100.0])
-        message.header.stamp.sec, message.header.stamp.nanosec = divmod(due, SECOND)
-        return message
+        return node.stamped(JointState(name=['x_axis'], velocity=[100.0]), due)
 
     cure = 'set x.speed.timeout to 1.0 or more'
 
@@ -192,14 +181,13 @@ def test_a_negative_index_ends_the_start_in_one_sentence(node):
 
 def test_an_override_of_no_input_is_not_configured(node):
     node.start('-p', 'qos_overrides./joint_state.subscription.depth:=7')
-    told = node.listen(DiagnosticArray, '/diagnostics')
     reason = (
         'not configured: parameter qos_overrides./joint_state.subscription.depth is of no input, '
     )
 
     def levels():
         """Return the levels with which the reason is told."""
-        found = [status for message in told for status in message.status]
+        found = [status for message in node.told for status in message.status]
         return {status.level for status in found if status.message.startswith(reason)}
 
     assert node.until(levels, reason) == {diagnostics.ERROR}

@@ -61,12 +61,18 @@ def test_a_state_comes_by_then_however_the_samples_come(core, period, tick, time
     assert now - last <= nanoseconds(promised)
 
 
-def test_over_the_middleware(node):
+def offered(node, **parameters):
+    """Start the node; return the deadline that its state offers, and the topic."""
     topic = f'{node.name}/x/state'
-    node.start(x__publish_period=0.1)
+    node.start(**parameters)
     node.until(lambda: node.node.count_publishers(topic))
     (publisher,) = node.node.get_publishers_info_by_topic(topic)
-    assert publisher.qos_profile.deadline.nanoseconds == nanoseconds(deadline())
+    return publisher.qos_profile.deadline, topic
+
+
+def test_over_the_middleware(node):
+    promise, topic = offered(node, x__publish_period=0.1)
+    assert promise.nanoseconds == nanoseconds(deadline())
     refused, heard = [], {30.0: [], 0.5: []}
     for seconds, states in heard.items():
         node.node.create_subscription(
@@ -91,8 +97,4 @@ def test_over_the_middleware(node):
 
 
 def test_simulated_time_promises_nothing(node):
-    topic = f'{node.name}/x/state'
-    node.start(use_sim_time='true')
-    node.until(lambda: node.node.count_publishers(topic))
-    (publisher,) = node.node.get_publishers_info_by_topic(topic)
-    assert publisher.qos_profile.deadline == Infinite
+    assert offered(node, use_sim_time='true')[0] == Infinite

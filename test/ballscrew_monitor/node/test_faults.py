@@ -8,7 +8,7 @@ from ballscrew_monitor.cycle.domain import free_domain
 from ballscrew_monitor.cycle.node_process import confined
 from ballscrew_monitor.node.run import run
 from ballscrew_monitor.settings import parameters
-from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from diagnostic_msgs.msg import DiagnosticStatus
 import pytest
 from rcl_interfaces.srv import SetParametersAtomically
 from rclpy.parameter import Parameter
@@ -32,8 +32,7 @@ def request(number):
 
 def test_a_hundred_changes_a_second_lose_no_sample(node):
     node.start(x__max_future=AHEAD)
-    states = node.states()
-    publish = node.machine()
+    states, publish = node.watched()
     assert node.set_parameters(x__limits__rcs=0.01).successful  # the service is found
     client = node.clients['set_parameters_atomically']
     futures, begin = [], node.now()
@@ -74,17 +73,10 @@ def test_a_surface_that_cannot_be_is_not_taken_and_told_in_one_sentence(node, tm
     surface = tmp_path / 'surface.npz'
     surface.write_bytes(shipped_surface().read_bytes())
     node.start(x__surface=surface, x__max_future=AHEAD)
-    states, told = node.states(), node.listen(DiagnosticArray, '/diagnostics')
-    publish = node.machine()
+    states, publish = node.watched()
 
     def said():
-        found = [
-            (status.level, status.message)
-            for message in told[-1:]  # none may have come yet
-            for status in message.status
-            if status.name.endswith(': Surface')
-        ]
-        return found[0] if found else None
+        return node.levels('x: Surface')[-1:]
 
     for write, reason in ((write_bomb, ' bytes when unpacked, allowed is '), (write_half, '')):
         write(surface)
@@ -94,13 +86,15 @@ def test_a_surface_that_cannot_be_is_not_taken_and_told_in_one_sentence(node, tm
         assert answer.message.startswith(prefix)
         assert reason in answer.message
         message = 'kept the old surface, the reload is refused: ' + answer.message[22:]
-        node.until(lambda told=message: said() == (DiagnosticStatus.WARN, told), message)
+        node.until(lambda told=message: said() == [(DiagnosticStatus.WARN, told)], message)
         judged = states[-1].judged if states else 0
         publish(FAST)
         node.until(lambda before=judged: states and states[-1].judged > before, 'a judgement')
     surface.write_bytes(shipped_surface().read_bytes())
     assert node.call(Trigger, 'reload_surface').success
-    node.until(lambda: said() == (DiagnosticStatus.OK, 'full surface loaded'), 'the good surface')
+    node.until(
+        lambda: said() == [(DiagnosticStatus.OK, 'full surface loaded')], 'the good surface'
+    )
 
 
 def bad_value(row):

@@ -8,7 +8,7 @@ from ballscrew_monitor.core.memory import AxisRecord, memory_of
 from ballscrew_monitor.node.former_files import PLACE
 from ballscrew_monitor.node.restart_state import RestartState
 from ballscrew_monitor.node.state_database import read_entries
-from ballscrew_monitor.node.state_records import Corrections, solves_of
+from ballscrew_monitor.node.state_records import Corrections
 import pytest
 
 EVENT = {
@@ -79,7 +79,7 @@ def test_all_is_taken_over_bit_for_bit_and_set_aside(start, tmp_path):
     assert (memory.event.number, memory.event.active, memory.event.worst_value) == (7, True, 0.5)
     assert (memory.shelving.until, memory.shelving.reason) == (30, 'Nut für Montag bestellt')
     kept = state.recall(Corrections('x'))
-    (solve,) = solves_of(kept)
+    (solve,) = kept.read_solves()
     assert (kept.surface, solve.speed, solve.solved) == ('abc', 0.1 + 0.2, {'rcs': 1 / 3})
     assert [one.record() for one in read_entries(tmp_path)] == [
         START | {'stamp_ns': stamp} for stamp in (2, 10, 20)

@@ -2,19 +2,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """All that waits is taken at once, in the order of arrival, and what was lost is counted."""
 
+import functools
 import threading
 import time
 import types
 
+from ballscrew_monitor.clients.surroundings import started_node
 from ballscrew_monitor.core.conversions import Scaling
 from ballscrew_monitor.core.inputs import make_input, OpenInput, Source
 from ballscrew_monitor.cycle.domain import free_domain
 from ballscrew_monitor.node import intake as intake_module
 from ballscrew_monitor.node.intake import Intake, PAUSE, QUIET, STAY
 import pytest
-import rclpy
 from rclpy.clock import Clock, ClockType
-from rclpy.executors import SingleThreadedExecutor
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
 
@@ -48,6 +48,10 @@ class Watch:
             self.now += pause
 
 
+def nothing():
+    """Do nothing between two looks at a condition."""
+
+
 def turns(intake):
     """Let the intake have a turn."""
     with pytest.raises(StopIteration):
@@ -57,34 +61,39 @@ def turns(intake):
 class Bench:
     """A node with an intake, publishers beside it, and what was taken."""
 
-    def __init__(self, domain):
-        self.context = rclpy.Context()
-        rclpy.init(context=self.context, domain_id=domain)
-        self.node = rclpy.create_node('taker', context=self.context, enable_rosout=False)
-        self.executor = SingleThreadedExecutor(context=self.context)
-        self.executor.add_node(self.node)
+    def __init__(self, node, wait_for):
+        self.node, self.executor, self.wait_for = node, node.executor, wait_for
         inputs = (float_input(Source.LOAD, 'load'), float_input(Source.SPEED, 'speed'))
         topics = {one.source: one.topic for one in inputs}
         self.axis = types.SimpleNamespace(
             name='x', inputs=inputs, open_inputs=(), topics=topics, max_future=0
         )
         self.taken = []
-        self.intake = Intake(self.node, [self.axis], lambda axis, event: self.taken.append(event))
+        self.intake = Intake(self.node, [self.axis], self.take)
         self.publishers = {
             name: self.node.create_publisher(Float64, name, 300) for name in ('load', 'speed')
         }
         self.until(lambda: self.matched() == {Source.LOAD: 1, Source.SPEED: 1})
         self.drain_events()
 
+    def take(self, axis, event):
+        self.taken.append(event)
+
+    def begin_anew(self, take):
+        """Let another intake hand its events to `take`, with a publisher of the speed."""
+        self.intake.close()
+        self.intake = Intake(self.node, [self.axis], take)
+        self.until(lambda: self.matched()[Source.SPEED] == 1)
+        self.drain_events()
+
     def matched(self):
         """Return how many publishers each input is matched with."""
         return {source: link.matched for source, link in self.intake.links(self.axis).items()}
 
-    def until(self, condition):
-        end = time.monotonic() + DEADLINE
-        while not condition():
-            assert time.monotonic() < end, 'the condition did not come'
-            self.executor.spin_once(timeout_sec=0.02)
+    def until(self, condition, meanwhile=None):
+        """Wait for a condition; meanwhile the executor spins, or else what is given."""
+        spin = functools.partial(self.executor.spin_once, timeout_sec=0.02)
+        return self.wait_for(condition, meanwhile=meanwhile or spin)
 
     def drain_events(self):
         """Let the executor hand over what the match of the publishers has left."""
@@ -94,18 +103,11 @@ class Bench:
     def publish(self, name, value):
         self.publishers[name].publish(Float64(data=float(value)))
 
-    def close(self):
-        self.executor.shutdown()
-        self.node.destroy_node()
-        rclpy.shutdown(context=self.context)
-
 
 @pytest.fixture(name='bench')
-def make_bench():
-    with free_domain() as domain:
-        made = Bench(domain)
-        yield made
-        made.close()
+def make_bench(wait_for):
+    with free_domain() as domain, started_node('taker', domain) as node:
+        yield Bench(node, wait_for)
 
 
 def test_one_wake_up_takes_all_topics_in_the_order_of_arrival(bench):
@@ -124,9 +126,7 @@ def test_one_wake_up_takes_all_topics_in_the_order_of_arrival(bench):
 
 def test_what_waits_is_taken_without_a_wake_up(bench):
     bench.publish('speed', 1)
-    end = time.monotonic() + DEADLINE
-    while not bench.taken and time.monotonic() < end:
-        bench.intake.drain()
+    bench.until(lambda: bench.taken, meanwhile=bench.intake.drain)
     assert [event.value for event in bench.taken] == [1.0]
     bench.executor.spin_once(timeout_sec=0.0)  # finds nothing left
     assert len(bench.taken) == 1
@@ -160,13 +160,10 @@ def test_a_second_publisher_is_noticed_before_the_executor_tells_of_it(bench):
     bench.publish('speed', 1)
     bench.until(lambda: bench.taken)
     second = bench.node.create_publisher(Float64, 'speed', 10)
-    end = time.monotonic() + DEADLINE
-    while bench.matched()[Source.SPEED] < 2 and time.monotonic() < end:
-        pass
+    bench.until(lambda: bench.matched()[Source.SPEED] == 2, meanwhile=nothing)
     second.publish(Float64(data=2.0))
     bench.publish('speed', 3)
-    while len(bench.taken) < 3 and time.monotonic() < end:
-        bench.intake.drain()
+    bench.until(lambda: len(bench.taken) == 3, meanwhile=bench.intake.drain)
     assert [event.lost for event in bench.taken] == [0, None, None]
 
 
@@ -184,9 +181,7 @@ def test_what_waits_is_taken_before_the_publishers_are_counted_anew(bench, monke
 def test_a_look_tells_whether_anything_has_come(bench):
     assert not bench.intake.drain()
     bench.publish('speed', 1)
-    end = time.monotonic() + DEADLINE
-    while not bench.intake.drain() and time.monotonic() < end:
-        pass
+    bench.until(bench.intake.drain, meanwhile=nothing)
     assert [event.value for event in bench.taken] == [1.0]
     assert not bench.intake.drain()
 
@@ -264,10 +259,7 @@ def test_a_message_that_comes_within_a_turn_is_taken_within_it(bench, monkeypatc
         if len(taken) == 1:
             bench.publish('speed', 2)
 
-    bench.intake.close()
-    bench.intake = Intake(bench.node, [bench.axis], take)
-    bench.until(lambda: bench.matched()[Source.SPEED] == 1)
-    bench.drain_events()
+    bench.begin_anew(take)
     bench.publish('speed', 1)
     Watch(monkeypatch, may_go_on=lambda: len(taken) != 1)
     bench.until(lambda: taken)
@@ -287,10 +279,7 @@ def test_messages_without_end_leave_the_others_their_turn(bench, monkeypatch):
         seen[:] = taken
         return come
 
-    bench.intake.close()
-    bench.intake = Intake(bench.node, [bench.axis], take)
-    bench.until(lambda: bench.matched()[Source.SPEED] == 1)
-    bench.drain_events()
+    bench.begin_anew(take)
     bench.publish('speed', 0)
     watch = Watch(monkeypatch, has_come)
     bench.until(lambda: taken)
@@ -312,7 +301,7 @@ def open_bench(bench, *fields):
     bench.intake.close()
     bench.axis.inputs, bench.axis.open_inputs = (), opened
     bench.axis.topics = {one.source: one.topic for one in opened}
-    bench.intake = Intake(bench.node, [bench.axis], lambda axis, event: bench.taken.append(event))
+    bench.intake = Intake(bench.node, [bench.axis], bench.take)
 
 
 def discovered(bench, condition):
@@ -352,18 +341,15 @@ def test_an_open_input_whose_field_is_not_in_the_type_says_so_and_waits_on(bench
 def test_of_two_types_on_a_topic_an_open_input_takes_none(bench):
     open_bench(bench, 'data')
     bench.node.create_publisher(Float64, 'late', 10)
-    context = rclpy.Context()  # one process may not give a topic two types
-    rclpy.init(context=context, domain_id=bench.context.get_domain_id())
-    other = rclpy.create_node('other', context=context, enable_rosout=False)
-    other.create_publisher(JointState, 'late', 10)
 
     def types():
         link = bench.intake.links(bench.axis)[Source.SPEED]
         return {publisher.type_name for publisher in link.publishers}
 
-    bench.until(lambda: len(types()) == 2)
-    bench.intake.discover()
-    assert bench.intake.topics == {}
-    other.destroy_node()
-    rclpy.shutdown(context=context)
+    # One participant may not give a topic two types.
+    with started_node('other', bench.node.context.get_domain_id()) as other:
+        other.create_publisher(JointState, 'late', 10)
+        bench.until(lambda: len(types()) == 2)
+        bench.intake.discover()
+        assert bench.intake.topics == {}
     discovered(bench, lambda: bench.matched() == {Source.SPEED: 1})

@@ -13,15 +13,13 @@ from ballscrew_monitor.core.state import Event
 from ballscrew_monitor.core.tally import Totals
 from ballscrew_monitor.node.restart_state import RestartState
 from ballscrew_monitor.node.state_database import FILE, read_entries
-from ballscrew_msgs.msg import BallScrewState, OutOfZone
+from ballscrew_msgs.msg import BallScrewState
 from ballscrew_msgs.srv import ShelveAlarm
-from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from diagnostic_msgs.msg import DiagnosticStatus
 import pytest
-from rclpy.qos import QoSDurabilityPolicy, QoSProfile
 from std_msgs.msg import Bool
 from std_srvs.srv import Trigger
 
-LATCHED = QoSProfile(depth=10, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL)
 FAST, SLOW = 100.0, 0.8  # [rad/s] optimal and outside at 1 kN and 40 degC
 KILLS = 3
 AT_ONCE = {'x__max_future': 3600.0, 'x__limits__raise_delay': 0.0, 'x__limits__clear_delay': 0.0}
@@ -39,15 +37,13 @@ class Axis:
     def __init__(self, node, folder):
         self.node, self.folder = node, folder
         self.states = node.states()
-        self.events = node.listen(OutOfZone, f'{node.name}/x/out_of_zone', LATCHED)
-        self.told = node.listen(DiagnosticArray, '/diagnostics')
+        self.events = node.events()
         self.publish = None
 
     def start(self, **parameters):
         """Start the node, the first time with its machine."""
         self.states.clear()
         self.events.clear()
-        self.told.clear()
         self.node.start(**{'state_dir': self.folder} | AT_ONCE | parameters)
         self.publish = self.publish or self.node.machine()
 
@@ -65,20 +61,10 @@ class Axis:
         self.node.process.kill()
         assert self.node.process.wait() == -signal.SIGKILL
 
-    def statuses(self, part):
-        """Return the levels and messages of a status, each change of them once."""
-        found = [
-            (status.level, status.message)
-            for message in self.told
-            for status in message.status
-            if status.name == f'ballscrew_monitor: {part}'
-        ]
-        return [now for now, before in zip(found, [None, *found], strict=False) if now != before]
-
     def until_level(self, part, level):
         """Wait until a status has a level at last; return its message."""
         last = self.node.until(
-            lambda: [one for one in self.statuses(part)[-1:] if one[0] == level], part
+            lambda: [one for one in self.node.levels(part)[-1:] if one[0] == level], part
         )
         return last[0][1]
 
@@ -139,19 +125,19 @@ def test_a_full_disk_is_one_sentence_and_nothing_is_lost(axis):
     axis.node.until(lambda: axis.kept(), 'the first record')
     process = axis.node.process.pid
     soft, hard = resource.prlimit(process, resource.RLIMIT_FSIZE)
-    axis.node.until(lambda: axis.statuses('State directory'), 'the status')
+    axis.node.until(lambda: axis.node.levels('State directory'), 'the status')
     resource.prlimit(process, resource.RLIMIT_FSIZE, (0, hard))
     axis.move(SLOW, lambda state: state.event_id == 1, 'the event')
-    axis.node.until(lambda: axis.statuses('State directory')[1:], 'the sentence')
+    axis.node.until(lambda: axis.node.levels('State directory')[1:], 'the sentence')
     axis.move(FAST, lambda state: state.level == BallScrewState.LEVEL_OK, 'the end of it')
     reset = axis.node.call(Trigger, 'x/reset_totals')
     assert reset.success
     assert reset.message.endswith('cannot be written, disk I/O error')
     resource.prlimit(process, resource.RLIMIT_FSIZE, (soft, hard))
-    axis.node.until(lambda: axis.statuses('State directory')[2:], 'the disk to work again')
+    axis.node.until(lambda: axis.node.levels('State directory')[2:], 'the disk to work again')
     good = (DiagnosticStatus.OK, 'sums, events and corrections are kept')
     bad = f'{axis.folder} cannot be written, disk I/O error'
-    assert axis.statuses('State directory') == [good, (DiagnosticStatus.WARN, bad), good]
+    assert axis.node.levels('State directory') == [good, (DiagnosticStatus.WARN, bad), good]
     kinds = [line['kind'] for line in axis.log()]
     assert [kind for kind in kinds if kind != 'reset_totals'] == [
         'node_start',
@@ -172,7 +158,7 @@ def test_a_directory_that_is_mounted_later_is_taken_up(axis, tmp_path):
     axis.move(SLOW, lambda state: state.event_id == 1, 'the event')
     bad = f'{axis.folder} cannot be written, Not a directory'
     axis.node.until(
-        lambda: axis.statuses('State directory')[-1:] == [(DiagnosticStatus.WARN, bad)]
+        lambda: axis.node.levels('State directory')[-1:] == [(DiagnosticStatus.WARN, bad)]
     )
     before = Memory(totals=Totals(running_time=7 * SECOND, since=1), event=Event(number=41))
     mounted = RestartState(tmp_path / 'mounted' / 'state')
@@ -195,7 +181,7 @@ def test_a_damaged_file_is_one_sentence_and_begins_anew(axis):
     state = axis.move(SLOW, lambda state: state.event_id == 1, 'the event')
     assert state.totals.running_time < 7.0
     message = axis.until_level('State directory', DiagnosticStatus.WARN)
-    assert len(axis.statuses('State directory')) == 1
+    assert len(axis.node.levels('State directory')) == 1
     damaged = f'{path} is damaged (file is not a database), moved to state.sqlite3.aside'
     assert message == damaged
     assert path.with_suffix('.sqlite3.aside').exists()

@@ -65,8 +65,9 @@ class Machine:
         """Start the node, without its thread."""
         self.state = RestartState(self.folder, limit=200_000)
         self.state.start = nothing
-        find = self.stations.copy
-        self.retention = KeptAxes(self.node, self.state, find, self.said.append, clock=None)
+        self.retention = KeptAxes(
+            self.node, self.state, self.stations, self.said.append, clock=None
+        )
         surface = self.core.surface(rcs=lambda speed, load: 0.5 if speed < 20.0 else 0.0)
         limits = self.core.limits(raise_delay=0, clear_delay=0)
         self.monitor = Monitor(surface, self.core.monitor(surface, limits).settings)

@@ -6,7 +6,7 @@ import dataclasses
 import math
 import signal
 
-from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import WrenchStamped
 import pytest
 from rclpy.qos import QoSProfile, QoSReliabilityPolicy
@@ -32,7 +32,6 @@ class Machine:
         self.speeds = make(JointState, 'joint_states', BEST_EFFORT)
         self.loads = make(WrenchStamped, 'axial_load', BEST_EFFORT)
         self.states = self.node.states()
-        self.told = self.node.listen(DiagnosticArray, '/diagnostics')
         self.node.until_matched(self.speeds, self.loads)
         self.sent = 0
         self.loads.publish(WrenchStamped())
@@ -68,21 +67,11 @@ class Machine:
         self.publish(publisher)
         self.node.until(lambda: self.states and self.states[-1].judged > before, 'a state')
 
-    def said(self):
-        """Return the levels and messages of the inputs, in order, without repetition."""
-        found = [
-            (status.level, status.message)
-            for message in self.told
-            for status in message.status
-            if status.name == 'ballscrew_monitor: x: Inputs'
-        ]
-        return list(dict.fromkeys(found))
-
     def is_said(self, sentence):
         """Tell whether a warning about the inputs has begun so."""
         return any(
             level == DiagnosticStatus.WARN and message.startswith(sentence)
-            for level, message in self.said()
+            for level, message in self.node.levels()
         )
 
 
@@ -105,7 +94,7 @@ def test_each_message_of_a_burst_is_received_or_counted_as_lost(node):
     assert machine.speed.lost_known
     assert machine.speed.lost > 0
     node.until(lambda: machine.is_said(LOSES), 'the warning')
-    assert len([one for one in machine.said() if one[1].startswith(LOSES)]) == 1
+    assert len({one for one in node.levels() if one[1].startswith(LOSES)}) == 1
 
 
 def test_the_loss_of_two_publishers_is_unknown_and_said(node):
@@ -138,12 +127,12 @@ def test_a_publisher_that_returns_begins_anew(node, count):
         machine.judge()
     node.node.destroy_publisher(machine.speeds)
     machine.speeds = node.node.create_publisher(JointState, 'joint_states', BEST_EFFORT)
-    before, received = len(machine.told), machine.speed.received
+    before, received = len(node.told), machine.speed.received
 
     def is_back():
         machine.publish()
         return machine.has(lambda speed: speed.received > received + 100)
 
     node.until(is_back, 'samples of the new publisher')
-    node.until(lambda: len(machine.told) > before, 'a diagnostic')
+    node.until(lambda: len(node.told) > before, 'a diagnostic')
     assert (machine.speed.lost_known, machine.speed.lost) == (True, 0)

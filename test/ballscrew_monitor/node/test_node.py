@@ -2,45 +2,33 @@
 # SPDX-License-Identifier: Apache-2.0
 """The node in its own process, over the real middleware."""
 
+import contextlib
 import itertools
 import math
 import signal
 from types import SimpleNamespace
 
 from ballscrew_monitor.core.conversions import nanoseconds
+from ballscrew_monitor.core.fields import stamp_of
 from ballscrew_monitor.core.inputs import InputSample, Source
 from ballscrew_monitor.cycle.domain import free_domain
 from ballscrew_monitor.messages import diagnostics
 from ballscrew_monitor.node.axis_publisher import NEWS_INTERVAL
 from ballscrew_monitor.node.node import BallscrewMonitor
-from ballscrew_msgs.msg import BallScrewState, OperatingPoint, OutOfZone, PointResult, SurfaceInfo
+from ballscrew_msgs.msg import BallScrewState, OperatingPoint, PointResult
 from ballscrew_msgs.srv import EvaluateOperatingPoint
-from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from diagnostic_msgs.msg import DiagnosticStatus
 import pytest
 from rcl_interfaces.srv import DescribeParameters, ListParameters
 import rclpy
 from rclpy.clock import ClockType
 from rclpy.parameter import Parameter
-from rclpy.qos import QoSDurabilityPolicy, QoSProfile
-from rosgraph_msgs.msg import Clock
 from std_srvs.srv import Trigger
 from surrogate.surface import shipped_surface, Surface
 
-LATCHED = QoSProfile(depth=1, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL)
 FAST, SLOW = 100.0, 0.8  # [rad/s] optimal and outside at 1 kN and 40 degC
 # The stamps of a test run ahead of the clock, and a busy machine makes no sample stale.
 AHEAD = {'x__max_future': 3600.0, 'x__speed__timeout': 60.0, 'x__load__timeout': 60.0}
-
-
-def levels(heard, part='Inputs'):
-    """Return the levels and messages that a diagnostic status went through."""
-    found = [
-        (status.level, status.message)
-        for message in heard
-        for status in message.status
-        if status.name == f'ballscrew_monitor: x: {part}'
-    ]
-    return [now for now, before in zip(found, [None, *found], strict=False) if now != before]
 
 
 def axes_told(message):
@@ -58,15 +46,12 @@ def feed(node, publish, states, speed, count, **changes):
 
 def test_each_sample_becomes_a_state_of_its_own_stamp(node):
     node.start(**AHEAD)
-    states = node.states()
-    publish = node.machine()
+    states, publish = node.watched()
     first = node.stamp
     feed(node, publish, states, FAST, 20)
     judged = [state for state in states if state.judged]
     assert [state.judged for state in judged] == list(range(1, 21))
-    assert [state.header.stamp.sec * 10**9 + state.header.stamp.nanosec for state in judged] == [
-        first + (i + 1) * 10_000_000 for i in range(20)
-    ]
+    assert list(map(stamp_of, judged)) == [first + (i + 1) * 10_000_000 for i in range(20)]
     expected = Surface.load(shipped_surface()).lookup(FAST, 1000.0, 313.15)
     last = judged[-1]
     assert last.result.validity == PointResult.VALIDITY_VALID
@@ -79,14 +64,13 @@ def test_each_sample_becomes_a_state_of_its_own_stamp(node):
 
 def test_a_stay_outside_is_warned_of_and_latched_for_late_joiners(node):
     node.start(**AHEAD)
-    states = node.states()
-    publish = node.machine()
-    early = node.listen(OutOfZone, f'{node.name}/x/out_of_zone', LATCHED)
+    states, publish = node.watched()
+    early = node.events()
     none_yet = node.until(lambda: early and early[0], 'the first event message')
     assert (none_yet.event_id, none_yet.active, none_yet.axis) == (0, False, 'x')
     feed(node, publish, states, SLOW, 51)
     assert states[-1].level == BallScrewState.LEVEL_WARN
-    late = node.listen(OutOfZone, f'{node.name}/x/out_of_zone', LATCHED)
+    late = node.events()
     begun = node.until(lambda: late and late[0], 'the latched event')
     assert (begun.event_id, begun.active, begun.duration) == (1, True, 0.5)
     assert begun.cause.target_speed > SLOW
@@ -102,8 +86,7 @@ def test_a_stay_outside_is_warned_of_and_latched_for_late_joiners(node):
 
 def test_silence_is_told_on_the_tick_and_clears_nothing(node):
     node.start(x__speed__timeout=0.2, x__limits__raise_delay=0.0, x__max_lag=60.0)
-    states, told = node.states(), node.listen(DiagnosticArray, '/diagnostics')
-    publish = node.machine()
+    states, publish = node.watched()
     node.stamp = node.now() - 10_000_000
     feed(node, publish, states, SLOW, 1)
     assert states[-1].level == BallScrewState.LEVEL_WARN
@@ -114,13 +97,13 @@ def test_silence_is_told_on_the_tick_and_clears_nothing(node):
     assert silent.result.validity == PointResult.VALIDITY_NO_INPUT
     assert silent.level == BallScrewState.LEVEL_WARN
     assert silent.header.stamp.nanosec % 100_000_000 == 0
-    node.until(lambda: any(message.startswith('speed is stale') for _, message in levels(told)))
-    assert levels(told, 'Lubrication')[-1][0] == DiagnosticStatus.WARN
+    node.until(lambda: any(message.startswith('speed is stale') for _, message in node.levels()))
+    assert node.levels('x: Lubrication')[-1][0] == DiagnosticStatus.WARN
 
 
 def test_surface_info_is_latched_and_follows_the_limits(node):
     node.start()
-    heard = node.listen(SurfaceInfo, f'{node.name}/x/surface_info', LATCHED)
+    heard = node.infos()
     info = node.until(lambda: heard and heard[-1], 'the surface info')
     surface = Surface.load(shipped_surface())
     assert (info.sha256, info.screw, info.oil) == (surface.sha256, 'nominal', 'iso_vg_68')
@@ -132,8 +115,7 @@ def test_surface_info_is_latched_and_follows_the_limits(node):
 
 def test_limits_change_live_and_bad_ones_are_refused(node):
     node.start(**AHEAD)
-    states = node.states()
-    publish = node.machine()
+    states, publish = node.watched()
     feed(node, publish, states, FAST, 1)
     assert node.set_parameters(x__limits__efficiency=0.99, x__limits__rcs=0.02).successful
     feed(node, publish, states, FAST, 1)
@@ -166,21 +148,20 @@ def test_parameters_are_described(node):
 
 def test_the_lifecycle_from_outside(node):
     node.start(autostart='false', **AHEAD)
-    told = node.listen(DiagnosticArray, '/diagnostics')
     assert node.lifecycle() == 'unconfigured'
     assert not node.call(EvaluateOperatingPoint, 'evaluate', axis='x').success
-    node.until(lambda: levels(told)[-1:] == [(DiagnosticStatus.ERROR, 'not configured')])
+    node.until(lambda: node.levels()[-1:] == [(DiagnosticStatus.ERROR, 'not configured')])
     assert node.set_parameters(x__handedness='left').successful
     assert node.transition('configure')
     node.until(
         lambda: (
-            levels(told)[-1] == (DiagnosticStatus.STALE, 'the node is inactive, nothing is judged')
+            node.levels()[-1]
+            == (DiagnosticStatus.STALE, 'the node is inactive, nothing is judged')
         )
     )
     assert node.node.count_subscribers('joint_states') == 0
     assert node.transition('activate')
-    states = node.states()
-    publish = node.machine()
+    states, publish = node.watched()
     feed(node, publish, states, FAST, 2)
     assert states[-1].point.speed == -FAST
     assert node.transition('deactivate')
@@ -211,9 +192,9 @@ def test_the_lifecycle_from_outside(node):
 def test_a_failed_configure_leaves_the_node_alive_with_the_reason(node, name, value, reason):
     arguments = ('-p', f'{name.replace("__", ".")}:={value}')
     node.start(*arguments)
-    told = node.listen(DiagnosticArray, '/diagnostics')
     level, message = node.until(
-        lambda: next((said for said in levels(told, 'Surface') if reason in said[1]), None), reason
+        lambda: next((said for said in node.levels('x: Surface') if reason in said[1]), None),
+        reason,
     )
     assert level == DiagnosticStatus.ERROR
     assert message.startswith('not configured: ')
@@ -294,7 +275,6 @@ def test_evaluate_answers_for_many_points_at_once(node):
 def test_several_axes_share_one_topic(node):
     node.start(axes="['x','y']", y__max_future=3600.0, **AHEAD)
     x, y = node.states('x'), node.states('y')
-    told = node.listen(DiagnosticArray, '/diagnostics')
     publish = node.machine()
     feed(node, publish, x, FAST, 3)
     feed(node, publish, y, SLOW, 2, joint='y_axis')
@@ -311,18 +291,15 @@ def test_several_axes_share_one_topic(node):
     node.until(
         lambda: (
             publish(next(speeds))
-            or {('x',), ('x', 'y')} <= {axes_told(message) for message in told}
+            or {('x',), ('x', 'y')} <= {axes_told(message) for message in node.told}
         ),
         'the news of x alone',
     )
 
 
-def test_the_small_services(node, tmp_path):
-    surface = tmp_path / 'surface.npz'
-    surface.write_bytes(shipped_surface().read_bytes())
-    node.start(x__surface=surface, x__limits__raise_delay=0.0, **AHEAD)
-    states = node.states()
-    publish = node.machine()
+def test_totals_and_warning_begin_anew_when_they_are_asked_to(node):
+    node.start(x__limits__raise_delay=0.0, **AHEAD)
+    states, publish = node.watched()
     feed(node, publish, states, SLOW, 3)
     assert states[-1].level == BallScrewState.LEVEL_WARN
     assert states[-1].totals.running_time == pytest.approx(0.02)
@@ -331,19 +308,11 @@ def test_the_small_services(node, tmp_path):
     feed(node, publish, states, FAST, 1)
     assert states[-1].level == BallScrewState.LEVEL_UNKNOWN
     assert states[-1].totals.running_time == pytest.approx(0.01)
-    assert node.call(Trigger, 'reload_surface').success
-    surface.write_bytes(b'no surface')
-    kept = node.call(Trigger, 'reload_surface')
-    assert not kept.success
-    assert kept.message.startswith('kept the old surface: axis x: ')
-    feed(node, publish, states, FAST, 1)
-    assert states[-1].result.validity == PointResult.VALIDITY_VALID
 
 
 def test_a_glitch_is_refused_and_no_total_knows_of_it(node):
     node.start(**AHEAD)
-    states = node.states()
-    publish = node.machine()
+    states, publish = node.watched()
     feed(node, publish, states, FAST, 2)
     publish(1e12)
     feed(node, publish, states, FAST, 2)
@@ -355,8 +324,7 @@ def test_a_glitch_is_refused_and_no_total_knows_of_it(node):
 
 def test_a_stamp_from_the_future_is_refused_and_counted(node):
     node.start()
-    states = node.states()
-    publish = node.machine()
+    states, publish = node.watched()
     publish(FAST, step=3600 * 10**9)
     refused = node.until(
         lambda: states and states[-1].inputs[0].dropped and states[-1], 'the refusal'
@@ -364,38 +332,36 @@ def test_a_stamp_from_the_future_is_refused_and_counted(node):
     assert (refused.judged, refused.inputs[0].received) == (0, 1)
 
 
-@pytest.mark.parametrize(
-    ('sim_time', 'kind'), [(False, ClockType.STEADY_TIME), (True, ClockType.ROS_TIME)]
-)
-def test_ticks_do_not_depend_on_the_system_clock(sim_time, kind):
-    """A timer on that stands still when it is set back, and nothing would go stale."""
+@contextlib.contextmanager
+def started(**parameters):
+    """Start the node in this process."""
     with free_domain() as domain:
         context = rclpy.Context()
         rclpy.init(context=context, domain_id=domain)
-        overrides = [Parameter('use_sim_time', value=sim_time)]
+        overrides = [Parameter(name, value=value) for name, value in parameters.items()]
         node = BallscrewMonitor(context=context, parameter_overrides=overrides)
         node.start()
-        assert node._tick_timer.clock.clock_type is kind
+        yield node
         node.finish()
         node.destroy_node()
         rclpy.shutdown(context=context)
 
 
+@pytest.mark.parametrize(
+    ('sim_time', 'kind'), [(False, ClockType.STEADY_TIME), (True, ClockType.ROS_TIME)]
+)
+def test_ticks_do_not_depend_on_the_system_clock(sim_time, kind):
+    """A timer on that stands still when it is set back, and nothing would go stale."""
+    with started(use_sim_time=sim_time) as node:
+        assert node._tick_timer.clock.clock_type is kind
+
+
 def test_axes_that_change_together_are_all_told_at_once(monkeypatch):
     """The flood of one axis must not keep back what another one has to tell."""
-    with free_domain() as domain:
-        context = rclpy.Context()
-        rclpy.init(context=context, domain_id=domain)
-        overrides = [
-            Parameter('axes', value=['x', 'y']),
-            Parameter('diagnostics_period', value=60.0),
-        ]
-        node = BallscrewMonitor(context=context, parameter_overrides=overrides)
-        node.start()
-        told = []
-        monkeypatch.setattr(node, '_publish_diagnostics', lambda axes=None: told.append(axes))
-        steady = SimpleNamespace(nanoseconds=0)
-        monkeypatch.setattr(node, '_steady', SimpleNamespace(now=lambda: steady))
+    told, steady = [], SimpleNamespace(nanoseconds=0)
+    with started(axes=['x', 'y'], diagnostics_period=60.0) as node, monkeypatch.context() as patch:
+        patch.setattr(node, '_publish_diagnostics', lambda axes=None: told.append(axes))
+        patch.setattr(node, '_steady', SimpleNamespace(now=lambda: steady))
         stamp, inputs = node.get_clock().now().nanoseconds, [Source.SPEED]
         for steady.nanoseconds in (0, NEWS_INTERVAL - 1, NEWS_INTERVAL):
             for name, source in itertools.product(('x', 'y'), inputs):
@@ -403,19 +369,10 @@ def test_axes_that_change_together_are_all_told_at_once(monkeypatch):
                 node._on_event(node._axis_publishers[name].axis, sample)
             stamp, inputs = stamp + nanoseconds(0.2), [Source.LOAD, Source.SPEED]
         assert told == [['x'], ['y']] * 2
-        node.finish()
-        node.destroy_node()
-        rclpy.shutdown(context=context)
 
 
 def test_a_defect_at_a_sample_is_the_error_of_its_axis_alone(monkeypatch):
-    with free_domain() as domain:
-        context = rclpy.Context()
-        rclpy.init(context=context, domain_id=domain)
-        node = BallscrewMonitor(
-            context=context, parameter_overrides=[Parameter('axes', value=['x', 'y'])]
-        )
-        node.start()
+    with started(axes=['x', 'y']) as node:
         broken, sound = (node._axis_publishers[name].axis for name in ('x', 'y'))
         monkeypatch.setattr(broken.monitor, 'update', lambda event: 1 / 0)
         stamp = node.get_clock().now().nanoseconds
@@ -429,31 +386,24 @@ def test_a_defect_at_a_sample_is_the_error_of_its_axis_alone(monkeypatch):
         assert 'ZeroDivisionError: division by zero' in error.message
         assert statuses['y: Lubrication'].level != DiagnosticStatus.ERROR
         assert sound.monitor.input_status(stamp)[0].received == 2
-        node.finish()
-        node.destroy_node()
-        rclpy.shutdown(context=context)
 
 
 def test_a_clock_that_stops_is_told(node):
     node.start(use_sim_time='true', x__limits__clear_delay=0.0)
-    states, told = node.states(), node.listen(DiagnosticArray, '/diagnostics')
-    clocks = node.node.create_publisher(Clock, '/clock', 10)
-    publish = node.machine()
-    node.until(clocks.get_subscription_count)
+    clock = node.clock()
+    states, publish = node.watched()
     node.stamp = 50 * 10**9
     ticks = itertools.count()
 
     def run():
-        message = Clock()
-        message.clock.sec, message.clock.nanosec = 50, next(ticks) % 5 * 10_000_000 + 60_000_000
-        clocks.publish(message)
+        clock(50 * 10**9 + next(ticks) % 5 * 10_000_000 + 60_000_000)
         publish(FAST, step=0)
-        return levels(told)[-1:] == [(DiagnosticStatus.OK, 'all inputs arrive')]
+        return node.levels()[-1:] == [(DiagnosticStatus.OK, 'all inputs arrive')]
 
     node.until(run, 'all inputs')
     stands = (DiagnosticStatus.STALE, diagnostics.CLOCK_STANDS)
-    node.until(lambda: levels(told)[-1] == stands, 'the end of the clock')
-    assert levels(told, 'Lubrication')[-1] == stands
+    node.until(lambda: node.levels()[-1] == stands, 'the end of the clock')
+    assert node.levels('x: Lubrication')[-1] == stands
     node.until(run, 'all inputs again')
     node.until(lambda: states[-1].zone == BallScrewState.ZONE_OPTIMAL, 'the zone')
 
@@ -469,23 +419,16 @@ def test_a_long_answer_makes_no_input_missing(node):
     """
     quick = {'x__speed__timeout': 0.05, 'tick_period': 0.01}
     node.start(use_sim_time='true', **AHEAD | quick)
-    states = node.states()
-    clocks = node.node.create_publisher(Clock, '/clock', 10)
-    publish = node.machine()
-    node.until(clocks.get_subscription_count)
+    clock = node.clock()
+    states, publish = node.watched()
     node.stamp = 50 * 10**9
 
-    def clock(stamp):
+    def misses(stamp):
         """Set the clock; tell whether the last state says that an input is missing."""
-        message = Clock()
-        message.clock.sec, message.clock.nanosec = divmod(stamp, 10**9)
-        clocks.publish(message)
+        clock(stamp)
         return states and states[-1].result.validity == PointResult.VALIDITY_NO_INPUT
 
-    def stamps():
-        return [state.header.stamp.sec * 10**9 + state.header.stamp.nanosec for state in states]
-
-    node.until(lambda: clock(node.stamp), 'a tick on simulated time')
+    node.until(lambda: misses(node.stamp), 'a tick on simulated time')
     feed(node, publish, states, FAST, 1)
     states.clear()
     points = [OperatingPoint(speed=FAST, temperature=40.0)] * 10_000
@@ -499,40 +442,37 @@ def test_a_long_answer_makes_no_input_missing(node):
         publish(FAST)
     clock(node.stamp)
     node.until(lambda: states and states[-1].judged == 21, 'the last sample')
-    assert stamps() == [begin + (i + 1) * 10_000_000 for i in range(20)]
+    assert list(map(stamp_of, states)) == [begin + (i + 1) * 10_000_000 for i in range(20)]
     assert {state.result.validity for state in states} == {PointResult.VALIDITY_VALID}
     node.until(answers[-1].done, 'the last answer')
     # From here on nothing waits: what is missing is called so.
     later = itertools.count(node.stamp + 10**9, 10_000_000)
-    node.until(lambda: clock(next(later)), 'a tick after the answers')
-    assert stamps() == sorted(stamps())
+    node.until(lambda: misses(next(later)), 'a tick after the answers')
+    stamps = list(map(stamp_of, states))
+    assert stamps == sorted(stamps)
 
 
 def test_sim_time_is_the_clock_of_everything(node):
     node.start(use_sim_time='true')
-    states = node.states()
-    clocks = node.node.create_publisher(Clock, '/clock', 10)
-    publish = node.machine()
-    node.until(clocks.get_subscription_count)
+    clock = node.clock()
+    states, publish = node.watched()
     node.stamp = 50 * 10**9
     feed(node, publish, states, FAST, 1)  # before the clock starts
     assert states[-1].header.stamp.sec == 50
 
     ticks = itertools.count()
 
-    def clock(seconds):
+    def runs(seconds):
         """Let the clock run on from `seconds`; tell whether a state has such a stamp."""
-        message = Clock()
-        message.clock.sec, message.clock.nanosec = seconds, next(ticks) % 100 * 10_000_000
-        clocks.publish(message)
+        clock(seconds * 10**9 + next(ticks) % 100 * 10_000_000)
         return states[-1].header.stamp.sec == seconds
 
-    node.until(lambda: clock(60), 'a tick on simulated time')
+    node.until(lambda: runs(60), 'a tick on simulated time')
     assert states[-1].result.validity == PointResult.VALIDITY_NO_INPUT
     publish(FAST, step=20 * 10**9)  # at 70 s
-    node.until(lambda: clock(61) and states[-1].inputs[0].dropped == 1, 'the refusal')
+    node.until(lambda: runs(61) and states[-1].inputs[0].dropped == 1, 'the refusal')
     node.stamp = 10 * 10**9  # the recording begins anew
-    node.until(lambda: clock(10), 'a tick after the jump')
+    node.until(lambda: runs(10), 'a tick after the jump')
     feed(node, publish, states, FAST, 1)
     assert states[-1].header.stamp.sec == 10
     assert states[-1].result.validity == PointResult.VALIDITY_VALID

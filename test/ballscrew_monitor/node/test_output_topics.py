@@ -49,8 +49,7 @@ def test_they_come_with_each_state_of_the_axes_that_ask_for_them(node):
     )
     prefix = f'{node.name}/x/plain/'
     heard = {name: node.listen(kind, prefix + name) for name, kind in TYPES.items()}
-    states = node.states()
-    publish = node.machine()
+    states, publish = node.watched()
     publish(0.8)
     node.until(lambda: heard['out_of_zone'] and heard['out_of_zone'][-1].data, 'the warning')
     judged = node.until(lambda: [state for state in states if state.judged], 'the state')[0].result

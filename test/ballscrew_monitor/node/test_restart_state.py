@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What is written when: at once, but never in a flood, and again until it works."""
 
+from pathlib import Path
 import threading
 
 from ballscrew_monitor.core.memory import AxisRecord
@@ -231,21 +232,18 @@ def test_no_directory_keeps_nothing():
 
 
 @pytest.mark.parametrize(
-    ('wanted', 'place'),
+    ('wanted', 'variable', 'place'),
     [
-        ('', None),
-        ('/var/lib/screw', '/var/lib/screw'),
-        ('auto', '/state/ballscrew_monitor/cell/monitor'),
+        ('', '/state', None),
+        ('/var/lib/screw', '/state', '/var/lib/screw'),
+        ('auto', '/state', '/state/ballscrew_monitor/cell/monitor'),
+        ('auto', '', '/someone/.local/state/ballscrew_monitor/cell/monitor'),
     ],
 )
-def test_where_things_are_kept(monkeypatch, wanted, place):
-    monkeypatch.setenv('XDG_STATE_HOME', '/state')
-    found = state_directory(wanted, '/cell/monitor')
-    assert found is None if place is None else str(found) == place
-
-
-def test_without_the_variable_it_is_the_place_of_the_specification(monkeypatch):
+def test_where_things_are_kept(monkeypatch, wanted, variable, place):
+    """Without the variable it is the place of the specification."""
     monkeypatch.delenv('XDG_STATE_HOME', raising=False)
     monkeypatch.setenv('HOME', '/someone')
-    found = state_directory('auto', '/monitor')
-    assert str(found) == '/someone/.local/state/ballscrew_monitor/monitor'
+    if variable:
+        monkeypatch.setenv('XDG_STATE_HOME', variable)
+    assert state_directory(wanted, '/cell/monitor') == (place and Path(place))

@@ -14,16 +14,14 @@ from ballscrew_monitor.core.full_point import request_of
 from ballscrew_monitor.messages.state_messages import read_point
 from ballscrew_monitor.node.solve_server import SERVICE_QOS
 from ballscrew_msgs.action import SolveOperatingPoint
-from ballscrew_msgs.msg import OperatingPoint, PointResult, SurfaceInfo
+from ballscrew_msgs.msg import OperatingPoint, PointResult
 from ballscrew_msgs.srv import EvaluateOperatingPoint
 import pytest
 from rclpy.action import ActionClient
-from rclpy.qos import QoSDurabilityPolicy, QoSProfile
 from std_srvs.srv import Trigger
 from surrogate.on_demand.solve import solve_point
 from surrogate.surface import FIELDS, shipped_surface, Surface
 
-LATCHED = QoSProfile(depth=1, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL)
 AHEAD = {'x__max_future': 3600.0}  # the stamps of a test run ahead of the clock
 PLACE = OperatingPoint(speed=100.0, axial_load=-500.0, temperature=40.0)
 SUCCEEDED, CANCELED = GoalStatus.STATUS_SUCCEEDED, GoalStatus.STATUS_CANCELED
@@ -91,11 +89,6 @@ class Solves:
         """Send a goal at a place, or as asked."""
         request = {'axis': 'x', 'point': place} | request
         return Goal(self._node, self._client, SolveOperatingPoint.Goal(**request))
-
-
-def is_alive(pid):
-    """Tell whether a process is there."""
-    return os.path.exists(f'/proc/{pid}')
 
 
 def test_a_solve_is_told_beside_the_surface(node):
@@ -170,7 +163,7 @@ def test_a_solve_corrects_the_surface_and_outlives_the_node(node, quick_surface,
     kept = {'x__surface': quick_surface, 'state_dir': tmp_path / 'state'}
     node.start(**kept)
     states = node.states()
-    infos = node.listen(SurfaceInfo, f'{node.name}/x/surface_info', LATCHED)
+    infos = node.infos()
     solves = Solves(node)
     base = node.until(lambda: infos and infos[-1].sha256, 'the surface')
     status, result = solves.ask().end()
@@ -295,7 +288,7 @@ def test_an_overdue_solve_says_how_far_it_came(node):
     assert not node.solvers()
 
 
-def test_a_signal_during_a_solve_ends_goal_worker_and_node(node):
+def test_a_signal_during_a_solve_ends_goal_worker_and_node(node, is_alive):
     node.start()
     goal, worker = solving(node)
     assert node.stop() == 0
@@ -305,7 +298,7 @@ def test_a_signal_during_a_solve_ends_goal_worker_and_node(node):
     assert 'Traceback' not in node.output.read_text()
 
 
-def test_a_killed_node_leaves_no_worker(node):
+def test_a_killed_node_leaves_no_worker(node, is_alive):
     node.start()
     _, worker = solving(node)
     node.stop(signal.SIGKILL)
@@ -322,24 +315,14 @@ def solving(node):
     return goal, worker
 
 
-@contextlib.contextmanager
-def other_of(node, tmp_path):
-    """Make another node in the same domain."""
-    folder = tmp_path / 'other'
-    folder.mkdir()
-    made = type(node)(node.domain, folder, node.wait_for)
-    try:
-        yield made
-    finally:
-        made.close()
-
-
 def test_of_two_nodes_of_one_name_the_second_keeps_nothing_and_says_so(node, tmp_path):
-    kept = {'state_dir': tmp_path / 'state'}
+    kept, folder = {'state_dir': tmp_path / 'state'}, tmp_path / 'other'
+    folder.mkdir()
     in_use = f'state_dir: {tmp_path / "state"} is in use by another node of this name'
     node.start(**kept)
     node.until(lambda: node.lifecycle() == 'active')
-    with other_of(node, tmp_path) as second:
+    second = type(node)(node.domain, node.node, folder, node.wait_for)
+    with contextlib.closing(second):
         second.start(**kept)
         second.until(lambda: in_use in second.output.read_text(), 'the warning')
     assert in_use not in node.output.read_text()

@@ -67,7 +67,7 @@ def test_ctrl_c_is_not_for_it(process, wait_for):
     assert 'failed' in wait_for(process.frames, 'a frame')[0]
 
 
-def test_it_ends_with_whoever_started_it(wait_for):
+def test_it_ends_with_whoever_started_it(wait_for, is_alive):
     """The parent is killed, and can clean up nothing."""
     code = (
         'from ballscrew_monitor.node.solver_process import SolverProcess\n'
@@ -87,13 +87,6 @@ def test_it_ends_with_whoever_started_it(wait_for):
     assert Path(f'/proc/{worker}').exists()
     parent.kill()
     parent.wait()
-    wait_for(lambda: not _runs(worker), 'the end of the worker')
+    wait_for(lambda: not is_alive(worker), 'the end of the worker')
     parent.stdin.close()
     parent.stdout.close()
-
-
-def _runs(pid):
-    try:
-        return Path(f'/proc/{pid}/stat').read_text().rpartition(')')[2].split()[0] != 'Z'
-    except FileNotFoundError:
-        return False

@@ -7,15 +7,7 @@ import types
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.state import Event
-from ballscrew_monitor.node.state_records import (
-    Corrections,
-    corrections_of,
-    entry_of,
-    event_facts,
-    Kind,
-    read_corrections,
-    solves_of,
-)
+from ballscrew_monitor.node.state_records import Corrections, entry_of, event_facts, Kind
 import pytest
 
 SOLVE = types.SimpleNamespace(
@@ -34,16 +26,16 @@ def test_an_entry_says_what_when_where_and_why():
 
 
 def test_corrections_come_back_bit_for_bit_and_say_their_units():
-    kept = corrections_of('x', 'abc', [SOLVE])
-    (solve,) = solves_of(read_corrections(kept.row()))
+    kept = Corrections.of('x', 'abc', [SOLVE])
+    (solve,) = Corrections.read(kept.row()).read_solves()
     assert (kept.axis, kept.surface) == ('x', 'abc')
     assert all(getattr(solve, name) == value for name, value in vars(SOLVE).items())
     (row,) = json.loads(kept.solves)
     assert set(row) == {'speed_rad_s', 'opposing_load_N', 'temperature_K', 'solved'}
-    assert solves_of(Corrections('x')) == []
+    assert Corrections('x').read_solves() == []
 
 
 @pytest.mark.parametrize('solves', ['', '[1', '3', '[{}]', '[{"speed_rad_s": "fast"}]'])
 def test_what_is_no_correction_is_refused(solves):
     with pytest.raises((ValueError, KeyError, TypeError)):
-        read_corrections({'axis': 'x', 'surface': 'abc', 'solves': solves})
+        Corrections.read({'axis': 'x', 'surface': 'abc', 'solves': solves})

@@ -13,14 +13,12 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
 
 
-def test_gaps_are_counted_and_the_first_message_has_none():
-    counter = LossCounter()
-    assert [counter.take(number) for number in (5, 6, 9, 10, 20)] == [0, 0, 2, 0, 9]
-
-
-def test_a_publisher_that_begins_anew_has_lost_nothing():
-    counter = LossCounter()
-    assert [counter.take(number) for number in (7, 8, 1, 2, 4)] == [0, 0, 0, 0, 1]
+@pytest.mark.parametrize(
+    ('numbers', 'losses'),
+    [((5, 6, 9, 10, 20), [0, 0, 2, 0, 9]), ((7, 8, 1, 2, 4), [0, 0, 0, 0, 1])],
+)
+def test_gaps_are_counted_but_none_before_the_first_message_of_a_publisher(numbers, losses):
+    assert list(map(LossCounter().take, numbers)) == losses
 
 
 def test_with_two_publishers_or_without_numbers_nothing_is_known():
