@@ -8,9 +8,7 @@ import math
 from typing import Any
 
 from ballscrew_monitor.core.judgement import Code, Finding, Severity
-from ballscrew_monitor.core.shelving import NOT_SHELVED, Shelving
-from ballscrew_monitor.core.state import Event
-from ballscrew_monitor.core.tally import Totals
+from ballscrew_monitor.core.state import Event, NOT_SHELVED, Shelving, TIMES, Totals
 
 RESTARTED = 'ended by a restart of the node'
 MOST_EVENTS = 2**32 - 1  # what a message holds
@@ -82,7 +80,6 @@ class AxisRecord:
 
 TYPES: dict[str, Any] = {field.name: field.type for field in dataclasses.fields(AxisRecord)}
 SUMS = ('angle_rad', 'energy_lost_J')
-TIMES = tuple(field.name for field in dataclasses.fields(Totals) if field.type is int)
 
 
 def read_record(row: Mapping[str, Any]) -> AxisRecord:
@@ -115,7 +112,7 @@ def record_of(axis: str, memory: Memory) -> AxisRecord:
     totals, event, cause = memory.totals, memory.event, memory.event.cause
     return AxisRecord(
         axis=axis,
-        **{f'{name}_ns': getattr(totals, name) for name in TIMES},
+        **{f'{name}_ns': getattr(totals, name) for name in (*TIMES, 'since')},
         angle_rad=float(totals.angle),
         energy_lost_J=float(totals.energy_lost),
         event=event.number,
@@ -144,7 +141,7 @@ def memory_of(record: AxisRecord) -> Memory:
     )
     return Memory(
         totals=Totals(
-            **{name: getattr(record, f'{name}_ns') for name in TIMES},
+            **{name: getattr(record, f'{name}_ns') for name in (*TIMES, 'since')},
             angle=record.angle_rad,
             energy_lost=record.energy_lost_J,
         ),

@@ -12,16 +12,19 @@ import math
 
 from ballscrew_monitor.core.advice import interpreted, Nearest
 from ballscrew_monitor.core.estimate import MachinePoint, PointSource, PointValidity
-from ballscrew_monitor.core.input_status import InputStatus
-from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, Why
+from ballscrew_monitor.core.inputs import InputSample, InputStatus, Refusal, Source, Why
 from ballscrew_monitor.core.judgement import Level
 from ballscrew_monitor.core.memory import Memory as Kept
 from ballscrew_monitor.core.memory import NOTHING as NOTHING_KEPT
-from ballscrew_monitor.core.shelving import NOT_SHELVED, Shelving
-from ballscrew_monitor.core.state import Event, MonitorSettings, State
-from ballscrew_monitor.core.tally import Totals
+from ballscrew_monitor.core.state import (
+    Event,
+    MonitorSettings,
+    NOT_SHELVED,
+    Shelving,
+    State,
+    Totals,
+)
 from ballscrew_monitor.judge import views
-from ballscrew_monitor.judge.derived_load import Derived
 from ballscrew_monitor.judge.point import set_answer, set_point
 from ballscrew_monitor.judge.records import Event as EventRecord
 from ballscrew_monitor.judge.records import Memory, Row, Settings, TICK
@@ -73,7 +76,6 @@ class Monitor:
         self.words = InputWords()
         self.nearest: Nearest = interpreted
         self._event = EventRecord()
-        self._derived = Derived()
         self._row = Row()
         self._told = Event()
         self.take_up(memory)
@@ -108,16 +110,8 @@ class Monitor:
 
     def _step(self) -> State | None:
         number = self.memory.event_number
-        found = step(
-            self._tables,
-            self.numbers,
-            self.memory,
-            self.speeds,
-            self.positions,
-            self._derived,
-            self._event,
-            self._row,
-        )
+        slopes = self.speeds, self.positions
+        found = step(self._tables, self.numbers, self.memory, *slopes, self._event, self._row)
         if self.memory.event_number != number:
             self.ending = ''
         if found != STATE:
@@ -224,8 +218,8 @@ class Monitor:
         """Return the operating point at `now` [ns], or in a sentence why it is not known."""
         row = Row(now=within(now))
         memory = dataclasses.replace(self.memory)
-        set_point(self._tables, self.numbers, memory, self.speeds, self._derived, row)
-        set_answer(self._tables, self.numbers, self._derived, row)
+        set_point(self._tables, self.numbers, memory, self.speeds, row)
+        set_answer(self._tables, self.numbers, row)
         point = views.point_of(row)
         reason = views.reason_of(row, point, self.surface)
         if math.isnan(row.axial_load) or row.validity in (

@@ -18,10 +18,11 @@ from ballscrew_monitor.core.estimate import (
     PointSource,
     PointValidity,
 )
-from ballscrew_monitor.core.input_status import InputState, InputStatus
 from ballscrew_monitor.core.inputs import (
     hole_text,
     implausible_text,
+    InputState,
+    InputStatus,
     jump_text,
     Source,
     StampSource,
@@ -38,8 +39,7 @@ from ballscrew_monitor.core.judgement import (
     violation,
     Zone,
 )
-from ballscrew_monitor.core.state import Event
-from ballscrew_monitor.core.tally import Extremes, Totals, WindowStatistics
+from ballscrew_monitor.core.state import Event, Extremes, Totals, WindowStatistics
 from ballscrew_monitor.judge import derived_load
 from ballscrew_monitor.judge.inputs import is_fresh, is_lagging, least_lag, SLOW_GAPS
 from ballscrew_monitor.judge.records import (

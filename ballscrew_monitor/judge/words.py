@@ -6,8 +6,7 @@ import dataclasses
 from typing import Any
 
 from ballscrew_monitor.core.fields import OtherJoints
-from ballscrew_monitor.core.input_status import InputStatus
-from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, Why
+from ballscrew_monitor.core.inputs import InputSample, InputStatus, Refusal, Source, Why
 from ballscrew_monitor.judge.records import Event, NOT_KNOWN, REFUSAL, SAMPLE
 from ballscrew_monitor.judge.views import input_status_of
 

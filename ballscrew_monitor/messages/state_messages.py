@@ -11,7 +11,8 @@ anything else as garbage when their checks are off.
 import math
 from typing import Any
 
-from ballscrew_monitor.core import judgement, tally
+from ballscrew_monitor.core import judgement
+from ballscrew_monitor.core import state as states
 from ballscrew_monitor.core.advice import Advice
 from ballscrew_monitor.core.conversions import (
     celsius,
@@ -22,9 +23,9 @@ from ballscrew_monitor.core.conversions import (
     seconds,
 )
 from ballscrew_monitor.core.estimate import MachinePoint, PointEstimate
-from ballscrew_monitor.core.input_status import InputStatus
+from ballscrew_monitor.core.inputs import InputStatus
 from ballscrew_monitor.core.judgement import Limits
-from ballscrew_monitor.core.state import Event, State
+from ballscrew_monitor.core.state import Event, State, TIMES
 from ballscrew_monitor.judge.views import SOURCES
 from ballscrew_msgs.msg import (
     BallScrewState,
@@ -42,21 +43,12 @@ from surrogate.surface import Surface
 TIERS = {'closed_form': PointResult.TIER_CLOSED_FORM, 'full': PointResult.TIER_FULL}
 NAN = math.nan
 NO_ADVICE = Advice()
-# The numbers of a surface that a PointResult repeats under the same name.
-NUMBERS = (
-    'friction_torque',
-    'driving_torque',
-    'asperity_share',
-    'film_ratio',
-    'central_film',
-    'minimum_film',
-    'friction_coefficient',
-    'max_pressure',
-    'efficiency_error',
-    'rcs_error',
-    'efficiency_std',
-    'rcs_std',
+NUMBERS = tuple(
+    name
+    for name, kind in PointResult.get_fields_and_field_types().items()
+    if kind == 'double' and name not in ('efficiency', 'rcs')
 )
+"""The numbers of a surface that a PointResult repeats under the same name."""
 
 
 def fill_time(message: Time, stamp: int) -> None:
@@ -130,7 +122,7 @@ def finding_message(finding: judgement.Finding, advice: Advice = NO_ADVICE) -> F
     )
 
 
-def fill_window(message: WindowStatistics, window: tally.WindowStatistics) -> None:
+def fill_window(message: WindowStatistics, window: states.WindowStatistics) -> None:
     """Fill in the statistics of a window."""
     message.count = window.count
     for name in ('speed', 'axial_load', 'efficiency', 'rcs', 'film_ratio'):
@@ -155,17 +147,9 @@ def fill_input(message: InputHealth, status: InputStatus) -> None:
     message.refusal = status.refusal
 
 
-def fill_totals(message: Any, totals: tally.Totals) -> None:
+def fill_totals(message: Any, totals: states.Totals) -> None:
     """Fill in the totals."""
-    for name in (
-        'running_time',
-        'unjudged_time',
-        'boundary_time',
-        'mixed_time',
-        'hydrodynamic_time',
-        'optimal_time',
-        'outside_time',
-    ):
+    for name in TIMES:
         setattr(message, name, seconds(getattr(totals, name)))
     message.revolutions = float(totals.revolutions)
     message.energy_lost = float(totals.energy_lost)

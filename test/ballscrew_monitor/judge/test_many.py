@@ -13,7 +13,6 @@ from ballscrew_monitor.core.inputs import Source, Why
 from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.core.state import LoadDerivation, MonitorSettings, PositionSettings
 from ballscrew_monitor.judge import many
-from ballscrew_monitor.judge.derived_load import Derived
 from ballscrew_monitor.judge.many import compiled_nearest, EVENT, ManyJudge, MEMORY, ROW
 from ballscrew_monitor.judge.monitor import Monitor
 from ballscrew_monitor.judge.records import Event, Memory, REFUSAL, Row, SAMPLE, TICK
@@ -79,7 +78,7 @@ def assert_same(one, other, names, place):
 
 def interpreted(monitor, events):
     """Return rows and the memory after each row of a state, and let the monitor remember."""
-    rows, memories, derived = [], [], Derived()
+    rows, memories = [], []
     for event in events:
         row = Row()
         found = step(
@@ -88,7 +87,6 @@ def interpreted(monitor, events):
             monitor.memory,
             monitor.speeds,
             monitor.positions,
-            derived,
             from_array(Event, event),
             row,
         )

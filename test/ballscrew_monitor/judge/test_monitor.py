@@ -9,9 +9,7 @@ from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.core.judgement import Code, Level, Zone
 from ballscrew_monitor.core.memory import Memory
-from ballscrew_monitor.core.shelving import NOT_SHELVED, Shelving
-from ballscrew_monitor.core.state import Event
-from ballscrew_monitor.core.tally import Totals
+from ballscrew_monitor.core.state import Event, NOT_SHELVED, Shelving, Totals
 from ballscrew_monitor.judge.monitor import Monitor
 import pytest
 

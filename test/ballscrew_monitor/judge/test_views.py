@@ -8,8 +8,7 @@ from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.estimate import PointValidity
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.core.judgement import Code, Gate, Reason, Severity, Zone
-from ballscrew_monitor.core.state import Event
-from ballscrew_monitor.core.tally import Totals
+from ballscrew_monitor.core.state import Event, Totals
 from ballscrew_monitor.judge import derived_load, views
 from ballscrew_monitor.judge.records import Memory, Row
 from ballscrew_monitor.judge.zone import set_reason, set_zone, shut_gates

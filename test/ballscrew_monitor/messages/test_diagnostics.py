@@ -11,8 +11,7 @@ from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, Why
 from ballscrew_monitor.core.judgement import Level
 from ballscrew_monitor.core.links import Link
-from ballscrew_monitor.core.shelving import shelve
-from ballscrew_monitor.core.state import Event, LoadDerivation
+from ballscrew_monitor.core.state import Event, LoadDerivation, shelve
 from ballscrew_monitor.messages import diagnostics, reasons
 from ballscrew_monitor.messages.diagnostics import ERROR, OK, STALE, WARN
 from ballscrew_monitor.messages.state_messages import plain_values
@@ -54,16 +53,12 @@ LOAD, SPEED = sample(Source.LOAD, -1000.0), sample(Source.SPEED, 10.0)
 HEAVY, STILL = sample(Source.LOAD, 1e5), sample(Source.SPEED, 0.1)
 
 
-def test_a_status_begins_as_an_error():
-    for status in diagnostics.blank('node', 'x'):
-        assert (status.level, status.message) == (ERROR, 'no message was set')
-
-
 def test_names():
-    assert [status.name for status in diagnostics.blank('ballscrew_monitor', 'x')] == [
-        'ballscrew_monitor: x: Lubrication',
-        'ballscrew_monitor: x: Inputs',
-        'ballscrew_monitor: x: Surface',
+    """Each status begins as an error that says that nothing was set."""
+    made = diagnostics.failed('ballscrew_monitor', 'x', diagnostics.NOT_SET)
+    assert [(status.name, status.level, status.message) for status in made] == [
+        (f'ballscrew_monitor: x: {part}', ERROR, 'no message was set')
+        for part in ('Lubrication', 'Inputs', 'Surface')
     ]
 
 
@@ -79,12 +74,6 @@ def test_names_and_hardware_of_two_machines_and_two_axes_differ(core):
     assert made[0].hardware_id == 'mill/x: constant'
     assert len({status.hardware_id for status in made}) == 4
     assert diagnostics.failed('/mill/monitor', 'x', 'why')[0].name == made[0].name
-
-
-def test_a_failure_is_an_error_everywhere():
-    assert {(status.level, status.message) for status in diagnostics.failed('n', 'x', 'why')} == {
-        (ERROR, 'why')
-    }
 
 
 def test_all_is_well(core):

@@ -12,8 +12,7 @@ from ballscrew_monitor.core.conversions import (
     temperature_scaling,
     TEMPERATURE_UNITS,
 )
-from ballscrew_monitor.core.input_status import InputState, InputStatus
-from ballscrew_monitor.core.inputs import Source, StampSource
+from ballscrew_monitor.core.inputs import InputState, InputStatus, Source, StampSource
 from ballscrew_monitor.core.links import Link, Publisher
 from ballscrew_monitor.messages.doctor import findings, Heard, InputFacts, near_topic, Surroundings
 import pytest

@@ -5,8 +5,7 @@
 import math
 
 from ballscrew_monitor.core.fields import OtherJoints
-from ballscrew_monitor.core.input_status import InputState, InputStatus
-from ballscrew_monitor.core.inputs import Source, StampSource, Why
+from ballscrew_monitor.core.inputs import InputState, InputStatus, Source, StampSource, Why
 from ballscrew_monitor.core.links import Link
 from ballscrew_monitor.messages.reasons import (
     enough_timeout,

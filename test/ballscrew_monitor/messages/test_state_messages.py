@@ -5,11 +5,9 @@
 import math
 
 from ballscrew_monitor.core.conversions import Direction, SECOND
-from ballscrew_monitor.core.estimate import estimate
 from ballscrew_monitor.core.inputs import InputSample, Source
 from ballscrew_monitor.core.state import Event
 from ballscrew_monitor.messages.state_messages import (
-    fill_result,
     NUMBERS,
     out_of_zone_message,
     read_point,
@@ -96,15 +94,6 @@ def test_a_used_message_keeps_nothing_of_the_state_before(core):
     numbers = [getattr(fresh.result, name) for name in ('efficiency', 'rcs', *NUMBERS)]
     assert all(math.isnan(number) for number in numbers)
     assert 'above the surface' in fresh.result.reason
-
-
-def test_every_number_of_a_result_is_written(core):
-    written = PointResult()
-    fill_result(written, estimate(core.point(), core.surface(), rcs_limit=0.25), 1)
-    names = {
-        name for name, kind in PointResult.get_fields_and_field_types().items() if kind == 'double'
-    }
-    assert names == {'efficiency', 'rcs', *NUMBERS}
 
 
 def test_an_event_as_a_message(core):
