@@ -13,16 +13,9 @@ import enum
 import math
 from typing import Any, TypeVar
 
+from ballscrew_monitor.core import fields
 from ballscrew_monitor.core.conversions import Scaling, SECOND, seconds
-from ballscrew_monitor.core.fields import (
-    compile_field,
-    FieldReader,
-    message_class,
-    MessageClass,
-    OtherJoints,
-    stamp_of,
-    TooShort,
-)
+from ballscrew_monitor.core.fields import FieldReader, MessageClass, OtherJoints, TooShort
 
 Axis = TypeVar('Axis')
 UNSTATED = -1
@@ -186,7 +179,7 @@ class Input:
             )
         if isinstance(value, TooShort):
             return self._refuse(Why.TOO_SHORT, short_text(value), now, lost)
-        stamp = stamp_of(message) if self.stamped else 0
+        stamp = fields.stamp_of(message) if self.stamped else 0
         if stamp < 0:
             return self._refuse(Why.NEGATIVE, NEGATIVE, now, lost)
         if now and stamp - now > max_future:
@@ -238,16 +231,16 @@ def make_input(
     source: Source, *, topic: str, type_name: str, field: str, scaling: Scaling
 ) -> Input:
     """Return a checked input; raises InputError with the reason when it cannot work."""
-    message_type = message_class(type_name)
-    fields = message_type.get_fields_and_field_types()
+    message_type = fields.message_class(type_name)
+    known = message_type.get_fields_and_field_types()
     return Input(
         source=source,
         topic=topic,
         type_name=type_name,
         message_type=message_type,
-        read_field=compile_field(field, message_type),
+        read_field=fields.compile_field(field, message_type),
         scaling=scaling,
-        stamped=fields.get('header') == 'std_msgs/Header',
+        stamped=known.get('header') == 'std_msgs/Header',
     )
 
 

@@ -129,6 +129,9 @@ class WindowStatistics:
     film_ratio: Extremes
 
 
+WINDOW = ('speed', 'axial_load', 'efficiency', 'rcs', 'film_ratio')
+
+
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Totals:
     """

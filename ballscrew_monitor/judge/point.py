@@ -12,10 +12,11 @@ import math
 from typing import Any
 
 from ballscrew_monitor.core.conversions import Direction, Nut
-from ballscrew_monitor.core.estimate import ContactState, DOMINANT_RCS, PointSource
+from ballscrew_monitor.core.estimate import ContactState, DOMINANT_RCS
 from ballscrew_monitor.judge.derived_load import derive_load, no_load, NOT_FRESH, STANDSTILL
 from ballscrew_monitor.judge.inputs import (
     DEFAULT,
+    DERIVED,
     HELD,
     LOAD,
     MEASURED,
@@ -30,21 +31,11 @@ from ballscrew_monitor.judge.slopes import slope_change, slope_of
 from ballscrew_monitor.judge.zone import NO_INPUT, VALID
 from surrogate.surface import FILM_RATIO_LIMITS, leave, look_up, Regime
 
-DERIVED = int(PointSource.DERIVED)
-NO_DIRECTION, POSITIVE, NEGATIVE = (
-    int(Direction.UNKNOWN),
-    int(Direction.POSITIVE),
-    int(Direction.NEGATIVE),
-)
-POSITIVE_NUT, NEGATIVE_NUT = int(Nut.POSITIVE), int(Nut.NEGATIVE)
-NO_REGIME, BOUNDARY = int(Regime.UNKNOWN), int(Regime.BOUNDARY)
-MIXED, HYDRODYNAMIC = int(Regime.MIXED), int(Regime.HYDRODYNAMIC)
+NO_DIRECTION, POSITIVE, NEGATIVE = map(int, Direction)
+NO_NUT, POSITIVE_NUT, NEGATIVE_NUT = map(int, Nut)
+NO_REGIME, BOUNDARY, MIXED, HYDRODYNAMIC = map(int, Regime)
 MIXED_FROM, HYDRODYNAMIC_FROM = FILM_RATIO_LIMITS
-NO_CONTACT, PARTIAL, DOMINANT = (
-    int(ContactState.NONE),
-    int(ContactState.PARTIAL),
-    int(ContactState.DOMINANT),
-)
+NO_STATE, NO_CONTACT, PARTIAL, DOMINANT = map(int, ContactState)
 
 
 def set_point(tables: Any, settings: Any, memory: Any, speeds: Any, row: Any) -> None:
@@ -135,8 +126,8 @@ def _is_complete(row: Any) -> bool:
 
 def _set_words(settings: Any, row: Any) -> None:
     """Set torque and nut in the machine frame, regime and contact state of a row."""
-    row.machine_torque, row.machine_nut = math.nan, 0
-    row.regime, row.contact_state = NO_REGIME, 0
+    row.machine_torque, row.machine_nut = math.nan, NO_NUT
+    row.regime, row.contact_state = NO_REGIME, NO_STATE
     if row.validity != VALID:
         return
     row.machine_torque = row.driving_torque

@@ -18,21 +18,15 @@ from ballscrew_monitor.judge.records import EVENT_BEGINS, EVENT_ENDS, LIGHT_LOAD
 
 HELD = int(PointSource.HELD)
 VALID, NO_INPUT = int(PointValidity.VALID), int(PointValidity.NO_INPUT)
-NO_ZONE, OPTIMAL, OUTSIDE = int(Zone.UNKNOWN), int(Zone.OPTIMAL), int(Zone.OUTSIDE)
-OK, WARN = int(Level.OK), int(Level.WARN)
+NO_ZONE, OPTIMAL, OUTSIDE = map(int, Zone)
+_, OK, WARN = map(int, Level)
 RCS_HIGH, EFFICIENCY_LOW = int(Code.RCS_HIGH), int(Code.EFFICIENCY_LOW)
 NO_SPEED, NO_LOAD = int(Reason.NO_SPEED), int(Reason.NO_LOAD)
 NO_TEMPERATURE, NO_TORQUE = int(Reason.NO_TEMPERATURE), int(Reason.NO_TORQUE)
 NO_INPUTS, NO_DERIVED_LOAD = int(Reason.NO_INPUTS), int(Reason.NO_DERIVED_LOAD)
 STANDS_STILL = int(Reason.STANDSTILL)
-BY_VALIDITY = (
-    int(Reason.NO_DIRECTION),
-    int(Reason.NO_NUMBER),
-    int(Reason.SPEED_BELOW_RANGE),
-    int(Reason.SPEED_ABOVE_RANGE),
-    int(Reason.LOAD_OUT_OF_RANGE),
-    int(Reason.TEMPERATURE_OUT_OF_RANGE),
-    int(Reason.MASKED),
+BY_VALIDITY = (int(Reason.NO_DIRECTION), int(Reason.NO_NUMBER)) + tuple(
+    int(Reason[validity.name]) for validity in PointValidity if validity.name in Reason.__members__
 )
 """The reason of a validity of the surface, where the screw moves and there is no zone."""
 ACTIVE, PENDING = 0, 1

@@ -11,21 +11,14 @@ anything else as garbage when their checks are off.
 import math
 from typing import Any
 
-from ballscrew_monitor.core import judgement
+from ballscrew_monitor.core import conversions, judgement
 from ballscrew_monitor.core import state as states
 from ballscrew_monitor.core.advice import Advice
-from ballscrew_monitor.core.conversions import (
-    celsius,
-    Direction,
-    direction_of,
-    kelvin,
-    SECOND,
-    seconds,
-)
+from ballscrew_monitor.core.conversions import celsius, Direction, SECOND, seconds
 from ballscrew_monitor.core.estimate import MachinePoint, PointEstimate
 from ballscrew_monitor.core.inputs import InputStatus
 from ballscrew_monitor.core.judgement import Limits
-from ballscrew_monitor.core.state import Event, State, TIMES
+from ballscrew_monitor.core.state import Event, State, TIMES, WINDOW
 from ballscrew_monitor.judge.views import SOURCES
 from ballscrew_msgs.msg import (
     BallScrewState,
@@ -78,7 +71,7 @@ def read_point(message: OperatingPoint, *, default_temperature: float) -> Machin
     A NaN temperature means `default_temperature` [K]; at zero speed the stated direction counts.
 
     """
-    direction = direction_of(message.speed)
+    direction = conversions.direction_of(message.speed)
     if message.speed == 0.0 and message.direction in tuple(Direction):
         direction = Direction(message.direction)
     missing = math.isnan(message.temperature)
@@ -86,7 +79,7 @@ def read_point(message: OperatingPoint, *, default_temperature: float) -> Machin
         speed=message.speed,
         axial_load=message.axial_load,
         direction=direction,
-        temperature=default_temperature if missing else kelvin(message.temperature),
+        temperature=default_temperature if missing else conversions.kelvin(message.temperature),
     )
 
 
@@ -125,7 +118,7 @@ def finding_message(finding: judgement.Finding, advice: Advice = NO_ADVICE) -> F
 def fill_window(message: WindowStatistics, window: states.WindowStatistics) -> None:
     """Fill in the statistics of a window."""
     message.count = window.count
-    for name in ('speed', 'axial_load', 'efficiency', 'rcs', 'film_ratio'):
+    for name in WINDOW:
         extremes = getattr(window, name)
         setattr(message, f'{name}_min', float(extremes.low))
         setattr(message, f'{name}_mean', float(extremes.mean))

@@ -8,14 +8,7 @@ from types import SimpleNamespace
 
 from ballscrew_monitor.core.conversions import direction_of, machine_torque, opposing_load
 from ballscrew_monitor.core.state import LoadDerivation
-from ballscrew_monitor.judge.derived_load import (
-    derive_load,
-    DERIVED_OK,
-    NO_ACCELERATION,
-    NO_NUMBER,
-    OUTSIDE,
-    TOO_MUCH_INERTIA,
-)
+from ballscrew_monitor.judge import derived_load
 from ballscrew_monitor.judge.records import Row, Settings
 from ballscrew_monitor.judge.views import derived_text
 from hypothesis import assume, given
@@ -76,7 +69,7 @@ def derived_number(surface, how, course):
     speed, acceleration, change, torque, temperature = course
     row = Row(speed=speed, motor_torque=torque, temperature=temperature)
     row.direction = int(direction_of(speed))
-    derive_load(surface.tables, how, row, acceleration, change)
+    derived_load.derive_load(surface.tables, how, row, acceleration, change)
     return row
 
 
@@ -269,20 +262,20 @@ def test_a_surface_without_answers(core):
 @pytest.mark.parametrize(
     ('course', 'code', 'validity'),
     [
-        ((60.0, 0.0, 0.0, 2.0, 313.15), DERIVED_OK, Validity.VALID),
-        ((-60.0, 10.0, 1.0, -2.0, 313.15), DERIVED_OK, Validity.VALID),
-        ((60.0, math.nan, 0.0, 2.0, 313.15), NO_ACCELERATION, Validity.UNKNOWN),
-        ((60.0, 1e4, 0.0, 2.0, 313.15), TOO_MUCH_INERTIA, Validity.UNKNOWN),
-        ((60.0, 0.0, 0.0, 50.0, 313.15), OUTSIDE, Validity.LOAD_OUT_OF_RANGE),
-        ((300.0, 0.0, 0.0, 2.0, 313.15), NO_NUMBER, Validity.SPEED_ABOVE_RANGE),
-        ((0.01, 0.0, 0.0, 2.0, 313.15), NO_NUMBER, Validity.SPEED_BELOW_RANGE),
-        ((60.0, 0.0, 0.0, 2.0, 200.0), NO_NUMBER, Validity.TEMPERATURE_OUT_OF_RANGE),
+        ((60.0, 0.0, 0.0, 2.0, 313.15), derived_load.DERIVED_OK, Validity.VALID),
+        ((-60.0, 10.0, 1.0, -2.0, 313.15), derived_load.DERIVED_OK, Validity.VALID),
+        ((60.0, math.nan, 0.0, 2.0, 313.15), derived_load.NO_ACCELERATION, Validity.UNKNOWN),
+        ((60.0, 1e4, 0.0, 2.0, 313.15), derived_load.TOO_MUCH_INERTIA, Validity.UNKNOWN),
+        ((60.0, 0.0, 0.0, 50.0, 313.15), derived_load.OUTSIDE, Validity.LOAD_OUT_OF_RANGE),
+        ((300.0, 0.0, 0.0, 2.0, 313.15), derived_load.NO_NUMBER, Validity.SPEED_ABOVE_RANGE),
+        ((0.01, 0.0, 0.0, 2.0, 313.15), derived_load.NO_NUMBER, Validity.SPEED_BELOW_RANGE),
+        ((60.0, 0.0, 0.0, 2.0, 200.0), derived_load.NO_NUMBER, Validity.TEMPERATURE_OUT_OF_RANGE),
     ],
 )
 def test_every_code(course, code, validity):
     found = derived_number(SURFACES[1], USUAL, course)
     assert (found.derived, found.validity) == (code, validity)
-    assert math.isfinite(found.axial_load) is (code == DERIVED_OK)
+    assert math.isfinite(found.axial_load) is (code == derived_load.DERIVED_OK)
 
 
 def test_a_hole_in_the_loads_is_masked():
@@ -294,4 +287,4 @@ def test_a_hole_in_the_loads_is_masked():
     middle = 0.5 * (torques[hole[0] - 1] + torques[hole[-1] + 1])
     assert known[0] < middle < known[-1]
     found = derived_number(surface, USUAL, (60.0, 0.0, 0.0, float(middle), 313.15))
-    assert (found.derived, found.validity) == (NO_NUMBER, Validity.MASKED)
+    assert (found.derived, found.validity) == (derived_load.NO_NUMBER, Validity.MASKED)

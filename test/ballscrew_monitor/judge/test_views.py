@@ -121,7 +121,7 @@ def test_an_instant_without_a_zone_says_why(core, changes, reason, text):
 def test_what_is_kept_over_a_restart_comes_back(core):
     memory, surface, limits = Memory(), core.surface(), core.limits()
     assert views.event_of(memory, surface, limits) == Event()
-    cause = views.violation(Code.RCS_HIGH, 0.5, 0.25)
+    cause = views.judgement.violation(Code.RCS_HIGH, 0.5, 0.25)
     event = Event(number=7, stamp=20, start=10, worst_value=0.5, cause=cause, ending='why')
     views.keep_event(memory, event)
     assert views.event_of(memory, surface, limits, 'why') == event  # of no known place: no advice

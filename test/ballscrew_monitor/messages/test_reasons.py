@@ -7,15 +7,8 @@ import math
 from ballscrew_monitor.core.fields import OtherJoints
 from ballscrew_monitor.core.inputs import InputState, InputStatus, Source, StampSource, Why
 from ballscrew_monitor.core.links import Link
-from ballscrew_monitor.messages.reasons import (
-    enough_timeout,
-    fault,
-    joint_reason,
-    MOST_TIMEOUT,
-    SHOWN_JOINTS,
-    Standing,
-    summary,
-)
+from ballscrew_monitor.messages import reasons
+from ballscrew_monitor.messages.reasons import Standing, summary
 import pytest
 
 MATCHED = Link(topic='/t', type_name='a/msg/B', matched=1)
@@ -87,18 +80,18 @@ def status(state, **changes):
     ],
 )
 def test_each_fault_has_its_sentence(state, changes, link, text):
-    assert fault(status(state, **changes), link, 'x.speed') == text
+    assert reasons.fault(status(state, **changes), link, 'x.speed') == text
 
 
 def test_messages_without_joints_are_read_by_index():
-    said = joint_reason(OtherJoints('velocity', 'x', ()), 'x.speed')
+    said = reasons.joint_reason(OtherJoints('velocity', 'x', ()), 'x.speed')
     assert said == 'the messages name no joints at all, set x.speed.field to velocity[0]'
 
 
 def test_of_many_joints_some_are_listed():
     names = tuple(f'joint_{letter}' for letter in 'abcdefghijkl')
-    said = joint_reason(OtherJoints('velocity', 'joint_l', names), 'x.speed')
-    assert f'{names[SHOWN_JOINTS - 1]}, ... and no joint' in said
+    said = reasons.joint_reason(OtherJoints('velocity', 'joint_l', names), 'x.speed')
+    assert f'{names[reasons.SHOWN_JOINTS - 1]}, ... and no joint' in said
     assert 'velocity[joint_l]' in said
 
 
@@ -107,8 +100,8 @@ def test_of_many_joints_some_are_listed():
     [(1.0, 2.0), (1.01, 5.0), (0.25, 0.5), (0.3, 1.0), (4.0, 10.0), (1e-3, 2e-3), (1e6, 3600.0)],
 )
 def test_a_timeout_that_would_do_is_round_and_at_least_twice_the_gap(gap, timeout):
-    assert enough_timeout(gap) == timeout
-    assert timeout >= min(2.0 * gap, MOST_TIMEOUT)
+    assert reasons.enough_timeout(gap) == timeout
+    assert timeout >= min(2.0 * gap, reasons.MOST_TIMEOUT)
 
 
 def test_the_worst_kind_of_fault_is_told_alone():
