@@ -10,9 +10,9 @@ from ballscrew_monitor.core.conversions import (
     celsius,
     Direction,
     machine_nut,
-    machine_torque,
     Nut,
     opposing_load,
+    signed,
 )
 from surrogate.surface import Found, Regime, regime_of, Surface
 
@@ -141,7 +141,7 @@ def estimate_from(point: MachinePoint, numbers: Found, *, rcs_limit: float) -> P
         numbers=numbers,
         rcs=numbers.rcs,
         efficiency=numbers.efficiency,
-        machine_torque=machine_torque(numbers.driving_torque, point.direction),
+        machine_torque=signed(numbers.driving_torque, point.direction),
         worst_nut=machine_nut(numbers.worst_nut, point.axial_load),
         regime=regime_of(numbers.film_ratio),
         contact_state=contact_state_of(numbers.rcs, limit=rcs_limit),

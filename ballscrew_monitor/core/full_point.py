@@ -25,7 +25,6 @@ from surrogate.surface import Found, HasOperatingPoint, Surface
 NAN = math.nan
 JUDGED = ('efficiency', 'rcs')
 """What the zone is judged by, and so what a surface is corrected for."""
-MODEL = 'full'
 TOLD = ('tier', 'inputs', 'law')
 """What the solver needs to know of a surface."""
 STAY = 30 * SECOND
@@ -98,7 +97,7 @@ def stated_error(surface: Found, name: str) -> float:
 
 def objection(full: Found, answer: Found | None, surface: Surface) -> str:
     """Return why a full solve may not correct a surface with this answer; empty if it may."""
-    if surface.tier != MODEL:
+    if surface.tier != 'full':
         return f'a surface of the {surface.tier.replace("_", "-")} tier is not corrected'
     if answer is None:
         return 'the surface has no answer at this point'

@@ -131,11 +131,11 @@ class InputStatus:
 
     source: Source
     state: InputState
-    stamp_source: StampSource
-    age: float
-    rate: float
-    received: int
-    dropped: int
+    stamp_source: StampSource = StampSource.UNKNOWN
+    age: float = math.nan
+    rate: float = math.nan
+    received: int = 0
+    dropped: int = 0
     slow: bool = False
     lag: float = math.nan
     lagging: bool = False
@@ -174,9 +174,8 @@ class Input:
         """
         value = self.read_field(message)
         if isinstance(value, OtherJoints):
-            return Refusal(
-                source=self.source, why=Why.OTHER_JOINTS, joints=value, arrival=now, lost=lost
-            )
+            refusal = self._refuse(Why.OTHER_JOINTS, '', now, lost)
+            return dataclasses.replace(refusal, joints=value)
         if isinstance(value, TooShort):
             return self._refuse(Why.TOO_SHORT, short_text(value), now, lost)
         stamp = fields.stamp_of(message) if self.stamped else 0

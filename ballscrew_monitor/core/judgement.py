@@ -135,15 +135,15 @@ class Limits:
         )
         _check('hysteresis', self.hysteresis, 0.0 <= self.hysteresis < 1.0, 'from 0 to below 1')
 
-    @property
-    def rcs_to_clear(self) -> float:
-        """Return the RCS [-] below which a warning may clear."""
-        return self.rcs * (1.0 - self.hysteresis)
 
-    @property
-    def efficiency_to_clear(self) -> float:
-        """Return the efficiency [-] from which a warning may clear."""
-        return self.efficiency + (1.0 - self.efficiency) * self.hysteresis
+def rcs_to_clear(limits: Limits) -> float:
+    """Return the RCS [-] below which a warning may clear, by limits or `Settings`."""
+    return limits.rcs * (1.0 - limits.hysteresis)
+
+
+def efficiency_to_clear(limits: Limits) -> float:
+    """Return the efficiency [-] from which a warning may clear, by limits or `Settings`."""
+    return limits.efficiency + (1.0 - limits.efficiency) * limits.hysteresis
 
 
 def _check(name: str, value: float, good: bool, allowed: str) -> None:

@@ -13,7 +13,14 @@ import math
 from typing import Any
 
 from ballscrew_monitor.core.estimate import PointSource, PointValidity
-from ballscrew_monitor.core.judgement import Code, Level, Reason, Zone
+from ballscrew_monitor.core.judgement import (
+    Code,
+    efficiency_to_clear,
+    Level,
+    rcs_to_clear,
+    Reason,
+    Zone,
+)
 from ballscrew_monitor.judge.records import EVENT_BEGINS, EVENT_ENDS, LIGHT_LOAD, STANDSTILL
 
 HELD = int(PointSource.HELD)
@@ -31,16 +38,6 @@ BY_VALIDITY = (int(Reason.NO_DIRECTION), int(Reason.NO_NUMBER)) + tuple(
 """The reason of a validity of the surface, where the screw moves and there is no zone."""
 ACTIVE, PENDING = 0, 1
 """Places of an excursion in `Memory`: active or the last, and one that may be raised."""
-
-
-def rcs_to_clear(settings: Any) -> float:
-    """Return the RCS [-] below which a warning may clear."""
-    return settings.rcs * (1.0 - settings.hysteresis)
-
-
-def efficiency_to_clear(settings: Any) -> float:
-    """Return the efficiency [-] from which a warning may clear."""
-    return settings.efficiency + (1.0 - settings.efficiency) * settings.hysteresis
 
 
 def shut_gates(settings: Any, memory: Any, row: Any) -> None:

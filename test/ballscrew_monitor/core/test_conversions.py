@@ -117,12 +117,12 @@ def test_unknown_units_are_refused(call, match):
 )
 def test_opposing_load_in_four_quadrants(force, direction, expected):
     assert conversions.opposing_load(force, direction) == expected
-    assert conversions.axial_load(expected, direction) == force
+    assert conversions.opposing_load(expected, direction) == force
 
 
 @given(force=finite, direction=st.sampled_from([POSITIVE, NEGATIVE]))
 def test_the_power_that_an_opposing_load_takes_has_the_same_sign_in_both_frames(force, direction):
-    motion = conversions.signed_speed(1.0, direction)
+    motion = conversions.signed(1.0, direction)
     assert conversions.opposing_load(force, direction) == -motion * force
 
 
@@ -132,8 +132,8 @@ def test_no_load_is_never_minus_zero(direction):
 
 
 def test_torque_along_the_motion_turns_with_it():
-    assert conversions.machine_torque(2.0, POSITIVE) == 2.0
-    assert conversions.machine_torque(2.0, NEGATIVE) == -2.0
+    assert conversions.signed(2.0, POSITIVE) == 2.0
+    assert conversions.signed(2.0, NEGATIVE) == -2.0
 
 
 @pytest.mark.parametrize(

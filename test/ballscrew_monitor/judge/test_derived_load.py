@@ -6,7 +6,7 @@ import dataclasses
 import math
 from types import SimpleNamespace
 
-from ballscrew_monitor.core.conversions import direction_of, machine_torque, opposing_load
+from ballscrew_monitor.core.conversions import direction_of, opposing_load, signed
 from ballscrew_monitor.core.state import LoadDerivation
 from ballscrew_monitor.judge import derived_load
 from ballscrew_monitor.judge.records import Row, Settings
@@ -90,7 +90,7 @@ def motor_torque(surface, speed, force, *, acceleration=0.0, temperature=313.15)
     point = surface.lookup(abs(speed), opposing_load(force, direction), temperature)
     if point.validity != Validity.VALID:
         return None
-    return machine_torque(point.driving_torque, direction) + INERTIA * acceleration
+    return signed(point.driving_torque, direction) + INERTIA * acceleration
 
 
 @given(either, SPEEDS, SIGNS, LOADS, SIGNS, KELVINS, st.floats(-100.0, 100.0))

@@ -5,7 +5,7 @@
 import math
 
 from ballscrew_monitor.core import conversions
-from ballscrew_monitor.core.inputs import InputState, InputStatus, Source, StampSource
+from ballscrew_monitor.core.inputs import InputState, InputStatus, Source
 from ballscrew_monitor.core.links import Link, Publisher
 from ballscrew_monitor.messages.doctor import findings, Heard, InputFacts, near_topic, Surroundings
 import pytest
@@ -47,15 +47,7 @@ def around(**changes):
 
 
 def heard(low=1.0, high=2.0, gap=0.01, **changes):
-    status = {
-        'source': Source.SPEED,
-        'state': InputState.OK,
-        'stamp_source': StampSource.HEADER,
-        'age': 0.0,
-        'rate': 100.0,
-        'received': 100,
-        'dropped': 0,
-    }
+    status = {'source': Source.SPEED, 'state': InputState.OK, 'received': 100}
     return Heard(status=InputStatus(**(status | changes)), low=low, high=high, longest_gap=gap)
 
 

@@ -5,7 +5,7 @@
 import math
 
 from ballscrew_monitor.core.fields import OtherJoints
-from ballscrew_monitor.core.inputs import InputState, InputStatus, Source, StampSource, Why
+from ballscrew_monitor.core.inputs import InputState, InputStatus, Source, Why
 from ballscrew_monitor.core.links import Link
 from ballscrew_monitor.messages import reasons
 from ballscrew_monitor.messages.reasons import Standing, summary
@@ -17,16 +17,7 @@ JOINTS = OtherJoints('velocity', 'x_axis', ('gripper', 'x_joint'))
 
 
 def status(state, **changes):
-    values = {
-        'source': Source.SPEED,
-        'state': state,
-        'stamp_source': StampSource.HEADER,
-        'age': 0.0,
-        'rate': 100.0,
-        'received': 1,
-        'dropped': 0,
-    }
-    return InputStatus(**(values | changes))
+    return InputStatus(**({'source': Source.SPEED, 'state': state} | changes))
 
 
 @pytest.mark.parametrize(
