@@ -20,10 +20,8 @@ from ballscrew_monitor.core.fields import FieldReader, MessageClass, OtherJoints
 Axis = TypeVar('Axis')
 UNSTATED = -1
 UNDECODED = 'the message does not decode: it is truncated, or of another definition of its type'
-YEAR = (
-    31_536_000 * SECOND
-)  # [ns] stamps that far from the clock are those of another kind of clock
-
+YEAR = 31_536_000 * SECOND
+"""Stamps that far from the clock are those of another kind of clock [ns]."""
 NEGATIVE = 'the stamp is negative: mend the clock of the source'
 
 

@@ -127,12 +127,8 @@ class Limits:
         for name in ('light_load', 'raise_delay', 'clear_delay'):
             value = getattr(self, name)
             _check(name, value, 0.0 <= value < math.inf, 'at least 0')
-        _check(
-            'standstill_speed',
-            self.standstill_speed,
-            0.0 < self.standstill_speed < math.inf,
-            'above 0',
-        )
+        slowest = self.standstill_speed
+        _check('standstill_speed', slowest, 0.0 < slowest < math.inf, 'above 0')
         _check('hysteresis', self.hysteresis, 0.0 <= self.hysteresis < 1.0, 'from 0 to below 1')
 
 

@@ -46,10 +46,8 @@ _NOT_JUDGED = {
     PointValidity.NO_INPUT: 'not judged: an input is missing',
     PointValidity.NO_SURFACE: 'not judged: no surface',
 }
-_OF_STANDSTILL = (
-    PointValidity.UNKNOWN,
-    PointValidity.SPEED_BELOW_RANGE,
-)  # nothing wrong with these there
+# Nothing is wrong with these at standstill.
+_OF_STANDSTILL = (PointValidity.UNKNOWN, PointValidity.SPEED_BELOW_RANGE)
 _CAUSES = {
     Code.RCS_HIGH: 'asperities carry too much',
     Code.EFFICIENCY_LOW: 'too much power is lost',

@@ -41,13 +41,17 @@ def test_the_nearer_of_two_borders_wins(core):
     )
 
 
-def test_no_speed_helps(core):
-    assert math.isnan(advise(core.point(), core.surface(rcs=1.0), core.limits()).target_speed)
-
-
-def test_a_speed_below_standstill_is_no_advice(core):
-    surface = core.surface(rcs=lambda speed, load: 1.0 if speed >= 0.5 else 0.0)
-    assert math.isnan(advise(core.point(), surface, core.limits()).target_speed)
+@pytest.mark.parametrize(
+    ('speed', 'rcs'),
+    [
+        (10.0, 1.0),  # no speed helps
+        (10.0, lambda speed, load: 1.0 if speed >= 0.5 else 0.0),  # one below standstill
+        (5.0, lambda speed, load: 1.0 if speed < 30.0 else 0.2),  # the limit is only met
+    ],
+)
+def test_a_speed_that_is_no_advice(core, speed, rcs):
+    found = advise(core.point(speed=speed), core.surface(rcs=rcs), core.limits())
+    assert math.isnan(found.target_speed)
 
 
 @pytest.mark.parametrize('sign', [1.0, -1.0])
@@ -114,8 +118,3 @@ def test_who_follows_the_advice_clears_the_warning(core, sign, name, sensitive):
         numbers = surface.lookup(abs(there.speed), opposing_load_of(there), there.temperature)
         assert numbers.rcs < rcs_to_clear(limits)
         assert numbers.efficiency >= efficiency_to_clear(limits)
-
-
-def test_what_only_meets_the_limit_is_no_advice(core):
-    surface = core.surface(rcs=lambda speed, load: 1.0 if speed < 30.0 else 0.2)
-    assert math.isnan(advise(core.point(speed=5.0), surface, core.limits()).target_speed)

@@ -99,21 +99,6 @@ def test_all_is_well(core):
     assert {status.hardware_id for status in made.values()} == {'x: constant'}
 
 
-@pytest.mark.parametrize(
-    ('events', 'level', 'message'),
-    [
-        ([SPEED], STALE, 'not judged: an input is missing'),
-        ([LOAD, STILL], OK, 'standstill, not judged for long enough yet'),
-        ([LOAD, SPEED, STILL], OK, 'standstill'),
-        ([LOAD, SPEED, HEAVY, STILL], WARN, 'not judged: load outside the surface'),
-        ([LOAD, sample(Source.SPEED, 1e3)], WARN, 'not judged: speed above the surface'),
-        ([HEAVY, SPEED], WARN, 'not judged: load outside the surface'),
-    ],
-)
-def test_lubrication_that_is_not_judged(core, events, level, message):
-    assert said(after(core, *events)['Lubrication']) == (level, message)
-
-
 def test_before_the_delay_is_over_nothing_is_ok(core):
     status = after(core, LOAD, SPEED, clear_delay=SECOND)['Lubrication']
     assert said(status) == (WARN, 'not judged for long enough yet')
@@ -126,37 +111,52 @@ def test_a_warning_names_its_cause_and_stands_while_inputs_are_lost(core, late):
 
 
 @pytest.mark.parametrize(
-    ('events', 'level', 'message'),
+    ('events', 'part', 'level', 'message'),
     [
+        ([SPEED], 'Lubrication', STALE, 'not judged: an input is missing'),
+        ([LOAD, STILL], 'Lubrication', OK, 'standstill, not judged for long enough yet'),
+        ([LOAD, SPEED, STILL], 'Lubrication', OK, 'standstill'),
+        ([LOAD, SPEED, HEAVY, STILL], 'Lubrication', WARN, 'not judged: load outside the surface'),
+        (
+            [LOAD, sample(Source.SPEED, 1e3)],
+            'Lubrication',
+            WARN,
+            'not judged: speed above the surface',
+        ),
+        ([HEAVY, SPEED], 'Lubrication', WARN, 'not judged: load outside the surface'),
         (
             [SPEED],
+            'Inputs',
             STALE,
             'load was never received: no publisher yet on /l: start it, or set x.load.topic',
         ),
         (
             [LOAD, Refusal(source=Source.LOAD, why=Why.FUTURE), SPEED],
+            'Inputs',
             STALE,
             'load is not usable: its stamps lie ahead of the clock, set the clocks alike or raise '
             'max_future',
         ),
         (
             [LOAD, Refusal(source=Source.LOAD, why=Why.OTHER_CLOCK), SPEED],
+            'Inputs',
             STALE,
             'load is not usable: its stamps are of the wall clock and the node runs on simulated '
             'time, stamp with /clock or unset use_sim_time',
         ),
-        ([LOAD, LATE], STALE, 'load is stale: the publisher on /l is gone'),
-        (EVERY_SECOND[:4], OK, 'all inputs arrive'),
+        ([LOAD, LATE], 'Inputs', STALE, 'load is stale: the publisher on /l is gone'),
+        (EVERY_SECOND[:4], 'Inputs', OK, 'all inputs arrive'),
         (
             EVERY_SECOND,
+            'Inputs',
             WARN,
             'speed comes less often than its timeout allows: set x.speed.timeout to 2.0 or more; '
             'load comes less often than its timeout allows: set x.load.timeout to 2.0 or more',
         ),
     ],
 )
-def test_inputs_name_what_is_wrong(core, events, level, message):
-    assert said(after(core, *events)['Inputs']) == (level, message)
+def test_what_is_not_judged_and_why(core, events, part, level, message):
+    assert said(after(core, *events)[part]) == (level, message)
 
 
 def test_while_the_clock_stands_nothing_is_well_and_a_warning_stays(core):
