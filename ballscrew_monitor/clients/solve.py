@@ -17,7 +17,7 @@ import threading
 from typing import Any
 
 from ballscrew_monitor.clients.surroundings import spun, started_node
-from ballscrew_monitor.core.conversions import axial_load, direction_of
+from ballscrew_monitor.core.conversions import direction_of, opposing_load
 from ballscrew_monitor.core.interrupts import interrupts, SIGNALLED
 from ballscrew_monitor.settings.middleware import notice
 from ballscrew_msgs.action import SolveOperatingPoint
@@ -86,7 +86,7 @@ def goal_of(question: Question) -> Any:
     opposing = math.copysign(1.0, question.speed) * question.load
     goal.point = OperatingPoint(
         speed=float(question.speed),
-        axial_load=float(axial_load(opposing, direction_of(question.speed))),
+        axial_load=float(opposing_load(opposing, direction_of(question.speed))),
         temperature=float(question.temperature),
     )
     return goal

@@ -13,8 +13,8 @@ from typing import Any
 from ballscrew_monitor.core.conversions import seconds
 from ballscrew_monitor.core.inputs import Input, InputSample
 from ballscrew_monitor.judge.inputs import accept, take_refusal
+from ballscrew_monitor.judge.monitor import fill, InputWords
 from ballscrew_monitor.judge.records import Event, Memory, Settings
-from ballscrew_monitor.judge.words import fill, InputWords
 from ballscrew_monitor.messages.doctor import Heard, Surroundings
 import rclpy
 from rclpy.clock import Clock

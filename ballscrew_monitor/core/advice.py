@@ -18,9 +18,9 @@ import functools
 import math
 from typing import Any, NamedTuple
 
-from ballscrew_monitor.core.conversions import axial_load, opposing_load, signed_speed
-from ballscrew_monitor.core.estimate import MachinePoint
-from ballscrew_monitor.core.judgement import Limits
+from ballscrew_monitor.core.conversions import opposing_load, signed
+from ballscrew_monitor.core.estimate import MachinePoint, opposing_load_of
+from ballscrew_monitor.core.judgement import efficiency_to_clear, Limits, rcs_to_clear
 from surrogate.surface import Found, look_up, Surface, Validity
 from surrogate.units import RPM
 
@@ -88,66 +88,49 @@ class Advisor:
 
     @functools.cached_property
     def advice(self) -> Advice:
-        """Return the nearest speed and load that clear."""
-        return advise(self.point, self.surface, self.limits, self.nearest)
+        """Return the nearest speed and load that clear at the point, its direction kept."""
+        return Advice(target_speed=self._speed(), target_load=self._load())
 
+    def _speed(self) -> float:
+        """Return the nearest screw speed [rad/s] that clears at this load; NaN for none."""
+        point = self.point
+        slowest, fastest = self.surface.speed_range
+        slowest = max(slowest, self.limits.standstill_speed)
+        if not slowest < fastest:
+            return NAN
+        ratio = fastest / slowest
+        grid = (slowest * ratio ** (i / (SCAN_POINTS - 1)) for i in range(SCAN_POINTS))
+        places = [min(speed, fastest) for speed in grid]
+        criterion = self._criterion(opposing_load_of(point), along_speed=True)
+        found = self.nearest(self.surface, criterion, abs(point.speed), places)
+        return signed(found, point.direction)
 
-def advise(
-    point: MachinePoint, surface: Surface, limits: Limits, nearest: Nearest = interpreted
-) -> Advice:
-    """Return the nearest speed and load that clear at `point`, its direction kept."""
-    return Advice(
-        target_speed=optimal_speed(point, surface, limits, nearest),
-        target_load=optimal_load(point, surface, limits, nearest),
-    )
+    def _load(self) -> float:
+        """
+        Return the nearest axial load [N] that clears at this speed; NaN if there is none.
 
+        A load under the light limit is advised only where the load is that light already: to
+        leave the efficiency unjudged is no improvement.
 
-def optimal_speed(
-    point: MachinePoint, surface: Surface, limits: Limits, nearest: Nearest = interpreted
-) -> float:
-    """Return the nearest screw speed [rad/s] that clears at this load; NaN if there is none."""
-    slowest, fastest = surface.speed_range
-    slowest = max(slowest, limits.standstill_speed)
-    if not slowest < fastest:
-        return NAN
-    ratio = fastest / slowest
-    grid = (slowest * ratio ** (i / (SCAN_POINTS - 1)) for i in range(SCAN_POINTS))
-    load = opposing_load(point.axial_load, point.direction)
-    criterion = _criterion(load, limits, point, along_speed=True)
-    places = [min(speed, fastest) for speed in grid]
-    return signed_speed(nearest(surface, criterion, abs(point.speed), places), point.direction)
+        """
+        point = self.point
+        low, high = self.surface.load_range
+        places = [low + (high - low) * i / (SCAN_POINTS - 1) for i in range(SCAN_POINTS)]
+        criterion = self._criterion(abs(point.speed), along_speed=False)
+        if not abs(point.axial_load) < self.limits.light_load:
+            criterion = criterion._replace(light_load=0.0)
+        found = self.nearest(self.surface, criterion, opposing_load_of(point), places)
+        return opposing_load(found, point.direction)  # its own inverse
 
-
-def optimal_load(
-    point: MachinePoint, surface: Surface, limits: Limits, nearest: Nearest = interpreted
-) -> float:
-    """
-    Return the nearest axial load [N] that clears at this speed; NaN if there is none.
-
-    A load under the light limit is advised only where the load is that light already: to
-    leave the efficiency unjudged is no improvement.
-
-    """
-    low, high = surface.load_range
-    places = [low + (high - low) * i / (SCAN_POINTS - 1) for i in range(SCAN_POINTS)]
-    criterion = _criterion(abs(point.speed), limits, point, along_speed=False)
-    if not abs(point.axial_load) < limits.light_load:
-        criterion = criterion._replace(light_load=0.0)
-    here = opposing_load(point.axial_load, point.direction)
-    return axial_load(nearest(surface, criterion, here, places), point.direction)
-
-
-def _criterion(
-    other: float, limits: Limits, point: MachinePoint, *, along_speed: bool
-) -> Criterion:
-    return Criterion(
-        along_speed=along_speed,
-        other=float(other),
-        temperature=float(point.temperature),
-        rcs=float(limits.rcs_to_clear),
-        efficiency=float(limits.efficiency_to_clear),
-        light_load=float(limits.light_load),
-    )
+    def _criterion(self, other: float, *, along_speed: bool) -> Criterion:
+        return Criterion(
+            along_speed=along_speed,
+            other=float(other),
+            temperature=float(self.point.temperature),
+            rcs=float(rcs_to_clear(self.limits)),
+            efficiency=float(efficiency_to_clear(self.limits)),
+            light_load=float(self.limits.light_load),
+        )
 
 
 def nearest(tables: Any, criterion: Criterion, here: float, places: Any, room: Any) -> float:

@@ -181,24 +181,14 @@ def direction_of(speed: float) -> Direction:
 
 
 def opposing_load(axial_load: float, direction: Direction) -> float:
-    """Return the load [N] that opposes a motion, of an axial load [N] in the machine frame."""
+    """Return the load [N] that opposes a motion of an axial load [N], and the other way round."""
     # Subtracted from zero: a zero load must not become -0.0.
     return 0.0 - axial_load if direction is Direction.POSITIVE else axial_load
 
 
-def axial_load(opposing: float, direction: Direction) -> float:
-    """Return the axial load [N], machine frame, of a load [N] that opposes a motion."""
-    return opposing_load(opposing, direction)  # its own inverse
-
-
-def signed_speed(amount: float, direction: Direction) -> float:
-    """Return the screw speed [rad/s], machine frame, of an amount [rad/s] and a direction."""
+def signed(amount: float, direction: Direction) -> float:
+    """Return a speed or torque, machine frame, of its amount along a motion."""
     return 0.0 - amount if direction is Direction.NEGATIVE else amount
-
-
-def machine_torque(driving_torque: float, direction: Direction) -> float:
-    """Return a torque along the motion [N m] in the machine frame [N m]."""
-    return signed_speed(driving_torque, direction)
 
 
 def machine_nut(nut: int, axial_load: float) -> Nut:

@@ -10,14 +10,13 @@ from ballscrew_monitor.core.conversions import (
     celsius,
     Direction,
     machine_nut,
-    machine_torque,
     Nut,
     opposing_load,
+    signed,
 )
 from surrogate.surface import Found, Regime, regime_of, Surface
 
 NAN = math.nan
-NO_DIRECTION = 'the direction of motion is unknown, the screw has not moved yet'
 DOMINANT_RCS = 0.5  # [-] from here on asperities carry the larger part of the load
 
 
@@ -124,14 +123,15 @@ def contact_state_of(rcs: float, *, limit: float) -> ContactState:
 def estimate(point: MachinePoint, surface: Surface, *, rcs_limit: float) -> PointEstimate:
     """Return what `surface` says of `point`; `rcs_limit` [-] names the contact state."""
     if not math.isfinite(point.speed + point.axial_load + point.temperature):
-        return PointEstimate(validity=PointValidity.NO_INPUT, reason=missing_text(point))
-    if point.direction is Direction.UNKNOWN:
-        return PointEstimate(validity=PointValidity.UNKNOWN, reason=NO_DIRECTION)
-    numbers = surface.lookup(abs(point.speed), opposing_load_of(point), point.temperature)
-    validity = PointValidity(int(numbers.validity))
-    if validity is not PointValidity.VALID:
-        return PointEstimate(validity=validity, reason=outside_text(validity, point, surface))
-    return estimate_from(point, numbers, rcs_limit=rcs_limit)
+        validity = PointValidity.NO_INPUT
+    elif point.direction is Direction.UNKNOWN:
+        validity = PointValidity.UNKNOWN
+    else:
+        numbers = surface.lookup(abs(point.speed), opposing_load_of(point), point.temperature)
+        validity = PointValidity(int(numbers.validity))
+        if validity is PointValidity.VALID:
+            return estimate_from(point, numbers, rcs_limit=rcs_limit)
+    return PointEstimate(validity=validity, reason=reason_text(validity, point, surface))
 
 
 def estimate_from(point: MachinePoint, numbers: Found, *, rcs_limit: float) -> PointEstimate:
@@ -141,26 +141,11 @@ def estimate_from(point: MachinePoint, numbers: Found, *, rcs_limit: float) -> P
         numbers=numbers,
         rcs=numbers.rcs,
         efficiency=numbers.efficiency,
-        machine_torque=machine_torque(numbers.driving_torque, point.direction),
+        machine_torque=signed(numbers.driving_torque, point.direction),
         worst_nut=machine_nut(numbers.worst_nut, point.axial_load),
         regime=regime_of(numbers.film_ratio),
         contact_state=contact_state_of(numbers.rcs, limit=rcs_limit),
     )
-
-
-def _inputs(point: MachinePoint) -> tuple[tuple[str, float, PointSource], ...]:
-    return (
-        ('speed', point.speed, point.speed_source),
-        _loading(point),
-        ('temperature', point.temperature, point.temperature_source),
-    )
-
-
-def _loading(point: MachinePoint) -> tuple[str, float, PointSource]:
-    """Return the input that the load rests on."""
-    if point.derived:
-        return 'torque', point.motor_torque, point.motor_torque_source
-    return 'load', point.axial_load, point.axial_load_source
 
 
 def opposing_load_of(point: MachinePoint) -> float:
@@ -168,11 +153,19 @@ def opposing_load_of(point: MachinePoint) -> float:
     return opposing_load(point.axial_load, point.direction)
 
 
-def missing_text(point: MachinePoint) -> str:
+def _missing_text(point: MachinePoint) -> str:
     """Return which inputs of a point are missing, as a sentence."""
+    load = 'load', point.axial_load, point.axial_load_source
+    if point.derived:  # what the load rests on
+        load = 'torque', point.motor_torque, point.motor_torque_source
+    inputs = (
+        ('speed', point.speed, point.speed_source),
+        load,
+        ('temperature', point.temperature, point.temperature_source),
+    )
     lost = [
         name
-        for name, value, source in _inputs(point)
+        for name, value, source in inputs
         if not math.isfinite(value) or source is PointSource.HELD
     ]
     if not lost:  # finite numbers with an infinite sum
@@ -180,8 +173,12 @@ def missing_text(point: MachinePoint) -> str:
     return f'no valid sample of {" and ".join(lost)}'
 
 
-def outside_text(validity: PointValidity, point: MachinePoint, surface: Surface) -> str:
-    """Return why a lookup gave nothing, as a sentence."""
+def reason_text(validity: PointValidity, point: MachinePoint, surface: Surface) -> str:
+    """Return why a point has no numbers of the surface, as a sentence."""
+    if validity is PointValidity.NO_INPUT:
+        return _missing_text(point)
+    if point.direction is Direction.UNKNOWN:
+        return 'the direction of motion is unknown, the screw has not moved yet'
     slowest, fastest = surface.speed_range
     if validity is PointValidity.SPEED_BELOW_RANGE:
         return f'speed {abs(point.speed):.4g} rad/s is below the surface, from {slowest:.4g} rad/s'

@@ -12,6 +12,7 @@ form is checked without a type, the rest when it is compiled for one.
 from collections.abc import Callable
 import dataclasses
 import importlib
+import operator
 import re
 from typing import Any, Protocol
 
@@ -153,15 +154,13 @@ def _compile_segment(
         )
     array = _ARRAY.fullmatch(fields[name])
     if key is None:
-        return [_attribute(name)], _resolve(fields[name])
+        return [operator.attrgetter(name)], _resolve(fields[name])
     if array is None:
         raise InputError(f'field {path!r}: {name!r} of {_name(kind)} is {fields[name]}, no array')
     element = _resolve(array['sequence'] or array['array'])
-    if key.isdecimal():
-        return [_item(name, int(key))], element
-    if fields.get('name') != 'sequence<string>':
+    if not key.isdecimal() and fields.get('name') != 'sequence<string>':
         raise InputError(f'field {path!r}: {_name(kind)} has no list of names to find {key!r} in')
-    return [_named_item(name, key)], element
+    return [_element(name, key)], element
 
 
 def _resolve(field_type: str) -> MessageClass | str:
@@ -176,32 +175,21 @@ def _name(kind: MessageClass | str) -> str:
     return kind if isinstance(kind, str) else kind.__name__
 
 
-def _attribute(name: str) -> ReadStep:
-    return lambda message: getattr(message, name)
+def _element(name: str, key: str) -> ReadStep:
+    """Return the step to an element of an array by its index, or by the joint named like it."""
+    index = int(key) if key.isdecimal() else None
 
-
-def _item(name: str, index: int) -> ReadStep:
     def step(message: Any) -> Any:
         array = getattr(message, name)
         try:
-            return array[index]
-        except IndexError:
-            raise _Absent(TooShort(name, str(index), len(array))) from None
-
-    return step
-
-
-def _named_item(name: str, key: str) -> ReadStep:
-    def step(message: Any) -> Any:
-        array = getattr(message, name)
-        try:
-            index = message.name.index(key)
+            place = message.name.index(key) if index is None else index
         except ValueError:
             raise _Absent(OtherJoints(name, key, tuple(message.name))) from None
         try:
-            return array[index]
+            return array[place]
         except IndexError:
-            raise _Absent(TooShort(name, key, len(array))) from None
+            said = key if index is None else str(index)
+            raise _Absent(TooShort(name, said, len(array))) from None
 
     return step
 

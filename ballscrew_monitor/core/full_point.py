@@ -5,7 +5,9 @@ A full solve beside what the surface says of the same point: how far apart, and 
 
 A result may correct a surface only where it is known better than the surface: its own standard
 error must not exceed the error that the surface states there, interpolation and law together. That
-of the RCS must be known, that of the efficiency never is.
+of the RCS must be known, that of the efficiency never is. Where an axis dwells and the surface
+cannot tell inside from outside is a place for a full solve. Time is an argument [ns], the stamps
+of the states.
 
 """
 
@@ -15,16 +17,22 @@ import math
 import types
 from typing import Any, Protocol
 
-from ballscrew_monitor.core.conversions import opposing_load
-from ballscrew_monitor.core.estimate import MachinePoint
+from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.core.estimate import MachinePoint, opposing_load_of, PointEstimate
+from ballscrew_monitor.core.judgement import Gate, Limits, Verdict
 from surrogate.surface import Found, HasOperatingPoint, Surface
 
 NAN = math.nan
 JUDGED = ('efficiency', 'rcs')
 """What the zone is judged by, and so what a surface is corrected for."""
-MODEL = 'full'
 TOLD = ('tier', 'inputs', 'law')
 """What the solver needs to know of a surface."""
+STAY = 30 * SECOND
+"""Shortest stay that counts as dwelling [ns]."""
+PAUSE = 600 * SECOND
+"""Shortest time between two solves of one axis [ns]."""
+SAME = 0.02
+"""Largest change of speed and load, over their amounts, that counts as staying [-]."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -64,7 +72,7 @@ def solved_at(point: MachinePoint) -> SolvedAt:
     """Return the place on the surface of a point in the machine frame."""
     return SolvedAt(
         speed=abs(point.speed),
-        opposing_load=opposing_load(point.axial_load, point.direction),
+        opposing_load=opposing_load_of(point),
         temperature=point.temperature,
     )
 
@@ -89,7 +97,7 @@ def stated_error(surface: Found, name: str) -> float:
 
 def objection(full: Found, answer: Found | None, surface: Surface) -> str:
     """Return why a full solve may not correct a surface with this answer; empty if it may."""
-    if surface.tier != MODEL:
+    if surface.tier != 'full':
         return f'a surface of the {surface.tier.replace("_", "-")} tier is not corrected'
     if answer is None:
         return 'the surface has no answer at this point'
@@ -121,3 +129,49 @@ def request_of(surface: Surface, point: MachinePoint) -> dict[str, Any]:
 def known(number: float) -> float:
     """Return a number, 0 for one that is not known."""
     return 0.0 if math.isnan(number) else number
+
+
+@dataclasses.dataclass(slots=True)
+class Dwell:
+    """Tells when a solve is worth its time."""
+
+    _since: int = 0
+    _point: MachinePoint | None = None
+    _asked: int | None = None
+
+    def update(
+        self,
+        stamp: int,
+        point: MachinePoint,
+        result: PointEstimate,
+        verdict: Verdict,
+        limits: Limits,
+    ) -> bool:
+        """Take a state; tell whether its point should be solved."""
+        if self._point is None or stamp < self._since or not _is_near(point, self._point):
+            self._since, self._point = stamp, point
+        rested = self._asked is None or not 0 <= stamp - self._asked < PAUSE
+        due = rested and stamp - self._since >= STAY and is_uncertain(result, verdict, limits)
+        if due:
+            self._asked = stamp
+        return due
+
+
+def is_uncertain(result: PointEstimate, verdict: Verdict, limits: Limits) -> bool:
+    """Tell whether the stated error of the surface, or its spread, reaches a limit of the zone."""
+    numbers = result.numbers
+    if numbers is None or numbers.corrected or Gate.STANDSTILL in verdict.gates:
+        return False
+    judged = JUDGED[1:] if Gate.LIGHT_LOAD in verdict.gates else JUDGED
+    return any(
+        abs(getattr(numbers, name) - getattr(limits, name))
+        <= max(stated_error(numbers, name), known(getattr(numbers, f'{name}_std')))
+        for name in judged
+    )
+
+
+def _is_near(point: MachinePoint, other: MachinePoint) -> bool:
+    return all(
+        abs(here - there) <= SAME * abs(there)
+        for here, there in ((point.speed, other.speed), (point.axial_load, other.axial_load))
+    )

@@ -1,6 +1,11 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""From messages to samples in the machine frame, or why a message gives none."""
+"""
+From messages to samples in the machine frame, or why a message gives none.
+
+The status of an input tells what was received, what is wrong with it, and how fresh it is.
+
+"""
 
 from collections.abc import Sequence
 import dataclasses
@@ -8,24 +13,15 @@ import enum
 import math
 from typing import Any, TypeVar
 
+from ballscrew_monitor.core import fields
 from ballscrew_monitor.core.conversions import Scaling, SECOND, seconds
-from ballscrew_monitor.core.fields import (
-    compile_field,
-    FieldReader,
-    message_class,
-    MessageClass,
-    OtherJoints,
-    stamp_of,
-    TooShort,
-)
+from ballscrew_monitor.core.fields import FieldReader, MessageClass, OtherJoints, TooShort
 
 Axis = TypeVar('Axis')
 UNSTATED = -1
 UNDECODED = 'the message does not decode: it is truncated, or of another definition of its type'
-YEAR = (
-    31_536_000 * SECOND
-)  # [ns] stamps that far from the clock are those of another kind of clock
-
+YEAR = 31_536_000 * SECOND
+"""Stamps that far from the clock are those of another kind of clock [ns]."""
 NEGATIVE = 'the stamp is negative: mend the clock of the source'
 
 
@@ -61,6 +57,18 @@ class Why(enum.IntEnum):
     NOT_DECODED = 6  # truncated, or of another definition of its type
     HOLE = 7  # no speed follows from a position and one long before it
     NEGATIVE = 8  # a stamp below zero, which no clock shows
+
+
+class InputState(enum.IntEnum):
+    """State of an input; the numbers of InputHealth.STATE_."""
+
+    UNKNOWN = 0
+    OK = 1
+    STALE = 2
+    MISSING = 3
+    BAD = 4
+    NOT_CONFIGURED = 5
+    DERIVED = 6  # from the other inputs
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -105,6 +113,41 @@ class Refusal:
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class InputStatus:
+    """
+    State of one input at one instant.
+
+    age since the arrival [s], rate [Hz] and lag [s], by how much the stamps lie behind the arrival
+    at least, are NaN while unknown; an input is `lagging` from a stated lag on; a `slow` one is
+    stale between its samples, and a timeout of `longest_gap` [s] would do, NaN for any other.
+    `lost` messages never arrived, None: not known; `losing` since not long ago.
+    `implausible` samples were refused, `glitching` not long ago. `refusal` is why
+    the last message was refused, while it is the last; `joints` are what messages about other
+    joints have named since the last sample.
+
+    """
+
+    source: Source
+    state: InputState
+    stamp_source: StampSource = StampSource.UNKNOWN
+    age: float = math.nan
+    rate: float = math.nan
+    received: int = 0
+    dropped: int = 0
+    slow: bool = False
+    lag: float = math.nan
+    lagging: bool = False
+    lost: int | None = 0
+    losing: bool = False
+    implausible: int = 0
+    glitching: bool = False
+    longest_gap: float = math.nan
+    why: Why | None = None
+    refusal: str = ''
+    joints: OtherJoints | None = None
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Input:
     """One configured input: where it comes from and how it is read."""
 
@@ -129,12 +172,11 @@ class Input:
         """
         value = self.read_field(message)
         if isinstance(value, OtherJoints):
-            return Refusal(
-                source=self.source, why=Why.OTHER_JOINTS, joints=value, arrival=now, lost=lost
-            )
+            refusal = self._refuse(Why.OTHER_JOINTS, '', now, lost)
+            return dataclasses.replace(refusal, joints=value)
         if isinstance(value, TooShort):
             return self._refuse(Why.TOO_SHORT, short_text(value), now, lost)
-        stamp = stamp_of(message) if self.stamped else 0
+        stamp = fields.stamp_of(message) if self.stamped else 0
         if stamp < 0:
             return self._refuse(Why.NEGATIVE, NEGATIVE, now, lost)
         if now and stamp - now > max_future:
@@ -186,16 +228,16 @@ def make_input(
     source: Source, *, topic: str, type_name: str, field: str, scaling: Scaling
 ) -> Input:
     """Return a checked input; raises InputError with the reason when it cannot work."""
-    message_type = message_class(type_name)
-    fields = message_type.get_fields_and_field_types()
+    message_type = fields.message_class(type_name)
+    known = message_type.get_fields_and_field_types()
     return Input(
         source=source,
         topic=topic,
         type_name=type_name,
         message_type=message_type,
-        read_field=compile_field(field, message_type),
+        read_field=fields.compile_field(field, message_type),
         scaling=scaling,
-        stamped=fields.get('header') == 'std_msgs/Header',
+        stamped=known.get('header') == 'std_msgs/Header',
     )
 
 

@@ -127,23 +127,19 @@ class Limits:
         for name in ('light_load', 'raise_delay', 'clear_delay'):
             value = getattr(self, name)
             _check(name, value, 0.0 <= value < math.inf, 'at least 0')
-        _check(
-            'standstill_speed',
-            self.standstill_speed,
-            0.0 < self.standstill_speed < math.inf,
-            'above 0',
-        )
+        slowest = self.standstill_speed
+        _check('standstill_speed', slowest, 0.0 < slowest < math.inf, 'above 0')
         _check('hysteresis', self.hysteresis, 0.0 <= self.hysteresis < 1.0, 'from 0 to below 1')
 
-    @property
-    def rcs_to_clear(self) -> float:
-        """Return the RCS [-] below which a warning may clear."""
-        return self.rcs * (1.0 - self.hysteresis)
 
-    @property
-    def efficiency_to_clear(self) -> float:
-        """Return the efficiency [-] from which a warning may clear."""
-        return self.efficiency + (1.0 - self.efficiency) * self.hysteresis
+def rcs_to_clear(limits: Limits) -> float:
+    """Return the RCS [-] below which a warning may clear, by limits or `Settings`."""
+    return limits.rcs * (1.0 - limits.hysteresis)
+
+
+def efficiency_to_clear(limits: Limits) -> float:
+    """Return the efficiency [-] from which a warning may clear, by limits or `Settings`."""
+    return limits.efficiency + (1.0 - limits.efficiency) * limits.hysteresis
 
 
 def _check(name: str, value: float, good: bool, allowed: str) -> None:

@@ -49,12 +49,10 @@ def link_reason(link: Link, parameter: str, *, seen: bool = False) -> str:
     if link.matched:
         return ''
     if not link.publishers:
-        return f'the publisher on {link.topic} is gone' if seen else _nobody(link, parameter)
+        if seen:
+            return f'the publisher on {link.topic} is gone'
+        return f'no publisher yet on {link.topic}: start it, or set {parameter}.topic'
     return _type_reason(link, parameter) or _qos_reason(link)
-
-
-def _nobody(link: Link, parameter: str) -> str:
-    return f'no publisher yet on {link.topic}: start it, or set {parameter}.topic'
 
 
 def types_of(link: Link) -> list[str]:

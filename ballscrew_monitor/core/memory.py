@@ -2,15 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Memory of an axis over restarts: sums, last event and shelving; also as a plain record."""
 
+import collections
 from collections.abc import Mapping
 import dataclasses
 import math
+import operator
 from typing import Any
 
 from ballscrew_monitor.core.judgement import Code, Finding, Severity
-from ballscrew_monitor.core.shelving import NOT_SHELVED, Shelving
-from ballscrew_monitor.core.state import Event
-from ballscrew_monitor.core.tally import Totals
+from ballscrew_monitor.core.state import Event, NOT_SHELVED, Shelving, TIMES, Totals
 
 RESTARTED = 'ended by a restart of the node'
 MOST_EVENTS = 2**32 - 1  # what a message holds
@@ -81,8 +81,18 @@ class AxisRecord:
 
 
 TYPES: dict[str, Any] = {field.name: field.type for field in dataclasses.fields(AxisRecord)}
-SUMS = ('angle_rad', 'energy_lost_J')
-TIMES = tuple(field.name for field in dataclasses.fields(Totals) if field.type is int)
+SUMS = {'angle_rad': 'totals.angle', 'energy_lost_J': 'totals.energy_lost'}
+PLACES = {
+    **{f'{name}_ns': f'totals.{name}' for name in (*TIMES, 'since')},
+    **SUMS,
+    'event': 'event.number',
+    **{name: f'event.{name}' for name in ('active', 'worst_value', 'ending')},
+    **{f'{name}_ns': f'event.{name}' for name in ('stamp', 'start')},
+    **{name: f'event.cause.{name}' for name in ('value', 'limit', 'unit', 'text')},
+    'until_ns': 'shelving.until',
+    'reason': 'shelving.reason',
+}
+"""Values of a record, and where a memory holds them as they are."""
 
 
 def read_record(row: Mapping[str, Any]) -> AxisRecord:
@@ -112,50 +122,27 @@ def _read(name: str, kind: Any, value: Any) -> Any:
 
 def record_of(axis: str, memory: Memory) -> AxisRecord:
     """Return the memory of an axis as a record."""
-    totals, event, cause = memory.totals, memory.event, memory.event.cause
+    cause = memory.event.cause
     return AxisRecord(
         axis=axis,
-        **{f'{name}_ns': getattr(totals, name) for name in TIMES},
-        angle_rad=float(totals.angle),
-        energy_lost_J=float(totals.energy_lost),
-        event=event.number,
-        active=event.active,
-        stamp_ns=event.stamp,
-        start_ns=event.start,
-        worst_value=float(event.worst_value),
         cause=cause.code.name,
         severity=cause.severity.name,
-        value=float(cause.value),
-        limit=float(cause.limit),
-        unit=cause.unit,
-        text=cause.text,
-        ending=event.ending,
-        until_ns=memory.shelving.until,
-        reason=memory.shelving.reason,
+        **{
+            name: TYPES[name](operator.attrgetter(place)(memory)) for name, place in PLACES.items()
+        },
     )
 
 
 def memory_of(record: AxisRecord) -> Memory:
     """Return the memory of a record."""
-    cause = Finding(
-        code=Code[record.cause],
-        severity=Severity[record.severity],
-        **{name: getattr(record, name) for name in ('value', 'limit', 'unit', 'text')},
-    )
+    parts: dict[str, dict[str, Any]] = collections.defaultdict(dict)
+    for name, place in PLACES.items():
+        part, _, field = place.rpartition('.')
+        parts[part][field] = getattr(record, name)
+    code, severity = Code[record.cause], Severity[record.severity]
+    cause = Finding(code=code, severity=severity, **parts['event.cause'])
     return Memory(
-        totals=Totals(
-            **{name: getattr(record, f'{name}_ns') for name in TIMES},
-            angle=record.angle_rad,
-            energy_lost=record.energy_lost_J,
-        ),
-        event=Event(
-            number=record.event,
-            active=record.active,
-            stamp=record.stamp_ns,
-            start=record.start_ns,
-            worst_value=record.worst_value,
-            cause=cause,
-            ending=record.ending,
-        ),
-        shelving=Shelving(until=record.until_ns, reason=record.reason),
+        totals=Totals(**parts['totals']),
+        event=Event(cause=cause, **parts['event']),
+        shelving=Shelving(**parts['shelving']),
     )

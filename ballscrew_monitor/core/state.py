@@ -1,20 +1,31 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What a monitor is told and what it says: settings, events and states."""
+"""
+What a monitor is told and what it says: settings, events, sums over time and states.
+
+A warning that is known can be shelved for a time, so that nobody is called for it again and again.
+Shelving changes what is said of a warning, never the judgement. Time is an argument [ns], the
+clock of the node.
+
+"""
 
 from collections.abc import Mapping
 import dataclasses
 import math
 
 from ballscrew_monitor.core.advice import Advice, Advisor
+from ballscrew_monitor.core.conversions import nanoseconds, SECOND, seconds
 from ballscrew_monitor.core.estimate import MachinePoint, PointEstimate
-from ballscrew_monitor.core.input_status import InputStatus
-from ballscrew_monitor.core.inputs import Source, YEAR
+from ballscrew_monitor.core.inputs import InputStatus, Source, YEAR
 from ballscrew_monitor.core.judgement import Code, Finding, Level, Limits, Severity, Verdict
-from ballscrew_monitor.core.shelving import NOT_SHELVED, Shelving
-from ballscrew_monitor.core.tally import Totals, WindowStatistics
+from surrogate.files import InputError
+from surrogate.units import TURN
 
 NAN = math.nan
+LONGEST_SHELVING = 86400 * SECOND
+"""No warning is shelved longer than this [ns], however the clock is set."""
+LONGEST_REASON = 500
+"""Characters of a reason; a state carries it."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -95,6 +106,101 @@ class Event:
     def advice(self) -> Advice:
         """Return where the warning would clear."""
         return Advice() if self.advisor is None else self.advisor.advice
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Extremes:
+    """Smallest, mean and largest value, NaN when there was none."""
+
+    low: float = NAN
+    mean: float = NAN
+    high: float = NAN
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class WindowStatistics:
+    """Extremes since the last publication: [rad/s], [N], [-], [-], [-]."""
+
+    count: int
+    speed: Extremes
+    axial_load: Extremes
+    efficiency: Extremes
+    rcs: Extremes
+    film_ratio: Extremes
+
+
+WINDOW = ('speed', 'axial_load', 'efficiency', 'rcs', 'film_ratio')
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Totals:
+    """
+    Sums since they were reset.
+
+    Times [ns] so that they add up exactly, angle [rad] of both directions counted up, energy_lost
+    [J]; `since` is the stamp [ns] of their first sample, 0 before it.
+
+    """
+
+    running_time: int = 0
+    unjudged_time: int = 0
+    boundary_time: int = 0
+    mixed_time: int = 0
+    hydrodynamic_time: int = 0
+    optimal_time: int = 0
+    outside_time: int = 0
+    angle: float = 0.0
+    energy_lost: float = 0.0
+    since: int = 0
+
+    @property
+    def revolutions(self) -> float:
+        """Return the revolutions of the screw [-]."""
+        return self.angle / TURN
+
+
+TIMES = tuple(name for name in Totals.__dataclass_fields__ if name.endswith('_time'))
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Shelving:
+    """Until when [ns] a warning is shelved, and why; `until` 0: it is not."""
+
+    until: int = 0
+    reason: str = ''
+
+    def at(self, now: int) -> 'Shelving':
+        """Return what of it holds at `now` [ns]: nothing if it is over or ends too far ahead."""
+        return self if 0 < self.until - now <= LONGEST_SHELVING else NOT_SHELVED
+
+    def is_over(self, now: int) -> bool:
+        """Tell whether it has ended at `now` [ns]; not by a clock that is behind or at zero."""
+        return 0 < self.until <= now
+
+
+NOT_SHELVED = Shelving()
+
+
+def shelve(now: int, duration: float, reason: str) -> Shelving:
+    """
+    Return the shelving from `now` [ns] for a `duration` [s], none for a duration of 0.
+
+    Raises InputError for a duration out of range and for a missing reason.
+
+    """
+    longest = seconds(LONGEST_SHELVING)
+    if not (math.isfinite(duration) and 0.0 <= duration <= longest):
+        raise InputError(f'duration is {duration:g} s, allowed is 0 to {longest:g} s')
+    if duration == 0.0:
+        return NOT_SHELVED
+    reason = ' '.join(reason.split())
+    if not reason or len(reason) > LONGEST_REASON:
+        raise InputError(
+            f'reason has {len(reason)} characters, it must say why in 1 to {LONGEST_REASON}'
+        )
+    if now == 0:
+        raise InputError('the clock of the node stands at zero, play /clock first')
+    return Shelving(until=now + nanoseconds(duration), reason=reason)
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)

@@ -12,20 +12,11 @@ the last crossing are refined. No clock. In the subset of Python that also compi
 
 """
 
-import dataclasses
 import math
 from typing import Any
 
-from ballscrew_monitor.judge.records import Settings
-from surrogate.surface import (
-    Found,
-    is_inside,
-    look_up,
-    look_up_rest,
-    scan,
-    scan_part,
-    SurfaceTables,
-)
+from ballscrew_monitor.judge.records import Row, Settings
+from surrogate.surface import is_inside, look_up, look_up_rest, scan, scan_part, SurfaceTables
 from surrogate.units import TURN
 
 NAN = math.nan
@@ -33,142 +24,104 @@ TOLERANCE = 1e-6  # [N] of the last step to a root, which converges faster than 
 MOST_STEPS = 60
 UNKNOWN, VALID, OUTSIDE_LOADS, NO_ANSWER = 0, 1, 4, 6  # validities of a surface
 POSITIVE, NEGATIVE = 1, 2  # directions
-NOT_DERIVED = 0
-DERIVED_OK = 1
-NO_ACCELERATION = 2
-TOO_MUCH_INERTIA = 3
-SEVERAL_LOADS = 4
-OUTSIDE = 5
-NO_NUMBER = 6
-STANDSTILL = 7
-NOT_FRESH = 8
+DERIVED_OK, NO_ACCELERATION, TOO_MUCH_INERTIA, SEVERAL_LOADS = 1, 2, 3, 4
+OUTSIDE, NO_NUMBER, STANDSTILL, NOT_FRESH = 5, 6, 7, 8
+"""Codes of `Row.derived`; 0 is a load that is an input."""
 
 
-@dataclasses.dataclass(slots=True)
-class Derived:
+def no_load(row: Row, validity: int, code: int, first: float, second: float, third: float) -> None:
     """
-    A load in the machine frame and the half width of the range in which it lies [N], or why not.
+    Say in a row why no load follows from its torque.
 
-    Both are NaN unless `validity` is VALID. `code` and three numbers make the sentence:
     TOO_MUCH_INERTIA has the torque of inertia and drag and the measured one [N m], and the largest
-    share [-], SEVERAL_LOADS
-    the lowest and highest of them, opposing [N], OUTSIDE the torque along the motion [N m] and the
-    lowest and highest opposing load of the surface [N]. With NO_NUMBER the validity says why.
+    share [-], SEVERAL_LOADS the lowest and highest of them, opposing [N], OUTSIDE the torque along
+    the motion [N m] and the lowest and highest opposing load of the surface [N]. With NO_NUMBER
+    the validity says why.
 
     """
-
-    validity: int = UNKNOWN
-    axial_load: float = NAN
-    uncertainty: float = NAN
-    code: int = NOT_DERIVED
-    first: float = NAN
-    second: float = NAN
-    third: float = NAN
-
-
-def no_load(
-    found: Derived, validity: int, code: int, first: float, second: float, third: float
-) -> None:
-    """Say why no load follows."""
-    found.validity, found.code = validity, code
-    found.axial_load = found.uncertainty = NAN
-    found.first, found.second, found.third = first, second, third
+    row.validity, row.derived = validity, code
+    row.axial_load = row.axial_load_uncertainty = NAN
+    row.derived_first, row.derived_second, row.derived_third = first, second, third
 
 
 def derive_load(
     tables: SurfaceTables,
     settings: Settings,
-    speed: float,
+    row: Row,
     acceleration: float,
     acceleration_change: float,
-    motor_torque: float,
-    temperature: float,
-    direction: int,
-    scratch: Found,
-    found: Derived,
 ) -> None:
     """
     Fill in the load that the torque of a moving screw states, or why it is not known.
 
-    All in the machine frame: speed [rad/s], acceleration and by how much it changes [rad/s2],
-    motor_torque [N m], temperature [K], direction by its number. Lookups go to `scratch`.
+    The row holds speed, motor torque, temperature and direction; acceleration and by how much it
+    changes [rad/s2] are in the machine frame too. The validity of the row is VALID with a load,
+    and says why not without. Lookups go to the row.
 
     """
     taken = settings.inertia * acceleration if settings.inertia != 0.0 else 0.0
     if math.isnan(taken):
-        no_load(found, UNKNOWN, NO_ACCELERATION, NAN, NAN, NAN)
+        no_load(row, UNKNOWN, NO_ACCELERATION, NAN, NAN, NAN)
         return
-    drag = tables.parasitic_torque + tables.parasitic_torque_rate * abs(speed)
-    parts, measured = abs(taken) + drag, abs(motor_torque)
+    drag = tables.parasitic_torque + tables.parasitic_torque_rate * abs(row.speed)
+    parts, measured = abs(taken) + drag, abs(row.motor_torque)
     if parts > settings.largest_share * measured:
-        no_load(found, UNKNOWN, TOO_MUCH_INERTIA, parts, measured, settings.largest_share)
+        no_load(row, UNKNOWN, TOO_MUCH_INERTIA, parts, measured, settings.largest_share)
         return
-    driving = motor_torque - taken
-    driving = 0.0 - driving if direction == NEGATIVE else driving
+    driving = row.motor_torque - taken
+    driving = 0.0 - driving if row.direction == NEGATIVE else driving
     margin = settings.torque_uncertainty + settings.parts_uncertainty * parts
     if settings.inertia != 0.0:
         margin += settings.inertia * acceleration_change
-    solve(tables, abs(speed), temperature, driving, margin, scratch, found)
-    load = found.axial_load
-    # Subtracted from zero: a zero load must not become -0.0.
-    found.axial_load = 0.0 - load if direction == POSITIVE else load
+    solve(tables, row, driving, margin)
+    if row.direction == POSITIVE:
+        # Subtracted from zero: a zero load must not become -0.0.
+        row.axial_load = 0.0 - row.axial_load
 
 
-def solve(
-    tables: SurfaceTables,
-    speed: float,
-    temperature: float,
-    driving: float,
-    margin: float,
-    scratch: Found,
-    found: Derived,
-) -> None:
+def solve(tables: SurfaceTables, row: Row, driving: float, margin: float) -> None:
     """
     Fill in the opposing load of a driving torque [N m] that is known within a margin [N m].
 
-    Speed |w| [rad/s], temperature [K]. Several loads are one answer where the margin cannot tell
-    them apart.
+    Several loads are one answer where the margin cannot tell them apart.
 
     """
-    loads, torques = tables.scan_loads, tables.scan_torques
-    begin, end = part_of(tables, speed, temperature, driving, margin)
-    first, last, gap = crossings(torques, driving, begin, end)
+    begin, end = part_of(tables, row, driving, margin)
+    first, last, gap = crossings(tables.scan_torques, driving, begin, end)
     if gap:
-        no_load(found, NO_ANSWER, NO_NUMBER, NAN, NAN, NAN)
+        no_load(row, NO_ANSWER, NO_NUMBER, NAN, NAN, NAN)
         return
     if first < 0:
-        nothing_crosses(tables, speed, temperature, driving, scratch, found)
+        nothing_crosses(tables, row, driving)
         return
-    low = root(tables, speed, temperature, driving, first, scratch)
-    high = low if last == first else root(tables, speed, temperature, driving, last, scratch)
-    per_newton = tables.lead / TURN  # [N m] of torque for a load without friction
-    if high - low > 2.0 * margin / per_newton:
-        no_load(found, UNKNOWN, SEVERAL_LOADS, low, high, NAN)
+    low = root(tables, row, driving, first)
+    high = low if last == first else root(tables, row, driving, last)
+    if high - low > 2.0 * margin / (tables.lead / TURN):
+        no_load(row, UNKNOWN, SEVERAL_LOADS, low, high, NAN)
         return
     load = 0.5 * (low + high)
-    if look_up(tables, speed, load, temperature, scratch) != VALID:
-        no_load(found, NO_ANSWER, NO_NUMBER, NAN, NAN, NAN)
+    if look_up(tables, abs(row.speed), load, row.temperature, row) != VALID:
+        no_load(row, NO_ANSWER, NO_NUMBER, NAN, NAN, NAN)
         return
-    look_up_rest(tables, load, scratch)
-    error = scratch.friction_torque_error
+    look_up_rest(tables, load, row)
+    error = row.friction_torque_error
     stated = error if math.isfinite(error) else 0.0
-    error = scratch.friction_torque_stderr
+    error = row.friction_torque_stderr
     margin += stated + (error if math.isfinite(error) else 0.0)
-    no_load(found, VALID, DERIVED_OK, NAN, NAN, NAN)
-    found.axial_load = load
-    found.uncertainty = reach_of(loads, torques, begin, end, driving, load, margin, per_newton)
+    no_load(row, VALID, DERIVED_OK, NAN, NAN, NAN)
+    row.axial_load = load
+    row.axial_load_uncertainty = reach_of(tables, begin, end, driving, load, margin)
 
 
-def part_of(
-    tables: SurfaceTables, speed: float, temperature: float, driving: float, margin: float
-) -> tuple[int, int]:
+def part_of(tables: SurfaceTables, row: Row, driving: float, margin: float) -> tuple[int, int]:
     """
     Scan the loads whose torque may be the driving one within the margin; return their places.
 
-    Speed |w| [rad/s], temperature [K], torques [N m]. A known torque stands at either side, unless
-    there is none: beyond it all torques are on the same side of the margin.
+    Torques [N m]. A known torque stands at either side, unless there is none: beyond it all
+    torques are on the same side of the margin.
 
     """
+    speed, temperature = abs(row.speed), row.temperature
     loads = tables.scan_loads
     if not is_inside(tables, speed, temperature):
         return 0, 0
@@ -210,46 +163,35 @@ def crossings(torques: Any, driving: float, begin: int, end: int) -> tuple[int, 
     return first, last, False
 
 
-def nothing_crosses(
-    tables: SurfaceTables,
-    speed: float,
-    temperature: float,
-    driving: float,
-    scratch: Found,
-    found: Derived,
-) -> None:
-    """Say why no load has a driving torque [N m] at a speed |w| [rad/s] and temperature [K]."""
+def nothing_crosses(tables: SurfaceTables, row: Row, driving: float) -> None:
+    """Say why no load has a driving torque [N m] at the speed and temperature of a row."""
+    speed, temperature = abs(row.speed), row.temperature
     loads, torques = tables.scan_loads, tables.scan_torques
     if scan(tables, speed, temperature) == 0:
-        validity = look_up(tables, speed, loads[len(loads) // 2], temperature, scratch)
+        validity = look_up(tables, speed, loads[len(loads) // 2], temperature, row)
         validity = NO_ANSWER if validity == VALID else validity
-        no_load(found, validity, NO_NUMBER, NAN, NAN, NAN)
+        no_load(row, validity, NO_NUMBER, NAN, NAN, NAN)
         return
     begin, end = 0, len(loads) - 1
     while math.isnan(torques[begin]):
         begin += 1
     while math.isnan(torques[end]):
         end -= 1
-    no_load(found, OUTSIDE_LOADS, OUTSIDE, driving, loads[begin], loads[end])
+    no_load(row, OUTSIDE_LOADS, OUTSIDE, driving, loads[begin], loads[end])
 
 
 def reach_of(
-    loads: Any,
-    torques: Any,
-    begin: int,
-    end: int,
-    driving: float,
-    load: float,
-    margin: float,
-    per_newton: float,
+    tables: SurfaceTables, begin: int, end: int, driving: float, load: float, margin: float
 ) -> float:
     """
     Return how far from `load` [N] a load may lie whose torque the margin cannot tell apart.
 
     Torques [N m] at the scanned loads, linear between them; beyond their ends friction counts as
-    constant, and a load takes the torque `per_newton` [m].
+    constant, and a load takes the torque that it would without friction.
 
     """
+    loads, torques = tables.scan_loads, tables.scan_torques
+    per_newton = tables.lead / TURN
     reach, before = 0.0, -1
     for i in range(begin, end):
         excess = torques[i] - driving
@@ -275,19 +217,12 @@ def reach_of(
     return reach
 
 
-def root(
-    tables: SurfaceTables,
-    speed: float,
-    temperature: float,
-    driving: float,
-    place: int,
-    scratch: Found,
-) -> float:
+def root(tables: SurfaceTables, row: Row, driving: float, place: int) -> float:
     """
     Return the load [N] of a driving torque [N m] above a place of the scan; NaN if it is lost.
 
-    Speed |w| [rad/s], temperature [K]. Anderson and Bjorck, BIT 13 (1973) 253: the secant, with
-    the rest of an end that stays made smaller.
+    Anderson and Bjorck, BIT 13 (1973) 253: the secant, with the rest of an end that stays made
+    smaller.
 
     """
     low, high = tables.scan_loads[place], tables.scan_loads[place + 1]
@@ -297,8 +232,8 @@ def root(
         return high
     for _ in range(MOST_STEPS):
         middle = (low * above - high * below) / (above - below)
-        look_up(tables, speed, middle, temperature, scratch)
-        here = scratch.driving_torque - driving
+        look_up(tables, abs(row.speed), middle, row.temperature, row)
+        here = row.driving_torque - driving
         if here == 0.0 or math.isnan(here):
             return middle if here == 0.0 else NAN
         if (here > 0.0) == (above > 0.0):

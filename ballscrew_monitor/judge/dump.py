@@ -35,8 +35,7 @@ CODES: dict[str, type[enum.IntEnum]] = {
 
 def dump(monitor: Monitor) -> dict[str, Any]:
     """Return all that a monitor remembers, as JSON takes it; every bit of a number is kept."""
-    parts = {'memory': monitor.memory, 'speeds': monitor.speeds}
-    parts['positions'] = monitor.positions
+    parts = {name: getattr(monitor, name) for name in ('memory', 'speeds', 'positions')}
     return {
         'version': MEMORY_VERSION,
         'records': {
@@ -69,10 +68,8 @@ def restored(dumped: Mapping[str, Any], surface: Surface, settings: MonitorSetti
     try:
         records = dumped['records']
         monitor.memory = _record(Memory, records['memory'])
-        if 'speeds' in records:
-            monitor.speeds = _record(SlopeRing, records['speeds'])
-        if 'positions' in records:
-            monitor.positions = _record(SlopeRing, records['positions'])
+        for name in {'speeds', 'positions'} & {*records}:
+            setattr(monitor, name, _record(SlopeRing, records[name]))
         monitor.words.texts = {Source[name]: str(text) for name, text in dumped['texts'].items()}
         for name, heard in dumped['joints'].items():
             others = (OtherJoints(array, joint, tuple(names)) for array, joint, *names in heard)

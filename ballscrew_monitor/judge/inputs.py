@@ -15,14 +15,8 @@ from ballscrew_monitor.core.estimate import PointSource
 from ballscrew_monitor.core.inputs import Source, StampSource, Why
 from ballscrew_monitor.judge.records import INPUTS, NOT_KNOWN, RATE_SAMPLES, WHYS
 
-TEMPERATURE, LOAD, TORQUE, SPEED = (
-    int(Source.TEMPERATURE),
-    int(Source.LOAD),
-    int(Source.TORQUE),
-    int(Source.SPEED),
-)
-UNKNOWN, MEASURED = int(PointSource.UNKNOWN), int(PointSource.MEASURED)
-DEFAULT, HELD = int(PointSource.DEFAULT), int(PointSource.HELD)
+TEMPERATURE, LOAD, TORQUE, SPEED = map(int, Source)
+UNKNOWN, MEASURED, DEFAULT, HELD, DERIVED = map(int, PointSource)
 OTHER_JOINTS, IMPLAUSIBLE = int(Why.OTHER_JOINTS), int(Why.IMPLAUSIBLE)
 HEADER = int(StampSource.HEADER)
 SLOW_GAPS = 2

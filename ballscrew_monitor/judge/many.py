@@ -9,7 +9,6 @@ from typing import Any, NamedTuple
 from ballscrew_monitor.core.advice import Criterion, Nearest, nearest
 from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.core.state import MonitorSettings
-from ballscrew_monitor.judge.derived_load import Derived
 from ballscrew_monitor.judge.monitor import Monitor
 from ballscrew_monitor.judge.records import Event, Memory, Row
 from ballscrew_monitor.judge.slopes import SlopeRing
@@ -81,20 +80,12 @@ class ManyJudge:
         """Go on with what the monitor remembers now, its settings and its surface."""
         monitor = self._monitor
         self._tables = monitor.surface.array_tables
-        self._arrays = tuple(
-            as_array(part)
-            for part in (
-                monitor.numbers,
-                monitor.memory,
-                monitor.speeds,
-                monitor.positions,
-                Derived(),
-            )
-        )
+        parts = (monitor.numbers, monitor.memory, monitor.speeds, monitor.positions)
+        self._arrays = tuple(as_array(part) for part in parts)
 
     def give_back(self) -> None:
         """Let the monitor remember what is remembered here."""
-        _, memory, speeds, positions, _ = self._arrays
+        _, memory, speeds, positions = self._arrays
         self._monitor.memory = from_array(Memory, memory[0])
         self._monitor.speeds = from_array(SlopeRing, speeds[0])
         self._monitor.positions = from_array(SlopeRing, positions[0])

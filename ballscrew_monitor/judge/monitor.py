@@ -3,35 +3,37 @@
 """
 One axis, judged event by event: the step, its memory, and the words beside it.
 
-Names of joints, sentences and advice stay out of the step; they are kept here.
+Samples and refusals become records here. Names of joints, sentences and advice stay out of the
+step; they are kept here.
 
 """
 
 import dataclasses
 import math
+from typing import Any
 
 from ballscrew_monitor.core.advice import interpreted, Nearest
 from ballscrew_monitor.core.estimate import MachinePoint, PointSource, PointValidity
-from ballscrew_monitor.core.input_status import InputStatus
-from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, Why
+from ballscrew_monitor.core.fields import OtherJoints
+from ballscrew_monitor.core.inputs import InputSample, InputStatus, Refusal, Source, Why
 from ballscrew_monitor.core.judgement import Level
 from ballscrew_monitor.core.memory import Memory as Kept
 from ballscrew_monitor.core.memory import NOTHING as NOTHING_KEPT
-from ballscrew_monitor.core.shelving import NOT_SHELVED, Shelving
-from ballscrew_monitor.core.state import Event, MonitorSettings, State
-from ballscrew_monitor.core.tally import Totals
+from ballscrew_monitor.core.state import Event, MonitorSettings, NOT_SHELVED, Shelving, State
 from ballscrew_monitor.judge import views
-from ballscrew_monitor.judge.derived_load import Derived
 from ballscrew_monitor.judge.point import set_answer, set_point
 from ballscrew_monitor.judge.records import Event as EventRecord
-from ballscrew_monitor.judge.records import Memory, Row, Settings, TICK
+from ballscrew_monitor.judge.records import Memory, NOT_KNOWN, REFUSAL, Row, SAMPLE, Settings, TICK
 from ballscrew_monitor.judge.slopes import SlopeRing
 from ballscrew_monitor.judge.step import STATE, step
-from ballscrew_monitor.judge.words import fill, InputWords, within
 from ballscrew_monitor.judge.zone import end_excursion
 from surrogate.surface import Surface
 
 NAN = math.nan
+EARLIEST, LATEST = -(2**61), 2**61
+"""Stamps that are judged [ns]; stamps beyond count as these."""
+MOST_OTHERS = 16
+"""Kinds of messages about other joints that are told apart."""
 
 
 def settings_record(settings: MonitorSettings) -> Settings:
@@ -57,6 +59,55 @@ def settings_record(settings: MonitorSettings) -> Settings:
     return made
 
 
+def within(stamp: int) -> int:
+    """Return a stamp [ns] so that differences of stamps fit into 64 bits."""
+    return min(max(stamp, EARLIEST), LATEST)
+
+
+def fill(record: EventRecord, event: InputSample | Refusal) -> None:
+    """Fill a record with a sample or a refusal."""
+    record.source, record.arrival = int(event.source), within(event.arrival)
+    record.lost = NOT_KNOWN if event.lost is None else event.lost
+    if isinstance(event, Refusal):
+        record.kind, record.why = REFUSAL, int(event.why)
+        return
+    record.kind, record.value = SAMPLE, float(event.value)
+    record.stamp, record.stamp_source = within(event.stamp), int(event.stamp_source)
+
+
+class InputWords:
+    """The sentences of the last refusals, and the joints that messages about others name."""
+
+    def __init__(self) -> None:
+        """Begin with nothing heard."""
+        self.texts: dict[Source, str] = {}
+        self.joints: dict[Source, dict[OtherJoints, None]] = {source: {} for source in Source}
+
+    def hear(self, refusal: Refusal, memory: Any) -> None:
+        """Keep the words of a refusal that the memory has not taken yet."""
+        if refusal.why is not Why.OTHER_JOINTS:
+            self.texts[refusal.source] = refusal.text
+        elif refusal.joints is not None:
+            heard = self.joints[refusal.source]
+            if not memory.others[refusal.source]:  # a good sample has come since
+                heard.clear()
+            if len(heard) < MOST_OTHERS:
+                heard[refusal.joints] = None
+
+    def status(self, memory: Any, settings: Any, source: Source, now: int) -> InputStatus:
+        """Return how well an input does at `now` [ns]."""
+        joints = self._named(source)
+        return views.input_status_of(memory, settings, source, now, self.texts, joints)
+
+    def _named(self, source: Source) -> OtherJoints | None:
+        """Return the joints of all messages about others, of however many publishers."""
+        heard = self.joints[source]
+        if not heard:
+            return None
+        names = sorted({name for others in heard for name in others.names})
+        return dataclasses.replace(next(iter(heard)), names=tuple(names))
+
+
 class Monitor:
     """Judges one axis; feed it events in order."""
 
@@ -73,7 +124,6 @@ class Monitor:
         self.words = InputWords()
         self.nearest: Nearest = interpreted
         self._event = EventRecord()
-        self._derived = Derived()
         self._row = Row()
         self._told = Event()
         self.take_up(memory)
@@ -108,16 +158,8 @@ class Monitor:
 
     def _step(self) -> State | None:
         number = self.memory.event_number
-        found = step(
-            self._tables,
-            self.numbers,
-            self.memory,
-            self.speeds,
-            self.positions,
-            self._derived,
-            self._event,
-            self._row,
-        )
+        slopes = self.speeds, self.positions
+        found = step(self._tables, self.numbers, self.memory, *slopes, self._event, self._row)
         if self.memory.event_number != number:
             self.ending = ''
         if found != STATE:
@@ -187,7 +229,7 @@ class Monitor:
         event = self.event
         if event.active:
             event = dataclasses.replace(event, stamp=int(self.memory.stamp))
-        return Kept(totals=self.totals, event=event, shelving=self.shelving)
+        return Kept(totals=views.totals_of(self.memory), event=event, shelving=self.shelving)
 
     def take_up(self, kept: Kept) -> None:
         """Go on with what was kept; what has been added up meanwhile counts too."""
@@ -224,8 +266,8 @@ class Monitor:
         """Return the operating point at `now` [ns], or in a sentence why it is not known."""
         row = Row(now=within(now))
         memory = dataclasses.replace(self.memory)
-        set_point(self._tables, self.numbers, memory, self.speeds, self._derived, row)
-        set_answer(self._tables, self.numbers, self._derived, row)
+        set_point(self._tables, self.numbers, memory, self.speeds, row)
+        set_answer(self._tables, self.numbers, row)
         point = views.point_of(row)
         reason = views.reason_of(row, point, self.surface)
         if math.isnan(row.axial_load) or row.validity in (
@@ -237,16 +279,6 @@ class Monitor:
             return 'the screw stands still'
         return point
 
-    @property
-    def judged(self) -> int:
-        """Return the number of speed samples that could be judged."""
-        return int(self.memory.judged)
-
-    @property
-    def totals(self) -> Totals:
-        """Return the totals."""
-        return views.totals_of(self.memory)
-
     def reset_totals(self) -> None:
         """Set the totals to zero."""
         views.clear_totals(self.memory)
@@ -256,8 +288,3 @@ class Monitor:
         return tuple(
             self.words.status(self.memory, self.numbers, source, now) for source in views.SOURCES
         )
-
-    @property
-    def refused(self) -> dict[Source, dict[Why, int]]:
-        """Return how many messages of each input were refused, by why."""
-        return views.refused_of(self.memory)

@@ -4,7 +4,7 @@
 The operating point of one instant out of the last samples, and what the surface says of it.
 
 Functions of the subset that numba compiles: `tables` are those of the surface, `speeds` the slope
-of the speeds, `derived` a record of `derived_load`, the other arguments as in `zone`.
+of the speeds, the other arguments as in `zone`.
 
 """
 
@@ -12,10 +12,11 @@ import math
 from typing import Any
 
 from ballscrew_monitor.core.conversions import Direction, Nut
-from ballscrew_monitor.core.estimate import ContactState, DOMINANT_RCS, PointSource
+from ballscrew_monitor.core.estimate import ContactState, DOMINANT_RCS
 from ballscrew_monitor.judge.derived_load import derive_load, no_load, NOT_FRESH, STANDSTILL
 from ballscrew_monitor.judge.inputs import (
     DEFAULT,
+    DERIVED,
     HELD,
     LOAD,
     MEASURED,
@@ -30,26 +31,14 @@ from ballscrew_monitor.judge.slopes import slope_change, slope_of
 from ballscrew_monitor.judge.zone import NO_INPUT, VALID
 from surrogate.surface import FILM_RATIO_LIMITS, leave, look_up, Regime
 
-DERIVED = int(PointSource.DERIVED)
-NO_DIRECTION, POSITIVE, NEGATIVE = (
-    int(Direction.UNKNOWN),
-    int(Direction.POSITIVE),
-    int(Direction.NEGATIVE),
-)
-POSITIVE_NUT, NEGATIVE_NUT = int(Nut.POSITIVE), int(Nut.NEGATIVE)
-NO_REGIME, BOUNDARY = int(Regime.UNKNOWN), int(Regime.BOUNDARY)
-MIXED, HYDRODYNAMIC = int(Regime.MIXED), int(Regime.HYDRODYNAMIC)
+NO_DIRECTION, POSITIVE, NEGATIVE = map(int, Direction)
+NO_NUT, POSITIVE_NUT, NEGATIVE_NUT = map(int, Nut)
+NO_REGIME, BOUNDARY, MIXED, HYDRODYNAMIC = map(int, Regime)
 MIXED_FROM, HYDRODYNAMIC_FROM = FILM_RATIO_LIMITS
-NO_CONTACT, PARTIAL, DOMINANT = (
-    int(ContactState.NONE),
-    int(ContactState.PARTIAL),
-    int(ContactState.DOMINANT),
-)
+NO_STATE, NO_CONTACT, PARTIAL, DOMINANT = map(int, ContactState)
 
 
-def set_point(
-    tables: Any, settings: Any, memory: Any, speeds: Any, derived: Any, row: Any
-) -> None:
+def set_point(tables: Any, settings: Any, memory: Any, speeds: Any, row: Any) -> None:
     """Set the operating point of a row: what has arrived by its `now`."""
     now = row.now
     row.speed = value_of(memory, settings, SPEED)
@@ -69,14 +58,14 @@ def set_point(
     row.derived = 0
     row.derived_first = row.derived_second = row.derived_third = math.nan
     if settings.derives:
-        _set_derived_load(tables, settings, memory, speeds, derived, row, moving)
+        _set_derived_load(tables, settings, memory, speeds, row, moving)
         return
     row.axial_load = value_of(memory, settings, LOAD)
     row.axial_load_source = standing_of(memory, settings, LOAD, now)
 
 
 def _set_derived_load(
-    tables: Any, settings: Any, memory: Any, speeds: Any, derived: Any, row: Any, moving: bool
+    tables: Any, settings: Any, memory: Any, speeds: Any, row: Any, moving: bool
 ) -> None:
     """Set the load that follows from the motor torque; it is held while an input is not fresh."""
     row.axial_load_source = UNKNOWN
@@ -85,7 +74,7 @@ def _set_derived_load(
         or row.motor_torque_source != MEASURED
         or (row.temperature_source != MEASURED and row.temperature_source != DEFAULT)
     ):
-        row.derived, derived.validity = NOT_FRESH, 0
+        row.derived, row.validity = NOT_FRESH, 0
         row.axial_load = memory.held_load
         if math.isfinite(memory.held_load):
             row.axial_load_source = HELD
@@ -95,37 +84,22 @@ def _set_derived_load(
         if settings.inertia != 0.0:
             acceleration = slope_of(speeds)
             change = slope_change(speeds, settings.acceleration_window)
-        derive_load(
-            tables,
-            settings,
-            row.speed,
-            acceleration,
-            change,
-            row.motor_torque,
-            row.temperature,
-            memory.direction,
-            row,
-            derived,
-        )
+        derive_load(tables, settings, row, acceleration, change)
     else:
-        no_load(derived, 0, STANDSTILL, math.nan, math.nan, math.nan)
-    row.derived = derived.code
-    row.derived_first, row.derived_second = derived.first, derived.second
-    row.derived_third = derived.third
-    row.axial_load = memory.held_load = derived.axial_load
-    if math.isfinite(derived.axial_load):
+        no_load(row, 0, STANDSTILL, math.nan, math.nan, math.nan)
+    memory.held_load = row.axial_load
+    if math.isfinite(row.axial_load):
         row.axial_load_source = DERIVED
-        row.axial_load_uncertainty = derived.uncertainty
 
 
-def set_answer(tables: Any, settings: Any, derived: Any, row: Any) -> None:
-    """Set what the surface says of the operating point of a row."""
+def set_answer(tables: Any, settings: Any, row: Any) -> None:
+    """Set what the surface says of a row; that of a derived load tells whether there is one."""
     if not _is_complete(row):
         leave(row, NO_INPUT)
     elif row.direction == NO_DIRECTION:
         leave(row, 0)
-    elif row.derived != 0 and derived.validity != VALID:
-        leave(row, derived.validity)
+    elif row.derived != 0 and row.validity != VALID:
+        leave(row, row.validity)
     else:
         look_up(tables, abs(row.speed), opposing_load(row), row.temperature, row)
     _set_words(settings, row)
@@ -152,8 +126,8 @@ def _is_complete(row: Any) -> bool:
 
 def _set_words(settings: Any, row: Any) -> None:
     """Set torque and nut in the machine frame, regime and contact state of a row."""
-    row.machine_torque, row.machine_nut = math.nan, 0
-    row.regime, row.contact_state = NO_REGIME, 0
+    row.machine_torque, row.machine_nut = math.nan, NO_NUT
+    row.regime, row.contact_state = NO_REGIME, NO_STATE
     if row.validity != VALID:
         return
     row.machine_torque = row.driving_torque

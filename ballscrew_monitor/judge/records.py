@@ -207,7 +207,7 @@ class Row(Found):
     motor_torque_source: int = 0
     direction: int = 0
     direction_held: bool = False
-    derived: int = 0  # a code of `derived_load`, 0 where the load is an input
+    derived: int = 0  # a code of `derived_load` with its numbers, 0 where the load is an input
     derived_first: float = NAN
     derived_second: float = NAN
     derived_third: float = NAN

@@ -62,14 +62,7 @@ HEADER = int(StampSource.HEADER)
 
 
 def step(
-    tables: Any,
-    settings: Any,
-    memory: Any,
-    speeds: Any,
-    positions: Any,
-    derived: Any,
-    event: Any,
-    row: Any,
+    tables: Any, settings: Any, memory: Any, speeds: Any, positions: Any, event: Any, row: Any
 ) -> int:
     """Take one event; return NOTHING, or that `row` is a ROW or the row of a STATE."""
     if event.kind == TICK:
@@ -87,7 +80,7 @@ def step(
             window, gap = settings.acceleration_window, settings.timeout[SPEED]
             slope_take(speeds, window, gap, event.stamp, memory.value[SPEED])
         row.stamp, row.now, row.tick = event.stamp, event.arrival, False
-    return _judge(tables, settings, memory, speeds, derived, row)
+    return _judge(tables, settings, memory, speeds, row)
 
 
 def step_many(
@@ -96,7 +89,6 @@ def step_many(
     memory: Any,
     speeds: Any,
     positions: Any,
-    derived: Any,
     events: Any,
     rows: Any,
     places: Any,
@@ -106,9 +98,9 @@ def step_many(
     """
     Take events while `memories` has room; return the numbers of events, rows and memories.
 
-    `settings`, `memory`, `speeds`, `positions` and `derived` are arrays of one record. `rows` has
-    room for a row of every event, `places` takes the event of each. `memories` takes the memory
-    after `every` row of a state, or after those alone that begin or end an excursion.
+    `settings`, `memory`, `speeds` and `positions` are arrays of one record. `rows` has room for a
+    row of every event, `places` takes the event of each. `memories` takes the memory after `every`
+    row of a state, or after those alone that begin or end an excursion.
 
     """
     made = told = 0
@@ -116,14 +108,7 @@ def step_many(
         if told == len(memories):
             return at, made, told
         found = step(
-            tables,
-            settings[0],
-            memory[0],
-            speeds[0],
-            positions[0],
-            derived[0],
-            events[at],
-            rows[made],
+            tables, settings[0], memory[0], speeds[0], positions[0], events[at], rows[made]
         )
         if found == NOTHING:
             continue
@@ -234,10 +219,10 @@ def _is_tick_due(settings: Any, memory: Any, now: int) -> bool:
     return memory.known[SPEED] == 0 or now - memory.arrival[SPEED] > timeout
 
 
-def _judge(tables: Any, settings: Any, memory: Any, speeds: Any, derived: Any, row: Any) -> int:
+def _judge(tables: Any, settings: Any, memory: Any, speeds: Any, row: Any) -> int:
     """Judge the instant of a row, hold the level, follow the excursion."""
-    set_point(tables, settings, memory, speeds, derived, row)
-    set_answer(tables, settings, derived, row)
+    set_point(tables, settings, memory, speeds, row)
+    set_answer(tables, settings, row)
     shut_gates(settings, memory, row)
     set_zone(settings, row)
     set_reason(row)

@@ -3,55 +3,28 @@
 """Rows and memory as the typed values and sentences that messages and reports are made of."""
 
 from collections.abc import Mapping
+import dataclasses
 import math
 from typing import Any
 
+from ballscrew_monitor.core import inputs, judgement
 from ballscrew_monitor.core.advice import Advisor, interpreted, Nearest
 from ballscrew_monitor.core.conversions import Direction, Nut, seconds
 from ballscrew_monitor.core.estimate import (
     ContactState,
     MachinePoint,
-    missing_text,
-    NO_DIRECTION,
-    outside_text,
     PointEstimate,
-    PointSource,
     PointValidity,
+    reason_text,
 )
-from ballscrew_monitor.core.input_status import InputState, InputStatus
-from ballscrew_monitor.core.inputs import (
-    hole_text,
-    implausible_text,
-    jump_text,
-    Source,
-    StampSource,
-    Why,
-)
-from ballscrew_monitor.core.judgement import (
-    Code,
-    Finding,
-    FROM_TORQUE,
-    Gate,
-    Limits,
-    unjudged,
-    Verdict,
-    violation,
-    Zone,
-)
-from ballscrew_monitor.core.state import Event
-from ballscrew_monitor.core.tally import Extremes, Totals, WindowStatistics
+from ballscrew_monitor.core.inputs import InputState, InputStatus, Source, StampSource, Why
+from ballscrew_monitor.core.judgement import Code, Gate, Limits, Verdict, Zone
+from ballscrew_monitor.core.state import Event, Extremes, Totals, WINDOW, WindowStatistics
 from ballscrew_monitor.judge import derived_load
 from ballscrew_monitor.judge.inputs import is_fresh, is_lagging, least_lag, SLOW_GAPS
-from ballscrew_monitor.judge.records import (
-    LIGHT_LOAD,
-    NOT_KNOWN,
-    RATE_SAMPLES,
-    SHOWN,
-    STANDSTILL,
-    WHYS,
-)
-from ballscrew_monitor.judge.sums import AXIAL_LOAD, EFFICIENCY, FILM_RATIO, RCS, SPEED
-from ballscrew_monitor.judge.zone import ACTIVE, OUTSIDE
+from ballscrew_monitor.judge.records import NOT_KNOWN, RATE_SAMPLES, SHOWN, WHYS
+from ballscrew_monitor.judge.sums import SPEED
+from ballscrew_monitor.judge.zone import ACTIVE
 from surrogate.surface import Regime, Surface
 
 NAN = math.nan
@@ -60,24 +33,13 @@ SOURCES = (Source.SPEED, Source.LOAD, Source.TEMPERATURE, Source.TORQUE)
 """Inputs in the order of a state."""
 Texts = Mapping[Source, str]
 """Sentences of the last refused messages."""
+_POINT: dict[str, Any] = {field.name: field.type for field in dataclasses.fields(MachinePoint)}
+"""Names and types of what a row and a point have in common."""
 
 
 def point_of(row: Any) -> MachinePoint:
     """Return the operating point of a row."""
-    return MachinePoint(
-        speed=float(row.speed),
-        axial_load=float(row.axial_load),
-        temperature=float(row.temperature),
-        motor_torque=float(row.motor_torque),
-        speed_source=PointSource(int(row.speed_source)),
-        axial_load_source=PointSource(int(row.axial_load_source)),
-        temperature_source=PointSource(int(row.temperature_source)),
-        motor_torque_source=PointSource(int(row.motor_torque_source)),
-        direction=Direction(int(row.direction)),
-        direction_held=bool(row.direction_held),
-        derived=bool(row.derived),
-        axial_load_uncertainty=float(row.axial_load_uncertainty),
-    )
+    return MachinePoint(**{name: kind(getattr(row, name)) for name, kind in _POINT.items()})
 
 
 def estimate_of(row: Any, point: MachinePoint, surface: Surface) -> PointEstimate:
@@ -102,15 +64,12 @@ def reason_of(row: Any, point: MachinePoint, surface: Surface) -> str:
     validity = PointValidity(int(row.validity))
     if validity is PointValidity.VALID:
         return ''
-    if validity is PointValidity.NO_INPUT:
-        return missing_text(point)
-    if point.direction is Direction.UNKNOWN:
-        return NO_DIRECTION
-    if point.derived:
+    known = point.direction is not Direction.UNKNOWN
+    if point.derived and known and validity is not PointValidity.NO_INPUT:
         said = derived_text(row)
         if said or validity is PointValidity.UNKNOWN:
             return said
-    return outside_text(validity, point, surface)
+    return reason_text(validity, point, surface)
 
 
 def derived_text(row: Any) -> str:
@@ -140,35 +99,19 @@ def derived_text(row: Any) -> str:
 
 def verdict_of(row: Any, estimate: PointEstimate, limits: Limits) -> Verdict:
     """Return the zone of a row, the gates that are shut, and what was found."""
-    gates = gates_of(int(row.gates))
+    gates = tuple(gate for gate in Gate if gate and row.gates & 1 << gate - 1)
     zone = Zone(int(row.zone))
-    findings: tuple[Finding, ...] = ()
-    light = Gate.LIGHT_LOAD in gates
-    if row.zone == OUTSIDE:
-        findings = tuple(
-            violation(code, float(value), limit, derived=bool(row.derived))
-            for code, value, limit, met in (
-                (Code.RCS_HIGH, row.rcs, limits.rcs, row.rcs < limits.rcs),
-                (
-                    Code.EFFICIENCY_LOW,
-                    row.efficiency,
-                    limits.efficiency,
-                    light or row.efficiency >= limits.efficiency,
-                ),
-            )
-            if not met
-        )
-    elif zone is Zone.UNKNOWN and (
-        Gate.STANDSTILL not in gates or estimate.validity is PointValidity.NO_INPUT
-    ):
-        findings = (unjudged(estimate),)
+    findings: tuple[judgement.Finding, ...] = ()
+    rcs, efficiency = float(row.rcs), float(row.efficiency)
+    if zone is Zone.OUTSIDE and rcs >= limits.rcs:
+        findings += (judgement.violation(Code.RCS_HIGH, rcs, limits.rcs),)
+    if zone is Zone.OUTSIDE and Gate.LIGHT_LOAD not in gates and efficiency < limits.efficiency:
+        code, limit = Code.EFFICIENCY_LOW, limits.efficiency
+        findings += (judgement.violation(code, efficiency, limit, derived=bool(row.derived)),)
+    lost = estimate.validity is PointValidity.NO_INPUT
+    if zone is Zone.UNKNOWN and (Gate.STANDSTILL not in gates or lost):
+        findings = (judgement.unjudged(estimate),)
     return Verdict(zone=zone, gates=gates, findings=findings, clear=bool(row.clears))
-
-
-def gates_of(bits: int) -> tuple[Gate, ...]:
-    """Return the gates that are shut."""
-    pairs = ((STANDSTILL, Gate.STANDSTILL), (LIGHT_LOAD, Gate.LIGHT_LOAD))
-    return tuple(gate for bit, gate in pairs if bits & bit)
 
 
 def event_of(
@@ -184,7 +127,7 @@ def event_of(
         return Event()
     code = Code(int(memory.event_code[ACTIVE]))
     worst, limit = float(memory.event_worst[ACTIVE]), float(memory.event_limit[ACTIVE])
-    cause = violation(code, worst, limit, derived=bool(memory.event_derived[ACTIVE]))
+    cause = judgement.violation(code, worst, limit, derived=bool(memory.event_derived[ACTIVE]))
     point = MachinePoint(
         speed=float(memory.event_speed[ACTIVE]),
         axial_load=float(memory.event_load[ACTIVE]),
@@ -211,7 +154,7 @@ def keep_event(memory: Any, event: Event) -> None:
     memory.event_stamp, memory.event_start[ACTIVE] = event.stamp, event.start
     memory.event_code[ACTIVE] = int(event.cause.code)
     memory.event_worst[ACTIVE], memory.event_limit[ACTIVE] = event.worst_value, event.cause.limit
-    memory.event_derived[ACTIVE] = int(event.cause.text.endswith(FROM_TORQUE))
+    memory.event_derived[ACTIVE] = int(event.cause.text.endswith(judgement.FROM_TORQUE))
 
 
 def totals_of(memory: Any) -> Totals:
@@ -254,14 +197,8 @@ def clear_totals(memory: Any) -> None:
 
 def window_of(memory: Any) -> WindowStatistics:
     """Return the statistics of the window of the last state."""
-    return WindowStatistics(
-        count=int(memory.window_count[SPEED]),
-        speed=_extremes(memory, SPEED),
-        axial_load=_extremes(memory, AXIAL_LOAD),
-        efficiency=_extremes(memory, EFFICIENCY),
-        rcs=_extremes(memory, RCS),
-        film_ratio=_extremes(memory, FILM_RATIO),
-    )
+    parts = {name: _extremes(memory, column) for column, name in enumerate(WINDOW)}
+    return WindowStatistics(count=int(memory.window_count[SPEED]), **parts)
 
 
 def _extremes(memory: Any, column: int) -> Extremes:
@@ -328,12 +265,12 @@ def refusal_text(memory: Any, settings: Any, source: Source, texts: Texts) -> st
     if math.isnan(first):  # refused before the judgement, which has no words
         return texts.get(source, '')
     if memory.refusal[source] == Why.HOLE:
-        return hole_text(first)
+        return inputs.hole_text(first)
     if memory.refusal[source] == Why.IMPLAUSIBLE:
         most = float(settings.plausible[source])
         if math.isnan(second):
-            return implausible_text(source, first, most)
-        return jump_text(first, second, most)
+            return inputs.implausible_text(source, first, most)
+        return inputs.jump_text(first, second, most)
     return ''
 
 

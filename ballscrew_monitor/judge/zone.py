@@ -13,40 +13,31 @@ import math
 from typing import Any
 
 from ballscrew_monitor.core.estimate import PointSource, PointValidity
-from ballscrew_monitor.core.judgement import Code, Level, Reason, Zone
+from ballscrew_monitor.core.judgement import (
+    Code,
+    efficiency_to_clear,
+    Level,
+    rcs_to_clear,
+    Reason,
+    Zone,
+)
 from ballscrew_monitor.judge.records import EVENT_BEGINS, EVENT_ENDS, LIGHT_LOAD, STANDSTILL
 
 HELD = int(PointSource.HELD)
 VALID, NO_INPUT = int(PointValidity.VALID), int(PointValidity.NO_INPUT)
-NO_ZONE, OPTIMAL, OUTSIDE = int(Zone.UNKNOWN), int(Zone.OPTIMAL), int(Zone.OUTSIDE)
-OK, WARN = int(Level.OK), int(Level.WARN)
+NO_ZONE, OPTIMAL, OUTSIDE = map(int, Zone)
+_, OK, WARN = map(int, Level)
 RCS_HIGH, EFFICIENCY_LOW = int(Code.RCS_HIGH), int(Code.EFFICIENCY_LOW)
 NO_SPEED, NO_LOAD = int(Reason.NO_SPEED), int(Reason.NO_LOAD)
 NO_TEMPERATURE, NO_TORQUE = int(Reason.NO_TEMPERATURE), int(Reason.NO_TORQUE)
 NO_INPUTS, NO_DERIVED_LOAD = int(Reason.NO_INPUTS), int(Reason.NO_DERIVED_LOAD)
 STANDS_STILL = int(Reason.STANDSTILL)
-BY_VALIDITY = (
-    int(Reason.NO_DIRECTION),
-    int(Reason.NO_NUMBER),
-    int(Reason.SPEED_BELOW_RANGE),
-    int(Reason.SPEED_ABOVE_RANGE),
-    int(Reason.LOAD_OUT_OF_RANGE),
-    int(Reason.TEMPERATURE_OUT_OF_RANGE),
-    int(Reason.MASKED),
+BY_VALIDITY = (int(Reason.NO_DIRECTION), int(Reason.NO_NUMBER)) + tuple(
+    int(Reason[validity.name]) for validity in PointValidity if validity.name in Reason.__members__
 )
 """The reason of a validity of the surface, where the screw moves and there is no zone."""
 ACTIVE, PENDING = 0, 1
 """Places of an excursion in `Memory`: active or the last, and one that may be raised."""
-
-
-def rcs_to_clear(settings: Any) -> float:
-    """Return the RCS [-] below which a warning may clear."""
-    return settings.rcs * (1.0 - settings.hysteresis)
-
-
-def efficiency_to_clear(settings: Any) -> float:
-    """Return the efficiency [-] from which a warning may clear."""
-    return settings.efficiency + (1.0 - settings.efficiency) * settings.hysteresis
 
 
 def shut_gates(settings: Any, memory: Any, row: Any) -> None:

@@ -13,8 +13,7 @@ from collections.abc import Mapping
 
 from ballscrew_monitor.core.conversions import celsius, clock_text, seconds
 from ballscrew_monitor.core.estimate import PointValidity
-from ballscrew_monitor.core.input_status import InputStatus
-from ballscrew_monitor.core.inputs import InputSample, Refusal, Source
+from ballscrew_monitor.core.inputs import InputSample, InputStatus, Refusal, Source
 from ballscrew_monitor.core.judgement import Code, Gate, Level
 from ballscrew_monitor.core.links import Link
 from ballscrew_monitor.core.state import Event, State
@@ -47,10 +46,8 @@ _NOT_JUDGED = {
     PointValidity.NO_INPUT: 'not judged: an input is missing',
     PointValidity.NO_SURFACE: 'not judged: no surface',
 }
-_OF_STANDSTILL = (
-    PointValidity.UNKNOWN,
-    PointValidity.SPEED_BELOW_RANGE,
-)  # nothing wrong with these there
+# Nothing is wrong with these at standstill.
+_OF_STANDSTILL = (PointValidity.UNKNOWN, PointValidity.SPEED_BELOW_RANGE)
 _CAUSES = {
     Code.RCS_HIGH: 'asperities carry too much',
     Code.EFFICIENCY_LOW: 'too much power is lost',
@@ -88,11 +85,6 @@ def defect_text(error: Exception, event: InputSample | Refusal | int) -> str:
     )
 
 
-def blank(node: str, axis: str) -> list[DiagnosticStatus]:
-    """Return the statuses of an axis of which nothing is known."""
-    return failed(node, axis, NOT_SET)
-
-
 def recording(node: str, problem: str) -> DiagnosticStatus:
     """Return the status of the recording of the `node`; `problem` is why there is none."""
     status = DiagnosticStatus(name=f'{node.lstrip("/")}: Recording', level=OK, message=RECORDED)
@@ -128,7 +120,7 @@ def statuses(
     While the clock stands no state tells that an input is dead, so nothing but a warning is held.
 
     """
-    made = blank(node, axis)
+    made = failed(node, axis, NOT_SET)
     for status in made:
         status.hardware_id = hardware_id(node, axis, surface.screw_name)
     changed = ' and corrected' if surface.corrections else ''
@@ -148,18 +140,14 @@ def statuses(
             status.level, status.message = STALE, CLOCK_STANDS if clock_stands else NOTHING_YET
             if links is None:
                 status.message = INACTIVE
-        return _with_defect(made, defect)
-    for status, (level, message) in zip(made, summaries(state, event, links)):
-        status.level, status.message = level, message
-    if clock_stands:
-        for status in made[1:2] if state.level is Level.WARN else made[:2]:
-            status.level, status.message = STALE, CLOCK_STANDS
-    made[0].values = _values(_lubrication_values(state))
-    made[1].values = [*made[1].values, *_values(_input_values(state.inputs))]
-    return _with_defect(made, defect)
-
-
-def _with_defect(made: list[DiagnosticStatus], defect: str) -> list[DiagnosticStatus]:
+    else:
+        for status, (level, message) in zip(made, summaries(state, event, links)):
+            status.level, status.message = level, message
+        if clock_stands:
+            for status in made[1:2] if state.level is Level.WARN else made[:2]:
+                status.level, status.message = STALE, CLOCK_STANDS
+        made[0].values = _values(_lubrication_values(state))
+        made[1].values = [*made[1].values, *_values(_input_values(state.inputs))]
     if defect:
         made[0].level, made[0].message = ERROR, defect
     return made
@@ -169,7 +157,8 @@ def summaries(
     state: State, event: Event, links: Mapping[Source, Link]
 ) -> tuple[StatusSummary, StatusSummary]:
     """Return level and message of Lubrication and Inputs; only a change of them is news."""
-    return _lubrication(state, event), _inputs(state, links)
+    standing, text = reasons.summary(state.axis, state.inputs, links)
+    return _lubrication(state, event), (_LEVELS[standing], text)
 
 
 def _lubrication(state: State, event: Event) -> StatusSummary:
@@ -192,11 +181,6 @@ def _lubrication(state: State, event: Event) -> StatusSummary:
     if still:  # nothing is amiss with an axis that has been parked since it was switched on
         return OK, 'standstill, not judged for long enough yet'
     return WARN, 'not judged for long enough yet'
-
-
-def _inputs(state: State, links: Mapping[Source, Link]) -> StatusSummary:
-    standing, text = reasons.summary(state.axis, state.inputs, links)
-    return _LEVELS[standing], text
 
 
 def _lubrication_values(state: State) -> list[tuple[str, object]]:

@@ -13,8 +13,7 @@ import difflib
 import math
 
 from ballscrew_monitor.core.conversions import celsius, POSITION_UNITS, Scaling
-from ballscrew_monitor.core.input_status import InputState, InputStatus
-from ballscrew_monitor.core.inputs import Source
+from ballscrew_monitor.core.inputs import InputState, InputStatus, Source
 from ballscrew_monitor.core.links import Link, link_reason
 from ballscrew_monitor.messages.reasons import slow_reason, Standing, summary
 from surrogate.surface import Surface
@@ -180,12 +179,8 @@ def known_range(surface: Surface | None, source: Source, unit: str) -> tuple[flo
     """Return the range of a surface [SI] in what an input measures; a position has none."""
     if surface is None or source is Source.TORQUE or unit in POSITION_UNITS:
         return None
-    ranges = {
-        Source.SPEED: surface.speed_range,
-        Source.LOAD: surface.load_range,
-        Source.TEMPERATURE: surface.temperature_range,
-    }
-    return ranges[source]
+    found: tuple[float, float] = getattr(surface, f'{source.name.lower()}_range')
+    return found
 
 
 def unit_doubts(facts: InputFacts, heard: Heard) -> list[str]:

@@ -15,8 +15,7 @@ import math
 
 from ballscrew_monitor.core.conversions import seconds
 from ballscrew_monitor.core.fields import OtherJoints
-from ballscrew_monitor.core.input_status import InputState, InputStatus
-from ballscrew_monitor.core.inputs import Source, Why, YEAR
+from ballscrew_monitor.core.inputs import InputState, InputStatus, Source, Why, YEAR
 from ballscrew_monitor.core.links import Link, link_reason
 
 SHOWN_JOINTS = 8  # names that a sentence lists

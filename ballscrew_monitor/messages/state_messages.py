@@ -11,20 +11,14 @@ anything else as garbage when their checks are off.
 import math
 from typing import Any
 
-from ballscrew_monitor.core import judgement, tally
+from ballscrew_monitor.core import conversions, judgement
+from ballscrew_monitor.core import state as states
 from ballscrew_monitor.core.advice import Advice
-from ballscrew_monitor.core.conversions import (
-    celsius,
-    Direction,
-    direction_of,
-    kelvin,
-    SECOND,
-    seconds,
-)
+from ballscrew_monitor.core.conversions import celsius, Direction, SECOND, seconds
 from ballscrew_monitor.core.estimate import MachinePoint, PointEstimate
-from ballscrew_monitor.core.input_status import InputStatus
+from ballscrew_monitor.core.inputs import InputStatus
 from ballscrew_monitor.core.judgement import Limits
-from ballscrew_monitor.core.state import Event, State
+from ballscrew_monitor.core.state import Event, State, TIMES, WINDOW
 from ballscrew_monitor.judge.views import SOURCES
 from ballscrew_msgs.msg import (
     BallScrewState,
@@ -42,21 +36,12 @@ from surrogate.surface import Surface
 TIERS = {'closed_form': PointResult.TIER_CLOSED_FORM, 'full': PointResult.TIER_FULL}
 NAN = math.nan
 NO_ADVICE = Advice()
-# The numbers of a surface that a PointResult repeats under the same name.
-NUMBERS = (
-    'friction_torque',
-    'driving_torque',
-    'asperity_share',
-    'film_ratio',
-    'central_film',
-    'minimum_film',
-    'friction_coefficient',
-    'max_pressure',
-    'efficiency_error',
-    'rcs_error',
-    'efficiency_std',
-    'rcs_std',
+NUMBERS = tuple(
+    name
+    for name, kind in PointResult.get_fields_and_field_types().items()
+    if kind == 'double' and name not in ('efficiency', 'rcs')
 )
+"""The numbers of a surface that a PointResult repeats under the same name."""
 
 
 def fill_time(message: Time, stamp: int) -> None:
@@ -86,7 +71,7 @@ def read_point(message: OperatingPoint, *, default_temperature: float) -> Machin
     A NaN temperature means `default_temperature` [K]; at zero speed the stated direction counts.
 
     """
-    direction = direction_of(message.speed)
+    direction = conversions.direction_of(message.speed)
     if message.speed == 0.0 and message.direction in tuple(Direction):
         direction = Direction(message.direction)
     missing = math.isnan(message.temperature)
@@ -94,7 +79,7 @@ def read_point(message: OperatingPoint, *, default_temperature: float) -> Machin
         speed=message.speed,
         axial_load=message.axial_load,
         direction=direction,
-        temperature=default_temperature if missing else kelvin(message.temperature),
+        temperature=default_temperature if missing else conversions.kelvin(message.temperature),
     )
 
 
@@ -130,10 +115,10 @@ def finding_message(finding: judgement.Finding, advice: Advice = NO_ADVICE) -> F
     )
 
 
-def fill_window(message: WindowStatistics, window: tally.WindowStatistics) -> None:
+def fill_window(message: WindowStatistics, window: states.WindowStatistics) -> None:
     """Fill in the statistics of a window."""
     message.count = window.count
-    for name in ('speed', 'axial_load', 'efficiency', 'rcs', 'film_ratio'):
+    for name in WINDOW:
         extremes = getattr(window, name)
         setattr(message, f'{name}_min', float(extremes.low))
         setattr(message, f'{name}_mean', float(extremes.mean))
@@ -155,17 +140,9 @@ def fill_input(message: InputHealth, status: InputStatus) -> None:
     message.refusal = status.refusal
 
 
-def fill_totals(message: Any, totals: tally.Totals) -> None:
+def fill_totals(message: Any, totals: states.Totals) -> None:
     """Fill in the totals."""
-    for name in (
-        'running_time',
-        'unjudged_time',
-        'boundary_time',
-        'mixed_time',
-        'hydrodynamic_time',
-        'optimal_time',
-        'outside_time',
-    ):
+    for name in TIMES:
         setattr(message, name, seconds(getattr(totals, name)))
     message.revolutions = float(totals.revolutions)
     message.energy_lost = float(totals.energy_lost)

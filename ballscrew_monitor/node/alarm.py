@@ -8,8 +8,7 @@ from typing import Any
 
 from ballscrew_monitor.core.conversions import clock_text, seconds
 from ballscrew_monitor.core.judgement import Level
-from ballscrew_monitor.core.shelving import NOT_SHELVED, Shelving
-from ballscrew_monitor.core.state import State
+from ballscrew_monitor.core.state import NOT_SHELVED, Shelving, State
 from ballscrew_monitor.messages.state_messages import out_of_zone_message
 from ballscrew_monitor.node.kept_axes import KeptAxes
 from ballscrew_monitor.node.state_records import event_facts, Kind, point_facts, totals_facts

@@ -8,13 +8,11 @@ import traceback
 from typing import Any
 
 from ballscrew_monitor.core.conversions import nanoseconds
-from ballscrew_monitor.core.dwell import Dwell
 from ballscrew_monitor.core.estimate import estimate, MachinePoint
-from ballscrew_monitor.core.full_point import corrected, objection, solved_at
+from ballscrew_monitor.core.full_point import corrected, Dwell, objection, solved_at
 from ballscrew_monitor.core.inputs import InputSample, Refusal, Source
 from ballscrew_monitor.core.links import Link
-from ballscrew_monitor.core.shelving import Shelving
-from ballscrew_monitor.core.state import State
+from ballscrew_monitor.core.state import Shelving, State
 from ballscrew_monitor.messages import diagnostics, state_messages
 from ballscrew_monitor.messages.state_messages import TIERS
 from ballscrew_monitor.node.alarm import Alarm

@@ -13,7 +13,7 @@ import functools
 from typing import Any
 
 from ballscrew_monitor.core.conversions import clock_text
-from ballscrew_monitor.core.shelving import shelve
+from ballscrew_monitor.core.state import shelve
 from ballscrew_monitor.messages.state_messages import fill_time
 from ballscrew_monitor.node.axis_publisher import AxisPublisher
 from ballscrew_monitor.settings.axis import reload_surface

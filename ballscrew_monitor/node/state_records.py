@@ -11,9 +11,8 @@ from typing import Any, NamedTuple
 from ballscrew_monitor.core.conversions import celsius, seconds
 from ballscrew_monitor.core.estimate import MachinePoint
 from ballscrew_monitor.core.full_point import KeptSolve, Solve
-from ballscrew_monitor.core.memory import AxisRecord, Memory, record_of, TIMES
-from ballscrew_monitor.core.state import Event
-from ballscrew_monitor.core.tally import Totals
+from ballscrew_monitor.core.memory import AxisRecord, Memory, record_of
+from ballscrew_monitor.core.state import Event, TIMES, Totals
 from surrogate.files import to_json
 
 EVENT = tuple('event start_ns worst_value cause severity value limit unit text ending'.split())
@@ -133,7 +132,7 @@ def point_facts(point: MachinePoint) -> dict[str, float]:
 
 def totals_facts(totals: Totals) -> dict[str, float]:
     """Return sums as an entry says them: times in [s]."""
-    return {f'{name}_s': seconds(getattr(totals, name)) for name in TIMES if name != 'since'} | {
+    return {f'{name}_s': seconds(getattr(totals, name)) for name in TIMES} | {
         'revolutions': totals.revolutions,
         'energy_lost_J': totals.energy_lost,
         'since_ns': totals.since,

@@ -10,7 +10,7 @@ from ballscrew_monitor.core.inputs import Refusal, Source, Why
 from ballscrew_monitor.core.state import Event, State
 from ballscrew_monitor.judge import records, views
 from ballscrew_monitor.judge.many import EVENT, Judged, ManyJudge
-from ballscrew_monitor.judge.words import EARLIEST, LATEST, MOST_OTHERS
+from ballscrew_monitor.judge.monitor import EARLIEST, LATEST, MOST_OTHERS
 from ballscrew_monitor.recordings.bulk.entries import Entries, Kind
 from ballscrew_monitor.recordings.bulk.order import places_of_axis
 from ballscrew_monitor.recordings.columns import AxisOutcome, COLUMNS, JudgedColumns
@@ -146,14 +146,14 @@ class AxisRun:
             last=self._last,
             rows=self._rows,
             states=self._states,
-            judged=monitor.judged,
-            totals=monitor.totals,
+            judged=int(monitor.memory.judged),
+            totals=views.totals_of(monitor.memory),
             events=tuple(
                 event_record(event, until=until)
                 for _, (event, until) in sorted(self._events.items())
             ),
             inputs=monitor.input_status(0 if row is None else int(row.now)),
-            refused=monitor.refused,
+            refused=views.refused_of(monitor.memory),
             limits=monitor.settings.limits,
             reason=reason,
         )

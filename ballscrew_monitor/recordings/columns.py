@@ -15,10 +15,9 @@ from typing import Any
 
 from ballscrew_monitor.core.conversions import Direction, Nut, seconds
 from ballscrew_monitor.core.estimate import ContactState, PointSource, PointValidity
-from ballscrew_monitor.core.input_status import InputStatus
-from ballscrew_monitor.core.inputs import Source, Why
+from ballscrew_monitor.core.inputs import InputStatus, Source, Why
 from ballscrew_monitor.core.judgement import Level, Limits, Reason, Zone
-from ballscrew_monitor.core.tally import Totals
+from ballscrew_monitor.core.state import Totals
 from ballscrew_monitor.recordings.summary import EventRecord, Summary
 import numpy as np
 from numpy.typing import NDArray

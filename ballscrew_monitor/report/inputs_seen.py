@@ -9,8 +9,7 @@ import math
 
 from ballscrew_monitor.core.conversions import celsius, seconds
 from ballscrew_monitor.core.estimate import PointSource
-from ballscrew_monitor.core.input_status import InputStatus
-from ballscrew_monitor.core.inputs import Source, Why, YEAR
+from ballscrew_monitor.core.inputs import InputStatus, Source, Why, YEAR
 from ballscrew_monitor.core.links import Link
 from ballscrew_monitor.messages.doctor import Heard, InputFacts, known_range, unit_doubts
 from ballscrew_monitor.messages.reasons import slow_reason

@@ -8,23 +8,8 @@ import dataclasses
 from typing import Any
 import weakref
 
-from ballscrew_monitor.core.conversions import (
-    kelvin,
-    LINEAR_SPEED_UNITS,
-    load_scaling,
-    LOAD_UNITS,
-    MotorData,
-    nanoseconds,
-    POSITION_UNITS,
-    ROTARY_SPEED_UNITS,
-    Scaling,
-    screw_turn,
-    speed_scaling,
-    temperature_scaling,
-    TEMPERATURE_UNITS,
-    torque_scaling,
-    torque_unit,
-)
+from ballscrew_monitor.core import conversions
+from ballscrew_monitor.core.conversions import nanoseconds, POSITION_UNITS, Scaling
 from ballscrew_monitor.core.fields import check_path
 from ballscrew_monitor.core.inputs import Input, make_input, OpenInput, Source
 from ballscrew_monitor.core.judgement import Limits
@@ -40,9 +25,9 @@ _LOADED: weakref.WeakValueDictionary[str, Surface] = weakref.WeakValueDictionary
 """Surfaces in use by their hash: their tables take megabytes."""
 OPTIONAL = (Source.TEMPERATURE, Source.TORQUE)
 UNITS = {
-    Source.SPEED: (*ROTARY_SPEED_UNITS, *LINEAR_SPEED_UNITS),
-    Source.LOAD: tuple(LOAD_UNITS),
-    Source.TEMPERATURE: tuple(TEMPERATURE_UNITS),
+    Source.SPEED: tuple(conversions.SPEED_UNITS),
+    Source.LOAD: tuple(conversions.LOAD_UNITS),
+    Source.TEMPERATURE: tuple(conversions.TEMPERATURE_UNITS),
 }
 
 
@@ -81,7 +66,12 @@ class Axis:
 def build_axis(name: str, values: Mapping[str, Any]) -> Axis:
     """Return the axis `name` made of parameter `values` by full name; raises InputError."""
     surface = load_surface(name, values)
-    inputs = _inputs_of(name, values, surface.lead)
+    # In the order in which equal stamps are taken.
+    inputs = [
+        _input_of(name, values, source, surface.lead)
+        for source in Source
+        if is_configured(name, values, source)
+    ]
     return Axis(
         name=name,
         surface=surface,
@@ -184,7 +174,7 @@ def settings_of(name: str, values: Mapping[str, Any], surface: Surface) -> Monit
             for source in Source
             if is_configured(name, values, source)
         },
-        default_temperature=kelvin(values[f'{name}.temperature.default']),
+        default_temperature=conversions.kelvin(values[f'{name}.temperature.default']),
         publish_period=nanoseconds(values[f'{name}.publish_period']),
         max_future=nanoseconds(values[f'{name}.max_future']),
         max_lag=nanoseconds(values[f'{name}.max_lag']),
@@ -223,9 +213,9 @@ def derivation_of(name: str, values: Mapping[str, Any]) -> LoadDerivation | None
 def _torque_unit(name: str, values: Mapping[str, Any]) -> float:
     """Return the torque at the screw [N m] that one unit of the input is."""
     leaves = ('constant', 'rated', 'gear_ratio')
-    motor = MotorData(**{leaf: values[f'{name}.torque.{leaf}'] for leaf in leaves})
+    motor = conversions.MotorData(**{leaf: values[f'{name}.torque.{leaf}'] for leaf in leaves})
     try:
-        return torque_unit(values[f'{name}.torque.unit'], motor)
+        return conversions.torque_unit(values[f'{name}.torque.unit'], motor)
     except InputError as error:
         raise InputError(f'parameters {name}.torque: {error}') from None
 
@@ -237,7 +227,7 @@ def _positions_of(name: str, values: Mapping[str, Any], lead: float) -> Position
         return None
     return PositionSettings(
         window=nanoseconds(values[f'{name}.speed.window']),
-        wrap=values[f'{name}.speed.wrap'] * screw_turn(unit, lead=lead),
+        wrap=values[f'{name}.speed.wrap'] * conversions.screw_turn(unit, lead=lead),
     )
 
 
@@ -273,15 +263,6 @@ def is_configured(name: str, values: Mapping[str, Any], source: Source) -> bool:
     return source not in OPTIONAL or bool(values[f'{name}.{source.name.lower()}.topic'])
 
 
-def _inputs_of(name: str, values: Mapping[str, Any], lead: float) -> tuple[Input | OpenInput, ...]:
-    """Return the inputs in the order in which equal stamps are taken."""
-    return tuple(
-        _input_of(name, values, source, lead)
-        for source in Source
-        if is_configured(name, values, source)
-    )
-
-
 def _input_of(
     name: str, values: Mapping[str, Any], source: Source, lead: float
 ) -> Input | OpenInput:
@@ -308,15 +289,14 @@ def scaling_of(name: str, values: Mapping[str, Any], source: Source, lead: float
     """
     prefix = f'{name}.{source.name.lower()}'
     unit, hand = values[f'{prefix}.unit'], values[f'{name}.handedness']
-    scale, offset = values[f'{prefix}.scale'], values[f'{prefix}.offset']
+    line = {leaf: values[f'{prefix}.{leaf}'] for leaf in ('scale', 'offset')}
     if source is Source.SPEED:
-        return speed_scaling(unit, scale=scale, offset=offset, lead=lead, handedness=hand)
+        return conversions.speed_scaling(unit, **line, lead=lead, handedness=hand)
     if source is Source.LOAD:
-        return load_scaling(unit, scale=scale, offset=offset)
+        return conversions.load_scaling(unit, **line)
     if source is Source.TEMPERATURE:
-        return temperature_scaling(unit, scale=scale, offset=offset)
-    torque = _torque_unit(name, values)
-    return torque_scaling(torque, scale=scale, offset=offset, handedness=hand)
+        return conversions.temperature_scaling(unit, **line)
+    return conversions.torque_scaling(_torque_unit(name, values), **line, handedness=hand)
 
 
 def scalings_of(

@@ -9,14 +9,7 @@ The names of an axis row begin with the name of the axis; `{axis}` in a default 
 
 from collections.abc import Iterable
 
-from ballscrew_monitor.core.conversions import (
-    HANDS,
-    LOAD_UNITS,
-    POSITION_UNITS,
-    SPEED_UNITS,
-    TEMPERATURE_UNITS,
-    TORQUE_UNITS,
-)
+from ballscrew_monitor.core import conversions
 from ballscrew_monitor.core.fields import check_path
 from ballscrew_monitor.settings.parameter_row import LIVE, NEVER, ParameterRow
 from surrogate.surface import EFFICIENCY_LIMIT, LIGHT_LOAD, RCS_LIMIT
@@ -115,7 +108,7 @@ AXIS_ROWS = (
     ParameterRow('solve_on_dwell', False, change=LIVE).says(
         'Solve where the axis dwells and the stated error reaches a limit of the zone.'
     ),
-    ParameterRow('handedness', 'right', choices=tuple(HANDS)).says(
+    ParameterRow('handedness', 'right', choices=tuple(conversions.HANDS)).says(
         'Hand of the thread; counts for speeds in rotary units and for the torque.'
     ),
     *_input_rows(
@@ -123,7 +116,7 @@ AXIS_ROWS = (
         topic='joint_states',
         type_name='sensor_msgs/msg/JointState',
         field='velocity[{axis}_axis]',
-        units=(*SPEED_UNITS, *POSITION_UNITS),
+        units=(*conversions.SPEED_UNITS, *conversions.POSITION_UNITS),
         timeout=0.5,
         what='speed: of the screw in a rotary unit, of the nut in a linear',
     ),
@@ -139,7 +132,7 @@ AXIS_ROWS = (
         topic='axial_load',
         type_name='geometry_msgs/msg/WrenchStamped',
         field='wrench.force.x',
-        units=LOAD_UNITS,
+        units=conversions.LOAD_UNITS,
         timeout=0.5,
         what='axial force on the nut, positive along the axis',
     ),
@@ -165,7 +158,7 @@ AXIS_ROWS = (
         topic='',
         type_name='sensor_msgs/msg/Temperature',
         field='temperature',
-        units=TEMPERATURE_UNITS,
+        units=conversions.TEMPERATURE_UNITS,
         timeout=30.0,
         what='oil temperature; empty: the default below',
     ),
@@ -177,7 +170,7 @@ AXIS_ROWS = (
         topic='',
         type_name='std_msgs/msg/Float64',
         field='data',
-        units=TORQUE_UNITS,
+        units=conversions.TORQUE_UNITS,
         timeout=0.5,
         what='motor torque, compared with the model or the source of the load; empty: none',
     ),

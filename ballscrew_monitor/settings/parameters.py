@@ -72,7 +72,7 @@ def check(rows: Mapping[str, ParameterRow], values: Mapping[str, Any]) -> None:
         rows[name].check(name, value)
 
 
-def read_file(path: str | pathlib.Path, node: str = NODE_NAME) -> dict[str, Any]:
+def read_file(path: str | pathlib.Path) -> dict[str, Any]:
     """
     Return every parameter of a node started with the ROS parameter file at `path`.
 
@@ -80,13 +80,13 @@ def read_file(path: str | pathlib.Path, node: str = NODE_NAME) -> dict[str, Any]
     parameter that is unknown or bad.
 
     """
-    return read_text(_text_of(path), str(path), node)
+    return read_text(_text_of(path), str(path))
 
 
-def read_text(text: str, origin: str, node: str = NODE_NAME) -> dict[str, Any]:
+def read_text(text: str, origin: str) -> dict[str, Any]:
     """Return what `read_file` does, of the text of such a file; `origin` names it in errors."""
     with _named(origin):
-        given = _given(text, node)
+        given = _given(text)
         axes = given.get('axes', NODE_ROWS[0].default)
         NODE_ROWS[0].check('axes', axes)
         rows = table(axes)
@@ -95,18 +95,18 @@ def read_text(text: str, origin: str, node: str = NODE_NAME) -> dict[str, Any]:
     return defaults(axes) | given
 
 
-def names_in_file(path: str | pathlib.Path, node: str = NODE_NAME) -> frozenset[str]:
+def names_in_file(path: str | pathlib.Path) -> frozenset[str]:
     """Return the names of the parameters to which the file at `path` gives a value."""
-    return names_in_text(_text_of(path), str(path), node)
+    return names_in_text(_text_of(path), str(path))
 
 
-def names_in_text(text: str, origin: str, node: str = NODE_NAME) -> frozenset[str]:
+def names_in_text(text: str, origin: str) -> frozenset[str]:
     """Return what `names_in_file` does, of the text of such a file, which `origin` names."""
     with _named(origin):
-        return frozenset(_given(text, node))
+        return frozenset(_given(text))
 
 
-def read_ros_parameters(path: str | pathlib.Path, node: str = NODE_NAME) -> dict[str, Any]:
+def read_ros_parameters(path: str | pathlib.Path) -> dict[str, Any]:
     """
     Return what the file at `path` says of the parameters of any ROS node, such as `use_sim_time`.
 
@@ -115,7 +115,7 @@ def read_ros_parameters(path: str | pathlib.Path, node: str = NODE_NAME) -> dict
     """
     text = _text_of(path)
     with _named(path):
-        return _given(text, node, of_ros=True)
+        return _given(text, of_ros=True)
 
 
 def sections(path: str | pathlib.Path) -> dict[str, Any]:
@@ -139,11 +139,11 @@ def _named(origin: object) -> Iterator[None]:
         raise InputError(f'{origin}: {error}') from None
 
 
-def _given(text: str, node: str, *, of_ros: bool = False) -> dict[str, Any]:
-    """Return what a text says to a node: parameters of the table, or those of any ROS node."""
+def _given(text: str, *, of_ros: bool = False) -> dict[str, Any]:
+    """Return what a text says to the node: parameters of the table, or those of any ROS node."""
     given: dict[str, Any] = {}
     for key, section in _sections(text).items():
-        if key.lstrip('/') in ('**', node, f'**/{node}'):
+        if key.lstrip('/') in ('**', NODE_NAME, f'**/{NODE_NAME}'):
             values = section.get('ros__parameters')
             if not isinstance(values, dict):
                 raise InputError(
@@ -151,7 +151,7 @@ def _given(text: str, node: str, *, of_ros: bool = False) -> dict[str, Any]:
                 )
             given |= _flatten(values)
     if not given:
-        raise InputError(f'it says nothing to the node, begin it with /**/{node}:')
+        raise InputError(f'it says nothing to the node, begin it with /**/{NODE_NAME}:')
     return {name: value for name, value in given.items() if is_of_ros(name) is of_ros}
 
 

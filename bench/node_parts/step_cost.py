@@ -41,7 +41,7 @@ class CompiledMonitor(Monitor):
 
         super().__init__(surface, settings)
         self._many, self._entry = many, many.compiled_step()
-        parts = (self.numbers, self.memory, self.speeds, self.positions, many.Derived())
+        parts = (self.numbers, self.memory, self.speeds, self.positions)
         self._arrays = [many.as_array(part) for part in parts]
         self._events = np.zeros(1, dtype=many.EVENT)
         self._rows = np.zeros(1, dtype=many.ROW)

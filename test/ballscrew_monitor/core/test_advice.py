@@ -5,9 +5,14 @@
 import dataclasses
 import math
 
-from ballscrew_monitor.core.advice import Advice, advise, optimal_load, optimal_speed
+from ballscrew_monitor.core.advice import Advice, Advisor
 from ballscrew_monitor.core.estimate import opposing_load_of
+from ballscrew_monitor.core.judgement import efficiency_to_clear, rcs_to_clear
 import pytest
+
+
+def advise(point, surface, limits):
+    return Advisor(point=point, surface=surface, limits=limits).advice
 
 
 def faster_is_better(speed, load):
@@ -21,44 +26,52 @@ def heavier_is_better(speed, load):
 @pytest.mark.parametrize('sign', [1.0, -1.0])
 def test_the_border_is_found_from_its_optimal_side(core, sign):
     point = core.point(speed=sign * 5.0, axial_load=-sign * 1000.0)
-    found = optimal_speed(point, core.surface(rcs=faster_is_better), core.limits())
+    found = advise(point, core.surface(rcs=faster_is_better), core.limits()).target_speed
     assert sign * found == pytest.approx(30.0, rel=1e-5)
     assert sign * found >= 30.0
 
 
 def test_the_nearer_of_two_borders_wins(core):
     surface = core.surface(rcs=lambda speed, load: 0.0 if speed < 8.0 or speed > 50.0 else 1.0)
-    assert optimal_speed(core.point(speed=10.0), surface, core.limits()) == pytest.approx(8.0)
-    assert optimal_speed(core.point(speed=45.0), surface, core.limits()) == pytest.approx(50.0)
+    assert advise(core.point(speed=10.0), surface, core.limits()).target_speed == pytest.approx(
+        8.0
+    )
+    assert advise(core.point(speed=45.0), surface, core.limits()).target_speed == pytest.approx(
+        50.0
+    )
 
 
-def test_no_speed_helps(core):
-    assert math.isnan(optimal_speed(core.point(), core.surface(rcs=1.0), core.limits()))
-
-
-def test_a_speed_below_standstill_is_no_advice(core):
-    surface = core.surface(rcs=lambda speed, load: 1.0 if speed >= 0.5 else 0.0)
-    assert math.isnan(optimal_speed(core.point(), surface, core.limits()))
+@pytest.mark.parametrize(
+    ('speed', 'rcs'),
+    [
+        (10.0, 1.0),  # no speed helps
+        (10.0, lambda speed, load: 1.0 if speed >= 0.5 else 0.0),  # one below standstill
+        (5.0, lambda speed, load: 1.0 if speed < 30.0 else 0.2),  # the limit is only met
+    ],
+)
+def test_a_speed_that_is_no_advice(core, speed, rcs):
+    found = advise(core.point(speed=speed), core.surface(rcs=rcs), core.limits())
+    assert math.isnan(found.target_speed)
 
 
 @pytest.mark.parametrize('sign', [1.0, -1.0])
 def test_the_load_keeps_its_sense(core, sign):
     point = core.point(speed=10.0, axial_load=sign * 1000.0)
-    found = optimal_load(point, core.surface(efficiency=heavier_is_better), core.limits())
+    found = advise(point, core.surface(efficiency=heavier_is_better), core.limits()).target_load
     assert sign * found == pytest.approx(1500.0, rel=1e-4)
     assert sign * found >= 1500.0
 
 
 def test_to_leave_the_efficiency_unjudged_is_no_advice(core):
     surface = core.surface(efficiency=0.5)
-    assert math.isnan(optimal_load(core.point(axial_load=300.0), surface, core.limits()))
+    assert math.isnan(advise(core.point(axial_load=300.0), surface, core.limits()).target_load)
 
 
 def test_a_light_load_may_become_lighter(core):
     surface = core.surface(
         rcs=lambda speed, load: 1.0 if abs(load) > 100.0 else 0.0, efficiency=0.5
     )
-    found = optimal_load(core.point(axial_load=200.0), surface, core.limits())
+    found = advise(core.point(axial_load=200.0), surface, core.limits()).target_load
     assert found == pytest.approx(100.0, rel=1e-4)
 
 
@@ -103,10 +116,5 @@ def test_who_follows_the_advice_clears_the_warning(core, sign, name, sensitive):
     assert followed
     for there in followed:
         numbers = surface.lookup(abs(there.speed), opposing_load_of(there), there.temperature)
-        assert numbers.rcs < limits.rcs_to_clear
-        assert numbers.efficiency >= limits.efficiency_to_clear
-
-
-def test_what_only_meets_the_limit_is_no_advice(core):
-    surface = core.surface(rcs=lambda speed, load: 1.0 if speed < 30.0 else 0.2)
-    assert math.isnan(optimal_speed(core.point(speed=5.0), surface, core.limits()))
+        assert numbers.rcs < rcs_to_clear(limits)
+        assert numbers.efficiency >= efficiency_to_clear(limits)

@@ -2,28 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Field paths and message types by name."""
 
-from ballscrew_monitor.core.fields import (
-    check_path,
-    compile_field,
-    message_class,
-    number_fields,
-    OtherJoints,
-    TooShort,
-)
+from ballscrew_monitor.core import fields
+from ballscrew_monitor.core.fields import check_path, compile_field, message_class, number_fields
 from geometry_msgs.msg import WrenchStamped
 import pytest
 from sensor_msgs.msg import Imu, JointState
-from std_msgs.msg import (
-    Byte,
-    ByteMultiArray,
-    Char,
-    Float32,
-    Float64,
-    Float64MultiArray,
-    Int32,
-    Int64,
-    UInt64,
-)
+from std_msgs import msg as std
 from surrogate.files import InputError
 
 
@@ -35,54 +19,63 @@ def test_paths_that_lead_to_a_number():
     wrench = WrenchStamped()
     wrench.wrench.force.x = 2.5
     assert compile_field('wrench.force.x', WrenchStamped)(wrench) == 2.5
-    assert compile_field('data', Float64)(Float64(data=-1.5)) == -1.5
-    assert compile_field('data[1]', Float64MultiArray)(Float64MultiArray(data=[1.0, 2.0])) == 2.0
-    assert compile_field('layout.dim[0].size', Float64MultiArray)(Float64MultiArray()) != 0.0
+    assert compile_field('data', std.Float64)(std.Float64(data=-1.5)) == -1.5
+    assert (
+        compile_field('data[1]', std.Float64MultiArray)(std.Float64MultiArray(data=[1.0, 2.0]))
+        == 2.0
+    )
+    assert (
+        compile_field('layout.dim[0].size', std.Float64MultiArray)(std.Float64MultiArray()) != 0.0
+    )
     assert compile_field('orientation_covariance[8]', Imu)(Imu()) == 0.0
     assert compile_field('header.stamp.sec', WrenchStamped)(wrench) == 0.0
 
 
 def test_an_integer_becomes_a_float():
-    value = compile_field('data', Int32)(Int32(data=7))
+    value = compile_field('data', std.Int32)(std.Int32(data=7))
     assert (value, type(value)) == (7.0, float)
 
 
 @pytest.mark.parametrize('number', [0, 7, 53, 255])
 def test_a_byte_becomes_a_float(number):
     byte = bytes([number])
-    assert compile_field('data', Byte)(Byte(data=byte)) == number
-    assert compile_field('data[1]', ByteMultiArray)(ByteMultiArray(data=[b'x', byte])) == number
-    assert compile_field('data', Char)(Char(data=number)) == number
+    assert compile_field('data', std.Byte)(std.Byte(data=byte)) == number
+    assert (
+        compile_field('data[1]', std.ByteMultiArray)(std.ByteMultiArray(data=[b'x', byte]))
+        == number
+    )
+    assert compile_field('data', std.Char)(std.Char(data=number)) == number
 
 
-@pytest.mark.parametrize('kind', [Byte, Char, Float32, Float64, Int32, Int64, UInt64])
+@pytest.mark.parametrize(
+    'kind', [std.Byte, std.Char, std.Float32, std.Float64, std.Int32, std.Int64, std.UInt64]
+)
 def test_every_type_of_number_is_read(kind):
     assert compile_field('data', kind)(kind()) == 0.0
-
-
-def test_a_joint_may_have_a_dot_in_its_name():
-    read = compile_field('velocity[robot.x]', JointState)
-    assert read(joints('robot', 'robot.x', velocity=[1.0, 2.0])) == 2.0
 
 
 def test_joints_are_found_by_name_wherever_they_stand():
     read = compile_field('velocity[x_axis]', JointState)
     assert read(joints('x_axis', 'y_axis', velocity=[1.0, 2.0])) == 1.0
     assert read(joints('y_axis', 'x_axis', velocity=[1.0, 2.0])) == 2.0
+    read = compile_field('velocity[robot.x]', JointState)  # a dot in its name
+    assert read(joints('robot', 'robot.x', velocity=[1.0, 2.0])) == 2.0
 
 
 def test_other_joints_and_a_short_array_are_told_apart():
     read = compile_field('velocity[x_axis]', JointState)
-    assert read(joints('y_axis', velocity=[1.0])) == OtherJoints('velocity', 'x_axis', ('y_axis',))
-    assert read(joints('x_axis')) == TooShort('velocity', 'x_axis', 0)
+    assert read(joints('y_axis', velocity=[1.0])) == fields.OtherJoints(
+        'velocity', 'x_axis', ('y_axis',)
+    )
+    assert read(joints('x_axis')) == fields.TooShort('velocity', 'x_axis', 0)
     short = compile_field('position[3]', JointState)(joints('x_axis'))
-    assert short == TooShort('position', '3', 0)
+    assert short == fields.TooShort('position', '3', 0)
 
 
 def test_the_numbers_of_a_message_are_paths_that_lead_to_one():
     assert number_fields(JointState) == ('position[0]', 'velocity[0]', 'effort[0]')
-    assert number_fields(Float64) == ('data',)
-    for kind in (WrenchStamped, JointState, Imu, Float64MultiArray):
+    assert number_fields(std.Float64) == ('data',)
+    for kind in (WrenchStamped, JointState, Imu, std.Float64MultiArray):
         for path in number_fields(kind):
             compile_field(path, kind)
 
@@ -109,11 +102,11 @@ def test_the_form_of_a_path_is_checked_without_a_type():
         ('header.frame_id', JointState, 'is string, not a number'),
         ('wrench..x', WrenchStamped, "'' is not a name or name.index."),
         ('velocity[', JointState, 'is not a name or name.index.'),
-        ('', Float64, "'' is not a name"),
-        ('data[0]', Float64, "'data' of Float64 is double, no array"),
-        ('data[x]', Float64MultiArray, 'has no list of names'),
+        ('', std.Float64, "'' is not a name"),
+        ('data[0]', std.Float64, "'data' of Float64 is double, no array"),
+        ('data[x]', std.Float64MultiArray, 'has no list of names'),
         ('velocity[-1]', JointState, 'the index -1 has a sign, allowed is 0 or more, or a joint'),
-        ('data[+1]', Float64MultiArray, 'the index .1 has a sign'),
+        ('data[+1]', std.Float64MultiArray, 'the index .1 has a sign'),
     ],
 )
 def test_paths_that_lead_nowhere_are_refused(path, kind, match):

@@ -1,22 +1,20 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""A full solve held against a surface: differences, stated errors, and who may correct whom."""
+"""A full solve held against a surface: who may correct whom, and when one is worth its time."""
 
 import math
 import types
 
-from ballscrew_monitor.core.full_point import (
-    compare,
-    corrected,
-    objection,
-    request_of,
-    solved_at,
-    stated_error,
-)
+from ballscrew_monitor.core import full_point
+from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.core.estimate import estimate
+from ballscrew_monitor.core.full_point import Dwell, PAUSE, solved_at, stated_error, STAY
+from ballscrew_monitor.core.judgement import Gate, Verdict, Zone
 import pytest
 from surrogate.surface import shipped_surface, Surface
 
 SURFACE = Surface.load(shipped_surface())
+START = 1000 * SECOND
 CLOSED_FORM = Surface.load(shipped_surface(tier='closed_form'))
 
 
@@ -55,14 +53,14 @@ def test_a_point_lies_on_the_surface_by_its_amount_of_speed_and_opposing_load(co
     ],
 )
 def test_a_difference_is_held_against_the_errors_of_both(changes, within):
-    found = compare(full(**changes), answer())
+    found = full_point.compare(full(**changes), answer())
     assert found.efficiency == changes.get('efficiency', 0.875) - 0.875
     assert found.rcs == changes.get('rcs', 0.0)
     assert found.within_stated_error is within
 
 
 def test_without_an_answer_of_the_surface_nothing_is_known():
-    found = compare(full(), None)
+    found = full_point.compare(full(), None)
     assert math.isnan(found.efficiency)
     assert math.isnan(found.rcs)
     assert not found.within_stated_error
@@ -87,7 +85,7 @@ def test_the_stated_error_is_that_of_interpolation_and_of_the_law():
     ],
 )
 def test_only_what_is_known_better_corrects(own, theirs, surface, words):
-    said = objection(own, theirs, surface)
+    said = full_point.objection(own, theirs, surface)
     assert words in said
     assert bool(words) is bool(said)
 
@@ -97,7 +95,7 @@ def test_corrections_are_made_again_on_a_surface_of_the_same_content(core):
     there = SURFACE.lookup(63.0, 1234.0, 313.15)
     values = {'rcs': there.rcs, 'friction_torque': 1.01 * there.friction_torque}
     once = SURFACE.with_correction(place, types.SimpleNamespace(**values))
-    again = corrected(SURFACE, once.corrections)
+    again = full_point.corrected(SURFACE, once.corrections)
     assert again.sha256 == once.sha256 != SURFACE.sha256
     assert again.base_sha256 == SURFACE.sha256
     here = (63.0, 1234.0, 313.15)
@@ -105,9 +103,68 @@ def test_corrections_are_made_again_on_a_surface_of_the_same_content(core):
 
 
 def test_a_request_holds_the_inputs_of_the_surface_and_no_names_to_look_up(core):
-    request = request_of(SURFACE, core.point(speed=-10.0, axial_load=500.0))
+    request = full_point.request_of(SURFACE, core.point(speed=-10.0, axial_load=500.0))
     assert request['header']['inputs'] == SURFACE.header['inputs']
     assert request['header']['tier'] == 'full'
     assert request['point'] == {'speed': 10.0, 'opposing_load': 500.0, 'temperature': 313.15}
     assert request['header']['law'] == SURFACE.header['law']
-    assert 'law' not in request_of(CLOSED_FORM, core.point())['header']
+    assert 'law' not in full_point.request_of(CLOSED_FORM, core.point())['header']
+
+
+def judged(point):
+    """Return a verdict with the gate that is shut at standstill."""
+    still = abs(point.speed) < 0.5
+    return Verdict(zone=Zone.UNKNOWN, gates=(Gate.STANDSTILL,) if still else ())
+
+
+def asked(core, stamps, numbers=None, dwell=None, **point):
+    """Return the stamps at which a solve is asked for while a point stays as it is."""
+    dwell, limits = dwell or Dwell(), core.limits()
+    surface = core.surface(**({'rcs': 0.25, 'rcs_error': 0.0625} if numbers is None else numbers))
+    here = core.point(**point)
+    result = estimate(here, surface, rcs_limit=limits.rcs)
+    verdict = judged(here)
+    return [one for one in stamps if dwell.update(one, here, result, verdict, limits)]
+
+
+def test_a_solve_is_asked_for_after_a_stay_and_not_again_for_a_while(core):
+    stamps = range(START, START + STAY + PAUSE + SECOND, SECOND)
+    assert asked(core, stamps) == [START + STAY, START + STAY + PAUSE]
+
+
+def test_whoever_moves_on_does_not_dwell(core):
+    dwell, stamps = Dwell(), range(START, START + 2 * STAY, SECOND)
+    for stamp in stamps:
+        speed = 10.0 * (1.0 + 0.01 * ((stamp - START) // SECOND))
+        assert asked(core, [stamp], dwell=dwell, speed=speed) == []
+
+
+def test_a_clock_that_is_set_back_begins_the_stay_anew(core):
+    dwell = Dwell()
+    assert asked(core, [START], dwell=dwell) == []
+    assert asked(core, [START - STAY, START - 1], dwell=dwell) == []
+    assert asked(core, [START], dwell=dwell) == [START]
+
+
+@pytest.mark.parametrize(
+    ('numbers', 'uncertain'),
+    [
+        ({'rcs': 0.3125, 'rcs_error': 0.0625}, True),
+        ({'rcs': 0.34375, 'rcs_error': 0.0625}, False),
+        ({'rcs': 0.34375, 'rcs_error': 0.0625, 'rcs_std': 0.125}, True),
+        ({'efficiency': 0.78125, 'efficiency_error': 0.03125}, True),
+        ({'efficiency': 0.8125, 'efficiency_error': 0.03125}, False),
+        ({'rcs': 0.25, 'rcs_error': math.nan}, False),
+        ({'rcs': 0.25, 'corrected': True}, False),
+    ],
+)
+def test_only_a_limit_within_reach_of_the_error_is_uncertain(core, numbers, uncertain):
+    limits, here = core.limits(), core.point()
+    result = estimate(here, core.surface(**numbers), rcs_limit=limits.rcs)
+    assert full_point.is_uncertain(result, judged(here), limits) is uncertain
+
+
+def test_at_standstill_and_outside_the_surface_there_is_nothing_to_solve(core):
+    stamps = [START, START + STAY]
+    assert asked(core, stamps, speed=0.2) == []
+    assert asked(core, stamps, speed=500.0) == []

@@ -4,19 +4,10 @@
 
 import math
 
+from ballscrew_monitor.core import inputs
 from ballscrew_monitor.core.conversions import Scaling, SECOND
 from ballscrew_monitor.core.fields import OtherJoints
-from ballscrew_monitor.core.inputs import (
-    InputSample,
-    make_input,
-    OpenInput,
-    ordered,
-    Refusal,
-    Source,
-    StampSource,
-    Why,
-    YEAR,
-)
+from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, StampSource, Why
 import pytest
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
@@ -38,7 +29,7 @@ def speed_input(**changes):
         'field': 'velocity[x_axis]',
         'scaling': Scaling(factor=1.0, shift=0.0),
     }
-    return make_input(Source.SPEED, **(values | changes))
+    return inputs.make_input(Source.SPEED, **(values | changes))
 
 
 def test_a_header_stamp_is_the_stamp():
@@ -76,8 +67,12 @@ def test_a_stamp_exactly_as_far_ahead_as_allowed_is_taken():
             Why.FUTURE,
             ['2 s ahead of the clock', 'max_future, 0.5 s', 'set the clocks'],
         ),
-        (YEAR, Why.FUTURE, ['ahead of the clock']),
-        (YEAR + 1, Why.OTHER_CLOCK, ['wall clock', 'simulated time', 'set use_sim_time to false']),
+        (inputs.YEAR, Why.FUTURE, ['ahead of the clock']),
+        (
+            inputs.YEAR + 1,
+            Why.OTHER_CLOCK,
+            ['wall clock', 'simulated time', 'set use_sim_time to false'],
+        ),
     ],
 )
 def test_a_refused_stamp_says_what_mends_it(ahead, why, words):
@@ -141,7 +136,7 @@ def test_the_value_is_scaled():
 
 
 def test_an_open_input_is_closed_by_a_type():
-    opened = OpenInput(
+    opened = inputs.OpenInput(
         source=Source.SPEED, topic='speed', field='data', scaling=Scaling(factor=2.0, shift=0.0)
     )
     closed = opened.close('std_msgs/msg/Float64')
@@ -158,7 +153,7 @@ def test_of_equal_stamps_the_speed_is_last_and_all_else_stays_in_order():
 
     speed, load, heat = Source.SPEED, Source.LOAD, Source.TEMPERATURE
     came = [(speed, 50), (load, 40), (speed, 60), (load, 60), (heat, 60), (speed, 1), (load, 1)]
-    taken = [(one.source, one.stamp) for _, one in ordered([event(*pair) for pair in came])]
+    taken = [(one.source, one.stamp) for _, one in inputs.ordered([event(*pair) for pair in came])]
     assert taken == [
         (speed, 50),
         (load, 40),

@@ -6,8 +6,7 @@ import math
 
 from ballscrew_monitor.core.conversions import Direction, Nut
 from ballscrew_monitor.core.estimate import ContactState, PointSource, PointValidity
-from ballscrew_monitor.core.input_status import InputState
-from ballscrew_monitor.core.inputs import StampSource
+from ballscrew_monitor.core.inputs import InputState, StampSource
 from ballscrew_monitor.core.judgement import Code, Gate, Level, Reason, Severity, Zone
 from ballscrew_msgs.msg import BallScrewState, Finding, InputHealth, OperatingPoint, PointResult
 import pytest

@@ -39,29 +39,24 @@ def link(*publishers, **changes):
             link(Publisher(type_name=FLOAT), type_name='', problem='field of no use'),
             'field of no use: set x.speed.field, or x.speed.type',
         ),
+        # well, or about to be
+        (link(matched=1), ''),
+        (link(Publisher(type_name=JOINTS)), ''),
+        (link(Publisher(type_name=FLOAT), type_name=''), ''),
+        (link(Publisher(type_name=JOINTS, reliability=RELIABLE), reliability=RELIABLE), ''),
+        (
+            link(
+                Publisher(type_name=JOINTS),
+                Publisher(type_name=JOINTS, reliability=RELIABLE),
+                reliability=RELIABLE,
+            ),
+            '',
+        ),
+        (link(Publisher(type_name=FLOAT), Publisher(type_name=JOINTS)), ''),
     ],
 )
 def test_each_fault_of_a_link_has_its_sentence(made, reason):
     assert link_reason(made, 'x.speed') == reason
-
-
-@pytest.mark.parametrize(
-    'made',
-    [
-        link(matched=1),
-        link(Publisher(type_name=JOINTS)),
-        link(Publisher(type_name=FLOAT), type_name=''),
-        link(Publisher(type_name=JOINTS, reliability=RELIABLE), reliability=RELIABLE),
-        link(
-            Publisher(type_name=JOINTS),
-            Publisher(type_name=JOINTS, reliability=RELIABLE),
-            reliability=RELIABLE,
-        ),
-        link(Publisher(type_name=FLOAT), Publisher(type_name=JOINTS)),
-    ],
-)
-def test_a_link_that_is_well_or_about_to_be_has_none(made):
-    assert link_reason(made, 'x.speed') == ''
 
 
 def test_a_publisher_that_was_seen_is_gone():

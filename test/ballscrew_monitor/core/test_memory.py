@@ -16,9 +16,7 @@ from ballscrew_monitor.core.memory import (
     record_of,
     RESTARTED,
 )
-from ballscrew_monitor.core.shelving import Shelving
-from ballscrew_monitor.core.state import Event
-from ballscrew_monitor.core.tally import Totals
+from ballscrew_monitor.core.state import Event, Shelving, Totals
 import pytest
 
 START = 1000 * SECOND

@@ -28,6 +28,10 @@ class Process:
 
 
 @pytest.fixture(name='world')
+def world_fixture():
+    return make_world()
+
+
 def make_world():
     """Return a solver and the list of the processes that it has started."""
     started = []
@@ -43,6 +47,15 @@ def job(number=0, timeout=10.0):
     return Job(request={'number': number}, timeout=timeout)
 
 
+def begin(world, *jobs):
+    """Hand jobs over and let the first begin; return the solver and its processes."""
+    solver, started = world
+    for one in jobs:
+        solver.submit(one)
+    assert solver.poll(0.0) == []
+    return solver, started
+
+
 def ends(done):
     return [(one.job, one.end, one.sentence) for one in done]
 
@@ -54,11 +67,8 @@ def test_no_process_is_started_before_it_is_needed(world):
 
 
 def test_one_after_another_in_the_order_in_which_they_came(world):
-    solver, started = world
     jobs = [job(number) for number in range(3)]
-    for one in jobs:
-        solver.submit(one)
-    solver.poll(0.0)
+    solver, started = begin(world, *jobs)
     (process,) = started
     for now, one in enumerate(jobs, start=1):
         assert process.sent[-1] == {'solve': one.request}
@@ -70,11 +80,9 @@ def test_one_after_another_in_the_order_in_which_they_came(world):
 
 
 def test_progress_is_kept_with_the_solve(world):
-    solver, started = world
     one = job()
-    solver.submit(one)
     assert one.step.stage == 'waiting'
-    solver.poll(0.0)
+    solver, started = begin(world, one)
     assert one.step.stage == 'starting'
     started[0].out = [
         {'progress': {'stage': 'rough contact', 'nut': 1, 'side': 2, 'fraction': 0.25}}
@@ -94,10 +102,8 @@ def test_the_queue_is_bounded_and_says_so(world):
 
 
 def test_a_solve_that_waits_is_taken_back_at_once(world):
-    solver, started = world
     first, second = job(1), job(2)
-    solver.submit(first)
-    solver.poll(0.0)
+    solver, started = begin(world, first)
     solver.submit(second)
     solver.cancel(second, 0.0)
     assert ends(solver.poll(0.1)) == [(second, End.CANCELLED, '')]
@@ -106,11 +112,8 @@ def test_a_solve_that_waits_is_taken_back_at_once(world):
 
 
 def test_a_solve_at_work_may_end_by_itself_or_its_process_is_ended(world):
-    solver, started = world
     first, second = job(1), job(2)
-    for one in (first, second):
-        solver.submit(one)
-    solver.poll(0.0)
+    solver, started = begin(world, first, second)
     solver.cancel(first, 1.0)
     assert started[0].sent[-1] == {'cancel': None}
     started[0].out = [{'cancelled': None}]
@@ -122,22 +125,29 @@ def test_a_solve_at_work_may_end_by_itself_or_its_process_is_ended(world):
     assert started[0].killed
 
 
-def test_a_result_that_comes_after_all_is_not_kept(world):
-    solver, started = world
-    one = job()
-    solver.submit(one)
-    solver.poll(0.0)
-    solver.cancel(one, 1.0)
-    started[0].out = [{'solved': {}}]
-    assert ends(solver.poll(1.1)) == [(one, End.CANCELLED, '')]
+@pytest.mark.parametrize(
+    ('frame', 'cancelled', 'end', 'sentence', 'processes'),
+    [
+        ({'solved': {}}, True, End.CANCELLED, '', 1),  # a result that comes after all is not kept
+        ({'failed': 'ValueError: no'}, False, End.FAILED, 'ValueError: no', 1),
+        ({'lost': 'killed by signal 9'}, False, End.FAILED, 'killed by signal 9', 2),
+    ],
+)
+def test_a_solve_that_comes_to_nothing(world, frame, cancelled, end, sentence, processes):
+    """A failure keeps the process; one that is lost fails its solve alone and is replaced."""
+    first, second = job(1), job(2)
+    solver, started = begin(world, first, second)
+    if cancelled:
+        solver.cancel(first, 1.0)
+    started[0].out = [frame]
+    assert ends(solver.poll(1.1)) == [(first, end, sentence)]
+    assert started[-1].sent[-1] == {'solve': second.request}
+    assert len(started) == processes
 
 
 def test_a_solve_ends_at_its_timeout_which_counts_from_its_begin(world):
-    solver, started = world
     first, second = job(1, timeout=5.0), job(2, timeout=5.0)
-    for one in (first, second):
-        solver.submit(one)
-    solver.poll(0.0)
+    solver, started = begin(world, first, second)
     started[0].out = [{'progress': {'stage': 'contact', 'fraction': 0.5}}]
     assert solver.poll(4.9) == []
     text = 'stopped after its timeout of 5 s, 50 % done'
@@ -147,35 +157,8 @@ def test_a_solve_ends_at_its_timeout_which_counts_from_its_begin(world):
     assert solver.poll(9.9) == []
 
 
-def test_a_lost_process_fails_its_solve_alone_and_is_replaced(world):
-    solver, started = world
-    first, second = job(1), job(2)
-    for one in (first, second):
-        solver.submit(one)
-    solver.poll(0.0)
-    started[0].out = [{'lost': 'the process of the solve was killed by signal 9'}]
-    assert ends(solver.poll(1.0)) == [
-        (first, End.FAILED, 'the process of the solve was killed by signal 9')
-    ]
-    assert started[1].sent == [{'solve': second.request}]
-
-
-def test_a_failure_keeps_the_process(world):
-    solver, started = world
-    one = job()
-    solver.submit(one)
-    solver.poll(0.0)
-    started[0].out = [{'failed': 'ValueError: no'}]
-    assert ends(solver.poll(1.0)) == [(one, End.FAILED, 'ValueError: no')]
-    solver.submit(job())
-    solver.poll(2.0)
-    assert len(started) == 1
-
-
 def test_closing_ends_the_process(world):
-    solver, started = world
-    solver.submit(job())
-    solver.poll(0.0)
+    solver, started = begin(world, job())
     solver.close()
     assert started[0].killed
     assert not solver.busy
@@ -196,13 +179,8 @@ acts = st.lists(
 
 @given(acts)
 def test_every_solve_ends_exactly_once(script):
-    started = []
-
-    def start():
-        started.append(Process())
-        return started[-1]
-
-    solver, jobs, done, now = Solver(start), [], [], 0.0
+    solver, started = make_world()
+    jobs, done, now = [], [], 0.0
     for act in script:
         now += 1.0
         if act == 'submit' and not solver.refusal:

@@ -9,9 +9,14 @@ import types
 from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, StampSource, Why
 from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.core.memory import Memory
-from ballscrew_monitor.core.shelving import Shelving
-from ballscrew_monitor.core.state import Event, LoadDerivation, MonitorSettings, PositionSettings
-from ballscrew_monitor.core.tally import Totals
+from ballscrew_monitor.core.state import (
+    Event,
+    LoadDerivation,
+    MonitorSettings,
+    PositionSettings,
+    Shelving,
+    Totals,
+)
 from ballscrew_monitor.judge.monitor import Monitor
 import numpy as np
 import pytest

@@ -8,8 +8,7 @@ import math
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.fields import OtherJoints
 from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, Why
-from ballscrew_monitor.core.shelving import Shelving
-from ballscrew_monitor.core.state import LoadDerivation, PositionSettings
+from ballscrew_monitor.core.state import LoadDerivation, PositionSettings, Shelving
 from ballscrew_monitor.judge.dump import dump, restored
 from hypothesis import given, settings
 from hypothesis import strategies as st

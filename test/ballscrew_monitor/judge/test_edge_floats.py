@@ -8,9 +8,8 @@ import sys
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.inputs import InputSample, Source
-from ballscrew_monitor.core.judgement import Limits
-from ballscrew_monitor.core.state import LoadDerivation, MonitorSettings, PositionSettings
-from ballscrew_monitor.judge.monitor import Monitor
+from ballscrew_monitor.core.state import LoadDerivation, PositionSettings
+from ballscrew_monitor.judge.views import refused_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
 import pytest
@@ -25,15 +24,7 @@ EDGES = [
     for sign in (1.0, -1.0)
 ] + [math.nan]
 USUAL = {Source.TEMPERATURE: 313.15, Source.LOAD: -1000.0, Source.TORQUE: 3.0, Source.SPEED: 60.0}
-LIMITS = Limits(
-    rcs=0.01,
-    efficiency=0.85,
-    light_load=250.0,
-    standstill_speed=0.5,
-    raise_delay=SECOND // 10,
-    clear_delay=SECOND,
-    hysteresis=0.1,
-)
+LIMITS = {'rcs': 0.01, 'efficiency': 0.85, 'light_load': 250.0, 'raise_delay': SECOND // 10}
 DERIVATION = LoadDerivation(
     inertia=1e-3,
     window=SECOND // 20,
@@ -49,18 +40,17 @@ WAYS = {
 }
 
 
-def make_monitor(way, plausible=math.inf):
-    return Monitor(
-        SURFACE,
-        MonitorSettings(
-            axis='x',
-            limits=LIMITS,
-            timeouts=dict.fromkeys(Source, SECOND // 2),
-            default_temperature=313.15,
-            plausible={Source.SPEED: plausible},
-            **WAYS[way],
-        ),
-    )
+@pytest.fixture(scope='module')
+def make_monitor(core):
+    """Return a function that makes a monitor of the shipped surface."""
+
+    def make(way, plausible=math.inf):
+        timeouts = dict.fromkeys(Source, SECOND // 2)
+        changes = {'timeouts': timeouts, 'plausible': {Source.SPEED: plausible}}
+        limits = core.limits(**LIMITS, hysteresis=0.1)
+        return core.monitor(SURFACE, limits, **changes, **WAYS[way])
+
+    return make
 
 
 def feed(monitor, *readings):
@@ -75,12 +65,12 @@ def feed(monitor, *readings):
 
 @pytest.mark.parametrize('way', WAYS)
 @pytest.mark.parametrize('source', list(Source))
-def test_each_edge_of_each_input_is_judged_or_refused(way, source):
+def test_each_edge_of_each_input_is_judged_or_refused(make_monitor, way, source):
     for value in EDGES:
         monitor = make_monitor(way)
         odd = USUAL | {source: value}
         assert feed(monitor, USUAL, odd, odd, USUAL).stamp > 0
-        refused = sum(monitor.refused[source].values())
+        refused = sum(refused_of(monitor.memory)[source].values())
         assert (refused == 2) is not math.isfinite(value), value
 
 
@@ -94,20 +84,20 @@ def test_each_edge_of_each_input_is_judged_or_refused(way, source):
     ),
     st.sampled_from([math.inf, HUGE, 700.0]),
 )
-def test_no_course_of_floats_ends_the_judgement(way, readings, plausible):
+def test_no_course_of_floats_ends_the_judgement(make_monitor, way, readings, plausible):
     state = feed(make_monitor(way, plausible), *readings)
     assert not math.isnan(state.totals.angle)
 
 
 @pytest.mark.parametrize('way', ['position', 'angle'])
-def test_positions_that_leap_further_than_a_float_reaches(way):
+def test_positions_that_leap_further_than_a_float_reaches(make_monitor, way):
     leaps = [USUAL | {Source.SPEED: value} for value in (HUGE, -HUGE, HUGE, 0.0, 0.3)]
     assert feed(make_monitor(way), *leaps).judged == 0
     assert feed(make_monitor(way, 700.0), *leaps).judged > 0
 
 
 @pytest.mark.parametrize('load', [TINY, 2e-320, 1e-322, 0.0])
-def test_a_load_of_almost_nothing_is_judged_as_none(load):
+def test_a_load_of_almost_nothing_is_judged_as_none(make_monitor, load):
     """Its ideal torque underflows: the efficiency is that at zero load, in both directions."""
     for sign, speed in itertools.product((1.0, -1.0), (60.0, -60.0)):
         monitor = make_monitor('measured')

@@ -23,7 +23,7 @@ excursion keeps limit and place of its worst sample.
 import math
 
 from ballscrew_monitor.core.judgement import Code
-from ballscrew_monitor.core.tally import Totals
+from ballscrew_monitor.core.state import Totals
 from ballscrew_monitor.judge import monitor as monitors
 from ballscrew_monitor.judge import views
 from ballscrew_monitor.judge.step import NOTHING, step

@@ -5,8 +5,7 @@
 import math
 
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.core.input_status import InputState
-from ballscrew_monitor.core.inputs import Source, StampSource, Why
+from ballscrew_monitor.core.inputs import InputState, Source, StampSource, Why
 from ballscrew_monitor.judge import inputs
 from ballscrew_monitor.judge.records import Event, INPUTS, Memory, RATE_SAMPLES, Settings, SHOWN
 from ballscrew_monitor.judge.views import input_status_of, refused_of

@@ -6,19 +6,17 @@ import dataclasses
 import math
 import sys
 
-from ballscrew_monitor.core.advice import advise
+from ballscrew_monitor.core.advice import Advisor
 from ballscrew_monitor.core.conversions import direction_of, SECOND
 from ballscrew_monitor.core.estimate import MachinePoint
 from ballscrew_monitor.core.inputs import Source, Why
 from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.core.state import LoadDerivation, MonitorSettings, PositionSettings
 from ballscrew_monitor.judge import many
-from ballscrew_monitor.judge.derived_load import Derived
 from ballscrew_monitor.judge.many import compiled_nearest, EVENT, ManyJudge, MEMORY, ROW
-from ballscrew_monitor.judge.monitor import Monitor
+from ballscrew_monitor.judge.monitor import fill, Monitor
 from ballscrew_monitor.judge.records import Event, Memory, REFUSAL, Row, SAMPLE, TICK
 from ballscrew_monitor.judge.step import NOTHING, STATE, step
-from ballscrew_monitor.judge.words import fill
 from hypothesis import given, settings
 from hypothesis import strategies as st
 import numpy as np
@@ -79,7 +77,7 @@ def assert_same(one, other, names, place):
 
 def interpreted(monitor, events):
     """Return rows and the memory after each row of a state, and let the monitor remember."""
-    rows, memories, derived = [], [], Derived()
+    rows, memories = [], []
     for event in events:
         row = Row()
         found = step(
@@ -88,7 +86,6 @@ def interpreted(monitor, events):
             monitor.memory,
             monitor.speeds,
             monitor.positions,
-            derived,
             from_array(Event, event),
             row,
         )
@@ -246,5 +243,6 @@ def test_advice_comes_out_the_same(speed, load, temperature, efficiency):
     point = MachinePoint(
         speed=speed, axial_load=load, temperature=temperature, direction=direction_of(speed)
     )
-    advice = advise(point, SURFACE, limits, compiled_nearest())
-    assert repr(advice) == repr(advise(point, SURFACE, limits))
+    asked = Advisor(point=point, surface=SURFACE, limits=limits)
+    compiled = dataclasses.replace(asked, nearest=compiled_nearest())
+    assert repr(compiled.advice) == repr(asked.advice)

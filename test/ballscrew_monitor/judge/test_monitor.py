@@ -6,20 +6,29 @@ import dataclasses
 import math
 
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.core.inputs import Source
-from ballscrew_monitor.core.judgement import Code, Level, Zone
+from ballscrew_monitor.core.fields import OtherJoints
+from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, StampSource, Why
+from ballscrew_monitor.core.judgement import Code, Level, violation, Zone
 from ballscrew_monitor.core.memory import Memory
-from ballscrew_monitor.core.shelving import NOT_SHELVED, Shelving
-from ballscrew_monitor.core.state import Event
-from ballscrew_monitor.core.tally import Totals
-from ballscrew_monitor.judge.monitor import Monitor
+from ballscrew_monitor.core.state import Event, NOT_SHELVED, Shelving, Totals
+from ballscrew_monitor.judge import records
+from ballscrew_monitor.judge.monitor import EARLIEST, fill, LATEST, Monitor, MOST_OTHERS, within
+from hypothesis import given
+from hypothesis import strategies as st
 import pytest
 
 STEP = SECOND // 100
 START = 1000 * SECOND
 KEPT = Memory(
     totals=Totals(running_time=5 * SECOND, optimal_time=5 * SECOND, angle=7.5, since=SECOND),
-    event=Event(number=7, stamp=20, start=10),
+    event=Event(
+        number=7,
+        stamp=20,
+        start=10,
+        worst_value=0.5,
+        cause=violation(Code.EFFICIENCY_LOW, 0.5, 0.75, derived=True),
+        ending='why',
+    ),
     shelving=Shelving(until=START + 10 * SECOND, reason='nut is ordered'),
 )
 
@@ -215,3 +224,56 @@ def test_a_shelved_warning_is_judged_and_counted_as_ever(core):
         assert (one.level, one.verdict, one.judged) == (other.level, other.verdict, other.judged)
     late = core.motion(10.0, start=START + 10 * SECOND)
     assert core.feed(shelved, late)[0].shelving is NOT_SHELVED
+
+
+def others(*names):
+    return Refusal(
+        source=Source.LOAD, why=Why.OTHER_JOINTS, joints=OtherJoints('velocity', 'x', names)
+    )
+
+
+def heard(monitor):
+    """Return the joints that the status of the load names."""
+    return monitor.input_status(0)[1].joints
+
+
+def test_joints_of_messages_about_others_are_collected_until_a_sample_comes(core):
+    monitor = core.monitor()
+    assert heard(monitor) is None
+    for names in (('c', 'a'), ('b',), ('c', 'a')):
+        monitor.update(others(*names))
+    assert heard(monitor) == OtherJoints('velocity', 'x', ('a', 'b', 'c'))
+    monitor.update(core.sample(Source.LOAD, 1.0))
+    assert heard(monitor) is None
+    monitor.update(others('d'))
+    assert heard(monitor).names == ('d',)
+
+
+def test_of_joints_without_end_a_part_is_kept(core):
+    monitor = core.monitor()
+    for i in range(3 * MOST_OTHERS):
+        monitor.update(others(f'joint{i}'))
+    assert len(heard(monitor).names) == MOST_OTHERS
+
+
+def test_a_refusal_is_told_in_its_own_words(core):
+    monitor = core.monitor()
+    for text in ('one', 'two'):
+        monitor.update(Refusal(source=Source.LOAD, why=Why.NOT_A_NUMBER, text=text))
+        assert monitor.input_status(0)[1].refusal == text
+
+
+@given(st.integers(-(2**70), 2**70), st.integers(-(2**70), 2**70), st.none() | st.integers(0, 9))
+def test_a_record_holds_an_event_whose_stamps_fit(stamp, arrival, lost):
+    """Differences of stamps stay within 64 bits."""
+    record, known = records.Event(), -1 if lost is None else lost
+    changes = {'arrival': arrival, 'lost': lost}
+    fill(record, Refusal(source=Source.TORQUE, why=Why.NOT_A_NUMBER, **changes))
+    assert (record.kind, record.source, record.why) == (records.REFUSAL, 2, Why.NOT_A_NUMBER)
+    assert (record.arrival, record.lost) == (min(max(arrival, EARLIEST), LATEST), known)
+    receive = StampSource.RECEIVE
+    fill(record, InputSample(source=Source.SPEED, value=2, stamp=stamp, stamp_source=receive))
+    assert (record.kind, record.source, record.value) == (records.SAMPLE, Source.SPEED, 2.0)
+    assert (record.stamp, record.stamp_source) == (within(stamp), receive)
+    assert isinstance(record.value, float)
+    assert within(LATEST) - within(EARLIEST) < 2**63

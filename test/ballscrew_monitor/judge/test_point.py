@@ -7,8 +7,7 @@ import math
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.estimate import PointSource, PointValidity
-from ballscrew_monitor.core.input_status import InputState
-from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, Why
+from ballscrew_monitor.core.inputs import InputSample, InputState, Refusal, Source, Why
 from ballscrew_monitor.core.judgement import Gate, Zone
 from ballscrew_monitor.core.state import LoadDerivation
 import pytest

@@ -205,18 +205,3 @@ def test_a_slope_that_sets_in_shows_until_the_window_knows_it():
 def test_the_change_of_few_samples_is_that_of_the_last_two():
     found = changes([0.0, 0.0, 0.0, 1.0], step=SHORT // 3)[-1]
     assert found == pytest.approx(60.0 - 0.3 * 60.0)
-
-
-def test_sources_slower_than_the_window_give_the_last_difference():
-    assert slopes([(START, 0.0), (START + 2 * SHORT, 1.0)])[-1] == pytest.approx(10.0)
-
-
-@pytest.mark.parametrize('jump', [-1, -SECOND, GAP + 1])
-def test_a_step_back_and_a_hole_begin_anew(jump):
-    found = slopes([(START, 0.0), (START + STEP, 1.0), (START + STEP + jump, 9.0)])
-    assert math.isnan(found[-1])
-
-
-def test_an_equal_stamp_replaces_the_last_sample():
-    again = [(START, 0.0), (START + STEP, 5.0), (START + STEP, 1.0)]
-    assert slopes(again)[-1] == pytest.approx(1000.0)

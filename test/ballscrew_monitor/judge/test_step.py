@@ -7,8 +7,14 @@ import math
 
 from ballscrew_monitor.core.conversions import Direction, SECOND
 from ballscrew_monitor.core.estimate import PointSource, PointValidity
-from ballscrew_monitor.core.input_status import InputState
-from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, StampSource, Why
+from ballscrew_monitor.core.inputs import (
+    InputSample,
+    InputState,
+    Refusal,
+    Source,
+    StampSource,
+    Why,
+)
 from ballscrew_monitor.core.judgement import Code, Gate, Level, Zone
 from ballscrew_monitor.core.state import PositionSettings
 from ballscrew_monitor.judge.monitor import Monitor

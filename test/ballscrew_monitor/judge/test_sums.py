@@ -5,7 +5,7 @@
 import math
 
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.core.tally import Extremes, Totals
+from ballscrew_monitor.core.state import Extremes, Totals
 from ballscrew_monitor.judge.records import LIGHT_LOAD, Memory, Row, STANDSTILL
 from ballscrew_monitor.judge.sums import add_to_totals, add_to_window, clear_window
 from ballscrew_monitor.judge.views import add_totals, clear_totals, totals_of, window_of

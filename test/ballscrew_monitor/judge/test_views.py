@@ -4,12 +4,9 @@
 
 import math
 
-from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.estimate import PointValidity
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.core.judgement import Code, Gate, Reason, Severity, Zone
-from ballscrew_monitor.core.state import Event
-from ballscrew_monitor.core.tally import Totals
 from ballscrew_monitor.judge import derived_load, views
 from ballscrew_monitor.judge.records import Memory, Row
 from ballscrew_monitor.judge.zone import set_reason, set_zone, shut_gates
@@ -117,18 +114,6 @@ def test_an_instant_without_a_zone_says_why(core, changes, reason, text):
         lost = row.validity == PointValidity.NO_INPUT
         assert one.severity is (Severity.ERROR if lost else Severity.WARN)
         assert one.text
-
-
-def test_what_is_kept_over_a_restart_comes_back(core):
-    memory, surface, limits = Memory(), core.surface(), core.limits()
-    assert views.event_of(memory, surface, limits) == Event()
-    cause = views.violation(Code.RCS_HIGH, 0.5, 0.25)
-    event = Event(number=7, stamp=20, start=10, worst_value=0.5, cause=cause, ending='why')
-    views.keep_event(memory, event)
-    assert views.event_of(memory, surface, limits, 'why') == event  # of no known place: no advice
-    totals = Totals(running_time=9 * SECOND, optimal_time=9 * SECOND, angle=7.5, since=1)
-    views.add_totals(memory, totals)
-    assert views.totals_of(memory) == totals
 
 
 def test_inputs_come_in_the_order_of_a_state(core):

@@ -6,14 +6,8 @@ import math
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.judgement import Code, Gate, Level, Zone
-from ballscrew_monitor.judge.records import (
-    EVENT_BEGINS,
-    EVENT_ENDS,
-    LIGHT_LOAD,
-    Memory,
-    Row,
-    STANDSTILL,
-)
+from ballscrew_monitor.judge import records
+from ballscrew_monitor.judge.records import LIGHT_LOAD, Memory, Row, STANDSTILL
 from ballscrew_monitor.judge.views import event_of
 from ballscrew_monitor.judge.zone import follow_excursion, hold_level, set_zone, shut_gates
 from hypothesis import given
@@ -232,11 +226,11 @@ def test_an_excursion_keeps_one_sample_as_its_worst(core, rows, raise_delay, cle
         hold_level(settings, memory, row, GAP, 0)
         follow_excursion(settings, memory, row, before)
         changed = memory.level != before
-        assert (row.edge == EVENT_BEGINS) == (changed and memory.level == Level.WARN)
-        assert (row.edge == EVENT_ENDS) == (changed and before == Level.WARN)
+        assert (row.edge == records.EVENT_BEGINS) == (changed and memory.level == Level.WARN)
+        assert (row.edge == records.EVENT_ENDS) == (changed and before == Level.WARN)
         event = event_of(memory, surface, limits)
         assert event.active == (memory.level == Level.WARN)
-        if row.edge == EVENT_BEGINS:
+        if row.edge == records.EVENT_BEGINS:
             begun = [one for one in rows[:stamp] if one.stamp >= event.start]
         elif event.active:
             begun.append(row)

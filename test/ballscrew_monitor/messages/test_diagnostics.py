@@ -11,8 +11,7 @@ from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, Why
 from ballscrew_monitor.core.judgement import Level
 from ballscrew_monitor.core.links import Link
-from ballscrew_monitor.core.shelving import shelve
-from ballscrew_monitor.core.state import Event, LoadDerivation
+from ballscrew_monitor.core.state import Event, LoadDerivation, shelve
 from ballscrew_monitor.messages import diagnostics, reasons
 from ballscrew_monitor.messages.diagnostics import ERROR, OK, STALE, WARN
 from ballscrew_monitor.messages.state_messages import plain_values
@@ -50,20 +49,32 @@ def after(core, *events, surface=None, clock_stands=False, settings=None, links=
     return {status.name.rpartition(' ')[2]: status for status in made}
 
 
+def said(status):
+    return status.level, status.message
+
+
+def values_of(status):
+    """Return the values of a status by key."""
+    return {pair.key: pair.value for pair in status.values}
+
+
 LOAD, SPEED = sample(Source.LOAD, -1000.0), sample(Source.SPEED, 10.0)
 HEAVY, STILL = sample(Source.LOAD, 1e5), sample(Source.SPEED, 0.1)
-
-
-def test_a_status_begins_as_an_error():
-    for status in diagnostics.blank('node', 'x'):
-        assert (status.level, status.message) == (ERROR, 'no message was set')
+LATE = sample(Source.SPEED, 10.0, START + 10 * SECOND)
+EVERY_SECOND = [
+    sample(source, value, START + i * SECOND)
+    for i in range(3)
+    for source, value in ((Source.LOAD, -1000.0), (Source.SPEED, 10.0))
+]
+OUTSIDE = 'outside the optimal zone: asperities carry too much'
 
 
 def test_names():
-    assert [status.name for status in diagnostics.blank('ballscrew_monitor', 'x')] == [
-        'ballscrew_monitor: x: Lubrication',
-        'ballscrew_monitor: x: Inputs',
-        'ballscrew_monitor: x: Surface',
+    """Each status begins as an error that says that nothing was set."""
+    made = diagnostics.failed('ballscrew_monitor', 'x', diagnostics.NOT_SET)
+    assert [(status.name, status.level, status.message) for status in made] == [
+        (f'ballscrew_monitor: x: {part}', ERROR, 'no message was set')
+        for part in ('Lubrication', 'Inputs', 'Surface')
     ]
 
 
@@ -81,12 +92,6 @@ def test_names_and_hardware_of_two_machines_and_two_axes_differ(core):
     assert diagnostics.failed('/mill/monitor', 'x', 'why')[0].name == made[0].name
 
 
-def test_a_failure_is_an_error_everywhere():
-    assert {(status.level, status.message) for status in diagnostics.failed('n', 'x', 'why')} == {
-        (ERROR, 'why')
-    }
-
-
 def test_all_is_well(core):
     made = after(core, LOAD, SPEED)
     assert [status.level for status in made.values()] == [OK, OK, OK]
@@ -94,81 +99,75 @@ def test_all_is_well(core):
     assert {status.hardware_id for status in made.values()} == {'x: constant'}
 
 
-@pytest.mark.parametrize(
-    ('events', 'level', 'message'),
-    [
-        ([SPEED], STALE, 'not judged: an input is missing'),
-        ([LOAD, STILL], OK, 'standstill, not judged for long enough yet'),
-        ([LOAD, SPEED, STILL], OK, 'standstill'),
-        ([LOAD, SPEED, HEAVY, STILL], WARN, 'not judged: load outside the surface'),
-        ([LOAD, sample(Source.SPEED, 1e3)], WARN, 'not judged: speed above the surface'),
-        ([sample(Source.LOAD, 1e5), SPEED], WARN, 'not judged: load outside the surface'),
-    ],
-)
-def test_lubrication_that_is_not_judged(core, events, level, message):
-    status = after(core, *events)['Lubrication']
-    assert (status.level, status.message) == (level, message)
-
-
 def test_before_the_delay_is_over_nothing_is_ok(core):
     status = after(core, LOAD, SPEED, clear_delay=SECOND)['Lubrication']
-    assert (status.level, status.message) == (WARN, 'not judged for long enough yet')
+    assert said(status) == (WARN, 'not judged for long enough yet')
 
 
-def test_a_warning_names_its_cause_and_stands_while_inputs_are_lost(core):
-    surface = core.surface(rcs=0.5)
-    late = sample(Source.SPEED, 10.0, START + 10 * SECOND)
-    for events in ([LOAD, SPEED], [LOAD, SPEED, late]):
-        status = after(core, *events, surface=surface)['Lubrication']
-        assert (status.level, status.message) == (
+@pytest.mark.parametrize('late', [[], [LATE]])
+def test_a_warning_names_its_cause_and_stands_while_inputs_are_lost(core, late):
+    found = after(core, LOAD, SPEED, *late, surface=core.surface(rcs=0.5))
+    assert said(found['Lubrication']) == (WARN, OUTSIDE)
+
+
+@pytest.mark.parametrize(
+    ('events', 'part', 'level', 'message'),
+    [
+        ([SPEED], 'Lubrication', STALE, 'not judged: an input is missing'),
+        ([LOAD, STILL], 'Lubrication', OK, 'standstill, not judged for long enough yet'),
+        ([LOAD, SPEED, STILL], 'Lubrication', OK, 'standstill'),
+        ([LOAD, SPEED, HEAVY, STILL], 'Lubrication', WARN, 'not judged: load outside the surface'),
+        (
+            [LOAD, sample(Source.SPEED, 1e3)],
+            'Lubrication',
             WARN,
-            'outside the optimal zone: asperities carry too much',
-        )
-
-
-def test_inputs_name_what_is_wrong(core):
-    assert after(core, SPEED)['Inputs'].message == (
-        'load was never received: no publisher yet on /l: start it, or set x.load.topic'
-    )
-    bad = after(core, LOAD, Refusal(source=Source.LOAD, why=Why.FUTURE), SPEED)['Inputs']
-    assert (bad.level, bad.message) == (
-        STALE,
-        'load is not usable: its stamps lie ahead of the clock, set the clocks alike or raise '
-        'max_future',
-    )
-    wall = after(core, LOAD, Refusal(source=Source.LOAD, why=Why.OTHER_CLOCK), SPEED)['Inputs']
-    assert wall.message.endswith('stamp with /clock or unset use_sim_time')
-    late = sample(Source.SPEED, 10.0, START + 10 * SECOND)
-    assert after(core, LOAD, late)['Inputs'].message == (
-        'load is stale: the publisher on /l is gone'
-    )
+            'not judged: speed above the surface',
+        ),
+        ([HEAVY, SPEED], 'Lubrication', WARN, 'not judged: load outside the surface'),
+        (
+            [SPEED],
+            'Inputs',
+            STALE,
+            'load was never received: no publisher yet on /l: start it, or set x.load.topic',
+        ),
+        (
+            [LOAD, Refusal(source=Source.LOAD, why=Why.FUTURE), SPEED],
+            'Inputs',
+            STALE,
+            'load is not usable: its stamps lie ahead of the clock, set the clocks alike or raise '
+            'max_future',
+        ),
+        (
+            [LOAD, Refusal(source=Source.LOAD, why=Why.OTHER_CLOCK), SPEED],
+            'Inputs',
+            STALE,
+            'load is not usable: its stamps are of the wall clock and the node runs on simulated '
+            'time, stamp with /clock or unset use_sim_time',
+        ),
+        ([LOAD, LATE], 'Inputs', STALE, 'load is stale: the publisher on /l is gone'),
+        (EVERY_SECOND[:4], 'Inputs', OK, 'all inputs arrive'),
+        (
+            EVERY_SECOND,
+            'Inputs',
+            WARN,
+            'speed comes less often than its timeout allows: set x.speed.timeout to 2.0 or more; '
+            'load comes less often than its timeout allows: set x.load.timeout to 2.0 or more',
+        ),
+    ],
+)
+def test_what_is_not_judged_and_why(core, events, part, level, message):
+    assert said(after(core, *events)[part]) == (level, message)
 
 
 def test_while_the_clock_stands_nothing_is_well_and_a_warning_stays(core):
     made = after(core, LOAD, SPEED, clock_stands=True)
     stands = (STALE, diagnostics.CLOCK_STANDS)
-    for part in ('Lubrication', 'Inputs'):
-        assert (made[part].level, made[part].message) == stands
+    assert said(made['Lubrication']) == said(made['Inputs']) == stands
     assert made['Surface'].level == OK
-    made = after(core, clock_stands=True)
-    assert (made['Inputs'].level, made['Inputs'].message) == stands
+    assert said(after(core, clock_stands=True)['Inputs']) == stands
     made = after(core, LOAD, SPEED, surface=core.surface(rcs=0.5), clock_stands=True)
     assert made['Lubrication'].level == WARN
-    assert (made['Inputs'].level, made['Inputs'].message) == stands
-
-
-def test_an_input_slower_than_its_timeout_is_told(core):
-    speeds = [sample(Source.SPEED, 10.0, START + i * SECOND) for i in range(3)]
-    loads = [sample(Source.LOAD, -1000.0, speed.stamp) for speed in speeds]
-    pairs = [event for pair in zip(loads, speeds, strict=True) for event in pair]
-    status = after(core, *pairs[:4])['Inputs']
-    assert (status.level, status.message) == (OK, 'all inputs arrive')
-    status = after(core, *pairs)['Inputs']
-    assert (status.level, status.message) == (
-        WARN,
-        'speed comes less often than its timeout allows: set x.speed.timeout to 2.0 or more; '
-        'load comes less often than its timeout allows: set x.load.timeout to 2.0 or more',
-    )
+    assert said(made['Inputs']) == stands
 
 
 def test_a_glitch_is_told_for_ten_seconds_and_counted(core):
@@ -180,11 +179,9 @@ def test_a_glitch_is_told_for_ten_seconds_and_counted(core):
 
     cure = 'mend the source, its unit or scale, or raise limits.plausible_speed or '
     status = told(10 * SECOND - 1)['Inputs']
-    assert (status.level, status.message) == (
-        WARN,
-        f'speed samples beyond the plausible range were refused: {cure}limits.plausible_load',
-    )
-    assert ('Speed implausible [-]', '1') in [(pair.key, pair.value) for pair in status.values]
+    text = f'speed samples beyond the plausible range were refused: {cure}limits.plausible_load'
+    assert said(status) == (WARN, text)
+    assert values_of(status)['Speed implausible [-]'] == '1'
     assert told(10 * SECOND)['Inputs'].level == OK
 
 
@@ -216,7 +213,7 @@ def test_a_trouble_of_an_input_has_one_sentence_with_its_cure(core, changes, mes
     load = sample(Source.LOAD, -1000.0, WALL)
     arrived = dataclasses.replace(speed, arrival=WALL)
     status = after(core, load, arrived, settings={'max_lag': SECOND // 2})
-    assert (status['Inputs'].level, status['Inputs'].message) == (WARN, message)
+    assert said(status['Inputs']) == (WARN, message)
 
 
 @pytest.mark.parametrize(
@@ -225,7 +222,7 @@ def test_a_trouble_of_an_input_has_one_sentence_with_its_cure(core, changes, mes
 )
 def test_without_a_state_there_is_no_news(core, links, message):
     made = diagnostics.statuses('n', 'x', None, Event(), core.surface(), links=links)
-    assert [(status.level, status.message) for status in made[:2]] == [(STALE, message)] * 2
+    assert [said(status) for status in made[:2]] == [(STALE, message)] * 2
     assert made[2].level == OK
 
 
@@ -243,15 +240,14 @@ def test_a_shelved_warning_is_no_warning_and_hides_no_other(core, events, shown)
     for event in events:
         state = monitor.update(event) or state
     assert state.level is Level.WARN
-    (said, _) = diagnostics.summaries(state, monitor.event, LINKS)
-    assert said == shown
+    assert diagnostics.summaries(state, monitor.event, LINKS)[0] == shown
     assert not plain_values(state)['out_of_zone']
 
 
 def test_the_state_directory():
     good, bad = (diagnostics.of_folder('/cell/node', problem) for problem in ('', 'it is full'))
-    assert (good.level, good.message) == (OK, 'sums, events and corrections are kept')
-    assert (bad.level, bad.message) == (WARN, 'it is full')
+    assert said(good) == (OK, 'sums, events and corrections are kept')
+    assert said(bad) == (WARN, 'it is full')
     assert good.name == bad.name == 'cell/node: State directory'
 
 
@@ -276,20 +272,20 @@ def test_a_defect_says_where_it_came_up_and_what_to_do(core, event, place):
     made = diagnostics.statuses(
         'node', 'x', None, monitor.event, monitor.surface, links=LINKS, defect=sentence
     )
-    assert (made[0].level, made[0].message) == (ERROR, sentence)
+    assert said(made[0]) == (ERROR, sentence)
     assert all(status.message != sentence for status in made[1:])
 
 
 def test_values_carry_their_unit(core):
     made = after(core, LOAD, SPEED)
-    values = {pair.key: pair.value for pair in made['Lubrication'].values}
+    values = values_of(made['Lubrication'])
     assert values['Speed [rad/s]'] == '10'
     assert values['Oil temperature [degC]'] == '40'
     assert values['Efficiency [-]'] == '0.9'
-    values = {pair.key: pair.value for pair in made['Inputs'].values}
+    values = values_of(made['Inputs'])
     assert (values['Speed state'], values['Torque state']) == ('OK', 'NOT_CONFIGURED')
     assert (values['Speed publishers [-]'], values['Load publishers [-]']) == ('1', '0')
-    values = {pair.key: pair.value for pair in made['Surface'].values}
+    values = values_of(made['Surface'])
     assert values['Opposing load max [N]'] == '4000'
 
 
@@ -344,11 +340,6 @@ DERIVED = {
 }
 
 
-def values_of(status):
-    """Return the values of a status by key."""
-    return {pair.key: pair.value for pair in status.values}
-
-
 def straight(core, drag=0.0):
     """Return a surface whose torque follows the load."""
     surface = core.surface(driving_torque=lambda speed, load: load / 1024.0)
@@ -370,10 +361,8 @@ def test_a_derived_load_is_told_with_its_uncertainty(core):
 def test_a_torque_that_does_not_tell_the_load(core):
     torque = sample(Source.TORQUE, 1.0)
     found = after(core, torque, SPEED, surface=straight(core, 0.75), settings=DERIVED)
-    assert (found['Lubrication'].level, found['Lubrication'].message) == (
-        WARN,
-        'not judged: the motor torque does not tell the load here',
-    )
+    text = 'not judged: the motor torque does not tell the load here'
+    assert said(found['Lubrication']) == (WARN, text)
     assert found['Inputs'].level == OK
     still = after(core, torque, SPEED, STILL, surface=straight(core), settings=DERIVED)
     assert still['Lubrication'].level == OK

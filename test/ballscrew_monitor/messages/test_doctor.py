@@ -4,16 +4,8 @@
 
 import math
 
-from ballscrew_monitor.core.conversions import (
-    kelvin,
-    load_scaling,
-    LOAD_UNITS,
-    speed_scaling,
-    temperature_scaling,
-    TEMPERATURE_UNITS,
-)
-from ballscrew_monitor.core.input_status import InputState, InputStatus
-from ballscrew_monitor.core.inputs import Source, StampSource
+from ballscrew_monitor.core import conversions
+from ballscrew_monitor.core.inputs import InputState, InputStatus, Source
 from ballscrew_monitor.core.links import Link, Publisher
 from ballscrew_monitor.messages.doctor import findings, Heard, InputFacts, near_topic, Surroundings
 import pytest
@@ -22,18 +14,22 @@ JOINTS, FLOAT = 'sensor_msgs/msg/JointState', 'std_msgs/msg/Float64'
 SPEED_UNITS = ('rad/s', 'rev/min', 'mm/s')
 SCALINGS = {
     Source.SPEED: {
-        unit: speed_scaling(unit, scale=1.0, offset=0.0, lead=0.01, handedness='right')
+        unit: conversions.speed_scaling(unit, scale=1.0, offset=0.0, lead=0.01, handedness='right')
         for unit in SPEED_UNITS
     },
-    Source.LOAD: {unit: load_scaling(unit, scale=1.0, offset=0.0) for unit in LOAD_UNITS},
+    Source.LOAD: {
+        unit: conversions.load_scaling(unit, scale=1.0, offset=0.0)
+        for unit in conversions.LOAD_UNITS
+    },
     Source.TEMPERATURE: {
-        unit: temperature_scaling(unit, scale=1.0, offset=0.0) for unit in TEMPERATURE_UNITS
+        unit: conversions.temperature_scaling(unit, scale=1.0, offset=0.0)
+        for unit in conversions.TEMPERATURE_UNITS
     },
 }
 KNOWN = {
     Source.SPEED: (0.5, 314.0),
     Source.LOAD: (-20e3, 20e3),
-    Source.TEMPERATURE: (kelvin(10.0), kelvin(80.0)),
+    Source.TEMPERATURE: (conversions.kelvin(10.0), conversions.kelvin(80.0)),
 }
 
 
@@ -51,15 +47,7 @@ def around(**changes):
 
 
 def heard(low=1.0, high=2.0, gap=0.01, **changes):
-    status = {
-        'source': Source.SPEED,
-        'state': InputState.OK,
-        'stamp_source': StampSource.HEADER,
-        'age': 0.0,
-        'rate': 100.0,
-        'received': 100,
-        'dropped': 0,
-    }
+    status = {'source': Source.SPEED, 'state': InputState.OK, 'received': 100}
     return Heard(status=InputStatus(**(status | changes)), low=low, high=high, longest_gap=gap)
 
 

@@ -5,18 +5,10 @@
 import math
 
 from ballscrew_monitor.core.fields import OtherJoints
-from ballscrew_monitor.core.input_status import InputState, InputStatus
-from ballscrew_monitor.core.inputs import Source, StampSource, Why
+from ballscrew_monitor.core.inputs import InputState, InputStatus, Source, Why
 from ballscrew_monitor.core.links import Link
-from ballscrew_monitor.messages.reasons import (
-    enough_timeout,
-    fault,
-    joint_reason,
-    MOST_TIMEOUT,
-    SHOWN_JOINTS,
-    Standing,
-    summary,
-)
+from ballscrew_monitor.messages import reasons
+from ballscrew_monitor.messages.reasons import Standing, summary
 import pytest
 
 MATCHED = Link(topic='/t', type_name='a/msg/B', matched=1)
@@ -25,16 +17,7 @@ JOINTS = OtherJoints('velocity', 'x_axis', ('gripper', 'x_joint'))
 
 
 def status(state, **changes):
-    values = {
-        'source': Source.SPEED,
-        'state': state,
-        'stamp_source': StampSource.HEADER,
-        'age': 0.0,
-        'rate': 100.0,
-        'received': 1,
-        'dropped': 0,
-    }
-    return InputStatus(**(values | changes))
+    return InputStatus(**({'source': Source.SPEED, 'state': state} | changes))
 
 
 @pytest.mark.parametrize(
@@ -88,18 +71,18 @@ def status(state, **changes):
     ],
 )
 def test_each_fault_has_its_sentence(state, changes, link, text):
-    assert fault(status(state, **changes), link, 'x.speed') == text
+    assert reasons.fault(status(state, **changes), link, 'x.speed') == text
 
 
 def test_messages_without_joints_are_read_by_index():
-    said = joint_reason(OtherJoints('velocity', 'x', ()), 'x.speed')
+    said = reasons.joint_reason(OtherJoints('velocity', 'x', ()), 'x.speed')
     assert said == 'the messages name no joints at all, set x.speed.field to velocity[0]'
 
 
 def test_of_many_joints_some_are_listed():
     names = tuple(f'joint_{letter}' for letter in 'abcdefghijkl')
-    said = joint_reason(OtherJoints('velocity', 'joint_l', names), 'x.speed')
-    assert f'{names[SHOWN_JOINTS - 1]}, ... and no joint' in said
+    said = reasons.joint_reason(OtherJoints('velocity', 'joint_l', names), 'x.speed')
+    assert f'{names[reasons.SHOWN_JOINTS - 1]}, ... and no joint' in said
     assert 'velocity[joint_l]' in said
 
 
@@ -108,8 +91,8 @@ def test_of_many_joints_some_are_listed():
     [(1.0, 2.0), (1.01, 5.0), (0.25, 0.5), (0.3, 1.0), (4.0, 10.0), (1e-3, 2e-3), (1e6, 3600.0)],
 )
 def test_a_timeout_that_would_do_is_round_and_at_least_twice_the_gap(gap, timeout):
-    assert enough_timeout(gap) == timeout
-    assert timeout >= min(2.0 * gap, MOST_TIMEOUT)
+    assert reasons.enough_timeout(gap) == timeout
+    assert timeout >= min(2.0 * gap, reasons.MOST_TIMEOUT)
 
 
 def test_the_worst_kind_of_fault_is_told_alone():

@@ -9,8 +9,7 @@ import sqlite3
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.memory import Memory, record_of, RESTARTED
-from ballscrew_monitor.core.state import Event
-from ballscrew_monitor.core.tally import Totals
+from ballscrew_monitor.core.state import Event, Totals
 from ballscrew_monitor.node.restart_state import RestartState
 from ballscrew_monitor.node.state_database import FILE, read_entries
 from ballscrew_msgs.msg import BallScrewState

@@ -21,8 +21,7 @@ import types
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.inputs import InputSample, Source
 from ballscrew_monitor.core.memory import AxisRecord, Memory, record_of, RESTARTED
-from ballscrew_monitor.core.state import Event
-from ballscrew_monitor.core.tally import Totals
+from ballscrew_monitor.core.state import Event, Totals
 from ballscrew_monitor.judge.monitor import Monitor
 from ballscrew_monitor.node.alarm import Alarm
 from ballscrew_monitor.node.kept_axes import KeptAxes, PERIOD

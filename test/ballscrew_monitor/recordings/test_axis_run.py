@@ -226,7 +226,7 @@ def test_states_and_outcome_are_those_of_a_monitor_alone(happened, cut):
     assert list(map(without_joints, states)) == list(map(without_joints, wanted))
     assert sum(one.event is not None for one in wanted) <= len(events)
     outcome = run.outcome()
-    assert (outcome.states, outcome.judged) == (len(wanted), other.judged)
+    assert (outcome.states, outcome.judged) == (len(wanted), other.memory.judged)
     assert len(outcome.events) == other.event.number
 
 

@@ -6,7 +6,7 @@ import itertools
 from pathlib import Path
 
 from ballscrew_monitor.core.fields import stamp_of
-from ballscrew_monitor.core.input_status import InputState
+from ballscrew_monitor.core.inputs import InputState
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
 from ballscrew_monitor.recordings.bulk.order import LONGEST_HOLE

@@ -10,10 +10,9 @@ import types
 
 from ballscrew_monitor.core.conversions import Direction, SECOND
 from ballscrew_monitor.core.estimate import PointSource, PointValidity
-from ballscrew_monitor.core.input_status import InputState, InputStatus
-from ballscrew_monitor.core.inputs import Source, StampSource
+from ballscrew_monitor.core.inputs import InputState, InputStatus, Source, StampSource
 from ballscrew_monitor.core.judgement import Level, Zone
-from ballscrew_monitor.core.tally import Totals
+from ballscrew_monitor.core.state import Totals
 from ballscrew_monitor.recordings.columns import AxisOutcome, COLUMNS, JudgedColumns, Reason
 from ballscrew_monitor.recordings.summary import EventRecord
 from ballscrew_monitor.report.judging import CaseMaker

@@ -5,8 +5,7 @@
 import math
 
 from ballscrew_monitor.core.estimate import PointSource
-from ballscrew_monitor.core.input_status import InputState
-from ballscrew_monitor.core.inputs import Source, Why
+from ballscrew_monitor.core.inputs import InputState, Source, Why
 from ballscrew_monitor.report.inputs_seen import inputs_seen, REFUSALS, Trouble
 import numpy as np
 import pytest

@@ -6,7 +6,7 @@ import math
 
 from ballscrew_monitor.core.inputs import Source, Why
 from ballscrew_monitor.core.judgement import Zone
-from ballscrew_monitor.core.tally import Totals
+from ballscrew_monitor.core.state import Totals
 from ballscrew_monitor.recordings.columns import Reason
 from ballscrew_monitor.report.case import LogCase
 from ballscrew_monitor.report.printed import axis_lines, log_lines, printed_records

@@ -11,17 +11,13 @@ CONFIG = Path(__file__).resolve().parents[3] / 'config' / 'nominal_cycle.yaml'
 
 
 def test_the_inputs_are_those_of_the_parameters():
-    assert input_topics(read_file(CONFIG)) == {
-        '/joint_states': 'sensor_msgs/msg/JointState',
+    """A load of the motor torque has no topic."""
+    speed = {'/joint_states': 'sensor_msgs/msg/JointState'}
+    assert input_topics(read_file(CONFIG)) == speed | {
         '/axial_load': 'geometry_msgs/msg/WrenchStamped',
         '/oil_temperature': 'sensor_msgs/msg/Temperature',
     }
-
-
-def test_a_load_of_the_motor_torque_has_no_topic():
-    assert input_topics(read_file(CONFIG.with_name('motor_current.yaml'))) == {
-        '/joint_states': 'sensor_msgs/msg/JointState'
-    }
+    assert input_topics(read_file(CONFIG.with_name('motor_current.yaml'))) == speed
 
 
 def test_empty_types_are_filled_in_by_topic():

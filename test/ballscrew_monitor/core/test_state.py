@@ -5,7 +5,7 @@
 import math
 
 from ballscrew_monitor.core.conversions import clock_text, SECOND
-from ballscrew_monitor.core.shelving import LONGEST, NOT_SHELVED, shelve, Shelving
+from ballscrew_monitor.core.state import LONGEST_SHELVING, NOT_SHELVED, shelve, Shelving
 import pytest
 from surrogate.files import InputError
 
@@ -22,8 +22,8 @@ def test_it_holds_until_its_time_and_not_at_it():
 
 def test_a_clock_that_is_set_back_shelves_no_longer_than_a_day():
     shelving = shelve(NOW, 86400.0, 'why')
-    assert shelving.at(shelving.until - LONGEST) is shelving
-    assert shelving.at(shelving.until - LONGEST - 1) is NOT_SHELVED
+    assert shelving.at(shelving.until - LONGEST_SHELVING) is shelving
+    assert shelving.at(shelving.until - LONGEST_SHELVING - 1) is NOT_SHELVED
     assert shelving.at(10 * SECOND) is NOT_SHELVED
 
 
