@@ -26,7 +26,7 @@ from ballscrew_monitor.cycle.plan import Plan, RECORDING
 from ballscrew_monitor.cycle.shared_memory import remove_stale
 from ballscrew_monitor.cycle.supervision import RunFailure, Supervision
 from ballscrew_monitor.recordings.bag_writer import BagWriter
-from ballscrew_monitor.report.products import remove_report
+from ballscrew_monitor.report.logs import remove_report
 from surrogate.files import InputError
 
 LOCK = '.lock'

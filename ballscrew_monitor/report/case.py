@@ -18,6 +18,8 @@ from surrogate.surface import Surface
 
 Blocks = Callable[[], Iterable[JudgedColumns]]
 """Gives the blocks of rows of an axis in order, as often as it is called."""
+Assumed = Mapping[str, Mapping[str, Any]]
+"""What is assumed by what it is about, each with value and reason."""
 RCS = 'RCS'
 FIRST_DATE = 978_307_200.0
 """Stamps before this [s since 1970] are no calendar: logs without one begin in the year 2000."""
@@ -40,45 +42,27 @@ class InputSetting:
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class AxisCase:
+class AxisFacts:
     """
-    An axis that has rows; `inputs` holds those that have a topic; `blocks` gives the rows again.
+    What is known of an axis but for its rows.
 
     `load_from` is the input that its load is worked out from, empty where the load is measured;
     `assumed` says by name what else is not known, each with value and reason; `stated` names what
     somebody states, by its place in a map, `defaulted` what stands at its default there; `lead`
-    [m] is that of the map, NaN without one. `nominal`: the parameters are those taken where nobody
-    gave any; `numbered`: the recording tells how many messages were lost on their way to it.
+    [m] is that of the map, NaN without one.
 
     """
 
-    axis: str
-    surface: Surface
-    settings: MonitorSettings
-    inputs: Mapping[Source, InputSetting]
-    outcome: AxisOutcome
-    survey: Survey
-    blocks: Blocks = tuple  # none are kept
     load_from: str = ''
-    assumed: Mapping[str, Mapping[str, Any]] = dataclasses.field(default_factory=dict)
+    assumed: Assumed = dataclasses.field(default_factory=dict)
     stated: frozenset[str] = frozenset()
     defaulted: frozenset[str] = frozenset()
     lead: float = math.nan
-    nominal: bool = False
-    numbered: bool = False
 
     @property
     def is_mapped(self) -> bool:
         """Tell whether its inputs are columns of a table, as a map says."""
         return 'lead_mm' in self.stated or 'lead_mm' in self.assumed  # no map is without it
-
-    @property
-    def load_origin(self) -> str:
-        """Return in words what its load is worked out from, empty where it is measured."""
-        if self.load_from:
-            return f'worked out from the motor {self.load_from.removeprefix("motor_")}'
-        derived = PointSource.DERIVED in self.survey.sources[Source.LOAD]
-        return 'worked out from the motor torque' if derived else ''
 
     @property
     def torque_from_current(self) -> bool:
@@ -90,6 +74,36 @@ class AxisCase:
     def default_temperature_known(self) -> str:
         """Return how its default oil temperature is known, stated or assumed."""
         return 'stated' if 'temperature_degC' in self.stated else 'assumed'
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class AxisCase:
+    """
+    An axis that has rows; `inputs` holds those that have a topic; `blocks` gives the rows again.
+
+    `nominal`: the parameters are those taken where nobody gave any; `numbered`: the recording
+    tells how many messages were lost on their way to it.
+
+    """
+
+    axis: str
+    surface: Surface
+    settings: MonitorSettings
+    inputs: Mapping[Source, InputSetting]
+    outcome: AxisOutcome
+    survey: Survey
+    blocks: Blocks = tuple  # none are kept
+    facts: AxisFacts = AxisFacts()
+    nominal: bool = False
+    numbered: bool = False
+
+    @property
+    def load_origin(self) -> str:
+        """Return in words what its load is worked out from, empty where it is measured."""
+        if self.facts.load_from:
+            return f'worked out from the motor {self.facts.load_from.removeprefix("motor_")}'
+        derived = PointSource.DERIVED in self.survey.sources[Source.LOAD]
+        return 'worked out from the motor torque' if derived else ''
 
     def since_first(self, stamp: int) -> float:
         """Return a stamp [ns] as time on the time line of the page [s]."""
@@ -134,7 +148,7 @@ class LogCase:
     parameters: str
     axes: Sequence[AxisCase]
     empty: Sequence[str] = ()
-    assumptions: Mapping[str, Mapping[str, Any]] = dataclasses.field(default_factory=dict)
+    assumptions: Assumed = dataclasses.field(default_factory=dict)
     notes: Sequence[str] = ()
 
     @property

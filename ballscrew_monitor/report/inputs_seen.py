@@ -156,7 +156,7 @@ def _seen(case: AxisCase, source: Source) -> InputSeen:
         low=heard.low,
         high=heard.high,
         rate=_rate(case, source),
-        rate_assumed='time.rate_Hz' in case.assumed,
+        rate_assumed='time.rate_Hz' in case.facts.assumed,
         received=status.received,
         refused=_refused(case, source),
         left_out=status.dropped - refused,
@@ -190,15 +190,17 @@ def _rate(case: AxisCase, source: Source) -> float:
 
 def _origin(case: AxisCase, source: Source) -> str:
     """Return where the numbers of an input come from; what is in part assumed says so."""
-    name, origin = source.name.lower(), MEASURED
+    facts, name, origin = case.facts, source.name.lower(), MEASURED
     if source is Source.LOAD and case.load_origin:
-        name, origin = case.load_from.removeprefix('motor_'), case.load_origin
-    elif source is Source.SPEED and (case.inputs[source].from_position or 'speed' in case.assumed):
+        name, origin = facts.load_from.removeprefix('motor_'), case.load_origin
+    elif source is Source.SPEED and (
+        case.inputs[source].from_position or 'speed' in facts.assumed
+    ):
         name, origin = 'position', 'worked out from the position'
-    elif source is Source.TORQUE and case.torque_from_current:
+    elif source is Source.TORQUE and facts.torque_from_current:
         name, origin = 'current', 'worked out from the current'
-    doubtful = [part for part in ('column', 'unit') if f'{name}.{part}' in case.assumed]
-    if name == 'current' and 'torque_constant_Nm_per_A' in case.assumed:
+    doubtful = [part for part in ('column', 'unit') if f'{name}.{part}' in facts.assumed]
+    if name == 'current' and 'torque_constant_Nm_per_A' in facts.assumed:
         doubtful.append('torque constant')
     return f'{origin}, {" and ".join(doubtful)} assumed' if doubtful else origin
 
@@ -212,7 +214,7 @@ def _without_topic(case: AxisCase, source: Source, sources: frozenset[PointSourc
             source=source, origin=origin, measured=False, unit='N', low=span.low, high=span.high
         )
     if PointSource.DEFAULT in sources:
-        known = case.default_temperature_known
+        known = case.facts.default_temperature_known
         origin = f'{known}, {celsius(case.settings.default_temperature):.4g} °C'
         return InputSeen(source=source, origin=origin, measured=False, stated=known == 'stated')
     return InputSeen(source=source, origin='not recorded', measured=False)
@@ -241,9 +243,9 @@ def _hints(case: AxisCase, source: Source, setting: InputSetting, heard: Heard) 
         known=known_range(case.surface, source, setting.unit),
     )
     hints = unit_doubts(facts, heard)
-    if hints and case.is_mapped:  # the units that it names are those of the bag
+    if hints and case.facts.is_mapped:  # the units that it names are those of the bag
         hints = [f'{facts.parameter}: its numbers are far outside the surface: {IN_THE_MAP}']
-    cure = IN_THE_MAP if case.is_mapped else f'check {facts.parameter}.unit and scale'
+    cure = IN_THE_MAP if case.facts.is_mapped else f'check {facts.parameter}.unit and scale'
     if case.outcome.refused.get(source, {}).get(Why.IMPLAUSIBLE):
         hints.append(f'{facts.parameter}: samples beyond what is plausible were refused: {cure}')
     hints += _of_time(heard.status, facts.parameter)
@@ -294,7 +296,7 @@ def _of_speed(
     ]
     if not others:
         return [said]
-    if case.is_mapped:
+    if case.facts.is_mapped:
         return [f'{said}: {cure}']
     return [f'{said}, which may be {" or ".join(others)}: then set {parameter}.unit']
 

@@ -7,9 +7,8 @@ Printing asks for no more than the node: nothing here loads what pages and table
 
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 import functools
-import math
 from typing import Any, TYPE_CHECKING
 
 from ballscrew_monitor.core.conversions import POSITION_UNITS
@@ -19,7 +18,7 @@ from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.columns import AxisOutcome, JudgedColumns
 from ballscrew_monitor.recordings.own_recording import is_as_recorded
 from ballscrew_monitor.recordings.replay import ignore, replay_columns, replay_parts
-from ballscrew_monitor.report.case import AxisCase, InputSetting, LogCase
+from ballscrew_monitor.report.case import AxisCase, AxisFacts, InputSetting, LogCase
 from ballscrew_monitor.report.parameters import LogParameters
 from ballscrew_monitor.report.survey import Surveyor
 from ballscrew_monitor.settings.axis import is_configured, load_surface, scalings_of, settings_of
@@ -57,14 +56,15 @@ class CaseMaker:
             axis=self._axis,
             surface=self._surface,
             settings=self._settings,
-            inputs={source: self._setting(source) for source in Source if self._has(source)},
+            inputs={
+                source: self._setting(source)
+                for source in Source
+                if is_configured(self._axis, self._values, source)
+            },
             outcome=outcome,
             survey=self._surveyor.result(),
             **known,
         )
-
-    def _has(self, source: Source) -> bool:
-        return is_configured(self._axis, self._values, source)
 
     def _setting(self, source: Source) -> InputSetting:
         prefix, values = f'{self._axis}.{source.name.lower()}', self._values
@@ -113,15 +113,16 @@ def judge_log(
             makers[one.axis].case(
                 one,
                 blocks=tuple if rows is None else functools.partial(rows.blocks, one.axis),
+                facts=parameters.axes.get(one.axis, AxisFacts()),
+                nominal=parameters.nominal,
                 numbered=numbered,
-                **_known(parameters, one.axis),
             )
             for one in outcomes
             if one.axis in makers
         ],
         empty=[one.axis for one in outcomes if one.axis not in makers],
         assumptions=parameters.assumptions,
-        notes=_notes(parameters, bag),
+        notes=[*parameters.notes, *bag.notes],
     )
 
 
@@ -137,19 +138,3 @@ def _parts(
             on_state(part)
         else:
             yield part
-
-
-def _known(parameters: LogParameters, axis: str) -> dict[str, Any]:
-    """Return what is known of an axis beside its rows."""
-    return {
-        'load_from': parameters.load_from.get(axis, ''),
-        'assumed': parameters.of_axis(axis),
-        'stated': parameters.stated_of(axis),
-        'defaulted': parameters.defaulted_of(axis),
-        'lead': parameters.leads.get(axis, math.nan),
-        'nominal': parameters.nominal,
-    }
-
-
-def _notes(parameters: LogParameters, bag: Bag) -> Sequence[str]:
-    return [*parameters.notes, *bag.notes]

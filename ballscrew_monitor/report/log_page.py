@@ -11,10 +11,9 @@ from ballscrew_monitor.core.conversions import seconds
 from ballscrew_monitor.recordings.declared import plain
 from ballscrew_monitor.report import observed, parts, provenance
 from ballscrew_monitor.report.case import AxisCase, LogCase
-from ballscrew_monitor.report.encoding import script_json
 from ballscrew_monitor.report.map_record import map_legend, operating_map, OperatingMap
 from ballscrew_monitor.report.markup import element, joined, Markup, swatch
-from ballscrew_monitor.report.page import CHARTS, page
+from ballscrew_monitor.report.page import CHARTS, page, script_json
 from ballscrew_monitor.report.page_budget import (
     axis_budgets,
     AxisBudget,

@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Which recordings are meant: bags, files, and folders that hold some."""
+"""Which recordings are meant, bags, files, and folders that hold some; and folders of reports."""
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
@@ -150,3 +150,30 @@ def folder_names(logs: Sequence[Path]) -> list[str]:
     return (
         names if len(set(names)) == len(names) else [f'{i + 1}-{n}' for i, n in enumerate(names)]
     )
+
+
+def replace_report(made: Path, out: Path) -> None:
+    """
+    Let the page and the products in `made` take the place of those in `out`.
+
+    Products without a page look like recordings: the old ones go before the page is replaced, the
+    new ones come after it. So whatever stops it, none is beside a page that is not its own.
+
+    """
+    products = {path.relative_to(made) for path in made.rglob('*') if path.is_file()} - {
+        Path(PAGE)
+    }
+    stale = {Path(PICTURE)} if (out / PICTURE).exists() else set()
+    for name in products | stale:
+        (out / name).unlink(missing_ok=True)
+    (made / PAGE).replace(out / PAGE)
+    for name in products:
+        (out / name).parent.mkdir(exist_ok=True)
+        (made / name).replace(out / name)
+
+
+def remove_report(out: Path) -> None:
+    """Remove a report from `out`, its page last."""
+    judged = (f'{JUDGED}/{JUDGED}.mcap', f'{JUDGED}/metadata.yaml')
+    for name in (*judged, STATES, EVENTS, SUMMARY, PICTURE, PAGE):
+        (out / name).unlink(missing_ok=True)

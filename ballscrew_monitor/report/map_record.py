@@ -13,7 +13,6 @@ from ballscrew_monitor.core.judgement import Limits, Zone
 from ballscrew_monitor.recordings.columns import JudgedColumns
 from ballscrew_monitor.recordings.declared import written
 from ballscrew_monitor.report.case import AxisCase
-from ballscrew_monitor.report.encoding import floats, packed
 from ballscrew_monitor.report.operating_field import (
     Field,
     judged_speeds,
@@ -21,6 +20,7 @@ from ballscrew_monitor.report.operating_field import (
     map_temperatures,
     sample,
 )
+from ballscrew_monitor.report.page import floats, packed
 from ballscrew_monitor.report.page_budget import PATH_POINTS
 from ballscrew_monitor.report.survey import opposing_loads, Span
 from contourpy import contour_generator

@@ -44,20 +44,22 @@ def joined(content: Iterable[str]) -> Markup:
     )
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+@dataclasses.dataclass(frozen=True, slots=True)
 class TableCell:
     """What a cell shows; `value` is what it is sorted by, `kind` its class."""
 
     text: str
+    _: dataclasses.KW_ONLY
     kind: str = ''
     value: float | None = None
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+@dataclasses.dataclass(frozen=True, slots=True)
 class TableRow:
-    """Cells of a row, and the time [s] that it leads to if any."""
+    """Cells of a row, or their texts alone, and the time [s] that it leads to if any."""
 
-    cells: Sequence[TableCell]
+    cells: Sequence[TableCell | str]
+    _: dataclasses.KW_ONLY
     begin: float | None = None
     end: float | None = None
     kind: str = ''
@@ -83,7 +85,7 @@ def _class_of(head: str) -> str | None:
 def _row(row: TableRow) -> Markup:
     cells = (
         element('td', cell.text, class_=cell.kind or None, data_value=_stated(cell.value))
-        for cell in row.cells
+        for cell in (TableCell(one) if isinstance(one, str) else one for one in row.cells)
     )
     return element(
         'tr',

@@ -84,15 +84,15 @@ def _input_row(seen: InputSeen) -> TableRow:
     tag = element('span', seen.origin, class_=TAGS[seen.known])
     rate = number(seen.rate, 4) + (' assumed' if seen.rate_assumed else '')
     return TableRow(
-        cells=(
-            TableCell(text=NAMES[seen.source]),
-            TableCell(text=tag, kind='place'),
-            TableCell(text=number(seen.low, 4), kind='short'),
-            TableCell(text=number(seen.high, 4), kind='short'),
-            TableCell(text=shown_unit(seen.unit), kind='short'),
-            TableCell(text=rate, kind='number'),
-            TableCell(text=seen.place, kind='place'),
-            TableCell(text=seen.refused or 'none' if seen.place else ''),
+        (
+            NAMES[seen.source],
+            TableCell(tag, kind='place'),
+            TableCell(number(seen.low, 4), kind='short'),
+            TableCell(number(seen.high, 4), kind='short'),
+            TableCell(shown_unit(seen.unit), kind='short'),
+            TableCell(rate, kind='number'),
+            TableCell(seen.place, kind='place'),
+            seen.refused or 'none' if seen.place else '',
         )
     )
 
@@ -102,12 +102,7 @@ def _trouble_table(seen: Sequence[InputSeen]) -> Iterable[Markup]:
     heads = [head for head in Trouble if any(head in one.troubles for one in seen)]
     if heads:
         rows = (
-            TableRow(
-                cells=(
-                    TableCell(text=NAMES[one.source]),
-                    *(TableCell(text=one.troubles.get(head, NONE)) for head in heads),
-                )
-            )
+            TableRow((NAMES[one.source], *(one.troubles.get(head, NONE) for head in heads)))
             for one in seen
             if one.place
         )
@@ -122,10 +117,10 @@ def gaps_part(case: AxisCase, most: int = MOST_ROWS) -> Markup:
         times.append((f'not judged: {REST}', survey.rest))
     rows = [
         TableRow(
-            cells=(
-                TableCell(text=text),
-                TableCell(text=number(time, 4), kind='number', value=time),
-                TableCell(text=share(time, survey.span), kind='short'),
+            (
+                text,
+                TableCell(number(time, 4), kind='number', value=time),
+                TableCell(share(time, survey.span), kind='short'),
             )
         )
         for text, time in sorted(times, key=lambda row: -row[1])
@@ -162,9 +157,9 @@ def _gap_table(case: AxisCase, most: int) -> Iterable[Markup]:
     )
     rows = (
         TableRow(
-            cells=(
-                TableCell(text=f'{begin:.2f}', kind='number', value=begin),
-                TableCell(text=number(length, 4), kind='number', value=length),
+            (
+                TableCell(f'{begin:.2f}', kind='number', value=begin),
+                TableCell(number(length, 4), kind='number', value=length),
             ),
             begin=begin - 1.0,
             end=begin + length + 1.0,

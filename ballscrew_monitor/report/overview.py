@@ -97,28 +97,28 @@ def _row(one: LogEntry, line: AxisLine) -> TableRow:
     part = line.outside_time / line.running_time if line.running_time else math.nan
     link = element('a', one.name, href=f'{quote(one.folder)}/{PAGE}')
     return TableRow(
-        cells=(
-            TableCell(text=link, kind='place'),
-            TableCell(text=line.axis),
+        (
+            TableCell(link, kind='place'),
+            line.axis,
             TableCell(
                 text=element(
                     'span', line.verdict.partition(':')[0], class_=f'tag {line.standing}'
                 ),
                 kind='short',
             ),
-            TableCell(text=_date(line.begins), kind='short'),
+            TableCell(_date(line.begins), kind='short'),
             _time(line.recorded),
             _time(line.running_time),
-            TableCell(text=percent(part).removesuffix(' %'), kind='number', value=part),
-            TableCell(text=str(line.warnings), kind='short', value=line.warnings),
-            TableCell(text=line.worst or NONE, kind='short', value=line.depth),
+            TableCell(percent(part).removesuffix(' %'), kind='number', value=part),
+            TableCell(str(line.warnings), kind='short', value=line.warnings),
+            TableCell(line.worst or NONE, kind='short', value=line.depth),
         ),
         kind='bad' if line.standing == 'bad' else '',
     )
 
 
 def _time(seconds: float) -> TableCell:
-    return TableCell(text=duration(seconds), kind='short', value=seconds)
+    return TableCell(duration(seconds), kind='short', value=seconds)
 
 
 def _date(begins: float) -> str:

@@ -160,17 +160,17 @@ def _event_row(case: AxisCase, event: EventRecord, worst: bool) -> TableRow:
     todo = event.what_to_do
     lasts = number(event.duration, 4) + (' and still on' if event.active else '')
     return TableRow(
-        cells=(
-            TableCell(text=str(event.event_id), kind='number', value=event.event_id),
-            TableCell(text=f'{begin:.2f}', kind='number', value=begin),
-            TableCell(text=lasts, kind='number', value=event.duration),
-            TableCell(text=cause),
-            TableCell(text=event.shown(event.worst_value), kind='short', value=badness(event)[0]),
+        (
+            TableCell(str(event.event_id), kind='number', value=event.event_id),
+            TableCell(f'{begin:.2f}', kind='number', value=begin),
+            TableCell(lasts, kind='number', value=event.duration),
+            cause,
+            TableCell(event.shown(event.worst_value), kind='short', value=badness(event)[0]),
             TableCell(
                 text=f'{SIGNS.get(event.relation, event.relation)} {event.shown(event.limit)}',
                 kind='short',
             ),
-            TableCell(text=f'at {event.place}: {todo}' if event.place else todo or NONE),
+            f'at {event.place}: {todo}' if event.place else todo or NONE,
         ),
         begin=begin - margin,
         end=end + margin,

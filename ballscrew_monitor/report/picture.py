@@ -8,7 +8,7 @@ from pathlib import Path
 import re
 from typing import Any
 
-from ballscrew_monitor.report.buckets import TimedRows
+from ballscrew_monitor.report.buckets import Rows
 from ballscrew_monitor.report.case import AxisCase, LogCase
 from ballscrew_monitor.report.map_record import (
     longest_dwell,
@@ -18,8 +18,7 @@ from ballscrew_monitor.report.map_record import (
     OPTIMAL,
 )
 from ballscrew_monitor.report.page import component
-from ballscrew_monitor.report.panels import panels
-from ballscrew_monitor.report.time_series import BAR_LEGEND, BARS, drawn_rows
+from ballscrew_monitor.report.time_series import BAR_LEGEND, BARS, drawn_rows, panels
 from ballscrew_monitor.report.verdict import verdict_of
 from matplotlib.axes import Axes
 from matplotlib.colors import LinearSegmentedColormap, ListedColormap, LogNorm, to_rgba
@@ -73,7 +72,7 @@ def _draw_axis(part: SubFigure, case: AxisCase, chart: OperatingMap) -> None:
     )
     _draw_map(axes, case, chart)
     rows = drawn_rows(case)
-    shown = [one for one in panels(case.settings.limits) if _keys(one)[0] in rows.numbers]
+    shown = panels(case)
     strips = lower.subplots(
         1 + len(shown), 1, sharex=True, height_ratios=(80, *(panel['height'] for panel in shown))
     )
@@ -85,10 +84,6 @@ def _draw_axis(part: SubFigure, case: AxisCase, chart: OperatingMap) -> None:
             strip.axvspan(*span, color=COLOURS['outside'], alpha=0.14, linewidth=0.0, zorder=0)
     strips[-1].set_xlim(0.0, case.survey.span or 1.0)
     strips[-1].set_xlabel('time [s]')
-
-
-def _keys(panel: dict[str, Any]) -> list[str]:
-    return [series['key'] for series in panel['series']]
 
 
 def _draw_map(axes: Axes, case: AxisCase, chart: OperatingMap) -> None:
@@ -175,13 +170,13 @@ def _legend(axes: Axes, entries: list[Any], height: float) -> None:
     axes.legend(handles=entries, ncols=3, frameon=False, fontsize=8, **place)
 
 
-def _draw_bars(axes: Axes, case: AxisCase, rows: TimedRows) -> None:
+def _draw_bars(axes: Axes, case: AxisCase, rows: Rows) -> None:
     """Draw regime, zone and warning as bars, the last one with the numbers of the worst events."""
-    edges = np.append(rows.time, rows.time[-1])
+    edges = np.append(rows['time'], rows['time'][-1])
     for place, (key, _, colours) in enumerate(reversed(BARS)):
         cmap = ListedColormap([COLOURS[colour] for colour in colours])
         limits: dict[str, Any] = {'vmin': -0.5, 'vmax': len(colours) - 0.5}
-        axes.pcolormesh(edges, [place, place + 0.9], rows.codes[key][None], cmap=cmap, **limits)
+        axes.pcolormesh(edges, [place, place + 0.9], rows[key][None], cmap=cmap, **limits)
     for event in case.worst_first[:MARKED]:
         middle = 0.5 * (case.since_first(event.start) + case.since_first(event.end))
         axes.text(middle, 0.45, str(event.event_id), fontsize=8, **CENTRED)
@@ -191,15 +186,15 @@ def _draw_bars(axes: Axes, case: AxisCase, rows: TimedRows) -> None:
     _legend(axes, [_entry(kind, label=text) for kind, text in BAR_LEGEND if kind in COLOURS], 2.0)
 
 
-def _draw_panel(axes: Axes, panel: dict[str, Any], rows: TimedRows) -> None:
+def _draw_panel(axes: Axes, panel: dict[str, Any], rows: Rows) -> None:
     """Draw the numbers of a panel with its limits and bands; what is below its floor, on it."""
     floor, seen = panel['floor'], list(panel['show'])
     for series in panel['series']:
-        values = rows.numbers[series['key']]
+        values = rows[series['key']]
         values = values if floor is None else np.maximum(values, floor)
         style = 'dashed' if series['dashed'] else 'solid'
         axes.plot(
-            rows.time, values, color=COLOURS[series['colour']], linewidth=0.8, linestyle=style
+            rows['time'], values, color=COLOURS[series['colour']], linewidth=0.8, linestyle=style
         )
         known = values[np.isfinite(values)]
         seen += [known.min(), known.max()] if known.size else []

@@ -11,7 +11,7 @@ from ballscrew_monitor.recordings.log_facts import grouped
 from ballscrew_monitor.recordings.words import shown_unit
 from ballscrew_monitor.report.case import AxisCase
 from ballscrew_monitor.report.inputs_seen import inputs_seen, NAMES
-from ballscrew_monitor.report.markup import element, joined, Markup, table, TableCell, TableRow
+from ballscrew_monitor.report.markup import element, joined, Markup, table, TableRow
 from surrogate.units import MILLI
 
 TIERS = {
@@ -59,9 +59,9 @@ def _assumed_names(case: AxisCase) -> Iterable[str]:
         yield from (KEYS['screw'], KEYS['oil'])
     if case.load_origin:
         yield f'axial load, {case.load_origin}'
-    if Source.TEMPERATURE not in case.inputs and case.default_temperature_known == 'assumed':
+    if Source.TEMPERATURE not in case.inputs and case.facts.default_temperature_known == 'assumed':
         yield f'oil temperature of {celsius(case.settings.default_temperature):g} °C'
-    for key, one in case.assumed.items():
+    for key, one in case.facts.assumed.items():
         if key not in ('load.from', 'load', 'temperature_degC'):
             yield _assumed_name(key, one.get('value'))
 
@@ -99,7 +99,7 @@ def assumptions_part(case: AxisCase, parameters: str) -> Markup:
     rows = [_fact_row(*fact) for fact in facts]
     rows += [
         _fact_row(f'Assumed: {key}', f'{one.get("value")}: {one.get("reason", "")}', 'assumed')
-        for key, one in case.assumed.items()
+        for key, one in case.facts.assumed.items()
     ]
     return joined(
         [
@@ -116,18 +116,18 @@ def assumptions_part(case: AxisCase, parameters: str) -> Markup:
 
 
 def _stated(case: AxisCase, key: str) -> str:
-    unsaid = case.nominal or key in case.assumed or key in case.defaulted
+    unsaid = case.nominal or key in case.facts.assumed or key in case.facts.defaulted
     return 'assumed' if unsaid else 'stated'
 
 
 def _leads(case: AxisCase) -> list[tuple[str, str, str]]:
     """Return the lead, and that of the surface where it is another."""
     used, known = case.surface.lead, _stated(case, 'lead_mm')
-    if math.isnan(case.lead) or math.isclose(case.lead, used, rel_tol=1e-6):
+    if math.isnan(case.facts.lead) or math.isclose(case.facts.lead, used, rel_tol=1e-6):
         return [('Lead', f'{MILLI * used:g} mm', known)]
     text = f'{MILLI * used:g} mm, not that of the axis: build the surface of this screw'
     return [
-        ('Lead', f'{MILLI * case.lead:g} mm', known),
+        ('Lead', f'{MILLI * case.facts.lead:g} mm', known),
         ('Lead of the surface', text, 'contradiction'),
     ]
 
@@ -148,10 +148,4 @@ def _conditions(case: AxisCase) -> list[tuple[str, str, str]]:
 
 
 def _fact_row(name: str, value: str, known: str) -> TableRow:
-    return TableRow(
-        cells=(
-            TableCell(text=name),
-            TableCell(text=value),
-            TableCell(text=element('span', known, class_=TAGS[known])),
-        )
-    )
+    return TableRow((name, value, element('span', known, class_=TAGS[known])))

@@ -22,10 +22,9 @@ from ballscrew_monitor.messages.reasons import enough_timeout
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic, whole_bag
 from ballscrew_monitor.recordings.log_facts import Assumption, LogFacts
 from ballscrew_monitor.recordings.progress import Shown, silent
-from ballscrew_monitor.recordings.tables.agreement import Agreement
 from ballscrew_monitor.recordings.tables.cells import Array
 from ballscrew_monitor.recordings.tables.mapping import AxisMap, TableMap
-from ballscrew_monitor.recordings.tables.series import Block, read_series, Series
+from ballscrew_monitor.recordings.tables.series import Agreement, Block, read_series, Series
 from ballscrew_monitor.settings import parameters
 from ballscrew_monitor.settings.axis import load_surface, MOTOR_TORQUE
 from ballscrew_monitor.settings.topics import absolute

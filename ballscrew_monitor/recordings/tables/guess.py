@@ -19,11 +19,10 @@ from ballscrew_monitor.core.conversions import (
     TIME_UNITS,
 )
 from ballscrew_monitor.recordings.progress import Shown, silent
-from ballscrew_monitor.recordings.tables import estimates
+from ballscrew_monitor.recordings.tables import estimates, names
 from ballscrew_monitor.recordings.tables.cells import Array
-from ballscrew_monitor.recordings.tables.groups import best, by_axis, left_out, told_by_words
 from ballscrew_monitor.recordings.tables.mapping import INPUTS, UNITS
-from ballscrew_monitor.recordings.tables.names import is_of_the_screw, Named, read_name
+from ballscrew_monitor.recordings.tables.names import Named, read_name
 from ballscrew_monitor.recordings.tables.read import column_names, open_table
 import numpy as np
 from surrogate.files import InputError
@@ -84,8 +83,8 @@ class _Guesser:
         self.notes: list[str] = []
         self.axes = {
             name: chosen
-            for name, found in by_axis(self.named).items()
-            if {'speed', 'position'} & set(chosen := best(found))
+            for name, found in names.by_axis(self.named).items()
+            if {'speed', 'position'} & set(chosen := names.best(found))
         }
         if not self.axes:
             raise InputError(
@@ -94,13 +93,13 @@ class _Guesser:
             )
         self.times = [one for one in self.named if one.kind == 'time']
         columns = [one for chosen in self.axes.values() for one in chosen.values()]
-        names = [one.column for one in [*columns, *self.times]]
-        table = open_table(path, names, strict=False, shown=shown)
-        rows = NUMBERS // len(names)
+        used = [one.column for one in [*columns, *self.times]]
+        table = open_table(path, used, strict=False, shown=shown)
+        rows = NUMBERS // len(used)
         # The first rows tell how the speeds go with the positions, all of them the ranges.
         self.data = table.head(rows)
         self.extremes = {name: one.extremes for name, one in table.readings.items()}
-        self.notes += [*table.notes, *told_by_words(self.named)]
+        self.notes += [*table.notes, *names.told_by_words(self.named)]
         if rows < table.rows:
             self.notes.append(f'rate and units are those of the first {rows} of {table.rows} rows')
         self._forget_texts()
@@ -177,8 +176,8 @@ class _Guesser:
 
     def _no_time(self) -> str:
         """Say why the log has no time: no column is one, or those that are do not rise."""
-        names = ', '.join(one.column for one in self.named if one.kind == 'time')
-        return f'the log has no time that rises ({names})' if names else 'the log has no time'
+        times = ', '.join(one.column for one in self.named if one.kind == 'time')
+        return f'the log has no time that rises ({times})' if times else 'the log has no time'
 
     def _motion(self, name: str, chosen: Mapping[str, Named]) -> tuple[str, Array, Array]:
         return name, self.data[chosen['position'].column], self.data[chosen['speed'].column]
@@ -269,7 +268,7 @@ class _Guesser:
 
     def _set_oil(self, name: str, place: dict[str, Any]) -> None:
         """Say of a temperature that does not say so that it is taken for that of the oil."""
-        if not is_of_the_screw(place['column']):
+        if not names.is_of_the_screw(place['column']):
             column = place.pop('column')
             self._assume(f'{name}.temperature.column', column, 'taken for that of the oil')
 
@@ -297,4 +296,4 @@ class _Guesser:
     def _say_what_is_left_out(self, axes: Mapping[str, Any], time: Mapping[str, Any]) -> None:
         used = {part.get('column') for axis in axes.values() for part in axis.values()}
         used |= {entry['value'] for entry in self.assumed.values()} | {time.get('column', '')}
-        self.notes += left_out([one for one in self.named if one.column not in used])
+        self.notes += names.left_out([one for one in self.named if one.column not in used])

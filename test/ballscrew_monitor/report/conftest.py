@@ -16,6 +16,7 @@ from ballscrew_monitor.core.judgement import Level, Zone
 from ballscrew_monitor.core.tally import Totals
 from ballscrew_monitor.recordings.columns import AxisOutcome, COLUMNS, JudgedColumns, Reason
 from ballscrew_monitor.recordings.summary import EventRecord
+from ballscrew_monitor.report.case import AxisFacts
 from ballscrew_monitor.report.judging import CaseMaker
 from ballscrew_monitor.settings.axis import build_axis
 from ballscrew_monitor.settings.parameters import defaults
@@ -25,6 +26,7 @@ from surrogate.surface import Regime
 
 BEGIN = 1_767_600_000 * SECOND
 """First stamp of what is made here [ns]."""
+AXIS_FACTS = {field.name for field in dataclasses.fields(AxisFacts)}
 BROWSERS = ('chromium', 'chromium-browser', 'google-chrome')
 
 
@@ -155,7 +157,10 @@ def make_case(blocks, events=(), *, totals=None, values=None, known=None, **chan
     maker = CaseMaker(axis, values)
     for block in blocks:
         maker.add(block)
-    return maker.case(outcome, blocks=lambda: iter(blocks), **(known or {}))
+    known = known or {}
+    facts = AxisFacts(**{key: one for key, one in known.items() if key in AXIS_FACTS})
+    flags = {key: one for key, one in known.items() if key not in AXIS_FACTS}
+    return maker.case(outcome, blocks=lambda: iter(blocks), facts=facts, **flags)
 
 
 def make_values(axis='x', **changes):

@@ -2,10 +2,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which recordings are meant by paths, and the folders of their reports."""
 
+import contextlib
 from pathlib import Path
 
 from ballscrew_monitor.report import log_report
-from ballscrew_monitor.report.logs import find_logs, folder_names, is_one_bag, left_out, map_for
+from ballscrew_monitor.report.logs import (
+    find_logs,
+    folder_names,
+    is_one_bag,
+    left_out,
+    map_for,
+    replace_report,
+)
 import pytest
 from surrogate.files import InputError
 
@@ -147,3 +155,40 @@ def test_each_report_has_a_folder_of_its_own():
 def test_a_name_that_looks_like_a_number_takes_no_others_folder():
     made = folder_names([Path('x/log.mcap'), Path('log-2.mcap'), Path('y/log.mcap')])
     assert len(set(made)) == 3
+
+
+NAMES = ('report.html', 'summary.json', 'states.parquet', 'judged/judged.mcap')
+
+
+@pytest.mark.parametrize('there', [False, True])
+@pytest.mark.parametrize('steps', range(2 * len(NAMES)))
+def test_products_are_never_beside_a_page_that_is_not_their_own(
+    tmp_path, monkeypatch, there, steps
+):
+    made, out = tmp_path / 'made', tmp_path / 'out'
+    for folder in (made, out):
+        (folder / 'judged').mkdir(parents=True)
+        for name in NAMES if there or folder == made else ():
+            (folder / name).write_text(folder.name)
+    (out / 'judged' / 'notes.txt').write_text('of a user')
+    left = iter(range(steps))
+    for name in ('replace', 'unlink'):
+        monkeypatch.setattr(Path, name, interrupted(getattr(Path, name), left))
+    with contextlib.suppress(KeyboardInterrupt):
+        replace_report(made, out)
+    found = {name: (out / name).read_text() for name in NAMES if (out / name).exists()}
+    assert len(set(found.values())) <= 1
+    assert not found or 'report.html' in found
+    assert (len(found) == len(NAMES) and 'made' in found.values()) == (steps == 2 * len(NAMES) - 1)
+    assert (out / 'judged' / 'notes.txt').exists()
+
+
+def interrupted(change, left):
+    """Return a change of a file that is interrupted when no more are left."""
+
+    def changed(*arguments, **options):
+        if next(left, None) is None:
+            raise KeyboardInterrupt
+        return change(*arguments, **options)
+
+    return changed

@@ -59,13 +59,7 @@ def test_markup_is_not_escaped_twice():
 def test_a_table_states_values_and_moments():
     made = table(
         ('Name', 'Time [s]'),
-        [
-            TableRow(
-                cells=(TableCell(text=HOSTILE), TableCell(text='1.5', value=1.5)),
-                begin=1.0,
-                end=2.0,
-            )
-        ],
+        [TableRow((HOSTILE, TableCell('1.5', value=1.5)), begin=1.0, end=2.0)],
     )
     tags = parsed(made).tags
     assert ('tr', {'data-begin': '1.0000', 'data-end': '2.0000'}) in tags

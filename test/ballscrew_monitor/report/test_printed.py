@@ -1,7 +1,8 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What a terminal says of a recording: the words of its page."""
+"""What a terminal says of a recording, and its JSON with a reason for every missing number."""
 
+import json
 import math
 
 from ballscrew_monitor.core.inputs import Source, Why
@@ -9,9 +10,9 @@ from ballscrew_monitor.core.judgement import Zone
 from ballscrew_monitor.core.tally import Totals
 from ballscrew_monitor.recordings.columns import Reason
 from ballscrew_monitor.report.case import LogCase
-from ballscrew_monitor.report.printed import axis_lines, log_lines, printed_records
-from ballscrew_monitor.report.products import summary_record
+from ballscrew_monitor.report.printed import axis_lines, log_lines, printed_records, summary_record
 import numpy as np
+from surrogate.files import json_text
 
 
 def still_case(judged):
@@ -108,3 +109,42 @@ def test_an_axis_without_rows_is_named(judged):
     assert list(log_lines(LogCase(name='log', parameters='', axes=[], empty=['y']))) == [
         'axis y: no usable sample'
     ]
+
+
+def test_the_summary_is_strict_json_with_reasons_for_null(judged):
+    def refuse(name):
+        raise ValueError(name)
+
+    events = [judged.event(1, 0.1, 0.2), judged.event(2, 0.5, 0.1, active=True)]
+    log = LogCase(
+        name='log',
+        parameters='my.yaml',
+        axes=[judged.case([judged.columns()], events)],
+        empty=['y'],
+        assumptions={'x.lead': {'value': 0.01, 'reason': 'usual'}},
+    )
+    record = json.loads(json_text(summary_record(log)), parse_constant=refuse)
+    assert record['unjudged_axes'] == ['y']
+    assert record['assumptions']['x.lead'] == {'value': 0.01, 'reason': 'usual'}
+    axis = record['axes']['x']
+    assert axis['standing'] == 'bad'
+    assert axis['torque_residual']['rms_Nm'] is None
+    assert axis['torque_residual']['rms_Nm_reason'] == 'no torque was measured in motion'
+    assert record['axes']['y'] is None
+    assert axis['inputs']['load']['lost_reason'] == 'the recording does not tell'
+    assert axis['inputs']['load']['lag_s_reason'] == 'its messages bear no stamp'
+    assert axis['inputs']['load']['gaps'] == {'count': 0, 'time_s': 0.0}
+    assert axis['inputs']['torque']['lowest_reason'] == 'the input is not recorded'
+    assert len(axis['totals']['events']) == 2
+    assert not unexplained(record)
+
+
+def unexplained(record, path=''):
+    """Return where a null has no reason beside it."""
+    found = []
+    for key, value in record.items():
+        if value is None and f'{key}_reason' not in record:
+            found.append(f'{path}/{key}')
+        elif isinstance(value, dict):
+            found += unexplained(value, f'{path}/{key}')
+    return found
