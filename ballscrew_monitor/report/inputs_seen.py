@@ -110,21 +110,16 @@ class InputSeen:
     def troubles(self) -> dict[Trouble, str]:
         """Return in words what is wrong with its messages; what went well has none."""
         lost = 'not known' if self.lost is None else str(self.lost)
-        found = {
-            Trouble.GAPS: f'{self.gaps.count}, in all {duration(self.gaps.time)}',
-            Trouble.SLOW: 'yes',
-            Trouble.LAG: f'{number(self.lag)} s',
-            Trouble.LOST: lost,
-            Trouble.LEFT_OUT: f'{self.left_out} out of order or of other joints',
-        }
-        there = {
-            Trouble.GAPS: self.gaps.count > 0,
-            Trouble.SLOW: self.slow,
-            Trouble.LAG: abs(self.lag) >= LAG_TOLD,
-            Trouble.LOST: self.numbered and self.lost != 0,
-            Trouble.LEFT_OUT: self.left_out > 0,
-        }
-        return {trouble: text for trouble, text in found.items() if there[trouble]}
+        gaps = f'{self.gaps.count}, in all {duration(self.gaps.time)}'
+        left_out = f'{self.left_out} out of order or of other joints'
+        found = (
+            (Trouble.GAPS, self.gaps.count > 0, gaps),
+            (Trouble.SLOW, self.slow, 'yes'),
+            (Trouble.LAG, abs(self.lag) >= LAG_TOLD, f'{number(self.lag)} s'),
+            (Trouble.LOST, self.numbered and self.lost != 0, lost),
+            (Trouble.LEFT_OUT, self.left_out > 0, left_out),
+        )
+        return {trouble: text for trouble, there, text in found if there}
 
     @property
     def known(self) -> str:

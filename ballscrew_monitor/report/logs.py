@@ -31,9 +31,23 @@ def find_logs(
     """
     found: list[Path] = []
     for path in paths:
-        whole = not path.is_dir() or is_one_bag(path, tables=tables, out=out)
-        found += [path] if whole else _inside(path, tables, out)
+        held = _recordings(path, tables, out)
+        if not held:
+            endings = (*ENDINGS, *TABLES) if tables else ENDINGS
+            raise InputError(
+                f'folder {path} holds no recording, it must hold bags or files of '
+                f'{" or ".join(endings)}{_hint(path)}'
+            )
+        found += held
     return list(dict.fromkeys(found))
+
+
+def _recordings(path: Path, tables: bool, out: Path | None) -> list[Path]:
+    """Return a path that is one recording, else those in a folder and in the ones below it."""
+    if not path.is_dir() or is_one_bag(path, tables=tables, out=out):
+        return [path]
+    below = [one for child in _folders(path, out) for one in _recordings(child, tables, out)]
+    return _files(path, (*ENDINGS, *TABLES) if tables else ENDINGS) + below
 
 
 def left_out(paths: Sequence[Path], logs: Sequence[Path], out: Path | None = None) -> list[str]:
@@ -87,21 +101,6 @@ def _stem(name: str) -> str:
     return name.removesuffix(next(endings, ''))
 
 
-def _inside(folder: Path, tables: bool, out: Path | None) -> list[Path]:
-    """Return the recordings in a folder and in those below it."""
-    endings = (*ENDINGS, *TABLES) if tables else ENDINGS
-    logs = _files(folder, endings)
-    for child in _folders(folder, out):
-        whole = is_one_bag(child, tables=tables, out=out)
-        logs += [child] if whole else _below(child, tables, out)
-    if not logs:
-        raise InputError(
-            f'folder {folder} holds no recording, it must hold bags or files of '
-            f'{" or ".join(endings)}{_hint(folder)}'
-        )
-    return logs
-
-
 def _hint(folder: Path) -> str:
     """Return what else is to be said of a folder without a recording that holds tables."""
     tables = _files(folder, TABLES)
@@ -110,13 +109,6 @@ def _hint(folder: Path) -> str:
     return (
         f'; for its tables: ballscrew import {tables[0]} --guess > map.yaml, then --map map.yaml'
     )
-
-
-def _below(folder: Path, tables: bool, out: Path | None) -> list[Path]:
-    try:
-        return _inside(folder, tables, out)
-    except InputError:  # one that holds other things
-        return []
 
 
 def _folders(folder: Path, out: Path | None) -> list[Path]:

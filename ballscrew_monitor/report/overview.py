@@ -10,8 +10,7 @@ from urllib.parse import quote
 
 from ballscrew_monitor.recordings.words import counted, duration, NONE, percent
 from ballscrew_monitor.report.log_report import AxisLine, LogResult, PAGE
-from ballscrew_monitor.report.markup import element, joined, Markup, table, TableCell, TableRow
-from ballscrew_monitor.report.page import page
+from ballscrew_monitor.report.page import element, joined, Markup, page, table, TableCell, TableRow
 
 SCRIPTS = ('format.js', 'table.js', 'overview.js')
 WIDTH, HEIGHT, EDGE = 720.0, 110.0, 8.0  # of the picture of a trend [px]
@@ -39,7 +38,7 @@ Listed = tuple[LogEntry, AxisLine]
 def overview_page(entries: Sequence[LogEntry], notes: Sequence[str] = ()) -> str:
     """Return the page over recordings, with sentences about what is not among them."""
     listed = [(one, line) for one in entries if one.result for line in one.result.lines]
-    listed.sort(key=lambda pair: _date_key(pair[1].begins))
+    listed.sort(key=lambda pair: -math.inf if math.isnan(pair[1].begins) else pair[1].begins)
     bad = [one for one in entries if one.result is None]
     body = element(
         'main',
@@ -66,10 +65,6 @@ def overview_page(entries: Sequence[LogEntry], notes: Sequence[str] = ()) -> str
         ),
     )
     return page('Ball screw reports', body, scripts=SCRIPTS)
-
-
-def _date_key(begins: float) -> float:
-    return begins if math.isfinite(begins) else -math.inf
 
 
 def _verdict(entries: Sequence[LogEntry], listed: Sequence[Listed]) -> Markup:
@@ -165,7 +160,7 @@ def _trend(axis: str, listed: Sequence[Listed]) -> Markup:
     span = f'{_date(first)} to {_date(last)}'
     total = math.fsum(line.running_time for _, _, _, line in points)
     text = f'{span}, {duration(total)} in motion; the highest point is {percent(most)}.'
-    return joined([element('h3', f'Axis {axis}'), drawn, element('p', text, class_='muted')])
+    return joined(element('h3', f'Axis {axis}'), drawn, element('p', text, class_='muted'))
 
 
 def _mark(x: float, y: float, one: LogEntry, line: AxisLine, part: float) -> Markup:

@@ -8,15 +8,10 @@ from pathlib import Path
 import re
 from typing import Any
 
+from ballscrew_monitor.report import map_record
 from ballscrew_monitor.report.buckets import Rows
 from ballscrew_monitor.report.case import AxisCase, LogCase
-from ballscrew_monitor.report.map_record import (
-    longest_dwell,
-    map_legend,
-    MARKED,
-    OperatingMap,
-    OPTIMAL,
-)
+from ballscrew_monitor.report.map_record import OperatingMap
 from ballscrew_monitor.report.page import component
 from ballscrew_monitor.report.time_series import BAR_LEGEND, BARS, drawn_rows, panels
 from ballscrew_monitor.report.verdict import verdict_of
@@ -104,15 +99,15 @@ def _draw_map(axes: Axes, case: AxisCase, chart: OperatingMap) -> None:
     axes.set(xlim=chart.speed, ylim=chart.load)
     axes.set_xlabel('screw speed, either direction [rev/min]')
     axes.set_ylabel('axial load [N]: assists | opposes')
-    entries = [_entry(*sample, label=text) for sample, text in map_legend(case, chart)]
+    entries = [_entry(*sample, label=text) for sample, text in map_record.map_legend(case, chart)]
     _legend(axes, entries, -0.1)
 
 
 def _draw_cells(axes: Axes, chart: OperatingMap) -> None:
     """Draw optimal zone, time spent and light load, as the page does."""
-    zone = np.ma.masked_not_equal(chart.zone, OPTIMAL)
+    zone = np.ma.masked_not_equal(chart.zone, map_record.OPTIMAL)
     axes.pcolormesh(*_edges(chart, zone), zone, cmap=ListedColormap([COLOURS['zone']]))
-    longest = longest_dwell(chart.dwell)
+    longest = map_record.longest_dwell(chart.dwell)
     heat = [to_rgba(COLOURS['heat'], opacity) for opacity in (0.1, DARKEST)]
     axes.pcolormesh(
         *_edges(chart, chart.dwell),
@@ -156,7 +151,7 @@ def _dashes(dash: str | None) -> Any:
 
 
 def _entry(kind: str, shape: str = 'fill', dash: str | None = None, *, label: str) -> Any:
-    """Return a sample of a colour, as `markup.swatch` does."""
+    """Return a sample of a colour, as `page.swatch` does."""
     colour = COLOURS.get(kind, COLOURS['muted'])
     if shape == 'line':
         return Line2D([], [], color=colour, linestyle=_dashes(dash), label=label)
@@ -177,7 +172,7 @@ def _draw_bars(axes: Axes, case: AxisCase, rows: Rows) -> None:
         cmap = ListedColormap([COLOURS[colour] for colour in colours])
         limits: dict[str, Any] = {'vmin': -0.5, 'vmax': len(colours) - 0.5}
         axes.pcolormesh(edges, [place, place + 0.9], rows[key][None], cmap=cmap, **limits)
-    for event in case.worst_first[:MARKED]:
+    for event in case.worst_first[: map_record.MARKED]:
         middle = 0.5 * (case.since_first(event.start) + case.since_first(event.end))
         axes.text(middle, 0.45, str(event.event_id), fontsize=8, **CENTRED)
     axes.set_yticks(np.arange(len(BARS)) + 0.45, [title for _, title, _ in reversed(BARS)])

@@ -187,13 +187,10 @@ def _advice(case: AxisCase) -> str:
 
 def _by_strictness(events: Sequence[EventRecord]) -> tuple[list[EventRecord], list[EventRecord]]:
     """Return those to run faster in and those to run slower in, the strictest first."""
-    slower = [event for event in events if abs(event.target_speed) < abs(event.speed)]
-    faster = [event for event in events if event not in slower]
-    return sorted(faster, key=_target, reverse=True), sorted(slower, key=_target)
-
-
-def _target(event: EventRecord) -> float:
-    return abs(event.target_speed)
+    slowest_first = sorted(events, key=lambda event: abs(event.target_speed))
+    fastest_first = sorted(events, key=lambda event: -abs(event.target_speed))
+    slower = [event for event in slowest_first if abs(event.target_speed) < abs(event.speed)]
+    return [event for event in fastest_first if event not in slower], slower
 
 
 def _of(events: Sequence[EventRecord], rank: str) -> str:

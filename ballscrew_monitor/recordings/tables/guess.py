@@ -13,11 +13,8 @@ import math
 from pathlib import Path
 from typing import Any
 
-from ballscrew_monitor.core.conversions import (
-    LINEAR_POSITION_UNITS,
-    LINEAR_SPEED_UNITS,
-    TIME_UNITS,
-)
+from ballscrew_monitor.core import conversions
+from ballscrew_monitor.core.conversions import LINEAR_POSITION_UNITS
 from ballscrew_monitor.recordings.progress import Shown, silent
 from ballscrew_monitor.recordings.tables import estimates, names
 from ballscrew_monitor.recordings.tables.cells import Array
@@ -146,7 +143,7 @@ class _Guesser:
             )
         if not absolute:
             self._assume_epoch(f'column {one.column} does not count from a known time')
-        step = float(np.nanmedian(np.diff(values))) * TIME_UNITS[unit]
+        step = float(np.nanmedian(np.diff(values))) * conversions.TIME_UNITS[unit]
         place = {'column': one.column}
         return place if 'time.unit' in self.assumed else place | {'unit': unit}, step
 
@@ -154,20 +151,19 @@ class _Guesser:
         self._assume('time.epoch', EPOCH, f'{why}, and a stamp of 0 means that there is none')
 
     def _assume_rate(self, axes: Mapping[str, Any]) -> None:
-        motions = [
-            self._motion(name, chosen)
+        motions = {
+            name: self._motion(name, chosen, axes)
             for name, chosen in self.axes.items()
             if {'speed', 'position'} <= set(chosen)
             and {self._unit(name, kind, axes) for kind in ('speed', 'position')}
-            <= set(LINEAR_SPEED_UNITS | LINEAR_POSITION_UNITS)
-        ]
-        found = estimates.period([self._in_metres(axes, *one) for one in motions])
+            <= set(conversions.LINEAR_SPEED_UNITS | LINEAR_POSITION_UNITS)
+        }
+        found = estimates.period(list(motions.values()))
         if math.isfinite(found):
             rate = estimates.usual_rate(found)
-            axes_used = ', '.join(name for name, _, _ in motions)
             why = (
-                f'{self._no_time()}; at {1.0 / found:.3g} Hz the speeds of axes {axes_used} '
-                'make their positions best'
+                f'{self._no_time()}; at {1.0 / found:.3g} Hz the speeds of axes '
+                f'{", ".join(motions)} make their positions best'
             )
         else:
             rate, why = RATE, f'{self._no_time()}, and nothing in it tells the rate'
@@ -179,15 +175,14 @@ class _Guesser:
         times = ', '.join(one.column for one in self.named if one.kind == 'time')
         return f'the log has no time that rises ({times})' if times else 'the log has no time'
 
-    def _motion(self, name: str, chosen: Mapping[str, Named]) -> tuple[str, Array, Array]:
-        return name, self.data[chosen['position'].column], self.data[chosen['speed'].column]
-
-    def _in_metres(
-        self, axes: Mapping[str, Any], name: str, position: Array, speed: Array
+    def _motion(
+        self, name: str, chosen: Mapping[str, Named], axes: Mapping[str, Any]
     ) -> tuple[Array, Array]:
+        """Return positions [m] and speeds [m/s] of an axis."""
+        position, speed = (self.data[chosen[kind].column] for kind in ('position', 'speed'))
         return (
             position * LINEAR_POSITION_UNITS[self._unit(name, 'position', axes)],
-            speed * LINEAR_SPEED_UNITS[self._unit(name, 'speed', axes)],
+            speed * conversions.LINEAR_SPEED_UNITS[self._unit(name, 'speed', axes)],
         )
 
     def _unit(self, name: str, kind: str, axes: Mapping[str, Any]) -> str:
@@ -220,7 +215,7 @@ class _Guesser:
         if 'speed' in used:
             speeds = self.extremes[used['speed']['column']]
             unit = self._unit(name, 'speed', {name: used})
-            self.notes += estimates.oddities(name, speeds, unit, LINEAR_SPEED_UNITS)
+            self.notes += estimates.oddities(name, speeds, unit, conversions.LINEAR_SPEED_UNITS)
         return used
 
     def _is_used(self, one: Named) -> bool:

@@ -6,14 +6,9 @@ from collections.abc import Sequence
 import dataclasses
 import re
 
+from ballscrew_monitor.recordings.tables import spelt_units
 from ballscrew_monitor.recordings.tables.mapping import INPUTS
-from ballscrew_monitor.recordings.tables.spelt_units import (
-    BRACKETS,
-    kind_by_unit,
-    unit_of,
-    words_of,
-    words_without_unit,
-)
+from ballscrew_monitor.recordings.tables.spelt_units import words_of
 
 LINEAR = frozenset('xyz')
 SECONDARY = frozenset('uvw')  # with a number: alone they mean other things, too
@@ -77,9 +72,9 @@ def read_name(column: str) -> Named:
     if not kind and not OTHERS & set(words):
         kind = _kind_by_unit(column, place)
         rank += 0 if is_of_the_screw(column) else BY_UNIT
-    unit = unit_of(column, kind)
+    unit = spelt_units.unit_of(column, kind)
     # In another unit than those of the quantity it is another quantity, such as a load in percent.
-    if BRACKETS.search(column) and not unit:
+    if spelt_units.BRACKETS.search(column) and not unit:
         kind = ''
     return Named(column=column, place=place, axis=axis, kind=kind, unit=unit, rank=rank)
 
@@ -123,9 +118,9 @@ def _kind(words: Sequence[str]) -> str:
 
 def _kind_by_unit(column: str, place: str) -> str:
     """Return the quantity that the unit of a column tells, where no other word may deny it."""
-    kind, before = kind_by_unit(column)
+    kind, before = spelt_units.kind_by_unit(column)
     if kind == 'time':
-        told = place == 'machine' and unit_of(column, kind) in TIMES_BY_UNIT
+        told = place == 'machine' and spelt_units.unit_of(column, kind) in TIMES_BY_UNIT
     else:
         told = all(len(word) == 1 or word in TELLS_NOTHING for word in words_of(before))
     return kind if told else ''
@@ -143,7 +138,7 @@ def _rank(words: Sequence[str]) -> int:
 
 def word_of_the_axis(named: Named) -> str:
     """Return the words of a name that say neither quantity nor unit: which axis is left."""
-    words = words_without_unit(named.column, named.kind)
+    words = spelt_units.words_without_unit(named.column, named.kind)
     dull = TELLS_NOTHING | QUALIFIERS | ELSEWHERE | KINDS.get(named.kind, frozenset())
     return '_'.join(word for word in words if word not in dull)
 

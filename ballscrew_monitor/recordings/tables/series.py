@@ -20,7 +20,7 @@ from ballscrew_monitor.recordings.tables.cells import Array
 from ballscrew_monitor.recordings.tables.estimates import FACTOR, NEAR
 from ballscrew_monitor.recordings.tables.mapping import AxisMap, TableMap
 from ballscrew_monitor.recordings.tables.read import open_table
-from ballscrew_monitor.recordings.tables.times import line, Rows, Stamps, Times
+from ballscrew_monitor.recordings.tables.times import joined, line, Rows, Stamps, Times
 import numpy as np
 from surrogate.units import TURN
 
@@ -102,9 +102,9 @@ def _with_neighbours(blocks: Iterable[Rows]) -> Iterator[tuple[Rows, slice]]:
     for later in itertools.chain(blocks, [None]):
         if now is not None:
             first = 0 if before is None else len(before.stamps)
-            window = now if before is None else before + now
-            window = window if later is None else window + later[:1]
-            yield window, slice(first, first + len(now.stamps))
+            window = [before, now, None if later is None else later[:1]]
+            held = joined([rows for rows in window if rows is not None])
+            yield held, slice(first, first + len(now.stamps))
             before = now[-1:]
         now = later
 

@@ -16,7 +16,7 @@ from ballscrew_monitor.core.judgement import Level, Zone
 from ballscrew_monitor.core.tally import Totals
 from ballscrew_monitor.recordings.columns import AxisOutcome, COLUMNS, JudgedColumns, Reason
 from ballscrew_monitor.recordings.summary import EventRecord
-from ballscrew_monitor.report.case import AxisFacts
+from ballscrew_monitor.report.case import AxisFacts, LogCase
 from ballscrew_monitor.report.judging import CaseMaker
 from ballscrew_monitor.settings.axis import build_axis
 from ballscrew_monitor.settings.parameters import defaults
@@ -163,6 +163,11 @@ def make_case(blocks, events=(), *, totals=None, values=None, known=None, **chan
     return maker.case(outcome, blocks=lambda: iter(blocks), facts=facts, **flags)
 
 
+def make_log(*cases, **changes):
+    """Return a recording that was judged."""
+    return LogCase(**{'name': 'log', 'parameters': 'my.yaml', 'axes': cases} | changes)
+
+
 def make_values(axis='x', **changes):
     """Return parameters of an axis with an oil temperature."""
     return defaults([axis]) | {f'{axis}.temperature.topic': 'oil_temperature'} | changes
@@ -177,6 +182,7 @@ def judged():
         event=make_event,
         status=make_status,
         case=make_case,
+        log=make_log,
         values=make_values,
     )
 

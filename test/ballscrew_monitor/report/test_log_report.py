@@ -10,7 +10,6 @@ from ballscrew_monitor.core.fields import stamp_of
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
 from ballscrew_monitor.recordings.replay import replay
-from ballscrew_monitor.report.case import LogCase
 from ballscrew_monitor.report.log_report import (
     JUDGED_SHARE,
     report_log,
@@ -234,7 +233,7 @@ def test_a_bag_that_does_not_fit_leaves_nothing(short_bag, params, tmp_path):
 def test_events_are_a_line_each(judged, tmp_path):
     events = [judged.event(1, 0.1, 0.2), judged.event(2, 0.5, 0.1, active=True)]
     case = judged.case([judged.columns()], events)
-    write_events(tmp_path / 'events.csv', LogCase(name='log', parameters='', axes=[case]))
+    write_events(tmp_path / 'events.csv', judged.log(case))
     with (tmp_path / 'events.csv').open(newline='', encoding='utf-8') as file:
         rows = list(csv.DictReader(file))
     assert [(row['axis'], row['event_id'], row['active']) for row in rows] == [
@@ -248,6 +247,6 @@ def test_events_are_a_line_each(judged, tmp_path):
 
 
 def test_no_event_is_a_table_without_lines(judged, tmp_path):
-    log = LogCase(name='log', parameters='', axes=[judged.case([judged.columns()])])
+    log = judged.log(judged.case([judged.columns()]))
     write_events(tmp_path / 'events.csv', log)
     assert (tmp_path / 'events.csv').read_text().startswith('axis,event_id,')

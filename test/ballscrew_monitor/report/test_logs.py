@@ -39,52 +39,50 @@ def test_a_folder_stands_for_what_it_holds(tmp_path):
     assert names(find_logs([tmp_path]), tmp_path) == ['a.mcap', 'deep/two', 'one']
 
 
-def test_parts_of_a_split_bag_are_one_recording(tmp_path):
-    touch(tmp_path / 'bag_0.mcap', tmp_path / 'bag_1.mcap')
-    assert is_one_bag(tmp_path)
-    touch(tmp_path / 'other.mcap')
-    assert not is_one_bag(tmp_path)
-    assert len(find_logs([tmp_path])) == 3
-
-
-@pytest.mark.parametrize('numbers', [(1, 2), (0, 2), (20260101, 20260102)])
-def test_files_whose_numbers_have_a_gap_are_recordings_of_their_own(tmp_path, numbers):
-    touch(*(tmp_path / f'bag_{number}.mcap' for number in numbers))
-    assert not is_one_bag(tmp_path)
-    assert len(find_logs([tmp_path])) == 2
+def parts(pattern, numbers=range(11)):
+    return [pattern.format(number) for number in numbers]
 
 
 @pytest.mark.parametrize(
-    'pattern', ['press.v2_{}.mcap', 'axis.2026-01-01_{}.mcap', 'a_1.b_{}.db3', 'a.b_{}.mcap.zstd']
-)
-def test_a_point_in_a_name_is_part_of_it(tmp_path, pattern):
-    touch(*(tmp_path / pattern.format(number) for number in range(11)))
-    assert is_one_bag(tmp_path)
-    touch(tmp_path / 'press.v3_0.mcap')
-    assert not is_one_bag(tmp_path)
-    assert len(find_logs([tmp_path])) == 12
-
-
-def test_a_part_that_is_not_finished_is_one_all_the_same(tmp_path):
-    touch(tmp_path / 'press.v2_0.mcap', tmp_path / 'press.v2_1.mcap.active')
-    assert is_one_bag(tmp_path)
-
-
-@pytest.mark.parametrize(
-    'pair',
+    'held',
     [
-        ('press.v2_0.mcap', 'press.v3_0.mcap'),
-        ('axis.2026-01-01_0.mcap', 'axis.2026-01-02_0.mcap'),
-        ('press.v2_0.mcap', 'press.v3_1.mcap'),
-        ('press_0.v2.mcap', 'press_1.v2.mcap'),
+        parts('bag_{}.mcap', range(2)),
+        parts('press.v2_{}.mcap'),
+        parts('axis.2026-01-01_{}.mcap'),
+        parts('a_1.b_{}.db3'),
+        parts('a.b_{}.mcap.zstd'),
+        ['press.v2_0.mcap', 'press.v2_1.mcap.active'],
     ],
 )
-def test_names_that_differ_before_the_ending_are_recordings_of_their_own(tmp_path, pair):
-    touch(*(tmp_path / name for name in pair))
+def test_parts_of_a_split_bag_are_one_recording(tmp_path, held):
+    """A point in a name is part of it, and a part that is not finished is one all the same."""
+    touch(*(tmp_path / name for name in held))
+    assert is_one_bag(tmp_path)
+    assert find_logs([tmp_path]) == [tmp_path]
+    touch(tmp_path / 'press.v3_0.mcap')
+    assert not is_one_bag(tmp_path)
+    finished = [name for name in held if not name.endswith('.active')]
+    assert names(find_logs([tmp_path]), tmp_path) == sorted([*finished, 'press.v3_0.mcap'])
+
+
+@pytest.mark.parametrize(
+    'held',
+    [
+        parts('bag_{}.mcap', (1, 2)),
+        parts('bag_{}.mcap', (0, 2)),
+        parts('bag_{}.mcap', (20260101, 20260102)),
+        ['press.v2_0.mcap', 'press.v3_0.mcap'],
+        ['axis.2026-01-01_0.mcap', 'axis.2026-01-02_0.mcap'],
+        ['press.v2_0.mcap', 'press.v3_1.mcap'],
+        ['press_0.v2.mcap', 'press_1.v2.mcap'],
+    ],
+)
+def test_files_of_other_names_or_with_a_gap_are_recordings_of_their_own(tmp_path, held):
+    touch(*(tmp_path / name for name in held))
     assert not is_one_bag(tmp_path)
     found = find_logs([tmp_path])
-    assert names(found, tmp_path) == sorted(pair)
-    assert folder_names(found) == [name.removesuffix('.mcap') for name in sorted(pair)]
+    assert names(found, tmp_path) == held
+    assert folder_names(found) == [name.removesuffix('.mcap') for name in held]
 
 
 def test_tables_count_beside_a_bag_where_they_are_asked_for(tmp_path):
