@@ -19,8 +19,7 @@ from ballscrew_monitor.recordings.progress import shown_progress
 from ballscrew_monitor.recordings.replay import axes_for
 from ballscrew_monitor.recordings.tables.mapping import read_map
 from ballscrew_monitor.recordings.words import counted
-from ballscrew_monitor.report.case import AxisCase, LogCase
-from ballscrew_monitor.report.judging import judge_log
+from ballscrew_monitor.report.judging import AxisCase, judge_log, LogCase
 from ballscrew_monitor.report.logs import find_logs, left_out, map_for, PAGE, SUMMARY
 from ballscrew_monitor.report.parameters import LogParameters, parameters_for
 from ballscrew_monitor.report.printed import log_lines, printed_records, summary_record, without

@@ -16,7 +16,7 @@ from ballscrew_monitor.messages.doctor import Heard, InputFacts, known_range, un
 from ballscrew_monitor.messages.reasons import slow_reason
 from ballscrew_monitor.recordings.declared import unwritten, written
 from ballscrew_monitor.recordings.words import duration, number
-from ballscrew_monitor.report.case import AxisCase, InputSetting
+from ballscrew_monitor.report.judging import AxisCase, InputSetting
 from ballscrew_monitor.report.survey import Gaps, Span
 from surrogate.units import RPM, TURN
 
@@ -272,7 +272,7 @@ def _of_speed(
     """Return that the axis never moves or moves too fast to be true."""
     if math.isnan(heard.high):
         return []
-    fastest = _amount(case, setting.unit, setting, heard)
+    fastest = _amount(setting.unit, setting, heard)
     limit, feed = case.settings.limits.standstill_speed, case.surface.lead / TURN
     if fastest * feed > FASTEST_FEED:
         return [
@@ -286,9 +286,7 @@ def _of_speed(
         f'numbers go from {heard.low:.3g} to {heard.high:.3g} {setting.unit}'
     )
     top = case.surface.speed_range[1]
-    others = [
-        unit for unit in setting.scalings if limit <= _amount(case, unit, setting, heard) <= top
-    ]
+    others = [unit for unit in setting.scalings if limit <= _amount(unit, setting, heard) <= top]
     if not others:
         return [said]
     if case.facts.is_mapped:
@@ -296,6 +294,6 @@ def _of_speed(
     return [f'{said}, which may be {" or ".join(others)}: then set {parameter}.unit']
 
 
-def _amount(case: AxisCase, unit: str, setting: InputSetting, heard: Heard) -> float:
+def _amount(unit: str, setting: InputSetting, heard: Heard) -> float:
     """Return the largest amount of the screw speed [rad/s] if the numbers were in a unit."""
     return max(abs(setting.scalings[unit](value)) for value in (heard.low, heard.high))

@@ -10,7 +10,7 @@ from typing import Any
 from ballscrew_monitor.core.conversions import seconds
 from ballscrew_monitor.recordings.declared import plain
 from ballscrew_monitor.report import page_budget, parts, provenance, time_series
-from ballscrew_monitor.report.case import AxisCase, LogCase
+from ballscrew_monitor.report.judging import AxisCase, LogCase
 from ballscrew_monitor.report.map_record import map_legend, operating_map, OperatingMap
 from ballscrew_monitor.report.page import CHARTS, element, Markup, page, script_json, swatch
 from ballscrew_monitor.report.page_budget import axis_budgets, AxisBudget

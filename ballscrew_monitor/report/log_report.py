@@ -12,9 +12,8 @@ from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.declared import keys, plain
 from ballscrew_monitor.recordings.replay import ignore
 from ballscrew_monitor.recordings.summary import EventRecord
-from ballscrew_monitor.report.case import AxisCase, badness, LogCase
 from ballscrew_monitor.report.judged_bag import judged_bag
-from ballscrew_monitor.report.judging import judge_log, OnShare
+from ballscrew_monitor.report.judging import AxisCase, badness, judge_log, LogCase, OnShare
 from ballscrew_monitor.report.log_page import maps_of, report_page
 from ballscrew_monitor.report.logs import (
     EVENTS,

@@ -12,9 +12,10 @@ from typing import Any
 from ballscrew_monitor.recordings import log_facts
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.log_facts import ChosenValues, LogFacts, PREFIX
-from ballscrew_monitor.report.case import Assumed, AxisFacts
 from surrogate.units import MILLI
 
+Assumed = Mapping[str, Mapping[str, Any]]
+"""What is assumed by what it is about, each with value and reason."""
 TEMPERATURE = 'temperature_degC'
 OF_NODE = {
     TEMPERATURE: 'temperature.default',
@@ -23,6 +24,41 @@ OF_NODE = {
     'surface': 'surface',
 }
 """Places in the map of an axis that are parameters of the node, and those."""
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class AxisFacts:
+    """
+    What is known of an axis but for its rows.
+
+    `load_from` is the input that its load is worked out from, empty where the load is measured;
+    `assumed` says by name what else is not known, each with value and reason; `stated` names what
+    somebody states, by its place in a map, `defaulted` what stands at its default there; `lead`
+    [m] is that of the map, NaN without one.
+
+    """
+
+    load_from: str = ''
+    assumed: Assumed = dataclasses.field(default_factory=dict)
+    stated: frozenset[str] = frozenset()
+    defaulted: frozenset[str] = frozenset()
+    lead: float = math.nan
+
+    @property
+    def is_mapped(self) -> bool:
+        """Tell whether its inputs are columns of a table, as a map says."""
+        return 'lead_mm' in self.stated or 'lead_mm' in self.assumed  # no map is without it
+
+    @property
+    def torque_from_current(self) -> bool:
+        """Tell whether its motor torque is a current times the torque constant of the map."""
+        named = self.stated | set(self.assumed)
+        return 'current.column' in named and 'torque.column' not in named
+
+    @property
+    def default_temperature_known(self) -> str:
+        """Return how its default oil temperature is known, stated or assumed."""
+        return 'stated' if 'temperature_degC' in self.stated else 'assumed'
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)

@@ -9,7 +9,7 @@ from typing import Any
 from ballscrew_monitor.core.judgement import Zone
 from ballscrew_monitor.recordings.summary import EventRecord, Summary
 from ballscrew_monitor.recordings.words import duration, NONE, number, share
-from ballscrew_monitor.report.case import AxisCase, badness, RCS
+from ballscrew_monitor.report.judging import AxisCase, badness, RCS
 from ballscrew_monitor.report.page import (
     element,
     joined,

@@ -10,7 +10,7 @@ from typing import Any
 
 from ballscrew_monitor.report import map_record
 from ballscrew_monitor.report.buckets import Rows
-from ballscrew_monitor.report.case import AxisCase, LogCase
+from ballscrew_monitor.report.judging import AxisCase, LogCase
 from ballscrew_monitor.report.map_record import OperatingMap
 from ballscrew_monitor.report.page import component
 from ballscrew_monitor.report.time_series import BAR_LEGEND, BARS, drawn_rows, panels

@@ -9,8 +9,8 @@ from typing import Any
 from ballscrew_monitor.core.judgement import Reason
 from ballscrew_monitor.recordings.declared import plain
 from ballscrew_monitor.recordings.words import number, shown_unit
-from ballscrew_monitor.report.case import AxisCase, LogCase
 from ballscrew_monitor.report.inputs_seen import inputs_seen, InputSeen, NAMES, Trouble
+from ballscrew_monitor.report.judging import AxisCase, LogCase
 from ballscrew_monitor.report.survey import REST
 from ballscrew_monitor.report.verdict import AxisVerdict, verdict_of, verdicts_of
 

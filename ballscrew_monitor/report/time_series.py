@@ -14,7 +14,7 @@ from ballscrew_monitor.core.judgement import Level, Limits, Zone
 from ballscrew_monitor.recordings import columns
 from ballscrew_monitor.report import buckets, page_budget
 from ballscrew_monitor.report.buckets import Rows
-from ballscrew_monitor.report.case import AxisCase
+from ballscrew_monitor.report.judging import AxisCase
 from ballscrew_monitor.report.page import script_json
 from ballscrew_monitor.report.page_budget import AxisBudget
 import numpy as np

@@ -11,7 +11,7 @@ from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.core.judgement import Reason
 from ballscrew_monitor.recordings.summary import EventRecord, Summary
 from ballscrew_monitor.recordings.words import counted, duration, list_of, percent, share
-from ballscrew_monitor.report.case import AxisCase, LogCase, RCS
+from ballscrew_monitor.report.judging import AxisCase, LogCase, RCS
 
 UNKNOWN_PART = 0.5  # of the motion that is not judged, from which on there is no verdict
 TOLD_PART = 0.01  # of the motion that is not judged, from which on the verdict says so

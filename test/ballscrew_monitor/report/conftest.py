@@ -16,8 +16,8 @@ from ballscrew_monitor.core.judgement import Level, Zone
 from ballscrew_monitor.core.tally import Totals
 from ballscrew_monitor.recordings.columns import AxisOutcome, COLUMNS, JudgedColumns, Reason
 from ballscrew_monitor.recordings.summary import EventRecord
-from ballscrew_monitor.report.case import AxisFacts, LogCase
-from ballscrew_monitor.report.judging import CaseMaker
+from ballscrew_monitor.report.judging import CaseMaker, LogCase
+from ballscrew_monitor.report.parameters import AxisFacts
 from ballscrew_monitor.settings.axis import build_axis
 from ballscrew_monitor.settings.parameters import defaults
 import numpy as np
