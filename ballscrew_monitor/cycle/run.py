@@ -25,7 +25,7 @@ from ballscrew_monitor.cycle.node_process import confined, NodeProcess, ros_envi
 from ballscrew_monitor.cycle.outcome import LOG, Outcome, Plan, RECORDING
 from ballscrew_monitor.cycle.supervision import RunFailure, Supervision
 from ballscrew_monitor.recordings.bag_writer import BagWriter
-from ballscrew_monitor.report.products import remove_report
+from ballscrew_monitor.report.logs import remove_report
 from surrogate.files import InputError
 
 LOCK = '.lock'

@@ -8,141 +8,113 @@ equal time, the smallest and the largest number, so that no peak is lost whateve
 
 """
 
-from collections.abc import Mapping, Sequence
-import dataclasses
+from collections.abc import Iterable, Sequence
 from typing import Any
 
-from ballscrew_monitor.report.encoding import codes as encoded_codes
-from ballscrew_monitor.report.encoding import doubles, floats, packed
-from ballscrew_monitor.report.page_budget import BUCKETS
+from ballscrew_monitor.report import page
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Codes = NDArray[np.uint8]
-
+Rows = NDArray[np.void]
+"""Rows in the order of their times: `time` [s], numbers by key, NaN for none, codes by key."""
 EVEN = 0.05  # [-] of a step, by which samples of an even rate are early or late
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class TimedRows:
-    """Rows in the order of their times [s]: numbers by key, NaN for none, and codes by key."""
+def row_type(numbers: Iterable[str], codes: Iterable[str]) -> np.dtype[np.void]:
+    """Return the type of rows with numbers and codes of these keys."""
+    fields = [(key, np.float64) for key in ('time', *numbers)]
+    return np.dtype([*fields, *((key, np.uint8) for key in codes)], align=True)
 
-    time: Array
-    numbers: Mapping[str, Array]
-    codes: Mapping[str, Codes]
+
+def numbers_of(rows: Rows) -> dict[str, NDArray[np.float64]]:
+    """Return the numbers of rows by key, which write through."""
+    return {key: values for key, values in _columns(rows, 'f').items() if key != 'time'}
+
+
+def codes_of(rows: Rows) -> dict[str, NDArray[np.uint8]]:
+    """Return the codes of rows by key, which write through."""
+    return _columns(rows, 'u')
+
+
+def _columns(rows: Rows, kind: str) -> dict[str, NDArray[Any]]:
+    return {key: rows[key] for key in rows.dtype.names or () if rows.dtype[key].kind == kind}
 
 
 class Buckets:
     """Smallest and largest number, and the largest code, of each of equal parts of a span."""
 
-    def __init__(
-        self, span: float, numbers: Sequence[str], codes: Sequence[str], *, count: int = BUCKETS
-    ) -> None:
-        """Begin empty; `span` [s] is that of the time line, which begins at zero."""
+    def __init__(self, span: float, kind: np.dtype[np.void], *, count: int) -> None:
+        """Begin without rows of a `kind`; `span` [s] is that of a time line from zero on."""
         self.width = max(span, 1e-9) / count
-        self._count = count
-        self._low = {key: np.full(count, np.inf) for key in numbers}
-        self._high = {key: np.full(count, -np.inf) for key in numbers}
-        self._codes = {key: np.zeros(count, dtype=np.uint8) for key in codes}
+        self._low, self._high = np.zeros((2, count), kind)
+        for ends, extreme in ((self._low, np.inf), (self._high, -np.inf)):
+            for values in numbers_of(ends).values():
+                values[:] = extreme
 
-    def add(self, rows: TimedRows) -> None:
+    def add(self, rows: Rows) -> None:
         """Take rows, in any order."""
-        place = np.clip((rows.time / self.width).astype(int), 0, self._count - 1)
-        for key, values in rows.numbers.items():
+        place = np.clip((rows['time'] / self.width).astype(int), 0, self._low.size - 1)
+        for key, values in numbers_of(rows).items():
             known = np.isfinite(values)
             np.minimum.at(self._low[key], place[known], values[known])
             np.maximum.at(self._high[key], place[known], values[known])
-        for key, found in rows.codes.items():
-            np.maximum.at(self._codes[key], place, found)
+        for key, found in codes_of(rows).items():
+            np.maximum.at(self._high[key], place, found)
 
-    def rows(self) -> TimedRows:
+    def rows(self) -> Rows:
         """Return two rows for each bucket: the smallest, then the largest."""
-        middles = (np.arange(2 * self._count) + 0.5) * (self.width / 2.0)
-        return TimedRows(
-            time=middles.astype(np.float64),
-            numbers={key: _pairs(self._low[key], self._high[key]) for key in self._low},
-            codes={key: np.repeat(found, 2) for key, found in self._codes.items()},
-        )
+        made = np.stack([self._low, self._high], axis=-1).ravel()
+        made['time'] = (np.arange(made.size) + 0.5) * (self.width / 2.0)
+        for values in numbers_of(made).values():
+            values[~np.isfinite(values)] = np.nan
+        for codes in codes_of(made).values():
+            codes[::2] = codes[1::2]
+        return made
 
 
-def _pairs(low: Array, high: Array) -> Array:
-    paired = np.stack([low, high], axis=-1).ravel()
-    return np.where(np.isfinite(paired), paired, np.nan)
-
-
-def in_order(rows: TimedRows) -> TimedRows:
+def in_order(rows: Rows) -> Rows:
     """Return rows sorted by time, equal times in the order in which they came."""
-    return _chosen(rows, np.argsort(rows.time, kind='stable'))
+    return rows[np.argsort(rows['time'], kind='stable')]
 
 
-def joined_rows(parts: Sequence[TimedRows]) -> TimedRows:
-    """Return slices, at least one, as one."""
-    return TimedRows(
-        time=np.concatenate([part.time for part in parts]),
-        numbers=_joined([part.numbers for part in parts]),
-        codes=_joined([part.codes for part in parts]),
-    )
-
-
-def _joined(parts: Sequence[Mapping[str, NDArray[Any]]]) -> dict[str, NDArray[Any]]:
-    return {key: np.concatenate([part[key] for part in parts]) for key in parts[0]}
-
-
-def between(rows: TimedRows, stretches: Sequence[tuple[float, float]]) -> TimedRows:
+def between(rows: Rows, stretches: Sequence[tuple[float, float]]) -> Rows:
     """Return the rows within stretches of time [s], which are in order and do not overlap."""
     edges = np.array(stretches, dtype=float).reshape(-1)
-    return _chosen(rows, np.searchsorted(edges, rows.time, side='right') % 2 == 1)
+    return rows[np.searchsorted(edges, rows['time'], side='right') % 2 == 1]
 
 
-def stretch_of(rows: TimedRows, begin: float, end: float) -> TimedRows:
-    """Return the rows between two times [s] of rows that are in order."""
-    first, last = np.searchsorted(rows.time, (begin, end))
-    return _chosen(rows, slice(first, last))
-
-
-def with_breaks(rows: TimedRows, longest: float) -> TimedRows:
+def with_breaks(rows: Rows, longest: float) -> Rows:
     """Return rows with one of no number, code 0, after each that is followed by a longer hole."""
-    holes = np.flatnonzero(np.diff(rows.time) > longest)
-    after = rows.time[holes] + 1e-6
-    return TimedRows(
-        time=np.insert(rows.time, holes + 1, after),
-        numbers={
-            key: np.insert(values, holes + 1, np.nan) for key, values in rows.numbers.items()
-        },
-        codes={key: np.insert(values, holes + 1, 0) for key, values in rows.codes.items()},
-    )
+    holes = np.flatnonzero(np.diff(rows['time']) > longest)
+    breaks = np.zeros(holes.size, rows.dtype)
+    breaks['time'] = rows['time'][holes] + 1e-6
+    for values in numbers_of(breaks).values():
+        values[:] = np.nan
+    return np.insert(rows, holes + 1, breaks)
 
 
-def _chosen(rows: TimedRows, which: NDArray[Any] | slice) -> TimedRows:
-    return TimedRows(
-        time=rows.time[which],
-        numbers={key: values[which] for key, values in rows.numbers.items()},
-        codes={key: values[which] for key, values in rows.codes.items()},
-    )
-
-
-def coarse_record(rows: TimedRows) -> dict[str, Any]:
+def coarse_record(rows: Rows) -> dict[str, Any]:
     """Return rows as a page carries them."""
     return {
-        'time': doubles(rows.time),
-        'columns': {key: floats(values) for key, values in rows.numbers.items()},
-        'codes': {key: encoded_codes(values) for key, values in rows.codes.items()},
+        'time': page.doubles(rows['time']),
+        'columns': {key: page.floats(values) for key, values in numbers_of(rows).items()},
+        'codes': {key: page.codes(values) for key, values in codes_of(rows).items()},
     }
 
 
-def fine_record(rows: TimedRows) -> dict[str, Any]:
+def fine_record(rows: Rows) -> dict[str, Any]:
     """Return the numbers of a stretch; its times only where they are not even."""
+    time = rows['time']
     record: dict[str, Any] = {
-        'begin': float(rows.time[0]),
-        'end': float(rows.time[-1]),
-        'count': rows.time.size,
-        'columns': {key: packed(values) for key, values in rows.numbers.items()},
+        'begin': float(time[0]),
+        'end': float(time[-1]),
+        'count': time.size,
+        'columns': {key: page.packed(values) for key, values in numbers_of(rows).items()},
     }
-    return record if _is_even(rows.time) else record | {'time': packed(rows.time)}
+    return record if _is_even(time) else record | {'time': page.packed(time)}
 
 
-def _is_even(time: Array) -> bool:
+def _is_even(time: NDArray[np.float64]) -> bool:
     even = np.linspace(time[0], time[-1], time.size)
     step = (time[-1] - time[0]) / max(1, time.size - 1)
     return bool(np.abs(time - even).max() <= EVEN * step)

@@ -19,12 +19,10 @@ from ballscrew_monitor.recordings.progress import shown_progress
 from ballscrew_monitor.recordings.replay import axes_for
 from ballscrew_monitor.recordings.tables.mapping import read_map
 from ballscrew_monitor.recordings.words import counted
-from ballscrew_monitor.report.case import AxisCase, LogCase
-from ballscrew_monitor.report.judging import judge_log
+from ballscrew_monitor.report.judging import AxisCase, judge_log, LogCase
 from ballscrew_monitor.report.logs import find_logs, left_out, map_for, PAGE, SUMMARY
 from ballscrew_monitor.report.parameters import LogParameters, parameters_for
-from ballscrew_monitor.report.printed import log_lines, printed_records
-from ballscrew_monitor.report.products import summary_record, without
+from ballscrew_monitor.report.printed import log_lines, printed_records, summary_record, without
 from ballscrew_monitor.report.verdict import never_moved
 from ballscrew_monitor.settings.parameters import read_file
 from ballscrew_monitor.settings.topics import with_types

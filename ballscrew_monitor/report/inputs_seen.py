@@ -15,7 +15,7 @@ from ballscrew_monitor.messages.doctor import Heard, InputFacts, known_range, un
 from ballscrew_monitor.messages.reasons import slow_reason
 from ballscrew_monitor.recordings.declared import unwritten, written
 from ballscrew_monitor.recordings.words import duration, number
-from ballscrew_monitor.report.case import AxisCase, InputSetting
+from ballscrew_monitor.report.judging import AxisCase, InputSetting
 from ballscrew_monitor.report.survey import Gaps, Span
 from surrogate.units import RPM, TURN
 
@@ -109,21 +109,16 @@ class InputSeen:
     def troubles(self) -> dict[Trouble, str]:
         """Return in words what is wrong with its messages; what went well has none."""
         lost = 'not known' if self.lost is None else str(self.lost)
-        found = {
-            Trouble.GAPS: f'{self.gaps.count}, in all {duration(self.gaps.time)}',
-            Trouble.SLOW: 'yes',
-            Trouble.LAG: f'{number(self.lag)} s',
-            Trouble.LOST: lost,
-            Trouble.LEFT_OUT: f'{self.left_out} out of order or of other joints',
-        }
-        there = {
-            Trouble.GAPS: self.gaps.count > 0,
-            Trouble.SLOW: self.slow,
-            Trouble.LAG: abs(self.lag) >= LAG_TOLD,
-            Trouble.LOST: self.numbered and self.lost != 0,
-            Trouble.LEFT_OUT: self.left_out > 0,
-        }
-        return {trouble: text for trouble, text in found.items() if there[trouble]}
+        gaps = f'{self.gaps.count}, in all {duration(self.gaps.time)}'
+        left_out = f'{self.left_out} out of order or of other joints'
+        found = (
+            (Trouble.GAPS, self.gaps.count > 0, gaps),
+            (Trouble.SLOW, self.slow, 'yes'),
+            (Trouble.LAG, abs(self.lag) >= LAG_TOLD, f'{number(self.lag)} s'),
+            (Trouble.LOST, self.numbered and self.lost != 0, lost),
+            (Trouble.LEFT_OUT, self.left_out > 0, left_out),
+        )
+        return {trouble: text for trouble, there, text in found if there}
 
     @property
     def known(self) -> str:
@@ -155,7 +150,7 @@ def _seen(case: AxisCase, source: Source) -> InputSeen:
         low=heard.low,
         high=heard.high,
         rate=_rate(case, source),
-        rate_assumed='time.rate_Hz' in case.assumed,
+        rate_assumed='time.rate_Hz' in case.facts.assumed,
         received=status.received,
         refused=_refused(case, source),
         left_out=status.dropped - refused,
@@ -189,15 +184,17 @@ def _rate(case: AxisCase, source: Source) -> float:
 
 def _origin(case: AxisCase, source: Source) -> str:
     """Return where the numbers of an input come from; what is in part assumed says so."""
-    name, origin = source.name.lower(), MEASURED
+    facts, name, origin = case.facts, source.name.lower(), MEASURED
     if source is Source.LOAD and case.load_origin:
-        name, origin = case.load_from.removeprefix('motor_'), case.load_origin
-    elif source is Source.SPEED and (case.inputs[source].from_position or 'speed' in case.assumed):
+        name, origin = facts.load_from.removeprefix('motor_'), case.load_origin
+    elif source is Source.SPEED and (
+        case.inputs[source].from_position or 'speed' in facts.assumed
+    ):
         name, origin = 'position', 'worked out from the position'
-    elif source is Source.TORQUE and case.torque_from_current:
+    elif source is Source.TORQUE and facts.torque_from_current:
         name, origin = 'current', 'worked out from the current'
-    doubtful = [part for part in ('column', 'unit') if f'{name}.{part}' in case.assumed]
-    if name == 'current' and 'torque_constant_Nm_per_A' in case.assumed:
+    doubtful = [part for part in ('column', 'unit') if f'{name}.{part}' in facts.assumed]
+    if name == 'current' and 'torque_constant_Nm_per_A' in facts.assumed:
         doubtful.append('torque constant')
     return f'{origin}, {" and ".join(doubtful)} assumed' if doubtful else origin
 
@@ -211,7 +208,7 @@ def _without_topic(case: AxisCase, source: Source, sources: frozenset[PointSourc
             source=source, origin=origin, measured=False, unit='N', low=span.low, high=span.high
         )
     if PointSource.DEFAULT in sources:
-        known = case.default_temperature_known
+        known = case.facts.default_temperature_known
         origin = f'{known}, {celsius(case.settings.default_temperature):.4g} °C'
         return InputSeen(source=source, origin=origin, measured=False, stated=known == 'stated')
     return InputSeen(source=source, origin='not recorded', measured=False)
@@ -240,9 +237,9 @@ def _hints(case: AxisCase, source: Source, setting: InputSetting, heard: Heard) 
         known=known_range(case.surface, source, setting.unit),
     )
     hints = unit_doubts(facts, heard)
-    if hints and case.is_mapped:  # the units that it names are those of the bag
+    if hints and case.facts.is_mapped:  # the units that it names are those of the bag
         hints = [f'{facts.parameter}: its numbers are far outside the surface: {IN_THE_MAP}']
-    cure = IN_THE_MAP if case.is_mapped else f'check {facts.parameter}.unit and scale'
+    cure = IN_THE_MAP if case.facts.is_mapped else f'check {facts.parameter}.unit and scale'
     if case.outcome.refused.get(source, {}).get(Why.IMPLAUSIBLE):
         hints.append(f'{facts.parameter}: samples beyond what is plausible were refused: {cure}')
     hints += _of_time(heard.status, facts.parameter)
@@ -274,7 +271,7 @@ def _of_speed(
     """Return that the axis never moves or moves too fast to be true."""
     if math.isnan(heard.high):
         return []
-    fastest = _amount(case, setting.unit, setting, heard)
+    fastest = _amount(setting.unit, setting, heard)
     limit, feed = case.settings.limits.standstill_speed, case.surface.lead / TURN
     if fastest * feed > FASTEST_FEED:
         return [
@@ -288,16 +285,14 @@ def _of_speed(
         f'numbers go from {heard.low:.3g} to {heard.high:.3g} {setting.unit}'
     )
     top = case.surface.speed_range[1]
-    others = [
-        unit for unit in setting.scalings if limit <= _amount(case, unit, setting, heard) <= top
-    ]
+    others = [unit for unit in setting.scalings if limit <= _amount(unit, setting, heard) <= top]
     if not others:
         return [said]
-    if case.is_mapped:
+    if case.facts.is_mapped:
         return [f'{said}: {cure}']
     return [f'{said}, which may be {" or ".join(others)}: then set {parameter}.unit']
 
 
-def _amount(case: AxisCase, unit: str, setting: InputSetting, heard: Heard) -> float:
+def _amount(unit: str, setting: InputSetting, heard: Heard) -> float:
     """Return the largest amount of the screw speed [rad/s] if the numbers were in a unit."""
     return max(abs(setting.scalings[unit](value)) for value in (heard.low, heard.high))

@@ -5,19 +5,13 @@
 from collections.abc import Callable, Iterator, Mapping
 import contextlib
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 from ballscrew_monitor.core.cdr import serialized
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.state import Event
+from ballscrew_monitor.messages import state_messages
 from ballscrew_monitor.messages.diagnostics import statuses, summaries
-from ballscrew_monitor.messages.state_messages import (
-    fill_time,
-    out_of_zone_message,
-    StateWriter,
-    surface_info_message,
-    TIERS,
-)
 from ballscrew_monitor.recordings.axis_run import TimedState
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter, whole_bag
@@ -30,14 +24,6 @@ import numpy as np
 
 NAME = 'judged'
 PERIOD = SECOND  # [ns] of log time after which diagnostics come again
-
-
-class Timed(NamedTuple):
-    """A serialised message, its topic and its log time [ns]."""
-
-    log_time: int
-    topic: str
-    data: bytes
 
 
 @contextlib.contextmanager
@@ -73,10 +59,9 @@ class _Growing:
     def add(self, state: TimedState) -> None:
         """Add what the node would say with a state, behind the inputs up to its log time."""
         self.copy_inputs(state.log_time)
-        for one in self._answers.messages(state):
-            self._writer.write(
-                one.topic, one.data, log_time=one.log_time, publish_time=one.log_time
-            )
+        at = state.log_time
+        for topic, message in self._answers.messages(state):
+            self._writer.write(topic, serialized(message), log_time=at, publish_time=at)
 
     def copy_inputs(self, log_time: int) -> None:
         """Add all inputs up to a log time [ns]."""
@@ -104,42 +89,40 @@ class Answers:
 
     def __init__(self) -> None:
         """Begin with no axis known."""
-        self._writers: dict[str, StateWriter] = {}
+        self._writers: dict[str, state_messages.StateWriter] = {}
         self._events: dict[str, Event] = {}
         self._latest: dict[str, TimedState] = {}
         self._said: dict[str, Any] = {}
         self._said_at = 0  # [ns]
 
-    def messages(self, one: TimedState) -> Iterator[Timed]:
-        """Yield what the node would say with a state, at the log time of its cause."""
+    def messages(self, one: TimedState) -> Iterator[tuple[str, Any]]:
+        """Yield topic and message of all that the node would say with a state."""
         name = one.axis.name
         if name not in self._writers:
-            self._writers[name] = StateWriter(name, TIERS[one.axis.surface.tier])
+            self._writers[name] = state_messages.StateWriter(
+                name, state_messages.TIERS[one.axis.surface.tier]
+            )
             self._events[name] = Event()
-            yield self._surface_info(one)
-        data = serialized(self._writers[name].write(one.state))
-        yield Timed(one.log_time, output(name, 'state'), data)
+            settings = one.axis.monitor.settings
+            yield (
+                output(name, 'surface_info'),
+                state_messages.surface_info_message(
+                    name,
+                    one.axis.surface,
+                    settings.limits,
+                    stamp=one.log_time,
+                    default_temperature=settings.default_temperature,
+                ),
+            )
+        yield output(name, 'state'), self._writers[name].write(one.state)
         if one.event is not None:
             self._events[name] = one.event
-            event = serialized(
-                out_of_zone_message(name, one.event, shelved=one.state.shelving.until != 0)
-            )
-            yield Timed(one.log_time, output(name, 'out_of_zone'), event)
+            shelved = one.state.shelving.until != 0
+            event = state_messages.out_of_zone_message(name, one.event, shelved=shelved)
+            yield output(name, 'out_of_zone'), event
         yield from self._diagnostics(one)
 
-    def _surface_info(self, one: TimedState) -> Timed:
-        settings = one.axis.monitor.settings
-        message = surface_info_message(
-            one.axis.name,
-            one.axis.surface,
-            settings.limits,
-            stamp=one.log_time,
-            default_temperature=settings.default_temperature,
-        )
-        topic = output(one.axis.name, 'surface_info')
-        return Timed(one.log_time, topic, serialized(message))
-
-    def _diagnostics(self, one: TimedState) -> Iterator[Timed]:
+    def _diagnostics(self, one: TimedState) -> Iterator[tuple[str, DiagnosticArray]]:
         """Yield diagnostics of all axes where those of one change, or the last are old."""
         name = one.axis.name
         summary = summaries(one.state, self._events[name], {})
@@ -151,8 +134,8 @@ class Answers:
         array = DiagnosticArray(
             status=[each for latest in self._latest.values() for each in self._statuses(latest)]
         )
-        fill_time(array.header.stamp, one.log_time)
-        yield Timed(one.log_time, DIAGNOSTICS.name, serialized(array))
+        state_messages.fill_time(array.header.stamp, one.log_time)
+        yield DIAGNOSTICS.name, array
 
     def _statuses(self, one: TimedState) -> list[DiagnosticStatus]:
         axis = one.axis

@@ -1,36 +1,161 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-A recording judged in one pass, with all that page and terminal say of it.
+A recording judged in one pass, and each of its axes, with all that page and terminal say of it.
 
 Printing asks for no more than the node: nothing here loads what pages and tables are made with.
 
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+import dataclasses
 import functools
 import math
 from typing import Any, TYPE_CHECKING
 
-from ballscrew_monitor.core.conversions import POSITION_UNITS
+from ballscrew_monitor.core.conversions import POSITION_UNITS, Scaling, SECOND
+from ballscrew_monitor.core.estimate import PointSource
 from ballscrew_monitor.core.inputs import Source
+from ballscrew_monitor.core.state import MonitorSettings
 from ballscrew_monitor.recordings.axis_run import TimedState
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.columns import AxisOutcome, JudgedColumns
 from ballscrew_monitor.recordings.own_recording import is_as_recorded
 from ballscrew_monitor.recordings.replay import ignore, replay_columns, replay_parts
-from ballscrew_monitor.report.case import AxisCase, InputSetting, LogCase
-from ballscrew_monitor.report.parameters import LogParameters
-from ballscrew_monitor.report.survey import Surveyor
+from ballscrew_monitor.recordings.summary import EventRecord
+from ballscrew_monitor.report.parameters import Assumed, AxisFacts, LogParameters
+from ballscrew_monitor.report.survey import Survey, Surveyor
 from ballscrew_monitor.settings.axis import is_configured, load_surface, scalings_of, settings_of
+from surrogate.surface import Surface
 
 if TYPE_CHECKING:  # it asks for packages that printing does not need
     from ballscrew_monitor.report.store import RowStore
 
+Blocks = Callable[[], Iterable[JudgedColumns]]
+"""Gives the blocks of rows of an axis in order, as often as it is called."""
+RCS = 'RCS'
+FIRST_DATE = 978_307_200.0
+"""Stamps before this [s since 1970] are no calendar: logs without one begin in the year 2000."""
 OnShare = Callable[[float], None]
 """Told which share of a recording is judged [-]."""
 OnState = Callable[[TimedState], None]
 """Handed a state that would be published."""
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class InputSetting:
+    """
+    How an input was read: topic, field, unit, and the line to SI of every unit.
+
+    A speed `from_position` is worked out; its unit is that of the speed.
+
+    """
+
+    topic: str
+    field: str
+    unit: str
+    scalings: Mapping[str, Scaling]
+    from_position: bool = False
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class AxisCase:
+    """
+    An axis that has rows; `inputs` holds those that have a topic; `blocks` gives the rows again.
+
+    `nominal`: the parameters are those taken where nobody gave any; `numbered`: the recording
+    tells how many messages were lost on their way to it.
+
+    """
+
+    axis: str
+    surface: Surface
+    settings: MonitorSettings
+    inputs: Mapping[Source, InputSetting]
+    outcome: AxisOutcome
+    survey: Survey
+    blocks: Blocks = tuple  # none are kept
+    facts: AxisFacts = AxisFacts()
+    nominal: bool = False
+    numbered: bool = False
+
+    @property
+    def load_origin(self) -> str:
+        """Return in words what its load is worked out from, empty where it is measured."""
+        if self.facts.load_from:
+            return f'worked out from the motor {self.facts.load_from.removeprefix("motor_")}'
+        derived = PointSource.DERIVED in self.survey.sources[Source.LOAD]
+        return 'worked out from the motor torque' if derived else ''
+
+    def since_first(self, stamp: int) -> float:
+        """Return a stamp [ns] as time on the time line of the page [s]."""
+        return (stamp + self.survey.shift - self.survey.first) / SECOND
+
+    @property
+    def begins(self) -> float:
+        """Return the date of its first row [s] since 1970, NaN where the log has no calendar."""
+        begins = self.survey.first / SECOND
+        return begins if begins >= FIRST_DATE else math.nan
+
+    @property
+    def is_silent(self) -> bool:
+        """Tell whether nothing was judged, or nothing of what moved."""
+        summary = self.outcome.summary()
+        return summary is None or summary.says_nothing
+
+    @property
+    def outside_time(self) -> float:
+        """Return the time outside the zone [s], NaN where nothing of what moved was judged."""
+        summary = self.outcome.summary()
+        return math.nan if summary is None or summary.says_nothing else summary.outside_time
+
+    @property
+    def worst_first(self) -> list[EventRecord]:
+        """Return the events, the worst first."""
+        return sorted(self.outcome.events, key=badness, reverse=True)
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class LogCase:
+    """
+    A recording that was judged.
+
+    `name` as its reader knows it, `parameters` where they came from; axes with rows, and the names
+    of those without any; assumptions by what they are about, with value and reason; notes on the
+    recording itself.
+
+    """
+
+    name: str
+    parameters: str
+    axes: Sequence[AxisCase]
+    empty: Sequence[str] = ()
+    assumptions: Assumed = dataclasses.field(default_factory=dict)
+    notes: Sequence[str] = ()
+
+    @property
+    def unjudged(self) -> list[str]:
+        """Return the axes on which nothing was judged."""
+        return [*self.empty, *(one.axis for one in self.axes if one.is_silent)]
+
+    @property
+    def judged(self) -> bool:
+        """Tell whether something was judged on at least one axis."""
+        return len(self.unjudged) < len(self.axes) + len(self.empty)
+
+
+def badness(event: EventRecord) -> tuple[float, float]:
+    """
+    Return how bad an event is: depth [-], then duration [s].
+
+    The depth is the RCS itself, or what of the efficiency that is asked for was missing.
+
+    """
+    if event.quantity == RCS:
+        depth = event.worst_value
+    else:
+        depth = (event.limit - event.worst_value) / event.limit
+    return (depth if math.isfinite(depth) else 0.0), event.duration
 
 
 class CaseMaker:
@@ -57,14 +182,15 @@ class CaseMaker:
             axis=self._axis,
             surface=self._surface,
             settings=self._settings,
-            inputs={source: self._setting(source) for source in Source if self._has(source)},
+            inputs={
+                source: self._setting(source)
+                for source in Source
+                if is_configured(self._axis, self._values, source)
+            },
             outcome=outcome,
             survey=self._surveyor.result(),
             **known,
         )
-
-    def _has(self, source: Source) -> bool:
-        return is_configured(self._axis, self._values, source)
 
     def _setting(self, source: Source) -> InputSetting:
         prefix, values = f'{self._axis}.{source.name.lower()}', self._values
@@ -113,15 +239,16 @@ def judge_log(
             makers[one.axis].case(
                 one,
                 blocks=tuple if rows is None else functools.partial(rows.blocks, one.axis),
+                facts=parameters.axes.get(one.axis, AxisFacts()),
+                nominal=parameters.nominal,
                 numbered=numbered,
-                **_known(parameters, one.axis),
             )
             for one in outcomes
             if one.axis in makers
         ],
         empty=[one.axis for one in outcomes if one.axis not in makers],
         assumptions=parameters.assumptions,
-        notes=_notes(parameters, bag),
+        notes=[*parameters.notes, *bag.notes],
     )
 
 
@@ -137,19 +264,3 @@ def _parts(
             on_state(part)
         else:
             yield part
-
-
-def _known(parameters: LogParameters, axis: str) -> dict[str, Any]:
-    """Return what is known of an axis beside its rows."""
-    return {
-        'load_from': parameters.load_from.get(axis, ''),
-        'assumed': parameters.of_axis(axis),
-        'stated': parameters.stated_of(axis),
-        'defaulted': parameters.defaulted_of(axis),
-        'lead': parameters.leads.get(axis, math.nan),
-        'nominal': parameters.nominal,
-    }
-
-
-def _notes(parameters: LogParameters, bag: Bag) -> Sequence[str]:
-    return [*parameters.notes, *bag.notes]

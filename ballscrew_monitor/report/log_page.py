@@ -9,24 +9,11 @@ from typing import Any
 
 from ballscrew_monitor.core.conversions import seconds
 from ballscrew_monitor.recordings.declared import plain
-from ballscrew_monitor.report import observed, parts, provenance
-from ballscrew_monitor.report.case import AxisCase, LogCase
-from ballscrew_monitor.report.encoding import script_json
+from ballscrew_monitor.report import page_budget, parts, provenance, time_series
+from ballscrew_monitor.report.judging import AxisCase, LogCase
 from ballscrew_monitor.report.map_record import map_legend, operating_map, OperatingMap
-from ballscrew_monitor.report.markup import element, joined, Markup, swatch
-from ballscrew_monitor.report.page import CHARTS, page
-from ballscrew_monitor.report.page_budget import (
-    axis_budgets,
-    AxisBudget,
-    PAGE_BYTES,
-    shares_of_worst,
-)
-from ballscrew_monitor.report.time_series import (
-    BAR_LEGEND,
-    coarse_bytes,
-    event_bytes,
-    series_record,
-)
+from ballscrew_monitor.report.page import CHARTS, element, Markup, page, script_json, swatch
+from ballscrew_monitor.report.page_budget import axis_budgets, AxisBudget
 from ballscrew_monitor.report.verdict import verdicts_of
 
 
@@ -48,7 +35,11 @@ def report_page(log: LogCase, maps: Sequence[OperatingMap] | None = None) -> str
     records = [
         {'id': _id(number), 'map': plain(chart), 'course': course}
         for number, (chart, course) in enumerate(
-            zip(maps, _courses(log, budgets, PAGE_BYTES - len(bare.encode())), strict=True)
+            zip(
+                maps,
+                _courses(log, budgets, page_budget.PAGE_BYTES - len(bare.encode())),
+                strict=True,
+            )
         )
     ]
     return _page(log, body, records)
@@ -62,12 +53,14 @@ def _page(log: LogCase, body: Markup, records: Sequence[Mapping[str, Any]]) -> s
 def _courses(log: LogCase, budgets: Sequence[AxisBudget], spare: float) -> list[dict[str, Any]]:
     """Return the courses of all axes, which share what is to spare of the page [bytes]."""
     axes = list(zip(log.axes, budgets, strict=True))
-    spare -= sum(coarse_bytes(*axis) for axis in axes)
-    shares = shares_of_worst(spare, log.axes, [event_bytes(*axis) for axis in axes])
+    spare -= sum(time_series.coarse_bytes(*axis) for axis in axes)
+    shares = page_budget.shares_of_worst(
+        spare, log.axes, [time_series.event_bytes(*axis) for axis in axes]
+    )
     made: list[dict[str, Any]] = []
     left = 0.0  # what an axis did not take is for the next one
     for (case, budget), share in zip(axes, shares, strict=True):
-        made.append(series_record(case, share + left, budget))
+        made.append(time_series.series_record(case, share + left, budget))
         left += share - len(script_json(made[-1]['fine']))
     return made
 
@@ -132,15 +125,15 @@ def _axis_part(
             class_='muted screen',
         ),
         element('div', class_='series'),
-        _legend([((kind,), text) for kind, text in BAR_LEGEND]),
-        observed.torque_part(case),
-        observed.inputs_part(case),
-        observed.gaps_part(case, budget.gaps),
+        _legend([((kind,), text) for kind, text in time_series.BAR_LEGEND]),
+        provenance.torque_part(case),
+        provenance.inputs_part(case),
+        provenance.gaps_part(case, budget.gaps),
         provenance.assumptions_part(case, log.parameters),
         id=name,
     )
 
 
 def _legend(entries: Sequence[tuple[tuple[str, ...], str]]) -> Markup:
-    items = (element('li', joined([swatch(*sample), text])) for sample, text in entries)
+    items = (element('li', swatch(*sample), text) for sample, text in entries)
     return element('ul', *items, class_='legend')

@@ -3,23 +3,32 @@
 """One recording, judged and reported into a directory of its own."""
 
 from collections.abc import Sequence
+import csv
 import dataclasses
 import math
 from pathlib import Path
 
 from ballscrew_monitor.recordings.bag import Bag
+from ballscrew_monitor.recordings.declared import keys, plain
 from ballscrew_monitor.recordings.replay import ignore
-from ballscrew_monitor.report.case import AxisCase, badness, LogCase
+from ballscrew_monitor.recordings.summary import EventRecord
 from ballscrew_monitor.report.judged_bag import judged_bag
-from ballscrew_monitor.report.judging import judge_log, OnShare
+from ballscrew_monitor.report.judging import AxisCase, badness, judge_log, LogCase, OnShare
 from ballscrew_monitor.report.log_page import maps_of, report_page
-from ballscrew_monitor.report.logs import EVENTS, JUDGED, PAGE, PICTURE, STATES, SUMMARY
-from ballscrew_monitor.report.map_record import OperatingMap
+from ballscrew_monitor.report.logs import (
+    EVENTS,
+    JUDGED,
+    PAGE,
+    PICTURE,
+    replace_report,
+    STATES,
+    SUMMARY,
+)
 from ballscrew_monitor.report.parameters import LogParameters
-from ballscrew_monitor.report.products import replace_report, write_events, write_summary
-from ballscrew_monitor.report.store import RowStore
+from ballscrew_monitor.report.printed import summary_record
+from ballscrew_monitor.report.store import row_store
 from ballscrew_monitor.report.verdict import AxisVerdict, verdicts_of
-from surrogate.files import replace_file
+from surrogate.files import json_text, new_file, replace_file
 
 JUDGED_SHARE, STORED_SHARE = 0.92, 0.95
 """Share of the work [-] that is done when all is judged, and when the rows are one file."""
@@ -81,7 +90,7 @@ def report_log(
     InputError when it cannot be read with the parameters.
 
     """
-    with RowStore(out) as store:
+    with row_store(out) as store:
         made = store.folder / MADE
         with judged_bag(bag, parameters.values, made / JUDGED, parameters.metadata) as add_state:
             log = judge_log(
@@ -94,20 +103,28 @@ def report_log(
         store.write(made / STATES)
         on_share(STORED_SHARE)
         write_events(made / EVENTS, log)
-        write_summary(made / SUMMARY, log)
+        replace_file(made / SUMMARY, json_text(summary_record(log)).encode())
         maps = maps_of(log)
         replace_file(made / PAGE, report_page(log, maps).encode())
         if picture and maps:
-            _draw(log, maps, made / PICTURE)
+            from ballscrew_monitor.report.picture import draw_log  # slow to load, seldom needed
+
+            draw_log(log, maps, made / PICTURE)
         replace_report(made, out)
         on_share(1.0)
         return _result(log)
 
 
-def _draw(log: LogCase, maps: Sequence[OperatingMap], path: Path) -> None:
-    from ballscrew_monitor.report.picture import draw_log  # slow to load, and seldom needed
-
-    draw_log(log, maps, path)
+def write_events(path: Path, log: LogCase) -> None:
+    """Write the events of all axes, those of an axis in order."""
+    with new_file(path) as partial, partial.open('w', newline='', encoding='utf-8') as file:
+        heads = dict.fromkeys(('axis', 'event_id', 'start_stamp_ns', 'start_s'))
+        writer = csv.DictWriter(file, list(heads | keys(EventRecord)), lineterminator='\n')
+        writer.writeheader()
+        for case in log.axes:
+            for event in case.outcome.events:
+                more = {'axis': case.axis, 'start_s': case.since_first(event.start)}
+                writer.writerow(plain(event) | more)
 
 
 def _result(log: LogCase) -> LogResult:

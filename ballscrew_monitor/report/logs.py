@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Which recordings are meant: bags, files, and folders that hold some."""
+"""Which recordings are meant, bags, files, and folders that hold some; and folders of reports."""
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
@@ -31,9 +31,23 @@ def find_logs(
     """
     found: list[Path] = []
     for path in paths:
-        whole = not path.is_dir() or is_one_bag(path, tables=tables, out=out)
-        found += [path] if whole else _inside(path, tables, out)
+        held = _recordings(path, tables, out)
+        if not held:
+            endings = (*ENDINGS, *TABLES) if tables else ENDINGS
+            raise InputError(
+                f'folder {path} holds no recording, it must hold bags or files of '
+                f'{" or ".join(endings)}{_hint(path)}'
+            )
+        found += held
     return list(dict.fromkeys(found))
+
+
+def _recordings(path: Path, tables: bool, out: Path | None) -> list[Path]:
+    """Return a path that is one recording, else those in a folder and in the ones below it."""
+    if not path.is_dir() or is_one_bag(path, tables=tables, out=out):
+        return [path]
+    below = [one for child in _folders(path, out) for one in _recordings(child, tables, out)]
+    return _files(path, (*ENDINGS, *TABLES) if tables else ENDINGS) + below
 
 
 def left_out(paths: Sequence[Path], logs: Sequence[Path], out: Path | None = None) -> list[str]:
@@ -87,21 +101,6 @@ def _stem(name: str) -> str:
     return name.removesuffix(next(endings, ''))
 
 
-def _inside(folder: Path, tables: bool, out: Path | None) -> list[Path]:
-    """Return the recordings in a folder and in those below it."""
-    endings = (*ENDINGS, *TABLES) if tables else ENDINGS
-    logs = _files(folder, endings)
-    for child in _folders(folder, out):
-        whole = is_one_bag(child, tables=tables, out=out)
-        logs += [child] if whole else _below(child, tables, out)
-    if not logs:
-        raise InputError(
-            f'folder {folder} holds no recording, it must hold bags or files of '
-            f'{" or ".join(endings)}{_hint(folder)}'
-        )
-    return logs
-
-
 def _hint(folder: Path) -> str:
     """Return what else is to be said of a folder without a recording that holds tables."""
     tables = _files(folder, TABLES)
@@ -110,13 +109,6 @@ def _hint(folder: Path) -> str:
     return (
         f'; for its tables: ballscrew import {tables[0]} --guess > map.yaml, then --map map.yaml'
     )
-
-
-def _below(folder: Path, tables: bool, out: Path | None) -> list[Path]:
-    try:
-        return _inside(folder, tables, out)
-    except InputError:  # one that holds other things
-        return []
 
 
 def _folders(folder: Path, out: Path | None) -> list[Path]:
@@ -150,3 +142,30 @@ def folder_names(logs: Sequence[Path]) -> list[str]:
     return (
         names if len(set(names)) == len(names) else [f'{i + 1}-{n}' for i, n in enumerate(names)]
     )
+
+
+def replace_report(made: Path, out: Path) -> None:
+    """
+    Let the page and the products in `made` take the place of those in `out`.
+
+    Products without a page look like recordings: the old ones go before the page is replaced, the
+    new ones come after it. So whatever stops it, none is beside a page that is not its own.
+
+    """
+    products = {path.relative_to(made) for path in made.rglob('*') if path.is_file()} - {
+        Path(PAGE)
+    }
+    stale = {Path(PICTURE)} if (out / PICTURE).exists() else set()
+    for name in products | stale:
+        (out / name).unlink(missing_ok=True)
+    (made / PAGE).replace(out / PAGE)
+    for name in products:
+        (out / name).parent.mkdir(exist_ok=True)
+        (made / name).replace(out / name)
+
+
+def remove_report(out: Path) -> None:
+    """Remove a report from `out`, its page last."""
+    judged = (f'{JUDGED}/{JUDGED}.mcap', f'{JUDGED}/metadata.yaml')
+    for name in (*judged, STATES, EVENTS, SUMMARY, PICTURE, PAGE):
+        (out / name).unlink(missing_ok=True)

@@ -12,17 +12,12 @@ from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.core.judgement import Limits, Zone
 from ballscrew_monitor.recordings.columns import JudgedColumns
 from ballscrew_monitor.recordings.declared import written
-from ballscrew_monitor.report.case import AxisCase
-from ballscrew_monitor.report.encoding import floats, packed
-from ballscrew_monitor.report.operating_field import (
-    Field,
-    judged_speeds,
-    loads_around,
-    map_temperatures,
-    sample,
-)
+from ballscrew_monitor.report import operating_field
+from ballscrew_monitor.report.judging import AxisCase
+from ballscrew_monitor.report.operating_field import Field
+from ballscrew_monitor.report.page import floats, packed
 from ballscrew_monitor.report.page_budget import PATH_POINTS
-from ballscrew_monitor.report.survey import opposing_loads, Span
+from ballscrew_monitor.report.survey import opposing_loads
 from contourpy import contour_generator
 import numpy as np
 from numpy.typing import NDArray
@@ -107,14 +102,19 @@ class OperatingMap:
 def operating_map(case: AxisCase, path_points: int = PATH_POINTS) -> OperatingMap:
     """Return the map of an axis at the mean temperature of its oil in motion."""
     limits, surface, oil = case.settings.limits, case.surface, case.survey.oil
-    speeds = judged_speeds(surface, limits.standstill_speed)
+    speeds = operating_field.judged_speeds(surface, limits.standstill_speed)
     opposing = case.survey.opposing
-    loads = loads_around(surface, opposing.low, opposing.high, light_load=limits.light_load)
-    mean, others = map_temperatures(*_celsius(oil, surface.reference_temperature))
-    field = sample(surface, mean, speeds=speeds, loads=loads)
+    loads = operating_field.loads_around(
+        surface, opposing.low, opposing.high, light_load=limits.light_load
+    )
+    known = (oil.low, oil.mean, oil.high)
+    if math.isnan(oil.mean):  # then that of the datasheet
+        known = (surface.reference_temperature,) * 3
+    mean, others = operating_field.map_temperatures(*map(celsius, known))
+    field = operating_field.sample(surface, mean, speeds=speeds, loads=loads)
     lines = _lines(field, limits, mean)
     for degrees in others:
-        border = sample(surface, degrees, speeds=speeds, loads=loads)
+        border = operating_field.sample(surface, degrees, speeds=speeds, loads=loads)
         lines.append(_line(border, border.rcs, limits.rcs, 'rcs_other', _degrees(degrees)))
     return OperatingMap(
         temperature=mean,
@@ -129,13 +129,6 @@ def operating_map(case: AxisCase, path_points: int = PATH_POINTS) -> OperatingMa
     )
 
 
-def _celsius(oil: Span, reference: float) -> tuple[float, float, float]:
-    """Return coldest, mean and warmest oil [degC], that of the datasheet where none is known."""
-    if math.isnan(oil.mean):
-        return celsius(reference), celsius(reference), celsius(reference)
-    return celsius(oil.low), celsius(oil.mean), celsius(oil.high)
-
-
 def _degrees(temperature: float) -> str:
     return f'{temperature:.0f} °C'
 
@@ -143,10 +136,8 @@ def _degrees(temperature: float) -> str:
 def _zone(field: Field, limits: Limits) -> Array:
     """Return the zone in the cells between the points of the field."""
     middles = field.middles()
-    optimal = middles.is_optimal(
-        rcs=limits.rcs, efficiency=limits.efficiency, light_load=limits.light_load
-    )
-    return np.where(np.isnan(middles.rcs), NO_NUMBER, np.where(optimal, OPTIMAL, OUTSIDE))
+    known = np.where(middles.is_optimal(limits), OPTIMAL, OUTSIDE)
+    return np.where(np.isnan(middles.rcs), NO_NUMBER, known)
 
 
 def _lines(field: Field, limits: Limits, mean: float) -> list[MapLine]:

@@ -12,6 +12,7 @@ import dataclasses
 import math
 
 from ballscrew_monitor.core.conversions import kelvin
+from ballscrew_monitor.core.judgement import Limits
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.surface import look_up_many, Surface
@@ -39,10 +40,10 @@ class Field:
     film_ratio: Array
     band: tuple[float, float]
 
-    def is_optimal(self, *, rcs: float, efficiency: float, light_load: float) -> NDArray[np.bool_]:
-        """Tell where limits [-] are kept; below a light load [N] only RCS counts."""
-        light = np.abs(self.load)[:, None] < light_load
-        return (self.rcs < rcs) & (light | (self.efficiency >= efficiency))
+    def is_optimal(self, limits: Limits) -> NDArray[np.bool_]:
+        """Tell where limits are kept; below the light load only RCS counts."""
+        light = np.abs(self.load)[:, None] < limits.light_load
+        return (self.rcs < limits.rcs) & (light | (self.efficiency >= limits.efficiency))
 
     def judged_efficiency(self, light_load: float) -> Array:
         """Return the efficiency [-] without its valley about no load; a light load [N]."""
@@ -53,10 +54,8 @@ class Field:
         return Field(
             speed=np.sqrt(self.speed[1:] * self.speed[:-1]),
             load=0.5 * (self.load[1:] + self.load[:-1]),
-            efficiency=_amid(self.efficiency),
-            rcs=_amid(self.rcs),
-            film_ratio=_amid(self.film_ratio),
             band=self.band,
+            **{name: _amid(getattr(self, name)) for name in NAMES},
         )
 
 

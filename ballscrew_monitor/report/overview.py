@@ -10,8 +10,7 @@ from urllib.parse import quote
 
 from ballscrew_monitor.recordings.words import counted, duration, NONE, percent
 from ballscrew_monitor.report.log_report import AxisLine, LogResult, PAGE
-from ballscrew_monitor.report.markup import element, joined, Markup, table, TableCell, TableRow
-from ballscrew_monitor.report.page import page
+from ballscrew_monitor.report.page import element, joined, Markup, page, table, TableCell, TableRow
 
 SCRIPTS = ('format.js', 'table.js', 'overview.js')
 WIDTH, HEIGHT, EDGE = 720.0, 110.0, 8.0  # of the picture of a trend [px]
@@ -39,7 +38,7 @@ Listed = tuple[LogEntry, AxisLine]
 def overview_page(entries: Sequence[LogEntry], notes: Sequence[str] = ()) -> str:
     """Return the page over recordings, with sentences about what is not among them."""
     listed = [(one, line) for one in entries if one.result for line in one.result.lines]
-    listed.sort(key=lambda pair: _date_key(pair[1].begins))
+    listed.sort(key=lambda pair: -math.inf if math.isnan(pair[1].begins) else pair[1].begins)
     bad = [one for one in entries if one.result is None]
     body = element(
         'main',
@@ -68,10 +67,6 @@ def overview_page(entries: Sequence[LogEntry], notes: Sequence[str] = ()) -> str
     return page('Ball screw reports', body, scripts=SCRIPTS)
 
 
-def _date_key(begins: float) -> float:
-    return begins if math.isfinite(begins) else -math.inf
-
-
 def _verdict(entries: Sequence[LogEntry], listed: Sequence[Listed]) -> Markup:
     counts = dict.fromkeys(MARKS, 0)
     for _, line in listed:
@@ -97,28 +92,28 @@ def _row(one: LogEntry, line: AxisLine) -> TableRow:
     part = line.outside_time / line.running_time if line.running_time else math.nan
     link = element('a', one.name, href=f'{quote(one.folder)}/{PAGE}')
     return TableRow(
-        cells=(
-            TableCell(text=link, kind='place'),
-            TableCell(text=line.axis),
+        (
+            TableCell(link, kind='place'),
+            line.axis,
             TableCell(
                 text=element(
                     'span', line.verdict.partition(':')[0], class_=f'tag {line.standing}'
                 ),
                 kind='short',
             ),
-            TableCell(text=_date(line.begins), kind='short'),
+            TableCell(_date(line.begins), kind='short'),
             _time(line.recorded),
             _time(line.running_time),
-            TableCell(text=percent(part).removesuffix(' %'), kind='number', value=part),
-            TableCell(text=str(line.warnings), kind='short', value=line.warnings),
-            TableCell(text=line.worst or NONE, kind='short', value=line.depth),
+            TableCell(percent(part).removesuffix(' %'), kind='number', value=part),
+            TableCell(str(line.warnings), kind='short', value=line.warnings),
+            TableCell(line.worst or NONE, kind='short', value=line.depth),
         ),
         kind='bad' if line.standing == 'bad' else '',
     )
 
 
 def _time(seconds: float) -> TableCell:
-    return TableCell(text=duration(seconds), kind='short', value=seconds)
+    return TableCell(duration(seconds), kind='short', value=seconds)
 
 
 def _date(begins: float) -> str:
@@ -165,7 +160,7 @@ def _trend(axis: str, listed: Sequence[Listed]) -> Markup:
     span = f'{_date(first)} to {_date(last)}'
     total = math.fsum(line.running_time for _, _, _, line in points)
     text = f'{span}, {duration(total)} in motion; the highest point is {percent(most)}.'
-    return joined([element('h3', f'Axis {axis}'), drawn, element('p', text, class_='muted')])
+    return joined(element('h3', f'Axis {axis}'), drawn, element('p', text, class_='muted'))
 
 
 def _mark(x: float, y: float, one: LogEntry, line: AxisLine, part: float) -> Markup:

@@ -1,12 +1,27 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""A page that opens anywhere: all it needs is inside, and nothing else may run in it."""
+"""
+A page that opens anywhere: all it needs is inside, and nothing else may run in it.
+
+Its HTML is safe by its making: every text is escaped, whatever a log or an axis is called. Numbers
+are compact columns, and texts are JSON that ends no element.
+
+"""
 
 import base64
+from collections.abc import Iterable, Sequence
+import dataclasses
+import functools
 import hashlib
+import html
 from importlib import resources
+import json
+import math
+from typing import Any
 
-from ballscrew_monitor.report.markup import element, joined, Markup
+import numpy as np
+from numpy.typing import ArrayLike
+from surrogate.files import to_json
 
 FOLDER = resources.files('ballscrew_monitor.report').joinpath('components')
 UPLOT_JS, UPLOT_CSS = 'uplot/uPlot.iife.min.js', 'uplot/uPlot.min.css'
@@ -23,6 +38,142 @@ CHARTS = (
     'page.js',
 )
 """Scripts of a page with charts, in the order in which they build on each other."""
+LEVELS = 65534  # steps of a packed number between the lowest and the highest
+LARGEST = np.finfo(float).max / 2  # number that is packed, of which a span is finite
+SELDOM = 4  # numbers to a change from which on runs are the shorter form
+LEADING = 'leading'  # kind of a table whose rows lead to moments, of which there may be many
+DOTS = 'M0 3H26M0 9H26'  # two rows of a sample in a legend
+VOID = frozenset({'meta', 'rect', 'line', 'path', 'br', 'polyline'})
+
+
+class Markup(str):
+    """A piece of a page: never escaped again."""
+
+    __slots__ = ()
+
+
+def element(name: str, *content: str, **attributes: str | float | None) -> Markup:
+    """
+    Return an element; content that is no `Markup` is escaped, as are the values of attributes.
+
+    A trailing `_` of the name of an attribute is dropped, any other becomes `-`; None leaves an
+    attribute out.
+
+    """
+    parts = [name]
+    for key, value in attributes.items():
+        if value is not None:
+            shown = f'{value:g}' if isinstance(value, float) else str(value)
+            parts.append(f'{key.rstrip("_").replace("_", "-")}="{html.escape(shown)}"')
+    opened = f'<{" ".join(parts)}>'
+    if name in VOID and not content:
+        return Markup(opened if name in ('meta', 'br') else f'{opened[:-1]}/>')
+    return Markup(f'{opened}{joined(*content)}</{name}>')
+
+
+def joined(*pieces: str) -> Markup:
+    """Return pieces one after the other, escaped where they are no markup."""
+    return Markup(
+        ''.join(piece if isinstance(piece, Markup) else html.escape(piece) for piece in pieces)
+    )
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class TableCell:
+    """What a cell shows; `value` is what it is sorted by, `kind` its class."""
+
+    text: str
+    _: dataclasses.KW_ONLY
+    kind: str = ''
+    value: float | None = None
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class TableRow:
+    """Cells of a row, or their texts alone, and the time [s] that it leads to if any."""
+
+    cells: Sequence[TableCell | str]
+    _: dataclasses.KW_ONLY
+    begin: float | None = None
+    end: float | None = None
+    kind: str = ''
+
+
+def table(heads: Sequence[str], rows: Iterable[TableRow], *, kind: str = '') -> Markup:
+    """Return a table; a head that ends in `]`, a unit, is that of a column of numbers."""
+    head = (
+        element('th', text, class_='number' if text.endswith(']') else None, scope='col')
+        for text in heads
+    )
+    body = (_row(row) for row in rows)
+    made = element(
+        'table',
+        element('thead', element('tr', *head)),
+        element('tbody', *body),
+        class_=kind or None,
+    )
+    return element('div', made, class_='wide tall' if LEADING in kind else 'wide')
+
+
+def _row(row: TableRow) -> Markup:
+    cells = (
+        element('td', cell.text, class_=cell.kind or None, data_value=_stated(cell.value))
+        for cell in (TableCell(one) if isinstance(one, str) else one for one in row.cells)
+    )
+    return element(
+        'tr',
+        *cells,
+        class_=row.kind or None,
+        data_begin=None if row.begin is None else f'{row.begin:.4f}',
+        data_end=None if row.end is None else f'{row.end:.4f}',
+    )
+
+
+def _stated(value: float | None) -> str | None:
+    if value is None:
+        return None
+    return f'{value!r}' if math.isfinite(value) else 'NaN'
+
+
+def share_bar(parts: Sequence[tuple[float, str]], title: str) -> Markup:
+    """Return a bar of parts, each of an amount and with a class, as long as they are large."""
+    total = math.fsum(amount for amount, _ in parts)
+    at, pieces = 0.0, []
+    for amount, kind in parts:
+        width = 1000.0 * amount / total if total else 0.0
+        pieces.append(element('rect', x=at, y='0', width=f'{width:.2f}', height='22', class_=kind))
+        at += width
+    return element(
+        'svg',
+        element('title', title),
+        *pieces,
+        class_='bar',
+        viewBox='0 0 1000 22',
+        preserveAspectRatio='none',
+        role='img',
+    )
+
+
+def swatch(kind: str, shape: str = 'fill', dash: str | None = None) -> Markup:
+    """Return a sample of a colour, as an area, as dots or as a line, for a legend."""
+    if shape == 'fill':
+        piece = element('rect', width='26', height='12', class_=f'fill-{kind}')
+    elif shape == 'dots':
+        piece = element(
+            'path', d=DOTS, class_=f'line-{kind}', stroke_width='2', stroke_dasharray='2 5'
+        )
+    else:
+        piece = element(
+            'line',
+            x1='0',
+            x2='26',
+            y1='6',
+            y2='6',
+            class_=f'line-{kind}',
+            stroke_width='2',
+            stroke_dasharray=dash,
+        )
+    return element('svg', piece, viewBox='0 0 26 12', aria_hidden='true')
 
 
 def component(name: str) -> str:
@@ -34,7 +185,7 @@ def page(
     title: str, body: Markup, *, scripts: tuple[str, ...] = (), data: str | None = None
 ) -> str:
     """
-    Return a page; `data` is JSON for its scripts, made by `encoding.script_json`.
+    Return a page; `data` is JSON for its scripts, made by `script_json`.
 
     It asks for nothing over the net, and its policy lets run and look only what is in it here.
 
@@ -54,9 +205,10 @@ def page(
         element('title', title),
         *(_raw('style', sheet) for sheet in sheets),
     )
-    tail = [_data(data)] if data is not None else []
-    tail += [_raw('script', text) for text in texts]
-    whole = element('html', head, element('body', body, joined(tail)), lang='en')
+    tail = [_raw('script', text) for text in texts]
+    if data is not None:
+        tail.insert(0, Markup(f'<script type="application/json" id="data">{data}</script>'))
+    whole = element('html', head, element('body', body, *tail), lang='en')
     return f'<!DOCTYPE html>\n{whole}\n'
 
 
@@ -77,5 +229,41 @@ def _raw(name: str, text: str) -> Markup:
     return Markup(f'<{name}>{text}</{name}>')
 
 
-def _data(text: str) -> Markup:
-    return Markup(f'<script type="application/json" id="data">{text}</script>')
+def _encoded(kind: str, values: ArrayLike) -> str:
+    return base64.b64encode(np.asarray(values, dtype=kind).tobytes()).decode()
+
+
+floats, doubles, codes = (functools.partial(_encoded, kind) for kind in ('<f4', '<f8', '<u1'))
+"""Return numbers as base64 of little-endian float32, of float64, and of bytes."""
+
+
+def packed(values: ArrayLike) -> dict[str, Any]:
+    """
+    Return numbers in 65534 steps from the lowest to the highest, two bytes each, 0 for NaN.
+
+    A number beyond half of the largest double counts as NaN: the reader's span would overflow.
+    Where the numbers seldom change, `runs` says how often each is repeated.
+
+    """
+    numbers = np.asarray(values, dtype=float)
+    known = np.abs(numbers) <= LARGEST
+    low, high = _span(numbers[known])
+    steps = np.zeros(numbers.size, dtype=np.uint16)
+    # The span may be subnormal, and its reciprocal infinite: it divides.
+    steps[known] = 1 + np.rint((numbers[known] - low) / ((high - low) or 1.0) * LEVELS)
+    record = {'low': low, 'high': high}
+    starts = np.flatnonzero(np.diff(steps, prepend=steps[:1] + 1))
+    if SELDOM * starts.size > steps.size:
+        return record | {'data': _encoded('<u2', steps)}
+    runs = np.diff(starts, append=steps.size)
+    return record | {'data': _encoded('<u2', steps[starts]), 'runs': _encoded('<u4', runs)}
+
+
+def _span(numbers: Any) -> tuple[float, float]:
+    return (float(numbers.min()), float(numbers.max())) if numbers.size else (0.0, 0.0)
+
+
+def script_json(record: Any) -> str:
+    """Return a record as JSON within a script element: no text in it can end the element."""
+    text = json.dumps(to_json(record), separators=(',', ':'), allow_nan=False)
+    return text.replace('<', '\\u003c').replace('>', '\\u003e').replace('&', '\\u0026')

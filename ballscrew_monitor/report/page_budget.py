@@ -11,7 +11,7 @@ then left of the page is for every sample around the worst events.
 from collections.abc import Sequence
 import dataclasses
 
-from ballscrew_monitor.report.case import AxisCase, badness
+from ballscrew_monitor.report.judging import AxisCase, badness
 
 PAGE_BYTES = 4_950_000
 FEW = 4  # axes of which all is shown

@@ -9,8 +9,8 @@ from typing import Any
 from ballscrew_monitor.core.judgement import Zone
 from ballscrew_monitor.recordings.summary import EventRecord, Summary
 from ballscrew_monitor.recordings.words import duration, NONE, number, share
-from ballscrew_monitor.report.case import AxisCase, badness, RCS
-from ballscrew_monitor.report.markup import (
+from ballscrew_monitor.report.judging import AxisCase, badness, RCS
+from ballscrew_monitor.report.page import (
     element,
     joined,
     Markup,
@@ -80,13 +80,11 @@ def shares(case: AxisCase, summary: Summary) -> Markup:
         (summary.hydrodynamic_time, 'hydrodynamic', 'hydrodynamic: the oil film carries'),
     ]
     return joined(
-        [
-            element('h3', f'Time in the optimal zone, of {duration(running)} in motion'),
-            _bar(zone, running, duration),
-            element('h3', 'Time in each lubrication regime'),
-            _bar(regime, running, duration),
-            *_energy(case, summary),
-        ]
+        element('h3', f'Time in the optimal zone, of {duration(running)} in motion'),
+        _bar(zone, running, duration),
+        element('h3', 'Time in each lubrication regime'),
+        _bar(regime, running, duration),
+        *_energy(case, summary),
     )
 
 
@@ -96,7 +94,7 @@ def _bar(parts: Sequence[tuple[float, str, str]], whole: float, show: Any) -> Ma
     items = (
         element('li', swatch(kind), text) for (_, kind, _), text in zip(parts, texts, strict=True)
     )
-    return joined([drawn, element('ul', *items, class_='legend')])
+    return joined(drawn, element('ul', *items, class_='legend'))
 
 
 def _energy(case: AxisCase, summary: Summary) -> Iterable[Markup]:
@@ -124,32 +122,27 @@ def events_part(case: AxisCase, most: int = MOST_ROWS) -> Markup:
     """Return the table of the worst warnings, `most` rows, which lead to their moment."""
     events = case.worst_first[:most]
     if not events:
-        return joined([element('h3', 'Warnings'), element('p', 'None.')])
+        return joined(element('h3', 'Warnings'), element('p', 'None.'))
     count = len(case.outcome.events)
     cut = f' The worst {most} of {count} are shown.' if count > most else ''
     worst = events[0].event_id
-    rows = (_event_row(case, event, event.event_id == worst) for event in sorted(events, key=_at))
+    in_order = sorted(events, key=lambda event: event.event_id)
+    rows = (_event_row(case, event, event.event_id == worst) for event in in_order)
     return joined(
-        [
-            element('h3', f'Warnings: {count}'),
-            element(
-                'p',
-                'A click on a row shows that moment in the charts. The worst one is marked.'
-                + cut
-                + LASTING,
-                class_='muted',
-            ),
-            table(
-                ('No.', 'Begins at [s]', 'Lasts [s]', 'Cause', 'Worst', 'Limit', 'What to do'),
-                rows,
-                kind='leading sortable',
-            ),
-        ]
+        element('h3', f'Warnings: {count}'),
+        element(
+            'p',
+            'A click on a row shows that moment in the charts. The worst one is marked.'
+            + cut
+            + LASTING,
+            class_='muted',
+        ),
+        table(
+            ('No.', 'Begins at [s]', 'Lasts [s]', 'Cause', 'Worst', 'Limit', 'What to do'),
+            rows,
+            kind='leading sortable',
+        ),
     )
-
-
-def _at(event: EventRecord) -> int:
-    return event.event_id
 
 
 def _event_row(case: AxisCase, event: EventRecord, worst: bool) -> TableRow:
@@ -160,17 +153,17 @@ def _event_row(case: AxisCase, event: EventRecord, worst: bool) -> TableRow:
     todo = event.what_to_do
     lasts = number(event.duration, 4) + (' and still on' if event.active else '')
     return TableRow(
-        cells=(
-            TableCell(text=str(event.event_id), kind='number', value=event.event_id),
-            TableCell(text=f'{begin:.2f}', kind='number', value=begin),
-            TableCell(text=lasts, kind='number', value=event.duration),
-            TableCell(text=cause),
-            TableCell(text=event.shown(event.worst_value), kind='short', value=badness(event)[0]),
+        (
+            TableCell(str(event.event_id), kind='number', value=event.event_id),
+            TableCell(f'{begin:.2f}', kind='number', value=begin),
+            TableCell(lasts, kind='number', value=event.duration),
+            cause,
+            TableCell(event.shown(event.worst_value), kind='short', value=badness(event)[0]),
             TableCell(
                 text=f'{SIGNS.get(event.relation, event.relation)} {event.shown(event.limit)}',
                 kind='short',
             ),
-            TableCell(text=f'at {event.place}: {todo}' if event.place else todo or NONE),
+            f'at {event.place}: {todo}' if event.place else todo or NONE,
         ),
         begin=begin - margin,
         end=end + margin,

@@ -8,18 +8,12 @@ from pathlib import Path
 import re
 from typing import Any
 
-from ballscrew_monitor.report.buckets import TimedRows
-from ballscrew_monitor.report.case import AxisCase, LogCase
-from ballscrew_monitor.report.map_record import (
-    longest_dwell,
-    map_legend,
-    MARKED,
-    OperatingMap,
-    OPTIMAL,
-)
+from ballscrew_monitor.report import map_record
+from ballscrew_monitor.report.buckets import Rows
+from ballscrew_monitor.report.judging import AxisCase, LogCase
+from ballscrew_monitor.report.map_record import OperatingMap
 from ballscrew_monitor.report.page import component
-from ballscrew_monitor.report.panels import panels
-from ballscrew_monitor.report.time_series import BAR_LEGEND, BARS, drawn_rows
+from ballscrew_monitor.report.time_series import BAR_LEGEND, BARS, drawn_rows, panels
 from ballscrew_monitor.report.verdict import verdict_of
 from matplotlib.axes import Axes
 from matplotlib.colors import LinearSegmentedColormap, ListedColormap, LogNorm, to_rgba
@@ -73,7 +67,7 @@ def _draw_axis(part: SubFigure, case: AxisCase, chart: OperatingMap) -> None:
     )
     _draw_map(axes, case, chart)
     rows = drawn_rows(case)
-    shown = [one for one in panels(case.settings.limits) if _keys(one)[0] in rows.numbers]
+    shown = panels(case)
     strips = lower.subplots(
         1 + len(shown), 1, sharex=True, height_ratios=(80, *(panel['height'] for panel in shown))
     )
@@ -85,10 +79,6 @@ def _draw_axis(part: SubFigure, case: AxisCase, chart: OperatingMap) -> None:
             strip.axvspan(*span, color=COLOURS['outside'], alpha=0.14, linewidth=0.0, zorder=0)
     strips[-1].set_xlim(0.0, case.survey.span or 1.0)
     strips[-1].set_xlabel('time [s]')
-
-
-def _keys(panel: dict[str, Any]) -> list[str]:
-    return [series['key'] for series in panel['series']]
 
 
 def _draw_map(axes: Axes, case: AxisCase, chart: OperatingMap) -> None:
@@ -109,15 +99,15 @@ def _draw_map(axes: Axes, case: AxisCase, chart: OperatingMap) -> None:
     axes.set(xlim=chart.speed, ylim=chart.load)
     axes.set_xlabel('screw speed, either direction [rev/min]')
     axes.set_ylabel('axial load [N]: assists | opposes')
-    entries = [_entry(*sample, label=text) for sample, text in map_legend(case, chart)]
+    entries = [_entry(*sample, label=text) for sample, text in map_record.map_legend(case, chart)]
     _legend(axes, entries, -0.1)
 
 
 def _draw_cells(axes: Axes, chart: OperatingMap) -> None:
     """Draw optimal zone, time spent and light load, as the page does."""
-    zone = np.ma.masked_not_equal(chart.zone, OPTIMAL)
+    zone = np.ma.masked_not_equal(chart.zone, map_record.OPTIMAL)
     axes.pcolormesh(*_edges(chart, zone), zone, cmap=ListedColormap([COLOURS['zone']]))
-    longest = longest_dwell(chart.dwell)
+    longest = map_record.longest_dwell(chart.dwell)
     heat = [to_rgba(COLOURS['heat'], opacity) for opacity in (0.1, DARKEST)]
     axes.pcolormesh(
         *_edges(chart, chart.dwell),
@@ -161,7 +151,7 @@ def _dashes(dash: str | None) -> Any:
 
 
 def _entry(kind: str, shape: str = 'fill', dash: str | None = None, *, label: str) -> Any:
-    """Return a sample of a colour, as `markup.swatch` does."""
+    """Return a sample of a colour, as `page.swatch` does."""
     colour = COLOURS.get(kind, COLOURS['muted'])
     if shape == 'line':
         return Line2D([], [], color=colour, linestyle=_dashes(dash), label=label)
@@ -175,14 +165,14 @@ def _legend(axes: Axes, entries: list[Any], height: float) -> None:
     axes.legend(handles=entries, ncols=3, frameon=False, fontsize=8, **place)
 
 
-def _draw_bars(axes: Axes, case: AxisCase, rows: TimedRows) -> None:
+def _draw_bars(axes: Axes, case: AxisCase, rows: Rows) -> None:
     """Draw regime, zone and warning as bars, the last one with the numbers of the worst events."""
-    edges = np.append(rows.time, rows.time[-1])
+    edges = np.append(rows['time'], rows['time'][-1])
     for place, (key, _, colours) in enumerate(reversed(BARS)):
         cmap = ListedColormap([COLOURS[colour] for colour in colours])
         limits: dict[str, Any] = {'vmin': -0.5, 'vmax': len(colours) - 0.5}
-        axes.pcolormesh(edges, [place, place + 0.9], rows.codes[key][None], cmap=cmap, **limits)
-    for event in case.worst_first[:MARKED]:
+        axes.pcolormesh(edges, [place, place + 0.9], rows[key][None], cmap=cmap, **limits)
+    for event in case.worst_first[: map_record.MARKED]:
         middle = 0.5 * (case.since_first(event.start) + case.since_first(event.end))
         axes.text(middle, 0.45, str(event.event_id), fontsize=8, **CENTRED)
     axes.set_yticks(np.arange(len(BARS)) + 0.45, [title for _, title, _ in reversed(BARS)])
@@ -191,15 +181,15 @@ def _draw_bars(axes: Axes, case: AxisCase, rows: TimedRows) -> None:
     _legend(axes, [_entry(kind, label=text) for kind, text in BAR_LEGEND if kind in COLOURS], 2.0)
 
 
-def _draw_panel(axes: Axes, panel: dict[str, Any], rows: TimedRows) -> None:
+def _draw_panel(axes: Axes, panel: dict[str, Any], rows: Rows) -> None:
     """Draw the numbers of a panel with its limits and bands; what is below its floor, on it."""
     floor, seen = panel['floor'], list(panel['show'])
     for series in panel['series']:
-        values = rows.numbers[series['key']]
+        values = rows[series['key']]
         values = values if floor is None else np.maximum(values, floor)
         style = 'dashed' if series['dashed'] else 'solid'
         axes.plot(
-            rows.time, values, color=COLOURS[series['colour']], linewidth=0.8, linestyle=style
+            rows['time'], values, color=COLOURS[series['colour']], linewidth=0.8, linestyle=style
         )
         known = values[np.isfinite(values)]
         seen += [known.min(), known.max()] if known.size else []

@@ -1,17 +1,18 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What a terminal says of a recording that was judged: the words of its page, and its JSON."""
+"""What is said of a recording that was judged beside its page: words of a terminal, and JSON."""
 
 from collections.abc import Iterator, Mapping
 import math
 from typing import Any
 
 from ballscrew_monitor.core.judgement import Reason
+from ballscrew_monitor.recordings.declared import plain
 from ballscrew_monitor.recordings.words import number, shown_unit
-from ballscrew_monitor.report.case import AxisCase, LogCase
 from ballscrew_monitor.report.inputs_seen import inputs_seen, InputSeen, NAMES, Trouble
+from ballscrew_monitor.report.judging import AxisCase, LogCase
 from ballscrew_monitor.report.survey import REST
-from ballscrew_monitor.report.verdict import verdict_of
+from ballscrew_monitor.report.verdict import AxisVerdict, verdict_of, verdicts_of
 
 HEAD = 12
 """Width of the column of heads, as that of `Summary.lines`."""
@@ -82,3 +83,56 @@ def printed_records(summary: Mapping[str, Any]) -> dict[str, Any]:
 def _with_totals(record: Mapping[str, Any]) -> dict[str, Any]:
     rest = {key: value for key, value in record.items() if key != 'totals'}
     return {**(record['totals'] or {}), **rest}
+
+
+def summary_record(log: LogCase) -> dict[str, Any]:
+    """Return what the report says as plain data; a number that is not known has a reason."""
+    return {
+        'log': log.name,
+        'parameters': log.parameters,
+        'unjudged_axes': log.unjudged,
+        'axes': _axis_records(log),
+        'assumptions': {key: dict(one) for key, one in log.assumptions.items()},
+        'notes': list(log.notes),
+    }
+
+
+def _axis_records(log: LogCase) -> dict[str, Any]:
+    """Return the records of all axes; an axis without rows is None, with its reason."""
+    records: dict[str, Any] = {}
+    cases = {case.axis: case for case in log.axes}
+    for axis, verdict in zip([*cases, *log.empty], verdicts_of(log), strict=True):
+        known = cases.get(axis)
+        records |= (
+            {axis: axis_record(known, verdict)} if known else without(axis, verdict.sentence)
+        )
+    return records
+
+
+def axis_record(case: AxisCase, verdict: AxisVerdict) -> dict[str, Any]:
+    """Return what is known of an axis; `<name>_reason` says why a number is missing."""
+    summary, survey, surface = case.outcome.summary(), case.survey, case.surface
+    return {
+        'verdict': verdict.whole,
+        'standing': verdict.standing.value,
+        'why': verdict.why,
+        'what_to_do': verdict.remedy,
+        'model': {'tier': surface.tier, 'screw': surface.screw_name, 'oil': surface.oil_name},
+        'recorded_s': survey.span,
+        **(
+            without('totals', 'no state was reached')
+            if summary is None
+            # Without the axis, which is named around them.
+            else {'totals': {key: one for key, one in summary.record().items() if key != 'axis'}}
+        ),
+        'energy_lost_by_zone_J': plain(survey.energy),
+        'time_by_reason_s': plain(survey.reasons),
+        'time_without_rows_s': survey.rest,
+        'torque_residual': plain(survey.torque),
+        'inputs': plain({one.source: one for one in inputs_seen(case)}),
+    }
+
+
+def without(name: str, reason: str) -> dict[str, Any]:
+    """Return nothing by a name, and the reason of that."""
+    return {name: None, f'{name}_reason': reason}

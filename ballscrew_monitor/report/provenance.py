@@ -1,17 +1,25 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What the verdict of a report stands on: model, screw, oil and limits, and how each is known."""
+"""
+What the verdict of a report stands on: model, screw, oil and limits, and how each is known.
+
+And what was recorded: torque beside the model, inputs and their troubles, what could be judged.
+
+"""
 
 from collections.abc import Iterable, Sequence
 import math
 
 from ballscrew_monitor.core.conversions import celsius
 from ballscrew_monitor.core.inputs import Source
+from ballscrew_monitor.core.judgement import Reason
 from ballscrew_monitor.recordings.log_facts import grouped
-from ballscrew_monitor.recordings.words import shown_unit
-from ballscrew_monitor.report.case import AxisCase
-from ballscrew_monitor.report.inputs_seen import inputs_seen, NAMES
-from ballscrew_monitor.report.markup import element, joined, Markup, table, TableCell, TableRow
+from ballscrew_monitor.recordings.words import counted, duration, NONE, number, share, shown_unit
+from ballscrew_monitor.report.inputs_seen import inputs_seen, InputSeen, NAMES, Trouble
+from ballscrew_monitor.report.judging import AxisCase
+from ballscrew_monitor.report.page import element, joined, Markup, table, TableCell, TableRow
+from ballscrew_monitor.report.page_budget import MOST_ROWS
+from ballscrew_monitor.report.survey import REST
 from surrogate.units import MILLI
 
 TIERS = {
@@ -59,9 +67,9 @@ def _assumed_names(case: AxisCase) -> Iterable[str]:
         yield from (KEYS['screw'], KEYS['oil'])
     if case.load_origin:
         yield f'axial load, {case.load_origin}'
-    if Source.TEMPERATURE not in case.inputs and case.default_temperature_known == 'assumed':
+    if Source.TEMPERATURE not in case.inputs and case.facts.default_temperature_known == 'assumed':
         yield f'oil temperature of {celsius(case.settings.default_temperature):g} °C'
-    for key, one in case.assumed.items():
+    for key, one in case.facts.assumed.items():
         if key not in ('load.from', 'load', 'temperature_degC'):
             yield _assumed_name(key, one.get('value'))
 
@@ -99,35 +107,33 @@ def assumptions_part(case: AxisCase, parameters: str) -> Markup:
     rows = [_fact_row(*fact) for fact in facts]
     rows += [
         _fact_row(f'Assumed: {key}', f'{one.get("value")}: {one.get("reason", "")}', 'assumed')
-        for key, one in case.assumed.items()
+        for key, one in case.facts.assumed.items()
     ]
     return joined(
-        [
-            element('h3', 'What this rests on'),
-            table(('What', 'Value', 'Known how'), rows),
-            element(
-                'p',
-                'Screw, oil and model are those of the parameters; nothing in a recording tells '
-                'whether the machine has them.',
-                class_='muted',
-            ),
-        ]
+        element('h3', 'What this rests on'),
+        table(('What', 'Value', 'Known how'), rows),
+        element(
+            'p',
+            'Screw, oil and model are those of the parameters; nothing in a recording tells '
+            'whether the machine has them.',
+            class_='muted',
+        ),
     )
 
 
 def _stated(case: AxisCase, key: str) -> str:
-    unsaid = case.nominal or key in case.assumed or key in case.defaulted
+    unsaid = case.nominal or key in case.facts.assumed or key in case.facts.defaulted
     return 'assumed' if unsaid else 'stated'
 
 
 def _leads(case: AxisCase) -> list[tuple[str, str, str]]:
     """Return the lead, and that of the surface where it is another."""
     used, known = case.surface.lead, _stated(case, 'lead_mm')
-    if math.isnan(case.lead) or math.isclose(case.lead, used, rel_tol=1e-6):
+    if math.isnan(case.facts.lead) or math.isclose(case.facts.lead, used, rel_tol=1e-6):
         return [('Lead', f'{MILLI * used:g} mm', known)]
     text = f'{MILLI * used:g} mm, not that of the axis: build the surface of this screw'
     return [
-        ('Lead', f'{MILLI * case.lead:g} mm', known),
+        ('Lead', f'{MILLI * case.facts.lead:g} mm', known),
         ('Lead of the surface', text, 'contradiction'),
     ]
 
@@ -148,10 +154,148 @@ def _conditions(case: AxisCase) -> list[tuple[str, str, str]]:
 
 
 def _fact_row(name: str, value: str, known: str) -> TableRow:
+    return TableRow((name, value, element('span', known, class_=TAGS[known])))
+
+
+def torque_part(case: AxisCase) -> Markup:
+    """Return how measured and modelled torque compare, nothing where none was measured."""
+    fit = case.survey.torque
+    if not fit.count:
+        return Markup()
+    lines = [
+        f'In motion the measured torque differs from the model by {number(fit.spread)} N m '
+        f'(root mean square) at {number(fit.measured)} N m; on average by '
+        f'{number(fit.forward)} N m forward and {number(fit.backward)} N m backward.'
+    ]
+    lines += _torque_reasons(fit.forward, fit.backward)
+    return joined(
+        element('h3', 'Torque: measured and modelled'), *(element('p', line) for line in lines)
+    )
+
+
+def _torque_reasons(forward: float, backward: float) -> list[str]:
+    """Return what a mean difference may come from; both directions must have been seen."""
+    if math.isnan(forward + backward):
+        return ['Only one direction was recorded, so friction and offset cannot be told apart.']
+    # What rounding leaves of equal means is no torque.
+    friction, offset = (round(0.5 * mean, 6) for mean in (forward - backward, forward + backward))
+    said = [
+        f'The part that turns with the direction, {number(friction)} N m, is '
+        + (
+            'friction that the model does not know: wipers, recirculation, bearings, guides. '
+            '`ballscrew identify` fits it.'
+            if friction > 0
+            else 'friction that the model has too much of.'
+        ),
+        f'The part that does not, {number(offset)} N m, is weight of the axis, or a wrong zero.',
+    ]
+    return said
+
+
+def inputs_part(case: AxisCase) -> Markup:
+    """Return what the inputs were like, hints, and what interrupted them."""
+    seen = inputs_seen(case)
+    hints = [hint for one in seen for hint in one.hints]
+    return joined(
+        element('h3', 'Inputs'),
+        *(element('p', f'Check: {hint}.', class_='hint') for hint in hints),
+        table(
+            ('Input', 'Source', 'Lowest', 'Highest', 'Unit', 'Rate [Hz]', 'Read from', 'Refused'),
+            (_input_row(one) for one in seen),
+        ),
+        *_trouble_table(seen),
+        element(
+            'p', 'Only these columns of the recording were read for this page.', class_='muted'
+        ),
+    )
+
+
+def _input_row(seen: InputSeen) -> TableRow:
+    tag = element('span', seen.origin, class_=TAGS[seen.known])
+    rate = number(seen.rate, 4) + (' assumed' if seen.rate_assumed else '')
     return TableRow(
-        cells=(
-            TableCell(text=name),
-            TableCell(text=value),
-            TableCell(text=element('span', known, class_=TAGS[known])),
+        (
+            NAMES[seen.source],
+            TableCell(tag, kind='place'),
+            TableCell(number(seen.low, 4), kind='short'),
+            TableCell(number(seen.high, 4), kind='short'),
+            TableCell(shown_unit(seen.unit), kind='short'),
+            TableCell(rate, kind='number'),
+            TableCell(seen.place, kind='place'),
+            seen.refused or 'none' if seen.place else '',
         )
+    )
+
+
+def _trouble_table(seen: Sequence[InputSeen]) -> Iterable[Markup]:
+    """Yield what is wrong with the messages of the inputs; what went well has no column."""
+    heads = [head for head in Trouble if any(head in one.troubles for one in seen)]
+    if heads:
+        rows = (
+            TableRow((NAMES[one.source], *(one.troubles.get(head, NONE) for head in heads)))
+            for one in seen
+            if one.place
+        )
+        yield table(('Input', *(head.value for head in heads)), rows)
+
+
+def gaps_part(case: AxisCase, most: int = MOST_ROWS) -> Markup:
+    """Return how long what could not be judged, and the longest gaps in the speed, `most` rows."""
+    survey = case.survey
+    times = [(_reason_text(reason), time) for reason, time in survey.reasons.items()]
+    if survey.rest:
+        times.append((f'not judged: {REST}', survey.rest))
+    rows = [
+        TableRow(
+            (
+                text,
+                TableCell(number(time, 4), kind='number', value=time),
+                TableCell(share(time, survey.span), kind='short'),
+            )
+        )
+        for text, time in sorted(times, key=lambda row: -row[1])
+    ]
+    return joined(
+        element('h3', 'What could be judged'),
+        table(('State', 'Time [s]', 'Of the recording'), rows),
+        *_gap_table(case, most),
+    )
+
+
+def _reason_text(reason: Reason) -> str:
+    if reason is Reason.JUDGED:
+        return 'judged'
+    still = reason is Reason.STANDSTILL
+    return reason.text if still else f'not judged: {reason.text}'
+
+
+def _gap_table(case: AxisCase, most: int) -> Iterable[Markup]:
+    survey = case.survey
+    listed = survey.speed_gaps[:most]
+    timeout = case.settings.timeouts[Source.SPEED] * 1e-9
+    gaps = survey.gaps[Source.SPEED]
+    if not gaps.count:
+        yield element('p', f'The speed has no gap longer than its timeout of {timeout:g} s.')
+        return
+    cut = f', the longest {len(listed)} are listed' if len(listed) < gaps.count else ''
+    yield element(
+        'p',
+        f'The speed has {counted(gaps.count, "gap")} longer than its timeout of '
+        f'{timeout:g} s, in all {duration(gaps.time)}{cut}.',
+    )
+    rows = (
+        TableRow(
+            (
+                TableCell(f'{begin:.2f}', kind='number', value=begin),
+                TableCell(number(length, 4), kind='number', value=length),
+            ),
+            begin=begin - 1.0,
+            end=begin + length + 1.0,
+        )
+        for begin, length in ((case.since_first(at), gap * 1e-9) for at, gap in listed)
+    )
+    yield element(
+        'details',
+        element('summary', 'Gaps in the speed'),
+        table(('Begins at [s]', 'Lasts [s]'), rows, kind='leading sortable'),
     )

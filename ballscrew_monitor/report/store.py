@@ -17,7 +17,7 @@ import enum
 import fcntl
 from pathlib import Path
 import shutil
-from typing import Any, Self
+from typing import Any
 import uuid
 
 from ballscrew_monitor.recordings.columns import CODED, COLUMNS, JudgedColumns
@@ -49,10 +49,6 @@ def block_of(frame: pl.DataFrame) -> JudgedColumns:
     )
 
 
-def _no_rows() -> JudgedColumns:
-    return JudgedColumns(axis='', **{name: np.empty(0, kind) for name, kind in COLUMNS.items()})
-
-
 def _named(values: Any, kind: type[enum.IntEnum]) -> pl.Series:
     names = [member.name for member in kind]
     return pl.Series(names, dtype=pl.Enum(names)).gather(values)
@@ -60,26 +56,17 @@ def _named(values: Any, kind: type[enum.IntEnum]) -> pl.Series:
 
 class RowStore:
     """
-    Keeps blocks of rows on disk, by axis; use it as a context manager.
+    Keeps blocks of rows on disk, by axis, in a `folder`.
 
-    Its `folder` goes with it, and what else is put there.
+    The folder goes when the `row_store` ends, and what else was put there.
 
     """
 
-    def __init__(self, directory: Path) -> None:
-        """Prepare to keep blocks in a directory of their own below `directory`."""
-        self._stack = contextlib.ExitStack()
-        self.folder = self._stack.enter_context(scratch_folder(directory))
+    def __init__(self, folder: Path) -> None:
+        """Begin with no block."""
+        self.folder = folder
         self._parts: dict[str, list[Path]] = {}
         self._count = 0
-
-    def __enter__(self) -> Self:
-        """Return the store."""
-        return self
-
-    def __exit__(self, *error: object) -> None:
-        """Drop what was kept."""
-        self._stack.close()
 
     def add(self, block: JudgedColumns) -> None:
         """Keep a block."""
@@ -101,7 +88,15 @@ class RowStore:
             if parts:
                 pl.scan_ipc(parts).sink_parquet(partial, compression='zstd')
             else:
-                frame_of(_no_rows()).write_parquet(partial)
+                nothing = {name: np.empty(0, kind) for name, kind in COLUMNS.items()}
+                frame_of(JudgedColumns(axis='', **nothing)).write_parquet(partial)
+
+
+@contextlib.contextmanager
+def row_store(directory: Path) -> Iterator[RowStore]:
+    """Give a store of rows in a directory of its own below `directory` until the block ends."""
+    with scratch_folder(directory) as folder:
+        yield RowStore(folder)
 
 
 @contextlib.contextmanager

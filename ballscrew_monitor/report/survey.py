@@ -121,16 +121,14 @@ class _Running:
     """Lowest, highest and sum of the finite numbers so far."""
 
     def __init__(self) -> None:
-        self.low, self.high, self.total, self.squares = math.inf, -math.inf, 0.0, 0.0
-        self.count = 0
+        self.low = self.high = math.nan
+        self.total, self.squares, self.count = 0.0, 0.0, 0
 
     def add(self, values: Floats) -> None:
         known = values[np.isfinite(values)]
         if known.size:
-            self.low, self.high = (
-                min(self.low, float(known.min())),
-                max(self.high, float(known.max())),
-            )
+            self.low = float(np.fmin(self.low, known.min()))
+            self.high = float(np.fmax(self.high, known.max()))
             self.total += float(known.sum())
             self.squares += float(np.square(known).sum())
             self.count += known.size
@@ -144,8 +142,6 @@ class _Running:
         return math.sqrt(self.squares / self.count) if self.count else math.nan
 
     def span(self) -> Span:
-        if not self.count:
-            return Span()
         return Span(low=self.low, high=self.high, mean=self.mean)
 
 
@@ -207,15 +203,16 @@ class Surveyor:
 
     def result(self) -> Survey:
         """Return what came of all blocks; there must have been a row."""
-        by_stamp = _length(self._stamps) <= STRAY * _length(self._logs) + STRAY_MARGIN
-        line = self._stamps if by_stamp else self._logs
+        (first, last), (first_log, last_log) = self._stamps, self._logs
+        by_stamp = last - first <= STRAY * (last_log - first_log) + STRAY_MARGIN
+        longest_first = sorted(self._gaps, key=lambda gap: (-gap[0], gap[1]))
         return Survey(
             axis=self._axis,
             rows=self._rows,
-            first=int(line[0]),
-            last=int(line[1]),
+            first=int(first if by_stamp else first_log),
+            last=int(last if by_stamp else last_log),
             by_stamp=by_stamp,
-            shift=0 if by_stamp else int(self._logs[1] - self._stamps[1]),
+            shift=0 if by_stamp else int(last_log - last),
             inputs={source: running.span() for source, running in self._inputs.items()},
             sources={
                 source: frozenset(map(PointSource, codes))
@@ -228,9 +225,15 @@ class Surveyor:
             uncounted=self._uncounted,
             gaps={source: stale.gaps() for source, stale in self._stale.items()}
             | {Source.SPEED: Gaps(count=self._gap_count, time=self._gap_time / SECOND)},
-            speed_gaps=tuple(sorted(((at, length) for length, at in self._gaps), key=_by_length)),
+            speed_gaps=tuple((at, length) for length, at in longest_first),
             energy=dict(zip(Zone, self._energy.tolist())),
-            torque=self._torque_fit(),
+            torque=TorqueFit(
+                count=self._residual.count,
+                forward=self._residuals[Direction.POSITIVE].mean,
+                backward=self._residuals[Direction.NEGATIVE].mean,
+                spread=self._residual.rms,
+                measured=self._measured.rms,
+            ),
         )
 
     def _add_inputs(self, block: JudgedColumns) -> None:
@@ -247,7 +250,7 @@ class Surveyor:
         moved = moving & ~block.tick
         columns: list[np.ndarray] = [block.stamp, block.reason, moved, power, block.zone]
         if self._before is not None:
-            columns = list(map(_after, self._before, columns))
+            columns = [np.insert(one, 0, first) for first, one in zip(self._before, columns)]
         self._before = tuple(column[-1].item() for column in columns)
         stamps, reasons, moved, power, zones = columns
         steps = np.diff(stamps)
@@ -280,19 +283,6 @@ class Surveyor:
         for direction, running in self._residuals.items():
             running.add(residual[known & (block.direction == direction)])
 
-    def _torque_fit(self) -> TorqueFit:
-        return TorqueFit(
-            count=self._residual.count,
-            forward=self._residuals[Direction.POSITIVE].mean,
-            backward=self._residuals[Direction.NEGATIVE].mean,
-            spread=self._residual.rms,
-            measured=self._measured.rms,
-        )
-
-
-def _after(first: float, column: np.ndarray) -> np.ndarray:
-    return np.insert(column, 0, first)
-
 
 def _by_reason(times: Floats) -> dict[Reason, float]:
     return {reason: float(time) for reason, time in zip(Reason, times) if time > 0}
@@ -300,11 +290,3 @@ def _by_reason(times: Floats) -> dict[Reason, float]:
 
 def _widen(line: list[float], times: Times) -> None:
     line[0], line[1] = min(line[0], int(times.min())), max(line[1], int(times.max()))
-
-
-def _length(line: list[float]) -> float:
-    return line[1] - line[0]
-
-
-def _by_length(gap: tuple[int, int]) -> tuple[int, int]:
-    return -gap[1], gap[0]

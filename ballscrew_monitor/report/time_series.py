@@ -3,37 +3,22 @@
 """The course of an axis over time, as panels of a page: numbers, limits, regimes and warnings."""
 
 from collections.abc import Iterable
+import itertools
 import math
 from typing import Any
 
 from ballscrew_monitor.core.conversions import celsius, SECOND
 from ballscrew_monitor.core.estimate import PointSource
 from ballscrew_monitor.core.inputs import Source
-from ballscrew_monitor.core.judgement import Level, Zone
-from ballscrew_monitor.recordings.columns import (
-    Codes,
-    Floats,
-    JudgedColumns,
-    LIGHT_LOAD,
-    STANDSTILL,
-)
-from ballscrew_monitor.report.buckets import (
-    between,
-    Buckets,
-    coarse_record,
-    fine_record,
-    in_order,
-    joined_rows,
-    stretch_of,
-    TimedRows,
-    with_breaks,
-)
-from ballscrew_monitor.report.case import AxisCase
-from ballscrew_monitor.report.encoding import script_json
-from ballscrew_monitor.report.page_budget import AxisBudget, BUCKETS, PAGE_BYTES, WORST
-from ballscrew_monitor.report.panels import panels
+from ballscrew_monitor.core.judgement import Level, Limits, Zone
+from ballscrew_monitor.recordings import columns
+from ballscrew_monitor.report import buckets, page_budget
+from ballscrew_monitor.report.buckets import Rows
+from ballscrew_monitor.report.judging import AxisCase
+from ballscrew_monitor.report.page import script_json
+from ballscrew_monitor.report.page_budget import AxisBudget
 import numpy as np
-from surrogate.surface import Regime
+from surrogate.surface import FILM_RATIO_LIMITS, Regime, REGIMES
 from surrogate.units import RPM
 
 COARSE_BYTES, EVENT_BYTES = 5000, 60  # of panels and the like in the page, and of an event
@@ -41,6 +26,9 @@ AROUND = 1.0  # [s] about an end of an event, of which every sample is kept
 SAMPLE_BYTES = 8 / 3  # of one number of a stretch in the page
 STRETCH_BYTES = 1000  # of a stretch in the page besides its numbers
 LESS = 0.95  # of what would just fit, where stretches were too large
+SMALLEST_RCS, SMALLEST_RATIO, LARGEST_RATIO = 1e-4, 0.05, 10.0
+"""Ends of the logarithmic panels [-]: what is smaller is drawn on the lowest line."""
+HEIGHT = 140  # of a panel [px]
 # What is drawn of codes: the largest of a bucket, so the worst comes last.
 BARS = (
     ('regime', 'Regime', ('none', 'hydrodynamic', 'mixed', 'boundary')),
@@ -56,9 +44,11 @@ BAR_LEGEND = (
     ('hydrodynamic', 'hydrodynamic'),
     ('warning-shade', 'during a warning; over the film ratio a bar'),
 )
-_REGIME_RANK = {Regime.UNKNOWN: 0, Regime.HYDRODYNAMIC: 1, Regime.MIXED: 2, Regime.BOUNDARY: 3}
-_ZONE_RANK = {Zone.UNKNOWN: 3, Zone.OPTIMAL: 2, Zone.OUTSIDE: 4}
-_LEVEL_RANK = {Level.UNKNOWN: 1, Level.OK: 2, Level.WARN: 3}
+RANKS: dict[str, dict[Any, int]] = {
+    'regime': {Regime.UNKNOWN: 0, Regime.HYDRODYNAMIC: 1, Regime.MIXED: 2, Regime.BOUNDARY: 3},
+    'zone': {Zone.UNKNOWN: 3, Zone.OPTIMAL: 2, Zone.OUTSIDE: 4},
+    'level': {Level.UNKNOWN: 1, Level.OK: 2, Level.WARN: 3},
+}
 NUMBERS = (
     'speed',
     'load',
@@ -72,13 +62,13 @@ NUMBERS = (
 
 
 def series_record(
-    case: AxisCase, fine_bytes: float = PAGE_BYTES, budget: AxisBudget | None = None
+    case: AxisCase, fine_bytes: float = page_budget.PAGE_BYTES, budget: AxisBudget | None = None
 ) -> dict[str, Any]:
     """Return the course of an axis; `fine_bytes` of the page are for every sample of events."""
     budget = budget or AxisBudget()
     coarse, near, bucket = _columns(case, fine_bytes, budget.buckets)
     shown, fine = _fine(case, near, fine_bytes)
-    record = coarse_record(coarse)
+    record = buckets.coarse_record(coarse)
     codes = record.pop('codes')
     if bucket:  # the times follow from it
         record.pop('time')
@@ -86,7 +76,7 @@ def series_record(
         'span': case.survey.span,
         'bucket': bucket,
         'shown': shown,
-        'worst': min(WORST, len(case.outcome.events)),
+        'worst': min(page_budget.WORST, len(case.outcome.events)),
         'begins': None if math.isnan(case.begins) else case.begins,
         'fine': fine,
         'bars': [
@@ -97,17 +87,13 @@ def series_record(
             {'begin': case.since_first(event.start), 'end': case.since_first(event.end)}
             for event in case.worst_first[: budget.events]
         ],
-        'panels': [
-            panel
-            for panel in panels(case.settings.limits)
-            if panel['series'][0]['key'] in coarse.numbers
-        ],
+        'panels': panels(case),
     }
 
 
-def drawn_rows(case: AxisCase) -> TimedRows:
+def drawn_rows(case: AxisCase) -> Rows:
     """Return all rows of a short recording, extremes of buckets of a long one."""
-    return _columns(case, 0.0, BUCKETS)[0]
+    return _columns(case, 0.0, page_budget.BUCKETS)[0]
 
 
 def coarse_bytes(case: AxisCase, budget: AxisBudget) -> float:
@@ -124,7 +110,7 @@ def event_bytes(case: AxisCase, budget: AxisBudget) -> float:
     """Return what every sample about an event takes in a page, at the mean rate [bytes]."""
     if _is_short(case, budget.buckets):
         return 0.0
-    return 2.0 * (2.0 * AROUND * _bytes_per_second(case, _fine_columns(case)) + STRETCH_BYTES)
+    return 2.0 * (2.0 * AROUND * _bytes_per_second(case) + STRETCH_BYTES)
 
 
 def _is_short(case: AxisCase, buckets: int) -> bool:
@@ -138,32 +124,20 @@ def _numbers(case: AxisCase) -> tuple[str, ...]:
     return tuple(key for key in NUMBERS if torque or not key.endswith('torque'))
 
 
-def _fine_columns(case: AxisCase) -> int:
-    """Return how many columns take room; the temperature changes too seldom."""
-    return len(_numbers(case)) - 1
-
-
-def _columns(
-    case: AxisCase, fine_bytes: float, buckets: int
-) -> tuple[TimedRows, TimedRows | None, float]:
+def _columns(case: AxisCase, fine_bytes: float, count: int) -> tuple[Rows, Rows | None, float]:
     """Return the rows of the whole, those near the worst events, and the width of a bucket [s]."""
     numbers = _numbers(case)
-    if _is_short(case, buckets):
-        rows = joined_rows([rows_of(case, block, numbers) for block in case.blocks()])
-        return with_breaks(in_order(rows), _longest_step(case)), None, 0.0
-    _, stretches = _worst_stretches(case, _longest(case, fine_bytes))
-    found = Buckets(case.survey.span, numbers, [key for key, _, _ in BARS], count=buckets)
-    kept: list[TimedRows] = []
+    if _is_short(case, count):
+        rows = np.concatenate([rows_of(case, block, numbers) for block in case.blocks()])
+        return buckets.with_breaks(buckets.in_order(rows), _longest_step(case)), None, 0.0
+    _, stretches = _worst_stretches(case, fine_bytes / _bytes_per_second(case))
+    kind = buckets.row_type(numbers, RANKS)
+    found, kept = buckets.Buckets(case.survey.span, kind, count=count), []
     for block in case.blocks():
         rows = rows_of(case, block, numbers)
         found.add(rows)
-        kept.append(between(rows, stretches))
-    return found.rows(), in_order(joined_rows(kept)), found.width
-
-
-def _longest(case: AxisCase, fine_bytes: float) -> float:
-    """Return how long stretches may be in all at the mean rate [s]."""
-    return fine_bytes / _bytes_per_second(case, _fine_columns(case))
+        kept.append(buckets.between(rows, stretches))
+    return found.rows(), buckets.in_order(np.concatenate(kept)), found.width
 
 
 def _longest_step(case: AxisCase) -> float:
@@ -172,17 +146,18 @@ def _longest_step(case: AxisCase) -> float:
 
 
 def _fine(
-    case: AxisCase, near: TimedRows | None, fine_bytes: float
+    case: AxisCase, near: Rows | None, fine_bytes: float
 ) -> tuple[int, list[dict[str, Any]]]:
     """Return of how many of the worst events every sample is kept, and the stretches of those."""
-    longest = _longest(case, fine_bytes)
+    longest = fine_bytes / _bytes_per_second(case)
     while near is not None:
         shown, stretches = _worst_stretches(case, longest)
-        parts = [stretch_of(near, *stretch) for stretch in stretches]
+        ends = np.searchsorted(near['time'], np.array(stretches, dtype=float).reshape(-1, 2))
+        parts = [near[first:last] for first, last in ends.tolist()]
         records = [
-            fine_record(with_breaks(part, _longest_step(case)))
+            buckets.fine_record(buckets.with_breaks(part, _longest_step(case)))
             for part in parts
-            if part.time.size > 1
+            if part.size > 1
         ]
         size = len(script_json(records))
         if size <= fine_bytes or not shown:
@@ -192,56 +167,45 @@ def _fine(
     return 0, []
 
 
-def rows_of(case: AxisCase, block: JudgedColumns, numbers: tuple[str, ...]) -> TimedRows:
+def rows_of(case: AxisCase, block: columns.JudgedColumns, numbers: Iterable[str]) -> Rows:
     """Return a block in the units of the page; NaN where a number is not measured or judged."""
+    still = block.gates & columns.STANDSTILL != 0
+    unjudged = still | (block.gates & columns.LIGHT_LOAD != 0)
     line = block.stamp if case.survey.by_stamp else block.log_time
-    still = block.gates & STANDSTILL != 0
-    unjudged = still | (block.gates & LIGHT_LOAD != 0)
+    warmth = block.temperature + celsius(0.0)
+    regime, zone, level = (
+        np.array([rank for _, rank in sorted(table.items())], np.uint8) for table in RANKS.values()
+    )
     made = {
+        'time': (line - case.survey.first) / SECOND,
         'speed': _fresh(block.speed / RPM, block.speed_source),
         'load': _fresh(block.axial_load, block.axial_load_source),
-        'temperature': _fresh(celsius_of(block.temperature), block.temperature_source),
+        'temperature': _fresh(warmth, block.temperature_source),
         'efficiency': np.where(unjudged, np.nan, 100.0 * block.efficiency),
         'film_ratio': np.where(still, np.nan, block.film_ratio),
         'rcs': np.where(still, np.nan, block.rcs),
         'measured_torque': block.measured_torque,
         'machine_torque': np.where(still, np.nan, block.machine_torque),
-    }
-    return TimedRows(
-        time=(line - case.survey.first) / SECOND,
-        numbers={key: made[key] for key in numbers},
-        codes=_codes(block, still),
-    )
-
-
-def _fresh(values: Floats, sources: Codes) -> Floats:
-    """Return numbers without those that are only held since their input went quiet."""
-    return np.where(sources == PointSource.HELD, np.nan, values)
-
-
-def celsius_of(temperature: Floats) -> Floats:
-    """Return temperatures [K] in [degC]."""
-    return temperature + celsius(0.0)
-
-
-def _codes(block: JudgedColumns, still: np.ndarray) -> dict[str, Codes]:
-    regime, zone, level = (_ranks(table) for table in (_REGIME_RANK, _ZONE_RANK, _LEVEL_RANK))
-    return {
-        'regime': np.where(still, 0, regime[block.regime]).astype(np.uint8),
-        'zone': np.where(still, 1, zone[block.zone]).astype(np.uint8),
+        'regime': np.where(still, 0, regime[block.regime]),
+        'zone': np.where(still, 1, zone[block.zone]),
         'level': level[block.level],
     }
+    rows = np.empty(len(block), buckets.row_type(numbers, RANKS))
+    for key in rows.dtype.names or ():
+        rows[key] = made[key]
+    return rows
 
 
-def _ranks(table: dict[Any, int]) -> Codes:
-    return np.array([table[code] for code in sorted(table)], dtype=np.uint8)
+def _fresh(values: columns.Floats, sources: columns.Codes) -> columns.Floats:
+    """Return numbers without those that are only held since their input went quiet."""
+    return np.where(sources == PointSource.HELD, np.nan, values)
 
 
 def _worst_stretches(case: AxisCase, longest: float) -> tuple[int, list[tuple[float, float]]]:
     """Return of how many of the worst events samples are kept, and where; `longest` in all [s]."""
     chosen: list[tuple[float, float]] = []
     count = 0
-    for event in case.worst_first[:WORST]:
+    for event in case.worst_first[: page_budget.WORST]:
         ends = case.since_first(event.start), case.since_first(event.end)
         more = _merged([*chosen, *((at - AROUND, at + AROUND) for at in ends)])
         if _length(more) > longest:
@@ -250,9 +214,10 @@ def _worst_stretches(case: AxisCase, longest: float) -> tuple[int, list[tuple[fl
     return count, chosen
 
 
-def _bytes_per_second(case: AxisCase, columns: int) -> float:
-    """Return how much a second of some columns takes in a page, at the mean rate [bytes/s]."""
-    return columns * SAMPLE_BYTES * case.survey.rows / max(case.survey.span, 1e-9)
+def _bytes_per_second(case: AxisCase) -> float:
+    """Return how much a second of every sample takes in a page, at the mean rate [bytes/s]."""
+    count = len(_numbers(case)) - 1  # the temperature changes too seldom
+    return count * SAMPLE_BYTES * case.survey.rows / max(case.survey.span, 1e-9)
 
 
 def _length(stretches: Iterable[tuple[float, float]]) -> float:
@@ -269,3 +234,79 @@ def _merged(stretches: Iterable[tuple[float, float]]) -> list[tuple[float, float
         else:
             made.append((begin, end))
     return made
+
+
+def panels(case: AxisCase) -> list[dict[str, Any]]:
+    """Return the panels of the numbers of an axis, in their order."""
+    limits, keys = case.settings.limits, _numbers(case)
+    return [panel for panel in _all_panels(limits) if panel['series'][0]['key'] in keys]
+
+
+def _all_panels(limits: Limits) -> list[dict[str, Any]]:
+    percent = 100.0 * limits.efficiency
+    return [
+        _panel('Screw speed', 'rev/min', [_line('speed', 'speed')]),
+        _panel('Axial load, positive along the axis', 'N', [_line('load', 'load')]),
+        _panel('Oil temperature', '°C', [_line('temperature', 'oil')], height=110),
+        _panel(
+            'Efficiency, where it is judged',
+            '%',
+            [_line('efficiency', 'efficiency')],
+            limits=[_limit(percent, f'limit {percent:g} %', 'efficiency')],
+            most=100.0,
+        ),
+        _panel(
+            'Film ratio: oil film over roughness',
+            '',
+            [_line('film_ratio', 'film ratio')],
+            floor=SMALLEST_RATIO,
+            bands=_bands(),
+            show=[0.5, LARGEST_RATIO],
+        ),
+        _panel(
+            'RCS: share of the load carried where metal pierces the oil film',
+            '',
+            [_line('rcs', 'RCS')],
+            floor=SMALLEST_RCS,
+            limits=[_limit(limits.rcs, f'limit {limits.rcs:g}', 'rcs')],
+            show=[SMALLEST_RCS, 1.0],
+        ),
+        _panel(
+            'Torque on the screw, measured and modelled',
+            'N m',
+            [
+                _line('measured_torque', 'measured', 'measured'),
+                _line('machine_torque', 'modelled', 'modelled', dashed=True),
+            ],
+        ),
+    ]
+
+
+def _panel(title: str, unit: str, series: list[dict[str, Any]], **more: Any) -> dict[str, Any]:
+    return {
+        'title': f'{title} [{unit}]' if unit else f'{title} [-]',
+        'unit': unit,
+        'height': HEIGHT,
+        'series': series,
+        'floor': None,
+        'most': None,
+        'limits': [],
+        'bands': [],
+        'show': [limit['value'] for limit in more.get('limits', [])],
+    } | more
+
+
+def _line(key: str, label: str, colour: str = 'ink', *, dashed: bool = False) -> dict[str, Any]:
+    return {'key': key, 'label': label, 'colour': colour, 'dashed': dashed}
+
+
+def _limit(value: float, label: str, colour: str) -> dict[str, Any]:
+    return {'value': value, 'label': label, 'colour': colour}
+
+
+def _bands() -> list[dict[str, Any]]:
+    edges = itertools.pairwise((SMALLEST_RATIO / 2, *FILM_RATIO_LIMITS, 10 * LARGEST_RATIO))
+    return [
+        {'low': low, 'high': high, 'colour': f'{regime.word}-band', 'label': regime.word}
+        for regime, (low, high) in zip(REGIMES, edges, strict=True)
+    ]

@@ -11,7 +11,7 @@ from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.core.judgement import Reason
 from ballscrew_monitor.recordings.summary import EventRecord, Summary
 from ballscrew_monitor.recordings.words import counted, duration, list_of, percent, share
-from ballscrew_monitor.report.case import AxisCase, LogCase, RCS
+from ballscrew_monitor.report.judging import AxisCase, LogCase, RCS
 
 UNKNOWN_PART = 0.5  # of the motion that is not judged, from which on there is no verdict
 TOLD_PART = 0.01  # of the motion that is not judged, from which on the verdict says so
@@ -187,13 +187,10 @@ def _advice(case: AxisCase) -> str:
 
 def _by_strictness(events: Sequence[EventRecord]) -> tuple[list[EventRecord], list[EventRecord]]:
     """Return those to run faster in and those to run slower in, the strictest first."""
-    slower = [event for event in events if abs(event.target_speed) < abs(event.speed)]
-    faster = [event for event in events if event not in slower]
-    return sorted(faster, key=_target, reverse=True), sorted(slower, key=_target)
-
-
-def _target(event: EventRecord) -> float:
-    return abs(event.target_speed)
+    slowest_first = sorted(events, key=lambda event: abs(event.target_speed))
+    fastest_first = sorted(events, key=lambda event: -abs(event.target_speed))
+    slower = [event for event in slowest_first if abs(event.target_speed) < abs(event.speed)]
+    return [event for event in fastest_first if event not in slower], slower
 
 
 def _of(events: Sequence[EventRecord], rank: str) -> str:

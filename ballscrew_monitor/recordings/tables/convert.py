@@ -22,10 +22,9 @@ from ballscrew_monitor.messages.reasons import enough_timeout
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic, whole_bag
 from ballscrew_monitor.recordings.log_facts import Assumption, LogFacts
 from ballscrew_monitor.recordings.progress import Shown, silent
-from ballscrew_monitor.recordings.tables.agreement import Agreement
 from ballscrew_monitor.recordings.tables.cells import Array
 from ballscrew_monitor.recordings.tables.mapping import AxisMap, TableMap
-from ballscrew_monitor.recordings.tables.series import Block, read_series, Series
+from ballscrew_monitor.recordings.tables.series import Agreement, Block, read_series, Series
 from ballscrew_monitor.settings import parameters
 from ballscrew_monitor.settings.axis import load_surface, MOTOR_TORQUE
 from ballscrew_monitor.settings.topics import absolute
@@ -141,15 +140,12 @@ def _derived(mapping: TableMap) -> list[Assumption]:
     for axis in mapping.axes:
         if 'speed' not in axis.columns:
             why = 'the map names no column of the speed'
-            found.append(_assumption(f'{axis.name}.speed', 'slope of the position', why))
+            key = f'{axis.name}.speed'
+            found.append(Assumption(key=key, value='slope of the position', reason=why))
         if 'load' not in axis.columns and not axis.load_from:
             why = axis.unknown.get('load', 'the map names none')
-            found.append(_assumption(f'{axis.name}.load', 'unknown', why))
+            found.append(Assumption(key=f'{axis.name}.load', value='unknown', reason=why))
     return found
-
-
-def _assumption(key: str, value: str, reason: str) -> Assumption:
-    return Assumption(key=key, value=value, reason=reason)
 
 
 def _write(
@@ -228,10 +224,18 @@ class RowTemplate:
     def __init__(self, message: Any, count: int) -> None:
         """Find where the stamp and the marks stand in the bytes of `message`."""
         message.header.stamp.sec, message.header.stamp.nanosec = _STAMP
-        data = serialized(message)
-        self._bytes = np.frombuffer(data, np.uint8)
-        self._stamp = data.index(struct.pack('<iI', *_STAMP))
-        self._places = [data.index(struct.pack('<d', mark)) for mark in marks(count)]
+        data = self._data = serialized(message)
+        stamp = data.index(struct.pack('<iI', *_STAMP))
+        places = [data.index(struct.pack('<d', mark)) for mark in marks(count)]
+        self._names = [str(number) for number in range(count)]
+        self._row = np.dtype(
+            {
+                'names': ['sec', 'nanosec', *self._names],
+                'formats': ['<i4', '<u4', *['<f8'] * count],
+                'offsets': [stamp, stamp + 4, *places],
+                'itemsize': len(data),
+            }
+        )
 
     def rows(
         self, stamps: NDArray[np.int64], numbers: Sequence[NDArray[np.float64]]
@@ -239,21 +243,9 @@ class RowTemplate:
         """Yield the message of each row, of its stamp [ns] and its numbers."""
         for begin in range(0, len(stamps), BLOCK):
             part = slice(begin, begin + BLOCK)
-            yield from self._block(stamps[part], [values[part] for values in numbers])
-
-    def _block(
-        self, stamps: NDArray[np.int64], numbers: Sequence[NDArray[np.float64]]
-    ) -> Iterator[bytes]:
-        data = np.tile(self._bytes, (len(stamps), 1))
-        times = np.stack([stamps // SECOND, stamps % SECOND], axis=1).astype('<u4')
-        _put(data, self._stamp, times)
-        for place, values in zip(self._places, numbers, strict=True):
-            _put(data, place, np.array(values, dtype='<f8').reshape(-1, 1))
-        return (row.tobytes() for row in data)
-
-
-def _put(data: NDArray[np.uint8], begin: int, numbers: NDArray[Any]) -> None:
-    """Write the numbers of each row to its bytes."""
-    parts = numbers.view(np.uint8)
-    end = begin + parts.shape[1]
-    data[:, begin:end] = parts
+            content = bytearray(self._data * len(stamps[part]))
+            rows = np.frombuffer(content, self._row)
+            rows['sec'], rows['nanosec'] = np.divmod(stamps[part], SECOND)
+            for name, values in zip(self._names, numbers, strict=True):
+                rows[name] = values[part]
+            yield from np.frombuffer(content, f'V{len(self._data)}').tolist()

@@ -13,17 +13,13 @@ import math
 from pathlib import Path
 from typing import Any
 
-from ballscrew_monitor.core.conversions import (
-    LINEAR_POSITION_UNITS,
-    LINEAR_SPEED_UNITS,
-    TIME_UNITS,
-)
+from ballscrew_monitor.core import conversions
+from ballscrew_monitor.core.conversions import LINEAR_POSITION_UNITS
 from ballscrew_monitor.recordings.progress import Shown, silent
-from ballscrew_monitor.recordings.tables import estimates
+from ballscrew_monitor.recordings.tables import estimates, names
 from ballscrew_monitor.recordings.tables.cells import Array
-from ballscrew_monitor.recordings.tables.groups import best, by_axis, left_out, told_by_words
 from ballscrew_monitor.recordings.tables.mapping import INPUTS, UNITS
-from ballscrew_monitor.recordings.tables.names import is_of_the_screw, Named, read_name
+from ballscrew_monitor.recordings.tables.names import Named, read_name
 from ballscrew_monitor.recordings.tables.read import column_names, open_table
 import numpy as np
 from surrogate.files import InputError
@@ -84,8 +80,8 @@ class _Guesser:
         self.notes: list[str] = []
         self.axes = {
             name: chosen
-            for name, found in by_axis(self.named).items()
-            if {'speed', 'position'} & set(chosen := best(found))
+            for name, found in names.by_axis(self.named).items()
+            if {'speed', 'position'} & set(chosen := names.best(found))
         }
         if not self.axes:
             raise InputError(
@@ -94,13 +90,13 @@ class _Guesser:
             )
         self.times = [one for one in self.named if one.kind == 'time']
         columns = [one for chosen in self.axes.values() for one in chosen.values()]
-        names = [one.column for one in [*columns, *self.times]]
-        table = open_table(path, names, strict=False, shown=shown)
-        rows = NUMBERS // len(names)
+        used = [one.column for one in [*columns, *self.times]]
+        table = open_table(path, used, strict=False, shown=shown)
+        rows = NUMBERS // len(used)
         # The first rows tell how the speeds go with the positions, all of them the ranges.
         self.data = table.head(rows)
         self.extremes = {name: one.extremes for name, one in table.readings.items()}
-        self.notes += [*table.notes, *told_by_words(self.named)]
+        self.notes += [*table.notes, *names.told_by_words(self.named)]
         if rows < table.rows:
             self.notes.append(f'rate and units are those of the first {rows} of {table.rows} rows')
         self._forget_texts()
@@ -147,7 +143,7 @@ class _Guesser:
             )
         if not absolute:
             self._assume_epoch(f'column {one.column} does not count from a known time')
-        step = float(np.nanmedian(np.diff(values))) * TIME_UNITS[unit]
+        step = float(np.nanmedian(np.diff(values))) * conversions.TIME_UNITS[unit]
         place = {'column': one.column}
         return place if 'time.unit' in self.assumed else place | {'unit': unit}, step
 
@@ -155,20 +151,19 @@ class _Guesser:
         self._assume('time.epoch', EPOCH, f'{why}, and a stamp of 0 means that there is none')
 
     def _assume_rate(self, axes: Mapping[str, Any]) -> None:
-        motions = [
-            self._motion(name, chosen)
+        motions = {
+            name: self._motion(name, chosen, axes)
             for name, chosen in self.axes.items()
             if {'speed', 'position'} <= set(chosen)
             and {self._unit(name, kind, axes) for kind in ('speed', 'position')}
-            <= set(LINEAR_SPEED_UNITS | LINEAR_POSITION_UNITS)
-        ]
-        found = estimates.period([self._in_metres(axes, *one) for one in motions])
+            <= set(conversions.LINEAR_SPEED_UNITS | LINEAR_POSITION_UNITS)
+        }
+        found = estimates.period(list(motions.values()))
         if math.isfinite(found):
             rate = estimates.usual_rate(found)
-            axes_used = ', '.join(name for name, _, _ in motions)
             why = (
-                f'{self._no_time()}; at {1.0 / found:.3g} Hz the speeds of axes {axes_used} '
-                'make their positions best'
+                f'{self._no_time()}; at {1.0 / found:.3g} Hz the speeds of axes '
+                f'{", ".join(motions)} make their positions best'
             )
         else:
             rate, why = RATE, f'{self._no_time()}, and nothing in it tells the rate'
@@ -177,18 +172,17 @@ class _Guesser:
 
     def _no_time(self) -> str:
         """Say why the log has no time: no column is one, or those that are do not rise."""
-        names = ', '.join(one.column for one in self.named if one.kind == 'time')
-        return f'the log has no time that rises ({names})' if names else 'the log has no time'
+        times = ', '.join(one.column for one in self.named if one.kind == 'time')
+        return f'the log has no time that rises ({times})' if times else 'the log has no time'
 
-    def _motion(self, name: str, chosen: Mapping[str, Named]) -> tuple[str, Array, Array]:
-        return name, self.data[chosen['position'].column], self.data[chosen['speed'].column]
-
-    def _in_metres(
-        self, axes: Mapping[str, Any], name: str, position: Array, speed: Array
+    def _motion(
+        self, name: str, chosen: Mapping[str, Named], axes: Mapping[str, Any]
     ) -> tuple[Array, Array]:
+        """Return positions [m] and speeds [m/s] of an axis."""
+        position, speed = (self.data[chosen[kind].column] for kind in ('position', 'speed'))
         return (
             position * LINEAR_POSITION_UNITS[self._unit(name, 'position', axes)],
-            speed * LINEAR_SPEED_UNITS[self._unit(name, 'speed', axes)],
+            speed * conversions.LINEAR_SPEED_UNITS[self._unit(name, 'speed', axes)],
         )
 
     def _unit(self, name: str, kind: str, axes: Mapping[str, Any]) -> str:
@@ -221,7 +215,7 @@ class _Guesser:
         if 'speed' in used:
             speeds = self.extremes[used['speed']['column']]
             unit = self._unit(name, 'speed', {name: used})
-            self.notes += estimates.oddities(name, speeds, unit, LINEAR_SPEED_UNITS)
+            self.notes += estimates.oddities(name, speeds, unit, conversions.LINEAR_SPEED_UNITS)
         return used
 
     def _is_used(self, one: Named) -> bool:
@@ -269,7 +263,7 @@ class _Guesser:
 
     def _set_oil(self, name: str, place: dict[str, Any]) -> None:
         """Say of a temperature that does not say so that it is taken for that of the oil."""
-        if not is_of_the_screw(place['column']):
+        if not names.is_of_the_screw(place['column']):
             column = place.pop('column')
             self._assume(f'{name}.temperature.column', column, 'taken for that of the oil')
 
@@ -297,4 +291,4 @@ class _Guesser:
     def _say_what_is_left_out(self, axes: Mapping[str, Any], time: Mapping[str, Any]) -> None:
         used = {part.get('column') for axis in axes.values() for part in axis.values()}
         used |= {entry['value'] for entry in self.assumed.values()} | {time.get('column', '')}
-        self.notes += left_out([one for one in self.named if one.column not in used])
+        self.notes += names.left_out([one for one in self.named if one.column not in used])

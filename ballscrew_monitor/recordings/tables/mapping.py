@@ -16,17 +16,8 @@ import math
 from pathlib import Path
 from typing import Any
 
-from ballscrew_monitor.core.conversions import (
-    CURRENT_UNITS,
-    LINEAR_POSITION_UNITS,
-    LINEAR_SPEED_UNITS,
-    LOAD_UNITS,
-    ROTARY_POSITION_UNITS,
-    ROTARY_SPEED_UNITS,
-    SECOND,
-    TEMPERATURE_UNITS,
-    TIME_UNITS,
-)
+from ballscrew_monitor.core import conversions
+from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.recordings.log_facts import Assumption
 from ballscrew_monitor.settings.parameters import check_axes
 from surrogate.files import InputError
@@ -34,13 +25,13 @@ from surrogate.units import MICRO, MILLI
 import yaml
 
 UNITS: dict[str, Mapping[str, float]] = {
-    'speed': LINEAR_SPEED_UNITS | ROTARY_SPEED_UNITS,
-    'position': LINEAR_POSITION_UNITS | ROTARY_POSITION_UNITS,
-    'load': LOAD_UNITS,
+    'speed': conversions.LINEAR_SPEED_UNITS | conversions.ROTARY_SPEED_UNITS,
+    'position': conversions.LINEAR_POSITION_UNITS | conversions.ROTARY_POSITION_UNITS,
+    'load': conversions.LOAD_UNITS,
     'torque': {'N m': 1.0},
-    'current': CURRENT_UNITS,
-    'temperature': TEMPERATURE_UNITS,
-    'time': TIME_UNITS,
+    'current': conversions.CURRENT_UNITS,
+    'temperature': conversions.TEMPERATURE_UNITS,
+    'time': conversions.TIME_UNITS,
 }
 """Units of each kind of column."""
 INPUTS = tuple(kind for kind in UNITS if kind != 'time')

@@ -1,17 +1,14 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What the name of a column says: which axis, which quantity, which unit."""
+"""What names of columns say: which axis, quantity and unit; and the columns of each axis."""
 
 from collections.abc import Sequence
 import dataclasses
+import re
 
-from ballscrew_monitor.recordings.tables.spelt_units import (
-    BRACKETS,
-    kind_by_unit,
-    unit_of,
-    words_of,
-    words_without_unit,
-)
+from ballscrew_monitor.recordings.tables import spelt_units
+from ballscrew_monitor.recordings.tables.mapping import INPUTS
+from ballscrew_monitor.recordings.tables.spelt_units import words_of
 
 LINEAR = frozenset('xyz')
 SECONDARY = frozenset('uvw')  # with a number: alone they mean other things, too
@@ -44,6 +41,8 @@ PROCESSED = frozenset('output raw'.split())
 OF_THE_SCREW = frozenset('oil nut screw lubricant ballscrew öl oel'.split())
 TELLS_NOTHING = MEASURED | WANTED | PROCESSED | OF_THE_SCREW | {'axis'}
 BY_UNIT = -4  # rank of a column of which the unit alone tells the quantity
+MOTION = ('speed', 'position')
+_NAME = re.compile(r'[a-z][a-z0-9_]*')
 TIMES_BY_UNIT = frozenset({'ms', 'us', 'ns', 's'})  # of a column that names no quantity
 
 
@@ -73,9 +72,9 @@ def read_name(column: str) -> Named:
     if not kind and not OTHERS & set(words):
         kind = _kind_by_unit(column, place)
         rank += 0 if is_of_the_screw(column) else BY_UNIT
-    unit = unit_of(column, kind)
+    unit = spelt_units.unit_of(column, kind)
     # In another unit than those of the quantity it is another quantity, such as a load in percent.
-    if BRACKETS.search(column) and not unit:
+    if spelt_units.BRACKETS.search(column) and not unit:
         kind = ''
     return Named(column=column, place=place, axis=axis, kind=kind, unit=unit, rank=rank)
 
@@ -119,9 +118,9 @@ def _kind(words: Sequence[str]) -> str:
 
 def _kind_by_unit(column: str, place: str) -> str:
     """Return the quantity that the unit of a column tells, where no other word may deny it."""
-    kind, before = kind_by_unit(column)
+    kind, before = spelt_units.kind_by_unit(column)
     if kind == 'time':
-        told = place == 'machine' and unit_of(column, kind) in TIMES_BY_UNIT
+        told = place == 'machine' and spelt_units.unit_of(column, kind) in TIMES_BY_UNIT
     else:
         told = all(len(word) == 1 or word in TELLS_NOTHING for word in words_of(before))
     return kind if told else ''
@@ -139,6 +138,77 @@ def _rank(words: Sequence[str]) -> int:
 
 def word_of_the_axis(named: Named) -> str:
     """Return the words of a name that say neither quantity nor unit: which axis is left."""
-    words = words_without_unit(named.column, named.kind)
+    words = spelt_units.words_without_unit(named.column, named.kind)
     dull = TELLS_NOTHING | QUALIFIERS | ELSEWHERE | KINDS.get(named.kind, frozenset())
     return '_'.join(word for word in words if word not in dull)
+
+
+def by_axis(named: Sequence[Named]) -> dict[str, list[Named]]:
+    """
+    Return the columns of each axis.
+
+    Axes are told by letters such as X or X1. Without any, they are told by the part in which the
+    names of several speeds (or positions) differ, and otherwise all is of the only axis, x.
+
+    """
+    names = axis_names(named)
+    general = [one for one in named if one.place == 'machine']
+    groups = (
+        {name: [one for one in named if one.axis == axis] for axis, name in names.items()}
+        if names
+        else _by_word(general)
+    )
+    if not groups:
+        return {'x': general}
+    grouped = {one.column for group in groups.values() for one in group}
+    oil = [one for one in general if one.kind == 'temperature' and one.column not in grouped]
+    return {name: [*group, *oil] for name, group in groups.items()}
+
+
+def best(found: Sequence[Named]) -> dict[str, Named]:
+    """Return for each kind the column that is most likely the measured quantity."""
+    ranked = sorted(found, key=lambda one: -one.rank)
+    chosen: dict[str, Named] = {}
+    for one in ranked:
+        if one.kind in INPUTS:
+            chosen.setdefault(one.kind, one)
+    return chosen
+
+
+def told_by_words(named: Sequence[Named]) -> list[str]:
+    """Return a sentence if axes are told by words alone, which may mean other things, too."""
+    words = {} if axis_names(named) else _by_word([one for one in named if one.place == 'machine'])
+    return [f'axes {", ".join(words)} are told by words: are all of them ball screws?'] * bool(
+        words
+    )
+
+
+def left_out(left: Sequence[Named]) -> list[str]:
+    """Return sentences about columns of which nothing is used."""
+    notes = []
+    spindle = sum(one.place == 'spindle' for one in left)
+    if spindle:
+        notes.append(f'{spindle} columns are of the spindle, which is no ball-screw axis')
+    others = [one.column for one in left if one.place != 'spindle']
+    if others:
+        notes.append(f'not used: {", ".join(others)}')
+    return notes
+
+
+def _by_word(general: Sequence[Named]) -> dict[str, list[Named]]:
+    """Return the columns of axes that only a word tells apart; nothing for less than two."""
+    words = {one.column: _axis_name(one) for one in general if one.kind in INPUTS}
+    for kind in MOTION:
+        axes = sorted({words[one.column] for one in general if one.kind == kind} - {''})
+        if len(axes) > 1:
+            return {
+                axis: [one for one in general if words.get(one.column) == axis] for axis in axes
+            }
+    return {}
+
+
+def _axis_name(one: Named) -> str:
+    """Return the name of an axis by the word that tells it, empty if that makes no name."""
+    word = word_of_the_axis(one)
+    name = f'axis{word}' if word.isdigit() else word
+    return name if _NAME.fullmatch(name) else ''

@@ -1,6 +1,11 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""From the columns of a table to stamped quantities in SI units, by the map, in blocks of rows."""
+"""
+From the columns of a table to stamped quantities in SI units, by the map, in blocks of rows.
+
+Speeds that do not make the positions beside them are told, with the unit in which they would.
+
+"""
 
 from collections.abc import Iterable, Iterator
 import dataclasses
@@ -8,24 +13,19 @@ import itertools
 import math
 from pathlib import Path
 
-from ballscrew_monitor.core.conversions import (
-    celsius,
-    CURRENT_UNITS,
-    LINEAR_POSITION_UNITS,
-    LINEAR_SPEED_UNITS,
-    LOAD_UNITS,
-    ROTARY_POSITION_UNITS,
-    ROTARY_SPEED_UNITS,
-    SECOND,
-    TEMPERATURE_UNITS,
-)
+from ballscrew_monitor.core import conversions
+from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.recordings.progress import Shown, silent
 from ballscrew_monitor.recordings.tables.cells import Array
+from ballscrew_monitor.recordings.tables.estimates import FACTOR, NEAR
 from ballscrew_monitor.recordings.tables.mapping import AxisMap, TableMap
 from ballscrew_monitor.recordings.tables.read import open_table
-from ballscrew_monitor.recordings.tables.times import line, Rows, Stamps, Times
+from ballscrew_monitor.recordings.tables.times import joined, line, Rows, Stamps, Times
 import numpy as np
 from surrogate.units import TURN
+
+LONG = 3.0  # times the usual time between rows: across more the speed is not known
+ALIKE = 0.9  # squared correlation from which a speed and its position are of one motion
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -45,21 +45,6 @@ class AxisSeries:
     position: Array | None
     torque: Array | None
     temperature: Array | None
-
-    def __getitem__(self, part: slice) -> 'AxisSeries':
-        """Return some of the rows."""
-
-        def cut(values: Array | None) -> Array | None:
-            return None if values is None else values[part]
-
-        return AxisSeries(
-            name=self.name,
-            speed=self.speed[part],
-            load=cut(self.load),
-            position=cut(self.position),
-            torque=cut(self.torque),
-            temperature=cut(self.temperature),
-        )
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -88,7 +73,7 @@ class Series:
     def blocks(self) -> Iterator[Block]:
         """Yield the rows in blocks."""
         for rows, part in _with_neighbours(self._times.rows()):
-            axes = tuple(_axis(axis, rows, self._times.begin)[part] for axis in self._mapping.axes)
+            axes = tuple(_axis(axis, rows, part, self._times.begin) for axis in self._mapping.axes)
             yield Block(stamps=rows.stamps[part], axes=axes)
 
 
@@ -117,48 +102,46 @@ def _with_neighbours(blocks: Iterable[Rows]) -> Iterator[tuple[Rows, slice]]:
     for later in itertools.chain(blocks, [None]):
         if now is not None:
             first = 0 if before is None else len(before.stamps)
-            window = now if before is None else before + now
-            window = window if later is None else window + later[:1]
-            yield window, slice(first, first + len(now.stamps))
+            window = [before, now, None if later is None else later[:1]]
+            held = joined([rows for rows in window if rows is not None])
+            yield held, slice(first, first + len(now.stamps))
             before = now[-1:]
         now = later
 
 
-def _axis(axis: AxisMap, rows: Rows, begin: int) -> AxisSeries:
-    """Return an axis by rows of a log that begins at a stamp [ns]."""
+def _axis(axis: AxisMap, rows: Rows, part: slice, begin: int) -> AxisSeries:
+    """Return a part of the rows of an axis, by a log that begins at a stamp [ns]."""
 
-    def column(kind: str, factor: float) -> Array | None:
+    def column(kind: str, factor: float, part: slice = part) -> Array | None:
         found = axis.columns.get(kind)
-        return None if found is None else line(rows.columns[found.name], found, factor)
+        return None if found is None else line(rows.columns[found.name][part], found, factor)
 
     def unit(kind: str) -> str:
         return axis.columns[kind].unit if kind in axis.columns else ''
 
-    per_metre = TURN / axis.lead
-    position = column(
-        'position',
-        _turned(unit('position'), LINEAR_POSITION_UNITS, ROTARY_POSITION_UNITS, per_metre),
-    )
+    linear, rotary = conversions.LINEAR_POSITION_UNITS, conversions.ROTARY_POSITION_UNITS
+    turned = _turned(unit('position'), linear, rotary, TURN / axis.lead)
     speed = column('speed', speed_factor(unit('speed'), axis.lead))
     if speed is None:
+        position = column('position', turned, slice(None))
         assert position is not None  # the map has one of them
-        speed = _slope(position, (rows.stamps - begin) / SECOND)
+        speed = _slope(position, (rows.stamps - begin) / SECOND)[part]
     torque = column('torque', 1.0)
-    current = column('current', CURRENT_UNITS.get(unit('current'), 1.0))
+    current = column('current', conversions.CURRENT_UNITS.get(unit('current'), 1.0))
     if torque is None and current is not None and math.isfinite(axis.torque_constant):
         torque = current * axis.torque_constant
-    load = column('load', LOAD_UNITS.get(unit('load'), 1.0))
+    load = column('load', conversions.LOAD_UNITS.get(unit('load'), 1.0))
     if load is None:
-        load = _load_without_column(axis, torque, len(rows.stamps))
+        load = _load_without_column(axis, torque, len(speed))
     warmth = column('temperature', 1.0)
-    zero = TEMPERATURE_UNITS.get(unit('temperature'), 0.0)
+    zero = conversions.TEMPERATURE_UNITS.get(unit('temperature'), 0.0)
     return AxisSeries(
         name=axis.name,
         speed=speed,
         load=load,
-        position=position,
+        position=column('position', turned),
         torque=torque,
-        temperature=None if warmth is None else np.vectorize(celsius)(warmth + zero),
+        temperature=None if warmth is None else np.vectorize(conversions.celsius)(warmth + zero),
     )
 
 
@@ -183,7 +166,9 @@ def force_of(torque: Array, *, lead: float, efficiency: float) -> Array:
 
 def speed_factor(unit: str, lead: float) -> float:
     """Return the factor from a unit of speed to that of a screw of a lead [m] in [rad/s]."""
-    return _turned(unit, LINEAR_SPEED_UNITS, ROTARY_SPEED_UNITS, TURN / lead)
+    return _turned(
+        unit, conversions.LINEAR_SPEED_UNITS, conversions.ROTARY_SPEED_UNITS, TURN / lead
+    )
 
 
 def _turned(
@@ -198,3 +183,71 @@ def _slope(position: Array, seconds: Array) -> Array:
     with np.errstate(divide='ignore', invalid='ignore'):
         slope = np.asarray(np.gradient(position, seconds))
     return np.where(np.isfinite(slope), slope, math.nan)
+
+
+class Agreement:
+    """Sums over the rows of a table that compare speeds with positions, block by block."""
+
+    def __init__(self, mapping: TableMap, usual_period: float) -> None:
+        """Begin with no row; the usual time between rows [s] tells what a gap is."""
+        self._fits = [
+            _Fit(axis, number)
+            for number, axis in enumerate(mapping.axes)
+            if {'speed', 'position'} <= set(axis.columns)
+        ]
+        self._longest = LONG * usual_period
+
+    def add(self, block: Block) -> None:
+        """Take further rows."""
+        steps = np.diff(block.stamps) / SECOND
+        for fit in self._fits:
+            fit.add(block, np.where(steps <= self._longest, steps, np.nan))
+
+    def notes(self) -> list[str]:
+        """Return a sentence for each axis whose speed and position disagree."""
+        return [note for fit in self._fits if (note := fit.note())]
+
+
+class _Fit:
+    """How far an axis moves by its position, over how far by its speed, by least squares."""
+
+    def __init__(self, axis: AxisMap, number: int) -> None:
+        self._axis, self._number = axis, number
+        self._across = self._by_speed = self._by_position = 0.0
+
+    def add(self, block: Block, steps: Array) -> None:
+        """Take rows that are `steps` apart [s], NaN for a gap."""
+        axis = block.axes[self._number]
+        assert axis.position is not None  # the map has a column of it
+        expected = (axis.speed[1:] + axis.speed[:-1]) / 2 * steps
+        moved = np.diff(axis.position)
+        good = np.isfinite(expected) & np.isfinite(moved)
+        self._across += float(moved[good] @ expected[good])
+        self._by_speed += float(expected[good] @ expected[good])
+        self._by_position += float(moved[good] @ moved[good])
+
+    def note(self) -> str:
+        """Return a sentence if both are of one motion but differ in size or sign, else nothing."""
+        both = self._by_speed * self._by_position
+        if not both or self._across**2 < ALIKE * both:
+            return ''
+        factor = self._across / self._by_speed
+        if 1.0 / FACTOR < factor < FACTOR:
+            return ''
+        return (
+            f'axis {self._axis.name}: its position moves {factor:.4g} times as far as its speed '
+            f'in {self._axis.columns["speed"].unit} says: {self._advice(factor)}'
+        )
+
+    def _advice(self, factor: float) -> str:
+        if factor < 0.0:
+            return 'one of both has the wrong sign of its scale'
+        needed = factor * speed_factor(self._axis.columns['speed'].unit, self._axis.lead)
+        misses = {
+            unit: abs(speed_factor(unit, self._axis.lead) / needed - 1.0)
+            for unit in conversions.SPEED_UNITS
+        }
+        best = min(misses, key=misses.__getitem__)
+        if misses[best] <= NEAR:
+            return f'{best} fits, if unit and scale of the position are right'
+        return 'check units and scales of both, the time and the lead'

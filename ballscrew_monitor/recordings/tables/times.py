@@ -36,10 +36,6 @@ class Rows:
         columns = {name: values[part] for name, values in self.columns.items()}
         return Rows(stamps=self.stamps[part], columns=columns)
 
-    def __add__(self, later: 'Rows') -> 'Rows':
-        """Return these rows and later ones."""
-        return joined([self, later])
-
 
 def joined(parts: Sequence[Rows]) -> Rows:
     """Return all rows of `parts`, one part after the other."""

@@ -15,7 +15,8 @@ from ballscrew_monitor.core.judgement import Level, Zone
 from ballscrew_monitor.core.state import Totals
 from ballscrew_monitor.recordings.columns import AxisOutcome, COLUMNS, JudgedColumns, Reason
 from ballscrew_monitor.recordings.summary import EventRecord
-from ballscrew_monitor.report.judging import CaseMaker
+from ballscrew_monitor.report.judging import CaseMaker, LogCase
+from ballscrew_monitor.report.parameters import AxisFacts
 from ballscrew_monitor.settings.axis import build_axis
 from ballscrew_monitor.settings.parameters import defaults
 import numpy as np
@@ -24,6 +25,7 @@ from surrogate.surface import Regime
 
 BEGIN = 1_767_600_000 * SECOND
 """First stamp of what is made here [ns]."""
+AXIS_FACTS = {field.name for field in dataclasses.fields(AxisFacts)}
 BROWSERS = ('chromium', 'chromium-browser', 'google-chrome')
 
 
@@ -154,7 +156,15 @@ def make_case(blocks, events=(), *, totals=None, values=None, known=None, **chan
     maker = CaseMaker(axis, values)
     for block in blocks:
         maker.add(block)
-    return maker.case(outcome, blocks=lambda: iter(blocks), **(known or {}))
+    known = known or {}
+    facts = AxisFacts(**{key: one for key, one in known.items() if key in AXIS_FACTS})
+    flags = {key: one for key, one in known.items() if key not in AXIS_FACTS}
+    return maker.case(outcome, blocks=lambda: iter(blocks), facts=facts, **flags)
+
+
+def make_log(*cases, **changes):
+    """Return a recording that was judged."""
+    return LogCase(**{'name': 'log', 'parameters': 'my.yaml', 'axes': cases} | changes)
 
 
 def make_values(axis='x', **changes):
@@ -171,6 +181,7 @@ def judged():
         event=make_event,
         status=make_status,
         case=make_case,
+        log=make_log,
         values=make_values,
     )
 

@@ -15,6 +15,12 @@ def seen_of(case, source):
     return next(one for one in inputs_seen(case) if one.source is source)
 
 
+def statuses(judged, source=None, **changes):
+    """Return the statuses of all inputs, of which one, or every one, is changed."""
+    chosen = Source if source is None else [source]
+    return tuple(judged.status(one, **(changes if one in chosen else {})) for one in Source)
+
+
 def test_an_input_is_shown_in_its_unit(judged):
     values = judged.values(**{'x.speed.unit': 'rev/min'})
     speed = seen_of(judged.case([judged.columns()], values=values), Source.SPEED)
@@ -34,9 +40,7 @@ def test_an_input_is_shown_in_its_unit(judged):
 )
 def test_a_rate_leaves_gaps_out(judged, source, received, rate):
     blocks = [judged.columns(0, 50), judged.columns(550, 50)]
-    inputs = tuple(
-        judged.status(one, received=received if one is source else 100) for one in Source
-    )
+    inputs = statuses(judged, source, received=received)
     assert seen_of(judged.case(blocks, inputs=inputs), source).rate == pytest.approx(rate)
 
 
@@ -45,9 +49,7 @@ def test_a_rate_leaves_gaps_out(judged, source, received, rate):
 )
 def test_a_gap_of_an_input_of_its_own_rate_is_left_out_with_its_timeout(judged, refused, rate):
     sources = np.where((np.arange(100) >= 40) & (np.arange(100) < 60), PointSource.HELD, 1)
-    inputs = tuple(
-        judged.status(one, received=51 if one is Source.LOAD else 100) for one in Source
-    )
+    inputs = statuses(judged, Source.LOAD, received=51)
     values = judged.values(**{'x.load.timeout': 0.1})
     block = judged.columns(axial_load_source=sources)
     case = judged.case([block], values=values, inputs=inputs, refused=refused)
@@ -56,15 +58,20 @@ def test_a_gap_of_an_input_of_its_own_rate_is_left_out_with_its_timeout(judged, 
 
 def test_of_an_input_that_is_always_late_the_whole_counts(judged):
     blocks = [judged.columns(place, 1) for place in range(0, 1000, 100)]
-    inputs = tuple(judged.status(one, received=10) for one in Source)
-    assert seen_of(judged.case(blocks, inputs=inputs), Source.SPEED).rate == pytest.approx(1.0)
+    case = judged.case(blocks, inputs=statuses(judged, received=10))
+    assert seen_of(case, Source.SPEED).rate == pytest.approx(1.0)
 
 
-def test_a_default_temperature_is_not_called_measured(judged):
+@pytest.mark.parametrize(
+    ('stated', 'origin', 'known'),
+    [([], 'assumed, 40 °C', 'assumed'), (['temperature_degC'], 'stated, 40 °C', 'stated')],
+)
+def test_a_default_temperature_is_not_called_measured(judged, stated, origin, known):
     values = judged.values(**{'x.temperature.topic': ''})
-    case = judged.case([judged.columns(temperature_source=2)], values=values)
+    block = judged.columns(temperature_source=2)
+    case = judged.case([block], values=values, known={'stated': frozenset(stated)})
     oil = seen_of(case, Source.TEMPERATURE)
-    assert (oil.origin, oil.measured) == ('assumed, 40 °C', False)
+    assert (oil.origin, oil.known, oil.measured) == (origin, known, False)
     assert seen_of(case, Source.TORQUE).origin == 'not recorded'
 
 
@@ -120,14 +127,6 @@ def test_an_assumed_rate_is_marked(judged):
     assert not seen_of(judged.case([judged.columns()]), Source.SPEED).rate_assumed
 
 
-def test_a_stated_temperature_is_not_called_assumed(judged):
-    values = judged.values(**{'x.temperature.topic': ''})
-    block = judged.columns(temperature_source=2)
-    known = {'stated': frozenset(['temperature_degC'])}
-    oil = seen_of(judged.case([block], values=values, known=known), Source.TEMPERATURE)
-    assert (oil.origin, oil.known, oil.measured) == ('stated, 40 °C', 'stated', False)
-
-
 def test_metres_read_as_millimetres_are_doubted(judged):
     values = judged.values(**{'x.speed.unit': 'mm/s'})
     block = judged.columns(speed=0.1 * np.sin(np.arange(100)))
@@ -173,9 +172,7 @@ def test_every_reason_of_a_refusal_has_words():
 
 
 def load_with(judged, known=None, **changes):
-    inputs = tuple(
-        judged.status(source, **(changes if source is Source.LOAD else {})) for source in Source
-    )
+    inputs = statuses(judged, Source.LOAD, **changes)
     return seen_of(judged.case([judged.columns()], inputs=inputs, known=known), Source.LOAD)
 
 
@@ -218,18 +215,16 @@ def test_stamps_of_another_clock_are_doubted(judged):
     assert far == ('x.load: its stamps are of another clock than those of its arrival',)
 
 
-def test_an_input_that_was_never_valid_is_not_called_measured(judged):
+@pytest.mark.parametrize(
+    ('origin', 'refused', 'changes'),
+    [
+        ('never valid', {Source.LOAD: {Why.NOT_A_NUMBER: 100}}, {}),
+        ('never received', {}, {'received': 0, 'state': InputState.MISSING}),
+    ],
+)
+def test_an_input_without_a_sample_is_not_called_measured(judged, origin, refused, changes):
     block = judged.columns(axial_load=math.nan, axial_load_source=0)
-    refused = {Source.LOAD: {Why.NOT_A_NUMBER: 100}}
-    load = seen_of(judged.case([block], refused=refused), Source.LOAD)
-    assert (load.origin, load.measured) == ('never valid', False)
-
-
-def test_an_input_that_never_came(judged):
-    inputs = tuple(
-        judged.status(source, received=0, state=InputState.MISSING) for source in Source
-    )
-    block = judged.columns(axial_load=math.nan, axial_load_source=0)
-    load = seen_of(judged.case([block], inputs=inputs), Source.LOAD)
-    assert (load.origin, load.measured) == ('never received', False)
+    case = judged.case([block], inputs=statuses(judged, **changes), refused=refused)
+    load = seen_of(case, Source.LOAD)
+    assert (load.origin, load.measured) == (origin, False)
     assert math.isnan(load.low)

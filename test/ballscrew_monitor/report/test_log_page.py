@@ -6,7 +6,6 @@ import html
 import re
 
 from ballscrew_monitor.core.inputs import Source
-from ballscrew_monitor.report.case import LogCase
 from ballscrew_monitor.report.log_page import report_page
 from ballscrew_monitor.report.page import CHARTS
 import pytest
@@ -26,15 +25,8 @@ def written(judged, tmp_path):
         judged.case([judged.columns(count=20_000)], events, known=known),
         judged.case([judged.columns(count=500, **torque)], values=values),
     ]
-    log = LogCase(
-        name=HOSTILE,
-        parameters=HOSTILE,
-        axes=axes,
-        empty=['z'],
-        assumptions=assumptions,
-        notes=[HOSTILE],
-    )
-    text = report_page(log)
+    named = {'name': HOSTILE, 'parameters': HOSTILE, 'notes': [HOSTILE]}
+    text = report_page(judged.log(*axes, empty=['z'], assumptions=assumptions, **named))
     path = tmp_path / 'report.html'
     path.write_text(text)
     return path, text
@@ -61,7 +53,7 @@ def test_a_load_that_was_worked_out_is_not_called_measured(judged):
     known = {'load_from': 'current', 'assumed': {'screw': {'value': 'nominal', 'reason': 'usual'}}}
     values = judged.values(**{'x.temperature.topic': ''})
     case = judged.case([judged.columns()], values=values, known=known)
-    text = report_page(LogCase(name='log', parameters='', axes=[case]))
+    text = report_page(judged.log(case))
     assert 'Assumed, neither measured nor stated: axial load, worked out from the motor ' in text
     assert 'oil temperature of 40 °C, the screw. The verdict holds as far as these do.' in text
     row = text.partition('<td>Axial load</td>')[2].partition('</tr>')[0]
@@ -71,14 +63,14 @@ def test_a_load_that_was_worked_out_is_not_called_measured(judged):
 
 
 def test_where_all_is_known_there_is_no_caution(judged):
-    text = report_page(LogCase(name='log', parameters='', axes=[judged.case([judged.columns()])]))
+    text = report_page(judged.log(judged.case([judged.columns()])))
     assert 'Assumed, neither' not in text
 
 
 def test_tables_are_cut_and_say_so(judged):
     events = [judged.event(number + 1, 0.1 * number, 0.05) for number in range(1200)]
     case = judged.case([judged.columns(count=100)], events)
-    text = report_page(LogCase(name='many', parameters='', axes=[case]))
+    text = report_page(judged.log(case))
     assert 'The worst 1000 of 1200 are shown.' in text
     assert text.count('<tr data-begin') + text.count('<tr class="bad" data-begin') == 1000
 
@@ -96,7 +88,7 @@ def test_charts_are_drawn_without_an_error(written, browse):
 def test_a_click_on_a_warning_leads_to_it_and_one_on_a_head_sorts(judged, tmp_path, browse):
     events = [judged.event(1, 10.0, 2.0), judged.event(2, 50.0, 5.0)]
     case = judged.case([judged.columns(count=20_000)], events)
-    text = report_page(LogCase(name='log', parameters='', axes=[case]))
+    text = report_page(judged.log(case))
     script = """<script>
       document.querySelectorAll('table.leading tr[data-begin]')[1].click();
       document.querySelectorAll('table.leading th')[2].click();
@@ -138,7 +130,7 @@ def test_columns_of_inputs_are_those_that_say_something(judged):
     def page_of(**changes):
         inputs = tuple(judged.status(source, **changes) for source in Source)
         case = judged.case([judged.columns()], inputs=inputs)
-        return report_page(LogCase(name='log', parameters='', axes=[case]))
+        return report_page(judged.log(case))
 
     assert 'Left out' not in page_of()
     late = page_of(lag=0.3)

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """One recording from a bag to all that is left of it."""
 
+import csv
 import json
 import shutil
 
@@ -9,7 +10,12 @@ from ballscrew_monitor.core.fields import stamp_of
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
 from ballscrew_monitor.recordings.replay import replay
-from ballscrew_monitor.report.log_report import JUDGED_SHARE, report_log, STORED_SHARE
+from ballscrew_monitor.report.log_report import (
+    JUDGED_SHARE,
+    report_log,
+    STORED_SHARE,
+    write_events,
+)
 from ballscrew_monitor.report.parameters import LogParameters, parameters_for
 from ballscrew_monitor.report.store import remove_left
 from ballscrew_monitor.settings.parameters import read_file
@@ -222,3 +228,25 @@ def test_a_bag_that_does_not_fit_leaves_nothing(short_bag, params, tmp_path):
     with pytest.raises(InputError, match='topic /nope'):
         report_log(Bag(short_bag), tmp_path / 'out', LogParameters(values=values, origin='mine'))
     assert not list((tmp_path / 'out').glob('*'))
+
+
+def test_events_are_a_line_each(judged, tmp_path):
+    events = [judged.event(1, 0.1, 0.2), judged.event(2, 0.5, 0.1, active=True)]
+    case = judged.case([judged.columns()], events)
+    write_events(tmp_path / 'events.csv', judged.log(case))
+    with (tmp_path / 'events.csv').open(newline='', encoding='utf-8') as file:
+        rows = list(csv.DictReader(file))
+    assert [(row['axis'], row['event_id'], row['active']) for row in rows] == [
+        ('x', '1', 'False'),
+        ('x', '2', 'True'),
+    ]
+    assert float(rows[1]['start_s']) == 0.5
+    assert [float(rows[0][name]) for name in ('speed_rad_s', 'axial_load_N')] == [45.0, -1200.0]
+    assert (rows[0]['target_speed_rad_s'], rows[0]['target_load_N']) == ('60.0', 'nan')
+    assert int(rows[0]['start_stamp_ns']) == judged.begin + 100_000_000
+
+
+def test_no_event_is_a_table_without_lines(judged, tmp_path):
+    log = judged.log(judged.case([judged.columns()]))
+    write_events(tmp_path / 'events.csv', log)
+    assert (tmp_path / 'events.csv').read_text().startswith('axis,event_id,')

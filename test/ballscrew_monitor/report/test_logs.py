@@ -2,10 +2,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which recordings are meant by paths, and the folders of their reports."""
 
+import contextlib
 from pathlib import Path
 
 from ballscrew_monitor.report import log_report
-from ballscrew_monitor.report.logs import find_logs, folder_names, is_one_bag, left_out, map_for
+from ballscrew_monitor.report.logs import (
+    find_logs,
+    folder_names,
+    is_one_bag,
+    left_out,
+    map_for,
+    replace_report,
+)
 import pytest
 from surrogate.files import InputError
 
@@ -31,52 +39,50 @@ def test_a_folder_stands_for_what_it_holds(tmp_path):
     assert names(find_logs([tmp_path]), tmp_path) == ['a.mcap', 'deep/two', 'one']
 
 
-def test_parts_of_a_split_bag_are_one_recording(tmp_path):
-    touch(tmp_path / 'bag_0.mcap', tmp_path / 'bag_1.mcap')
-    assert is_one_bag(tmp_path)
-    touch(tmp_path / 'other.mcap')
-    assert not is_one_bag(tmp_path)
-    assert len(find_logs([tmp_path])) == 3
-
-
-@pytest.mark.parametrize('numbers', [(1, 2), (0, 2), (20260101, 20260102)])
-def test_files_whose_numbers_have_a_gap_are_recordings_of_their_own(tmp_path, numbers):
-    touch(*(tmp_path / f'bag_{number}.mcap' for number in numbers))
-    assert not is_one_bag(tmp_path)
-    assert len(find_logs([tmp_path])) == 2
+def parts(pattern, numbers=range(11)):
+    return [pattern.format(number) for number in numbers]
 
 
 @pytest.mark.parametrize(
-    'pattern', ['press.v2_{}.mcap', 'axis.2026-01-01_{}.mcap', 'a_1.b_{}.db3', 'a.b_{}.mcap.zstd']
-)
-def test_a_point_in_a_name_is_part_of_it(tmp_path, pattern):
-    touch(*(tmp_path / pattern.format(number) for number in range(11)))
-    assert is_one_bag(tmp_path)
-    touch(tmp_path / 'press.v3_0.mcap')
-    assert not is_one_bag(tmp_path)
-    assert len(find_logs([tmp_path])) == 12
-
-
-def test_a_part_that_is_not_finished_is_one_all_the_same(tmp_path):
-    touch(tmp_path / 'press.v2_0.mcap', tmp_path / 'press.v2_1.mcap.active')
-    assert is_one_bag(tmp_path)
-
-
-@pytest.mark.parametrize(
-    'pair',
+    'held',
     [
-        ('press.v2_0.mcap', 'press.v3_0.mcap'),
-        ('axis.2026-01-01_0.mcap', 'axis.2026-01-02_0.mcap'),
-        ('press.v2_0.mcap', 'press.v3_1.mcap'),
-        ('press_0.v2.mcap', 'press_1.v2.mcap'),
+        parts('bag_{}.mcap', range(2)),
+        parts('press.v2_{}.mcap'),
+        parts('axis.2026-01-01_{}.mcap'),
+        parts('a_1.b_{}.db3'),
+        parts('a.b_{}.mcap.zstd'),
+        ['press.v2_0.mcap', 'press.v2_1.mcap.active'],
     ],
 )
-def test_names_that_differ_before_the_ending_are_recordings_of_their_own(tmp_path, pair):
-    touch(*(tmp_path / name for name in pair))
+def test_parts_of_a_split_bag_are_one_recording(tmp_path, held):
+    """A point in a name is part of it, and a part that is not finished is one all the same."""
+    touch(*(tmp_path / name for name in held))
+    assert is_one_bag(tmp_path)
+    assert find_logs([tmp_path]) == [tmp_path]
+    touch(tmp_path / 'press.v3_0.mcap')
+    assert not is_one_bag(tmp_path)
+    finished = [name for name in held if not name.endswith('.active')]
+    assert names(find_logs([tmp_path]), tmp_path) == sorted([*finished, 'press.v3_0.mcap'])
+
+
+@pytest.mark.parametrize(
+    'held',
+    [
+        parts('bag_{}.mcap', (1, 2)),
+        parts('bag_{}.mcap', (0, 2)),
+        parts('bag_{}.mcap', (20260101, 20260102)),
+        ['press.v2_0.mcap', 'press.v3_0.mcap'],
+        ['axis.2026-01-01_0.mcap', 'axis.2026-01-02_0.mcap'],
+        ['press.v2_0.mcap', 'press.v3_1.mcap'],
+        ['press_0.v2.mcap', 'press_1.v2.mcap'],
+    ],
+)
+def test_files_of_other_names_or_with_a_gap_are_recordings_of_their_own(tmp_path, held):
+    touch(*(tmp_path / name for name in held))
     assert not is_one_bag(tmp_path)
     found = find_logs([tmp_path])
-    assert names(found, tmp_path) == sorted(pair)
-    assert folder_names(found) == [name.removesuffix('.mcap') for name in sorted(pair)]
+    assert names(found, tmp_path) == held
+    assert folder_names(found) == [name.removesuffix('.mcap') for name in held]
 
 
 def test_tables_count_beside_a_bag_where_they_are_asked_for(tmp_path):
@@ -147,3 +153,40 @@ def test_each_report_has_a_folder_of_its_own():
 def test_a_name_that_looks_like_a_number_takes_no_others_folder():
     made = folder_names([Path('x/log.mcap'), Path('log-2.mcap'), Path('y/log.mcap')])
     assert len(set(made)) == 3
+
+
+NAMES = ('report.html', 'summary.json', 'states.parquet', 'judged/judged.mcap')
+
+
+@pytest.mark.parametrize('there', [False, True])
+@pytest.mark.parametrize('steps', range(2 * len(NAMES)))
+def test_products_are_never_beside_a_page_that_is_not_their_own(
+    tmp_path, monkeypatch, there, steps
+):
+    made, out = tmp_path / 'made', tmp_path / 'out'
+    for folder in (made, out):
+        (folder / 'judged').mkdir(parents=True)
+        for name in NAMES if there or folder == made else ():
+            (folder / name).write_text(folder.name)
+    (out / 'judged' / 'notes.txt').write_text('of a user')
+    left = iter(range(steps))
+    for name in ('replace', 'unlink'):
+        monkeypatch.setattr(Path, name, interrupted(getattr(Path, name), left))
+    with contextlib.suppress(KeyboardInterrupt):
+        replace_report(made, out)
+    found = {name: (out / name).read_text() for name in NAMES if (out / name).exists()}
+    assert len(set(found.values())) <= 1
+    assert not found or 'report.html' in found
+    assert (len(found) == len(NAMES) and 'made' in found.values()) == (steps == 2 * len(NAMES) - 1)
+    assert (out / 'judged' / 'notes.txt').exists()
+
+
+def interrupted(change, left):
+    """Return a change of a file that is interrupted when no more are left."""
+
+    def changed(*arguments, **options):
+        if next(left, None) is None:
+            raise KeyboardInterrupt
+        return change(*arguments, **options)
+
+    return changed

@@ -2,8 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """The surface on a grid around a run."""
 
+import dataclasses
 import math
 
+from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.report.operating_field import (
     judged_speeds,
     loads_around,
@@ -58,10 +60,12 @@ def test_speeds_begin_where_they_are_judged(surface):
 
 def test_the_zone_is_where_limits_are_kept(surface):
     field = field_of(surface, (-500.0, 2000.0))
-    limits = {'rcs': 0.01, 'efficiency': 0.85}
-    strict = field.is_optimal(**limits, light_load=0.0)
+    times = {'raise_delay': 0, 'clear_delay': 0, 'hysteresis': 0.0}
+    limits = Limits(rcs=0.01, efficiency=0.85, light_load=0.0, standstill_speed=0.5, **times)
+    strict = field.is_optimal(limits)
     assert (strict == ((field.rcs < 0.01) & (field.efficiency >= 0.85))).all()
-    assert field.is_optimal(**limits, light_load=1e4).sum() > strict.sum()
+    light = dataclasses.replace(limits, light_load=1e4)
+    assert field.is_optimal(light).sum() > strict.sum()
 
 
 def test_middles_lie_amid_four_points(surface):

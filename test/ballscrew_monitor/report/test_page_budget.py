@@ -8,7 +8,6 @@ import re
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.report import log_page
-from ballscrew_monitor.report.case import LogCase
 from ballscrew_monitor.report.log_page import report_page
 from ballscrew_monitor.report.page_budget import (
     axis_budgets,
@@ -82,8 +81,8 @@ def courses_of(page):
     return [axis['course'] for axis in json.loads(data)['axes']]
 
 
-def test_a_page_of_an_hour_at_1_khz_is_small(hour):
-    page = report_page(LogCase(name='hour', parameters='my.yaml', axes=[hour]))
+def test_a_page_of_an_hour_at_1_khz_is_small(judged, hour):
+    page = report_page(judged.log(hour))
     assert len(page.encode()) < MOST_BYTES
     assert courses_of(page)[0]['shown'] == 50
 
@@ -91,9 +90,11 @@ def test_a_page_of_an_hour_at_1_khz_is_small(hour):
 @pytest.mark.parametrize(
     ('axes', 'events', 'gaps', 'least'), [(16, 60, 0, 16), (4, 3000, 1200, 4), (16, 3000, 1200, 0)]
 )
-def test_a_page_of_many_axes_or_events_is_small_too(axis, one_map, axes, events, gaps, least):
+def test_a_page_of_many_axes_or_events_is_small_too(
+    judged, axis, one_map, axes, events, gaps, least
+):
     case = axis('x', events, gaps=gaps)
-    page = report_page(LogCase(name='many', parameters='my.yaml', axes=[case] * axes))
+    page = report_page(judged.log(*[case] * axes))
     assert 0.85 * MOST_BYTES < len(page.encode()) < MOST_BYTES
     shown = [course['shown'] for course in courses_of(page)]
     assert least <= sum(shown)

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Whose parameters a recording is judged with, and what they assume of each axis."""
 
-from ballscrew_monitor.report.parameters import LogParameters, parameters_for
+from ballscrew_monitor.report.parameters import assumed_of, parameters_for
 import pytest
 
 
@@ -10,9 +10,9 @@ def test_assumptions_are_those_of_the_axis_and_of_all():
     assumptions = {
         name: {'value': 1, 'reason': 'usual'} for name in ('x.lead_mm', 'xy.oil', 'time.rate_Hz')
     }
-    found = LogParameters(values={'axes': ['x', 'xy']}, origin='', assumptions=assumptions)
-    assert list(found.of_axis('x')) == ['lead_mm', 'time.rate_Hz']
-    assert list(found.of_axis('xy')) == ['oil', 'time.rate_Hz']
+    axes = ['x', 'xy']
+    assert list(assumed_of(assumptions, 'x', axes)) == ['lead_mm', 'time.rate_Hz']
+    assert list(assumed_of(assumptions, 'xy', axes)) == ['oil', 'time.rate_Hz']
 
 
 @pytest.fixture
@@ -41,11 +41,11 @@ def test_a_table_says_what_its_load_is_worked_out_from(table):
 
     with opened_log(table / 'log.csv', mapping=table / 'map.yaml') as bag:
         found = parameters_for(bag, None, table / 'none.yaml')
-    assert found.load_from == {'x': 'current'}
-    assert found.stated_of('x') >= {'speed.column', 'current.unit', 'screw', 'oil'}
-    assert not found.stated_of('x') & set(found.of_axis('x'))
+    assert found.axes['x'].load_from == 'current'
+    assert found.axes['x'].stated >= {'speed.column', 'current.unit', 'screw', 'oil'}
+    assert not found.axes['x'].stated & set(found.axes['x'].assumed)
     assert not found.nominal
-    assert found.of_axis('x')['lead_mm'] == {'value': 10.0, 'reason': 'usual'}
+    assert found.axes['x'].assumed['lead_mm'] == {'value': 10.0, 'reason': 'usual'}
     assert found.origin == f'those of {table / "log.csv"}'
     assert found.short_origin == 'those of log.csv'
 
@@ -71,7 +71,7 @@ def found_with(table, params=None, **changes):
 
 
 def is_stated(found):
-    return 'temperature_degC' in found.stated_of('x')
+    return 'temperature_degC' in found.axes['x'].stated
 
 
 def test_a_temperature_is_stated_by_the_map_or_by_its_parameters(table):
@@ -81,7 +81,7 @@ def test_a_temperature_is_stated_by_the_map_or_by_its_parameters(table):
     found = found_with(table, change=('assumed:', f'{parameters}assumed:'))
     assert is_stated(found)
     assert found.values['x.temperature.default'] == 35.0
-    assert 'temperature_degC' not in found.of_axis('x')
+    assert 'temperature_degC' not in found.axes['x'].assumed
     assert not any('temperature_degC' in sentence for sentence in found.sentences)
     axis = ('oil: iso_vg_68', 'oil: iso_vg_68, temperature_degC: 45.0')
     assert is_stated(found_with(table, none=(parameters, ''), map=(assumed, ''), axis=axis))
@@ -89,19 +89,19 @@ def test_a_temperature_is_stated_by_the_map_or_by_its_parameters(table):
 
 def test_a_map_that_names_no_limits_leaves_them_assumed(table, tmp_path):
     found = found_with(table)
-    assert found.defaulted_of('x') == {'limits'}  # the screw is stated, and its model with it
-    assert found.leads == {'x': 0.01}
+    assert found.axes['x'].defaulted == {'limits'}  # the screw is stated, and its model with it
+    assert found.axes['x'].lead == 0.01
     guessed = found_with(
         table,
         screw=('screw: nominal, oil', 'oil'),
         why=('assumed:', 'assumed:\n  x.screw: {value: nominal, reason: usual}'),
     )
-    assert guessed.defaulted_of('x') == {'surface', 'limits', 'parameters'}
+    assert guessed.axes['x'].defaulted == {'surface', 'limits', 'parameters'}
     limits = ('assumed:', 'parameters: {x: {limits: {efficiency: 0.8}}}\nassumed:')
-    assert found_with(table, limits=limits).defaulted_of('x') == {'surface'}
+    assert found_with(table, limits=limits).axes['x'].defaulted == {'surface'}
     text = '/**/ballscrew_monitor:\n  ros__parameters: {x: {limits: {efficiency: 0.9}}}\n'
     (tmp_path / 'params.yaml').write_text(text)
-    assert not found_with(table, tmp_path / 'params.yaml').defaulted
+    assert not found_with(table, tmp_path / 'params.yaml').axes['x'].defaulted
 
 
 def test_parameters_that_are_given_state_what_they_name_and_no_more(table, tmp_path):
@@ -109,8 +109,8 @@ def test_parameters_that_are_given_state_what_they_name_and_no_more(table, tmp_p
     (tmp_path / 'params.yaml').write_text(text)
     found = found_with(table, tmp_path / 'params.yaml')
     assert not is_stated(found)
-    assert 'temperature_degC' not in found.of_axis('x')  # what the map assumes is not used
-    assert 'lead_mm' in found.of_axis('x')
+    assert 'temperature_degC' not in found.axes['x'].assumed  # what the map assumes is not used
+    assert 'lead_mm' in found.axes['x'].assumed
     (tmp_path / 'params.yaml').write_text(text + '      temperature: {default: 40.0}\n')
     assert is_stated(found_with(table, tmp_path / 'params.yaml'))
 

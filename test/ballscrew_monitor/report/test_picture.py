@@ -5,16 +5,11 @@
 import struct
 
 from ballscrew_monitor.report import picture
-from ballscrew_monitor.report.case import LogCase
 from ballscrew_monitor.report.log_page import maps_of
 from ballscrew_monitor.report.map_record import OperatingMap
 import numpy as np
 import pytest
 from surrogate.plotting.style import DPI
-
-
-def log_of(*cases):
-    return LogCase(name='log', parameters='', axes=cases)
 
 
 def small_map(*marks):
@@ -36,7 +31,7 @@ def small_map(*marks):
 
 def test_axes_are_side_by_side_in_one_png(judged, tmp_path):
     cases = [judged.case([judged.columns(axis=axis)]) for axis in ('x', 'y')]
-    picture.draw_log(log_of(*cases), [small_map()] * 2, tmp_path / 'log.png')
+    picture.draw_log(judged.log(*cases), [small_map()] * 2, tmp_path / 'log.png')
     data = (tmp_path / 'log.png').read_bytes()
     assert data.startswith(b'\x89PNG')
     size = struct.unpack('>II', data[16:24])
@@ -48,21 +43,21 @@ def test_a_failure_leaves_no_picture(judged, tmp_path, monkeypatch):
     monkeypatch.setattr(picture, '_draw_map', lambda *arguments: 1 / 0)
     with pytest.raises(ZeroDivisionError):
         picture.draw_log(
-            log_of(judged.case([judged.columns()])), [small_map()], tmp_path / 'log.png'
+            judged.log(judged.case([judged.columns()])), [small_map()], tmp_path / 'log.png'
         )
     assert not list(tmp_path.iterdir())
 
 
-def strips_of(case):
+def strips_of(judged, case):
     """Return the axes of the bars and of the panels."""
-    (part,) = picture.figure_log(log_of(case), [small_map()]).subfigs
+    (part,) = picture.figure_log(judged.log(case), [small_map()]).subfigs
     bars, *strips = part.subfigs[1].axes
     return bars, {strip.get_title(loc='left'): strip for strip in strips}
 
 
 def test_panels_and_numbers_are_those_of_the_page(judged):
     case = judged.case([judged.columns(rcs=0.0)], [judged.event(7, 0.2, 0.4)])
-    bars, strips = strips_of(case)
+    bars, strips = strips_of(judged, case)
     assert [text.get_text() for text in bars.texts] == ['7']
     assert bars.texts[0].get_position()[0] == pytest.approx(0.4)
     assert [title.split()[0] for title in strips] == [
@@ -88,7 +83,7 @@ def test_colours_are_those_of_the_page(judged):
 
 @pytest.mark.parametrize('temperature', [313.15, np.nan])
 def test_names_of_lines_are_on_the_map_and_apart(judged, temperature):
-    log = log_of(judged.case([judged.columns(temperature=temperature)]))
+    log = judged.log(judged.case([judged.columns(temperature=temperature)]))
     maps = maps_of(log)
     figure = picture.figure_log(log, maps)
     figure.draw_without_rendering()

@@ -1,17 +1,17 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What a terminal says of a recording: the words of its page."""
+"""What a terminal says of a recording, and its JSON with a reason for every missing number."""
 
+import json
 import math
 
 from ballscrew_monitor.core.inputs import Source, Why
 from ballscrew_monitor.core.judgement import Zone
 from ballscrew_monitor.core.state import Totals
 from ballscrew_monitor.recordings.columns import Reason
-from ballscrew_monitor.report.case import LogCase
-from ballscrew_monitor.report.printed import axis_lines, log_lines, printed_records
-from ballscrew_monitor.report.products import summary_record
+from ballscrew_monitor.report.printed import axis_lines, log_lines, printed_records, summary_record
 import numpy as np
+from surrogate.files import json_text
 
 
 def still_case(judged):
@@ -29,7 +29,7 @@ def lines_of(case, head):
 
 def test_an_axis_that_never_moves_does_not_read_like_all_is_well(judged):
     case = still_case(judged)
-    first, *rest = log_lines(LogCase(name='log', parameters='', axes=[case]))
+    first, *rest = log_lines(judged.log(case))
     assert first == 'axis x: 100 speed samples judged, none of them in motion'
     assert rest[0].startswith('  verdict     Not known: axis x never moved')
     assert lines_of(case, 'events') == ['none, for no motion was judged']
@@ -44,7 +44,7 @@ def test_an_axis_of_which_only_standstill_was_judged_says_so(judged):
     moved = Totals(running_time=200_000_000, unjudged_time=200_000_000)
     case = judged.case([block], totals=moved, judged=80)
     assert math.isnan(case.outside_time)  # 0 would read as well done
-    first, verdict, *_ = log_lines(LogCase(name='log', parameters='', axes=[case]))
+    first, verdict, *_ = log_lines(judged.log(case))
     assert first == 'axis x: 80 speed samples judged, none of them in motion'
     assert verdict.endswith('0.2 s (100 %) of its motion: no valid sample of the load.')
     assert lines_of(case, 'not judged') == [
@@ -95,7 +95,7 @@ def test_inputs_tell_source_span_rate_and_troubles(judged):
 
 
 def test_json_has_totals_and_inputs_of_an_axis_side_by_side(judged):
-    log = LogCase(name='log', parameters='', axes=[judged.case([judged.columns()])], empty=['y'])
+    log = judged.log(judged.case([judged.columns()]), empty=['y'])
     records = printed_records(summary_record(log))
     assert records['x']['judged'] == 100
     assert records['x']['events'] == []
@@ -105,6 +105,39 @@ def test_json_has_totals_and_inputs_of_an_axis_side_by_side(judged):
 
 
 def test_an_axis_without_rows_is_named(judged):
-    assert list(log_lines(LogCase(name='log', parameters='', axes=[], empty=['y']))) == [
-        'axis y: no usable sample'
-    ]
+    assert list(log_lines(judged.log(empty=['y']))) == ['axis y: no usable sample']
+
+
+def test_the_summary_is_strict_json_with_reasons_for_null(judged):
+    def refuse(name):
+        raise ValueError(name)
+
+    events = [judged.event(1, 0.1, 0.2), judged.event(2, 0.5, 0.1, active=True)]
+    case = judged.case([judged.columns()], events)
+    assumptions = {'x.lead': {'value': 0.01, 'reason': 'usual'}}
+    log = judged.log(case, empty=['y'], assumptions=assumptions)
+    record = json.loads(json_text(summary_record(log)), parse_constant=refuse)
+    assert record['unjudged_axes'] == ['y']
+    assert record['assumptions']['x.lead'] == {'value': 0.01, 'reason': 'usual'}
+    axis = record['axes']['x']
+    assert axis['standing'] == 'bad'
+    assert axis['torque_residual']['rms_Nm'] is None
+    assert axis['torque_residual']['rms_Nm_reason'] == 'no torque was measured in motion'
+    assert record['axes']['y'] is None
+    assert axis['inputs']['load']['lost_reason'] == 'the recording does not tell'
+    assert axis['inputs']['load']['lag_s_reason'] == 'its messages bear no stamp'
+    assert axis['inputs']['load']['gaps'] == {'count': 0, 'time_s': 0.0}
+    assert axis['inputs']['torque']['lowest_reason'] == 'the input is not recorded'
+    assert len(axis['totals']['events']) == 2
+    assert not unexplained(record)
+
+
+def unexplained(record, path=''):
+    """Return where a null has no reason beside it."""
+    found = []
+    for key, value in record.items():
+        if value is None and f'{key}_reason' not in record:
+            found.append(f'{path}/{key}')
+        elif isinstance(value, dict):
+            found += unexplained(value, f'{path}/{key}')
+    return found

@@ -6,7 +6,8 @@ import dataclasses
 
 from ballscrew_monitor.core.judgement import Level, Zone
 from ballscrew_monitor.recordings.columns import LIGHT_LOAD, STANDSTILL
-from ballscrew_monitor.report.encoding import script_json
+from ballscrew_monitor.report.buckets import codes_of
+from ballscrew_monitor.report.page import script_json
 from ballscrew_monitor.report.page_budget import AxisBudget, BUCKETS, MOST_ROWS
 from ballscrew_monitor.report.time_series import coarse_bytes, rows_of, series_record
 import numpy as np
@@ -93,9 +94,9 @@ def test_what_is_not_judged_or_only_held_is_a_gap(judged):
     sources = np.array([1, 1, 1, 3], dtype=np.uint8)
     block = judged.columns(count=4, gates=gates, speed_source=sources)
     rows = rows_of(judged.case([block]), block, ('speed', 'efficiency', 'rcs'))
-    assert np.isnan(rows.numbers['speed']).tolist() == [False, False, False, True]
-    assert np.isnan(rows.numbers['efficiency']).tolist() == [False, True, True, False]
-    assert np.isnan(rows.numbers['rcs']).tolist() == [False, True, False, False]
+    assert np.isnan(rows['speed']).tolist() == [False, False, False, True]
+    assert np.isnan(rows['efficiency']).tolist() == [False, True, True, False]
+    assert np.isnan(rows['rcs']).tolist() == [False, True, False, False]
 
 
 def test_codes_are_ordered_by_how_bad_they_are(judged):
@@ -105,7 +106,7 @@ def test_codes_are_ordered_by_how_bad_they_are(judged):
         level=[Level.UNKNOWN, Level.OK, Level.WARN],
         regime=[3, 2, 1],
     )
-    codes = rows_of(judged.case([block]), block, ()).codes
+    codes = codes_of(rows_of(judged.case([block]), block, ()))
     assert {key: found.tolist() for key, found in codes.items()} == {
         'regime': [1, 2, 3],
         'zone': [2, 3, 4],
@@ -116,7 +117,7 @@ def test_codes_are_ordered_by_how_bad_they_are(judged):
 def test_temperature_is_in_degrees_celsius(judged):
     block = judged.columns(count=2)
     rows = rows_of(judged.case([block]), block, ('temperature',))
-    assert rows.numbers['temperature'].tolist() == pytest.approx([40.0, 40.0])
+    assert rows['temperature'].tolist() == pytest.approx([40.0, 40.0])
 
 
 def test_stray_stamps_do_not_stretch_the_page(judged):

@@ -10,6 +10,7 @@ from ballscrew_monitor.core.judgement import Zone
 from ballscrew_monitor.core.state import Totals
 from ballscrew_monitor.recordings.columns import Reason
 from ballscrew_monitor.report.verdict import REMEDIES, verdict_of, VerdictKind
+import pytest
 
 
 def totals(running, optimal, outside=0.0):
@@ -27,12 +28,60 @@ def test_every_reason_has_a_remedy():
     assert set(REMEDIES) == set(Reason) - {Reason.JUDGED, Reason.STANDSTILL}
 
 
-def test_good(judged):
-    verdict = verdict_of(judged.case([judged.columns()], totals=totals(60.0, 60.0)))
-    assert verdict.standing is VerdictKind.GOOD
-    assert verdict.sentence == (
-        'axis x stayed in its optimal zone for all 60 s of motion that could be judged.'
-    )
+NO_LOAD_FIRST = {
+    'reason': [Reason.NO_LOAD] * 20 + [Reason.JUDGED] * 80,
+    'zone': [Zone.UNKNOWN] * 20 + [Zone.OPTIMAL] * 80,
+}
+NO_SPEED = {
+    'speed': math.nan,
+    'speed_source': 0,
+    'reason': Reason.NO_SPEED,
+    'zone': Zone.UNKNOWN,
+    'tick': True,
+}
+SAID = (
+    (
+        {},
+        totals(60.0, 60.0),
+        'Good: axis x stayed in its optimal zone for all 60 s of motion that could be judged. ',
+    ),
+    (
+        {},
+        totals(60.0, 59.0, 1.0),
+        'Good: axis x left its optimal zone for 1 s (1.7 % of its motion), each time too briefly '
+        'for a warning. ',
+    ),
+    (
+        NO_LOAD_FIRST,
+        totals(60.0, 48.0),
+        'Good: axis x stayed in its optimal zone for all 48 s of motion that could be judged; '
+        '12 s (20 %) could not be judged, no valid sample of the load. ',
+    ),
+    (
+        {'reason': Reason.TEMPERATURE_OUT_OF_RANGE, 'zone': Zone.UNKNOWN},
+        totals(60.0, 6.0),
+        'Not known: axis x could not be judged for 54 s (90 %) of its motion: the oil temperature '
+        'is outside the surface. Build a surface for these oil temperatures, or check their unit.',
+    ),
+    (
+        {'speed': 0.0, 'reason': Reason.STANDSTILL, 'zone': Zone.UNKNOWN},
+        Totals(),
+        'Not known: axis x never moved: its speed stayed below 0.5 rad/s, and at standstill '
+        'nothing is judged. Check the unit of the speed if the machine did move.',
+    ),
+    (
+        NO_SPEED,
+        Totals(),
+        'Not known: nothing could be judged on axis x: no valid sample of the speed. Record the '
+        'speed without interruption.',
+    ),
+)
+
+
+@pytest.mark.parametrize(('columns', 'total', 'said'), SAID)
+def test_one_sentence_says_how_an_axis_did_and_another_what_to_do(judged, columns, total, said):
+    verdict = verdict_of(judged.case([judged.columns(**columns)], totals=total))
+    assert f'{verdict.whole} {verdict.remedy}' == said
 
 
 def test_outside_says_how_long_why_and_what_to_do(judged):
@@ -108,40 +157,6 @@ def test_without_advice_no_more_is_said_than_was_looked_for(judged):
     assert remedy(judged, judged.event(1, 0.1, 0.2, speed=math.nan, **helpless)) == ''
 
 
-def test_short_excursions_are_no_warning(judged):
-    verdict = verdict_of(judged.case([judged.columns()], totals=totals(60.0, 59.0, 1.0)))
-    assert verdict.standing is VerdictKind.GOOD
-    assert 'each time too briefly for a warning' in verdict.sentence
-
-
-def test_a_part_that_could_not_be_judged_is_told(judged):
-    block = judged.columns(
-        reason=[Reason.NO_LOAD] * 20 + [Reason.JUDGED] * 80,
-        zone=[Zone.UNKNOWN] * 20 + [Zone.OPTIMAL] * 80,
-    )
-    verdict = verdict_of(judged.case([block], totals=totals(60.0, 48.0)))
-    assert '12 s (20 %) could not be judged, no valid sample of the load' in verdict.sentence
-
-
-def test_mostly_unjudged_is_unknown(judged):
-    block = judged.columns(reason=Reason.TEMPERATURE_OUT_OF_RANGE, zone=Zone.UNKNOWN)
-    verdict = verdict_of(judged.case([block], totals=totals(60.0, 6.0)))
-    assert verdict.standing is VerdictKind.UNKNOWN
-    assert (
-        'could not be judged for 54 s (90 %) of its motion: the oil temperature'
-        in verdict.sentence
-    )
-    assert verdict.remedy.startswith('Build a surface for these oil temperatures')
-
-
-def test_an_axis_that_never_moved(judged):
-    block = judged.columns(speed=0.0, reason=Reason.STANDSTILL, zone=Zone.UNKNOWN)
-    verdict = verdict_of(judged.case([block], totals=Totals()))
-    assert verdict.standing is VerdictKind.UNKNOWN
-    assert 'axis x never moved' in verdict.sentence
-    assert 'Check the unit of the speed' in verdict.remedy
-
-
 def test_a_gap_does_not_hide_that_an_axis_never_moved(judged):
     still = {'speed': 0.1, 'zone': Zone.UNKNOWN}
     gap = {'reason': Reason.NO_INPUTS, 'speed_source': PointSource.HELD, 'tick': True}
@@ -164,11 +179,3 @@ def test_why_a_motion_was_not_judged_does_not_count_gaps(judged):
     ]
     verdict = verdict_of(judged.case(blocks, totals=totals(0.1, 0.0)))
     assert verdict.sentence.endswith('of its motion: no valid sample of the load.')
-
-
-def test_a_speed_that_never_came(judged):
-    block = judged.columns(
-        speed=math.nan, speed_source=0, reason=Reason.NO_SPEED, zone=Zone.UNKNOWN, tick=True
-    )
-    verdict = verdict_of(judged.case([block], totals=Totals()))
-    assert verdict.sentence == ('nothing could be judged on axis x: no valid sample of the speed.')

@@ -5,8 +5,11 @@
 import math
 import types
 
+from ballscrew_monitor.recordings.bag import Bag
+from ballscrew_monitor.recordings.log_facts import PREFIX
 from ballscrew_monitor.recordings.tables import read as read_module
 from ballscrew_monitor.recordings.tables import times
+from ballscrew_monitor.recordings.tables.convert import convert
 from ballscrew_monitor.recordings.tables.mapping import make_map
 from ballscrew_monitor.recordings.tables.read import open_table
 from ballscrew_monitor.recordings.tables.series import force_of, read_series
@@ -14,6 +17,9 @@ import numpy as np
 import pytest
 from surrogate.files import InputError
 
+TIME = np.arange(400) / 50.0
+SPEED = 100.0 * np.sin(TIME)  # [mm/s]
+POSITION = 300.0 - 100.0 * np.cos(TIME)  # [mm]
 EPOCH = 946_684_800 * 10**9
 AXIS = {'lead_mm': 10.0, 'speed': {'column': 'v', 'unit': 'mm/s'}}
 
@@ -188,3 +194,61 @@ def test_rows_without_a_time_are_left_out_and_counted(read):
 def test_huge_gaps_are_said(read):
     made = read({'t': [0, 0.1, 0.2, 3600, 3600.1], 'v': [1] * 5})
     assert '1 gap is longer than 100 rows, the longest is 3600 s, after row 3' in made.notes[0]
+
+
+@pytest.fixture
+def notes(tmp_path, write_csv):
+    """Return a function that imports speeds stated in a unit, and returns what is said of them."""
+
+    def make(speed, unit, position=POSITION, time=TIME):
+        mapping = make_map(
+            {
+                'time': {'column': 't', 'unit': 's', 'epoch': '2000-01-01T00:00:00Z'},
+                'axes': {
+                    'x': {
+                        'lead_mm': 10.0,
+                        'speed': {'column': 'v', 'unit': unit},
+                        'position': {'column': 'p', 'unit': 'mm'},
+                        'load': {'unknown': 'none'},
+                    }
+                },
+            }
+        )
+        columns = {'t': time, 'v': speed, 'p': position}
+        log = write_csv(tmp_path / 'log.csv', columns, form='{:.9g}')
+        facts = convert(log, mapping, tmp_path / 'bag')
+        assert Bag(tmp_path / 'bag').metadata == facts.texts()
+        assert f'{PREFIX}notes' in facts.texts()
+        return [note for note in facts.notes if 'its position' in note]
+
+    return make
+
+
+@pytest.mark.parametrize(
+    ('factor', 'unit'),
+    [(1.0, 'mm/s'), (1e-3, 'm/s'), (0.06, 'm/min'), (60.0, 'mm/min'), (6.0, 'rev/min')],
+)
+def test_the_unit_that_fits_is_named_where_another_is_stated(notes, factor, unit):
+    for stated in ('mm/s', 'm/s', 'm/min', 'rev/min'):
+        found = notes(SPEED * factor, stated)
+        assert len(found) == (stated != unit)
+        assert all(f'in {stated} says: {unit} fits' in note for note in found)
+
+
+def test_a_gap_and_a_row_without_a_number_say_nothing(notes):
+    late = np.where(np.arange(400) < 200, TIME, TIME + 30.0)
+    position = np.where(np.arange(400) < 200, POSITION, POSITION + 5e3)
+    position[50] = np.nan
+    assert not notes(SPEED, 'mm/s', position, late)
+
+
+def test_the_sign_and_a_factor_of_no_unit_are_told(notes):
+    assert notes(-SPEED, 'mm/s')[0].endswith('one of both has the wrong sign of its scale')
+    assert notes(3.0 * SPEED, 'mm/s')[0].endswith('the time and the lead')
+
+
+def test_what_is_not_of_one_motion_or_at_rest_is_not_compared(notes):
+    noise = np.random.default_rng(1).normal(size=400)
+    assert not notes(1e3 * noise, 'mm/s')
+    assert not notes(0.0 * SPEED, 'mm/s')
+    assert not notes(SPEED, 'mm/s', 0.0 * POSITION)
