@@ -15,15 +15,8 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 DEADLINE = 120.0  # [s] for anything that another process has to do, however busy the machine
-OPTIONAL = (
-    'apsw',
-    'contourpy',
-    'mcap',
-    'mcap_ros2',
-    'polars',
-    'rosbags',
-    'zstandard',
-)  # no package of a machine with ROS 2
+# No package of a machine with ROS 2.
+OPTIONAL = 'apsw contourpy mcap mcap_ros2 polars rosbags zstandard'.split()
 # Tests that solve contacts, talk over DDS, start processes, draw many pictures, repeat thousands
 # of fits or run linters over the whole tree: folders and files, and fixtures that make any test
 # such a one. All others are `fast`.

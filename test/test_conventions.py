@@ -16,17 +16,7 @@ from packaging.utils import canonicalize_name
 import pytest
 
 TREE = Path(__file__).resolve().parent.parent
-FOLDERS = (
-    'ballscrew_monitor',
-    'bags',
-    'bench',
-    'docs',
-    'launch',
-    'scripts',
-    'studies',
-    'surrogate',
-    'test',
-)
+FOLDERS = 'ballscrew_monitor bags bench docs launch scripts studies surrogate test'.split()
 SOURCES = sorted(path for name in FOLDERS for path in (TREE / name).rglob('*.py'))
 PACKAGES = [
     path
@@ -45,34 +35,9 @@ HEADER = """\
 """
 # The last word of the name of a quantity that has a unit.
 QUANTITIES = {
-    'age',
-    'angle',
-    'damping',
-    'density',
-    'duration',
-    'efficiency',
-    'energy',
-    'film',
-    'force',
-    'lead',
-    'load',
-    'mass',
-    'modulus',
-    'period',
-    'power',
-    'preload',
-    'pressure',
-    'radius',
-    'rate',
-    'rcs',
-    'roughness',
-    'speed',
-    'stamp',
-    'temperature',
-    'thickness',
-    'time',
-    'torque',
-    'viscosity',
+    *'age angle damping density duration efficiency energy film force lead load mass'.split(),
+    *'modulus period power preload pressure radius rate rcs roughness speed stamp'.split(),
+    *'temperature thickness time torque viscosity'.split(),
 }
 UNIT = re.compile(r'\[[^\]]+\]|[Dd]imensionless')
 UNIT_BESIDE = re.compile(r'#.*\[[^\]]+\]')
@@ -113,16 +78,8 @@ THEMES = {
 }
 # By the extras `bags`, `report`, `areal`, `dask` and `netcdf`.
 OPTIONAL = {
-    'SurfaceTopography',
-    'apsw',
-    'contourpy',
-    'distributed',
-    'lz4',
-    'mcap',
-    'polars',
-    'rosbags',
-    'xarray',
-    'zstandard',
+    *'SurfaceTopography apsw contourpy distributed lz4 mcap'.split(),
+    *'polars rosbags xarray zstandard'.split(),
 }
 
 

@@ -19,21 +19,8 @@ RECORD = json.loads((TREE / 'test' / 'data' / 'type_hashes.json').read_text())
 CONSTANT = re.compile(r'(?P<type>\w+) (?P<name>[A-Z][A-Z0-9_]*) *= *(?P<value>\S+)')
 # Kinds of things, told apart by a number; the first word names the kind.
 ENUMERATIONS = {
-    'CODE',
-    'CONTACT',
-    'DIRECTION',
-    'GATE',
-    'LEVEL',
-    'NUT',
-    'REGIME',
-    'SEVERITY',
-    'SIDE',
-    'SOURCE',
-    'STAMP',
-    'STATE',
-    'TIER',
-    'VALIDITY',
-    'ZONE',
+    *'CODE CONTACT DIRECTION GATE LEVEL NUT REGIME SEVERITY SIDE SOURCE STAMP STATE'.split(),
+    *'TIER VALIDITY ZONE'.split(),
 }
 
 

@@ -9,17 +9,7 @@ from ament_pep257.main import main
 import pytest
 
 TREE = Path(__file__).resolve().parent.parent
-FOLDERS = (
-    'ballscrew_monitor',
-    'bags',
-    'bench',
-    'docs',
-    'launch',
-    'scripts',
-    'studies',
-    'surrogate',
-    'test',
-)
+FOLDERS = 'ballscrew_monitor bags bench docs launch scripts studies surrogate test'.split()
 PATHS = [str(TREE / name) for name in ('setup.py', *FOLDERS) if (TREE / name).exists()]
 
 

@@ -19,12 +19,8 @@ from surrogate.files import InputError
 
 FILE = pathlib.Path(__file__).resolve().parents[2] / 'launch' / 'ballscrew_monitor.launch.py'
 NAMES = (
-    'launch',
-    'launch.actions',
-    'launch.substitutions',
-    'launch_ros',
-    'launch_ros.actions',
-    'launch_ros.parameter_descriptions',
+    *'launch launch.actions launch.substitutions launch_ros launch_ros.actions'.split(),
+    *'launch_ros.parameter_descriptions'.split(),
 )
 
 

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reference tables and shared objects of the offline tests."""
 
+import argparse
 from collections.abc import Mapping
 import csv
 import math
@@ -17,6 +18,7 @@ from surrogate.asperities.marches import inputs_from_json
 from surrogate.builder.closed_form import build_closed_form, default_settings
 from surrogate.builder.full.nodes import onset_speeds
 from surrogate.builder.tiers import screw_and_oil
+from surrogate.cli import add_commands
 from surrogate.formulas import closed_form
 from surrogate.parameters import load_lubricant, load_screw, Lubricant, Screw
 from surrogate.surface.file import SurfaceData
@@ -34,6 +36,19 @@ def rows(name: str) -> list[dict[str, str]]:
 def table():
     """Return the reader of the reference tables."""
     return rows
+
+
+@pytest.fixture
+def run(request):
+    """Return the function that runs one command line, which begins with COMMAND of the module."""
+
+    def run_line(*words, read_bag=None):
+        parser = argparse.ArgumentParser()
+        add_commands(parser.add_subparsers(required=True), read_bag)
+        args = parser.parse_args([*request.module.COMMAND, *map(str, words)])
+        return args.handler(args)
+
+    return run_line
 
 
 @pytest.fixture(scope='session')

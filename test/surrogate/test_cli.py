@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The offline commands as a user types them."""
 
-import argparse
 from dataclasses import replace
 import json
 from pathlib import Path
@@ -10,30 +9,28 @@ from pathlib import Path
 import numpy as np
 import pytest
 from surrogate.asperities.law import shipped_law
-from surrogate.cli import add_commands
 from surrogate.files import InputError
 from surrogate.surface.file import write
 
-POINT = ['point', '--screw', 'nominal', '--oil', 'iso_vg_68', '--tier', 'closed_form']
+COMMAND = ('point',)
+
+POINT = ['--screw', 'nominal', '--oil', 'iso_vg_68', '--tier', 'closed_form']
 
 
-def run(*words: str) -> int:
-    """Run one command line."""
-    parser = argparse.ArgumentParser()
-    add_commands(parser.add_subparsers(required=True))
-    args = parser.parse_args(words)
-    return args.handler(args)
+@pytest.fixture
+def record(run, capsys):
+    """Return the function that gives the JSON that a point prints."""
+
+    def printed(*words: str) -> dict:
+        assert run(*POINT, '--json', *words) == 0
+        return json.loads(capsys.readouterr().out)
+
+    return printed
 
 
-def record(capsys, *words: str) -> dict:
-    """Return the JSON that a point prints."""
-    assert run(*POINT, '--json', *words) == 0
-    return json.loads(capsys.readouterr().out)
-
-
-def test_point_as_json(capsys):
+def test_point_as_json(record):
     """The record is strict JSON in SI with four contacts and the tier's name."""
-    found = record(capsys, '--speed-rpm', '600', '--load-N', '1000')
+    found = record('--speed-rpm', '600', '--load-N', '1000')
     assert found['tier'] == 'closed_form'
     assert found['efficiency'] == pytest.approx(0.945, abs=2e-3)
     assert found['entrainment_speed_m_s'] == pytest.approx(0.49657, abs=1e-5)
@@ -50,9 +47,9 @@ def test_point_as_json(capsys):
     assert found['regime'] == 'mixed'
 
 
-def test_unknown_numbers_are_null_with_a_reason(capsys):
+def test_unknown_numbers_are_null_with_a_reason(record):
     """Past unloading the relieved nut has no film: null, and a word why."""
-    found = record(capsys, '--speed-rpm', '600', '--load-N', '3000')
+    found = record('--speed-rpm', '600', '--load-N', '3000')
     relieved = found['contacts'][2]
     assert relieved['central_film_m'] is None
     assert relieved['reason'] == 'no load on this nut, so no film'
@@ -68,15 +65,15 @@ def test_unknown_numbers_are_null_with_a_reason(capsys):
         ('-600', '-1000', False),
     ],
 )
-def test_four_quadrants(capsys, rpm, load, drives):
+def test_four_quadrants(record, rpm, load, drives):
     """The load drives the screw when it has not the sign of the motion."""
-    found = record(capsys, '--speed-rpm', rpm, '--load-N', load)
+    found = record('--speed-rpm', rpm, '--load-N', load)
     assert found['back_driving'] is drives
     assert (found['driving_torque_Nm'] < 0) is drives
     assert found['efficiency'] == pytest.approx(0.942 if drives else 0.945, abs=2e-3)
 
 
-def test_point_as_a_page(capsys):
+def test_point_as_a_page(run, capsys):
     """A person reads the tier, the point and what leaves a fitted range."""
     assert run(*POINT, '--speed-rpm', '600', '--load-N', '1000', '--temperature-degC', '40') == 0
     text = capsys.readouterr().out
@@ -90,9 +87,9 @@ def test_point_as_a_page(capsys):
         assert part in text
 
 
-def test_ratings_are_warned_about(capsys):
+def test_ratings_are_warned_about(record):
     """Beyond D n, the static rating or the oil sheet the point is solved, with a warning."""
-    found = record(capsys, '--speed-rpm', '3000', '--load-N', '60000', '--temperature-degC', '110')
+    found = record('--speed-rpm', '3000', '--load-N', '60000', '--temperature-degC', '110')
     for part in (
         'speed: D n is 96',
         'load: 6e+04 N, the static rating is 5.5e+04 N',
@@ -109,25 +106,24 @@ def test_ratings_are_warned_about(capsys):
         ['--speed-rpm', '1', '--load-N', '1', '--temperature-degC', '900'],
     ],
 )
-def test_a_number_out_of_range_is_refused(words):
+def test_a_number_out_of_range_is_refused(run, words):
     """Not a number and absurd values are one sentence."""
     with pytest.raises(InputError, match='allowed is'):
         run(*POINT, *words)
 
 
-def test_comparator_knows_the_quadrant(capsys):
+def test_comparator_knows_the_quadrant(record):
     """With the load driving, constant friction yields less than against it, and a brake torque."""
-    against = record(capsys, '--speed-rpm', '600', '--load-N', '1000')['comparators']
-    driven = record(capsys, '--speed-rpm', '600', '--load-N', '-1000')['comparators']
+    against = record('--speed-rpm', '600', '--load-N', '1000')['comparators']
+    driven = record('--speed-rpm', '600', '--load-N', '-1000')['comparators']
     assert driven['constant_friction_efficiency'] == pytest.approx(0.895, abs=1e-3)
     assert against['constant_friction_efficiency'] == pytest.approx(0.905, abs=1e-3)
     assert driven['constant_friction_torque_Nm'] < 0 < against['constant_friction_torque_Nm']
 
 
-def test_full_tier_is_solved_and_a_failure_is_an_exit_code(capsys, monkeypatch):
+def test_full_tier_is_solved_and_a_failure_is_an_exit_code(run, capsys, monkeypatch):
     """1000 N at 2000 rev/min by solved contacts; what did not converge returns 1."""
-    words = ('point', '--tier', 'full', '--json', '--speed-rpm', '2000', '--load-N')
-    words = (*words, '1000', '--screw', 'nominal', '--oil', 'iso_vg_68')
+    words = (*POINT[:-1], 'full', '--json', '--speed-rpm', 2000, '--load-N', 1000)
     assert run(*words) == 0
     found = json.loads(capsys.readouterr().out)
     assert found['tier'] == 'full'
@@ -138,10 +134,10 @@ def test_full_tier_is_solved_and_a_failure_is_an_exit_code(capsys, monkeypatch):
     assert run(*words) == 1
 
 
-def test_options_of_the_full_tier(tmp_path: Path, capsys):
+def test_options_of_the_full_tier(run, tmp_path: Path, capsys):
     """Kinematics, inlet heating and picture reach the solve; the other tier refuses them."""
-    words = ('point', '--speed-rpm', '600', '--load-N', '0', '--json')
-    more = ('--kinematics', 'smooth', '--inlet-heating', '--plot', str(tmp_path))
+    words = ('--speed-rpm', '600', '--load-N', '0', '--json')
+    more = ('--kinematics', 'smooth', '--inlet-heating', '--plot', tmp_path)
     assert run(*words, '--tier', 'full', *more) == 0
     found = json.loads(capsys.readouterr().out)
     assert found['asperity_law'] == 'no roughness'
@@ -153,32 +149,32 @@ def test_options_of_the_full_tier(tmp_path: Path, capsys):
         ('--kinematics', 'rolling'),
         ('--surface', 'any.npz'),
         ('--inlet-heating',),
-        ('--plot', str(tmp_path)),
+        ('--plot', tmp_path),
     ):
         with pytest.raises(InputError, match=f'{option[0]} needs --tier full'):
             run(*words, *option)
     blocked = tmp_path / 'file'
     blocked.write_text('')
     with pytest.raises(InputError, match='--plot: .*file cannot be made'):
-        run(*words, '--tier', 'full', '--plot', str(blocked))
+        run(*words, '--tier', 'full', '--plot', blocked)
 
 
-def test_the_law_of_a_surface_is_taken(tmp_path: Path, capsys, surface_data):
+def test_the_law_of_a_surface_is_taken(run, tmp_path: Path, capsys, surface_data):
     """That of its marches; a surface of formulas has none, and says of which tier it is."""
-    words = ('point', '--tier', 'full', '--json', '--speed-rpm', '100', '--load-N', '0')
+    words = ('--tier', 'full', '--json', '--speed-rpm', '100', '--load-N', '0')
     law = replace(shipped_law(), source='made up', marches=77)
     header = {**surface_data.header, 'law': law.to_json()}
     path = tmp_path / 'marched.npz'
     write(path, replace(surface_data, header=header))
-    assert run(*words, '--surface', str(path)) == 0
+    assert run(*words, '--surface', path) == 0
     found = json.loads(capsys.readouterr().out)
     assert 'by 77 marches for made up' in found['asperity_law']
     write(path, surface_data)
     with pytest.raises(InputError, match='of tier closed_form, allowed is full'):
-        run(*words, '--surface', str(path))
+        run(*words, '--surface', path)
 
 
-def test_oil_that_is_no_liquid_is_named_with_its_temperature():
+def test_oil_that_is_no_liquid_is_named_with_its_temperature(run):
     """The sentence speaks of what was typed."""
     with pytest.raises(InputError, match=r'temperature is -40 degC: iso_vg_68: viscosity is'):
         run(*POINT[:-1], 'full', '--speed-rpm', '60', '--load-N', '0', '--temperature-degC', '-40')

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """A catalogue swept: every item reported, one failure alone, a killed worker's items elsewhere."""
 
-import argparse
 from dataclasses import replace
 import json
 import os
@@ -14,12 +13,13 @@ import threading
 import pytest
 from surrogate.builder.sweep import load_catalogue
 from surrogate.builder.tiers import TIERS
-from surrogate.cli import add_commands
 from surrogate.files import InputError
 from surrogate.parameters import DATA
 from surrogate.surface import Surface
 from surrogate.surface.file import read
 from surrogate.tasks.worker import worker_name
+
+COMMAND = ('surface', 'sweep')
 
 DEADLINE = 60.0
 THREE = 'screws: [nominal]\noils: [iso_vg_32, iso_vg_68, iso_vg_100]\n'
@@ -54,14 +54,6 @@ def build_here(screw, lubricant, settings, *, pool, out):
 """
 
 
-def run(*words) -> int:
-    """Run one command line."""
-    parser = argparse.ArgumentParser()
-    add_commands(parser.add_subparsers(required=True))
-    args = parser.parse_args(['surface', 'sweep', *map(str, words)])
-    return args.handler(args)
-
-
 @pytest.fixture
 def tier(tmp_path: Path, monkeypatch):
     """Return what makes the closed-form tier be built by another, smaller builder."""
@@ -92,7 +84,7 @@ def report(out: Path) -> dict:
     return json.loads((out / 'sweep.json').read_text())
 
 
-def test_every_combination_is_built(tmp_path, tier, catalogue, capsys):
+def test_every_combination_is_built(run, tmp_path, tier, catalogue, capsys):
     """Screws times roughness times oils, each a file that is what the report says."""
     tier('build')
     catalogue.write_text(
@@ -122,7 +114,7 @@ def test_every_combination_is_built(tmp_path, tier, catalogue, capsys):
     assert sorted(path.suffix for path in out.iterdir()) == ['.json', '.md', *6 * ['.npz']]
 
 
-def test_a_failed_item_never_stops_the_rest(tmp_path, tier, catalogue, capsys):
+def test_a_failed_item_never_stops_the_rest(run, tmp_path, tier, catalogue, capsys):
     """Its sentence is in the report and on the page; the exit code is 1."""
     tier('build_all_but_one')
     out = tmp_path / 'out'
@@ -137,7 +129,7 @@ def test_a_failed_item_never_stops_the_rest(tmp_path, tier, catalogue, capsys):
     assert not (out / 'nominal_iso_vg_68.npz').exists()
 
 
-def test_a_tier_that_spreads_its_solves_is_built_here(tmp_path, tier, catalogue):
+def test_a_tier_that_spreads_its_solves_is_built_here(run, tmp_path, tier, catalogue):
     """Its builder gets the workers and the file; what it raises is that item's sentence."""
     tier('build_here', spreads=True)
     out = tmp_path / 'out'
@@ -164,7 +156,9 @@ def killer(hello: str, gate: str, seen: list[int]) -> threading.Thread:
     return thread
 
 
-def test_a_cluster_that_loses_a_worker_builds_everything(tmp_path, tier, catalogue, monkeypatch):
+def test_a_cluster_that_loses_a_worker_builds_everything(
+    run, tmp_path, tier, catalogue, monkeypatch
+):
     """Two Dask workers, one killed at work: the report shows who did its item, same surfaces."""
     distributed = pytest.importorskip('distributed')
     tier('build')
@@ -240,7 +234,7 @@ def test_a_wrong_catalogue_is_one_sentence(catalogue, text, sentence):
 
 
 def test_a_scheduler_that_is_not_there_leaves_a_report_of_waiting_items(
-    tmp_path, catalogue, monkeypatch
+    run, tmp_path, catalogue, monkeypatch
 ):
     """Soon and in one sentence."""
     pytest.importorskip('distributed')
@@ -250,7 +244,7 @@ def test_a_scheduler_that_is_not_there_leaves_a_report_of_waiting_items(
     assert report(tmp_path / 'out')['counts'] == {'built': 0, 'failed': 0, 'waiting': 3}
 
 
-def test_a_surface_that_cannot_be_written_is_that_item_alone(tmp_path, tier, catalogue):
+def test_a_surface_that_cannot_be_written_is_that_item_alone(run, tmp_path, tier, catalogue):
     """A directory stands where a file should go."""
     tier('build')
     out = tmp_path / 'out'

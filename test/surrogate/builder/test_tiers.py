@@ -7,14 +7,7 @@ import json
 import sys
 
 import pytest
-from surrogate.builder.tiers import (
-    build_surface,
-    default_settings,
-    find_tier,
-    screw_and_oil,
-    solve_point,
-    TIERS,
-)
+from surrogate.builder import tiers
 from surrogate.files import InputError
 from surrogate.formulas import closed_form
 from surrogate.parameters import BallRoughness
@@ -24,26 +17,26 @@ from surrogate.surface import file as surface_file
 
 def test_every_tier_is_one_of_the_file_format():
     """A tier that can be built can be written."""
-    assert set(TIERS) <= set(surface_file.TIERS)
+    assert set(tiers.TIERS) <= set(surface_file.TIERS)
 
 
 def test_an_unknown_tier_lists_the_known_ones():
     """One sentence."""
     with pytest.raises(InputError, match="tier is 'guess', allowed is closed_form"):
-        find_tier('guess')
+        tiers.find_tier('guess')
 
 
 def test_a_header_gives_back_its_datasheets(surface_data, screw, oil):
     """The file alone is enough to solve again."""
-    assert screw_and_oil(surface_data.header['inputs']) == (screw, oil)
+    assert tiers.screw_and_oil(surface_data.header['inputs']) == (screw, oil)
     rough = replace(screw, ball_roughness=BallRoughness(grade='G10'))
     inputs = json.loads(json.dumps({'screw': asdict(rough), 'lubricant': asdict(oil)}))
-    assert screw_and_oil(inputs) == (rough, oil)
+    assert tiers.screw_and_oil(inputs) == (rough, oil)
 
 
 def test_a_point_is_solved_as_the_surface_was(surface_data, screw, oil):
     """All fields of the closed-form tier, as its solver gives them."""
-    found = solve_point(surface_data.header, 62.8, 1000.0, 313.0)
+    found = tiers.solve_point(surface_data.header, 62.8, 1000.0, 313.0)
     direct = closed_form.solve(screw, oil, 62.8, 1000.0, 313.0)
     assert found.converged
     for name in (*FIELDS, 'worst_contact'):
@@ -52,9 +45,9 @@ def test_a_point_is_solved_as_the_surface_was(surface_data, screw, oil):
 
 def test_a_tier_builds_within_the_ranges_that_are_asked_for(surface_data, screw, oil):
     """The builder behind the name is the builder."""
-    settings = default_settings('closed_form', screw, {})
-    assert build_surface('closed_form', screw, oil, settings).sha256 == surface_data.sha256
-    narrow = default_settings('closed_form', screw, {'load_range': (-10.0, 10.0)})
+    settings = tiers.default_settings('closed_form', screw, {})
+    assert tiers.build_surface('closed_form', screw, oil, settings).sha256 == surface_data.sha256
+    narrow = tiers.default_settings('closed_form', screw, {'load_range': (-10.0, 10.0)})
     assert narrow.load_range == (-10.0, 10.0)
     assert narrow.speed_range == settings.speed_range
 
@@ -65,7 +58,7 @@ def test_a_builder_that_spreads_its_solves_gets_pool_and_file(monkeypatch, screw
     module = type(sys)('spreading')
     module.build = lambda *sheets, **options: seen.update(options)
     monkeypatch.setitem(sys.modules, 'spreading', module)
-    tier = replace(TIERS['closed_form'], build='spreading:build', spreads=True)
-    monkeypatch.setitem(TIERS, 'closed_form', tier)
-    build_surface('closed_form', screw, oil, None, pool='workers', out=tmp_path)
+    tier = replace(tiers.TIERS['closed_form'], build='spreading:build', spreads=True)
+    monkeypatch.setitem(tiers.TIERS, 'closed_form', tier)
+    tiers.build_surface('closed_form', screw, oil, None, pool='workers', out=tmp_path)
     assert seen == {'pool': 'workers', 'out': tmp_path}

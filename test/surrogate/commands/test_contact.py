@@ -2,29 +2,21 @@
 # SPDX-License-Identifier: Apache-2.0
 """The contact command as a user types it."""
 
-import argparse
 from dataclasses import replace
 import json
 import sys
 
 from ballscrew_monitor.cli import INTERRUPTED, main
 import pytest
-from surrogate.cli import add_commands
 from surrogate.contact.rolling import march_case
 from surrogate.ehl import solve_contact, Status
 from surrogate.ehl.moving import MarchStatus
 from surrogate.files import InputError
 from surrogate.parameters import DATA
 
+COMMAND = ('contact',)
+
 SMOOTH = (DATA / 'cases' / 'nominal_smooth.yaml').read_text(encoding='utf-8')
-
-
-def run(*words):
-    """Run one command line and return its exit code."""
-    parser = argparse.ArgumentParser()
-    add_commands(parser.add_subparsers(required=True))
-    args = parser.parse_args([str(word) for word in words])
-    return args.handler(args)
 
 
 @pytest.fixture
@@ -35,36 +27,36 @@ def small(tmp_path):
     return path
 
 
-def test_contact_as_json(capsys, small):
+def test_contact_as_json(run, capsys, small):
     """Strict JSON, exit code 0."""
-    assert run('contact', small, '--json') == 0
+    assert run(small, '--json') == 0
     found = json.loads(capsys.readouterr().out)
     assert found['converged'] is True
     assert found['central_film_m'] == pytest.approx(150e-9, rel=0.05)
 
 
-def test_contact_as_a_page(capsys, small):
+def test_contact_as_a_page(run, capsys, small):
     """Central film and status."""
-    assert run('contact', small) == 0
+    assert run(small) == 0
     out = capsys.readouterr().out
     assert 'central film' in out
     assert 'status: Converged' in out
 
 
-def test_a_shipped_case_by_name(capsys):
+def test_a_shipped_case_by_name(run, capsys):
     """The name of a shipped case is enough."""
-    assert run('contact', 'nominal_smooth', '--json') == 0
+    assert run('nominal_smooth', '--json') == 0
     assert json.loads(capsys.readouterr().out)['grid'] == [257, 65]
 
 
-def test_a_result_that_is_not_converged_exits_with_1(capsys, small, monkeypatch):
+def test_a_result_that_is_not_converged_exits_with_1(run, capsys, small, monkeypatch):
     """Whatever the reason, the status is a sentence and the exit code says it too."""
 
     def stalled(*arguments, **options):
         return replace(solve_contact(*arguments, **options), status=Status.STALLED)
 
     monkeypatch.setattr('surrogate.contact.solve.solve_contact', stalled)
-    assert run('contact', small, '--json') == 1
+    assert run(small, '--json') == 1
     found = json.loads(capsys.readouterr().out)
     assert found['converged'] is False
     assert found['status'] == Status.STALLED.value
@@ -98,11 +90,11 @@ def rolling(tmp_path):
     return path
 
 
-def test_a_rolling_contact(capsys, rolling, tmp_path):
+def test_a_rolling_contact(run, capsys, rolling, tmp_path):
     """JSON on one stream, progress and the path of the picture on the other, exit code 0."""
     pytest.importorskip('matplotlib')
     folder = tmp_path / 'plots'
-    assert run('contact', rolling, '--json', '--plot', folder) == 0
+    assert run(rolling, '--json', '--plot', folder) == 0
     out, err = capsys.readouterr()
     found = json.loads(out)
     assert found['kinematics'] == 'rolling'
@@ -112,7 +104,7 @@ def test_a_rolling_contact(capsys, rolling, tmp_path):
     assert [path.name for path in folder.iterdir()] == ['rolling_contact.png']
 
 
-def test_a_march_that_stalls_exits_with_1(capsys, rolling, monkeypatch):
+def test_a_march_that_stalls_exits_with_1(run, capsys, rolling, monkeypatch):
     """The page says why."""
 
     def stalled(case):
@@ -120,7 +112,7 @@ def test_a_march_that_stalls_exits_with_1(capsys, rolling, monkeypatch):
         return replace(solution, status=MarchStatus.STALLED), surface
 
     monkeypatch.setattr('surrogate.contact.rolling.march_case', stalled)
-    assert run('contact', rolling) == 1
+    assert run(rolling) == 1
     assert f'status: {MarchStatus.STALLED.value}' in capsys.readouterr().out
 
 
@@ -135,11 +127,11 @@ def test_an_interrupted_march_leaves_no_traceback(capsys, rolling, monkeypatch):
     assert capsys.readouterr().err.splitlines()[-1] == 'ballscrew: interrupted'
 
 
-def test_pictures(small, tmp_path):
+def test_pictures(run, small, tmp_path):
     """--plot writes the pictures and leaves nothing half-written."""
     pytest.importorskip('matplotlib')
     folder = tmp_path / 'deep' / 'plots'
-    assert run('contact', small, '--plot', folder) == 0
+    assert run(small, '--plot', folder) == 0
     assert sorted(path.name for path in folder.iterdir()) == [
         'contact_3d.png',
         'contact_maps.png',
@@ -147,10 +139,10 @@ def test_pictures(small, tmp_path):
     ]
 
 
-def test_pictures_that_cannot_be_made(small, tmp_path, monkeypatch):
+def test_pictures_that_cannot_be_made(run, small, tmp_path, monkeypatch):
     """No directory, no matplotlib: one sentence."""
     with pytest.raises(InputError, match='--plot: .*small.yaml cannot be written'):
-        run('contact', small, '--plot', small)
+        run(small, '--plot', small)
     monkeypatch.setitem(sys.modules, 'surrogate.contact.figures', None)
     with pytest.raises(InputError, match='--plot needs matplotlib: install the extra `plot`'):
-        run('contact', small, '--plot', tmp_path / 'plots')
+        run(small, '--plot', tmp_path / 'plots')

@@ -2,26 +2,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """The subcommand `figures` as a user types it."""
 
-import argparse
-
 import pytest
-from surrogate.cli import add_commands
 from surrogate.files import InputError
+
+COMMAND = ('figures',)
 
 pytest.importorskip('matplotlib')
 
 
-def run(*words: str) -> int:
-    """Run one command line."""
-    parser = argparse.ArgumentParser()
-    add_commands(parser.add_subparsers(required=True))
-    args = parser.parse_args(words)
-    return args.handler(args)
-
-
-def test_one_figure(tmp_path, capsys):
+def test_one_figure(run, tmp_path, capsys):
     """The smooth contact over speed: picture, rows, fields, table; the second run solves none."""
-    assert run('figures', '--out', str(tmp_path), '--only', '7') == 0
+    assert run('--out', tmp_path, '--only', '7') == 0
     said = capsys.readouterr()
     assert '| central film, smooth, 502.65 mm/s, preload only | 152.4 nm | 153 nm' in said.out
     assert said.out == (tmp_path / 'paper.md').read_text(encoding='utf-8')
@@ -30,7 +21,7 @@ def test_one_figure(tmp_path, capsys):
     names = {path.name for path in tmp_path.iterdir()}
     picture = 'paper_07_smooth_speed.png'
     assert names == {'paper.csv', 'paper.csv.store', 'paper.md', 'paper_fields', picture}
-    assert run('figures', '--out', str(tmp_path), '--only', '7') == 0
+    assert run('--out', tmp_path, '--only', '7') == 0
     assert ' solves, ' not in capsys.readouterr().err
 
 
@@ -42,8 +33,8 @@ def test_one_figure(tmp_path, capsys):
         (('--only', '7', '--measured', 'none.csv'), '--measured: none.csv cannot be read'),
     ],
 )
-def test_bad_input_is_one_sentence(tmp_path, words, sentence):
+def test_bad_input_is_one_sentence(run, tmp_path, words, sentence):
     """Before anything is solved."""
     with pytest.raises(InputError, match=sentence):
-        run('figures', '--out', str(tmp_path / 'out'), *words)
+        run('--out', tmp_path / 'out', *words)
     assert not (tmp_path / 'out').exists()

@@ -2,17 +2,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """The identify command as a user types it."""
 
-import argparse
 import json
 import math
 import sys
 
 import numpy as np
 import pytest
-from surrogate.cli import add_commands
 from surrogate.files import InputError
 from surrogate.formulas import closed_form
 from surrogate.parameters import load_lubricant, load_screw
+
+COMMAND = ('identify',)
 
 SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
 RPM = np.array([60, 100, 200, 400, 800, 1600, -60, -200, -800, -1600])
@@ -21,14 +21,6 @@ TORQUE = np.sign(ROWS) * (
     np.asarray(closed_form.solve(SCREW, OIL, np.abs(ROWS), 0.0, 313.15).friction_torque) + 0.12
 )
 TORQUE = TORQUE + 4e-4 * ROWS + 0.03
-
-
-def run(*words, read_bag=None):
-    """Run one command line and return its exit code."""
-    parser = argparse.ArgumentParser()
-    add_commands(parser.add_subparsers(required=True), read_bag)
-    args = parser.parse_args(['identify', *(str(word) for word in words)])
-    return args.handler(args)
 
 
 @pytest.fixture
@@ -40,7 +32,7 @@ def data(tmp_path):
     return path
 
 
-def test_json_is_strict_and_whole(capsys, data):
+def test_json_is_strict_and_whole(run, capsys, data):
     """Values, intervals and residual in SI units."""
     assert run(data, '--json') == 0
     record = json.loads(capsys.readouterr().out)
@@ -53,7 +45,7 @@ def test_json_is_strict_and_whole(capsys, data):
     assert record['data'] == 'drag.csv'
 
 
-def test_the_written_sheet_gives_the_measured_torque(capsys, data, tmp_path):
+def test_the_written_sheet_gives_the_measured_torque(run, capsys, data, tmp_path):
     """`point` with the written sheets prints the torque along the motion without the offset."""
     sheet = tmp_path / 'deep' / 'found.yaml'
     assert run(data, '--out', sheet, '--fit', 'viscosity', '--temperature-degC', 35) == 0
@@ -69,7 +61,7 @@ def test_the_written_sheet_gives_the_measured_torque(capsys, data, tmp_path):
     assert screw.name == 'nominal_identified'
 
 
-def test_only_the_screw_is_written_where_the_oil_is_not_fitted(data, tmp_path):
+def test_only_the_screw_is_written_where_the_oil_is_not_fitted(run, data, tmp_path):
     """And nothing at all without --out."""
     assert run(data) == 0
     assert [path.name for path in tmp_path.iterdir()] == ['drag.csv']
@@ -77,7 +69,7 @@ def test_only_the_screw_is_written_where_the_oil_is_not_fitted(data, tmp_path):
     assert sorted(path.name for path in tmp_path.iterdir()) == ['drag.csv', 'found.yaml']
 
 
-def test_the_full_tier_is_asked_for_by_name(data, monkeypatch, capsys):
+def test_the_full_tier_is_asked_for_by_name(run, data, monkeypatch, capsys):
     """It hands on what is fitted, and whom to tell."""
     asked = []
 
@@ -97,7 +89,7 @@ def test_the_full_tier_is_asked_for_by_name(data, monkeypatch, capsys):
     assert '2/2 speeds solved' in capsys.readouterr().err
 
 
-def test_a_fit_that_did_not_converge_exits_with_1(data, monkeypatch, capsys):
+def test_a_fit_that_did_not_converge_exits_with_1(run, data, monkeypatch, capsys):
     """The record says so, too."""
     from scipy.optimize import least_squares
 
@@ -113,7 +105,7 @@ def test_a_fit_that_did_not_converge_exits_with_1(data, monkeypatch, capsys):
     assert record['status'] == 'the fit ended before it converged'
 
 
-def test_datasheets_that_are_read_are_not_written_over(data, tmp_path):
+def test_datasheets_that_are_read_are_not_written_over(run, data, tmp_path):
     """Neither the screw nor the oil, which takes its name from the output."""
     mine = tmp_path / 'mine.yaml'
     assert run(data, '--out', mine) == 0
@@ -126,13 +118,13 @@ def test_datasheets_that_are_read_are_not_written_over(data, tmp_path):
 
 
 @pytest.mark.parametrize('celsius', ['-300', 'nan', 'inf'])
-def test_a_temperature_that_no_oil_has_is_refused(data, celsius):
+def test_a_temperature_that_no_oil_has_is_refused(run, data, celsius):
     """The sentence names the option."""
     with pytest.raises(InputError, match='--temperature-degC is .* allowed is a number above'):
         run(data, f'--temperature-degC={celsius}')
 
 
-def test_options_that_mean_nothing_are_refused(data, tmp_path):
+def test_options_that_mean_nothing_are_refused(run, data, tmp_path):
     """Bag options for a CSV, and the other way round; a temperature that stands twice."""
     with pytest.raises(InputError, match='--speed-topic has no meaning here: .* is a CSV'):
         run(data, '--speed-topic', 'joint_states')
@@ -147,7 +139,7 @@ def test_options_that_mean_nothing_are_refused(data, tmp_path):
     assert run(data) == 0
 
 
-def test_a_bag_is_read_by_who_can(tmp_path, capsys):
+def test_a_bag_is_read_by_who_can(run, tmp_path, capsys):
     """The arguments and the lead go out, columns and notes come back."""
     seen = []
 
@@ -160,7 +152,7 @@ def test_a_bag_is_read_by_who_can(tmp_path, capsys):
     assert 'note: half of it was steady' in capsys.readouterr().out
 
 
-def test_a_picture(data, tmp_path, monkeypatch):
+def test_a_picture(run, data, tmp_path, monkeypatch):
     """One file, nothing half-written; without matplotlib or a place for it one sentence."""
     pytest.importorskip('matplotlib')
     folder = tmp_path / 'deep' / 'plots'

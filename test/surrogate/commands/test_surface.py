@@ -2,73 +2,50 @@
 # SPDX-License-Identifier: Apache-2.0
 """The surface commands as a user types them."""
 
-import argparse
+from dataclasses import replace
 import json
 from pathlib import Path
 
 import numpy as np
 import pytest
-from surrogate.cli import add_commands
 from surrogate.files import InputError
 from surrogate.surface import shipped_surface, SurfaceError
 from surrogate.surface.file import ENSEMBLE_VERSION, read, write
 from surrogate.tasks.store import store_path, TaskStore
 
+COMMAND = ('surface',)
+
 CLOSED_FORM = shipped_surface(tier='closed_form')
 
 
-def run(*words: str) -> int:
-    """Run one command line."""
-    parser = argparse.ArgumentParser()
-    add_commands(parser.add_subparsers(required=True))
-    args = parser.parse_args([str(word) for word in words])
-    return args.handler(args)
-
-
-def test_build_info_check(tmp_path: Path, capsys):
+def test_build_info_check(run, tmp_path: Path, capsys):
     """A surface is built, described and found good; a second build is the same surface."""
     path = tmp_path / 'map.npz'
-    assert (
-        run(
-            'surface',
-            'build',
-            '--out',
-            str(path),
-            '--load-range',
-            '-500',
-            '500',
-            '--temperature-range',
-            '30',
-            '50',
-            '--speed-range',
-            '1',
-            '2000',
-        )
-        == 0
-    )
+    ranges = ('--load-range', -500, 500, '--temperature-range', 30, 50, '--speed-range', 1, 2000)
+    assert run('build', '--out', path, *ranges) == 0
     built = capsys.readouterr().out
-    assert run('surface', 'info', str(path), '--json') == 0
+    assert run('info', path, '--json') == 0
     info = json.loads(capsys.readouterr().out)
     assert info['sha256'] in built
     assert info['load_range_N'] == [-500.0, 500.0]
     assert info['speed_range_rad_s'] == pytest.approx([0.10472, 209.44], rel=1e-4)
-    assert run('surface', 'info', str(path)) == 0
+    assert run('info', path) == 0
     assert 'speed        1 to 2000 rev/min' in capsys.readouterr().out
-    assert run('surface', 'check', str(path), '--points', '5') == 0
+    assert run('check', path, '--points', '5') == 0
     assert 'passed, hash verified, 5 of 5 points' in capsys.readouterr().out
 
 
-def test_check_of_a_shipped_tier_is_of_twenty_points(capsys):
+def test_check_of_a_shipped_tier_is_of_twenty_points(run, capsys):
     """The name of a tier is enough."""
-    assert run('surface', 'check', 'closed_form') == 0
+    assert run('check', 'closed_form') == 0
     out = capsys.readouterr().out
     assert str(CLOSED_FORM) in out
     assert '20 of 20 points' in out
 
 
-def test_check_tells_how_far_off_the_limit_of_the_zone_is(capsys):
+def test_check_tells_how_far_off_the_limit_of_the_zone_is(run, capsys):
     """In per cent of the speed, at as many points as asked for."""
-    words = ('surface', 'check', 'closed_form', '--points', '2', '--limit-points')
+    words = ('check', 'closed_form', '--points', '2', '--limit-points')
     assert run(*words, '2') == 0
     _, *limits = capsys.readouterr().out.splitlines()
     assert len(limits) == 2
@@ -79,50 +56,44 @@ def test_check_tells_how_far_off_the_limit_of_the_zone_is(capsys):
         run(*words, '-1')
 
 
-def test_check_finds_a_wrong_surface(tmp_path: Path, capsys):
+def test_check_finds_a_wrong_surface(run, tmp_path: Path, capsys):
     """A surface whose numbers are not those of its datasheets fails with exit code 1."""
-    from dataclasses import replace
-
     data = read(CLOSED_FORM)
     wrong = replace(data, fields={**data.fields, 'rcs': 0.5 * data.fields['rcs']})
     path = tmp_path / 'wrong.npz'
     write(path, wrong)
-    assert run('surface', 'check', str(path)) == 1
+    assert run('check', path) == 1
     assert 'FAILED' in capsys.readouterr().out
 
 
-def test_a_surface_without_answers_fails_its_check(tmp_path: Path, capsys):
+def test_a_surface_without_answers_fails_its_check(run, tmp_path: Path, capsys):
     """A map that is masked everywhere has no error, and is not good for that."""
-    from dataclasses import replace
-
     data = read(CLOSED_FORM)
     path = tmp_path / 'masked.npz'
     write(path, replace(data, mask=np.ones_like(data.mask)))
-    assert run('surface', 'check', str(path)) == 1
+    assert run('check', path) == 1
     assert '20 without an answer' in capsys.readouterr().out
 
 
-def test_info_is_strict_json_even_without_errors(tmp_path: Path, capsys):
+def test_info_is_strict_json_even_without_errors(run, tmp_path: Path, capsys):
     """Errors that were not measured are null."""
-    from dataclasses import replace
-
     data = read(CLOSED_FORM)
     path = tmp_path / 'unmeasured.npz'
     errors = {name: np.full_like(values, np.nan) for name, values in data.errors.items()}
     write(path, replace(data, errors=errors))
-    assert run('surface', 'info', str(path), '--json') == 0
+    assert run('info', path, '--json') == 0
     assert json.loads(capsys.readouterr().out)['errors']['rcs'] == {'max': None, 'p95': None}
 
 
-def test_check_without_time_is_a_failure(capsys):
+def test_check_without_time_is_a_failure(run, capsys):
     """Time for no point at all is a failure; a time that is not positive is refused."""
-    assert run('surface', 'check', '--max-seconds', '1e-9') == 1
+    assert run('check', '--max-seconds', '1e-9') == 1
     out = capsys.readouterr().out
     assert str(shipped_surface(tier='full')) in out
     assert '0 of 20 points' in out
     for text in ('0', '-1', 'nan', 'inf'):
         with pytest.raises(InputError, match='--max-seconds is .* allowed is above 0'):
-            run('surface', 'check', '--max-seconds', text)
+            run('check', '--max-seconds', text)
 
 
 @pytest.mark.parametrize(
@@ -134,25 +105,25 @@ def test_check_without_time_is_a_failure(capsys):
         (['--temperature-range', '50', 'nan'], '--temperature-range is 50 to nan degC'),
     ],
 )
-def test_a_range_is_refused_in_the_unit_it_was_typed_in(words, sentence):
+def test_a_range_is_refused_in_the_unit_it_was_typed_in(run, words, sentence):
     """The user reads the numbers that the user typed."""
     with pytest.raises(InputError, match=sentence):
-        run('surface', 'build', *words)
+        run('build', *words)
 
 
-def test_bad_files_reach_the_user_as_sentences(tmp_path: Path):
+def test_bad_files_reach_the_user_as_sentences(run, tmp_path: Path):
     """Missing files and unknown names raise the two exceptions that the program reports."""
     with pytest.raises(SurfaceError, match='no such surface file'):
-        run('surface', 'info', str(tmp_path / 'none.npz'))
+        run('info', tmp_path / 'none.npz')
     with pytest.raises(InputError, match='nor one of the shipped datasheets'):
-        run('surface', 'build', '--oil', 'water')
+        run('build', '--oil', 'water')
     with pytest.raises(InputError, match='--points is 0'):
-        run('surface', 'check', '--points', '0')
+        run('check', '--points', '0')
 
 
-def test_info_is_a_page_a_person_reads(capsys):
+def test_info_is_a_page_a_person_reads(run, capsys):
     """Inputs, ranges in rev/min and degC, nodes, the error table and where it comes from."""
-    assert run('surface', 'info', 'closed_form') == 0
+    assert run('info', 'closed_form') == 0
     text = capsys.readouterr().out
     for part in (
         'nominal, iso_vg_68; lead 10 mm, preload 990 N, Rq 0.12 um, film floor 3 nm',
@@ -167,38 +138,36 @@ def test_info_is_a_page_a_person_reads(capsys):
         assert part in text
 
 
-def test_info_tells_what_draws_leave_uncertain(tmp_path: Path, capsys):
+def test_info_tells_what_draws_leave_uncertain(run, tmp_path: Path, capsys):
     """Median and largest deviation, in the page and in the record."""
-    from dataclasses import replace
-
     data = read(CLOSED_FORM)
     spread = np.linspace(0.0, 0.02, data.mask.size).reshape(data.mask.shape)
     path = tmp_path / 'drawn.npz'
     header = {**data.header, 'format_version': ENSEMBLE_VERSION}
     write(path, replace(data, header=header, deviations={'rcs': spread}))
-    assert run('surface', 'info', path) == 0
+    assert run('info', path) == 0
     text = capsys.readouterr().out
     assert 'deviation: median, max    of the mean' in text
     assert 'rcs [-]                              0.01        0.02        nan         nan' in text
-    assert run('surface', 'info', path, '--json') == 0
+    assert run('info', path, '--json') == 0
     spreads = json.loads(capsys.readouterr().out)['spreads']
     assert spreads['rcs']['std'] == pytest.approx({'median': 0.01, 'max': 0.02})
     assert spreads['rcs']['stderr'] == {'median': None, 'max': None}
 
 
-def test_clean_removes_kept_results(tmp_path: Path, capsys):
+def test_clean_removes_kept_results(run, tmp_path: Path, capsys):
     """The command that a refused store names does what the sentence says."""
     out = tmp_path / 'map.npz'
     with TaskStore(out, 'test 1'):
         pass
-    assert run('surface', 'clean', out) == 0
+    assert run('clean', out) == 0
     assert f'{store_path(out)}: removed' in capsys.readouterr().out
     assert not store_path(out).exists()
-    assert run('surface', 'clean', out) == 0
+    assert run('clean', out) == 0
     assert 'nothing to remove' in capsys.readouterr().out
 
 
-def test_workers_are_refused_where_they_would_do_nothing():
+def test_workers_are_refused_where_they_would_do_nothing(run):
     """The closed form is solved in a second or two, in this process."""
     with pytest.raises(InputError, match='--workers and --dask have no meaning for tier closed_f'):
-        run('surface', 'build', '--workers', '2')
+        run('build', '--workers', '2')

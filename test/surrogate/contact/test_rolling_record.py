@@ -12,19 +12,9 @@ from surrogate.ehl.moving import MarchStatus, MovingSolution
 from surrogate.files import json_text
 
 AVERAGED = (
-    'rcs',
-    'asperity_share',
-    'mean_film_m',
-    'film_rms_m',
-    'least_film_m',
-    'max_pressure_Pa',
-    'hard_share',
-    'film_traction',
-    'rolling_force_N',
-    'smooth_rolling_force_N',
-    'central_film_m',
-    'film_ratio',
-    'memory_length_m',
+    *'rcs asperity_share mean_film_m film_rms_m least_film_m max_pressure_Pa hard_share'.split(),
+    *'film_traction rolling_force_N smooth_rolling_force_N central_film_m film_ratio'.split(),
+    *'memory_length_m'.split(),
 )
 
 

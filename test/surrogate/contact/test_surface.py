@@ -93,21 +93,19 @@ def test_a_roughness_file_lies_beside_the_case(tmp_path):
     [
         ({'file': 'absent.csv'}, 'absent.csv: there is no such file'),
         (
+            {'file': 'z.csv', 'grid_wavelength_um': 20},
+            'grid_wavelength belongs to a generated surface',
+        ),
+        (
             {'rms_um': 0.1, 'shortest_wavelength_um': 500, 'sample_length_mm': 0.4},
             'shortest wavelength is 500 um, allowed is less than the sample length',
         ),
     ],
 )
 def test_bad_surfaces_are_one_sentence(tmp_path, rough, sentence):
-    """What shows only when the surface is made."""
+    """A key that belongs to another kind, and what shows only when the surface is made."""
     with pytest.raises(InputError, match=sentence):
         case_surface(load(tmp_path, roughness=rough))
-
-
-def test_a_measured_file_has_no_waves_to_leave_out(tmp_path):
-    """The key belongs to a generated surface."""
-    with pytest.raises(InputError, match='grid_wavelength belongs to a generated surface'):
-        load(tmp_path, roughness={'file': 'z.csv', 'grid_wavelength_um': 20})
 
 
 def standard(folder, **keys):

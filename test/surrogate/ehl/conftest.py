@@ -2,26 +2,39 @@
 # SPDX-License-Identifier: Apache-2.0
 """Cases of the tables in Moes groups and of the nominal ball screw."""
 
-import csv
-from pathlib import Path
-
 import numpy as np
 import pytest
-from surrogate.ehl import Condition, ContactLubricant
+from surrogate.ehl import Condition, ContactLubricant, Settings, solve_contact
 from surrogate.formulas.geometry import Contact
-
-REFERENCE = Path(__file__).parents[2] / 'reference'
 
 
 @pytest.fixture(scope='session')
-def reference_rows():
-    """Read the rows of a reference table as dictionaries of text."""
-
-    def read(name):
-        with open(REFERENCE / name, encoding='utf-8') as file:
-            return list(csv.DictReader(line for line in file if not line.startswith('#')))
-
-    return read
+def dimensional(table):
+    """Solve the rows of the table in SI units on its domain; return their numbers with them."""
+    solved = {}
+    for row in table('ehl_dimensional.csv'):
+        number = {key: float(text) for key, text in row.items() if key != 'case' and text}
+        ellipse = row['case'] == 'ball_screw_ellipse'
+        nx, ny = (513, 129) if ellipse else (257, 257)
+        stress = {'eyring_stress': number['tau0_MPa'] * 1e6} if 'tau0_MPa' in number else {}
+        solved[row['case']] = (
+            number,
+            solve_contact(
+                Contact(
+                    radius_x=number['Rx_mm'] * 1e-3,
+                    radius_y=number['Ry_mm'] * 1e-3,
+                    reduced_modulus=number['E_reduced_GPa'] * 1e9,
+                ),
+                ContactLubricant(
+                    viscosity=number['eta0_Pa_s'],
+                    pressure_viscosity=number['alpha_1_Pa'],
+                    **stress,
+                ),
+                Condition(load=number['load_N'], entrainment_speed=number['speed_m_s']),
+                settings=Settings(nx=nx, ny=ny, domain=(-4.5, 1.5, 2.0 if ellipse else 3.0)),
+            ),
+        )
+    return solved
 
 
 @pytest.fixture(scope='session')
@@ -60,6 +73,12 @@ def nominal():
         Contact(radius_x=2.589e-3, radius_y=77.39e-3, reduced_modulus=226.4e9),
         ContactLubricant(viscosity=0.06, pressure_viscosity=2.0e-8),
     )
+
+
+@pytest.fixture(scope='session')
+def solved(nominal):
+    """Solve it at 27.6 N and 0.5 m/s on the production grid."""
+    return solve_contact(*nominal, Condition(load=27.6, entrainment_speed=0.5))
 
 
 @pytest.fixture(scope='session')

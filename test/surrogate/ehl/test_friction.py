@@ -6,43 +6,17 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from surrogate.ehl import Condition, ContactLubricant, punctured_nodes, Settings, solve_contact
+from surrogate.ehl import Condition, punctured_nodes, Settings, solve_contact
 from surrogate.ehl.friction import contact_friction, slide_roll_friction, viscosity_of
 from surrogate.files import InputError
-from surrogate.formulas.geometry import Contact
 from surrogate.formulas.lubricant import shear_stress_eyring_1936
 
 
-@pytest.fixture(scope='module')
-def solved(nominal):
-    """Solve the nominal contact at 27.6 N and 0.5 m/s."""
-    return solve_contact(*nominal, Condition(load=27.6, entrainment_speed=0.5))
-
-
-def test_friction_table(reference_rows):
+def test_friction_table(dimensional):
     """Full-film coefficients at two slide-roll ratios to 3 %."""
-    for row in reference_rows('ehl_dimensional.csv'):
-        if not row['mu_1']:
+    for number, found in dimensional.values():
+        if 'mu_1' not in number:
             continue
-        number = {key: float(text) for key, text in row.items() if key != 'case' and text}
-        ellipse = row['case'] == 'ball_screw_ellipse'
-        nx, ny = (513, 129) if ellipse else (257, 257)
-        found = solve_contact(
-            Contact(
-                radius_x=number['Rx_mm'] * 1e-3,
-                radius_y=number['Ry_mm'] * 1e-3,
-                reduced_modulus=number['E_reduced_GPa'] * 1e9,
-            ),
-            ContactLubricant(
-                viscosity=number['eta0_Pa_s'],
-                eyring_stress=number['tau0_MPa'] * 1e6,
-                pressure_viscosity=number['alpha_1_Pa'],
-            ),
-            Condition(load=number['load_N'], entrainment_speed=number['speed_m_s']),
-            settings=Settings(
-                nx=nx, ny=ny, domain=(-4.5, 1.5, 2.0 if ellipse else 3.0), error_estimate=False
-            ),
-        )
         assert found.converged, found.status.value
         for which in '12':
             friction = slide_roll_friction(found, number[f'srr_{which}'])

@@ -10,12 +10,6 @@ from surrogate.ehl import Condition, Settings, solve_contact
 from surrogate.formulas.geometry import Contact, hertz
 
 
-@pytest.fixture(scope='module')
-def solved(nominal):
-    """Solve the nominal contact at 27.6 N and 0.5 m/s on the production grid."""
-    return solve_contact(*nominal, Condition(load=27.6, entrainment_speed=0.5))
-
-
 def integral(solution, field):
     """Integrate a field that vanishes on the border."""
     area = (solution.x[1] - solution.x[0]) * (solution.y[1] - solution.y[0])

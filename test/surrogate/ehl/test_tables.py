@@ -4,13 +4,12 @@
 
 import numpy as np
 import pytest
-from surrogate.ehl import Condition, ContactLubricant, Settings, solve_contact
-from surrogate.formulas.geometry import Contact
+from surrogate.ehl import Settings, solve_contact
 
 
-def test_circular_table(reference_rows, moes_case):
+def test_circular_table(table, moes_case):
     """Films extrapolated from 129 and 257 nodes: 1 and 2 % up to M = 200, 2 and 4 % above."""
-    for row in reference_rows('ehl_circular.csv'):
+    for row in table('ehl_circular.csv'):
         load = float(row['M'])
         contact, oil, condition, unit = moes_case(load, float(row['L']), row['fluid'])
         domain = (-4.5, 1.5, 3.0) if load <= 100 else (-2.5, 1.5, 2.0)
@@ -29,29 +28,13 @@ def test_circular_table(reference_rows, moes_case):
         )
 
 
-def test_dimensional_table(reference_rows):
+def test_dimensional_table(dimensional):
     """Central film 1.5 %, minimum 2.5 % (ellipse 4 %), rolling 3 % on the domain of the table."""
-    for row in reference_rows('ehl_dimensional.csv'):
-        number = {key: float(text) for key, text in row.items() if key != 'case' and text}
-        ellipse = row['case'] == 'ball_screw_ellipse'
-        nx, ny = (513, 129) if ellipse else (257, 257)
-        settings = Settings(nx=nx, ny=ny, domain=(-4.5, 1.5, 2.0 if ellipse else 3.0))
-        found = solve_contact(
-            Contact(
-                radius_x=number['Rx_mm'] * 1e-3,
-                radius_y=number['Ry_mm'] * 1e-3,
-                reduced_modulus=number['E_reduced_GPa'] * 1e9,
-            ),
-            ContactLubricant(
-                viscosity=number['eta0_Pa_s'], pressure_viscosity=number['alpha_1_Pa']
-            ),
-            Condition(load=number['load_N'], entrainment_speed=number['speed_m_s']),
-            settings=settings,
-        )
+    for case, (number, found) in dimensional.items():
         assert found.converged, found.status.value
         assert found.central_film * 1e9 == pytest.approx(number['hc_nm'], rel=0.015)
         assert found.minimum_film * 1e9 == pytest.approx(
-            number['hmin_nm'], rel=0.04 if ellipse else 0.025
+            number['hmin_nm'], rel=0.04 if case == 'ball_screw_ellipse' else 0.025
         )
         if 'pmax_hertz_GPa' in number:
             assert found.hertz_pressure * 1e-9 == pytest.approx(number['pmax_hertz_GPa'], rel=1e-3)
@@ -61,11 +44,11 @@ def test_dimensional_table(reference_rows):
             )
 
 
-def test_grid_convergence_table(reference_rows, moes_case):
+def test_grid_convergence_table(table, moes_case):
     """M = 20, L = 10, Barus: each grid to 0.5 %, and order 2."""
     contact, oil, condition, _ = moes_case(20.0, 10.0, 'barus_incompressible')
     films = []
-    for row in reference_rows('ehl_grid_convergence.csv')[:4]:
+    for row in table('ehl_grid_convergence.csv')[:4]:
         nodes = int(row['n']) + 1
         found = solve_contact(
             contact,

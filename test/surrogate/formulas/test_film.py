@@ -6,27 +6,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 import numpy as np
 import pytest
-from surrogate.formulas.film import (
-    asperity_share_aihara_1987,
-    central_film_hamrock_dowson_1977,
-    central_film_nijenbanning_1994,
-    film_ratio,
-    film_ratio_at_share_aihara_1987,
-    Groups,
-    groups,
-    minimum_film_hamrock_dowson_1977,
-    outside_range,
-    RANGES,
-    rolling_force_biboulet_houpert_2010,
-)
+from surrogate.formulas import film as laws
 from surrogate.formulas.geometry import Contact
 
 
 def test_film_ratio_of_smooth_surfaces_has_no_end():
     """Infinite above a film, 0 without one, unknown where the film is."""
     film = np.array([1e-7, 0.0, np.nan])
-    np.testing.assert_array_equal(film_ratio(film, 0.0), [np.inf, 0.0, np.nan])
-    np.testing.assert_allclose(film_ratio(film, 1e-7), [1.0, 0.0, np.nan])
+    np.testing.assert_array_equal(laws.film_ratio(film, 0.0), [np.inf, 0.0, np.nan])
+    np.testing.assert_allclose(laws.film_ratio(film, 1e-7), [1.0, 0.0, np.nan])
 
 
 def dimensional(row):
@@ -40,7 +28,7 @@ def dimensional(row):
     return (
         contact,
         load,
-        groups(
+        laws.groups(
             contact,
             load,
             float(row['speed_m_s']),
@@ -55,7 +43,7 @@ def moes(load, material, radius_ratio):
     speed = 1e-11
     return (
         Contact(radius_x=1.0, radius_y=radius_ratio, reduced_modulus=1.0),
-        Groups(
+        laws.Groups(
             speed=np.float64(speed),
             load=np.float64(load * (2 * speed) ** 0.75),
             material=np.float64(material * (2 * speed) ** -0.25),
@@ -68,7 +56,7 @@ def test_central_film_stays_4_to_11_percent_above_converged_solutions(table):
     """Hamrock and Dowson's central film is high by the margin known for it."""
     for row in table('ehl_dimensional.csv'):
         contact, _, g = dimensional(row)
-        ratio = central_film_hamrock_dowson_1977(contact, g) / (float(row['hc_nm']) * 1e-9)
+        ratio = laws.central_film_hamrock_dowson_1977(contact, g) / (float(row['hc_nm']) * 1e-9)
         assert 1.04 < ratio < 1.11, row['case']
 
 
@@ -76,7 +64,7 @@ def test_minimum_film_is_within_7_percent_for_the_long_ellipse(table):
     """From ellipticity 3 on the minimum film is good."""
     row = next(r for r in table('ehl_dimensional.csv') if r['case'] == 'ball_screw_ellipse')
     contact, _, g = dimensional(row)
-    found = minimum_film_hamrock_dowson_1977(contact, g)
+    found = laws.minimum_film_hamrock_dowson_1977(contact, g)
     assert found == pytest.approx(float(row['hmin_nm']) * 1e-9, rel=0.07)
 
 
@@ -87,8 +75,8 @@ def test_minimum_film_of_the_papers_own_case(table):
     assert g.speed == pytest.approx(1.683e-12, rel=2e-3)
     assert g.load == pytest.approx(1.106e-7, rel=2e-3)
     assert g.material == pytest.approx(4522, rel=2e-3)
-    assert outside_range('central_film_hamrock_dowson_1977', g) == ()
-    assert minimum_film_hamrock_dowson_1977(contact, g) == pytest.approx(
+    assert laws.outside_range('central_film_hamrock_dowson_1977', g) == ()
+    assert laws.minimum_film_hamrock_dowson_1977(contact, g) == pytest.approx(
         float(row['hmin_nm']) * 1e-9, rel=0.06
     )
 
@@ -103,7 +91,7 @@ def test_minimum_film_of_the_papers_own_case(table):
 def test_nijenbanning_values(load, material, ratio, film):
     """Values of the fit in Moes scale."""
     contact, g = moes(load, material, ratio)
-    found = central_film_nijenbanning_1994(contact, g) / np.sqrt(2 * g.speed)
+    found = laws.central_film_nijenbanning_1994(contact, g) / np.sqrt(2 * g.speed)
     assert found == pytest.approx(film, rel=1e-3)
 
 
@@ -112,7 +100,7 @@ def test_nijenbanning_against_incompressible_solutions(table):
     for row in table('ehl_circular.csv'):
         if row['fluid'] == 'barus_incompressible':
             contact, g = moes(float(row['M']), float(row['L']), 1.0)
-            found = central_film_nijenbanning_1994(contact, g) / np.sqrt(2 * g.speed)
+            found = laws.central_film_nijenbanning_1994(contact, g) / np.sqrt(2 * g.speed)
             assert found == pytest.approx(float(row['Hc']), rel=0.15)
 
 
@@ -120,7 +108,7 @@ def test_rolling_force_lies_above_the_short_domains(table):
     """A finite domain cuts the inlet and so the rolling force, by up to half."""
     row = next(r for r in table('ehl_dimensional.csv') if r['rolling_coefficient'])
     contact, load, g = dimensional(row)
-    ratio = rolling_force_biboulet_houpert_2010(contact, g) / load
+    ratio = laws.rolling_force_biboulet_houpert_2010(contact, g) / load
     assert 1.0 < ratio / float(row['rolling_coefficient']) < 1.6
     # Extrapolated to a far inlet from the values at 4.5 and 10 half-widths, which fall as 1/x.
     assert ratio == pytest.approx(4.55e-4, rel=0.10)
@@ -131,8 +119,8 @@ def test_rolling_force_of_the_nominal_contact(screw):
     from surrogate.formulas.geometry import screw_contact
 
     contact = screw_contact(screw, 'screw')
-    g = groups(contact, 27.6, 0.49657, 0.060, 2e-8)
-    assert rolling_force_biboulet_houpert_2010(contact, g) / 27.6 == pytest.approx(
+    g = laws.groups(contact, 27.6, 0.49657, 0.060, 2e-8)
+    assert laws.rolling_force_biboulet_houpert_2010(contact, g) / 27.6 == pytest.approx(
         1.05e-3, rel=0.25
     )
 
@@ -141,33 +129,33 @@ def test_rolling_force_of_the_nominal_contact(screw):
 def test_rolling_force_has_its_isoviscous_limit(load, factor):
     """At M far below 6.6 the force is the rigid one and grows as U^(2/3)."""
     contact, slow = moes(1e-6 * load, 0.1, 4.0)
-    fast = Groups(
+    fast = laws.Groups(
         speed=slow.speed * factor, load=slow.load, material=slow.material, radius_ratio=4.0
     )
-    gain = rolling_force_biboulet_houpert_2010(
+    gain = laws.rolling_force_biboulet_houpert_2010(
         contact, fast
-    ) / rolling_force_biboulet_houpert_2010(contact, slow)
+    ) / laws.rolling_force_biboulet_houpert_2010(contact, slow)
     assert gain == pytest.approx(factor ** (2 / 3), rel=1e-3)
 
 
 def test_a_resting_contact_has_no_film_and_no_rolling_force():
     """Speed zero is legal and gives exact zeros."""
     contact = Contact(radius_x=0.003, radius_y=0.08, reduced_modulus=2.26e11)
-    g = groups(contact, 27.6, 0.0, 0.06, 2e-8)
-    assert central_film_hamrock_dowson_1977(contact, g) == 0.0
-    assert rolling_force_biboulet_houpert_2010(contact, g) == 0.0
+    g = laws.groups(contact, 27.6, 0.0, 0.06, 2e-8)
+    assert laws.central_film_hamrock_dowson_1977(contact, g) == 0.0
+    assert laws.rolling_force_biboulet_houpert_2010(contact, g) == 0.0
 
 
 @pytest.mark.parametrize(('ratio', 'share'), [(0.1, 0.89), (0.5, 0.46), (1, 0.17), (2, 0.016)])
 def test_asperity_share_printed_values(ratio, share):
     """The fit's values at four film ratios, to the digits printed."""
-    assert asperity_share_aihara_1987(ratio) == pytest.approx(share, rel=0.035)
+    assert laws.asperity_share_aihara_1987(ratio) == pytest.approx(share, rel=0.035)
 
 
 @given(st.floats(1e-4, 0.999))
 def test_film_ratio_inverts_the_share(share):
     """The inverse is exact."""
-    found = asperity_share_aihara_1987(film_ratio_at_share_aihara_1987(share))
+    found = laws.asperity_share_aihara_1987(laws.film_ratio_at_share_aihara_1987(share))
     assert found == pytest.approx(share, rel=1e-9)
 
 
@@ -175,16 +163,16 @@ def test_every_range_names_a_formula_and_real_groups():
     """The table of ranges cannot name a formula or group that does not exist."""
     import surrogate.formulas.film as module
 
-    for formula, ranges in RANGES.items():
+    for formula, ranges in laws.RANGES.items():
         assert callable(getattr(module, formula))
         for name, (low, high) in ranges.items():
-            assert hasattr(Groups, name)
+            assert hasattr(laws.Groups, name)
             assert low < high
 
 
 def test_leaving_a_range_is_told_with_numbers():
     """The phrase names group, value and range."""
     _, g = moes(500, 10, 25.0)
-    assert outside_range('central_film_nijenbanning_1994', g) == (
+    assert laws.outside_range('central_film_nijenbanning_1994', g) == (
         'radius_ratio 25 (fitted 1 to 20)',
     )

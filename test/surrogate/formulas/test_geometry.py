@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Geometry and Hertz against closed forms, the table and scaling laws."""
 
+from dataclasses import replace
 import math
 
 from hypothesis import given
@@ -23,8 +24,6 @@ RADII = st.floats(1e-3, 0.5)
 
 def test_hertz_table(table, screw):
     """Semi-axes, pressure and approach of both contacts and two ball sizes, to 0.5 %."""
-    from dataclasses import replace
-
     for row in table('hertz.csv'):
         f = float(row['conformity'])
         sized = replace(

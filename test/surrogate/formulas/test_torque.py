@@ -7,17 +7,9 @@ import math
 from hypothesis import given
 from hypothesis import strategies as st
 import pytest
+from surrogate.formulas import torque as laws
 from surrogate.formulas.geometry import helix_angle
 from surrogate.formulas.load_sharing import nut_forces
-from surrogate.formulas.torque import (
-    drag_torque_catalogue,
-    driving_torque,
-    efficiency,
-    efficiency_slope,
-    is_back_driving,
-    SMALLEST,
-    torque_constant_friction,
-)
 
 LEAD = 0.01
 FRICTION, LOAD = st.floats(1e-6, 10.0), st.floats(1.0, 1e5)
@@ -30,15 +22,15 @@ def test_constant_friction_table(table):
 
     def driven(ratio):
         loaded, relieved = nut_forces(ratio * preload, preload)
-        moment = torque_constant_friction(float(loaded), float(relieved), 0.016, angle, mu)
+        moment = laws.torque_constant_friction(float(loaded), float(relieved), 0.016, angle, mu)
         return ratio * preload * LEAD / (2 * math.pi) / moment
 
-    single = torque_constant_friction(1.0, 0.0, 0.016, angle, mu)
+    single = laws.torque_constant_friction(1.0, 0.0, 0.016, angle, mu)
     assert LEAD / (2 * math.pi) / single == pytest.approx(float(row['eta_drive']), abs=1e-3)
     # The load drives: the pressed nut assists the motion.
-    back = -torque_constant_friction(0.0, 1.0, 0.016, angle, mu) / (LEAD / (2 * math.pi))
+    back = -laws.torque_constant_friction(0.0, 1.0, 0.016, angle, mu) / (LEAD / (2 * math.pi))
     assert back == pytest.approx(float(row['eta_backdrive']), abs=1e-3)
-    drag = torque_constant_friction(preload, preload, 0.016, angle, mu)
+    drag = laws.torque_constant_friction(preload, preload, 0.016, angle, mu)
     assert drag == pytest.approx(float(row['drag_torque_Nm']), abs=1e-3)
     for ratio in (0.5, 1, 2):
         assert driven(ratio) == pytest.approx(float(row[f'eta_at_{ratio}_preload']), abs=1e-3)
@@ -47,32 +39,32 @@ def test_constant_friction_table(table):
 @given(FRICTION, LOAD)
 def test_power_in_is_power_out_plus_loss(friction, load):
     """Torque times speed covers lifting and friction; the efficiency is their ratio."""
-    torque = driving_torque(friction, load, LEAD)
+    torque = laws.driving_torque(friction, load, LEAD)
     ideal = load * LEAD / (2 * math.pi)
     assert torque == pytest.approx(ideal + friction, rel=1e-14)
-    assert efficiency(friction, load, LEAD) == pytest.approx(ideal / torque, rel=1e-12)
+    assert laws.efficiency(friction, load, LEAD) == pytest.approx(ideal / torque, rel=1e-12)
 
 
 @given(FRICTION, LOAD)
 def test_a_driving_load_gives_what_friction_leaves(friction, load):
     """Back-driving: the torque taken from the screw over the torque of the load."""
     ideal = load * LEAD / (2 * math.pi)
-    found = efficiency(friction, -load, LEAD)
+    found = laws.efficiency(friction, -load, LEAD)
     if friction < ideal:
         assert found == pytest.approx((ideal - friction) / ideal, rel=1e-12)
-        assert is_back_driving(friction, -load, LEAD)
+        assert laws.is_back_driving(friction, -load, LEAD)
     else:
         assert found == 0.0
-        assert not is_back_driving(friction, -load, LEAD)
+        assert not laws.is_back_driving(friction, -load, LEAD)
 
 
 @given(FRICTION, LOAD, st.sampled_from([1, -1]))
 def test_slope_is_the_derivative(friction, load, sign):
     """The slope agrees with a difference quotient, where the screw moves at all."""
     step, load = 1e-4 * friction, sign * load
-    low, high = (efficiency(friction + side * step, load, LEAD) for side in (-1, 1))
+    low, high = (laws.efficiency(friction + side * step, load, LEAD) for side in (-1, 1))
     if low > 0 and high > 0:
-        assert efficiency_slope(friction, load, LEAD) == pytest.approx(
+        assert laws.efficiency_slope(friction, load, LEAD) == pytest.approx(
             (low - high) / (2 * step), rel=1e-3
         )
 
@@ -80,15 +72,15 @@ def test_slope_is_the_derivative(friction, load, sign):
 def test_what_is_unknown_stays_unknown():
     """A NaN torque or load gives a NaN efficiency, in either quadrant."""
     for load in (1000.0, -1000.0):
-        assert math.isnan(efficiency(math.nan, load, LEAD))
-    assert math.isnan(efficiency(0.1, math.nan, LEAD))
+        assert math.isnan(laws.efficiency(math.nan, load, LEAD))
+    assert math.isnan(laws.efficiency(0.1, math.nan, LEAD))
 
 
 def test_zero_load_has_efficiency_zero():
     """By definition, from either side."""
-    assert efficiency(0.1, 0.0, LEAD) == 0.0
-    assert efficiency(0.1, -0.0, LEAD) == 0.0
-    assert driving_torque(0.1, 0.0, LEAD) == 0.1
+    assert laws.efficiency(0.1, 0.0, LEAD) == 0.0
+    assert laws.efficiency(0.1, -0.0, LEAD) == 0.0
+    assert laws.driving_torque(0.1, 0.0, LEAD) == 0.1
 
 
 @given(
@@ -100,9 +92,9 @@ def test_zero_load_has_efficiency_zero():
 def test_no_float_of_the_load_raises(friction, load, sign):
     """A load whose ideal torque is no normal float counts as no load."""
     ideal = abs(load) * LEAD / (2 * math.pi)
-    found = efficiency(friction, sign * load, LEAD)
-    slope = efficiency_slope(friction, sign * load, LEAD)
-    if ideal < SMALLEST:
+    found = laws.efficiency(friction, sign * load, LEAD)
+    slope = laws.efficiency_slope(friction, sign * load, LEAD)
+    if ideal < laws.SMALLEST:
         assert found == 0.0
         assert math.isnan(slope)
     elif math.isfinite(ideal):
@@ -112,12 +104,12 @@ def test_no_float_of_the_load_raises(friction, load, sign):
 
 def test_a_frictionless_screw_is_perfect_both_ways():
     """Without friction nothing is lost."""
-    assert efficiency(0.0, 5.0, LEAD) == efficiency(0.0, -5.0, LEAD) == 1.0
+    assert laws.efficiency(0.0, 5.0, LEAD) == laws.efficiency(0.0, -5.0, LEAD) == 1.0
 
 
 def test_catalogue_drag(screw):
     """0.05 (tan alpha)^-0.5 F L/(2 pi) is 0.25 N m for the nominal nut."""
-    found = drag_torque_catalogue(screw.preload, screw.lead, helix_angle(screw))
+    found = laws.drag_torque_catalogue(screw.preload, screw.lead, helix_angle(screw))
     assert found == pytest.approx(
         0.05 / math.sqrt(math.tan(helix_angle(screw))) * 990 * 0.01 / 6.2832, rel=1e-4
     )

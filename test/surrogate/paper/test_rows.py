@@ -9,17 +9,8 @@ import numpy as np
 import pytest
 from surrogate.asperities.law import shipped_law
 from surrogate.files import InputError
+from surrogate.paper import curves
 from surrogate.paper.cases import NEEDS, SHORT, SMOOTH, STANDING, StudyTask, tasks
-from surrogate.paper.curves import (
-    constant_friction_efficiency,
-    crossing,
-    Curve,
-    curve,
-    grid,
-    lowest,
-    paired_change,
-    pick,
-)
 from surrogate.paper.rows import inputs_hash, read_rows, StudyRow, write_rows
 from surrogate.paper.study import run_study
 from surrogate.parameters import load_lubricant, load_screw
@@ -123,29 +114,31 @@ def test_mean_and_spread_over_draws():
         for draw, rpm, rcs in ((0, 5.0, 0.1), (1, 5.0, 0.3), (0, 20.0, 0.0), (1, 20.0, 0.02))
     ]
     rows.append(replace(BASE, draw=2, status='STALLED', rcs=9.0))
-    found = curve(rows, 'rpm', 'rcs', kind='contact', rough=True)
+    found = curves.curve(rows, 'rpm', 'rcs', kind='contact', rough=True)
     np.testing.assert_allclose(found.mean, [0.2, 0.01])
     np.testing.assert_allclose(found.deviation, [0.1 * math.sqrt(2), 0.01 * math.sqrt(2)])
     np.testing.assert_allclose(found.error, [0.1, 0.01])
     assert found.draws == 2
-    assert not pick(rows, rough=False)
-    mean, error, draws = paired_change(rows, 'rcs', 'rpm', 5.0, 20.0, kind='contact')
+    assert not curves.pick(rows, rough=False)
+    mean, error, draws = curves.paired_change(rows, 'rcs', 'rpm', 5.0, 20.0, kind='contact')
     assert (mean, error, draws) == (pytest.approx(-0.19), pytest.approx(0.09), 2)
 
 
 def line(at, mean):
     """Return a curve without spread."""
     nothing = np.full(len(at), math.nan)
-    return Curve(at=np.array(at), mean=np.array(mean), deviation=nothing, error=nothing, draws=1)
+    return curves.Curve(
+        at=np.array(at), mean=np.array(mean), deviation=nothing, error=nothing, draws=1
+    )
 
 
 def test_crossing_by_logarithms():
     """Between 0.1 and 0.001 half way in the logarithm; NaN where it never passes."""
-    assert crossing(line([10.0, 40.0], [0.1, 0.001]), 0.01) == pytest.approx(20.0)
-    assert crossing(line([10.0, 40.0], [0.01, 0.0]), 0.01) == pytest.approx(10.0)
-    assert math.isnan(crossing(line([10.0, 40.0], [0.1, 0.02]), 0.01))
-    assert math.isnan(crossing(line([10.0, 40.0], [0.001, 0.0]), 0.01))
-    assert lowest(line([1.0, 2.0, 3.0], [5.0, 4.0, 6.0])) == (2.0, 4.0)
+    assert curves.crossing(line([10.0, 40.0], [0.1, 0.001]), 0.01) == pytest.approx(20.0)
+    assert curves.crossing(line([10.0, 40.0], [0.01, 0.0]), 0.01) == pytest.approx(10.0)
+    assert math.isnan(curves.crossing(line([10.0, 40.0], [0.1, 0.02]), 0.01))
+    assert math.isnan(curves.crossing(line([10.0, 40.0], [0.001, 0.0]), 0.01))
+    assert curves.lowest(line([1.0, 2.0, 3.0], [5.0, 4.0, 6.0])) == (2.0, 4.0)
 
 
 def test_constant_friction_is_that_of_the_table(table):
@@ -154,7 +147,7 @@ def test_constant_friction_is_that_of_the_table(table):
     screw = replace(SCREW, preload=1000.0)
     for load in (0.5, 1.0, 2.0):
         expected = float(row[f'eta_at_{load:g}_preload'])
-        assert constant_friction_efficiency(screw, 1000.0 * load) == pytest.approx(
+        assert curves.constant_friction_efficiency(screw, 1000.0 * load) == pytest.approx(
             expected, abs=1e-3
         )
 
@@ -168,7 +161,7 @@ def test_the_map_is_a_grid():
     ]
     rows[1] = replace(rows[1], status='nut: stalled')
     rows.append(replace(rows[3], case=STANDING, rcs=1200.0))
-    speeds, loads, values = grid(rows, 'rcs')
+    speeds, loads, values = curves.grid(rows, 'rcs')
     np.testing.assert_array_equal(speeds, [5.0, 10.0])
     np.testing.assert_array_equal(loads, [50.0, 100.0])
     np.testing.assert_array_equal(values, [[250.0, math.nan], [500.0, 1000.0]])

@@ -7,18 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from surrogate.asperities.law import shipped_law
+from surrogate.paper import trends as judged
 from surrogate.paper.cases import RELIEVED, SMOOTH, STANDING
 from surrogate.paper.rows import StudyRow
-from surrogate.paper.trends import (
-    course,
-    nut_rows,
-    read_course,
-    Reading,
-    summary,
-    Trend,
-    trend_table,
-    trends,
-)
 from surrogate.parameters import load_screw
 
 SCREW = load_screw('nominal')
@@ -40,13 +31,13 @@ BASE = StudyRow(inputs='a', kind='screw', rpm=5.0, load=0.0, status='CONVERGED')
 )
 def test_course(values, expected):
     """Turns larger than the tolerance, each with the place of its end; creeping adds up."""
-    assert course(np.array(values), np.full(len(values), 0.1)) == expected
+    assert judged.course(np.array(values), np.full(len(values), 0.1)) == expected
 
 
 def test_a_change_as_large_as_the_tolerance_is_none():
     """Equality belongs to what counts as none."""
-    assert course(np.array([1.0, 1.5]), np.full(2, 0.5)) == []
-    assert course(np.array([1.5, 1.0]), np.full(2, 0.5)) == []
+    assert judged.course(np.array([1.0, 1.5]), np.full(2, 0.5)) == []
+    assert judged.course(np.array([1.5, 1.0]), np.full(2, 0.5)) == []
 
 
 @pytest.mark.parametrize(
@@ -55,7 +46,7 @@ def test_a_change_as_large_as_the_tolerance_is_none():
 )
 def test_agreement(values, agrees):
     """With falls, then rises: the whole course, a part of it, none of it."""
-    found = read_course(
+    found = judged.read_course(
         np.array([2.0, 20.0, 1000.0]), np.array(values), ('falls', 'rises'), 'rev/min'
     )
     assert found is not None
@@ -65,11 +56,11 @@ def test_agreement(values, agrees):
 def test_words_of_a_course():
     """Value and place of the start and of each turn."""
     at = np.array([2.0, 20.0, 1000.0])
-    found = read_course(at, np.array([90.0, 50.0, 205.0]), ('falls', 'rises'), 'rev/min')
-    assert found == Reading(
+    found = judged.read_course(at, np.array([90.0, 50.0, 205.0]), ('falls', 'rises'), 'rev/min')
+    assert found == judged.Reading(
         said='90 at 2 rev/min, falls to 50 at 20, rises to 205 at 1000', agrees='yes'
     )
-    assert read_course(at[:1], at[:1], ('falls',), 'N') is None
+    assert judged.read_course(at[:1], at[:1], ('falls',), 'N') is None
 
 
 def test_onsets_are_judged_by_the_film_ratio():
@@ -86,7 +77,7 @@ def test_onsets_are_judged_by_the_film_ratio():
         for case, end in (('ours', 500.0), (STANDING, 50.0))
         for rpm in (10.0, 100.0, 1000.0)
     ]
-    first = trends(SCREW, shipped_law(), rows)[0]
+    first = judged.trends(SCREW, shipped_law(), rows)[0]
     assert first.rolling is not None
     assert first.standing is not None
     assert first.rolling.said.startswith('500 rev/min')
@@ -101,21 +92,21 @@ def test_nuts_share_the_contacts_under_preload():
         replace(BASE, kind='contact', case=case, load=load)
         for case, load in (('ours', 0.0), ('ours', 9.0), (RELIEVED, 9.0), ('short inlet', 0.0))
     ]
-    assert [len(nut_rows(rows, nut)) for nut in ('loaded', 'relieved')] == [2, 2]
+    assert [len(judged.nut_rows(rows, nut)) for nut in ('loaded', 'relieved')] == [2, 2]
 
 
 def test_table_and_summary():
     """A row for each trend, empty where a model says nothing; the list names what changed."""
-    yes, no = Reading(said='a', agrees='yes'), Reading(said='b', agrees='no')
+    yes, no = judged.Reading(said='a', agrees='yes'), judged.Reading(said='b', agrees='no')
     found = [
-        Trend(name='one', published='falls', standing=no, rolling=yes),
-        Trend(name='two', published='rises', standing=None, rolling=no),
+        judged.Trend(name='one', published='falls', standing=no, rolling=yes),
+        judged.Trend(name='two', published='rises', standing=None, rolling=no),
     ]
-    assert trend_table(found).splitlines()[2:] == [
+    assert judged.trend_table(found).splitlines()[2:] == [
         '| one | falls | b | no | a | yes |',
         '| two | rises |  |  | b | no |',
     ]
-    assert summary(found).splitlines() == [
+    assert judged.summary(found).splitlines() == [
         '* Rolling roughness, agree: one.',
         '* Rolling roughness, agree in part: none.',
         '* Rolling roughness, differ: two.',

@@ -9,16 +9,8 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 from surrogate.files import InputError
+from surrogate.raceway import stylus
 from surrogate.raceway.standards import long_cutoff_iso_21920, ProfileBand
-from surrogate.raceway.stylus import (
-    band_transmission,
-    filtered_profile,
-    gaussian_transmission,
-    profile_rms,
-    profile_rms_slope,
-    read_all_directions,
-    read_waves,
-)
 
 BAND = ProfileBand(cutoff_short=2.5e-6, cutoff_long=0.25e-3)
 WAVELENGTH = st.floats(2e-6, 2e-3)
@@ -34,9 +26,9 @@ def sampled_wave(wavelength, angle=0.0, amplitude=1e-7):
 def test_half_of_a_wave_at_the_cutoff_passes():
     """ISO 16610-21; the wave twice as long passes by 84 %, that half as long by 6.25 %."""
     cutoff = 0.8e-3
-    passed = gaussian_transmission(2 * math.pi / (cutoff * np.array([1, 2, 0.5])), cutoff)
+    passed = stylus.gaussian_transmission(2 * math.pi / (cutoff * np.array([1, 2, 0.5])), cutoff)
     np.testing.assert_allclose(passed, [0.5, 0.5**0.25, 0.5**4], rtol=1e-12)
-    at_both = band_transmission(2 * math.pi / np.array([2.5e-6, 0.25e-3]), BAND)
+    at_both = stylus.band_transmission(2 * math.pi / np.array([2.5e-6, 0.25e-3]), BAND)
     np.testing.assert_allclose(at_both, [0.5, 0.5], rtol=1e-3)
 
 
@@ -62,8 +54,8 @@ def test_long_cutoffs_are_those_of_the_table(ra, cutoff):
 def test_an_oblique_wave_is_read_as_a_longer_one(wavelength, angle):
     """A wave at an angle to the trace is read as q cos t, in height and slope."""
     number = 2 * math.pi / wavelength
-    oblique = read_waves(number * math.cos(angle), BAND)
-    expected = band_transmission(2 * math.pi * math.cos(angle) / wavelength, BAND) ** 2
+    oblique = stylus.read_waves(number * math.cos(angle), BAND)
+    expected = stylus.band_transmission(2 * math.pi * math.cos(angle) / wavelength, BAND) ** 2
     assert oblique.height == pytest.approx(expected)
     assert oblique.slope == pytest.approx(expected * (number * math.cos(angle)) ** 2)
     assert oblique.height <= 1
@@ -74,8 +66,8 @@ def test_the_mean_over_directions_is_that_of_many_traces(wavelength, short, long
     """The Bessel functions agree with a sum over evenly spread angles."""
     band = ProfileBand(cutoff_short=short, cutoff_long=long)
     number, angle = 2 * math.pi / wavelength, (np.arange(8192) + 0.5) * math.pi / 8192
-    traces = read_waves(number * np.cos(angle), band)
-    mean = read_all_directions(number, band)
+    traces = stylus.read_waves(number * np.cos(angle), band)
+    mean = stylus.read_all_directions(number, band)
     assert mean.height == pytest.approx(traces.height.mean(), rel=1e-6, abs=1e-12)
     assert mean.slope == pytest.approx(traces.slope.mean(), rel=1e-6, abs=1e-12 * number**2)
 
@@ -84,7 +76,7 @@ def test_an_isotropic_wave_is_read_lower_and_flatter_than_a_ridge():
     """Far inside the band its height is read whole, its slope by 1/sqrt(2): mean of cos^2."""
     band = ProfileBand(cutoff_short=0.0, cutoff_long=1.0)
     number = 2 * math.pi / 1e-5
-    mean = read_all_directions(number, band)
+    mean = stylus.read_all_directions(number, band)
     assert mean.height == pytest.approx(1, rel=1e-4)
     assert mean.slope == pytest.approx(0.5 * number**2, rel=1e-4)
 
@@ -93,30 +85,34 @@ def test_an_isotropic_wave_is_read_lower_and_flatter_than_a_ridge():
 @pytest.mark.parametrize('angle', [0.0, 1.0])
 def test_a_sampled_wave_has_the_expected_rms_and_slope(wavelength, angle):
     """The filtered profile of a single wave, over whole periods and without its ends."""
-    rough = filtered_profile(sampled_wave(wavelength, angle), SPACING, BAND)
+    rough = stylus.filtered_profile(sampled_wave(wavelength, angle), SPACING, BAND)
     period = wavelength / math.cos(angle) / SPACING
     whole = rough[: round(int(len(rough) / period) * period)]
-    reading = read_waves(2 * math.pi * math.cos(angle) / wavelength, BAND)
-    assert profile_rms(whole) == pytest.approx(1e-7 * math.sqrt(reading.height / 2), rel=0.01)
+    reading = stylus.read_waves(2 * math.pi * math.cos(angle) / wavelength, BAND)
+    assert stylus.profile_rms(whole) == pytest.approx(
+        1e-7 * math.sqrt(reading.height / 2), rel=0.01
+    )
     slope = math.atan(1e-7 * math.sqrt(reading.slope / 2))
-    assert profile_rms_slope(whole, SPACING) == pytest.approx(slope, rel=0.01)
+    assert stylus.profile_rms_slope(whole, SPACING) == pytest.approx(slope, rel=0.01)
 
 
 def test_filtering_makes_nothing_up_at_the_ends():
     """A profile with more profile around it is filtered to the same heights; a line vanishes."""
     heights = np.random.default_rng(1).normal(size=(9000, 2))
-    long, part = (filtered_profile(one, SPACING, BAND) for one in (heights, heights[1000:8000]))
+    long, part = (
+        stylus.filtered_profile(one, SPACING, BAND) for one in (heights, heights[1000:8000])
+    )
     np.testing.assert_allclose(long[1000:][: len(part)], part, rtol=0, atol=1e-12)
     assert len(part) == 7000 - (len(heights) - len(long))
-    line = filtered_profile(1e-3 * np.arange(7000), SPACING, BAND)
+    line = stylus.filtered_profile(1e-3 * np.arange(7000), SPACING, BAND)
     np.testing.assert_allclose(line, 0, atol=1e-9)
 
 
 def test_a_profile_that_the_instrument_has_filtered_needs_no_short_cutoff():
     """Short cut-off 0 leaves short waves whole."""
     band = ProfileBand(cutoff_short=0.0, cutoff_long=0.25e-3)
-    rough = filtered_profile(sampled_wave(2.5e-6), SPACING, band)
-    assert profile_rms(rough) == pytest.approx(1e-7 / math.sqrt(2), rel=1e-3)
+    rough = stylus.filtered_profile(sampled_wave(2.5e-6), SPACING, band)
+    assert stylus.profile_rms(rough) == pytest.approx(1e-7 / math.sqrt(2), rel=1e-3)
 
 
 @pytest.mark.parametrize(
@@ -130,7 +126,7 @@ def test_a_profile_that_the_instrument_has_filtered_needs_no_short_cutoff():
 def test_profiles_that_cannot_be_filtered_are_refused(points, spacing, message):
     """Too coarse for the short filter, too short for the long one."""
     with pytest.raises(InputError, match=message):
-        filtered_profile(np.zeros(points), spacing, BAND)
+        stylus.filtered_profile(np.zeros(points), spacing, BAND)
 
 
 @pytest.mark.parametrize(('short', 'long'), [(1e-3, 1e-4), (1e-6, math.nan), (-1e-6, 1e-3)])

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A corrected surface: the full solve at its point, the same surface everywhere else, smooth."""
 
+from dataclasses import replace
 import math
 from types import SimpleNamespace
 
@@ -283,8 +284,6 @@ def test_what_cannot_correct_is_one_sentence(where, solved, sentence):
 
 def test_masked_cells_are_not_corrected(surface_data):
     """Where the surface has no number there is nothing to pull."""
-    from dataclasses import replace
-
     mask = surface_data.mask.copy()
     mask[:, :, 4] = True
     holed = Surface(replace(surface_data, mask=mask))

@@ -12,20 +12,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 import numpy as np
 import pytest
-from surrogate.surface import shipped_surface
-from surrogate.surface.file import (
-    ENSEMBLE_VERSION,
-    FORMAT_VERSION,
-    LARGEST_FILE,
-    read,
-    SurfaceData,
-    SurfaceError,
-    write,
-)
+from surrogate.surface import file, shipped_surface
 
 CLOSED_FORM = shipped_surface(tier='closed_form')
 SHIPPED = CLOSED_FORM.read_bytes()
-WHOLE = read(CLOSED_FORM).sha256
+WHOLE = file.read(CLOSED_FORM).sha256
 
 
 def rewrite(path: Path, **changes) -> None:
@@ -38,11 +29,11 @@ def rewrite(path: Path, **changes) -> None:
     np.savez(path, **arrays)
 
 
-def test_what_is_written_is_read(tmp_path: Path, surface_data: SurfaceData):
+def test_what_is_written_is_read(tmp_path: Path, surface_data: file.SurfaceData):
     """A round trip keeps every array, the header and the hash."""
     path = tmp_path / 'a' / 'map.npz'
-    write(path, surface_data)
-    back = read(path)
+    file.write(path, surface_data)
+    back = file.read(path)
     assert back.sha256 == surface_data.sha256
     assert dict(back.header) == json.loads(json.dumps(surface_data.header))
     for name, values in surface_data.fields.items():
@@ -50,7 +41,7 @@ def test_what_is_written_is_read(tmp_path: Path, surface_data: SurfaceData):
     assert [found.name for found in path.parent.iterdir()] == ['map.npz']
 
 
-def test_the_hash_covers_content_and_not_provenance(surface_data: SurfaceData):
+def test_the_hash_covers_content_and_not_provenance(surface_data: file.SurfaceData):
     """Another build time is the same surface; another number is not."""
     later = replace(surface_data, provenance={'built': 'later'})
     assert later.sha256 == surface_data.sha256
@@ -70,8 +61,8 @@ def test_a_truncated_file_is_refused(tmp_path_factory, length):
     """Whatever is cut off, the answer is one sentence and never a surface."""
     path = tmp_path_factory.mktemp('cut') / 'cut.npz'
     path.write_bytes(SHIPPED[:length])
-    with pytest.raises(SurfaceError, match=r'cut\.npz: ') as caught:
-        read(path)
+    with pytest.raises(file.SurfaceError, match=r'cut\.npz: ') as caught:
+        file.read(path)
     assert '\n' not in str(caught.value)
 
 
@@ -84,8 +75,8 @@ def test_a_flipped_byte_is_refused_or_harmless(tmp_path_factory, place, change):
     path = tmp_path_factory.mktemp('flip') / 'flip.npz'
     path.write_bytes(damaged)
     try:
-        digest, sentence = read(path).sha256, ''
-    except SurfaceError as error:
+        digest, sentence = file.read(path).sha256, ''
+    except file.SurfaceError as error:
         digest, sentence = WHOLE, str(error)
     assert digest == WHOLE
     assert '\n' not in sentence
@@ -94,11 +85,11 @@ def test_a_flipped_byte_is_refused_or_harmless(tmp_path_factory, place, change):
 def test_an_unknown_version_is_told_before_anything_else(tmp_path: Path):
     """A newer format is not called damaged."""
     path = tmp_path / 'new.npz'
-    rewrite(path, format_version=ENSEMBLE_VERSION + 1)
+    rewrite(path, format_version=file.ENSEMBLE_VERSION + 1)
     with pytest.raises(
-        SurfaceError, match='surface format version 5, this program reads versions 3 and 4'
+        file.SurfaceError, match='surface format version 5, this program reads versions 3 and 4'
     ):
-        read(path)
+        file.read(path)
 
 
 @pytest.mark.parametrize('version', [1, 2])
@@ -107,8 +98,8 @@ def test_a_surface_of_another_roughness_model_must_be_built_again(tmp_path: Path
     path = tmp_path / 'old.npz'
     rewrite(path, format_version=version)
     sentence = f'old.npz: surface format version {version}, the roughness model has changed'
-    with pytest.raises(SurfaceError, match=sentence) as caught:
-        read(path)
+    with pytest.raises(file.SurfaceError, match=sentence) as caught:
+        file.read(path)
     assert 'ballscrew surface build --screw SCREW' in str(caught.value)
     assert '\n' not in str(caught.value)
 
@@ -125,16 +116,16 @@ def test_a_changed_header_is_refused(tmp_path: Path, changes, sentence):
     """The header is part of the hash."""
     path = tmp_path / 'changed.npz'
     rewrite(path, **changes)
-    with pytest.raises(SurfaceError, match=sentence):
-        read(path)
+    with pytest.raises(file.SurfaceError, match=sentence):
+        file.read(path)
 
 
-def settings_with(data: SurfaceData, **changes) -> dict:
+def settings_with(data: file.SurfaceData, **changes) -> dict:
     """Return the change of the header that changes settings."""
     return {'header': {**data.header, 'settings': {**data.header['settings'], **changes}}}
 
 
-def unmasked_hole(data: SurfaceData) -> dict:
+def unmasked_hole(data: file.SurfaceData) -> dict:
     """Return fields with a NaN that no mask tells of."""
     rcs = data.fields['rcs'].copy()
     rcs[3, 3, 3] = np.nan
@@ -163,9 +154,9 @@ def unmasked_hole(data: SurfaceData) -> dict:
 def test_a_hash_over_broken_parts_does_not_save_them(tmp_path: Path, surface_data, change):
     """A file that verifies but whose parts do not fit is refused too."""
     path = tmp_path / 'broken.npz'
-    write(path, replace(surface_data, **change(surface_data)))
-    with pytest.raises(SurfaceError, match='header, axes and fields do not fit together'):
-        read(path)
+    file.write(path, replace(surface_data, **change(surface_data)))
+    with pytest.raises(file.SurfaceError, match='header, axes and fields do not fit together'):
+        file.read(path)
 
 
 @pytest.mark.parametrize('content', [b'', b'hello', b'PK\x03\x04'])
@@ -173,8 +164,10 @@ def test_something_else_is_not_a_surface(tmp_path: Path, content):
     """Neither an empty file nor text nor a torn archive."""
     path = tmp_path / 'else.npz'
     path.write_bytes(content)
-    with pytest.raises(SurfaceError, match='damaged or not a surface file|not a surface file'):
-        read(path)
+    with pytest.raises(
+        file.SurfaceError, match='damaged or not a surface file|not a surface file'
+    ):
+        file.read(path)
 
 
 def test_other_arrays_are_not_a_surface(tmp_path: Path):
@@ -184,8 +177,8 @@ def test_other_arrays_are_not_a_surface(tmp_path: Path):
     np.savez(bare, a=np.zeros(3))
     np.savez(pickled, header=np.array([{'format': 1}], dtype=object))
     for path in (plain, bare, pickled):
-        with pytest.raises(SurfaceError, match='not a surface file'):
-            read(path)
+        with pytest.raises(file.SurfaceError, match='not a surface file'):
+            file.read(path)
 
 
 def stored(path: Path, *sizes: int) -> None:
@@ -200,23 +193,23 @@ def stored(path: Path, *sizes: int) -> None:
 def test_a_small_file_that_unpacks_to_much_is_refused_unread(tmp_path: Path, monkeypatch):
     """By the sum over its arrays: each of them alone would do."""
     path = tmp_path / 'bomb.npz'
-    half = LARGEST_FILE // 2
+    half = file.LARGEST_FILE // 2
     stored(path, half, half + 1)
-    assert path.stat().st_size < LARGEST_FILE / 100
+    assert path.stat().st_size < file.LARGEST_FILE / 100
     with monkeypatch.context() as patch:
         patch.setattr(np, 'load', None)
         with pytest.raises(
-            SurfaceError, match=f': {2 * half + 1} bytes when unpacked, allowed is'
+            file.SurfaceError, match=f': {2 * half + 1} bytes when unpacked, allowed is'
         ):
-            read(path)
+            file.read(path)
 
 
 def test_the_largest_content_is_not_refused_for_its_size(tmp_path: Path):
     """Exactly at the limit it is read, and found to be no surface."""
     path = tmp_path / 'large.npz'
-    stored(path, LARGEST_FILE)
-    with pytest.raises(SurfaceError, match='not a surface file'):
-        read(path)
+    stored(path, file.LARGEST_FILE)
+    with pytest.raises(file.SurfaceError, match='not a surface file'):
+        file.read(path)
 
 
 def test_an_array_that_states_more_than_there_is_memory_is_refused(tmp_path: Path):
@@ -227,46 +220,46 @@ def test_an_array_that_states_more_than_there_is_memory_is_refused(tmp_path: Pat
     np.lib.format.write_array_header_1_0(head, large)
     with zipfile.ZipFile(path, 'w') as archive:
         archive.writestr('field_0.npy', head.getvalue())
-    with pytest.raises(SurfaceError, match='damaged or not a surface file'):
-        read(path)
+    with pytest.raises(file.SurfaceError, match='damaged or not a surface file'):
+        file.read(path)
 
 
 def test_a_missing_file_is_one_sentence(tmp_path: Path):
     """No such file."""
-    with pytest.raises(SurfaceError, match='no such surface file'):
-        read(tmp_path / 'none.npz')
+    with pytest.raises(file.SurfaceError, match='no such surface file'):
+        file.read(tmp_path / 'none.npz')
 
 
-def test_a_device_is_not_written_over(surface_data: SurfaceData):
+def test_a_device_is_not_written_over(surface_data: file.SurfaceData):
     """A target that is no regular file stays what it is."""
-    with pytest.raises(SurfaceError, match='it is not a regular file'):
-        write('/dev/null', surface_data)
+    with pytest.raises(file.SurfaceError, match='it is not a regular file'):
+        file.write('/dev/null', surface_data)
     assert Path('/dev/null').is_char_device()
 
 
 def test_a_failed_write_leaves_the_old_file(
-    tmp_path: Path, surface_data: SurfaceData, monkeypatch
+    tmp_path: Path, surface_data: file.SurfaceData, monkeypatch
 ):
     """A full disk does not cost the previous surface, and nothing half-written stays."""
     path = tmp_path / 'map.npz'
-    write(path, surface_data)
+    file.write(path, surface_data)
     before = path.read_bytes()
 
     def full(*_, **__):
         raise OSError(28, 'No space left on device')
 
     monkeypatch.setattr(np, 'savez', full)
-    with pytest.raises(SurfaceError, match='cannot be written, No space left on device'):
-        write(path, surface_data)
+    with pytest.raises(file.SurfaceError, match='cannot be written, No space left on device'):
+        file.write(path, surface_data)
     assert path.read_bytes() == before
     assert [found.name for found in tmp_path.iterdir()] == ['map.npz']
 
 
-def with_draws(data: SurfaceData, **changes) -> SurfaceData:
+def with_draws(data: file.SurfaceData, **changes) -> file.SurfaceData:
     """Return the surface with an ensemble of draws."""
     spread = np.full(data.mask.shape, 0.01)
     parts = {'deviations': {'rcs': spread}, 'standard_errors': {'rcs': 0.5 * spread}}
-    header = {**data.header, 'format_version': ENSEMBLE_VERSION}
+    header = {**data.header, 'format_version': file.ENSEMBLE_VERSION}
     return replace(data, **{'header': header, **parts, **changes})
 
 
@@ -275,8 +268,8 @@ def test_what_draws_leave_uncertain_is_written_read_and_hashed(tmp_path: Path, s
     path = tmp_path / 'map.npz'
     data = with_draws(surface_data)
     data.deviations['rcs'][3, 3, 3] = np.nan
-    write(path, data)
-    back = read(path)
+    file.write(path, data)
+    back = file.read(path)
     assert set(back.deviations) == set(back.standard_errors) == {'rcs'}
     assert np.array_equal(back.deviations['rcs'], data.deviations['rcs'], equal_nan=True)
     assert np.array_equal(back.standard_errors['rcs'], data.standard_errors['rcs'])
@@ -287,8 +280,8 @@ def test_what_draws_leave_uncertain_is_written_read_and_hashed(tmp_path: Path, s
 
 def test_without_draws_a_file_is_as_it_was(surface_data):
     """The hash of a file without draws is that of its own version."""
-    assert surface_data.header['format_version'] == FORMAT_VERSION
-    assert read(CLOSED_FORM).deviations == {}
+    assert surface_data.header['format_version'] == file.FORMAT_VERSION
+    assert file.read(CLOSED_FORM).deviations == {}
 
 
 @pytest.mark.parametrize(
@@ -306,6 +299,6 @@ def test_without_draws_a_file_is_as_it_was(surface_data):
 def test_impossible_spreads_are_refused(tmp_path: Path, surface_data, change):
     """Of no field, of another shape, below zero, without the version that has them."""
     path = tmp_path / 'broken.npz'
-    write(path, with_draws(surface_data, **change(surface_data)))
-    with pytest.raises(SurfaceError, match='header, axes and fields do not fit together'):
-        read(path)
+    file.write(path, with_draws(surface_data, **change(surface_data)))
+    with pytest.raises(file.SurfaceError, match='header, axes and fields do not fit together'):
+        file.read(path)

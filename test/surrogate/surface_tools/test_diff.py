@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Two surfaces compared: nothing between equals, what was changed between others."""
 
-import argparse
 from dataclasses import replace
 import json
 import math
@@ -10,23 +9,23 @@ import math
 import numpy as np
 import pytest
 from surrogate.builder.closed_form import build_closed_form, default_settings
-from surrogate.cli import add_commands
 from surrogate.files import InputError
 from surrogate.surface import shipped_surface, Surface, SurfaceError
 from surrogate.surface.file import read, SurfaceData, write
 from surrogate.surface_tools.diff import diff_record, zone_limits
+
+COMMAND = ('surface', 'diff')
 
 CLOSED_FORM = shipped_surface(tier='closed_form')
 DATA = read(CLOSED_FORM)
 SHIPPED = Surface(DATA)
 
 
-def run(*words) -> int:
-    """Run one command line."""
-    parser = argparse.ArgumentParser()
-    add_commands(parser.add_subparsers(required=True))
-    args = parser.parse_args(['surface', 'diff', *map(str, words)])
-    return args.handler(args)
+@pytest.fixture(autouse=True)
+def coarse(monkeypatch):
+    """Compare at fewer speeds and along fewer lines: what is said does not depend on them."""
+    monkeypatch.setattr('surrogate.surface_tools.diff.SPEEDS', 10)
+    monkeypatch.setattr('surrogate.surface_tools.diff.LINES', (7, 3))
 
 
 def scaled(data: SurfaceData, **factors: float) -> SurfaceData:
@@ -35,12 +34,13 @@ def scaled(data: SurfaceData, **factors: float) -> SurfaceData:
     return replace(data, fields=fields)
 
 
-def test_equal_surfaces_do_not_differ(capsys):
+def test_equal_surfaces_do_not_differ(run, capsys, monkeypatch):
     """Zero everywhere, exit code 0, in words and as JSON."""
     assert run(CLOSED_FORM, CLOSED_FORM) == 0
     text = capsys.readouterr().out
     assert 'inputs and settings: the same' in text
     assert text.endswith('within the tolerances\n')
+    monkeypatch.undo()
     assert run(CLOSED_FORM, CLOSED_FORM, '--json') == 0
     found = json.loads(capsys.readouterr().out)
     assert {gap['max'] for gap in found['fields'].values()} == {0.0}
@@ -49,7 +49,7 @@ def test_equal_surfaces_do_not_differ(capsys):
     assert found['exceeded'] == []
 
 
-def test_a_surface_may_be_a_shipped_tier(capsys):
+def test_a_surface_may_be_a_shipped_tier(run, capsys):
     """As for the other commands on a file."""
     assert run('closed_form', CLOSED_FORM) == 0
     assert capsys.readouterr().out.endswith('within the tolerances\n')
@@ -89,7 +89,7 @@ def test_the_zone_begins_where_rcs_falls_below_its_limit():
     assert zone_limits(SHIPPED, 1000.0, 353.15, SHIPPED.speed_range) is None
 
 
-def test_differences_beyond_the_tolerances_exit_with_1(tmp_path, capsys):
+def test_differences_beyond_the_tolerances_exit_with_1(run, tmp_path, capsys):
     """The sentence says what, how much and what is allowed; a wider tolerance accepts it."""
     other = tmp_path / 'other.npz'
     write(other, scaled(DATA, friction_torque=1.02))
@@ -99,7 +99,7 @@ def test_differences_beyond_the_tolerances_exit_with_1(tmp_path, capsys):
     assert run(CLOSED_FORM, other, *words) == 0
 
 
-def test_an_answer_of_one_alone_is_a_difference(tmp_path, capsys):
+def test_an_answer_of_one_alone_is_a_difference(run, tmp_path, capsys):
     """A hole in one of the surfaces."""
     mask = DATA.mask.copy()
     mask[:, 5, :] = True
@@ -108,7 +108,7 @@ def test_an_answer_of_one_alone_is_a_difference(tmp_path, capsys):
     assert 'points are answered by one surface only' in capsys.readouterr().out
 
 
-def test_other_inputs_are_listed(tmp_path, capsys, screw, oil):
+def test_other_inputs_are_listed(run, tmp_path, capsys, screw, oil):
     """Another preload and other ranges: both are named, common ranges are compared."""
     nodes = {'speed_nodes': 16, 'load_cells': 3, 'unloaded_cells': 1, 'temperature_nodes': 3}
     settings = replace(default_settings(screw), temperature_range=(293.15, 333.15), **nodes)
@@ -127,7 +127,7 @@ def test_nothing_in_common_is_one_sentence():
         diff_record(DATA, warm)
 
 
-def test_a_tolerance_must_be_a_number():
+def test_a_tolerance_must_be_a_number(run):
     """Not a number would accept nothing and say nothing."""
     with pytest.raises(InputError, match='--rcs-tolerance is nan, allowed is 0 or more'):
         run(CLOSED_FORM, CLOSED_FORM, '--rcs-tolerance', np.nan)

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Exports: every number of the surface bit for bit, with names and units that others read."""
 
-import argparse
 import csv
 from dataclasses import replace
 import json
@@ -11,11 +10,12 @@ import sys
 
 import numpy as np
 import pytest
-from surrogate.cli import add_commands
 from surrogate.files import InputError
 from surrogate.surface import FIELDS, shipped_surface
 from surrogate.surface.file import ENSEMBLE_VERSION, read, write
 from surrogate.surface_tools.fields import FIELD_TEXTS
+
+COMMAND = ('surface', 'export')
 
 DATA = read(shipped_surface(tier='closed_form'))
 SPREAD = np.linspace(0.0, 0.1, DATA.mask.size).reshape(DATA.mask.shape)
@@ -27,15 +27,7 @@ DRAWN = replace(
 )
 
 
-def run(*words) -> int:
-    """Run one command line."""
-    parser = argparse.ArgumentParser()
-    add_commands(parser.add_subparsers(required=True))
-    args = parser.parse_args(['surface', 'export', *map(str, words)])
-    return args.handler(args)
-
-
-def test_netcdf_holds_everything(tmp_path, capsys):
+def test_netcdf_holds_everything(run, tmp_path, capsys):
     """Fields, errors, spreads, axes and speeds; CF units; header and hash in the attributes."""
     xarray = pytest.importorskip('xarray')
     write(tmp_path / 'a.npz', DRAWN)
@@ -62,7 +54,7 @@ def test_netcdf_holds_everything(tmp_path, capsys):
         assert json.loads(found.attrs['header']) == json.loads(json.dumps(DRAWN.header))
 
 
-def test_a_table_holds_every_node(tmp_path):
+def test_a_table_holds_every_node(run, tmp_path):
     """A line per node, units in the names, numbers that read back bit for bit."""
     write(tmp_path / 'a.npz', DRAWN)
     assert run(tmp_path / 'a.npz', '--csv', tmp_path / 'a.csv') == 0
@@ -79,13 +71,13 @@ def test_a_table_holds_every_node(tmp_path):
     assert {row['converged'] for row in rows} == {'1'}
 
 
-def test_what_cannot_be_written_is_one_sentence(tmp_path):
+def test_what_cannot_be_written_is_one_sentence(run, tmp_path):
     """A directory in the way."""
     with pytest.raises(InputError, match='cannot be written, it is not a regular file'):
         run('--csv', tmp_path)
 
 
-def test_netcdf_without_xarray_names_the_extra(tmp_path, monkeypatch):
+def test_netcdf_without_xarray_names_the_extra(run, tmp_path, monkeypatch):
     """The sentence says what to install."""
     monkeypatch.setitem(sys.modules, 'xarray', None)
     with pytest.raises(InputError, match='install the extra `netcdf`'):

@@ -2,28 +2,26 @@
 # SPDX-License-Identifier: Apache-2.0
 """Pictures of a surface: what they draw, not how they look."""
 
-import argparse
 from dataclasses import replace
 import sys
 
 import numpy as np
 import pytest
-from surrogate.cli import add_commands
 from surrogate.files import InputError
 from surrogate.surface import shipped_surface, Surface
 from surrogate.surface.file import ENSEMBLE_VERSION, read
+
+COMMAND = ('surface', 'plot')
 
 figures = pytest.importorskip('surrogate.surface_tools.figures')
 DATA = read(shipped_surface(tier='closed_form'))
 SHIPPED = Surface(DATA)
 
 
-def run(*words) -> int:
-    """Run one command line."""
-    parser = argparse.ArgumentParser()
-    add_commands(parser.add_subparsers(required=True))
-    args = parser.parse_args(['surface', 'plot', *map(str, words)])
-    return args.handler(args)
+@pytest.fixture
+def coarse(monkeypatch):
+    """Draw fewer points: titles, axes and words do not depend on them."""
+    monkeypatch.setattr(figures, 'GRID', (31, 25))
 
 
 @pytest.fixture(scope='module')
@@ -57,7 +55,7 @@ def test_zone_classes_are_the_limits(part):
     assert set(np.unique(classes)) == {0, 1, 2, 3, 4}
 
 
-def test_panels_and_axes():
+def test_panels_and_axes(coarse):
     """Six panels with units; the limits are in the titles."""
     figure = figures.figure_surface(SHIPPED, 313.15)
     assert titles(figure) == [
@@ -73,7 +71,7 @@ def test_panels_and_axes():
     assert figure.axes[0].get_xscale() == 'log'
 
 
-def test_what_strips_differ_by_is_shown_when_it_is_known():
+def test_what_strips_differ_by_is_shown_when_it_is_known(coarse):
     """In place of the regime, which the lines of the film ratio tell; the limit gets its band."""
     header = {**DATA.header, 'format_version': ENSEMBLE_VERSION, 'limit_band': [0.5, 1.4]}
     drawn = replace(DATA, header=header, deviations={'rcs': 0.1 * DATA.fields['rcs']})
@@ -83,14 +81,14 @@ def test_what_strips_differ_by_is_shown_when_it_is_known():
     assert 'RCS, line: 0.01, dashed: its band' in shown
 
 
-def test_a_surface_without_answers_is_drawn():
+def test_a_surface_without_answers_is_drawn(coarse):
     """Masked everywhere: the panels say that nothing is known."""
     hidden = Surface(replace(DATA, mask=np.ones_like(DATA.mask)))
     figure = figures.figure_surface(hidden, 313.15)
     assert [text.get_text() for text in figure.axes[0].texts] == ['not known']
 
 
-def test_pictures_per_temperature(tmp_path, capsys):
+def test_pictures_per_temperature(run, tmp_path, capsys):
     """A PNG each, small enough for a report; nothing else in the directory."""
     assert run('--out', tmp_path / 'a', '--temperature-degC', 30, 62.5) == 0
     paths = sorted((tmp_path / 'a').iterdir())
@@ -100,13 +98,13 @@ def test_pictures_per_temperature(tmp_path, capsys):
 
 
 @pytest.mark.parametrize('celsius', [9.9, 80.1])
-def test_a_temperature_that_is_not_covered(tmp_path, celsius):
+def test_a_temperature_that_is_not_covered(run, tmp_path, celsius):
     """One sentence with the range."""
     with pytest.raises(InputError, match='degC, the surface covers 10 to 80 degC'):
         run('--out', tmp_path, '--temperature-degC', celsius)
 
 
-def test_without_matplotlib_the_extra_is_named(tmp_path, monkeypatch):
+def test_without_matplotlib_the_extra_is_named(run, tmp_path, monkeypatch):
     """The sentence says what to install."""
     monkeypatch.setitem(sys.modules, 'surrogate.surface_tools.figures', None)
     with pytest.raises(InputError, match='install the extra `plot`'):

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Points looked up: the surface's own numbers, in both directions, one by one or in a table."""
 
-import argparse
 import csv
 from dataclasses import replace
 import io
@@ -11,35 +10,33 @@ import math
 
 import numpy as np
 import pytest
-from surrogate.cli import add_commands
 from surrogate.files import InputError, to_json
 from surrogate.surface import shipped_surface, Surface
 from surrogate.surface.file import ENSEMBLE_VERSION, read, write
 from surrogate.surface_tools.fields import FIELD_TEXTS
 
+COMMAND = ('surface', 'query')
+
 SHIPPED = Surface.load(shipped_surface())
 CLOSED_FORM = shipped_surface(tier='closed_form')
 
 
-def run(*words) -> int:
-    """Run one command line."""
-    parser = argparse.ArgumentParser()
-    add_commands(parser.add_subparsers(required=True))
-    args = parser.parse_args(['surface', 'query', *map(str, words)])
-    return args.handler(args)
+@pytest.fixture
+def query(run, capsys):
+    """Return the function that gives the JSON of a point."""
 
+    def answer(*words) -> dict:
+        assert run(*words, '--json') in (0, 1)
+        return json.loads(capsys.readouterr().out)
 
-def query(capsys, *words) -> dict:
-    """Return the JSON of a point."""
-    assert run(*words, '--json') in (0, 1)
-    return json.loads(capsys.readouterr().out)
+    return answer
 
 
 @pytest.mark.parametrize('tier', ['full', 'closed_form'])
 @pytest.mark.parametrize(('rpm', 'load', 'opposing'), [(600, 1000, 1000), (-600, 1000, -1000)])
-def test_a_point_is_the_lookup(capsys, tier, rpm, load, opposing):
+def test_a_point_is_the_lookup(query, tier, rpm, load, opposing):
     """Every field, its errors, and the load's sign by the direction of motion."""
-    found = query(capsys, tier, '--speed-rpm', rpm, '--load-N', load, '--temperature-degC', 50)
+    found = query(tier, '--speed-rpm', rpm, '--load-N', load, '--temperature-degC', 50)
     direct = Surface.load(shipped_surface(tier=tier)).lookup(600 * math.pi / 30, opposing, 323.15)
     for name, text in FIELD_TEXTS.items():
         assert found[text.key] == getattr(direct, name)
@@ -52,13 +49,13 @@ def test_a_point_is_the_lookup(capsys, tier, rpm, load, opposing):
 
 
 @pytest.mark.parametrize('load', ['-5e-324', '5e-324', '-1e-307', '-0.0'])
-def test_a_load_of_almost_nothing_is_no_load(capsys, load):
-    found = query(capsys, '--speed-rpm', 600, f'--load-N={load}', '--temperature-degC', 50)
+def test_a_load_of_almost_nothing_is_no_load(query, load):
+    found = query('--speed-rpm', 600, f'--load-N={load}', '--temperature-degC', 50)
     assert found['validity'] == 'VALID'
     assert found['efficiency'] == 0.0
 
 
-def test_a_page_says_what_is_known(capsys):
+def test_a_page_says_what_is_known(run, capsys):
     """Default temperature is that of the oil's datasheet; errors stand beside their numbers."""
     assert run('closed_form', '--speed-rpm', 600, '--load-N', 1000) == 0
     text = capsys.readouterr().out
@@ -80,16 +77,16 @@ def test_a_page_says_what_is_known(capsys):
         ),
     ],
 )
-def test_no_answer_has_a_reason_and_exit_code_1(capsys, words, reason):
+def test_no_answer_has_a_reason_and_exit_code_1(run, capsys, query, words, reason):
     """The limit that was passed is named; the numbers are null."""
     assert run(*words) == 1
     assert f'no answer: {reason}' in capsys.readouterr().out
-    found = query(capsys, *words)
+    found = query(*words)
     assert found['efficiency'] is found['rcs'] is found['rcs_error'] is None
     assert reason in found['reason']
 
 
-def test_draws_are_told(tmp_path, capsys):
+def test_draws_are_told(run, tmp_path, capsys, query):
     """Deviation and error of the mean of RCS and torque."""
     data = read(CLOSED_FORM)
     spread = np.full(data.mask.shape, 0.01)
@@ -98,7 +95,7 @@ def test_draws_are_told(tmp_path, capsys):
         tmp_path / 'a.npz',
         replace(data, header={**data.header, 'format_version': ENSEMBLE_VERSION}, **parts),
     )
-    found = query(capsys, tmp_path / 'a.npz', '--speed-rpm', 600, '--load-N', 1000)
+    found = query(tmp_path / 'a.npz', '--speed-rpm', 600, '--load-N', 1000)
     assert found['rcs_std'] == pytest.approx(0.01)
     assert found['rcs_stderr'] == pytest.approx(0.005)
     assert found['friction_torque_std_Nm'] is None
@@ -106,7 +103,7 @@ def test_draws_are_told(tmp_path, capsys):
     assert 'between strips 0.01, of mean 0.005)' in capsys.readouterr().out
 
 
-def test_a_table_for_a_table(tmp_path, capsys):
+def test_a_table_for_a_table(run, tmp_path, capsys):
     """Columns of the input stay, every point gets its numbers or its reason."""
     table = tmp_path / 'in.csv'
     table.write_text(
@@ -134,7 +131,7 @@ def test_a_table_for_a_table(tmp_path, capsys):
         ('speed_rpm,load_N\n1,nan\n', r'in\.csv, line 2: .*load_N is nan, allowed is'),
     ],
 )
-def test_a_wrong_table_is_one_sentence(tmp_path, text, sentence):
+def test_a_wrong_table_is_one_sentence(run, tmp_path, text, sentence):
     """File, line, column."""
     table = tmp_path / 'in.csv'
     table.write_text(text)
@@ -151,7 +148,7 @@ def test_a_wrong_table_is_one_sentence(tmp_path, text, sentence):
         (('--csv', 'none.csv'), r'none\.csv: cannot be read'),
     ],
 )
-def test_words_that_do_not_go_together(words, sentence):
+def test_words_that_do_not_go_together(run, words, sentence):
     """What is asked for must be clear."""
     with pytest.raises(InputError, match=sentence):
         run(*words)

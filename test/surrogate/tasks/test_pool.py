@@ -4,6 +4,7 @@
 
 from collections.abc import Iterator
 import contextlib
+import importlib
 import os
 from pathlib import Path
 import select
@@ -98,15 +99,22 @@ if __name__ == '__main__':
 """
 
 
-@pytest.fixture
-def tasks(tmp_path: Path, monkeypatch):
+@pytest.fixture(scope='module')
+def tasks(tmp_path_factory):
     """Return a module of tasks that workers can import too."""
-    (tmp_path / 'pool_tasks.py').write_text(TASKS)
-    monkeypatch.syspath_prepend(tmp_path)
-    monkeypatch.delitem(sys.modules, 'pool_tasks', raising=False)
-    import pool_tasks
+    folder = tmp_path_factory.mktemp('tasks')
+    (folder / 'pool_tasks.py').write_text(TASKS)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.syspath_prepend(folder)
+        yield importlib.import_module('pool_tasks')
+    del sys.modules['pool_tasks']
 
-    return pool_tasks
+
+@pytest.fixture(scope='module')
+def pool(tasks):
+    """Return a pool of two workers for tests that need no other one."""
+    with open_pool(2) as workers:
+        yield workers
 
 
 @pytest.fixture
@@ -143,12 +151,12 @@ def numbers(count: int) -> dict[str, dict[str, float]]:
     return {f'task {number}': {'x': number / 7} for number in range(count)}
 
 
-def test_results_do_not_depend_on_workers(tasks):
+def test_results_do_not_depend_on_workers(tasks, pool):
     """One process or two: the same results, in the order of the inputs."""
     found = []
-    for workers in (1, 2):
-        with open_pool(workers) as pool:
-            outcomes = run_tasks(pool, tasks.root, numbers(20))
+    with open_pool(1) as alone:
+        both = [run_tasks(workers, tasks.root, numbers(20)) for workers in (alone, pool)]
+    for outcomes in both:
         assert list(outcomes) == list(numbers(20))
         found.append([outcome.result for outcome in outcomes.values()])
         assert {outcome.worker.partition('/')[0] for outcome in outcomes.values()} == {
@@ -158,11 +166,10 @@ def test_results_do_not_depend_on_workers(tasks):
     assert found[0] == [tasks.root(inputs) for inputs in numbers(20).values()]
 
 
-def test_a_failed_task_is_a_sentence(tasks):
+def test_a_failed_task_is_a_sentence(tasks, pool):
     """A refusal keeps its sentence, any other error its name; the rest is done."""
-    with open_pool(2) as pool:
-        outcomes = run_tasks(pool, tasks.root, {**numbers(3), 'bad': {'x': -1.0}, 'none': {}})
-        refused = run_tasks(pool, tasks.refuse, {'one': {}})['one']
+    outcomes = run_tasks(pool, tasks.root, {**numbers(3), 'bad': {'x': -1.0}, 'none': {}})
+    refused = run_tasks(pool, tasks.refuse, {'one': {}})['one']
     assert outcomes['bad'].result is None
     assert outcomes['bad'].sentence == 'ValueError: math domain error'
     assert outcomes['none'].sentence == "KeyError: 'x'"
@@ -220,11 +227,10 @@ def test_what_an_earlier_run_tells_late_is_not_heard(tasks, monkeypatch):
     assert outcome.lost == ()
 
 
-def test_a_task_that_kills_its_workers_ends_as_a_sentence(tasks):
+def test_a_task_that_kills_its_workers_ends_as_a_sentence(tasks, pool):
     """It is given up after a few tries, and costs no other task its result."""
     inputs = {f'{number}': {'x': number, 'kill': number == 3} for number in range(10)}
-    with open_pool(2) as pool:
-        outcomes = run_tasks(pool, tasks.kill_worker, inputs)
+    outcomes = run_tasks(pool, tasks.kill_worker, inputs)
     assert outcomes['3'].sentence == f'its worker was lost {MOST_TRIES} times'
     assert len(set(outcomes['3'].lost)) == MOST_TRIES
     for name, outcome in outcomes.items():
@@ -256,23 +262,22 @@ def test_a_module_that_workers_do_not_have_is_told(tmp_path: Path, monkeypatch):
     assert outcome.sentence == "ModuleNotFoundError: No module named 'gone_tasks'"
 
 
-def test_a_kill_in_the_middle_of_a_result_is_only_a_lost_worker(tasks):
+def test_a_kill_in_the_middle_of_a_result_is_only_a_lost_worker(tasks, pool):
     """Half a message in a pipe stops neither the other tasks nor the end of the pool."""
     inputs = {f'{number}': {'cut': number == 3} for number in range(10)}
-    with open_pool(2) as pool:
-        outcomes = run_tasks(pool, tasks.send_half, inputs)
+    outcomes = run_tasks(pool, tasks.send_half, inputs)
     assert outcomes['3'].sentence == f'its worker was lost {MOST_TRIES} times'
     for name, outcome in outcomes.items():
         assert outcome.result == (None if name == '3' else {'text': 1000 * 'x'})
 
 
-def test_kept_results_are_not_solved_again(tasks, tmp_path: Path):
+def test_kept_results_are_not_solved_again(tasks, pool, tmp_path: Path):
     """The second run solves what has failed alone; both give the same results."""
     inputs = {**numbers(5), 'bad': {'x': -1.0}}
     told: list[str] = []
-    with TaskStore(tmp_path / 'map.npz', 'test 1') as store, open_pool(2) as pool:
+    with TaskStore(tmp_path / 'map.npz', 'test 1') as store:
         first = run_tasks(pool, tasks.root, inputs, store=store)
-    with TaskStore(tmp_path / 'map.npz', 'test 1') as store, open_pool(1) as pool:
+    with TaskStore(tmp_path / 'map.npz', 'test 1') as store:
         second = run_tasks(
             pool, tasks.root, inputs, store=store, report=lambda outcome: told.append(outcome.name)
         )
@@ -282,19 +287,20 @@ def test_kept_results_are_not_solved_again(tasks, tmp_path: Path):
     assert sorted(told) == sorted(inputs)
 
 
-def test_a_worker_has_one_thread_and_ignores_ctrl_c(tasks):
+def test_a_worker_has_one_thread_and_ignores_ctrl_c(tasks, pool):
     """Workers share the cores, and Ctrl-C is for the parent."""
-    with open_pool(1) as pool:
-        found = run_tasks(pool, tasks.describe, {'a': {}})['a']
+    found = run_tasks(pool, tasks.describe, {'a': {}})['a']
     assert found.result == {'threads': 1, 'blas': '1', 'ignores': True}
 
 
 @contextlib.contextmanager
-def parent(tmp_path: Path, pipes: dict[str, str]) -> Iterator[subprocess.Popen[str]]:
+def parent(tmp_path: Path, tasks, pipes: dict[str, str]) -> Iterator[subprocess.Popen[str]]:
     """Start a program with two workers at work, in a session of its own."""
     script = tmp_path / 'parent.py'
     script.write_text(PARENT)
-    path = os.pathsep.join([str(tmp_path), str(Path(task_workers.__file__).parents[2])])
+    path = os.pathsep.join(
+        [str(Path(tasks.__file__).parent), str(Path(task_workers.__file__).parents[2])]
+    )
     with subprocess.Popen(
         [sys.executable, str(script), *pipes.values()],
         env={**os.environ, 'PYTHONPATH': path},
@@ -316,7 +322,7 @@ def test_no_worker_outlives_its_parent(tasks, tmp_path: Path, pipes, number):
     What they had half made is gone, too.
 
     """
-    with parent(tmp_path, pipes) as process:
+    with parent(tmp_path, tasks, pipes) as process:
         workers = [int(read(pipes[name])) for name in ('hello', 'second')]
         endings = [os.pidfd_open(pid) for pid in workers]
         if number == signal.SIGINT:

@@ -5,15 +5,7 @@
 import numpy as np
 import pytest
 from scipy.signal import convolve2d
-from surrogate.ehl.kernels.line import (
-    film_factors,
-    join,
-    line_factors,
-    lines_of_a_kind,
-    part,
-    solve_film_lines,
-    solve_lines,
-)
+from surrogate.ehl.kernels import line
 from surrogate.ehl.linear import contact_box
 
 SHAPE = (11, 14)
@@ -42,20 +34,20 @@ NEAR = np.array([1.0, 0.2, 0.1, 0.05])
 def solve(planes, contact, rhs, total, steps, box):
     """Return the film pressure after some line steps."""
     film, work, found = np.zeros((5, *SHAPE)), np.full((2, *SHAPE), np.nan), np.zeros(SHAPE)
-    film_factors(planes, contact, film)
-    solve_film_lines(film, contact, box, rhs, total, steps, False, work, found)
+    line.film_factors(planes, contact, film)
+    line.solve_film_lines(film, contact, box, rhs, total, steps, False, work, found)
     return found
 
 
 def solved_lines(planes, contact, rhs, steps, start=None, symmetric=False, periodic=False):
     """Return the total pressure after some steps, with gap planes a tenth of the pressure's."""
     nx, ny = rhs.shape
-    half = lines_of_a_kind(ny)
+    half = line.lines_of_a_kind(ny)
     bands, sides = np.zeros((2, 5, nx, half)), np.zeros((2, 6, nx, half))
-    line_factors(planes, 0.1 * planes, contact, NEAR, np.float64(1.0), bands, sides)
+    line.line_factors(planes, 0.1 * planes, contact, NEAR, np.float64(1.0), bands, sides)
     found, work = np.zeros((nx, ny)) if start is None else start.copy(), np.zeros((6, nx, half))
     started = start is not None
-    solve_lines(bands, sides, rhs, steps, started, symmetric, periodic, work, found)
+    line.solve_lines(bands, sides, rhs, steps, started, symmetric, periodic, work, found)
     return found
 
 
@@ -151,9 +143,9 @@ def test_lines_of_a_period_reach_across_its_sides(planes, contact):
 def test_kinds_join_to_what_was_parted(across):
     """Bit for bit."""
     field, again = np.random.default_rng(11).normal(size=(5, across)), np.zeros((5, across))
-    kinds = np.zeros((2, 5, lines_of_a_kind(across)))
-    part(field, kinds)
-    join(kinds, again)
+    kinds = np.zeros((2, 5, line.lines_of_a_kind(across)))
+    line.part(field, kinds)
+    line.join(kinds, again)
     np.testing.assert_array_equal(again, field)
     np.testing.assert_array_equal(kinds[1, :, : across // 2], field[:, 1::2])
 

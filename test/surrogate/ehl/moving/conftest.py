@@ -22,10 +22,15 @@ def circular(moes_case):
 
 
 @pytest.fixture(scope='session')
-def semi_axis(circular):
+def smooth_march(circular):
+    """March it over a raceway without roughness."""
+    return circular(lambda x, y: 0 * x * y)
+
+
+@pytest.fixture(scope='session')
+def semi_axis(smooth_march):
     """Return the semi-axis of that contact [m]."""
-    solution = circular(lambda x, y: 0 * x * y)
-    return float(solution.x_nodes[-1] / solution.x[-1])
+    return float(smooth_march.x_nodes[-1] / smooth_march.x[-1])
 
 
 @pytest.fixture

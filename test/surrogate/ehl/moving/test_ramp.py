@@ -7,22 +7,14 @@ import math
 
 import numpy as np
 import pytest
-from surrogate.ehl import ContactLubricant
-from surrogate.ehl.moving import (
-    march_strip,
-    MarchSettings,
-    MarchStatus,
-    ramp_strip,
-    SpeedRamp,
-    StripContact,
-)
+from surrogate.ehl import ContactLubricant, moving
 from surrogate.files import InputError
 
 OIL = ContactLubricant(viscosity=0.04, pressure_viscosity=2.2e-8)
-STRIP = StripContact(
+STRIP = moving.StripContact(
     radius=0.0127, reduced_modulus=226e9, max_pressure=0.8e9, width=30e-6, columns=12
 )
-SETTINGS = MarchSettings(nx=65, places=1, film_floor=5e-9)
+SETTINGS = moving.MarchSettings(nx=65, places=1, film_floor=5e-9)
 
 
 def rough(x, y):
@@ -33,8 +25,12 @@ def rough(x, y):
 def column(rcs):
     """Return a ramp with an RCS of the speed."""
     speeds = np.geomspace(0.1, 0.001, 400)
-    return SpeedRamp(
-        status=MarchStatus.CONVERGED, speeds=speeds, rcs=rcs(speeds), transit=10.0, steps=400
+    return moving.SpeedRamp(
+        status=moving.MarchStatus.CONVERGED,
+        speeds=speeds,
+        rcs=rcs(speeds),
+        transit=10.0,
+        steps=400,
     )
 
 
@@ -75,7 +71,7 @@ def test_a_flat_strip_loses_what_a_smooth_one_does():
     """The loss factor is 1 all along but for the lag, which turns with the sense; no contact."""
     known = {'transits': 4.0, 'settings': SETTINGS}
     down, up = (
-        ramp_strip(STRIP, OIL, speeds, lambda x, y: 0 * x * y, **known)
+        moving.ramp_strip(STRIP, OIL, speeds, lambda x, y: 0 * x * y, **known)
         for speeds in ((0.1, 0.08), (0.08, 0.1))
     )
     assert down.loss_factor.size == down.speeds.size > 100
@@ -92,9 +88,9 @@ def test_down_and_up_enclose_the_standing_speed():
     ends = {}
     for transits in (6.0, 18.0):
         known = {'transits': transits, 'settings': SETTINGS}
-        down = ramp_strip(STRIP, OIL, (0.1, 0.03), rough, **known)
-        up = ramp_strip(STRIP, OIL, (0.03, 0.1), rough, **known)
-        assert down.status is up.status is MarchStatus.CONVERGED
+        down = moving.ramp_strip(STRIP, OIL, (0.1, 0.03), rough, **known)
+        up = moving.ramp_strip(STRIP, OIL, (0.03, 0.1), rough, **known)
+        assert down.status is up.status is moving.MarchStatus.CONVERGED
         assert down.speeds[0] == pytest.approx(0.1, rel=0.01)
         assert down.speeds[-1] == pytest.approx(0.03, rel=1e-6)
         ends[transits] = [ramp.onset(rcs=0.02, transits=1.0) for ramp in (down, up)]
@@ -102,7 +98,7 @@ def test_down_and_up_enclose_the_standing_speed():
     assert 0 < lags[1] < lags[0] < 0.3
     slow, fast = 0.9 * ends[6.0][0], 1.1 * ends[6.0][1]
     touching, parted = (
-        march_strip(STRIP, OIL, speed, rough, transits=2.0, settings=SETTINGS).rcs.value
+        moving.march_strip(STRIP, OIL, speed, rough, transits=2.0, settings=SETTINGS).rcs.value
         for speed in (slow, fast)
     )
     assert parted < 0.02 < touching
@@ -111,6 +107,6 @@ def test_down_and_up_enclose_the_standing_speed():
 def test_a_ramp_without_an_end_is_one_sentence():
     """Two speeds, different and above 0."""
     with pytest.raises(InputError, match='speeds is'):
-        ramp_strip(STRIP, OIL, (0.1, 0.1), rough, transits=2.0, settings=SETTINGS)
+        moving.ramp_strip(STRIP, OIL, (0.1, 0.1), rough, transits=2.0, settings=SETTINGS)
     with pytest.raises(InputError, match='transits is 0.5'):
-        ramp_strip(STRIP, OIL, (0.1, 0.05), rough, transits=0.5, settings=SETTINGS)
+        moving.ramp_strip(STRIP, OIL, (0.1, 0.05), rough, transits=0.5, settings=SETTINGS)
