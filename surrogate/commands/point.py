@@ -93,14 +93,10 @@ def _point(args: argparse.Namespace) -> int:
 
     _check(args)
     screw, lubricant = load_screw(args.screw), load_lubricant(args.oil)
-    kelvin = (
-        lubricant.reference_temperature
-        if args.temperature is None
-        else args.temperature + ZERO_CELSIUS
-    )
+    kelvin = oil_temperature(args, lubricant)
     point = OperatingPoint(speed=args.speed_rpm * RPM, load=args.load, temperature=kelvin)
     if args.plot:
-        _prepare(args.plot)
+        prepare(args.plot)
     solution = None
     if args.tier == 'full':
         solution, record = _full(args, screw, lubricant, point)
@@ -139,7 +135,14 @@ def _full(
     return found, record | {'wall_s': time.perf_counter() - started}
 
 
-def _prepare(folder: Path) -> None:
+def oil_temperature(args: argparse.Namespace, lubricant: Lubricant) -> float:
+    """Return the oil temperature that was asked for [K], by default that of the datasheet."""
+    if args.temperature is None:
+        return lubricant.reference_temperature
+    return float(args.temperature) + ZERO_CELSIUS
+
+
+def prepare(folder: Path) -> None:
     """Make the directory of the picture before the long work."""
     try:
         folder.mkdir(parents=True, exist_ok=True)

@@ -1,0 +1,105 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Onset of contact by the topography of a raceway: the speed at which its summits begin to touch.
+
+Contact begins where the smooth film no longer bridges the acting height of what a rolling contact
+leaves of the roughness. The constants are fitted to marches of strips whose summits were cut, see
+`studies/results/asperity_marches.csv`.
+
+"""
+
+from dataclasses import dataclass, replace
+from functools import lru_cache
+import math
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from surrogate.asperities.running_in import running_tiles, shortest_wave
+from surrogate.asperities.topography import acting_roughness, ActingRoughness
+from surrogate.ehl import ContactLubricant
+from surrogate.formulas.geometry import Contact, screw_contact, Side
+from surrogate.formulas.line import central_film_line, Line, line_at, moes_line
+from surrogate.parameters import Screw
+from surrogate.raceway.stated import RunIn
+
+Array = NDArray[np.float64]
+HEIGHTS = 4.76
+"""Film over acting height, floor and pressure at the onset of marches on coarse nodes [-]."""
+FLOOR_POWER = 0.25
+"""Exponent of the film floor in the film at the onset [-]."""
+PRESSURE, PRESSURE_POWER = 0.9e9, -0.14
+"""Hertz pressure to which the constant belongs [Pa] and exponent of the pressure [-]."""
+NODE_FACTOR, LAG_FACTOR = 0.89, 1.08
+"""Onset speed on 8 x 6 nodes in the shortest wave over that on 5 x 4, two pairs of marches, and at
+a speed that stands still over that at one that falls [-]."""
+STEEPNESS = 0.55
+"""Exponent of the film over the acting height in the speed at the onset [-]."""
+LOG_SPEEDS = np.linspace(math.log(1e-5), math.log(1e2), 140)
+"""Logarithms of the entrainment speeds among which an onset is looked for [m/s]."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class TopographyOnset:
+    """Onset of contact on one raceway: its acting roughness, None where all is smooth."""
+
+    acting: ActingRoughness | None
+
+    def speeds(self, line: Line, oil: ContactLubricant, floor: float) -> Array:
+        """
+        Return the entrainment speed of the onset [m/s] for every pressure of a line; 0 if smooth.
+
+        The fastest at which the film is below that which the acting height and the film floor [m]
+        ask for.
+
+        """
+        if self.acting is None:
+            return np.zeros(np.shape(line.max_pressure))
+        pressure = np.asarray(line.max_pressure)[..., None]
+        every, speed = replace(line, max_pressure=pressure), np.exp(LOG_SPEEDS)
+        M1, L = moes_line(every, speed, oil.viscosity, oil.pressure_viscosity)
+        reduction = M1**0.75 / np.sqrt(L) / every.semi_axis
+        film = central_film_line(every, speed, oil.viscosity, oil.pressure_viscosity)
+        wanted = film_at_onset(self.acting.height(reduction, pressure), floor, pressure)
+        return _fastest_root(np.log(film) - np.log(wanted))
+
+    def speed(self, contact: Contact, load: float, oil: ContactLubricant, floor: float) -> float:
+        """Return the onset speed [m/s] in the middle of a contact under a load [N]."""
+        return float(self.speeds(line_at(contact, load, 0.0), oil, floor))
+
+
+def film_at_onset(height: ArrayLike, floor: float, pressure: ArrayLike) -> Array:
+    """
+    Return the smooth central film at which contact begins [m].
+
+    For acting heights [m^0.75], a film floor [m] and Hertz pressures [Pa]; at least the floor.
+
+    """
+    constant = HEIGHTS * (NODE_FACTOR * LAG_FACTOR) ** STEEPNESS
+    over = (np.asarray(pressure) / PRESSURE) ** PRESSURE_POWER
+    return np.asarray(np.maximum(constant * floor**FLOOR_POWER * over * height, floor))
+
+
+def _fastest_root(spare: Array) -> Array:
+    """Return the fastest of `LOG_SPEEDS` [m/s], the last axis, below which film is missing."""
+    below = spare[..., :-1] < 0
+    last = len(LOG_SPEEDS) - 2 - np.argmax(below[..., ::-1], axis=-1)
+    low, high = (np.take_along_axis(spare, (last + k)[..., None], -1)[..., 0] for k in (0, 1))
+    step = LOG_SPEEDS[1] - LOG_SPEEDS[0]
+    speed = np.exp(LOG_SPEEDS[last] - low / (high - low) * step)
+    return np.asarray(np.where(below.any(axis=-1), speed, 0.0))
+
+
+@lru_cache(maxsize=32)
+def onset_of(screw: Screw, side: Side, state: RunIn) -> TopographyOnset:
+    """
+    Return the onset of contact on a side of a screw, its raceway `new` or `run_in`.
+
+    Raises InputError as `running_tiles` does.
+
+    """
+    tiles = running_tiles(screw, side, state)
+    if not tiles:
+        return TopographyOnset(acting=None)
+    modulus = 0.5 * screw_contact(screw, side).reduced_modulus
+    return TopographyOnset(acting=acting_roughness(tiles, modulus, shortest_wave(screw)))

@@ -1,0 +1,126 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Raceways as they run: traced, after their first pass, and run in.
+
+No raceway carries more than its hardness, at which the first pass under the largest working load
+cuts the summits. Running in goes on with mild wear, for which a lower cutting pressure stands.
+Raceway and ball are each cut alone and then added, as the contact adds them.
+
+"""
+
+from dataclasses import replace
+import math
+
+import numpy as np
+from scipy.fft import next_fast_len
+from surrogate.files import InputError
+from surrogate.formulas.geometry import hertz, screw_contact, Side
+from surrogate.formulas.load_sharing import (
+    normal_force,
+    nut_forces,
+    UNLOADING_RATIO,
+    working_preload,
+)
+from surrogate.parameters import Screw
+from surrogate.raceway.ball import ball_of
+from surrogate.raceway.dry_contact import run_in
+from surrogate.raceway.scaling import scale_spectrum, ScaledSpectrum
+from surrogate.raceway.stated import spectrum_of
+from surrogate.raceway.tile import draw_tile, Tile
+
+TILES = 3
+"""Tiles of a raceway, each of another draw [-]."""
+LENGTH, WIDTH = 4.0, 2.0
+"""Length and width of a tile over the half length of the contact under preload [-]."""
+MOST_WAVES = 32
+"""Most of the shortest waves along a tile [-]."""
+NODES = 8
+"""Nodes of a tile in the shortest wave [-]."""
+
+
+def working_load(screw: Screw) -> float:
+    """Return the largest working load [N], stated or that which unloads the relieved nut."""
+    stated = screw.working_load
+    return UNLOADING_RATIO * working_preload(screw) if stated is None else stated
+
+
+def cutting_pressure(screw: Screw, state: str) -> float:
+    """Return the pressure at which the summits of a raceway in a state are cut [Pa]."""
+    roughness = screw.roughness
+    if state == 'new':
+        return roughness.hardness
+    return math.inf if roughness.traced == 'run_in' else roughness.run_in_pressure
+
+
+def running_tiles(screw: Screw, side: Side, state: str) -> list[Tile]:
+    """
+    Return tiles of a raceway with its ball, `new` or `run_in`; none where both are smooth.
+
+    Raises InputError where the largest working load presses the contact by more than the cutting
+    pressure.
+
+    """
+    contact = screw_contact(screw, side)
+    fields = waves_of(screw)
+    if not fields:
+        return []
+    loaded = float(nut_forces(working_load(screw), screw.preload)[0])
+    pressure = float(hertz(contact, float(normal_force(screw, loaded))).max_pressure)
+    bound = cutting_pressure(screw, state)
+    size, shape = tile_size(screw, side)
+    return [
+        _added(
+            [
+                _cut(
+                    draw_tile(waves, draw, size=size, shape=shape, field=field),
+                    0.5 * contact.reduced_modulus,
+                    pressure,
+                    bound,
+                )
+                for field, waves in fields.items()
+            ]
+        )
+        for draw in range(TILES)
+    ]
+
+
+def waves_of(screw: Screw) -> dict[int, ScaledSpectrum]:
+    """Return the waves of raceway and ball by their field, 0 and 1; a smooth one has none."""
+    raceway = scale_spectrum(spectrum_of(screw.roughness))
+    ball = ball_of(screw.roughness, screw.ball_roughness)
+    fields = {0: raceway if screw.roughness.rms else None, 1: ball}
+    return {field: waves for field, waves in fields.items() if waves is not None}
+
+
+def shortest_wave(screw: Screw) -> float:
+    """Return the shortest wave of raceway and ball [m]."""
+    return min(2 * math.pi / float(waves.wave_number[-1]) for waves in waves_of(screw).values())
+
+
+def tile_size(screw: Screw, side: Side) -> tuple[tuple[float, float], tuple[int, int]]:
+    """Return length and width of the tiles of a raceway [m] and their nodes [-]."""
+    force = float(normal_force(screw, working_preload(screw)))
+    semi_axis = float(hertz(screw_contact(screw, side), force).semi_axis_x)
+    shortest = shortest_wave(screw)
+    length = min(LENGTH * semi_axis, MOST_WAVES * shortest)
+    # An even number of nodes, so that every other one repeats too.
+    rows = 2 * next_fast_len(math.ceil(0.5 * NODES * length / shortest), real=True)
+    columns = 2 * next_fast_len(math.ceil(0.25 * NODES * length / shortest), real=True)
+    return (length, WIDTH / LENGTH * length), (rows, columns)
+
+
+def _cut(tile: Tile, modulus: float, pressure: float, bound: float) -> Tile:
+    if bound == math.inf:
+        return tile
+    cut, found = run_in(tile, modulus, pressure, bound)
+    if not found.converged:
+        raise InputError(
+            f'raceway: pressed by {1e-9 * pressure:.3g} GPa its summits yield at '
+            f'{1e-9 * bound:.3g} GPa nearly everywhere, allowed is a cutting pressure well above'
+        )
+    return cut
+
+
+def _added(tiles: list[Tile]) -> Tile:
+    return replace(tiles[0], heights=np.sum([tile.heights for tile in tiles], axis=0))

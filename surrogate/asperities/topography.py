@@ -1,0 +1,147 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Acting height of a raceway: how far the roughness that a rolling contact leaves keeps a flat off.
+
+A rolling contact flattens long waves and keeps short ones. What it leaves of a tile is pressed dry
+on a flat by a small share of the load, and the mean gap is the height that the film has to bridge.
+It depends on two numbers, the reduction and the Hertz pressure, and is tabulated over both.
+
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+import math
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.fft import rfft2
+from scipy.interpolate import RectBivariateSpline
+from surrogate.formulas.line import amplitude_reduction_venner_1997
+from surrogate.raceway.dry_contact import press
+from surrogate.raceway.tile import Tile
+
+Array = NDArray[np.float64]
+LOAD_SHARE = 0.015
+"""Share of the Hertz load that presses what a contact leaves on the flat [-]."""
+WAVE_POWER = -0.25
+"""Exponent of the mean wavelength in the acting height [-]: that of the film floor reversed."""
+LAY_GAIN = 0.2
+"""Logarithm of the acting height of ridges, over that of an isotropic surface of this gap [-]."""
+REDUCTIONS = np.geomspace(0.03, 10.0, 8)
+"""Reductions of the shortest wave at which heights are tabulated [-]."""
+PRESSURES = np.geomspace(0.15e9, 3e9, 3)
+"""Hertz pressures at which they are tabulated [Pa]."""
+TOLERANCE = 3e-3
+"""Of the dry contacts, as `press` has it [-]."""
+NODES_PER_WAVE = 4
+"""Nodes of the dry contacts in the shortest wave [-]; half of those of a tile."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ActingRoughness:
+    """
+    Table of the acting height of a raceway with its ball.
+
+    Logarithms of the reduction per length [1/m] and of the Hertz pressure [Pa], and the logarithm
+    of the acting height [m^0.75] over both, the mean of several tiles; standard deviation of the
+    latter between tiles [-]; `lay`, the anisotropy of the slopes from -1 across the track through
+    0 to 1 along it [-]; shortest wave [m].
+
+    """
+
+    log_reduction: tuple[float, ...]
+    log_pressure: tuple[float, ...]
+    log_height: tuple[tuple[float, ...], ...]
+    deviation: float
+    lay: float
+    shortest_wave: float
+
+    def height(self, reduction: ArrayLike, pressure: ArrayLike) -> Array:
+        """
+        Return the acting height [m^0.75] for reductions [1/m] and Hertz pressures [Pa].
+
+        By a spline in the logarithms. Beyond the table it keeps its value, but for large
+        reductions, where it falls with their square as the amplitudes do.
+
+        """
+        x, y = np.log(reduction), np.log(pressure)
+        low, high = self.log_reduction[0], self.log_reduction[-1]
+        found = _spline(self).ev(
+            np.clip(x, low, high), np.clip(y, self.log_pressure[0], self.log_pressure[-1])
+        )
+        return np.asarray(np.exp(found - 2 * np.maximum(x - high, 0.0)))
+
+
+@lru_cache(maxsize=64)
+def _spline(acting: ActingRoughness) -> RectBivariateSpline:
+    heights = np.array(acting.log_height)
+    return RectBivariateSpline(acting.log_reduction, acting.log_pressure, heights, kx=3, ky=2)
+
+
+def acting_roughness(
+    tiles: Sequence[Tile], modulus: float, shortest_wave: float
+) -> ActingRoughness:
+    """
+    Return the table of some tiles of one raceway whose shortest wave [m] is on all of them.
+
+    `modulus` [Pa] as `press` has it.
+
+    """
+    coarse = [_coarser(tile, shortest_wave) for tile in tiles]
+    each = np.array([_log_heights(tile, modulus, shortest_wave) for tile in coarse])
+    middle = len(REDUCTIONS) // 2
+    return ActingRoughness(
+        log_reduction=tuple(np.log(REDUCTIONS / shortest_wave).tolist()),
+        log_pressure=tuple(np.log(PRESSURES).tolist()),
+        log_height=tuple(map(tuple, each.mean(axis=0).tolist())),
+        deviation=float(each[:, middle].mean(axis=1).std(ddof=min(1, len(tiles) - 1))),
+        lay=float(np.mean([lay_of(tile) for tile in coarse])),
+        shortest_wave=shortest_wave,
+    )
+
+
+def _log_heights(tile: Tile, modulus: float, shortest_wave: float) -> Array:
+    """Return the logarithms of the acting height [m^0.75] over reduction and pressure."""
+    gain = LAY_GAIN * abs(lay_of(tile))
+    found = np.empty((len(REDUCTIONS), len(PRESSURES)))
+    for row, reduction in enumerate(REDUCTIONS / shortest_wave):
+        left = left_by_rolling(tile, float(reduction))
+        wave = 2 * math.pi * math.sqrt(left.moment(0) / left.moment(1))
+        for column, pressure in enumerate(PRESSURES):
+            load = LOAD_SHARE * 0.25 * math.pi * float(pressure)
+            gap = press(left, modulus, load, tolerance=TOLERANCE).separation
+            found[row, column] = math.log(gap * wave**WAVE_POWER) + gain
+    return found
+
+
+def left_by_rolling(tile: Tile, reduction: float) -> Tile:
+    """
+    Return what a rolling contact leaves of a tile, every wave reduced by its length.
+
+    `reduction` M1^(3/4)/(L^(1/2) b) [1/m]; waves of all directions are reduced as those across the
+    track.
+
+    """
+    number = tile.wave_number.copy()
+    number[0, 0] = math.inf
+    return tile.filtered(
+        amplitude_reduction_venner_1997(2 * math.pi / number, 1 / reduction, 1.0, 1.0)
+    )
+
+
+def lay_of(tile: Tile) -> float:
+    """Return the anisotropy of the slopes of a tile [-]: 1 ridges along the track, -1 across."""
+    along, across = tile.wave_vectors
+    power = np.abs(rfft2(tile.heights)) ** 2
+    power[:, 1:] *= 2.0
+    squares = power * along**2, power * across**2
+    return float((squares[1] - squares[0]).sum() / (squares[1] + squares[0]).sum())
+
+
+def _coarser(tile: Tile, shortest_wave: float) -> Tile:
+    """Return every n-th node of a tile, `NODES_PER_WAVE` in the shortest wave [m] or more."""
+    spacing = tile.length / tile.heights.shape[0]
+    step = max(1, int(shortest_wave / (NODES_PER_WAVE * spacing) + 1e-9))
+    return replace(tile, heights=tile.heights[::step, ::step])

@@ -1,0 +1,51 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The subcommand `onset`: where contact begins, new and run in, by the topography alone."""
+
+import argparse
+from pathlib import Path
+import sys
+from typing import Any
+
+from surrogate.commands.output import add_json, show
+from surrogate.commands.point import add_inputs, oil_temperature, prepare
+from surrogate.parameters import load_lubricant, load_screw
+
+
+def add_onset_command(subparsers: Any) -> None:
+    """Add `onset`; its handler imports what presses the topography."""
+    parser = subparsers.add_parser('onset', help='speed at which contact begins, new and run in')
+    add_inputs(parser)
+    parser.add_argument(
+        '--load-N',
+        type=float,
+        default=0.0,
+        metavar='F',
+        dest='load',
+        help='axial load [N] (default 0: the preload alone)',
+    )
+    parser.add_argument(
+        '--temperature-degC',
+        type=float,
+        metavar='T',
+        dest='temperature',
+        help='oil temperature [degC], default that of the oil datasheet',
+    )
+    add_json(parser)
+    parser.add_argument('--plot', type=Path, metavar='DIR', help='directory for a picture (PNG)')
+    parser.set_defaults(handler=_onset)
+
+
+def _onset(args: argparse.Namespace) -> int:
+    from surrogate.screw.onset import onset_page, onset_record
+
+    screw, lubricant = load_screw(args.screw), load_lubricant(args.oil)
+    if args.plot:
+        prepare(args.plot)
+    record = onset_record(screw, lubricant, args.load, oil_temperature(args, lubricant))
+    show(record, onset_page, json=args.json)
+    if args.plot:
+        from surrogate.screw.onset_figure import draw_onset
+
+        print(draw_onset(args.plot, screw, lubricant, record), file=sys.stderr)
+    return 0

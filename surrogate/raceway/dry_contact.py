@@ -1,0 +1,144 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Dry contact of a tile with a smooth flat, elastic or with a bounded pressure.
+
+Conjugate gradients with 0 <= p <= H: Polonsky, Keer, Wear 231 (1999) 206, with the second bound of
+Almqvist, Sahlin, Larsson, Glavatskih, Tribol. Int. 40 (2007) 574. Where the pressure reaches H the
+material gives way, and what is left of the interference there stays. It piles up nowhere.
+
+"""
+
+from dataclasses import dataclass, replace
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.fft import irfft2, rfft2
+from surrogate.files import InputError
+from surrogate.raceway.tile import Tile
+
+Array = NDArray[np.float64]
+TOLERANCE = 1e-4
+"""Change of the pressure in an iteration, over the load, below which it has converged [-]."""
+LEAST, MOST = 10, 3000
+"""Fewest and most iterations [-]."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class DryContact:
+    """
+    A tile pressed on a flat: pressure [Pa] and gap [m] at its nodes, below 0 where it yields.
+
+    Iterations that it took, and whether they converged; not where all that touches yields.
+
+    """
+
+    pressure: Array
+    gap: Array
+    iterations: int
+    converged: bool
+
+    @property
+    def separation(self) -> float:
+        """Mean gap [m]."""
+        return float(np.maximum(self.gap, 0.0).mean())
+
+    @property
+    def contact_share(self) -> float:
+        """Share of the area that touches [-]."""
+        return float((self.pressure > 0).mean())
+
+
+def press(
+    tile: Tile,
+    modulus: float,
+    mean_pressure: float,
+    *,
+    hardness: float = math.inf,
+    tolerance: float = TOLERANCE,
+) -> DryContact:
+    """
+    Return a tile pressed on a flat by a mean pressure [Pa], nowhere by more than `hardness` [Pa].
+
+    `modulus` [Pa] is E/(1 - nu^2) of the contact, half the reduced modulus of `Contact`. Raises
+    InputError for a mean pressure that is not below the hardness.
+
+    """
+    if not 0 < mean_pressure < hardness:
+        raise InputError(
+            f'raceway: the mean pressure is {1e-9 * mean_pressure:.3g} GPa, allowed is above 0 '
+            f'and below the hardness, {1e-9 * hardness:.3g} GPa'
+        )
+    wave_number = tile.wave_number.copy()
+    wave_number[0, 0] = math.inf
+    compliance = 2 / (modulus * wave_number)
+    shape, heights = tile.heights.shape, tile.heights
+
+    def lift(load: Array) -> Array:
+        return np.asarray(irfft2(compliance * rfft2(load), s=shape))
+
+    pressure = np.full(shape, mean_pressure)
+    way, last_square, keep = np.zeros(shape), 1.0, 0.0
+    converged = False
+    for count in range(1, MOST + 1):
+        free = (pressure > 0) & (pressure < hardness)
+        if np.count_nonzero(free) < 2:
+            break
+        gap = lift(pressure) - heights
+        gap -= gap[free].mean()
+        square = float(gap[free] @ gap[free])
+        way = np.where(free, gap + keep * square / last_square * way, 0.0)
+        answer = lift(way)
+        answer -= answer[free].mean()
+        step = float(gap[free] @ way[free]) / float(answer[free] @ way[free])
+        before, last_square = pressure, square
+        pressure = np.clip(np.where(free, pressure - step * way, pressure), 0.0, hardness)
+        # Nodes at a bound whose gap pulls them away from it are free again.
+        back = ((before == 0) & (gap < 0)) | ((before >= hardness) & (gap > 0))
+        pressure = np.where(back, np.clip(pressure - step * gap, 0.0, hardness), pressure)
+        keep = 0.0 if back.any() else 1.0
+        pressure = _balanced(pressure, mean_pressure, hardness)
+        change = np.abs(pressure - before).sum()
+        converged = bool(change < tolerance * mean_pressure * pressure.size)
+        if converged and count >= LEAST:
+            break
+    free = (pressure > 0) & (pressure < hardness)
+    gap = lift(pressure) - heights
+    gap -= gap[free if free.any() else pressure > 0].mean()
+    return DryContact(pressure=pressure, gap=gap, iterations=count, converged=converged)
+
+
+def _balanced(pressure: Array, mean_pressure: float, hardness: float) -> Array:
+    """
+    Return the pressures [Pa] with those between the bounds scaled to the mean [Pa].
+
+    Where they cannot make it up, all that a bound does not hold back are shifted by the same.
+
+    """
+    free = (pressure > 0) & (pressure < hardness)
+    load = mean_pressure * pressure.size
+    wanted = load - float(pressure[~free].sum())
+    if wanted > 0 and free.any():
+        scale = wanted / float(pressure[free].sum())
+        return np.where(free, np.minimum(pressure * scale, hardness), pressure)
+    missing = load - float(pressure.sum())
+    moved = pressure < hardness if missing > 0 else pressure > 0
+    shifted = pressure + missing / np.count_nonzero(moved)
+    return np.where(moved, np.clip(shifted, 0.0, hardness), pressure)
+
+
+def run_in(
+    tile: Tile, modulus: float, mean_pressure: float, hardness: float
+) -> tuple[Tile, DryContact]:
+    """
+    Return a tile after a pass under a mean pressure [Pa], and the contact in that pass.
+
+    What sinks where the pressure is at the hardness [Pa] stays sunk, so that a second pass is
+    elastic. `modulus` as `press` has it, which also says what is raised.
+
+    """
+    found = press(tile, modulus, mean_pressure, hardness=hardness, tolerance=1e-3)
+    yielded = (found.pressure >= hardness) & (found.gap < 0)
+    heights = np.where(yielded, tile.heights + found.gap, tile.heights)
+    return replace(tile, heights=heights), found

@@ -1,0 +1,170 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Onset of contact by the topography of the raceways, as a speed of the screw."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+import math
+from typing import Any
+
+import numpy as np
+from surrogate.asperities.onset import onset_of
+from surrogate.asperities.running_in import cutting_pressure, working_load
+from surrogate.formulas.geometry import hertz, screw_contact, SIDES
+from surrogate.formulas.kinematics import no_slip_rates
+from surrogate.formulas.line import central_film_line, line_at
+from surrogate.formulas.load_sharing import normal_force, nut_forces, working_preload
+from surrogate.formulas.starvation import starved_speed
+from surrogate.parameters import Lubricant, Screw
+from surrogate.raceway.ball import roughness_sentence
+from surrogate.raceway.stated import RunIn
+from surrogate.screw.contacts import oil_at
+from surrogate.units import RPM, ZERO_CELSIUS
+
+BANDS = {'isotropic': 1.3, 'longitudinal': 2.0, 'transverse': 2.0}
+"""Factor within which the topography tells nine of ten marched strips, by the lay [-]."""
+STATES: tuple[RunIn, ...] = ('new', 'run_in')
+WORDS = {'new': 'new, after its first pass', 'run_in': 'run in'}
+
+
+def onset_point(
+    screw: Screw, lubricant: Lubricant, load: float, temperature: float, state: RunIn
+) -> dict[str, float]:
+    """
+    Return where contact begins under an axial load [N] at an oil temperature [K].
+
+    Screw speed [rad/s], entrainment speed [m/s] and smooth central film [m] of the loaded nut, of
+    the side where contact begins at the faster speed; all 0 for smooth raceways. Raises InputError
+    as `running_tiles` does.
+
+    """
+    loaded = float(nut_forces(load, screw.preload)[0]) or working_preload(screw)
+    force, oil = float(normal_force(screw, loaded)), oil_at(lubricant, temperature)
+    found = {
+        side: onset_of(screw, side, state).speed(
+            screw_contact(screw, side), force, oil, lubricant.film_floor
+        )
+        for side in SIDES
+    }
+    side = max(SIDES, key=found.__getitem__)
+    if not found[side]:
+        return {'speed_rad_s': 0.0, 'entrainment_speed_m_s': 0.0, 'central_film_m': 0.0}
+    line = line_at(screw_contact(screw, side), force, 0.0)
+    film = central_film_line(line, found[side], oil.viscosity, oil.pressure_viscosity)
+    rate = float(starved_speed(lubricant, no_slip_rates(screw).entrainment))
+    return {
+        'speed_rad_s': found[side] / rate,
+        'entrainment_speed_m_s': found[side],
+        'central_film_m': float(film),
+    }
+
+
+def onset_record(
+    screw: Screw, lubricant: Lubricant, load: float, temperature: float
+) -> dict[str, Any]:
+    """Return the onsets of both states under a load [N] at a temperature [K], SI units."""
+    roughness, band = screw.roughness, BANDS[screw.roughness.lay]
+    loaded = float(nut_forces(working_load(screw), screw.preload)[0])
+    force = float(normal_force(screw, loaded))
+    states = {}
+    for state in STATES:
+        states[state] = onset_point(screw, lubricant, load, temperature, state) | {
+            'cutting_pressure_Pa': cutting_pressure(screw, state),
+            'band': [1 / band, band],
+        }
+    if cutting_pressure(screw, 'run_in') < math.inf:
+        bounds = roughness.run_in_pressure_low, roughness.run_in_pressure_high
+        states['run_in']['speed_range_rad_s'] = [
+            onset_point(cut_at(screw, bound), lubricant, load, temperature, 'run_in')[
+                'speed_rad_s'
+            ]
+            for bound in bounds
+        ]
+    return {
+        'screw': screw.name,
+        'oil': lubricant.name,
+        'load_N': load,
+        'temperature_K': temperature,
+        'state': roughness.state,
+        'working_load_N': working_load(screw),
+        'working_load_stated': screw.working_load is not None,
+        'working_pressure_Pa': max(
+            float(hertz(screw_contact(screw, side), force).max_pressure) for side in SIDES
+        ),
+        'roughness': roughness_sentence(roughness, screw.ball_roughness),
+        'states': states,
+    }
+
+
+def cut_at(screw: Screw, pressure: float) -> Screw:
+    """Return a screw whose raceways run in to a cutting pressure [Pa] alone."""
+    sheet = replace(
+        screw.roughness,
+        hardness=max(screw.roughness.hardness, pressure),
+        run_in_pressure=pressure,
+        run_in_pressure_low=pressure,
+        run_in_pressure_high=pressure,
+    )
+    return replace(screw, roughness=sheet)
+
+
+def onset_page(record: Mapping[str, Any]) -> str:
+    """Return the lines that a person reads."""
+    return '\n'.join(_lines(record))
+
+
+def _lines(record: Mapping[str, Any]) -> Iterator[str]:
+    yield (
+        f'{record["screw"]}, {record["oil"]}: {record["load_N"]:g} N, '
+        f'{record["temperature_K"] - ZERO_CELSIUS:g} degC'
+    )
+    for state, found in record['states'].items():
+        yield f'  {WORDS[state]:26} {_told(found)}'
+    slowest = min(
+        min(one.get('speed_range_rad_s', [one['speed_rad_s']]))
+        for one in record['states'].values()
+    )
+    fastest = max(one['speed_rad_s'] for one in record['states'].values())
+    low, high = record['states']['new']['band']
+    if fastest:
+        yield (
+            f'  Contact is sure below {low * slowest / RPM:.3g} rev/min and possible below '
+            f'{high * fastest / RPM:.3g} rev/min.'
+        )
+    assumed = '' if record['working_load_stated'] else ', assumed: it unloads the relieved nut'
+    yield (
+        f'  summits are cut under {record["working_load_N"]:.4g} N{assumed}, '
+        f'{1e-9 * record["working_pressure_Pa"]:.3g} GPa'
+    )
+    yield f'  roughness: {record["roughness"]}'
+
+
+def _told(found: Mapping[str, Any]) -> str:
+    """Say where contact begins in one state."""
+    if not found['speed_rad_s']:
+        return 'no contact: raceway and ball are smooth'
+    cut = found['cutting_pressure_Pa']
+    words = 'traced after running in' if cut == math.inf else f'cut at {1e-9 * cut:g} GPa'
+    low, high = (share * found['speed_rad_s'] / RPM for share in found['band'])
+    text = (
+        f'contact begins at {found["speed_rad_s"] / RPM:.3g} rev/min ({low:.3g} to {high:.3g}), '
+        f'film {1e9 * found["central_film_m"]:.3g} nm, {words}'
+    )
+    if 'speed_range_rad_s' in found:
+        low, high = (speed / RPM for speed in found['speed_range_rad_s'])
+        text += f'; {low:.3g} to {high:.3g} rev/min over the range of that pressure'
+    return text
+
+
+def onset_over_pressure(
+    screw: Screw, lubricant: Lubricant, load: float, temperature: float, pressures: np.ndarray
+) -> np.ndarray:
+    """Return the onset speeds [rad/s] of a new profile that is cut at some pressures [Pa]."""
+    return np.array(
+        [
+            onset_point(cut_at(screw, float(one)), lubricant, load, temperature, 'run_in')[
+                'speed_rad_s'
+            ]
+            for one in pressures
+        ]
+    )

@@ -1,0 +1,62 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Onset by the topography: limits, order and scaling."""
+
+from dataclasses import replace
+import math
+
+import pytest
+from surrogate.asperities.onset import film_at_onset, onset_of
+from surrogate.ehl import ContactLubricant
+from surrogate.formulas.geometry import screw_contact
+from surrogate.formulas.load_sharing import normal_force
+
+FLOOR = 3e-9
+OIL = ContactLubricant(viscosity=0.06, pressure_viscosity=2e-8)
+
+
+@pytest.fixture(scope='module')
+def place(screw):
+    """Return contact and force on the screw side under the preload."""
+    return screw_contact(screw, 'screw'), float(normal_force(screw, screw.preload))
+
+
+@pytest.fixture(scope='module')
+def new(screw):
+    return onset_of(screw, 'screw', 'new')
+
+
+def test_smooth_raceways_have_none(screw, place):
+    smooth = replace(screw, roughness=replace(screw.roughness, rms=0.0))
+    assert onset_of(smooth, 'screw', 'new').speed(*place, OIL, FLOOR) == 0.0
+
+
+def test_the_film_at_the_onset_is_never_below_the_floor():
+    assert film_at_onset(1e-12, FLOOR, 1e9) == FLOOR
+    assert film_at_onset(1e-5, FLOOR, 1e9) > FLOOR
+
+
+def test_softer_summits_touch_at_slower_speeds(screw, place, new):
+    run = onset_of(screw, 'screw', 'run_in').speed(*place, OIL, FLOOR)
+    assert 0.2 < run / new.speed(*place, OIL, FLOOR) < 0.6
+
+
+@pytest.mark.parametrize(('floor', 'sign'), [(1e-9, -1), (5e-9, 1)])
+def test_a_thicker_boundary_film_touches_at_faster_speeds(new, place, floor, sign):
+    usual, other = (new.speed(*place, OIL, one) for one in (FLOOR, floor))
+    assert sign * math.log(other / usual) > 0.1
+
+
+def test_the_onset_speed_is_one_over_the_viscosity(new, place):
+    """Film and reduction know the viscosity by its product with the speed alone."""
+    thick, thin = (
+        new.speed(*place, ContactLubricant(viscosity=eta, pressure_viscosity=2e-8), FLOOR)
+        for eta in (0.2, 0.02)
+    )
+    assert thin / thick == pytest.approx(10.0, rel=2e-3)
+
+
+def test_a_rougher_raceway_touches_at_faster_speeds(screw, place, new):
+    rough = replace(screw, roughness=replace(screw.roughness, rms=0.18e-6))
+    faster = onset_of(rough, 'screw', 'new').speed(*place, OIL, FLOOR)
+    assert faster > 1.3 * new.speed(*place, OIL, FLOOR)

@@ -1,0 +1,115 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Dry contact against Westergaard's wave, exact limits and identities."""
+
+import math
+
+from hypothesis import given
+from hypothesis import strategies as st
+import numpy as np
+import pytest
+from surrogate.files import InputError
+from surrogate.raceway.dry_contact import press, run_in
+from surrogate.raceway.tile import Tile
+
+MODULUS = 113e9
+LENGTH, WIDTH, AMPLITUDE = 20e-6, 5e-6, 50e-9
+FULL = math.pi * MODULUS * AMPLITUDE / LENGTH
+"""Mean pressure at which Westergaard's wave touches everywhere [Pa]."""
+
+
+def wave(nodes=256, amplitude=AMPLITUDE):
+    x = np.arange(nodes) / nodes
+    heights = amplitude * np.cos(2 * math.pi * x)[:, None] + np.zeros((nodes, 8))
+    return Tile(heights=heights, length=LENGTH, width=WIDTH)
+
+
+def rough(seed, scale=1.0):
+    """Return a tile of random waves of like amplitude."""
+    random = np.random.default_rng(seed)
+    shape, number = (48, 32), np.arange(1, 7)
+    transform = np.zeros(shape, dtype=complex)
+    transform[np.ix_(number, number)] = np.exp(2j * math.pi * random.random((6, 6)))
+    heights = np.real(np.fft.ifft2(transform))
+    heights *= scale * 40e-9 / heights.std()
+    return Tile(heights=heights, length=24e-6, width=16e-6)
+
+
+@pytest.mark.parametrize('share', [0.1, 0.3, 0.6, 0.9])
+def test_a_wave_is_pressed_as_westergaard_has_it(share):
+    """p(x) = 2 p cos(psi)/s sqrt(s - sin^2 psi), s = sin^2(pi a/lambda) = p/p*."""
+    found = press(wave(), MODULUS, share * FULL)
+    assert found.converged
+    edge = math.asin(math.sqrt(share))
+    assert found.contact_share == pytest.approx(2 * edge / math.pi, abs=0.012)
+    psi = math.pi * (np.arange(256) / 256 + 0.5) % math.pi - 0.5 * math.pi
+    inside = np.maximum(share - np.sin(psi) ** 2, 0.0)
+    exact = 2 * share * FULL * np.cos(psi) / share * np.sqrt(inside)
+    assert found.pressure[:, 3] == pytest.approx(exact, abs=0.025 * exact.max())
+
+
+def test_beyond_full_contact_the_pressure_follows_the_wave():
+    found = press(wave(), MODULUS, 1.5 * FULL)
+    exact = FULL * (1.5 + np.cos(2 * math.pi * np.arange(256) / 256))
+    assert found.pressure[:, 0] == pytest.approx(exact, rel=2e-3)
+    assert found.separation == pytest.approx(0.0, abs=1e-12)
+
+
+@given(seed=st.integers(0, 50), hardness=st.floats(1.0, 20.0), share=st.floats(0.05, 0.8))
+def test_no_node_carries_more_than_the_hardness_and_the_load_is_carried(seed, hardness, share):
+    mean = share * hardness * 1e9
+    found = press(rough(seed), MODULUS, mean, hardness=hardness * 1e9)
+    assert found.pressure.max() <= hardness * 1e9 * (1 + 1e-12)
+    assert found.pressure.min() >= 0
+    assert found.pressure.mean() == pytest.approx(mean, rel=2e-3)
+    assert found.converged
+
+
+@given(seed=st.integers(0, 50), scale=st.floats(0.1, 8.0))
+def test_gaps_scale_with_heights_and_pressures_together(seed, scale):
+    one = press(rough(seed), MODULUS, 0.3e9, tolerance=1e-6)
+    other = press(rough(seed, scale), MODULUS, scale * 0.3e9, tolerance=1e-6)
+    assert other.separation == pytest.approx(scale * one.separation, rel=1e-3)
+
+
+@given(seed=st.integers(0, 50))
+def test_a_second_pass_is_elastic(seed):
+    first, found = run_in(rough(seed), MODULUS, 1e9, 3e9)
+    second, _ = run_in(first, MODULUS, 1e9, 3e9)
+    sunk = (rough(seed).heights - first.heights).max()
+    assert sunk > 0
+    assert np.abs(second.heights - first.heights).max() < 0.02 * sunk
+    assert (first.heights <= rough(seed).heights).all()
+
+
+def test_a_hardness_that_is_not_reached_changes_nothing():
+    tile = rough(1)
+    most = press(tile, MODULUS, 0.5e9).pressure.max()
+    assert np.array_equal(run_in(tile, MODULUS, 0.5e9, 1.1 * most)[0].heights, tile.heights)
+
+
+def test_more_sinks_the_softer_the_summits():
+    sunk = [
+        (rough(2).heights - run_in(rough(2), MODULUS, 1e9, hardness)[0].heights).mean()
+        for hardness in (8e9, 5e9, 3e9, 2e9)
+    ]
+    assert sunk == sorted(sunk)
+    assert sunk[0] < 0.1 * sunk[-1]
+
+
+@pytest.mark.parametrize('share', [0.1, 0.3, 0.5])
+def test_high_summits_yield_all_and_the_area_is_the_load_over_the_hardness(share):
+    found = press(rough(3, 3.0), MODULUS, share * 1e9, hardness=1e9)
+    assert found.contact_share == pytest.approx(share, rel=0.05)
+
+
+def test_summits_that_all_yield_are_a_status():
+    found = press(rough(3, 300.0), MODULUS, 0.5e9, hardness=1e9)
+    assert not found.converged
+    assert np.isfinite(found.gap).all()
+
+
+@pytest.mark.parametrize('mean', [0.0, 7e9, 9e9, math.nan])
+def test_a_mean_pressure_that_no_raceway_carries_is_refused(mean):
+    with pytest.raises(InputError, match='mean pressure is .* below the hardness, 7 GPa'):
+        press(rough(1), MODULUS, mean, hardness=7e9)
