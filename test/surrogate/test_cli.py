@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The offline commands as a user types them."""
 
-import argparse
 from dataclasses import replace
 import json
 from pathlib import Path
@@ -10,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from surrogate.asperities.law import shipped_law
-from surrogate.cli import add_commands
+from surrogate.cli import add_commands, Parser
 from surrogate.files import InputError
 from surrogate.surface.file import write
 
@@ -19,7 +18,7 @@ POINT = ['point', '--screw', 'nominal', '--oil', 'iso_vg_68', '--tier', 'closed_
 
 def run(*words: str) -> int:
     """Run one command line."""
-    parser = argparse.ArgumentParser()
+    parser = Parser()
     add_commands(parser.add_subparsers(required=True))
     args = parser.parse_args(words)
     return args.handler(args)
@@ -57,6 +56,16 @@ def test_unknown_numbers_are_null_with_a_reason(capsys):
     assert relieved['central_film_m'] is None
     assert relieved['reason'] == 'no load on this nut, so no film'
     assert any('unloading begins at 2800 N' in text for text in found['warnings'])
+
+
+@pytest.mark.parametrize('number', ['-5e-324', '-1e3', '-1E+3', '-.5e1', '-5.', '-0'])
+@pytest.mark.parametrize('command', [POINT, ['surface', 'query', 'closed_form']], ids=' '.join)
+def test_a_negative_number_with_an_exponent_is_no_option(capsys, command, number):
+    """It is one after a space as it is after an equals sign."""
+    assert run(*command, '--speed-rpm', '600', '--load-N', number) == 0
+    spaced = capsys.readouterr().out
+    assert run(*command, '--speed-rpm=600', f'--load-N={number}') == 0
+    assert spaced == capsys.readouterr().out
 
 
 @pytest.mark.parametrize(
