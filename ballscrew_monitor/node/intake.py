@@ -220,18 +220,22 @@ class Intake(Waitable):
             lost = arrival.topic.loss.take(arrival.number)
             heard.append((arrival, self._simulated or max(now - waited, 0), lost))
         self._journal.hear(heard)
-        for axis, event in ordered([event for one in heard for event in self._events(*one)]):
+        events = [event for one in heard for event in _events(*one, self._guard)]
+        for axis, event in ordered(events):
             self._take(axis, event)
         self._journal.flush()
         return True
 
-    def _events(self, arrival: Arrival, now: int, lost: int | None) -> list[AxisEvent]:
-        """Return what a message that arrived at `now` [ns] says of each axis."""
-        found: list[AxisEvent] = []
-        for axis, source in arrival.topic.readers:
-            place = f'the {source.source.name.lower()} that arrived at {now} ns'
-            told = {'now': now, 'max_future': axis.max_future, 'lost': lost}
-            event = self._guard(axis, place, source.read, arrival.message, **told)
-            if event is not None:
-                found.append((axis, event))
-        return found
+
+def _events(
+    arrival: Arrival, now: int, lost: int | None, guard: Callable[..., Any] = _call
+) -> list[AxisEvent]:
+    """Return what a message that arrived at `now` [ns] of the node's clock says of each axis."""
+    found: list[AxisEvent] = []
+    for axis, source in arrival.topic.readers:
+        place = f'the {source.source.name.lower()} that arrived at {now} ns'
+        told = {'now': now, 'max_future': axis.max_future, 'lost': lost}
+        event = guard(axis, place, source.read, arrival.message, **told)
+        if event is not None:
+            found.append((axis, event))
+    return found
