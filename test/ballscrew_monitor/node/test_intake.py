@@ -225,7 +225,7 @@ def test_closed_and_opened_again_while_another_thread_waits(bench):
         for value in range(20):
             bench.intake.close()
             bench.intake = Intake(bench.node, [bench.axis], lambda _, one: taken.append(one.value))
-            bench.until(lambda: value in taken or failures, meanwhile=publish)
+            bench.until(lambda value=value: value in taken or failures, meanwhile=publish)
     finally:
         over.set()
         thread.join()
