@@ -19,7 +19,7 @@ from typing import Any
 from ballscrew_monitor import options
 from ballscrew_monitor.core.interrupts import FAILED, leave_to_python, raise_signals, SIGNALLED
 from ballscrew_monitor.settings.middleware import check_middleware
-from surrogate.cli import add_commands
+from surrogate.cli import add_commands, Parser
 from surrogate.files import InputError
 from surrogate.surface import SurfaceError
 from surrogate.units import RPM
@@ -78,7 +78,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog='ballscrew',
         description='Lubrication and efficiency of ball screws: model, surface '
         'files, and the monitor at work on a recorded cycle.',

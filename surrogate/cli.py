@@ -1,7 +1,9 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The offline subcommands, each in a module of its own."""
+"""The offline subcommands, each in a module of its own, and the parser of all commands."""
 
+import argparse
+import re
 from typing import Any
 
 from surrogate.commands.contact import add_contact_command
@@ -12,7 +14,16 @@ from surrogate.commands.point import add_point_command
 from surrogate.commands.surface import add_surface_command
 from surrogate.commands.sweep import add_workers
 
-__all__ = ['add_commands', 'add_workers']
+__all__ = ['add_commands', 'add_workers', 'Parser']
+
+
+class Parser(argparse.ArgumentParser):
+    """Takes -1e3 for a number too, and not for an option, and so do its subcommands."""
+
+    def __init__(self, **kwargs: Any) -> None:
+        """Make a parser as the standard library does."""
+        super().__init__(**kwargs)
+        self._negative_number_matcher = re.compile(r'-(\d+\.?\d*|\.\d+)(e[-+]?\d+)?$', re.I)
 
 
 def add_commands(subparsers: Any, read_bag: BagReader | None = None) -> None:

@@ -165,11 +165,15 @@ class Input:
         """
         Return the sample in `message`, received at `now` [ns] after `lost` others.
 
+        A message that did not decode is None.
+
         A stamp more than `max_future` [ns] ahead of `now` is refused, unless `now` is zero: then
         the clock has not started and cannot say. A zero stamp means that there is none, and a
         negative one is refused.
 
         """
+        if message is None:
+            return self._refuse(Why.NOT_DECODED, UNDECODED, now, lost)
         value = self.read_field(message)
         if isinstance(value, OtherJoints):
             refusal = self._refuse(Why.OTHER_JOINTS, '', now, lost)
@@ -195,10 +199,6 @@ class Input:
             arrival=now or stamp,
             lost=lost,
         )
-
-    def refuse_undecoded(self, *, now: int, lost: int | None = 0) -> Refusal:
-        """Return why a message that does not decode, received at `now` [ns], gives no sample."""
-        return self._refuse(Why.NOT_DECODED, UNDECODED, now, lost)
 
     def _refuse(self, why: Why, text: str, now: int, lost: int | None) -> Refusal:
         return Refusal(source=self.source, why=why, text=text, arrival=now, lost=lost)

@@ -27,6 +27,8 @@ COLUMNS = 5
 """Quantities of a window: speed, axial load, efficiency, RCS, film ratio."""
 MEMORY_VERSION = 1
 """Version of `Memory` and `SlopeRing` in files."""
+MEMORY_LAYOUT = '075dc2df7b95d90d'
+"""SHA-256 of names and types of their fields; another one is another version."""
 
 SAMPLE, REFUSAL, TICK = 0, 1, 2
 """Kinds of an event."""

@@ -72,9 +72,11 @@ def of_folder(node: str, problem: str) -> DiagnosticStatus:
     )
 
 
-def defect_text(error: Exception, event: InputSample | Refusal | int) -> str:
-    """Return that the program failed at a sample, a refusal or a tick, and at which."""
-    if isinstance(event, int):
+def defect_text(error: Exception, event: InputSample | Refusal | int | str) -> str:
+    """Return that the program failed at a sample, a refusal, a tick or else, and at which."""
+    if isinstance(event, str):
+        place = event
+    elif isinstance(event, int):
         place = f'a tick at {event} ns'
     else:
         value = f'{event.value!r} (SI)' if isinstance(event, InputSample) else 'refused'

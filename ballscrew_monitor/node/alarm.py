@@ -4,7 +4,7 @@
 
 from collections.abc import Callable, Iterable
 import functools
-from typing import Any
+from typing import Any, TYPE_CHECKING
 
 from ballscrew_monitor.core.conversions import clock_text, seconds
 from ballscrew_monitor.core.judgement import Level
@@ -19,12 +19,16 @@ from rclpy.duration import Duration
 from rclpy.lifecycle import LifecycleNode
 from rclpy.publisher import Publisher
 
+if TYPE_CHECKING:  # which imports this module
+    from ballscrew_monitor.node.axis_publisher import AxisPublisher
+
 LAST_WORD = Duration(seconds=0.5)  # for subscribers to take the end of an event
 
 
-def end_all(alarms: Iterable['Alarm'], reason: str, clock: Clock) -> None:
+def end_all(publishers: Iterable['AxisPublisher'], reason: str, clock: Clock) -> None:
     """End what is active; on a steady `clock`, all subscribers together have one time to hear."""
-    ended = [alarm for alarm in alarms if alarm.end(reason)]
+    place = 'the end of its event'
+    ended = [one.alarm for one in publishers if one.guarded(place, one.alarm.end, reason)]
     deadline = (clock.now() + LAST_WORD).nanoseconds
     for alarm in ended:
         left = deadline - clock.now().nanoseconds

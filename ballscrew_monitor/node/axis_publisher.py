@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the node keeps of one axis: the axis, its publishers, and what it last said."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 import dataclasses
 import traceback
-from typing import Any
+from typing import Any, TypeVar
 
 from ballscrew_monitor.core.conversions import nanoseconds
 from ballscrew_monitor.core.estimate import estimate, MachinePoint
@@ -32,6 +32,7 @@ from surrogate.surface import Surface, SurfaceError, SurfacePoint
 STATE_QOS = QoSProfile(depth=10, reliability=QoSReliabilityPolicy.RELIABLE)
 LOG_INTERVAL = nanoseconds(1.0)  # [ns] shortest time between two lines about the inputs
 NEWS_INTERVAL = nanoseconds(0.1)  # [ns] shortest time between two diagnostics sent for a change
+Result = TypeVar('Result')
 
 
 class AxisPublisher:
@@ -57,7 +58,8 @@ class AxisPublisher:
         self.axis = axis
         self.dwell = Dwell()
         self.refused = ''  # why the last reload of the surface was
-        self.defect = ''  # of the program, at a sample that it could not judge
+        self.defect = ''  # of the program, where it failed for this axis first
+        self.failed = False  # in what was guarded last
         self._node, self._values, self._kept, self._recording = node, values, kept, recording
         self._writer = state_messages.StateWriter(axis.name, TIERS[axis.surface.tier])
         self._last: State | None = None
@@ -74,6 +76,11 @@ class AxisPublisher:
         self._info = latched.info
         plain = values[f'{axis.name}.plain_topics']
         self._plain = PlainTopics(node, axis.name, make, STATE_QOS, wanted=plain)
+
+    def adapt(self) -> None:
+        """Take over the parameters as they are now."""
+        self.axis.adapt(self._values)
+        self.publish_info()
 
     def close(self) -> None:
         """Destroy the publishers, but for those that outlive the axis."""
@@ -142,7 +149,8 @@ class AxisPublisher:
 
     def current_point(self) -> MachinePoint | str:
         """Return the operating point of now, or why there is none."""
-        return self.axis.monitor.current_point(self._node.get_clock().now().nanoseconds)
+        now = self._node.get_clock().now().nanoseconds
+        return self.guarded('a solve', self.axis.monitor.current_point, now) or self.defect
 
     def is_dwelling(self, state: State) -> bool:
         """Tell whether the point of a state should be solved; only where that is asked for."""
@@ -154,6 +162,9 @@ class AxisPublisher:
 
     def correct(self, point: MachinePoint, full: SurfacePoint) -> tuple[bool, str]:
         """Correct the surface by a full solve and keep it; return whether, and what or why not."""
+        return self.guarded('a correction', self._correct, point, full) or (False, self.defect)
+
+    def _correct(self, point: MachinePoint, full: SurfacePoint) -> tuple[bool, str]:
         if not self._values[f'{self.name}.correct_surface']:
             return False, f'parameter {self.name}.correct_surface is false'
         numbers = estimate(point, self.surface, rcs_limit=self.rcs_limit).numbers
@@ -226,8 +237,11 @@ class AxisPublisher:
         if len(points) > most:
             response.message = f'{len(points)} points are too many, allowed are {most}'
             return
-        response.success = True
-        response.results = [self._evaluate(point) for point in points]
+        results = self.guarded('an evaluation', lambda: [self._evaluate(one) for one in points])
+        if results is None:
+            response.message = self.defect
+        else:
+            response.success, response.results = True, results
 
     def _evaluate(self, point: OperatingPoint) -> PointResult:
         result = PointResult()
@@ -260,14 +274,30 @@ class AxisPublisher:
         else:
             self._node.get_logger().warning(f'axis {self.axis.name}: {text}')
 
-    def note_defect(self, error: Exception, event: InputSample | Refusal | int) -> bool:
-        """Keep and log that a defect of the program met an event; tell whether it is new."""
-        if self.defect:
-            return False
-        self.defect = diagnostics.defect_text(error, event)
-        trace = ''.join(traceback.format_exception(error))
-        self._node.get_logger().error(f'axis {self.name}: {self.defect}\n{trace}')
-        return True
+    def guarded(
+        self,
+        event: InputSample | Refusal | int | str,
+        call: Callable[..., Result],
+        *args: Any,
+        **named: Any,
+    ) -> Result | None:
+        """
+        Return what a call returns; if the program fails in it, None.
+
+        The first such defect is logged, with the event at which it came, and is an ERROR of this
+        axis alone.
+
+        """
+        self.failed = False
+        try:
+            return call(*args, **named)
+        except Exception as error:  # the other axes go on, whatever it is
+            self.failed = True
+            if not self.defect:
+                self.defect = diagnostics.defect_text(error, event)
+                trace = ''.join(traceback.format_exception(error))
+                self._node.get_logger().error(f'axis {self.name}: {self.defect}\n{trace}')
+            return None
 
     def statuses(
         self, *, links: Mapping[Source, Link] | None, stood: int
@@ -275,9 +305,15 @@ class AxisPublisher:
         """
         Return the diagnostics of the axis after the clock has stood for `stood` [ns].
 
-        `links` says how each input is connected; None: the node is inactive.
+        `links` says how each input is connected; None: the node is inactive. If the program fails
+        even here, they say just that.
 
         """
+        made = self.guarded('its diagnostics', self._statuses, links, stood)
+        node = self._node.get_fully_qualified_name()
+        return made or diagnostics.failed(node, self.name, self.defect)
+
+    def _statuses(self, links: Mapping[Source, Link] | None, stood: int) -> list[DiagnosticStatus]:
         self._links = links or {}
         return diagnostics.statuses(
             self._node.get_fully_qualified_name(),

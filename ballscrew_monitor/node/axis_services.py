@@ -73,10 +73,11 @@ class AxisServices:
             return response
         try:
             done = act(publishers)
+            broken = _defects(publishers)
             problem = self._changed(publishers, act.__name__.strip('_'))
             done += f', not kept: {problem}' if problem else ''
-            response.message = '; '.join([done, *failed])
-            response.success = True
+            response.message = '; '.join([done, *failed, *broken])
+            response.success = not broken
         except InputError as error:
             response.message = f'kept the old surface: {error}'
             self._node.get_logger().error(response.message)
@@ -85,7 +86,9 @@ class AxisServices:
     def _reload(self, publishers: Publishers) -> str:
         """Swap the surfaces for the files as they are now, if all of them verify."""
         surfaces = {name: self._load(publisher) for name, publisher in publishers.items()}
-        said = [publisher.reload(surfaces[name]) for name, publisher in publishers.items()]
+        said = [
+            one.guarded('a reload', one.reload, surfaces[name]) for name, one in publishers.items()
+        ]
         return ', '.join(filter(None, (f'reloaded the surface of {_names(publishers)}', *said)))
 
     def _load(self, publisher: AxisPublisher) -> Surface:
@@ -98,13 +101,13 @@ class AxisServices:
 
     def _reset(self, publishers: Publishers) -> str:
         for publisher in publishers.values():
-            publisher.alarm.reset_totals()
+            publisher.guarded('a reset of its totals', publisher.alarm.reset_totals)
         return f'set the totals to zero of {_names(publishers)}'
 
     def _acknowledge(self, publishers: Publishers) -> str:
         """Set the levels back to UNKNOWN and end the events."""
         for publisher in publishers.values():
-            publisher.alarm.acknowledge()
+            publisher.guarded('an acknowledgement', publisher.alarm.acknowledge)
         return f'acknowledged of {_names(publishers)}'
 
     def _serve_shelve(self, request: Any, response: Any) -> Any:
@@ -127,15 +130,17 @@ class AxisServices:
             response.message = str(error)
             return
         for publisher in publishers.values():
-            publisher.shelve(shelving)
+            publisher.guarded('its shelving', publisher.shelve, shelving)
         names = _names(publishers)
-        response.success = True
+        broken = _defects(publishers)
+        response.success = not broken
         response.message = f'no longer shelved: {names}'
         if shelving.until:
             response.message = f'shelved until {clock_text(shelving.until)}: {names}'
         fill_time(response.until, shelving.until)
         problem = self._changed(publishers, 'shelve')
         response.message += f', not kept: {problem}' if problem else ''
+        response.message = '; '.join([response.message, *broken])
 
 
 def not_built(axis: str, reason: str) -> str:
@@ -144,4 +149,8 @@ def not_built(axis: str, reason: str) -> str:
 
 
 def _names(publishers: Publishers) -> str:
-    return ', '.join(publishers)
+    return ', '.join(name for name, one in publishers.items() if not one.failed)
+
+
+def _defects(publishers: Publishers) -> list[str]:
+    return [f'axis {name}: {one.defect}' for name, one in publishers.items() if one.failed]

@@ -40,15 +40,29 @@ AxisEvent = tuple[Axis, InputSample | Refusal]
 Take = Callable[[Axis, InputSample | Refusal], None]
 
 
+def _call(axis: Axis, place: str, call: Callable[..., Any], *args: Any, **named: Any) -> Any:
+    return call(*args, **named)
+
+
 class Intake(Waitable):
     """The subscriptions of all axes; each sample and refusal is handed to `take`."""
 
     def __init__(
-        self, node: Node, axes: Iterable[Axis], take: Take, journal: Journal = SILENT
+        self,
+        node: Node,
+        axes: Iterable[Axis],
+        take: Take,
+        journal: Journal = SILENT,
+        guard: Callable[..., Any] = _call,
     ) -> None:
-        """Subscribe once to each topic, however many inputs read it; the journal hears all."""
+        """
+        Subscribe once to each topic, however many inputs read it; the journal hears all.
+
+        `guard` calls what reads for an axis, and returns None if the program fails in it.
+
+        """
         super().__init__(node.default_callback_group)
-        self._node, self._take, self._journal = node, take, journal
+        self._node, self._take, self._journal, self._guard = node, take, journal, guard
         self._apart = Apart()
         self._simulated = 0  # the last `/clock` [ns]
         self._places: list[int] = []  # of the subscriptions in the wait set
@@ -206,18 +220,22 @@ class Intake(Waitable):
             lost = arrival.topic.loss.take(arrival.number)
             heard.append((arrival, self._simulated or max(now - waited, 0), lost))
         self._journal.hear(heard)
-        for axis, event in ordered([event for one in heard for event in _events(*one)]):
+        events = [event for one in heard for event in _events(*one, self._guard)]
+        for axis, event in ordered(events):
             self._take(axis, event)
         self._journal.flush()
         return True
 
 
-def _events(arrival: Arrival, now: int, lost: int | None) -> list[AxisEvent]:
+def _events(
+    arrival: Arrival, now: int, lost: int | None, guard: Callable[..., Any] = _call
+) -> list[AxisEvent]:
     """Return what a message that arrived at `now` [ns] of the node's clock says of each axis."""
-    readers, message = arrival.topic.readers, arrival.message
-    if message is None:
-        return [(axis, source.refuse_undecoded(now=now, lost=lost)) for axis, source in readers]
-    return [
-        (axis, source.read(message, now=now, max_future=axis.max_future, lost=lost))
-        for axis, source in readers
-    ]
+    found: list[AxisEvent] = []
+    for axis, source in arrival.topic.readers:
+        place = f'the {source.source.name.lower()} that arrived at {now} ns'
+        told = {'now': now, 'max_future': axis.max_future, 'lost': lost}
+        event = guard(axis, place, source.read, arrival.message, **told)
+        if event is not None:
+            found.append((axis, event))
+    return found

@@ -235,12 +235,15 @@ class NodeJournal:
     def describe(self, axes: Iterable[str], because: str) -> None:
         """Let a recording know all about some axes."""
         for name in axes if self.journal.on else ():
-            axis = self._publishers[name].axis
-            topics = {
-                source.name.lower(): self._node.resolve_topic_name(topic)
-                for source, topic in axis.topics.items()
-            }
-            self.journal.describe(axis, self._values, topics, because, self._now)
+            publisher = self._publishers[name]
+            publisher.guarded('its record', self._describe, publisher.axis, because)
+
+    def _describe(self, axis: Axis, because: str) -> None:
+        topics = {
+            source.name.lower(): self._node.resolve_topic_name(topic)
+            for source, topic in axis.topics.items()
+        }
+        self.journal.describe(axis, self._values, topics, because, self._now)
 
     def record(self, topic: str, message: Any) -> None:
         """Let a recording show what the node publishes; a warning is an event of it."""

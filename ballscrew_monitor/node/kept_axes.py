@@ -70,14 +70,18 @@ class KeptAxes:
 
     def restore(self, axes: Iterable[str] | None = None) -> None:
         """Take up what was kept of all axes, or late of some, and say what came of that."""
-        publishers, late = self._publishers, axes is not None
-        for name in publishers if axes is None else axes:
-            monitor = publishers[name].axis.monitor
-            monitor.take_up(self._recall(name, late=late))
-            self.remember(name, monitor.kept)
-            if said := publishers[name].restore(late=late):
+        late = axes is not None
+        for name in self._publishers if axes is None else axes:
+            publisher = self._publishers[name]
+            if said := publisher.guarded('what was kept of it', self._restore, publisher, late):
                 self._node.get_logger().info(f'axis {name}: {said}')
         self._log()
+
+    def _restore(self, publisher: 'AxisPublisher', late: bool) -> str:
+        monitor = publisher.axis.monitor
+        monitor.take_up(self._recall(publisher.name, late=late))
+        self.remember(publisher.name, monitor.kept)
+        return publisher.restore(late=late)
 
     def _recall(self, axis: str, *, late: bool) -> Memory:
         """Return what is known of an axis from before; an event that was interrupted is over."""
@@ -92,7 +96,7 @@ class KeptAxes:
     def remember_all(self) -> None:
         """Keep the sums, events and shelvings of all axes."""
         for publisher in self._publishers.values():
-            publisher.alarm.remember()
+            publisher.guarded('what is kept of it', publisher.alarm.remember)
 
     def close(self) -> None:
         """Write all that waits, and let another node have the directory."""
@@ -103,7 +107,11 @@ class KeptAxes:
         publishers = self._publishers
         late = [name for name in publishers if self.state.is_late(name)]
         self.restore(late)
-        over = [name for name, publisher in publishers.items() if publisher.end_shelving()]
+        over = [
+            name
+            for name, publisher in publishers.items()
+            if publisher.guarded('its shelving', publisher.end_shelving)
+        ]
         if over or late:
             self._say([*publishers] if late else over)
         self._looks += 1

@@ -96,8 +96,8 @@ class BallscrewMonitor(LifecycleNode):
 
     def _on_parameters(self, groups: set[str]) -> None:
         for name in groups & self._axis_publishers.keys():
-            self._axis_publishers[name].axis.adapt(self._values)
-            self._axis_publishers[name].publish_info()
+            publisher = self._axis_publishers[name]
+            publisher.guarded('new parameters', publisher.adapt)
             self._recording.describe([name], 'parameters')
 
     @_reported
@@ -158,10 +158,10 @@ class BallscrewMonitor(LifecycleNode):
         self._recording.begin()
         for publisher in self._axis_publishers.values():
             publisher.publish_info()
-            publisher.alarm.publish()
+            publisher.guarded('its activation', publisher.alarm.publish)
         axes = [publisher.axis for publisher in self._axis_publishers.values()]
         self._recording.describe(self._axis_publishers, 'begin')
-        self._intake = Intake(self, axes, self._on_event, self._recording.journal)
+        self._intake = Intake(self, axes, self._on_event, self._recording.journal, self._guard)
         self._tick_timer = self.create_timer(
             self._values['tick_period'], self._on_tick, clock=self._tick_clock()
         )
@@ -225,8 +225,7 @@ class BallscrewMonitor(LifecycleNode):
             self._intake.close()
             self._intake = None
         if reason:
-            alarms = [publisher.alarm for publisher in self._axis_publishers.values()]
-            end_all(alarms, reason, self._steady)
+            end_all(self._axis_publishers.values(), reason, self._steady)
         self._recording.close()
         if self._tick_timer is not None:
             self.destroy_timer(self._tick_timer)
@@ -247,15 +246,19 @@ class BallscrewMonitor(LifecycleNode):
     def _on_event(self, axis: Axis, event: InputSample | Refusal) -> None:
         self._judge(self._axis_publishers[axis.name], axis.monitor.update, event)
 
+    def _guard(
+        self, axis: Axis, place: str, call: Callable[..., Any], *args: Any, **named: Any
+    ) -> Any:
+        return self._axis_publishers[axis.name].guarded(place, call, *args, **named)
+
     def _judge(
         self, publisher: AxisPublisher, judge: Callable[[Any], State | None], event: Any
     ) -> None:
         """Judge a sample, a refusal or a tick; a defect is an error of its axis alone."""
-        try:
-            self._publish(publisher, judge(event))
-        except Exception as error:  # the other axes go on, whatever it is
-            if publisher.note_defect(error, event):
-                self._publish_diagnostics([publisher.name])
+        known = publisher.defect
+        publisher.guarded(event, lambda: self._publish(publisher, judge(event)))
+        if publisher.defect != known:
+            self._publish_diagnostics([publisher.name])
 
     def _on_tick(self) -> None:
         """Tick on the grid of stamps, when that is due; what has arrived by then comes first."""

@@ -25,7 +25,7 @@ AUTO = 'auto'
 PAUSE = 0.05  # [s] shortest time between two commits
 RETRY = 1.0  # [s] after a failure
 SILENT = 'does not answer'
-PATIENCE = 2.0  # [s] that somebody waits for the disk
+PATIENCE = 2.0  # [s] that a service, a correction or a transition waits for the disk
 MOST_ENTRIES = 10_000  # waiting while nothing can be written; the oldest are dropped
 SHARE = 4  # corrections have this part of the limit
 Kept = TypeVar('Kept', bound=Record)

@@ -94,7 +94,7 @@ class Topic:
         """Return the message of some bytes, None if they are of another definition of its type."""
         try:
             return deserialize_message(data, self.subscription.msg_type)
-        except RuntimeError:  # that of the middleware is one
+        except Exception:  # whatever the middleware says of it
             return None
 
     def waiting(self) -> list[Arrival]:

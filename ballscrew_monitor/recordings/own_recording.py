@@ -18,6 +18,7 @@ from typing import Any
 from ballscrew_monitor.core.fields import message_class
 from ballscrew_monitor.core.full_point import corrected, KeptSolve
 from ballscrew_monitor.judge.dump import dump, restored
+from ballscrew_monitor.judge.records import MEMORY_VERSION
 from ballscrew_monitor.recordings.axis_run import AxisRun
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bulk.batches import batches, END
@@ -89,11 +90,18 @@ def is_as_recorded(bag: Bag, values: Mapping[str, Any]) -> bool:
     if not journal_of(bag):
         return False
     described = _first_entries(bag)
-    if any(entry['version'] != VERSION for entry in described):
+    if not all(map(_is_known, described)):
         if OTHER_VERSION not in bag.remarks:
             bag.remarks.append(OTHER_VERSION)
         return False
     return _values_of(bag, described) == dict(values)
+
+
+def _is_known(entry: Mapping[str, Any]) -> bool:
+    """Tell whether the description of an axis, and the memory in it, are of the version of now."""
+    memory = entry.get('monitor')
+    known = not isinstance(memory, dict) or memory.get('version') == MEMORY_VERSION
+    return bool(entry['version'] == VERSION and known)
 
 
 def _first_entries(bag: Bag) -> list[Mapping[str, Any]]:

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reference tables and shared objects of the offline tests."""
 
-import argparse
 from collections.abc import Mapping
 import csv
 import math
@@ -18,7 +17,7 @@ from surrogate.asperities.marches import inputs_from_json
 from surrogate.builder.closed_form import build_closed_form, default_settings
 from surrogate.builder.full.nodes import onset_speeds
 from surrogate.builder.tiers import screw_and_oil
-from surrogate.cli import add_commands
+from surrogate.cli import add_commands, Parser
 from surrogate.formulas import closed_form
 from surrogate.parameters import load_lubricant, load_screw, Lubricant, Screw
 from surrogate.surface.file import SurfaceData
@@ -43,7 +42,7 @@ def run(request):
     """Return the function that runs one command line, which begins with COMMAND of the module."""
 
     def run_line(*words, read_bag=None):
-        parser = argparse.ArgumentParser()
+        parser = Parser()
         add_commands(parser.add_subparsers(required=True), read_bag)
         args = parser.parse_args([*request.module.COMMAND, *map(str, words)])
         return args.handler(args)

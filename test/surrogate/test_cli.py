@@ -13,6 +13,7 @@ from surrogate.files import InputError
 from surrogate.surface.file import write
 
 COMMAND = ('point',)
+NEGATIVE = ('-5e-324', '-1e3', '-1E+3', '-.5e1', '-5.', '-0')
 
 POINT = ['--screw', 'nominal', '--oil', 'iso_vg_68', '--tier', 'closed_form']
 
@@ -54,6 +55,15 @@ def test_unknown_numbers_are_null_with_a_reason(record):
     assert relieved['central_film_m'] is None
     assert relieved['reason'] == 'no load on this nut, so no film'
     assert any('unloading begins at 2800 N' in text for text in found['warnings'])
+
+
+@pytest.mark.parametrize('number', NEGATIVE)
+def test_a_negative_number_with_an_exponent_is_no_option(run, capsys, number):
+    """It is one after a space as it is after an equals sign."""
+    assert run(*POINT, '--speed-rpm', '600', '--load-N', number) == 0
+    spaced = capsys.readouterr().out
+    assert run(*POINT, '--speed-rpm=600', f'--load-N={number}') == 0
+    assert spaced == capsys.readouterr().out
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A monitor that was written and read again goes on bit for bit as if nothing had happened."""
 
+import hashlib
 import json
 import math
 
@@ -10,10 +11,13 @@ from ballscrew_monitor.core.fields import OtherJoints
 from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, Why
 from ballscrew_monitor.core.state import LoadDerivation, PositionSettings, Shelving
 from ballscrew_monitor.judge.dump import dump, restored
+from ballscrew_monitor.judge.records import Memory, MEMORY_LAYOUT
+from ballscrew_monitor.judge.slopes import SlopeRing
 from hypothesis import given, settings
 from hypothesis import strategies as st
 import pytest
 from surrogate.files import InputError
+from surrogate.surface.records import dtype_of
 
 START = 1000 * SECOND
 STEP = SECOND // 100
@@ -28,6 +32,13 @@ DERIVED = {
     ),
     'positions': PositionSettings(window=SECOND // 20, wrap=math.tau),
 }
+
+
+def test_another_layout_of_the_memory_is_another_version():
+    layout = repr([dtype_of(kind).descr for kind in (Memory, SlopeRing)])
+    assert hashlib.sha256(layout.encode()).hexdigest().startswith(MEMORY_LAYOUT), (
+        'raise MEMORY_VERSION and renew MEMORY_LAYOUT: older recordings are then not misread'
+    )
 
 
 def through_json(monitor):

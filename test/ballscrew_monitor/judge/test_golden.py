@@ -15,8 +15,9 @@ and a masked node. `golden_rows.npz` holds columns of four tables. Their names t
   2^number; `told_` is the excursion that is active or was the last; `reason` counts `texts`.
 * `state_`: each published state; `row` -1 where none gave it.
 
-Two things have changed since and are left out here: the light-load gate has a hysteresis, and an
-excursion keeps limit and place of its worst sample.
+Three things have changed since. The light-load gate has a hysteresis, and an excursion keeps limit
+and place of its worst sample: both are left out here. The lookup adds up its sums in another
+order, for which numbers have a relative tolerance.
 
 """
 
@@ -29,7 +30,7 @@ from ballscrew_monitor.judge import views
 from ballscrew_monitor.judge.step import NOTHING, step
 import numpy as np
 
-TOLERANCE = 1e-12  # of numbers, relative, and absolute in SI: sums run in another order
+TOLERANCE = 1e-12  # of numbers [-]: the lookup adds up its sums in another order
 SAME = (
     'stamp now tick published level speed axial_load temperature motor_torque speed_source '
     'axial_load_source temperature_source motor_torque_source direction direction_held '
@@ -53,7 +54,7 @@ def close(found, wanted):
     """Tell whether two numbers agree."""
     if isinstance(wanted, float):
         same = math.isnan(found) and math.isnan(wanted)
-        return same or math.isclose(found, wanted, rel_tol=TOLERANCE, abs_tol=TOLERANCE)
+        return same or math.isclose(found, wanted, rel_tol=TOLERANCE)
     return int(found) == wanted
 
 

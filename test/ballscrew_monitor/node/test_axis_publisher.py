@@ -66,8 +66,9 @@ def test_all_axes_speak_before_any_waits_and_share_one_time():
         stand[0] += Duration(nanoseconds=min(duration.nanoseconds, 200_000_000))
 
     alarm = types.SimpleNamespace(end=end, wait=wait)
+    axis = types.SimpleNamespace(alarm=alarm, guarded=lambda place, call, reason: call(reason))
     standing = types.SimpleNamespace(now=lambda: stand[0])
-    end_all([alarm] * 4, 'why', standing)
+    end_all([axis] * 4, 'why', standing)
     assert said == [*['why'] * 4, 500_000_000, 300_000_000, 100_000_000, 0]
-    end_all([alarm], 'nothing to end', standing)
+    end_all([axis], 'nothing to end', standing)
     assert said[8:] == ['nothing to end']

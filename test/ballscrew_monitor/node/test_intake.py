@@ -214,17 +214,21 @@ def test_closed_and_opened_again_while_another_thread_waits(bench):
         except Exception as error:
             failures.append(error)
 
-    taken, end = [], time.monotonic() + DEADLINE
+    def publish():
+        bench.publish('speed', value)
+        over.wait(0.001)
+
+    taken = []
     thread = threading.Thread(target=spin)
     thread.start()
-    for value in range(20):
-        bench.intake.close()
-        bench.intake = Intake(bench.node, [bench.axis], lambda _, event: taken.append(event.value))
-        while value not in taken and not failures and time.monotonic() < end:
-            bench.publish('speed', value)
-            over.wait(0.001)
-    over.set()
-    thread.join()
+    try:
+        for value in range(20):
+            bench.intake.close()
+            bench.intake = Intake(bench.node, [bench.axis], lambda _, one: taken.append(one.value))
+            bench.until(lambda value=value: value in taken or failures, meanwhile=publish)
+    finally:
+        over.set()
+        thread.join()
     assert failures == []
     assert set(taken) == set(range(20))
 

@@ -74,8 +74,10 @@ class Machine:
         publisher = types.SimpleNamespace(publish=nothing)
         self.alarm = Alarm(self.node, axis, publisher, self.retention, nothing)
         self.stations['x'] = types.SimpleNamespace(
+            name='x',
             axis=axis,
             alarm=self.alarm,
+            guarded=lambda place, call, *args: call(*args),
             restore=self.take_corrections,
             end_shelving=self.alarm.end_shelving,
         )

@@ -3,6 +3,7 @@
 """The node in its own process, over the real middleware."""
 
 import contextlib
+import functools
 import itertools
 import math
 import signal
@@ -10,19 +11,28 @@ from types import SimpleNamespace
 
 from ballscrew_monitor.core.conversions import nanoseconds
 from ballscrew_monitor.core.fields import stamp_of
-from ballscrew_monitor.core.inputs import InputSample, Source
+from ballscrew_monitor.core.inputs import Input, InputSample, Source
 from ballscrew_monitor.cycle.domain import free_domain
+from ballscrew_monitor.judge import views
+from ballscrew_monitor.judge.monitor import Monitor
 from ballscrew_monitor.messages import diagnostics
-from ballscrew_monitor.node.axis_publisher import NEWS_INTERVAL
+from ballscrew_monitor.node import recording_process
+from ballscrew_monitor.node.alarm import Alarm
+from ballscrew_monitor.node.axis_publisher import AxisPublisher, NEWS_INTERVAL
+from ballscrew_monitor.node.journal import Journal
+from ballscrew_monitor.node.kept_axes import LOOK, PERIOD
 from ballscrew_monitor.node.node import BallscrewMonitor
+from ballscrew_monitor.node.topic import Arrival
+from ballscrew_monitor.settings.axis import Axis
 from ballscrew_msgs.msg import BallScrewState, OperatingPoint, PointResult
-from ballscrew_msgs.srv import EvaluateOperatingPoint
+from ballscrew_msgs.srv import EvaluateOperatingPoint, ShelveAlarm
 from diagnostic_msgs.msg import DiagnosticStatus
 import pytest
 from rcl_interfaces.srv import DescribeParameters, ListParameters
 import rclpy
 from rclpy.clock import ClockType
 from rclpy.parameter import Parameter
+from sensor_msgs.msg import JointState
 from std_srvs.srv import Trigger
 from surrogate.surface import shipped_surface, Surface
 
@@ -371,21 +381,118 @@ def test_axes_that_change_together_are_all_told_at_once(monkeypatch):
         assert told == [['x'], ['y']] * 2
 
 
-def test_a_defect_at_a_sample_is_the_error_of_its_axis_alone(monkeypatch):
-    with started(axes=['x', 'y']) as node:
-        broken, sound = (node._axis_publishers[name].axis for name in ('x', 'y'))
-        monkeypatch.setattr(broken.monitor, 'update', lambda event: 1 / 0)
-        stamp = node.get_clock().now().nanoseconds
-        for axis, value in ((broken, FAST), (sound, FAST), (broken, SLOW), (sound, SLOW)):
-            sample = InputSample(source=Source.SPEED, value=value, stamp=stamp)
-            node._on_event(axis, sample)
-        statuses = {one.name.split(': ', 1)[1]: one for one in node._statuses(['x', 'y'], 0)}
-        error = statuses['x: Lubrication']
-        assert error.level == DiagnosticStatus.ERROR
-        assert error.message.startswith(f'the program failed at the speed {FAST} (SI) that')
-        assert 'ZeroDivisionError: division by zero' in error.message
+def speeds(node):
+    """Let both axes have two samples of their speeds."""
+    stamp = node.get_clock().now().nanoseconds
+    for value, name in itertools.product((FAST, SLOW), 'xy'):
+        sample = InputSample(source=Source.SPEED, value=value, stamp=stamp)
+        node._on_event(node._axis_publishers[name].axis, sample)
+
+
+def hears(node):
+    """Let the intake find two messages about x, which y reads too."""
+    topic = node._intake.topics['/joint_states']
+    message = JointState(name=['x_axis'], velocity=[FAST])
+    arrivals = [Arrival(1, message, number, topic) for number in (1, 2)]
+    parts = {name: getattr(topic, name) for name in ('loss', 'subscription', 'type_name')}
+    node._intake.topics['/joint_states'] = SimpleNamespace(waiting=lambda: arrivals, **parts)
+    node._intake.drain()
+
+
+def looks(node):
+    for _ in range(round(PERIOD / LOOK)):
+        node._kept._look()
+
+
+def serves(node, name, kind, **request):
+    """Serve x and y, which fails for x."""
+    service = next(one for one in node.services if one.srv_name == name)
+    answer = service.callback(kind.Request(**request), kind.Response())
+    assert (answer.success, 'ZeroDivisionError' in answer.message) == (False, True)
+
+
+def solves(node):
+    assert 'ZeroDivisionError' in node._axis_publishers['x'].current_point()
+
+
+REQUESTS = {
+    'acknowledge': (Trigger, {}, 'an acknowledgement'),
+    'reset_totals': (Trigger, {}, 'a reset of its totals'),
+    'shelve': (ShelveAlarm, {'duration': 60.0, 'reason': 'why'}, 'its shelving'),
+}
+DEFECTS = {
+    'a sample': (Monitor, 'update', speeds, f'the speed {FAST} (SI) that arrived at '),
+    'a tick': (Monitor, 'tick', BallscrewMonitor._on_tick, 'a tick at '),
+    'a message': (Input, 'read', hears, 'the speed that arrived at '),
+    'its news': (views, 'event_of', speeds, f'the speed {FAST} (SI) that arrived at '),
+    'all statuses': (views, 'event_of', BallscrewMonitor._publish_diagnostics, 'its diagnostics'),
+    'sums': (views, 'totals_of', looks, 'what is kept of it'),
+    'shelving': (Alarm, 'end_shelving', looks, 'its shelving'),
+    'late': (Monitor, 'take_up', lambda node: node._kept.restore(['x', 'y']), 'what was kept of '),
+    'a record': (Journal, 'describe', lambda node: node._recording.describe('xy', ''), 'its rec'),
+    'parameters': (Axis, 'adapt', lambda node: node._on_parameters({'x', 'y'}), 'new parameters'),
+    'the end': (Monitor, 'acknowledge', lambda node: node._stop('why'), 'the end of its event'),
+    'activation': (
+        Alarm,
+        'publish',
+        lambda node: node.trigger_deactivate() and node.trigger_activate(),
+        'its activation',
+    ),
+    'a point': (Monitor, 'current_point', solves, 'a solve'),
+    'evaluation': (
+        AxisPublisher,
+        '_evaluate',
+        functools.partial(
+            serves,
+            name='~/evaluate',
+            kind=EvaluateOperatingPoint,
+            axis='x',
+            points=[OperatingPoint()],
+        ),
+        'an evaluation',
+    ),
+} | {
+    name: (
+        views,
+        'event_of',
+        functools.partial(serves, name=f'~/{name}', kind=kind, **request),
+        place,
+    )
+    for name, (kind, request, place) in REQUESTS.items()
+}
+
+
+@pytest.mark.parametrize(('owner', 'name', 'use', 'place'), DEFECTS.values(), ids=DEFECTS)
+def test_a_defect_is_the_error_of_its_axis_alone(
+    monkeypatch, tmp_path, capfd, owner, name, use, place
+):
+    """Each part of the judgement of x fails wherever it is used, and y goes on."""
+    monkeypatch.setattr(recording_process.sys, 'executable', '/no/python')
+    part, told = getattr(owner, name), []
+    with started(axes=['x', 'y'], record='always', state_dir=str(tmp_path)) as node:
+        broken, sound = (node._axis_publishers[name] for name in 'xy')
+        monitor = broken.axis.monitor
+        of_x = broken, broken.axis, broken.alarm, monitor, monitor.memory, *broken.axis.inputs
+
+        def fail(*args, **named):
+            if any(one is mine for one in args for mine in of_x):
+                raise ZeroDivisionError
+            return part(*args, **named)
+
+        monkeypatch.setattr(owner, name, fail)
+        monkeypatch.setattr(node, '_diagnostics', SimpleNamespace(publish=told.append))
+        use(node)
+        speeds(node)
+        node._publish_diagnostics()
+        statuses = {one.name.split(': ', 1)[1]: one for one in told[-1].status}
+        assert statuses['x: Lubrication'].level == DiagnosticStatus.ERROR
+        said = statuses['x: Lubrication'].message
+        assert said.startswith(f'the program failed at {place}')
+        assert 'ZeroDivisionError' in said
         assert statuses['y: Lubrication'].level != DiagnosticStatus.ERROR
-        assert sound.monitor.input_status(stamp)[0].received == 2
+        assert sound.axis.monitor.memory.received[Source.SPEED] >= 2
+        monkeypatch.setattr(owner, name, part)
+    assert capfd.readouterr().err.count('the program failed at') == 1
 
 
 def test_a_clock_that_stops_is_told(node):

@@ -149,6 +149,8 @@ def test_nobody_waits_for_a_disk_that_does_not_answer(state, monkeypatch):
     state.keep(record(1))
     thread = state._thread
     assert state.flush() == state.problem == f'{state.folder} does not answer'
+    state.keep(record(2))  # that of a sample, which does not wait
+    assert state.keep_corrections(Corrections('x')) == state.problem
     state.close()
     answer.set()
     thread.join()

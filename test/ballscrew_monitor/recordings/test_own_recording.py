@@ -10,13 +10,21 @@ import types
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.full_point import SolvedAt
+from ballscrew_monitor.judge import dump
+from ballscrew_monitor.judge.records import MEMORY_VERSION
+from ballscrew_monitor.node import journal
 from ballscrew_monitor.node.intake import _events, ordered
 from ballscrew_monitor.node.journal import Journal
 from ballscrew_monitor.node.topic import Arrival
 from ballscrew_monitor.recordings.axis_run import TimedState
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.log_facts import values_for
-from ballscrew_monitor.recordings.own_recording import journal_of, recorded_values
+from ballscrew_monitor.recordings.own_recording import (
+    is_as_recorded,
+    journal_of,
+    OTHER_VERSION,
+    recorded_values,
+)
 from ballscrew_monitor.recordings.replay import replay, replay_columns, replay_parts
 from ballscrew_monitor.recordings.retention import KeepSettings, Retention
 from ballscrew_monitor.report.inputs_seen import inputs_seen
@@ -316,6 +324,23 @@ def test_a_replay_takes_the_parameters_of_the_recording_and_follows_it(tmp_path)
     told = {one.source: one.lost for one in inputs_seen(log.axes[0]) if one.place}
     assert told == {source: lost[source] for source in told}
     assert any(told.values())
+
+
+@pytest.mark.parametrize(('module', 'name'), [(journal, 'VERSION'), (dump, 'MEMORY_VERSION')])
+def test_a_recording_of_another_version_is_an_ordinary_bag_and_says_so(
+    tmp_path, monkeypatch, module, name
+):
+    with monkeypatch.context() as other:
+        other.setattr(module, name, 1 if name == 'VERSION' else MEMORY_VERSION + 1)
+        node = SmallNode(tmp_path)
+        live(node, seconds=12)
+        node.close()
+    bag = bag_in(tmp_path)
+    values = recorded_values(bag)
+    assert not is_as_recorded(bag, values)
+    *_, outcome, _ = replay_columns(bag, values)
+    assert outcome.judged > 100
+    assert bag.notes == [OTHER_VERSION]
 
 
 def test_with_other_parameters_it_is_a_bag_like_any_other(tmp_path):

@@ -50,7 +50,8 @@ def test_a_point_is_the_lookup(query, tier, rpm, load, opposing):
 
 @pytest.mark.parametrize('load', ['-5e-324', '5e-324', '-1e-307', '-0.0'])
 def test_a_load_of_almost_nothing_is_no_load(query, load):
-    found = query('--speed-rpm', 600, f'--load-N={load}', '--temperature-degC', 50)
+    """A negative number with an exponent may stand after a space."""
+    found = query('--speed-rpm', 600, '--load-N', load, '--temperature-degC', 50)
     assert found['validity'] == 'VALID'
     assert found['efficiency'] == 0.0
 
