@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-What most scenarios share: an optimal feed, a creep that is not, and when one becomes the other.
+Parts of most scenarios: an optimal feed, a creep that is not, and the change between them.
 
 Speeds [rev/min], loads on the nut [N], oil [degC], times [s].
 

@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-What every generator shares: topics, messages as bytes, and the bag that appears when complete.
+Parts of every generator: topics, messages as bytes, and the bag that appears when complete.
 
 The bytes are the same every time.
 

@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What the commands that need ROS may be told on the command line, and their defaults."""
+"""Options of the commands that need ROS, and their defaults."""
 
 import argparse
 from pathlib import Path

@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-What the onset study of rolling roughness found: a table, and a picture.
+Results of the onset study of rolling roughness: a table, and a picture.
 
 Usage: python studies/rolling_onset_report.py [--table studies/results/rolling_onset.csv] [--out
 studies/results]. The table goes to standard output.

@@ -2,8 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Documentation that would rot: links, paths, commands, the parameter table, short pages."""
 
+import ast
+import io
 from pathlib import Path
 import re
+import tokenize
 
 from ballscrew_monitor.cli import main
 from ballscrew_monitor.settings.parameters import markdown_table
@@ -22,7 +25,7 @@ PAGES = [
 ]
 SOURCES = [
     path
-    for name in ('ballscrew_monitor', 'bench', 'studies', 'surrogate', 'test')
+    for name in ('bags', 'ballscrew_monitor', 'bench', 'studies', 'surrogate', 'test')
     for path in sorted((ROOT / name).rglob('*.py'))
 ]
 FOLDERS = [
@@ -42,6 +45,9 @@ HISTORY = re.compile(
 )
 FOREIGN = re.compile(
     r'\b(told of|anew|of late|what it stands for|is none|whole of)\b', re.IGNORECASE
+)
+OPENING = re.compile(
+    r'(What|From|Which|Just|How|Where|When|Why|Who|Whose|Whether|Whatever|Takes|Makes|Says)\b'
 )
 COMMAND = re.compile(r'ballscrew ((?:surface )?[a-z]+)((?: [^`\n#]*)?)')
 MOST_PAGES, MOST_WORDS = 10, 900
@@ -155,6 +161,17 @@ def test_pages_are_without_history(page: Path):
 def test_pages_are_in_plain_words(page: Path):
     """No page has phrases that a native speaker would not write."""
     assert not FOREIGN.findall(words_of(page))
+
+
+@pytest.mark.parametrize('path', SOURCES, ids=name_of)
+def test_sources_are_in_plain_words(path: Path):
+    """No comment or docstring has those phrases, and a module opens with a noun."""
+    text = path.read_text(encoding='utf-8')
+    assert not OPENING.match(ast.get_docstring(ast.parse(text)) or '')
+    for token in tokenize.generate_tokens(io.StringIO(text).readline):
+        if token.type == tokenize.COMMENT or token.string.startswith('"""'):
+            words = ' '.join(token.string.split()).replace('there is none', '')
+            assert not set(FOREIGN.findall(words)) - {'is None'}, f'line {token.start[0]}'
 
 
 def test_front_page_leads_to_every_page():

@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Who imports whom: `surrogate` never ROS, the node of `surrogate` the lookup alone, all downward.
+Imports: `surrogate` never ROS, the node of `surrogate` the lookup alone, all downward.
 
 Once as the sources say it, once as a fresh process does it.
 

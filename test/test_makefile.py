@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What the targets of the Makefile may touch."""
+"""Targets of the Makefile, and the files that they may touch."""
 
 from pathlib import Path
 import shutil

@@ -1,3 +1,3 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What talks to a running node from a terminal."""
+"""Clients of a running node on a terminal."""

@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What is seen and heard in a ROS graph: domain, nodes, topics, and an input as nodes take it."""
+"""Surroundings in a ROS graph: domain, nodes, topics, and an input as nodes take it."""
 
 from collections.abc import Callable, Iterator, Sequence
 import contextlib

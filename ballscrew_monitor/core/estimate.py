@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""From an operating point and a surface to what the model says of it; no state, no clock."""
+"""The model's answer to an operating point, from a surface; no state, no clock."""
 
 import dataclasses
 import enum

@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-From messages to samples in the machine frame, or why a message gives none.
+Samples in the machine frame out of messages, or why a message gives no sample.
 
 The status of an input tells what was received, what is wrong with it, and how fresh it is.
 

@@ -149,7 +149,7 @@ def _check(name: str, value: float, good: bool, allowed: str) -> None:
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Finding:
-    """One thing worth saying; value and limit in `unit`, NaN is none."""
+    """One thing worth saying; value and limit in `unit`, NaN if not known."""
 
     code: Code
     severity: Severity

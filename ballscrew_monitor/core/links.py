@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""How an input is connected, as the ROS graph shows it, and why nothing comes over the link."""
+"""Connections of the inputs in the ROS graph, and why nothing comes over one."""
 
 import dataclasses
 

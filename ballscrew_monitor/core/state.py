@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-What a monitor is told and what it says: settings, events, sums over time and states.
+Data into and out of a monitor: settings, events, sums over time and states.
 
 A warning that is known can be shelved for a time, so that nobody is called for it again and again.
 Shelving changes what is said of a warning, never the judgement. Time is an argument [ns], the
@@ -86,7 +86,7 @@ class MonitorSettings:
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Event:
     """
-    One stay outside the optimal zone; stamps [ns], event 0 is none yet.
+    One stay outside the optimal zone; stamps [ns], event 0: there was no event yet.
 
     `ending` says why the node ended it, empty if the axis came back. The first reading of
     `advice` takes milliseconds.

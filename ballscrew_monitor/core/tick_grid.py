@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-When to tick, and whether the clock still runs.
+The grid of ticks in time, and whether the clock still runs.
 
 Two clocks meet here: `now` [ns] is that of the stamps, which may be set back, simulated or at a
 stand; `steady` [ns] only ever runs on. Both are handed in.

@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-What a run is to do, checked before anything is started or written, and what it came to.
+The plan of a run, checked before anything is started or written, and its outcome.
 
 The words for what was lost, the summary, and the report.
 

@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-From states to diagnostic_msgs: three statuses for each axis.
+States as diagnostic_msgs: three statuses for each axis.
 
 A status begins as an ERROR that says that nothing was set, and every case that is not known to be
 good stays above OK. Messages hold no measured numbers, so that a new message is a change worth

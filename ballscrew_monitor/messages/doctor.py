@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-What is wrong between a parameter file and a running ROS graph: facts in, findings out.
+Faults between a parameter file and a running ROS graph: facts in, findings out.
 
 A finding is a sentence that says what to write instead. Nothing here asks the graph.
 

@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-What is wrong with an input and what mends it: one sentence each, the same wherever it is said.
+Faults of an input and their cures: one sentence each, the same wherever it is said.
 
 A sentence changes with the fault alone: it names parameters, topics and joints, and of numbers
 only those to be written.

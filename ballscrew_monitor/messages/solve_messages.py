@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""From the goal of a full solve to a point, and from what came of it to a result."""
+"""Goals of full solves as points, and their outcomes as results."""
 
 from collections.abc import Mapping
 import math

@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-From states, events and surfaces to messages.
+Messages of states, events and surfaces.
 
 A number that goes into a message is always passed through float(): the generated classes store
 anything else as garbage when their checks are off.

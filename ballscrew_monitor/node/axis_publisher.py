@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What the node keeps of one axis: the axis, its publishers, and what it last said."""
+"""Everything that the node keeps of one axis: the axis, its publishers, and its last words."""
 
 from collections.abc import Callable, Mapping, Sequence
 import dataclasses

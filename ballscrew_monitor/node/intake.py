@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Takes what the inputs have received: all that waits, whatever woke the node, oldest first.
+Intake of everything that waits at the inputs, whatever woke the node, oldest first.
 
 An executor costs more for each message than its judgement does, looks at every subscription in
 every round, and hands the messages of several topics over in an order of its own. So it waits for

@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-What the node heard, did and said, in that order, for its recording.
+Journal of all that the node heard, did and said, in that order, for its recording.
 
 Messages go in as they came, with the arrival on the clock of the node as their log time and the
 number of the burst in which they were taken as their sequence. Beside them lies the topic

@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Which files a bag is made of, and what they are: by metadata.yaml and by their first bytes."""
+"""Files of a bag and their kinds, by metadata.yaml and by their first bytes."""
 
 import dataclasses
 from pathlib import Path, PurePath

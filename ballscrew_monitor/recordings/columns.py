@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-What became of every sample of a recording, as columns, and what it comes to for an axis.
+Columns of the outcome of every sample of a recording, and their sums for an axis.
 
 A row is a speed sample that was judged, or a tick that found no fresh speed; states are published
 of some rows only. A long recording is many blocks of rows, so that it need not fit into memory.

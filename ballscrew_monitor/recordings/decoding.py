@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""From a serialised message to a message; one that does not decode is counted and named."""
+"""Decoding of serialised messages; one that does not decode is counted and named."""
 
 from collections.abc import Sequence
 import itertools

@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-What a node sends to the process that writes its recording: topics, messages and triggers.
+Frames from a node to the process that writes its recording: topics, messages, triggers.
 
 A frame is a head of fixed length and a body. The way from the node never blocks: what the pipe
 does not take waits in a backlog of bounded size, and beyond that frames are dropped.

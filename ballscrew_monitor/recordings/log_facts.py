@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What a bag made of a log says of itself in its metadata: parameters, map, assumptions, notes."""
+"""Facts in the metadata of a bag made of a log: parameters, map, assumptions, notes."""
 
 from collections.abc import Collection, Mapping, Sequence
 import dataclasses

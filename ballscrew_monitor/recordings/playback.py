@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Just the player: a bag over DDS in the domain of the environment, for whoever listens."""
+"""The player alone: a bag over DDS in the domain of the environment, for whoever listens."""
 
 from collections.abc import Sequence
 import dataclasses

@@ -168,7 +168,7 @@ class Player:
 
 
 def shifted(data: bytes, message_type: Any, by: int) -> bytes:
-    """Return a serialised message with stamps later `by` [ns]; a stamp of 0 is none, and stays."""
+    """Return a serialised message with stamps later `by` [ns]; a stamp of 0 stays."""
     message = deserialize_message(data, message_type)
     for stamp in _times(message):
         before = stamp.sec * SECOND + stamp.nanosec

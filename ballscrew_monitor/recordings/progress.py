@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""How far a recording is judged or a table is read, for who waits: rate and time left."""
+"""Progress of judging a recording or reading a table, for people: rate and time left."""
 
 from collections.abc import Callable, Iterator
 import contextlib

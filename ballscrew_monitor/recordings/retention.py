@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-What of a stream of frames is kept on the disk, in which files, and for how long.
+Retention of a stream of frames on the disk: which part, in which files, for how long.
 
 Run `python -P -m ballscrew_monitor.recordings.retention FOLDER SETTINGS`, the settings as JSON:
 this process writes the recording of a node, so that no judgement waits for a disk. Frames come in

@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What came out of a run or a replay: totals, events, and the words for them."""
+"""Summary of a run or a replay: totals, events, and the words for them."""
 
 import dataclasses
 import math

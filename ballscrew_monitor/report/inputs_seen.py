@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What each input of an axis was like, and what contradicts its stated unit."""
+"""Findings on each input of an axis, and contradictions to its stated unit."""
 
 from collections.abc import Sequence
 import dataclasses

@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-What a surface says of speed and opposing load around a run, on a grid at one oil temperature.
+A surface over speed and opposing load around a run, on a grid at one oil temperature.
 
 Speeds are logarithmic and begin where judging does: contact sets in at a hundredth of the highest
 speed.

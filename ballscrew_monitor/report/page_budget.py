@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-What each axis may take of a page, so that one of many axes is no larger than one of a few.
+Shares of the axes in a page, so that one of many axes is no larger than one of a few.
 
 All of it is shown of a few axes; of many the charts are coarser and the tables shorter. What is
 then left of the page is for every sample around the worst events.

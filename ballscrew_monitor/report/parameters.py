@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""With which parameters a recording is judged, where they come from, and what they assume."""
+"""Parameters with which a recording is judged, their origin, and their assumptions."""
 
 from collections.abc import Iterator, Mapping, Sequence
 import dataclasses

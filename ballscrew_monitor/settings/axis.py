@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""From parameter values to one ready axis: its surface, its inputs and its monitor."""
+"""Construction of an axis from parameter values: its surface, its inputs and its monitor."""
 
 from collections.abc import Callable, Iterable, Mapping
 import contextlib

@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-What the middleware is told through the environment, before any of it is loaded.
+Settings of the middleware in the environment, made before any of it is loaded.
 
 A middleware that is not there ends the process in C, without a word that helps; a discovery
 server that cannot be found leaves it alone in the graph. So both are looked at first.

@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-What is made from the table of parameters: checks, files, and the table for the documentation.
+Products of the parameter table: checks, files, and the table for the documentation.
 
 The rows of `AXIS_ROWS` hold for every axis, under its name; `{axis}` in a default is that name.
 

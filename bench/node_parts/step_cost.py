@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-What judging costs a process, interpreted or compiled for each sample, without DDS.
+Cost of judging in a process, interpreted or compiled for each sample, without DDS.
 
 Run `python bench/node_parts/step_cost.py WAY AXES RATE SECONDS`, WAY being `interpreted` or
 `compiled`. Prints the time from the start of the interpreter to the first state [s], the largest

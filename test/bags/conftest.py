@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What the monitor says of a bag, as plain rows that can be held against an expectation."""
+"""Rows of plain values that the monitor gives of a bag, to be held against an expectation."""
 
 import dataclasses
 

@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What a node records of any scenario gives its states again, bit for bit."""
+"""Recordings by a node of any scenario give its states again, bit for bit."""
 
 import itertools
 from pathlib import Path

@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Which changes of a source are tried, and that a mutant is run without touching the tree."""
+"""Mutants: which changes are tried, and that they run without touching the tree."""
 
 from pathlib import Path
 import runpy

@@ -87,5 +87,5 @@ def test_each_row_has_one_group(row, change, group):
     ],
 )
 def test_defects_are_broken_promises(row, change, defect):
-    """A NaN called a result, an exception or a hang; a case that says it failed is none."""
+    """A NaN called a result, an exception or a hang; a case that says it failed is not broken."""
     assert replace(row, **change).defect is defect

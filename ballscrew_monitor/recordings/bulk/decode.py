@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-From the serialised messages of a topic to entries, those of equal layout at once.
+Entries out of the serialised messages of a topic, those of equal layout at once.
 
 What has no layout, and whatever is to be refused, is decoded one by one as the node does it.
 

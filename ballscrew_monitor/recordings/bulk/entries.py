@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What the messages of a recording say of the inputs of all axes, as arrays."""
+"""Entries of all axes out of the messages of a recording, as arrays."""
 
 from collections.abc import Sequence
 import dataclasses

@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Where the numbers stand in the serialised messages of one topic.
+Places of the numbers in the serialised messages of one topic.
 
 Lengths and texts decide where everything else stands, so messages with equal ones are read alike.
 A layout is taken from one message and trusted for all others whose deciding bytes are equal.

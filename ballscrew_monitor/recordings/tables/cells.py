@@ -23,7 +23,7 @@ from surrogate.files import InputError
 
 Array = NDArray[np.float64]
 Form = Callable[[pl.Series], pl.Series]
-"""Makes cells numbers, null where one is none."""
+"""Makes cells numbers, null where one is not a number."""
 UNREADABLE = (PolarsError, pl.exceptions.PanicException)
 
 
@@ -36,7 +36,7 @@ class Reading:
     note: str
 
     def numbers(self, cells: pl.Series) -> Array:
-        """Return cells as numbers, NaN where one is none."""
+        """Return cells as numbers, NaN where one is not a number."""
         return _finite(self.form, cells)
 
 
@@ -178,7 +178,7 @@ def _points(texts: pl.Series) -> pl.Series:
 
 
 def _commas(texts: pl.Series) -> pl.Series:
-    """Return texts as numbers with a decimal comma; one with a point is none."""
+    """Return texts as numbers with a decimal comma; one with a point becomes null."""
     plain = texts.set(texts.str.contains('.', literal=True), None)
     return _points(plain.str.replace(',', '.', literal=True))
 

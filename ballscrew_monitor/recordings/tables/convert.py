@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-From a table to a bag that says how it is to be judged, and what was assumed to make it.
+Conversion of a table to a bag that says how it is to be judged, and on which assumptions.
 
 Topics are `joint_states` with speed, position and torque of each screw, `<axis>/axial_load` and
 `<axis>/oil_temperature`. Parameters of the node, map, assumptions and notes are in the metadata.

@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What the numbers of a log say: rate, unit of the time and of the speeds, what never changes."""
+"""Estimates from the numbers of a log: rate, units of time and speeds, constant columns."""
 
 from collections.abc import Mapping, Sequence
 import math

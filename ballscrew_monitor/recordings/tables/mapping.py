@@ -112,7 +112,7 @@ class TableMap:
 
 
 def read_map(path: Path) -> TableMap:
-    """Return the map in a file; raises InputError when it is none."""
+    """Return the map in a file; raises InputError when it holds no map."""
     try:
         content = yaml.safe_load(path.read_text())
     except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:

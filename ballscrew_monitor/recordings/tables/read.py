@@ -140,7 +140,7 @@ def _left_out(
 
 
 def _source(path: Path) -> _Source:
-    """Return the table in a file, its cells as they stand; raises InputError when it is none."""
+    """Return the table in a file, its cells as they stand; raises InputError without one."""
     try:
         with path.open('rb') as stream:
             head = stream.read(HEAD)

@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Why nothing comes over a link, case by case."""
+"""Reasons for silence on a link, case by case."""
 
 from ballscrew_monitor.core.links import Link, link_reason, Publisher, RELIABLE, TRANSIENT_LOCAL
 import pytest

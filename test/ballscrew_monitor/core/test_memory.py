@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What is kept over a restart, as a record too."""
+"""Memory over a restart, as a record too."""
 
 import dataclasses
 import math

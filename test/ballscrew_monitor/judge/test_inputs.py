@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""How well an input does: freshness, rate, lag, losses, refusals."""
+"""Quality of an input: freshness, rate, lag, losses, refusals."""
 
 import math
 

@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What a monitor tells of an excursion, and what it is told beside samples."""
+"""A monitor's words on an excursion, and what it is told beside samples."""
 
 import dataclasses
 import math

@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What the diagnostics say, case by case."""
+"""Diagnostics, case by case."""
 
 import dataclasses
 import math

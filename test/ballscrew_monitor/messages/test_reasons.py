@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What is wrong with an input, case by case, with what mends it."""
+"""Faults of an input with their cures, case by case."""
 
 import math
 

@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What the messages say of a state, an event and a surface."""
+"""Messages of a state, an event and a surface."""
 
 import math
 

@@ -28,7 +28,7 @@ def test_it_follows_the_parameters():
     assert deadline() == pytest.approx(1.0 + 0.5 + 0.3)
     assert deadline(x__publish_period=10.0, x__speed__timeout=2.0) == pytest.approx(12.3)
     assert deadline(x__publish_period=0.0, tick_period=1.0) == pytest.approx(1.0 + 0.5 + 3.0)
-    assert deadline(simulated=True) == 0.0  # that is none
+    assert deadline(simulated=True) == 0.0  # no deadline
 
 
 @given(

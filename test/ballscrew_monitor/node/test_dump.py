@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What `ros2 param dump` writes of a running node is a parameter file like any other."""
+"""Output of `ros2 param dump` of a running node is a parameter file like any other."""
 
 from ballscrew_monitor.settings import parameters
 import pytest

@@ -295,7 +295,7 @@ def test_messages_without_end_leave_the_others_their_turn(bench, monkeypatch):
 
 
 def open_bench(bench, *fields):
-    """Let the intake begin anew with open inputs on the topic `late`, of these fields."""
+    """Let another intake begin with open inputs on the topic `late`, of these fields."""
     sources = (Source.SPEED, Source.TORQUE)
     scaling = Scaling(factor=1.0, shift=0.0)
     opened = tuple(

@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What the node keeps, over the real middleware: killed, restarted, on a full disk, shelved."""
+"""State that outlives the node, over the real middleware: kills, a full disk, shelving."""
 
 import contextlib
 import resource

@@ -295,7 +295,7 @@ def test_several_axes_share_one_topic(node):
     # A tick between two samples has a state of its own, without a speed.
     assert FAST in [state.point.speed for state in x]
     assert y[-1].point.speed == SLOW
-    # A change is told of its own axis, the rest once a second. One that comes together with the
+    # A change is told for its own axis, the rest once a second. One that comes together with the
     # rest has no message of its own, the next one has.
     speeds = itertools.cycle([FAST, 0.0])
     node.until(
@@ -578,7 +578,7 @@ def test_sim_time_is_the_clock_of_everything(node):
     assert states[-1].result.validity == PointResult.VALIDITY_NO_INPUT
     publish(FAST, step=20 * 10**9)  # at 70 s
     node.until(lambda: runs(61) and states[-1].inputs[0].dropped == 1, 'the refusal')
-    node.stamp = 10 * 10**9  # the recording begins anew
+    node.stamp = 10 * 10**9  # the recording begins again
     node.until(lambda: runs(10), 'a tick after the jump')
     feed(node, publish, states, FAST, 1)
     assert states[-1].header.stamp.sec == 10

@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What is written when: at once, but never in a flood, and again until it works."""
+"""Writes of the state: at once, but never in a flood, and again until they work."""
 
 from pathlib import Path
 import threading

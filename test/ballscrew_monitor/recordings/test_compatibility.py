@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What is written opens with mcap, rosbags and mcap-ros2-support: every value, schema and name."""
+"""Bags open with mcap, rosbags and mcap-ros2-support: every value, schema and name."""
 
 import json
 import math

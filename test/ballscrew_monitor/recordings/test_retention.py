@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What is kept, in which recordings, and what makes room."""
+"""Retention: the recordings that are kept, and those that make room."""
 
 import errno
 import json

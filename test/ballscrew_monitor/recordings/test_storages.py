@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What rosbag2 and rosbags write is read, and of what is damaged all that is whole."""
+"""Files of rosbag2 and rosbags are read, and of damaged ones every intact part."""
 
 import dataclasses
 import itertools

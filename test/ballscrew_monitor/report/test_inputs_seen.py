@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What inputs were like, and hints where they contradict their stated unit."""
+"""Findings on inputs, and hints where they contradict their stated unit."""
 
 import math
 

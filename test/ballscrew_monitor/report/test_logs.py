@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Which recordings are meant by paths, and the folders of their reports."""
+"""Recordings that paths mean, and the folders of their reports."""
 
 import contextlib
 from pathlib import Path

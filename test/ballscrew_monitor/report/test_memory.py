@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What judging and reporting hold at once does not grow with the length of a recording."""
+"""Memory for judging and reporting does not grow with the length of a recording."""
 
 import tracemalloc
 

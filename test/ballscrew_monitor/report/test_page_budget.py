@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What a page may weigh, and how its axes share it."""
+"""The weight of a page, and the shares of its axes."""
 
 import dataclasses
 import json

@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Whose parameters a recording is judged with, and what they assume of each axis."""
+"""Parameters with which a recording is judged, and their assumptions of each axis."""
 
 from ballscrew_monitor.report.parameters import assumed_of, parameters_for
 import pytest

@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What the environment says of the middleware: refused in a sentence, or brought to 127.0.0.1."""
+"""Settings of the middleware in the environment: refused in a sentence, or kept to 127.0.0.1."""
 
 from pathlib import Path
 import socket

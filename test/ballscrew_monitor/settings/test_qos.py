@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What may be written of the QoS of the inputs."""
+"""Parameters of the QoS of the inputs."""
 
 from ballscrew_monitor.settings.qos import check_overrides, input_qos, overridden
 import pytest

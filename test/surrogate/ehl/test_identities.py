@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What any correct smooth solution fulfils without a table."""
+"""Identities that any correct smooth solution fulfils without a table."""
 
 from dataclasses import replace
 

@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""When an iteration is over, and how far one step may go."""
+"""The end of an iteration, and the longest step."""
 
 from dataclasses import replace
 from itertools import pairwise

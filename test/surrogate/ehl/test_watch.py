@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Who watches a solve, and where that solve says it is."""
+"""The watcher of a solve, and the place that the solve states."""
 
 import pytest
 from surrogate.ehl.watch import at, Iteration, tell, watched

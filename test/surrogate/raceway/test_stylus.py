@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What a stylus reads: transmissions, single waves, the mean over directions, sampled profiles."""
+"""Readings of a stylus: transmissions, waves, the mean over directions, sampled profiles."""
 
 import math
 

@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""From a table to a bag that is judged: a small log always, the real one where it is."""
+"""Conversion of tables to judged bags: a small log always, the real one where it is."""
 
 import contextlib
 import os

@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What numbers of a log say of its rate and its units."""
+"""Rates and units estimated from the numbers of a log."""
 
 from ballscrew_monitor.recordings.tables.estimates import (
     is_rising,

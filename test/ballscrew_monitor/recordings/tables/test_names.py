@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What names of columns say, in the ways in which controls write them."""
+"""Names of columns in the ways in which controls write them."""
 
 from ballscrew_monitor.recordings.tables.names import axis_names, read_name, word_of_the_axis
 import pytest
