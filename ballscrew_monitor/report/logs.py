@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Which recordings are meant, bags, files, and folders that hold some; and folders of reports."""
+"""Recordings that are meant, bags, files, and folders that hold some; and folders of reports."""
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path

@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What is said of a recording that was judged beside its page: words of a terminal, and JSON."""
+"""Words of a terminal and JSON about a recording that was judged, beside its page."""
 
 from collections.abc import Iterator, Mapping
 import math

@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-What the verdict of a report stands on: model, screw, oil and limits, and how each is known.
+Basis of the verdict of a report: model, screw, oil and limits, and how each is known.
 
 And what was recorded: torque beside the model, inputs and their troubles, what could be judged.
 

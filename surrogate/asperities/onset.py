@@ -15,13 +15,12 @@ import math
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from surrogate.asperities.running_in import running_tiles, shortest_wave
+from surrogate.asperities.running_in import Cut, running_tiles, shortest_wave, State, USUAL
 from surrogate.asperities.topography import acting_roughness, ActingRoughness
 from surrogate.ehl import ContactLubricant
 from surrogate.formulas.geometry import Contact, screw_contact, Side
 from surrogate.formulas.line import central_film_line, Line, line_at, moes_line
 from surrogate.parameters import Screw
-from surrogate.raceway.stated import RunIn
 
 Array = NDArray[np.float64]
 HEIGHTS = 4.76
@@ -91,14 +90,14 @@ def _fastest_root(spare: Array) -> Array:
 
 
 @lru_cache(maxsize=32)
-def onset_of(screw: Screw, side: Side, state: RunIn) -> TopographyOnset:
+def onset_of(screw: Screw, side: Side, state: State, cut: Cut = USUAL) -> TopographyOnset:
     """
     Return the onset of contact on a side of a screw, its raceway `new` or `run_in`.
 
     Raises InputError as `running_tiles` does.
 
     """
-    tiles = running_tiles(screw, side, state)
+    tiles = running_tiles(screw, side, state, cut)
     if not tiles:
         return TopographyOnset(acting=None)
     modulus = 0.5 * screw_contact(screw, side).reduced_modulus

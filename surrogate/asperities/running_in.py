@@ -9,8 +9,9 @@ Raceway and ball are each cut alone and then added, as the contact adds them.
 
 """
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 import math
+from typing import Literal
 
 import numpy as np
 from scipy.fft import next_fast_len
@@ -28,7 +29,9 @@ from surrogate.raceway.dry_contact import run_in
 from surrogate.raceway.scaling import scale_spectrum, ScaledSpectrum
 from surrogate.raceway.stated import spectrum_of
 from surrogate.raceway.tile import draw_tile, Tile
+from surrogate.units import GIGA
 
+State = Literal['new', 'run_in']
 TILES = 3
 """Tiles of a raceway, each of another draw [-]."""
 LENGTH, WIDTH = 4.0, 2.0
@@ -39,21 +42,54 @@ NODES = 8
 """Nodes of a tile in the shortest wave [-]."""
 
 
-def working_load(screw: Screw) -> float:
-    """Return the largest working load [N], stated or that which unloads the relieved nut."""
-    stated = screw.working_load
-    return UNLOADING_RATIO * working_preload(screw) if stated is None else stated
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Cut:
+    """
+    How summits yield: hardness of the steel [Pa], by default that of 60 HRC, and what runs in.
+
+    `run_in_pressure` [Pa] stands for yield and mild wear together, with its lowest and highest
+    likely value. `working_load`, the largest axial load in operation [N], None for that which
+    unloads the relieved nut. A profile that was `traced_run_in` is not cut again.
+
+    """
+
+    hardness: float = 7e9
+    run_in_pressure: float = 3e9
+    run_in_range: tuple[float, float] = (2e9, 5e9)
+    working_load: float | None = None
+    traced_run_in: bool = False
+
+    def __post_init__(self) -> None:
+        """Check the order of the pressures and the load."""
+        bounds = self.run_in_range
+        rising = [bounds[0], self.run_in_pressure, bounds[1], self.hardness]
+        if not (rising[0] > 0 and rising == sorted(rising) and self.hardness < math.inf):
+            low, middle, high, most = (f'{GIGA * one:g}' for one in rising)
+            raise InputError(
+                f'run-in pressure is {middle} GPa between {low} and {high} GPa, allowed are '
+                f'rising numbers above 0 and up to the hardness ({most} GPa)'
+            )
+        if self.working_load is not None and not 0 <= self.working_load < math.inf:
+            raise InputError(f'working load is {self.working_load:g} N, allowed is 0 or more')
+
+    def load(self, screw: Screw) -> float:
+        """Return the largest working load of a screw [N]."""
+        if self.working_load is None:
+            return UNLOADING_RATIO * working_preload(screw)
+        return self.working_load
+
+    def pressure(self, state: State) -> float:
+        """Return the pressure at which summits of a state are cut [Pa], infinite for none."""
+        if state == 'new':
+            return self.hardness
+        return math.inf if self.traced_run_in else self.run_in_pressure
 
 
-def cutting_pressure(screw: Screw, state: str) -> float:
-    """Return the pressure at which the summits of a raceway in a state are cut [Pa]."""
-    roughness = screw.roughness
-    if state == 'new':
-        return roughness.hardness
-    return math.inf if roughness.traced == 'run_in' else roughness.run_in_pressure
+USUAL = Cut()
+"""Hardness and running-in where nobody says better."""
 
 
-def running_tiles(screw: Screw, side: Side, state: str) -> list[Tile]:
+def running_tiles(screw: Screw, side: Side, state: State, cut: Cut = USUAL) -> list[Tile]:
     """
     Return tiles of a raceway with its ball, `new` or `run_in`; none where both are smooth.
 
@@ -65,9 +101,9 @@ def running_tiles(screw: Screw, side: Side, state: str) -> list[Tile]:
     fields = waves_of(screw)
     if not fields:
         return []
-    loaded = float(nut_forces(working_load(screw), screw.preload)[0])
+    loaded = float(nut_forces(cut.load(screw), screw.preload)[0])
     pressure = float(hertz(contact, float(normal_force(screw, loaded))).max_pressure)
-    bound = cutting_pressure(screw, state)
+    bound = cut.pressure(state)
     size, shape = tile_size(screw, side)
     return [
         _added(
@@ -113,13 +149,13 @@ def tile_size(screw: Screw, side: Side) -> tuple[tuple[float, float], tuple[int,
 def _cut(tile: Tile, modulus: float, pressure: float, bound: float) -> Tile:
     if bound == math.inf:
         return tile
-    cut, found = run_in(tile, modulus, pressure, bound)
+    lower, found = run_in(tile, modulus, pressure, bound)
     if not found.converged:
         raise InputError(
-            f'raceway: pressed by {1e-9 * pressure:.3g} GPa its summits yield at '
-            f'{1e-9 * bound:.3g} GPa nearly everywhere, allowed is a cutting pressure well above'
+            f'raceway: pressed by {GIGA * pressure:.3g} GPa its summits yield at '
+            f'{GIGA * bound:.3g} GPa nearly everywhere, allowed is a cutting pressure well above'
         )
-    return cut
+    return lower
 
 
 def _added(tiles: list[Tile]) -> Tile:

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from scipy.fft import irfft2, rfft2
 from surrogate.files import InputError
 from surrogate.raceway.tile import Tile
+from surrogate.units import GIGA
 
 Array = NDArray[np.float64]
 TOLERANCE = 1e-4
@@ -67,8 +68,8 @@ def press(
     """
     if not 0 < mean_pressure < hardness:
         raise InputError(
-            f'raceway: the mean pressure is {1e-9 * mean_pressure:.3g} GPa, allowed is above 0 '
-            f'and below the hardness, {1e-9 * hardness:.3g} GPa'
+            f'raceway: the mean pressure is {GIGA * mean_pressure:.3g} GPa, allowed is above 0 '
+            f'and below the hardness, {GIGA * hardness:.3g} GPa'
         )
     wave_number = tile.wave_number.copy()
     wave_number[0, 0] = math.inf

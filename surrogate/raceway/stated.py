@@ -29,12 +29,9 @@ class Roughness(Checked):
     Rq `rms` [m] of a profile traced across the lay, 0 for smooth, between a short and a long
     cut-off [m], the long one by the table for Ra = 0.8 Rq where it is None; fractal dimension [-]
     or rms slope Rdq [rad] of that profile; lay with the angle [rad] over which its ridges fan;
-    `traced` says whether the profile is that of a new raceway or of one that has run in, `state`
-    in which of the two states the screw runs; `hardness` [Pa] of the steel, by default that of
-    60 HRC, bounds the pressure on summits; `run_in_pressure` [Pa], which stands for yield and mild
-    wear together, cuts those of a new profile that runs in, with its lowest and highest likely
-    value; ratio of neighbouring wavelengths and ridges of the generator [-]; boundary friction
-    coefficient [-].
+    `state` says whether the profile was traced on a new raceway or after running in and changes
+    no number; ratio of neighbouring wavelengths and ridges of the generator [-]; boundary
+    friction coefficient [-].
 
     """
 
@@ -57,11 +54,6 @@ class Roughness(Checked):
     lay: Lay = choice('isotropic', 'longitudinal', 'transverse', default='isotropic')
     fan_angle: float | None = quantity('deg', math.pi / 180, 0.0, 90.0, default=None)
     state: RunIn = choice('run_in', 'new', default='run_in')
-    traced: RunIn = choice('run_in', 'new', default='new')
-    hardness: float = quantity('GPa', 1e9, 1.0, 20.0, default=7e9)
-    run_in_pressure: float = quantity('GPa', 1e9, 1.0, 20.0, default=3e9)
-    run_in_pressure_low: float = quantity('GPa', 1e9, 1.0, 20.0, default=2e9)
-    run_in_pressure_high: float = quantity('GPa', 1e9, 1.0, 20.0, default=5e9)
     scale_ratio: float = quantity('', 1.0, 1.01, 10.0, default=1.5)
     ridges: int = count(1, 1000, default=10)
     asperity_friction: float = quantity('', 1.0, 0.0, 1.0)
@@ -69,28 +61,12 @@ class Roughness(Checked):
     def __post_init__(self) -> None:
         """Check every range, and that waves with these numbers exist."""
         Checked.__post_init__(self)
-        self._check_running_in()
         spectrum = spectrum_of(self)
         if self.rms_slope is not None:
             # Only a stated slope is worth the time that scipy takes to load.
             from surrogate.raceway.scaling import scale_spectrum
 
             scale_spectrum(spectrum)
-
-    def _check_running_in(self) -> None:
-        if self.state == 'new' and self.traced == 'run_in':
-            raise InputError(
-                'roughness: state is new and traced is run_in, allowed is new only for a profile '
-                'that was traced new'
-            )
-        bounds = [self.run_in_pressure_low, self.run_in_pressure, self.run_in_pressure_high]
-        if sorted([*bounds, self.hardness]) != [*bounds, self.hardness]:
-            low, middle, high, most = (f'{1e-9 * one:g}' for one in (*bounds, self.hardness))
-            raise InputError(
-                f'roughness: run_in_pressure_GPa is {middle} GPa between {low} and {high} GPa '
-                f'(run_in_pressure_low_GPa, run_in_pressure_high_GPa), allowed are rising numbers '
-                f'up to hardness_GPa ({most} GPa)'
-            )
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

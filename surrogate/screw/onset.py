@@ -2,14 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Onset of contact by the topography of the raceways, as a speed of the screw."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 import math
 from typing import Any
 
-import numpy as np
 from surrogate.asperities.onset import onset_of
-from surrogate.asperities.running_in import cutting_pressure, working_load
+from surrogate.asperities.running_in import Cut, State, USUAL
 from surrogate.formulas.geometry import hertz, screw_contact, SIDES
 from surrogate.formulas.kinematics import no_slip_rates
 from surrogate.formulas.line import central_film_line, line_at
@@ -17,18 +16,22 @@ from surrogate.formulas.load_sharing import normal_force, nut_forces, working_pr
 from surrogate.formulas.starvation import starved_speed
 from surrogate.parameters import Lubricant, Screw
 from surrogate.raceway.ball import roughness_sentence
-from surrogate.raceway.stated import RunIn
 from surrogate.screw.contacts import oil_at
-from surrogate.units import RPM, ZERO_CELSIUS
+from surrogate.units import GIGA, RPM, ZERO_CELSIUS
 
 BANDS = {'isotropic': 1.3, 'longitudinal': 2.0, 'transverse': 2.0}
 """Factor within which the topography tells nine of ten marched strips, by the lay [-]."""
-STATES: tuple[RunIn, ...] = ('new', 'run_in')
+STATES: tuple[State, ...] = ('new', 'run_in')
 WORDS = {'new': 'new, after its first pass', 'run_in': 'run in'}
 
 
 def onset_point(
-    screw: Screw, lubricant: Lubricant, load: float, temperature: float, state: RunIn
+    screw: Screw,
+    lubricant: Lubricant,
+    load: float,
+    temperature: float,
+    state: State,
+    cut: Cut = USUAL,
 ) -> dict[str, float]:
     """
     Return where contact begins under an axial load [N] at an oil temperature [K].
@@ -41,7 +44,7 @@ def onset_point(
     loaded = float(nut_forces(load, screw.preload)[0]) or working_preload(screw)
     force, oil = float(normal_force(screw, loaded)), oil_at(lubricant, temperature)
     found = {
-        side: onset_of(screw, side, state).speed(
+        side: onset_of(screw, side, state, cut).speed(
             screw_contact(screw, side), force, oil, lubricant.film_floor
         )
         for side in SIDES
@@ -60,52 +63,48 @@ def onset_point(
 
 
 def onset_record(
-    screw: Screw, lubricant: Lubricant, load: float, temperature: float
+    screw: Screw, lubricant: Lubricant, load: float, temperature: float, cut: Cut = USUAL
 ) -> dict[str, Any]:
     """Return the onsets of both states under a load [N] at a temperature [K], SI units."""
-    roughness, band = screw.roughness, BANDS[screw.roughness.lay]
-    loaded = float(nut_forces(working_load(screw), screw.preload)[0])
+    band = BANDS[screw.roughness.lay]
+    loaded = float(nut_forces(cut.load(screw), screw.preload)[0])
     force = float(normal_force(screw, loaded))
     states = {}
     for state in STATES:
-        states[state] = onset_point(screw, lubricant, load, temperature, state) | {
-            'cutting_pressure_Pa': cutting_pressure(screw, state),
+        states[state] = onset_point(screw, lubricant, load, temperature, state, cut) | {
+            'cutting_pressure_Pa': cut.pressure(state),
             'band': [1 / band, band],
         }
-    if cutting_pressure(screw, 'run_in') < math.inf:
-        bounds = roughness.run_in_pressure_low, roughness.run_in_pressure_high
+    if not cut.traced_run_in:
         states['run_in']['speed_range_rad_s'] = [
-            onset_point(cut_at(screw, bound), lubricant, load, temperature, 'run_in')[
+            onset_point(screw, lubricant, load, temperature, 'run_in', cut_at(cut, bound))[
                 'speed_rad_s'
             ]
-            for bound in bounds
+            for bound in cut.run_in_range
         ]
     return {
         'screw': screw.name,
         'oil': lubricant.name,
         'load_N': load,
         'temperature_K': temperature,
-        'state': roughness.state,
-        'working_load_N': working_load(screw),
-        'working_load_stated': screw.working_load is not None,
+        'working_load_N': cut.load(screw),
+        'working_load_stated': cut.working_load is not None,
         'working_pressure_Pa': max(
             float(hertz(screw_contact(screw, side), force).max_pressure) for side in SIDES
         ),
-        'roughness': roughness_sentence(roughness, screw.ball_roughness),
+        'roughness': roughness_sentence(screw.roughness, screw.ball_roughness),
         'states': states,
     }
 
 
-def cut_at(screw: Screw, pressure: float) -> Screw:
-    """Return a screw whose raceways run in to a cutting pressure [Pa] alone."""
-    sheet = replace(
-        screw.roughness,
-        hardness=max(screw.roughness.hardness, pressure),
+def cut_at(cut: Cut, pressure: float) -> Cut:
+    """Return a cut that runs in to one pressure [Pa] alone."""
+    return replace(
+        cut,
+        hardness=max(cut.hardness, pressure),
         run_in_pressure=pressure,
-        run_in_pressure_low=pressure,
-        run_in_pressure_high=pressure,
+        run_in_range=(pressure, pressure),
     )
-    return replace(screw, roughness=sheet)
 
 
 def onset_page(record: Mapping[str, Any]) -> str:
@@ -134,7 +133,7 @@ def _lines(record: Mapping[str, Any]) -> Iterator[str]:
     assumed = '' if record['working_load_stated'] else ', assumed: it unloads the relieved nut'
     yield (
         f'  summits are cut under {record["working_load_N"]:.4g} N{assumed}, '
-        f'{1e-9 * record["working_pressure_Pa"]:.3g} GPa'
+        f'{GIGA * record["working_pressure_Pa"]:.3g} GPa'
     )
     yield f'  roughness: {record["roughness"]}'
 
@@ -144,7 +143,7 @@ def _told(found: Mapping[str, Any]) -> str:
     if not found['speed_rad_s']:
         return 'no contact: raceway and ball are smooth'
     cut = found['cutting_pressure_Pa']
-    words = 'traced after running in' if cut == math.inf else f'cut at {1e-9 * cut:g} GPa'
+    words = 'traced after running in' if cut == math.inf else f'cut at {GIGA * cut:g} GPa'
     low, high = (share * found['speed_rad_s'] / RPM for share in found['band'])
     text = (
         f'contact begins at {found["speed_rad_s"] / RPM:.3g} rev/min ({low:.3g} to {high:.3g}), '
@@ -157,14 +156,10 @@ def _told(found: Mapping[str, Any]) -> str:
 
 
 def onset_over_pressure(
-    screw: Screw, lubricant: Lubricant, load: float, temperature: float, pressures: np.ndarray
-) -> np.ndarray:
-    """Return the onset speeds [rad/s] of a new profile that is cut at some pressures [Pa]."""
-    return np.array(
-        [
-            onset_point(cut_at(screw, float(one)), lubricant, load, temperature, 'run_in')[
-                'speed_rad_s'
-            ]
-            for one in pressures
-        ]
-    )
+    screw: Screw, lubricant: Lubricant, load: float, temperature: float, cuts: Sequence[Cut]
+) -> list[float]:
+    """Return the onset speeds [rad/s] of a profile that runs in, under a load [N], for cuts."""
+    return [
+        onset_point(screw, lubricant, load, temperature, 'run_in', cut)['speed_rad_s']
+        for cut in cuts
+    ]

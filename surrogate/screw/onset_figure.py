@@ -3,52 +3,55 @@
 """Picture of the onset of contact over the pressure at which summits are cut."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from matplotlib.figure import Figure
 import numpy as np
+from surrogate.asperities.running_in import Cut
 from surrogate.parameters import Lubricant, Screw
 from surrogate.plotting.style import BLUE, draw_picture, new_figure, ORANGE, VERMILION
-from surrogate.screw.onset import onset_over_pressure
-from surrogate.units import RPM, ZERO_CELSIUS
+from surrogate.screw.onset import cut_at, onset_over_pressure
+from surrogate.units import GIGA, RPM, ZERO_CELSIUS
 
 STEPS = 8
 """Cutting pressures along the curve [-]."""
 
 
 def draw_onset(
-    folder: Path, screw: Screw, lubricant: Lubricant, record: Mapping[str, Any]
+    folder: Path, screw: Screw, lubricant: Lubricant, cut: Cut, record: Mapping[str, Any]
 ) -> Path:
     """Draw the onset of a screw and oil into a folder and return the path of the picture."""
     name = f'onset_{record["screw"]}_{record["oil"]}.png'
-    return draw_picture(folder / name, lambda: figure_onset(screw, lubricant, record))
+    return draw_picture(folder / name, lambda: figure_onset(screw, lubricant, cut, record))
 
 
-def figure_onset(screw: Screw, lubricant: Lubricant, record: Mapping[str, Any]) -> Figure:
+def figure_onset(
+    screw: Screw, lubricant: Lubricant, cut: Cut, record: Mapping[str, Any]
+) -> Figure:
     """Return the onset speed over the cutting pressure, with hardness and running-in marked."""
-    sheet, (low, high) = screw.roughness, record['states']['new']['band']
-    least = max(1.1 * record['working_pressure_Pa'], 0.8 * sheet.run_in_pressure_low)
-    pressures = np.geomspace(least, 1.2 * sheet.hardness, STEPS)
-    speed = (
-        onset_over_pressure(screw, lubricant, record['load_N'], record['temperature_K'], pressures)
-        / RPM
-    )
+    low, high = record['states']['new']['band']
+    least = max(1.1 * record['working_pressure_Pa'], 0.8 * cut.run_in_range[0])
+    pressures = np.geomspace(least, 1.2 * cut.hardness, STEPS)
+    cuts = [cut_at(replace(cut, traced_run_in=False), float(one)) for one in pressures]
+    place = record['load_N'], record['temperature_K']
+    speed = np.array(onset_over_pressure(screw, lubricant, *place, cuts)) / RPM
     figure = new_figure(6.4, 4.0)
-    axes, giga = figure.subplots(), 1e-9 * pressures
+    axes, giga = figure.subplots(), GIGA * pressures
     axes.fill_between(
         giga, speed * low, speed * high, color=BLUE, alpha=0.2, label=f'within {high:g}'
     )
     axes.plot(giga, speed, color=BLUE, label='onset, RCS 0.01')
     axes.axvspan(
-        1e-9 * sheet.run_in_pressure_low,
-        1e-9 * sheet.run_in_pressure_high,
+        GIGA * cut.run_in_range[0],
+        GIGA * cut.run_in_range[1],
         color=ORANGE,
         alpha=0.2,
-        label='run in, range of the sheet',
+        label='run in, its range',
     )
-    axes.axvline(1e-9 * sheet.run_in_pressure, color=ORANGE, linestyle='--', label='run in')
-    axes.axvline(1e-9 * sheet.hardness, color=VERMILION, linestyle=':', label='hardness: new')
+    axes.axvline(GIGA * cut.run_in_pressure, color=ORANGE, linestyle='--', label='run in')
+    axes.axvline(GIGA * cut.hardness, color=VERMILION, linestyle=':', label='hardness: new')
     axes.set(
         xscale='log',
         yscale='log',

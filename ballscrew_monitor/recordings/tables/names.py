@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What names of columns say: which axis, quantity and unit; and the columns of each axis."""
+"""Names of columns, read: which axis, quantity and unit; and the columns of each axis."""
 
 from collections.abc import Sequence
 import dataclasses

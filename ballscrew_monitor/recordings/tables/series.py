@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-From the columns of a table to stamped quantities in SI units, by the map, in blocks of rows.
+Stamped quantities in SI units out of the columns of a table, by the map, in blocks of rows.
 
 Speeds that do not make the positions beside them are told, with the unit in which they would.
 

@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What a terminal says of a recording, and its JSON with a reason for every missing number."""
+"""Words of a terminal about a recording, and its JSON with a reason for every missing number."""
 
 import json
 import math

@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What a report rests on and how each is known, and what was recorded."""
+"""Basis of a report, how each part is known, and what was recorded."""
 
 import dataclasses
 

@@ -8,12 +8,12 @@ import math
 import numpy as np
 import pytest
 from surrogate.asperities.running_in import (
-    cutting_pressure,
+    Cut,
     running_tiles,
     shortest_wave,
     tile_size,
     TILES,
-    working_load,
+    USUAL,
 )
 from surrogate.files import InputError
 from surrogate.formulas.load_sharing import nut_forces
@@ -23,30 +23,25 @@ from surrogate.raceway.stated import spectrum_of
 from surrogate.raceway.tile import draw_tile
 
 
-def with_roughness(screw, **changes):
-    return replace(screw, roughness=replace(screw.roughness, **changes))
-
-
 def rms(tiles):
     return math.sqrt(float(np.mean([tile.heights.var() for tile in tiles])))
 
 
 def test_without_a_stated_load_the_relieved_nut_is_just_unloaded(screw):
-    assert nut_forces(working_load(screw), screw.preload)[1] == pytest.approx(0.0, abs=1e-6)
-    assert working_load(replace(screw, working_load=1234.0)) == 1234.0
+    assert nut_forces(USUAL.load(screw), screw.preload)[1] == pytest.approx(0.0, abs=1e-6)
+    assert Cut(working_load=1234.0).load(screw) == 1234.0
 
 
-def test_each_state_is_cut_at_its_own_pressure(screw):
-    sheet = with_roughness(screw, hardness=8e9, run_in_pressure=4e9, run_in_pressure_high=6e9)
-    assert cutting_pressure(sheet, 'new') == 8e9
-    assert cutting_pressure(sheet, 'run_in') == 4e9
+def test_each_state_is_cut_at_its_own_pressure():
+    cut = Cut(hardness=8e9, run_in_pressure=4e9)
+    assert (cut.pressure('new'), cut.pressure('run_in')) == (8e9, 4e9)
+    assert Cut(traced_run_in=True).pressure('run_in') == math.inf
 
 
 def test_a_profile_traced_after_running_in_is_left_as_it_is(screw):
-    traced = with_roughness(screw, state='run_in', traced='run_in')
-    size, shape = tile_size(traced, 'screw')
-    waves = scale_spectrum(spectrum_of(traced.roughness))
-    found = running_tiles(traced, 'screw', 'run_in')
+    size, shape = tile_size(screw, 'screw')
+    waves = scale_spectrum(spectrum_of(screw.roughness))
+    found = running_tiles(screw, 'screw', 'run_in', Cut(traced_run_in=True))
     assert len(found) == TILES
     for draw, tile in enumerate(found):
         drawn = draw_tile(waves, draw, size=size, shape=shape)
@@ -55,11 +50,24 @@ def test_a_profile_traced_after_running_in_is_left_as_it_is(screw):
 
 def test_a_softer_cut_lowers_the_summits_more(screw):
     """A prototype on this spectrum lost 0.3 % of Sq at 7 GPa, and 5 % at 3 GPa."""
-    traced = with_roughness(screw, state='run_in', traced='run_in')
-    whole = rms(running_tiles(traced, 'screw', 'run_in'))
+    whole = rms(running_tiles(screw, 'screw', 'run_in', Cut(traced_run_in=True)))
     new, run = (rms(running_tiles(screw, 'screw', state)) for state in ('new', 'run_in'))
     assert 0.001 < 1 - new / whole < 0.02
     assert 0.03 < 1 - run / whole < 0.12
+
+
+@pytest.mark.parametrize(
+    ('given', 'sentence'),
+    [
+        ({'run_in_pressure': 6e9}, 'run-in pressure is 6 GPa between 2 and 5 GPa, allowed are'),
+        ({'hardness': 4e9}, r'up to the hardness \(4 GPa\)'),
+        ({'hardness': math.nan}, 'allowed are rising numbers'),
+        ({'working_load': -1.0}, 'working load is -1 N, allowed is 0 or more'),
+    ],
+)
+def test_a_cut_that_contradicts_itself_is_refused(given, sentence):
+    with pytest.raises(InputError, match=sentence):
+        Cut(**given)
 
 
 def test_tiles_hold_the_shortest_wave_on_enough_nodes(screw):
@@ -76,10 +84,11 @@ def test_the_ball_is_added(screw):
 
 
 def test_smooth_raceways_have_no_tiles(screw):
-    assert running_tiles(with_roughness(screw, rms=0.0), 'screw', 'run_in') == []
+    smooth = replace(screw, roughness=replace(screw.roughness, rms=0.0))
+    assert running_tiles(smooth, 'screw', 'run_in') == []
 
 
 def test_a_load_that_presses_harder_than_the_summits_bear_is_refused(screw):
-    loaded = replace(screw, working_load=5e5)
+    cut = Cut(working_load=5e5)
     with pytest.raises(InputError, match='mean pressure is .* GPa, allowed is above 0 and below'):
-        running_tiles(loaded, 'screw', 'run_in')
+        running_tiles(screw, 'screw', 'run_in', cut)

@@ -6,6 +6,7 @@ from dataclasses import replace
 import math
 
 import pytest
+from surrogate.asperities.running_in import Cut, USUAL
 from surrogate.screw.onset import BANDS, cut_at, onset_page, onset_point, onset_record
 from surrogate.screw.onset_figure import figure_onset
 from surrogate.units import RPM
@@ -28,8 +29,8 @@ def test_both_states_stand_in_the_record(record):
 
 
 def test_the_range_is_that_of_the_bounds_of_the_sheet(screw, oil, record):
-    low = cut_at(screw, screw.roughness.run_in_pressure_low)
-    found = onset_point(low, oil, 0.0, KELVIN, 'run_in')['speed_rad_s']
+    low = cut_at(USUAL, USUAL.run_in_range[0])
+    found = onset_point(screw, oil, 0.0, KELVIN, 'run_in', low)['speed_rad_s']
     assert record['states']['run_in']['speed_range_rad_s'][0] == found
 
 
@@ -47,8 +48,7 @@ def test_the_page_says_where_contact_is_sure_and_where_possible(record):
 
 
 def test_a_profile_traced_after_running_in_has_no_range(screw, oil):
-    sheet = replace(screw.roughness, state='run_in', traced='run_in')
-    page = onset_page(onset_record(replace(screw, roughness=sheet), oil, 0.0, KELVIN))
+    page = onset_page(onset_record(screw, oil, 0.0, KELVIN, Cut(traced_run_in=True)))
     assert 'traced after running in' in page
     assert 'over the range' not in page
 
@@ -62,7 +62,7 @@ def test_smooth_raceways_say_so(screw, oil):
 
 def test_the_picture_falls_with_the_cutting_pressure(screw, oil, record, monkeypatch):
     monkeypatch.setattr('surrogate.screw.onset_figure.STEPS', 3)
-    axes = figure_onset(screw, oil, record).axes[0]
+    axes = figure_onset(screw, oil, USUAL, record).axes[0]
     speeds = axes.lines[0].get_ydata()
     assert list(speeds) == sorted(speeds)
     assert all(math.isfinite(one) for one in speeds)
