@@ -67,6 +67,7 @@ setup(
         ],
         'surrogate': [
             'py.typed',
+            'data/*.json',
             'data/cases/*.yaml',
             'data/lubricants/*.yaml',
             'data/screws/*.yaml',

@@ -186,6 +186,16 @@ def main() -> None:
             f'{name}: {part.sum()}, mean {math.exp(off[part].mean()):.2f}, '
             f'rms {100 * math.sqrt(np.mean(off[part] ** 2)):.0f} %, {inside} within 1.3'
         )
+    for column in ('rcs_half', 'rcs_quarter'):
+        logs = [
+            math.log(float(row[column]))
+            for row in rows
+            if row[column] and row['lay'] != 'transverse'
+        ]
+        print(
+            f'{column}, no transverse lay: {len(logs)}, mean {math.exp(np.mean(logs)):.3f}, '
+            f'standard deviation a factor of {math.exp(np.std(logs)):.2f}'
+        )
     print(draw_picture(PICTURE, lambda: picture(told, marched, other)))
 
 

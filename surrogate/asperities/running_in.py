@@ -49,7 +49,7 @@ class Cut:
 
     `run_in_pressure` [Pa] stands for yield and mild wear together, with its lowest and highest
     likely value. `working_load`, the largest axial load in operation [N], None for that which
-    unloads the relieved nut. A profile that was `traced_run_in` is not cut again.
+    unloads the relieved nut. A profile that was `traced_run_in` is cut at the hardness alone.
 
     """
 
@@ -79,10 +79,10 @@ class Cut:
         return self.working_load
 
     def pressure(self, state: State) -> float:
-        """Return the pressure at which summits of a state are cut [Pa], infinite for none."""
-        if state == 'new':
+        """Return the pressure at which summits of a state are cut [Pa]."""
+        if state == 'new' or self.traced_run_in:
             return self.hardness
-        return math.inf if self.traced_run_in else self.run_in_pressure
+        return self.run_in_pressure
 
 
 USUAL = Cut()
@@ -147,8 +147,11 @@ def tile_size(screw: Screw, side: Side) -> tuple[tuple[float, float], tuple[int,
 
 
 def _cut(tile: Tile, modulus: float, pressure: float, bound: float) -> Tile:
-    if bound == math.inf:
-        return tile
+    if not tile.heights.any():
+        raise InputError(
+            'roughness: all its waves are longer than half of the contact, allowed are shorter '
+            'ones: a smaller cutoff_short_um'
+        )
     lower, found = run_in(tile, modulus, pressure, bound)
     if not found.converged:
         raise InputError(

@@ -33,6 +33,8 @@ REDUCTIONS = np.geomspace(0.03, 10.0, 8)
 """Reductions of the shortest wave at which heights are tabulated [-]."""
 PRESSURES = np.geomspace(0.15e9, 3e9, 3)
 """Hertz pressures at which they are tabulated [Pa]."""
+FLAT = 1e-12
+"""Least gap [m]: what is pressed flat keeps no film off."""
 TOLERANCE = 3e-3
 """Of the dry contacts, as `press` has it [-]."""
 NODES_PER_WAVE = 4
@@ -45,16 +47,14 @@ class ActingRoughness:
     Table of the acting height of a raceway with its ball.
 
     Logarithms of the reduction per length [1/m] and of the Hertz pressure [Pa], and the logarithm
-    of the acting height [m^0.75] over both, the mean of several tiles; standard deviation of the
-    latter between tiles [-]; `lay`, the anisotropy of the slopes from -1 across the track through
-    0 to 1 along it [-]; shortest wave [m].
+    of the acting height [m^0.75] over both, the mean of several tiles; `lay`, the anisotropy of
+    the slopes from -1 across the track through 0 to 1 along it [-]; shortest wave [m].
 
     """
 
     log_reduction: tuple[float, ...]
     log_pressure: tuple[float, ...]
     log_height: tuple[tuple[float, ...], ...]
-    deviation: float
     lay: float
     shortest_wave: float
 
@@ -91,12 +91,10 @@ def acting_roughness(
     """
     coarse = [_coarser(tile, shortest_wave) for tile in tiles]
     each = np.array([_log_heights(tile, modulus, shortest_wave) for tile in coarse])
-    middle = len(REDUCTIONS) // 2
     return ActingRoughness(
         log_reduction=tuple(np.log(REDUCTIONS / shortest_wave).tolist()),
         log_pressure=tuple(np.log(PRESSURES).tolist()),
         log_height=tuple(map(tuple, each.mean(axis=0).tolist())),
-        deviation=float(each[:, middle].mean(axis=1).std(ddof=min(1, len(tiles) - 1))),
         lay=float(np.mean([lay_of(tile) for tile in coarse])),
         shortest_wave=shortest_wave,
     )
@@ -110,10 +108,16 @@ def _log_heights(tile: Tile, modulus: float, shortest_wave: float) -> Array:
         left = left_by_rolling(tile, float(reduction))
         wave = 2 * math.pi * math.sqrt(left.moment(0) / left.moment(1))
         for column, pressure in enumerate(PRESSURES):
-            load = LOAD_SHARE * 0.25 * math.pi * float(pressure)
-            gap = press(left, modulus, load, tolerance=TOLERANCE).separation
+            gap = _gap_under(left, modulus, float(pressure))
             found[row, column] = math.log(gap * wave**WAVE_POWER) + gain
     return found
+
+
+def _gap_under(tile: Tile, modulus: float, pressure: float) -> float:
+    """Return the mean gap [m] of a tile under the share of a Hertz pressure [Pa]."""
+    load = LOAD_SHARE * 0.25 * math.pi * pressure
+    found = press(tile, modulus, load, tolerance=TOLERANCE)
+    return max(found.separation, FLAT)
 
 
 def left_by_rolling(tile: Tile, reduction: float) -> Tile:

@@ -62,7 +62,7 @@ def _add_cut(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--traced-run-in',
         action='store_true',
-        help='the profile of the sheet was traced after running in: it is not cut again',
+        help='the profile was traced after running in: it is cut at the hardness alone',
     )
 
 

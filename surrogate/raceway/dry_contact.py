@@ -69,7 +69,7 @@ def press(
     if not 0 < mean_pressure < hardness:
         raise InputError(
             f'raceway: the mean pressure is {GIGA * mean_pressure:.3g} GPa, allowed is above 0 '
-            f'and below the hardness, {GIGA * hardness:.3g} GPa'
+            f'and below that at which summits are cut, {GIGA * hardness:.3g} GPa'
         )
     wave_number = tile.wave_number.copy()
     wave_number[0, 0] = math.inf
@@ -92,7 +92,11 @@ def press(
         way = np.where(free, gap + keep * square / last_square * way, 0.0)
         answer = lift(way)
         answer -= answer[free].mean()
-        step = float(gap[free] @ way[free]) / float(answer[free] @ way[free])
+        work = float(answer[free] @ way[free])
+        if not work > 0:
+            converged = True  # nothing is left to move
+            break
+        step = float(gap[free] @ way[free]) / work
         before, last_square = pressure, square
         pressure = np.clip(np.where(free, pressure - step * way, pressure), 0.0, hardness)
         # Nodes at a bound whose gap pulls them away from it are free again.

@@ -31,7 +31,7 @@ def figure_onset(
     screw: Screw, lubricant: Lubricant, cut: Cut, record: Mapping[str, Any]
 ) -> Figure:
     """Return the onset speed over the cutting pressure, with hardness and running-in marked."""
-    low, high = record['states']['new']['band']
+    low, high = record['states']['run_in']['band']
     least = max(1.1 * record['working_pressure_Pa'], 0.8 * cut.run_in_range[0])
     pressures = np.geomspace(least, 1.2 * cut.hardness, STEPS)
     cuts = [cut_at(replace(cut, traced_run_in=False), float(one)) for one in pressures]

@@ -7,7 +7,15 @@ import math
 
 import pytest
 from surrogate.asperities.running_in import Cut, USUAL
-from surrogate.screw.onset import BANDS, cut_at, onset_page, onset_point, onset_record
+from surrogate.files import InputError
+from surrogate.screw.onset import (
+    BANDS,
+    cut_at,
+    extrapolated,
+    onset_page,
+    onset_point,
+    onset_record,
+)
 from surrogate.screw.onset_figure import figure_onset
 from surrogate.units import RPM
 
@@ -47,17 +55,49 @@ def test_the_page_says_where_contact_is_sure_and_where_possible(record):
     assert 'assumed: it unloads the relieved nut' in page
 
 
-def test_a_profile_traced_after_running_in_has_no_range(screw, oil):
-    page = onset_page(onset_record(screw, oil, 0.0, KELVIN, Cut(traced_run_in=True)))
-    assert 'traced after running in' in page
-    assert 'over the range' not in page
+def test_a_profile_traced_after_running_in_has_one_state(screw, oil, record):
+    found = onset_record(screw, oil, 0.0, KELVIN, Cut(traced_run_in=True))
+    assert list(found['states']) == ['run_in']
+    speed = found['states']['run_in']['speed_rad_s']
+    assert speed == record['states']['new']['speed_rad_s']
+    assert 'over the range' not in onset_page(found)
+
+
+def test_a_load_beyond_the_working_load_cuts_too(screw, oil):
+    assert onset_record(screw, oil, -5000.0, KELVIN)['working_load_N'] == 5000.0
+
+
+@pytest.mark.parametrize(
+    ('load', 'kelvin', 'sentence'),
+    [
+        (math.nan, KELVIN, 'load_N is nan, allowed'),
+        (math.inf, KELVIN, 'load_N is inf, allowed'),
+        (0.0, 450.0, r'temperature is 176.85 degC, allowed is .* \(the range of the oil sheet\)'),
+    ],
+)
+def test_a_place_that_no_screw_has_is_refused(screw, oil, load, kelvin, sentence):
+    with pytest.raises(InputError, match=sentence):
+        onset_record(screw, oil, load, kelvin)
+
+
+def test_what_was_not_marched_is_called_extrapolated(screw):
+    assert extrapolated(screw) == []
+    fine = replace(screw, roughness=replace(screw.roughness, cutoff_short=0.5e-6, rms=0.4e-6))
+    assert [text.split()[0] for text in extrapolated(fine)] == ['Rq', 'short']
+
+
+@pytest.mark.parametrize('lay', ['longitudinal', 'transverse'])
+def test_ridges_without_a_fan_have_an_onset(screw, oil, lay):
+    sheet = replace(screw.roughness, lay=lay, fan_angle=0.0)
+    ridges = replace(screw, roughness=sheet)
+    assert onset_point(ridges, oil, 0.0, KELVIN, 'run_in')['speed_rad_s'] > 0
 
 
 def test_smooth_raceways_say_so(screw, oil):
     smooth = replace(screw, roughness=replace(screw.roughness, rms=0.0))
     page = onset_page(onset_record(smooth, oil, 0.0, KELVIN))
     assert 'no contact: raceway and ball are smooth' in page
-    assert 'Contact is sure' not in page
+    assert 'Contact is likely' not in page
 
 
 def test_the_picture_falls_with_the_cutting_pressure(screw, oil, record, monkeypatch):
