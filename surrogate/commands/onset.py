@@ -8,7 +8,7 @@ import sys
 from typing import Any
 
 from surrogate.commands.output import add_json, show
-from surrogate.commands.point import add_inputs, oil_temperature, prepare
+from surrogate.commands.point import add_inputs, add_temperature, oil_temperature, prepare
 from surrogate.parameters import load_lubricant, load_screw
 from surrogate.units import GIGA
 
@@ -25,13 +25,7 @@ def add_onset_command(subparsers: Any) -> None:
         dest='load',
         help='axial load [N] (default 0: the preload alone)',
     )
-    parser.add_argument(
-        '--temperature-degC',
-        type=float,
-        metavar='T',
-        dest='temperature',
-        help='oil temperature [degC], default that of the oil datasheet',
-    )
+    add_temperature(parser)
     _add_cut(parser)
     add_json(parser)
     parser.add_argument('--plot', type=Path, metavar='DIR', help='directory for a picture (PNG)')

@@ -78,6 +78,11 @@ def add_operating_point(parser: argparse.ArgumentParser, *, required: bool) -> N
         dest='load',
         help='axial load [N]; it opposes the motion when it has the sign of the speed',
     )
+    add_temperature(parser)
+
+
+def add_temperature(parser: argparse.ArgumentParser) -> None:
+    """Add the temperature of the oil, which `oil_temperature` reads."""
     parser.add_argument(
         '--temperature-degC',
         type=float,

@@ -60,10 +60,19 @@ def running(bag, out):
 
 
 @pytest.fixture(scope='module')
-def finished(short_bag, tmp_path_factory):
+def patient(tmp_path_factory):
+    """Return parameters of the cycle whose inputs stay fresh on a machine that is busy."""
+    path = tmp_path_factory.mktemp('params') / 'patient.yaml'
+    waits = ''.join(f'      {name}:\n        timeout: 60.0\n' for name in ('speed', 'load'))
+    path.write_text(PARAMS.read_text() + waits)
+    return path
+
+
+@pytest.fixture(scope='module')
+def finished(short_bag, patient, tmp_path_factory):
     """Return the directory, the output and the exit code of a run."""
     out = tmp_path_factory.mktemp('run') / 'out'
-    with start('--bag', short_bag, '--params', PARAMS, '--out', out) as process:
+    with start('--bag', short_bag, '--params', patient, '--out', out) as process:
         text, errors = process.communicate(timeout=DEADLINE)
     return out, text, errors, process.returncode
 
@@ -128,7 +137,7 @@ def test_another_library_reads_every_message_of_the_recording(finished):
         assert set(reader.topics) == set(Bag(finished[0]).topics)
 
 
-def test_the_node_says_what_the_replay_says(finished, short_bag):
+def test_the_node_says_what_the_replay_says(finished, short_bag, patient):
     online = [
         deserialize_message(message.data, BallScrewState)
         for message in Bag(finished[0]).messages([STATE])
@@ -136,7 +145,7 @@ def test_the_node_says_what_the_replay_says(finished, short_bag):
     # A tick that finds the speed stale, on a busy machine, repeats the number of the last sample.
     first = {state.judged: state for state in reversed(online) if state.judged}
     online = [what_was_judged(first[number]) for number in sorted(first)]
-    offline = [what_was_judged(state) for state, _ in replay(Bag(short_bag), read_file(PARAMS))]
+    offline = [what_was_judged(state) for state, _ in replay(Bag(short_bag), read_file(patient))]
     assert [sample for sample, _, _ in online] == [sample for sample, _, _ in offline]
     # Between topics the order of arrival is not promised: a speed may meet the next load.
     paired = [
@@ -223,9 +232,9 @@ def test_samples_without_a_verdict_are_a_failure(short_bag, tmp_path, monkeypatc
     assert axis['time_by_reason_s']['load_out_of_range'] > 0.0
 
 
-def test_what_is_not_judged_is_a_failure(short_bag, tmp_path, monkeypatch, capsys):
+def test_what_is_not_judged_is_a_failure(short_bag, patient, tmp_path, monkeypatch, capsys):
     keep_environment(monkeypatch)
-    made = plan(short_bag, PARAMS, tmp_path, 1.0)
+    made = plan(short_bag, patient, tmp_path, 1.0)
     assert run(dataclasses.replace(made, expected={'x': made.expected['x'] + 1})) == 1
     assert capsys.readouterr().err == (
         'ballscrew: axis x: 300 of 301 speed messages were judged; '
