@@ -52,7 +52,8 @@ class Screw(Checked):
     wipers, recirculation and ball-to-ball contact; `speed_limit` is D n [m rad/s] with D the pitch
     diameter; `hysteresis_loss` is the share of the elastic work of rolling that steel does not
     give back [-]; `flank_clearance` [m] between an unloaded ball and the flanks of its groove,
-    None where not known; without `ball_roughness` the balls are smooth.
+    None where not known; `working_load`, the largest axial load in operation [N], None where that
+    which unloads the relieved nut stands for it; without `ball_roughness` the balls are smooth.
 
     """
 
@@ -72,6 +73,7 @@ class Screw(Checked):
     parasitic_torque_rate: float = quantity('Nm_s', 1.0, 0.0, 1e3, default=0.0)
     hysteresis_loss: float = quantity('', 1.0, 0.0, 0.1, default=0.0)
     flank_clearance: float | None = quantity('um', 1e-6, 0.0, 1000.0, default=None)
+    working_load: float | None = quantity('N', 1.0, 0.0, 1e6, default=None)
     raceway: Material = block(Material)
     ball: Material = block(Material)
     roughness: Roughness = block(Roughness)

@@ -25,7 +25,7 @@ from surrogate.surface import Found, HasOperatingPoint, Surface
 NAN = math.nan
 JUDGED = ('efficiency', 'rcs')
 """What the zone is judged by, and so what a surface is corrected for."""
-TOLD = ('tier', 'inputs', 'law')
+TOLD = ('tier', 'inputs')
 """What the solver needs to know of a surface."""
 STAY = 30 * SECOND
 """Shortest stay that counts as dwelling [ns]."""

@@ -10,12 +10,11 @@ leaves of the roughness. The constants are fitted to marches of strips whose sum
 """
 
 from dataclasses import dataclass, replace
-from functools import lru_cache
 import math
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from surrogate.asperities.running_in import Cut, running_tiles, shortest_wave, State, USUAL
+from surrogate.asperities.running_in import running_tiles, shortest_wave
 from surrogate.asperities.topography import acting_roughness, ActingRoughness
 from surrogate.ehl import ContactLubricant
 from surrogate.formulas.geometry import Contact, screw_contact, Side
@@ -89,15 +88,14 @@ def _fastest_root(spare: Array) -> Array:
     return np.asarray(np.where(below.any(axis=-1), speed, 0.0))
 
 
-@lru_cache(maxsize=32)
-def onset_of(screw: Screw, side: Side, state: State, cut: Cut = USUAL) -> TopographyOnset:
+def onset_of(screw: Screw, side: Side) -> TopographyOnset:
     """
-    Return the onset of contact on a side of a screw, its raceway `new` or `run_in`.
+    Return the onset of contact on a side of a screw, its raceway in the state of the sheet.
 
     Raises InputError as `running_tiles` does.
 
     """
-    tiles = running_tiles(screw, side, state, cut)
+    tiles = running_tiles(screw, side)
     if not tiles:
         return TopographyOnset(acting=None)
     modulus = 0.5 * screw_contact(screw, side).reduced_modulus

@@ -9,9 +9,8 @@ Raceway and ball are each cut alone and then added, as the contact adds them.
 
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 import math
-from typing import Literal
 
 import numpy as np
 from scipy.fft import next_fast_len
@@ -31,7 +30,6 @@ from surrogate.raceway.stated import spectrum_of
 from surrogate.raceway.tile import draw_tile, Tile
 from surrogate.units import GIGA
 
-State = Literal['new', 'run_in']
 TILES = 3
 """Tiles of a raceway, each of another draw [-]."""
 LENGTH, WIDTH = 4.0, 2.0
@@ -42,56 +40,23 @@ NODES = 8
 """Nodes of a tile in the shortest wave [-]."""
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Cut:
+def working_load(screw: Screw) -> float:
+    """Return the largest working load of a screw [N], that which unloads a nut if not stated."""
+    if screw.working_load is None:
+        return UNLOADING_RATIO * working_preload(screw)
+    return screw.working_load
+
+
+def working_pressure(screw: Screw, side: Side) -> float:
+    """Return the Hertz pressure of the loaded nut under the largest working load [Pa]."""
+    loaded = float(nut_forces(working_load(screw), screw.preload)[0])
+    force = float(normal_force(screw, loaded))
+    return float(hertz(screw_contact(screw, side), force).max_pressure)
+
+
+def running_tiles(screw: Screw, side: Side) -> list[Tile]:
     """
-    How summits yield: hardness of the steel [Pa], by default that of 60 HRC, and what runs in.
-
-    `run_in_pressure` [Pa] stands for yield and mild wear together, with its lowest and highest
-    likely value. `working_load`, the largest axial load in operation [N], None for that which
-    unloads the relieved nut. A profile that was `traced_run_in` is cut at the hardness alone.
-
-    """
-
-    hardness: float = 7e9
-    run_in_pressure: float = 3e9
-    run_in_range: tuple[float, float] = (2e9, 5e9)
-    working_load: float | None = None
-    traced_run_in: bool = False
-
-    def __post_init__(self) -> None:
-        """Check the order of the pressures and the load."""
-        bounds = self.run_in_range
-        rising = [bounds[0], self.run_in_pressure, bounds[1], self.hardness]
-        if not (rising[0] > 0 and rising == sorted(rising) and self.hardness < math.inf):
-            low, middle, high, most = (f'{GIGA * one:g}' for one in rising)
-            raise InputError(
-                f'run-in pressure is {middle} GPa between {low} and {high} GPa, allowed are '
-                f'rising numbers above 0 and up to the hardness ({most} GPa)'
-            )
-        if self.working_load is not None and not 0 <= self.working_load < math.inf:
-            raise InputError(f'working load is {self.working_load:g} N, allowed is 0 or more')
-
-    def load(self, screw: Screw) -> float:
-        """Return the largest working load of a screw [N]."""
-        if self.working_load is None:
-            return UNLOADING_RATIO * working_preload(screw)
-        return self.working_load
-
-    def pressure(self, state: State) -> float:
-        """Return the pressure at which summits of a state are cut [Pa]."""
-        if state == 'new' or self.traced_run_in:
-            return self.hardness
-        return self.run_in_pressure
-
-
-USUAL = Cut()
-"""Hardness and running-in where nobody says better."""
-
-
-def running_tiles(screw: Screw, side: Side, state: State, cut: Cut = USUAL) -> list[Tile]:
-    """
-    Return tiles of a raceway with its ball, `new` or `run_in`; none where both are smooth.
+    Return tiles of a raceway with its ball in their state; none where both are smooth.
 
     Raises InputError where the largest working load presses the contact by more than the cutting
     pressure.
@@ -101,9 +66,7 @@ def running_tiles(screw: Screw, side: Side, state: State, cut: Cut = USUAL) -> l
     fields = waves_of(screw)
     if not fields:
         return []
-    loaded = float(nut_forces(cut.load(screw), screw.preload)[0])
-    pressure = float(hertz(contact, float(normal_force(screw, loaded))).max_pressure)
-    bound = cut.pressure(state)
+    pressure, bound = working_pressure(screw, side), screw.roughness.cutting_pressure
     size, shape = tile_size(screw, side)
     return [
         _added(

@@ -53,7 +53,7 @@ def _figures(args: argparse.Namespace) -> int:
         from surrogate.paper import figures_set
     except ImportError:
         raise InputError('figures needs matplotlib: install the extra `plot`') from None
-    from surrogate.asperities.law import shipped_law
+    from surrogate.asperities.law import law_of
     from surrogate.paper.report import report, write_report
     from surrogate.paper.study import run_study
     from surrogate.parameters import load_screw
@@ -73,7 +73,8 @@ def _figures(args: argparse.Namespace) -> int:
         print(f'ballscrew: {row.key} did not converge: {row.status}', file=sys.stderr)
     for path in figures_set.draw_figures(study, figures, measured):
         print(path, file=sys.stderr)
-    text = report(load_screw('nominal'), shipped_law(), study.rows)
+    screw = load_screw('nominal')
+    text = report(screw, law_of(screw), study.rows)
     print(write_report(args.out, text), file=sys.stderr)
     print(text, end='')
     return 1 if failed else 0

@@ -62,13 +62,6 @@ def add_identify_command(subparsers: Any, read_bag: BagReader | None = None) -> 
         help='model of the contacts, that of whoever uses the result (default %(default)s)',
     )
     parser.add_argument(
-        '--surface',
-        type=Path,
-        metavar='FILE',
-        help='full tier: surface of this screw whose marches say where contact begins (default '
-        'those of the nominal screw)',
-    )
-    parser.add_argument(
         '--loss',
         choices=('linear', 'soft_l1'),
         default='linear',
@@ -192,21 +185,10 @@ def _contacts(
 ) -> Any:
     """Return the contacts of the run; only the full tier loads the solver."""
     if args.tier == 'full':
-        from surrogate.asperities.law import law_of_surface
         from surrogate.identify.table import solved_model
-        from surrogate.screw import ScrewSettings
 
-        law = law_of_surface(args.surface) if args.surface else None
-        return solved_model(
-            screw,
-            lubricant,
-            run,
-            fitted,
-            settings=ScrewSettings(law=law),
-            progress=Progress(0, 'speeds solved').show,
-        )
-    if args.surface:
-        raise InputError('--surface needs --tier full')
+        report = Progress(0, 'speeds solved').show
+        return solved_model(screw, lubricant, run, fitted, progress=report)
     from surrogate.identify.model import closed_form_model
 
     return closed_form_model(screw, lubricant, run)

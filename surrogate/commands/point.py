@@ -13,7 +13,7 @@ from surrogate.files import InputError
 from surrogate.parameters import load_lubricant, load_screw, Lubricant, OperatingPoint, Screw
 from surrogate.units import RPM, ZERO_CELSIUS
 
-FULL_ONLY = ('kinematics', 'surface', 'inlet_heating', 'plot')
+FULL_ONLY = ('kinematics', 'inlet_heating', 'plot')
 """Options of the full tier alone."""
 
 
@@ -33,13 +33,6 @@ def add_point_command(subparsers: Any) -> None:
         choices=('rolling', 'standing', 'smooth'),
         help='full tier: roughness that rolls with the raceway (default), or for comparison '
         'stands still, or none',
-    )
-    parser.add_argument(
-        '--surface',
-        type=Path,
-        metavar='FILE',
-        help='full tier: surface of this screw whose marches say where contact begins (default '
-        'those of the nominal screw)',
     )
     parser.add_argument(
         '--inlet-heating', action='store_true', help='full tier: films thinned by inlet shear'
@@ -124,16 +117,13 @@ def _full(
     args: argparse.Namespace, screw: Screw, lubricant: Lubricant, point: OperatingPoint
 ) -> tuple[Any, dict[str, Any]]:
     """Return a point of the full tier and its record; only this loads the contact solver."""
-    from surrogate.asperities.law import law_of_surface
     from surrogate.screw.contacts import ScrewSettings
     from surrogate.screw.full_record import solution_record
     from surrogate.screw.solve import solve_screw
 
     started = time.perf_counter()
     settings = ScrewSettings(
-        kinematics=args.kinematics or 'rolling',
-        law=law_of_surface(args.surface) if args.surface else None,
-        inlet_heating=args.inlet_heating,
+        kinematics=args.kinematics or 'rolling', inlet_heating=args.inlet_heating
     )
     found = solve_screw(screw, lubricant, point, settings=settings)
     record = solution_record(screw, lubricant, point, found, settings)

@@ -14,12 +14,11 @@ from dataclasses import dataclass, field
 import math
 from typing import Any
 
-from surrogate.asperities.law import AsperityLaw, law_from_json, shipped_law
 from surrogate.builder.full.chain import solved_point
 from surrogate.builder.tiers import screw_and_oil
 from surrogate.ehl.watch import Iteration, watched
 from surrogate.parameters import OperatingPoint
-from surrogate.screw import ScrewSettings, solve_screw
+from surrogate.screw import solve_screw
 from surrogate.surface import FIELDS, SolvedPoint
 
 CONTACTS = 4
@@ -69,26 +68,23 @@ def solve_point(
         load=float(place['opposing_load']),
         temperature=float(place['temperature']),
     )
-    # A surface of published formulas has no law of its own.
-    law = law_from_json(header['law']) if 'law' in header else shipped_law()
     screw, oil = screw_and_oil(header['inputs'])
     with watched(_Watcher(progress, cancel)):
-        found = solve_screw(screw, oil, point, settings=ScrewSettings(law=law))
-    return _answer(solved_point(found), law)
+        found = solve_screw(screw, oil, point)
+    return _answer(solved_point(found))
 
 
-def _answer(found: SolvedPoint, law: AsperityLaw) -> PointOnDemand:
+def _answer(found: SolvedPoint) -> PointOnDemand:
     if not found.converged:
         return PointOnDemand(converged=False, status=found.status)
     nothing = dict.fromkeys(FIELDS, math.nan)
-    error = found.rcs_deviation * law.error_share
     return PointOnDemand(
         converged=True,
         status=found.status,
         worst_contact=found.worst_contact,
         means={name: getattr(found, name) for name in FIELDS},
         deviations=nothing | {'rcs': found.rcs_deviation},
-        standard_errors=nothing | {'rcs': error},
+        standard_errors=nothing | {'rcs': found.rcs_deviation},
     )
 
 

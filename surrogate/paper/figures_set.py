@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from matplotlib.figure import Figure
-from surrogate.asperities.law import shipped_law
+from surrogate.asperities.law import law_of
 from surrogate.paper.cases import (
     LOADS,
     MARK_RPM,
@@ -52,7 +52,8 @@ def _pictures(
     study: Study, figure: str, measured: MeasuredTorque | None
 ) -> dict[str, Callable[[], Figure]]:
     """Return the pictures of one figure of the study by file name."""
-    rows, screw, law = study.rows, load_screw(SCREW), shipped_law()
+    rows, screw = study.rows, load_screw(SCREW)
+    law = law_of(screw)
     every = list(rows.values())
     pictures: dict[str, dict[str, Callable[[], Figure]]] = {
         '4': {'04_surface': lambda: _fractal(study)},

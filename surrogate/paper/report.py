@@ -27,8 +27,8 @@ def report(screw: Screw, law: AsperityLaw, rows: Mapping[str, StudyRow]) -> str:
         '# Numbers beside the published study',
         'Written by `ballscrew figures`; docs/theory/published_study.md says what they mean. '
         f'{len(rows)} solves, {seconds:.0f} s of processor time.',
-        f'Rolling: {law_sentence(ScrewSettings(law=law))}; the speed at which contact ends has a '
-        f'standard deviation of {100 * law.deviation:.0f} % between them.',
+        f'Rolling: {law_sentence(screw, ScrewSettings())}; that speed has a '
+        f'standard deviation of {100 * law.deviation:.0f} %.',
         '## Trends',
         'Standing roughness is, in single contacts, that of the study, and in the screw one draw '
         'of its own Rq by the standard. Agrees: the course over all places is the reported one; '

@@ -3,8 +3,8 @@
 """
 Rows of the comparison with the published study: numbers in a CSV, fields of contacts beside it.
 
-`inputs` of a row is the beginning of a hash of the datasheets, and of the asperity law where that
-decides what touches; rows of others are not read.
+`inputs` of a row is the beginning of a hash of the datasheets, and of the version of the asperity
+law where that decides what touches; rows of others are not read.
 
 """
 
@@ -17,7 +17,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.asperities.law import AsperityLaw
 from surrogate.files import new_file
 from surrogate.paper.cases import OURS, SMOOTH, StudyTask
 from surrogate.parameters import Lubricant, Screw
@@ -110,9 +109,9 @@ class ContactFields:
     heights: Array
 
 
-def inputs_hash(screw: Screw, lubricant: Lubricant, law: AsperityLaw | None = None) -> str:
-    """Return the beginning of the hash of datasheets, law and what a row means."""
-    text = repr((VERSION, asdict(screw), asdict(lubricant), law and asdict(law)))
+def inputs_hash(screw: Screw, lubricant: Lubricant, law: str = '') -> str:
+    """Return the beginning of the hash of datasheets, version of the law and what a row means."""
+    text = repr((VERSION, asdict(screw), asdict(lubricant), law))
     return hashlib.sha256(text.encode()).hexdigest()[:12]
 
 

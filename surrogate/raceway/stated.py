@@ -17,8 +17,11 @@ from surrogate.files import InputError
 from surrogate.raceway.fractal import DIMENSIONS, Lay
 from surrogate.raceway.spectrum import RoughnessSpectrum
 from surrogate.raceway.standards import BALL_RA, ball_rms, CUTOFF_SHORT
+from surrogate.units import GIGA
 
-RunIn = Literal['run_in', 'new']
+State = Literal['run_in', 'new']
+HARDNESS = 7e9
+"""Hardness of rolling bearing steel of 60 HRC [Pa]."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -29,9 +32,11 @@ class Roughness(Checked):
     Rq `rms` [m] of a profile traced across the lay, 0 for smooth, between a short and a long
     cut-off [m], the long one by the table for Ra = 0.8 Rq where it is None; fractal dimension [-]
     or rms slope Rdq [rad] of that profile; lay with the angle [rad] over which its ridges fan;
-    `state` says whether the profile was traced on a new raceway or after running in and changes
-    no number; ratio of neighbouring wavelengths and ridges of the generator [-]; boundary
-    friction coefficient [-].
+    `state` says whether the raceway is new or has run in, and `traced` in which of the two the
+    profile was traced. No summit carries more than the `hardness` [Pa]; `run_in_pressure` [Pa]
+    stands for yield and mild wear of running in together, with its lowest and highest likely
+    value. Ratio of neighbouring wavelengths and ridges of the generator [-]; boundary friction
+    coefficient [-].
 
     """
 
@@ -53,7 +58,12 @@ class Roughness(Checked):
     rms_slope: float | None = quantity('deg', math.pi / 180, 0.001, 45.0, default=None)
     lay: Lay = choice('isotropic', 'longitudinal', 'transverse', default='isotropic')
     fan_angle: float | None = quantity('deg', math.pi / 180, 0.0, 90.0, default=None)
-    state: RunIn = choice('run_in', 'new', default='run_in')
+    state: State = choice('run_in', 'new', default='run_in')
+    traced: State = choice('new', 'run_in', default='new')
+    hardness: float = quantity('GPa', 1e9, 1.0, 20.0, default=HARDNESS)
+    run_in_pressure: float = quantity('GPa', 1e9, 0.5, 20.0, default=3e9)
+    run_in_low: float = quantity('GPa', 1e9, 0.5, 20.0, default=2e9)
+    run_in_high: float = quantity('GPa', 1e9, 0.5, 20.0, default=5e9)
     scale_ratio: float = quantity('', 1.0, 1.01, 10.0, default=1.5)
     ridges: int = count(1, 1000, default=10)
     asperity_friction: float = quantity('', 1.0, 0.0, 1.0)
@@ -61,12 +71,36 @@ class Roughness(Checked):
     def __post_init__(self) -> None:
         """Check every range, and that waves with these numbers exist."""
         Checked.__post_init__(self)
+        self._check_yield()
         spectrum = spectrum_of(self)
         if self.rms_slope is not None:
             # Only a stated slope is worth the time that scipy takes to load.
             from surrogate.raceway.scaling import scale_spectrum
 
             scale_spectrum(spectrum)
+
+    def _check_yield(self) -> None:
+        """Check the order of the pressures, and that the states agree."""
+        given = self.run_in_low, self.run_in_pressure, self.run_in_high, self.hardness
+        if list(given) != sorted(given):
+            low, middle, high, most = (f'{GIGA * one:g}' for one in given)
+            raise InputError(
+                f'roughness: run_in_pressure_GPa is {middle} GPa between run_in_low_GPa ({low}) '
+                f'and run_in_high_GPa ({high}), allowed are rising numbers up to the hardness '
+                f'({most} GPa)'
+            )
+        if (self.state, self.traced) == ('new', 'run_in'):
+            raise InputError(
+                'roughness: traced is run_in and state is new, allowed is state: run_in for a '
+                'profile that was traced after running in'
+            )
+
+    @property
+    def cutting_pressure(self) -> float:
+        """Pressure at which the summits of the traced profile are cut [Pa]."""
+        if self.state == 'new' or self.traced == 'run_in':
+            return self.hardness
+        return self.run_in_pressure
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -16,8 +16,7 @@ from functools import lru_cache
 import math
 from typing import Literal
 
-from surrogate.asperities.acting import stated_waves, Waves
-from surrogate.asperities.law import AsperityContact, AsperityLaw, shipped_law
+from surrogate.asperities.law import AsperityContact, AsperityLaw, law_of
 from surrogate.ehl import Condition, ContactLubricant, ContactSolution, Settings, solve_contact
 from surrogate.ehl.domain import nodes_on_waves
 from surrogate.ehl.watch import at
@@ -46,9 +45,9 @@ class ScrewSettings:
     """
     How to solve a screw.
 
-    What the roughness does: it rolls, it stands still, or the raceway is smooth. `law` of asperity
-    contact where it rolls, None for the shipped one. Settings of the smooth and of the rough
-    contacts, but for the film floor, which is that of the oil. Of roughness that stands: its draw,
+    What the roughness does: it rolls, it stands still, or the raceway is smooth. Settings of the
+    smooth and of the rough contacts, but for the film floor, which is that of the oil. Of
+    roughness that stands: its draw,
     shortest wavelength on the grid [m], shorter ones raise the floor, None to solve all; nodes per
     such wave across the track, up to `MOST_NODES`, if that is more than the rough settings have
     [-]. `inlet_heating` thins films by shear heating of the inlet; contacts are solved again where
@@ -57,7 +56,6 @@ class ScrewSettings:
     """
 
     kinematics: Kinematics = 'rolling'
-    law: AsperityLaw | None = None
     smooth: Settings = field(default_factory=Settings)
     rough: Settings = field(default_factory=lambda: Settings(nx=129, ny=257, error_estimate=False))
     draw: int = 0
@@ -94,18 +92,19 @@ class RollingContact:
     """
     A ball on one raceway at one point: all that a solve needs but the normal force.
 
-    Geometry; oil at its temperature; entrainment speed [m/s] by the normal force [N], lower where
-    a heated inlet thins the film; film floor of the oil [m]; waves of the roughness where it
-    rolls, else None; where it stands, raceway on the grid and what its shorter waves lift the
-    floor by [m]; how to solve.
+    Side and geometry; oil at its temperature; entrainment speed [m/s] by the normal force [N],
+    lower where a heated inlet thins the film; film floor of the oil [m]; law of asperity contact
+    where the roughness rolls, else None; where it stands, raceway on the grid and what its shorter
+    waves lift the floor by [m]; how to solve.
 
     """
 
+    side: Side
     geometry: Contact
     oil: ContactLubricant
     entrainment: Callable[[float], float]
     film_floor: float
-    waves: Waves | None
+    law: AsperityLaw | None
     raceway: FractalSurface | None
     raised: float
     settings: ScrewSettings
@@ -138,11 +137,12 @@ def _make_contact(
     if settings.kinematics == 'standing':
         raceway, raised = _on_grid(screw, settings.draw, settings.grid_wavelength)
     return RollingContact(
+        side=side,
         geometry=screw_contact(screw, side),
         oil=oil,
         entrainment=entrainment,
         film_floor=film_floor,
-        waves=_waves(screw) if rolls else None,
+        law=law_of(screw) if rolls else None,
         raceway=raceway,
         raised=raised,
         settings=settings,
@@ -203,10 +203,10 @@ def _solve_side(contact: RollingContact, load: float, start: Start) -> SolvedCon
 
 def _rolling(contact: RollingContact, smooth: ContactSolution) -> SolvedContact:
     """Return a smooth contact with what asperities do on a raceway that rolls through it."""
-    if contact.waves is None:
+    if contact.law is None:
         found = AsperityContact(smooth.rcs, smooth.asperity_share, 1.0)
         return SolvedContact(smooth=smooth, pressed=smooth, asperities=found)
-    found = _law(contact, smooth.condition)
+    found = _asperities(contact, contact.law, smooth.condition)
     return SolvedContact(
         smooth=smooth, pressed=smooth, asperities=found, friction_share=found.asperity_share
     )
@@ -215,19 +215,19 @@ def _rolling(contact: RollingContact, smooth: ContactSolution) -> SolvedContact:
 def with_oil_of(contact: RollingContact, solved: SolvedContact) -> SolvedContact:
     """Return a solved contact with the oil, and with the speed and asperities, of another one."""
     pressed = replace(solved.pressed, lubricant=contact.oil)
-    if solved.friction_share is None:
+    if contact.law is None or solved.friction_share is None:
         return replace(solved, pressed=pressed)
     load = solved.smooth.condition.load
     condition = Condition(load=load, entrainment_speed=contact.entrainment(load))
-    found = _law(contact, condition)
+    found = _asperities(contact, contact.law, condition)
     return replace(solved, pressed=pressed, asperities=found, friction_share=found.asperity_share)
 
 
-def _law(contact: RollingContact, condition: Condition) -> AsperityContact:
-    """Return what asperities do by the law of the settings."""
-    assert contact.waves is not None
-    law = contact.settings.law or shipped_law()
-    return law.contact(contact.waves, contact.geometry, condition, contact.oil, contact.film_floor)
+def _asperities(
+    contact: RollingContact, law: AsperityLaw, condition: Condition
+) -> AsperityContact:
+    """Return what asperities do on the raceway of a contact."""
+    return law.contact(contact.side, contact.geometry, condition, contact.oil, contact.film_floor)
 
 
 def _standing(
@@ -247,11 +247,6 @@ def _standing(
     )
     found = AsperityContact(pressed.rcs, pressed.asperity_share, 1.0)
     return SolvedContact(smooth=smooth, pressed=pressed, asperities=found)
-
-
-@lru_cache(maxsize=8)
-def _waves(screw: Screw) -> Waves:
-    return stated_waves(screw.roughness, screw.ball_roughness)
 
 
 @lru_cache(maxsize=8)

@@ -6,7 +6,7 @@ import math
 import time
 from typing import Any
 
-from surrogate.asperities.law import shipped_law
+from surrogate.asperities.law import BANDS
 from surrogate.formulas.geometry import opposite_flank_approach, SIDES
 from surrogate.formulas.inlet_heating import heating_factor
 from surrogate.formulas.record import closed_form_record
@@ -17,6 +17,7 @@ from surrogate.screw.contacts import ScrewSettings, shortest_on_grid, smooth_fil
 from surrogate.screw.nut import rolling_force, ScrewContact
 from surrogate.screw.solve import ScrewSolution, solve_screw, TIER
 from surrogate.surface import regime_of
+from surrogate.units import GIGA
 
 LOAD_CHANGE = 0.01
 """Change of a normal force by friction and inertia that is warned about [-]."""
@@ -77,7 +78,7 @@ def solution_record(
         'rcs': found.rcs,
         'rcs_deviation': found.rcs_deviation,
         'asperity_share': found.asperity_share,
-        'asperity_law': law_sentence(settings),
+        'asperity_law': law_sentence(screw, settings),
         'roughness': roughness_sentence(screw.roughness, screw.ball_roughness),
         'film_ratio': found.film_ratio,
         'regime': regime_of(found.film_ratio).word,
@@ -175,16 +176,17 @@ def _coarse(found: ScrewSolution, wave: float) -> list[str]:
     ]
 
 
-def law_sentence(settings: ScrewSettings) -> str:
+def law_sentence(screw: Screw, settings: ScrewSettings) -> str:
     """Say where the asperity contact of a point is from."""
     if settings.kinematics != 'rolling':
         return {'standing': 'roughness that stands still', 'smooth': 'no roughness'}[
             settings.kinematics
         ]
-    law = settings.law or shipped_law()
+    sheet = screw.roughness
+    state = 'new' if sheet.state == 'new' else 'run in'
     return (
-        f'roughness that rolls, by {law.marches} marches for {law.source}, waves down to '
-        f'{1e6 * law.shortest_wave:.2g} um'
+        f'roughness that rolls, {state}, summits cut at {GIGA * sheet.cutting_pressure:g} GPa; '
+        f'onset by the topography, within {BANDS[sheet.lay]:g} of nine of ten marches'
     )
 
 

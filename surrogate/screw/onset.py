@@ -6,10 +6,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from surrogate.asperities.onset import onset_of
-from surrogate.asperities.running_in import Cut, State, USUAL
+from surrogate.asperities.law import BANDS, onset_place
+from surrogate.asperities.running_in import working_load, working_pressure
 from surrogate.files import InputError
-from surrogate.formulas.geometry import hertz, screw_contact, SIDES
+from surrogate.formulas.geometry import screw_contact, SIDES
 from surrogate.formulas.kinematics import no_slip_rates
 from surrogate.formulas.line import central_film_line, line_at
 from surrogate.formulas.load_sharing import normal_force, nut_forces, working_preload
@@ -19,22 +19,31 @@ from surrogate.raceway.ball import roughness_sentence
 from surrogate.screw.contacts import oil_at
 from surrogate.units import GIGA, MICRO, RPM, ZERO_CELSIUS
 
-BANDS = {'isotropic': 1.3, 'longitudinal': 2.0, 'transverse': 2.0}
-"""Factor within which the topography tells nine of ten marched strips, by the lay [-]; seven of
-the strips had a longitudinal lay, two a transverse one."""
 MARCHED_RMS, MARCHED_WAVES = (0.06e-6, 0.24e-6), (1.25e-6, 10e-6)
 """Rq and short cut-offs within a factor of 2 of, and among, those of the marched strips [m]."""
-STATES: tuple[State, ...] = ('new', 'run_in')
 WORDS = {'new': 'new, after its first pass', 'run_in': 'run in'}
 
 
+def with_raceway(screw: Screw, **changes: Any) -> Screw:
+    """Return a screw with other keys of its raceway roughness."""
+    return replace(screw, roughness=replace(screw.roughness, **changes))
+
+
+def run_in_at(screw: Screw, pressure: float) -> Screw:
+    """Return a screw whose raceway, traced new, runs in at one pressure [Pa] alone."""
+    return with_raceway(
+        screw,
+        state='run_in',
+        traced='new',
+        hardness=max(screw.roughness.hardness, pressure),
+        run_in_pressure=pressure,
+        run_in_low=pressure,
+        run_in_high=pressure,
+    )
+
+
 def onset_point(
-    screw: Screw,
-    lubricant: Lubricant,
-    load: float,
-    temperature: float,
-    state: State,
-    cut: Cut = USUAL,
+    screw: Screw, lubricant: Lubricant, load: float, temperature: float
 ) -> dict[str, float]:
     """
     Return where contact begins under an axial load [N] at an oil temperature [K].
@@ -44,59 +53,50 @@ def onset_point(
     as `running_tiles` does.
 
     """
+    oil = oil_at(lubricant, temperature)
+    speed, side = onset_place(screw, lubricant, oil, load)
+    entrainment = speed * float(starved_speed(lubricant, no_slip_rates(screw).entrainment))
     loaded = float(nut_forces(load, screw.preload)[0]) or working_preload(screw)
-    force, oil = float(normal_force(screw, loaded)), oil_at(lubricant, temperature)
-    found = {
-        side: onset_of(screw, side, state, cut).speed(
-            screw_contact(screw, side), force, oil, lubricant.film_floor
-        )
-        for side in SIDES
-    }
-    side = max(SIDES, key=found.__getitem__)
-    if not found[side]:
-        return {'speed_rad_s': 0.0, 'entrainment_speed_m_s': 0.0, 'central_film_m': 0.0}
-    line = line_at(screw_contact(screw, side), force, 0.0)
-    film = central_film_line(line, found[side], oil.viscosity, oil.pressure_viscosity)
-    rate = float(starved_speed(lubricant, no_slip_rates(screw).entrainment))
-    return {
-        'speed_rad_s': found[side] / rate,
-        'entrainment_speed_m_s': found[side],
-        'central_film_m': float(film),
-    }
+    line = line_at(screw_contact(screw, side), float(normal_force(screw, loaded)), 0.0)
+    film = 0.0
+    if speed:
+        film = float(central_film_line(line, entrainment, oil.viscosity, oil.pressure_viscosity))
+    return {'speed_rad_s': speed, 'entrainment_speed_m_s': entrainment, 'central_film_m': film}
 
 
 def onset_record(
-    screw: Screw, lubricant: Lubricant, load: float, temperature: float, cut: Cut = USUAL
+    screw: Screw, lubricant: Lubricant, load: float, temperature: float
 ) -> dict[str, Any]:
-    """Return the onsets of both states under a load [N] at a temperature [K], SI units."""
+    """
+    Return the onsets of a screw, new and run in, under a load [N] at a temperature [K], SI units.
+
+    A profile that was traced after running in has the latter alone.
+
+    """
     _check_place(lubricant, load, temperature)
-    cut = replace(cut, working_load=abs(load)) if abs(load) > cut.load(screw) else cut
-    band = BANDS[screw.roughness.lay]
-    loaded = float(nut_forces(cut.load(screw), screw.preload)[0])
-    force = float(normal_force(screw, loaded))
-    states = {}
-    for state in STATES[1:] if cut.traced_run_in else STATES:
-        states[state] = onset_point(screw, lubricant, load, temperature, state, cut) | {
-            'cutting_pressure_Pa': cut.pressure(state),
+    stated = screw.working_load is not None
+    if abs(load) > working_load(screw):
+        screw = replace(screw, working_load=abs(load))
+    band, states = BANDS[screw.roughness.lay], {}
+    sheet, place = screw.roughness, (lubricant, load, temperature)
+    for state in ['run_in'] if sheet.traced == 'run_in' else ['new', 'run_in']:
+        raceway = with_raceway(screw, state=state)
+        states[state] = onset_point(raceway, *place) | {
+            'cutting_pressure_Pa': raceway.roughness.cutting_pressure,
             'band': [1 / band, band],
         }
-    if not cut.traced_run_in:
-        states['run_in']['speed_range_rad_s'] = [
-            onset_point(screw, lubricant, load, temperature, 'run_in', cut_at(cut, bound))[
-                'speed_rad_s'
-            ]
-            for bound in cut.run_in_range
-        ]
+    if 'new' in states:
+        states['run_in']['speed_range_rad_s'] = onset_over_pressure(
+            screw, *place, (sheet.run_in_low, sheet.run_in_high)
+        )
     return {
         'screw': screw.name,
         'oil': lubricant.name,
         'load_N': load,
         'temperature_K': temperature,
-        'working_load_N': cut.load(screw),
-        'working_load_stated': cut.working_load is not None,
-        'working_pressure_Pa': max(
-            float(hertz(screw_contact(screw, side), force).max_pressure) for side in SIDES
-        ),
+        'working_load_N': working_load(screw),
+        'working_load_stated': stated,
+        'working_pressure_Pa': max(working_pressure(screw, side) for side in SIDES),
         'roughness': roughness_sentence(screw.roughness, screw.ball_roughness),
         'extrapolated': extrapolated(screw),
         'states': states,
@@ -128,16 +128,6 @@ def extrapolated(screw: Screw) -> list[str]:
         if value and not low <= value <= high
     ]
     return found + ['rough balls (marched: smooth ones)'] * (screw.ball_roughness is not None)
-
-
-def cut_at(cut: Cut, pressure: float) -> Cut:
-    """Return a cut that runs in to one pressure [Pa] alone."""
-    return replace(
-        cut,
-        hardness=max(cut.hardness, pressure),
-        run_in_pressure=pressure,
-        run_in_range=(pressure, pressure),
-    )
 
 
 def onset_page(record: Mapping[str, Any]) -> str:
@@ -190,10 +180,10 @@ def _told(found: Mapping[str, Any]) -> str:
 
 
 def onset_over_pressure(
-    screw: Screw, lubricant: Lubricant, load: float, temperature: float, cuts: Sequence[Cut]
+    screw: Screw, lubricant: Lubricant, load: float, temperature: float, pressures: Sequence[float]
 ) -> list[float]:
-    """Return the onset speeds [rad/s] of a profile that runs in, under a load [N], for cuts."""
+    """Return the onset speeds [rad/s] of a profile that runs in at some pressures [Pa]."""
     return [
-        onset_point(screw, lubricant, load, temperature, 'run_in', cut)['speed_rad_s']
-        for cut in cuts
+        onset_point(run_in_at(screw, pressure), lubricant, load, temperature)['speed_rad_s']
+        for pressure in pressures
     ]

@@ -3,16 +3,14 @@
 """Picture of the onset of contact over the pressure at which summits are cut."""
 
 from collections.abc import Mapping
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from matplotlib.figure import Figure
 import numpy as np
-from surrogate.asperities.running_in import Cut
 from surrogate.parameters import Lubricant, Screw
 from surrogate.plotting.style import BLUE, draw_picture, new_figure, ORANGE, VERMILION
-from surrogate.screw.onset import cut_at, onset_over_pressure
+from surrogate.screw.onset import onset_over_pressure
 from surrogate.units import GIGA, RPM, ZERO_CELSIUS
 
 STEPS = 8
@@ -20,23 +18,21 @@ STEPS = 8
 
 
 def draw_onset(
-    folder: Path, screw: Screw, lubricant: Lubricant, cut: Cut, record: Mapping[str, Any]
+    folder: Path, screw: Screw, lubricant: Lubricant, record: Mapping[str, Any]
 ) -> Path:
     """Draw the onset of a screw and oil into a folder and return the path of the picture."""
     name = f'onset_{record["screw"]}_{record["oil"]}.png'
-    return draw_picture(folder / name, lambda: figure_onset(screw, lubricant, cut, record))
+    return draw_picture(folder / name, lambda: figure_onset(screw, lubricant, record))
 
 
-def figure_onset(
-    screw: Screw, lubricant: Lubricant, cut: Cut, record: Mapping[str, Any]
-) -> Figure:
+def figure_onset(screw: Screw, lubricant: Lubricant, record: Mapping[str, Any]) -> Figure:
     """Return the onset speed over the cutting pressure, with hardness and running-in marked."""
     low, high = record['states']['run_in']['band']
-    least = max(1.1 * record['working_pressure_Pa'], 0.8 * cut.run_in_range[0])
-    pressures = np.geomspace(least, 1.2 * cut.hardness, STEPS)
-    cuts = [cut_at(replace(cut, traced_run_in=False), float(one)) for one in pressures]
+    sheet = screw.roughness
+    least = max(1.1 * record['working_pressure_Pa'], 0.8 * sheet.run_in_low)
+    pressures = np.geomspace(least, 1.2 * sheet.hardness, STEPS)
     place = record['load_N'], record['temperature_K']
-    speed = np.array(onset_over_pressure(screw, lubricant, *place, cuts)) / RPM
+    speed = np.array(onset_over_pressure(screw, lubricant, *place, pressures.tolist())) / RPM
     figure = new_figure(6.4, 4.0)
     axes, giga = figure.subplots(), GIGA * pressures
     axes.fill_between(
@@ -44,14 +40,14 @@ def figure_onset(
     )
     axes.plot(giga, speed, color=BLUE, label='onset, RCS 0.01')
     axes.axvspan(
-        GIGA * cut.run_in_range[0],
-        GIGA * cut.run_in_range[1],
+        GIGA * sheet.run_in_low,
+        GIGA * sheet.run_in_high,
         color=ORANGE,
         alpha=0.2,
         label='run in, its range',
     )
-    axes.axvline(GIGA * cut.run_in_pressure, color=ORANGE, linestyle='--', label='run in')
-    axes.axvline(GIGA * cut.hardness, color=VERMILION, linestyle=':', label='hardness: new')
+    axes.axvline(GIGA * sheet.run_in_pressure, color=ORANGE, linestyle='--', label='run in')
+    axes.axvline(GIGA * sheet.hardness, color=VERMILION, linestyle=':', label='hardness: new')
     axes.set(
         xscale='log',
         yscale='log',

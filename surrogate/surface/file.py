@@ -69,7 +69,7 @@ class SurfaceData:
     per cell. `deviations` and `standard_errors`, of any of the fields in its unit, hold the
     standard deviation between strips of the raceway and the standard error of the mean on the
     nodes, NaN where not known; a tier without strips has none. `header` has the keys format,
-    format_version, tier, inputs, settings, load_breaks, and law in the full tier; `provenance` is
+    format_version, tier, inputs, settings and load_breaks; `provenance` is
     not hashed.
 
     """
@@ -264,14 +264,11 @@ def _has_sound_ensemble(data: SurfaceData) -> bool:
 def _has_sound_header(data: SurfaceData) -> bool:
     """Tell whether the lookup finds what it needs, and no more speeds than there are nodes."""
     screw, oil = (data.header['inputs'][kind] for kind in ('screw', 'lubricant'))
-    # Solves of a full-tier surface, and so its corrections, need the law that it was built with.
-    law = data.header['law'] if data.header['tier'] == 'full' else {}
     numbers = (screw['lead'], screw['preload'], oil['reference_temperature'])
     slowest, fastest = (math.log(speed) for speed in data.header['settings']['speed_range'])
     s, rounding = data.speed_coordinate, 1e-9
     return (
         data.header['tier'] in TIERS
-        and isinstance(law, Mapping)
         and all(isinstance(one['name'], str) for one in (screw, oil))
         and all(math.isfinite(number) for number in numbers)
         and set(data.header['load_breaks']) <= set(data.load.tolist())

@@ -55,7 +55,6 @@ def info_record(path: Path, data: SurfaceData) -> dict[str, Any]:
             for name in FIELD_TEXTS
             if name in data.deviations or name in data.standard_errors
         },
-        'law': data.header.get('law'),
         'limit_band': data.header.get('limit_band'),
         'accuracy_reached': data.header.get('reached'),
         'settings': dict(data.header['settings']),
@@ -128,22 +127,13 @@ def _head(record: Mapping[str, Any]) -> Iterator[str]:
 
 def _full_tier(record: Mapping[str, Any]) -> Iterator[str]:
     """Yield what a full-tier builder says of its result."""
-    law = record['law']
-    if law is not None:
-        yield (
-            f'  contact      RCS 0.01 at a film of {law["onset_ratio"]:.3g} times the roughness '
-            'that acts'
-        )
-        yield (
-            f'               {law["marches"]} marches, waves down to '
-            f'{1e6 * law["shortest_wave"]:.2g} um, floor {1e9 * law["film_floor"]:g} nm; strips '
-            f'differ by {100 * law["deviation"]:.2g} % in speed'
-        )
+    if record['limit_band'] is not None:
         low, high = record['limit_band']
         yield (
-            f'               limit times {low:.2g} to {high:.2g} over the range of floors of the '
-            'oil'
+            f'  contact      begins between {low:.2g} and {high:.2g} times the stated speed, over '
+            'the ranges'
         )
+        yield '               of boundary films and of running in'
     if record['accuracy_reached'] is not None:
         yield (
             '  accuracy     the worst held-out point has '

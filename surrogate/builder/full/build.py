@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Build a surface of the full tier: the asperity law from marches, then every node a solved screw.
+Build a surface of the full tier: every node a solved screw.
 
 Points that are no nodes are solved last: they measure the error. What is solved, and where, is
 left to the caller.
@@ -14,8 +14,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.asperities.build import build_law
-from surrogate.asperities.law import AsperityLaw
 from surrogate.builder.closed_form import check_ranges, check_rough, surface_header
 from surrogate.builder.full.chain import chain_inputs, solved_chain, SolvedChain
 from surrogate.builder.full.held_out import cell_errors, held_out_points, HeldOut, judged
@@ -23,14 +21,15 @@ from surrogate.builder.full.nodes import Nodes, onset_speeds, surface_nodes
 from surrogate.builder.full.settings import FullSettings
 from surrogate.files import InputError
 from surrogate.parameters import Lubricant, Screw
+from surrogate.screw.onset import run_in_at, with_raceway
 from surrogate.screw.solve import TIER
 from surrogate.surface import FIELDS, SolvedPoint, Surface
 from surrogate.surface.file import format_version, SurfaceData
 
 Array = NDArray[np.float64]
 Results = Mapping[str, Mapping[str, Any] | None]
-Run = Callable[[str, Mapping[str, Mapping[str, Any]]], Results]
-"""Solves named tasks of one kind, `march` or `chain`: their results, None for a failure."""
+Run = Callable[[Mapping[str, Mapping[str, Any]]], Results]
+"""Solves named chains: their results, None for a failure."""
 UNSOLVED = SolvedPoint(converged=False, status='The chain failed.')
 
 
@@ -38,25 +37,24 @@ def build_full(
     screw: Screw, lubricant: Lubricant, settings: FullSettings, run: Run
 ) -> SurfaceData:
     """
-    Build the surface of the full tier from marches and chains that `run` solves.
+    Build the surface of the full tier from chains that `run` solves.
 
     Raises InputError for ranges that make no sense, and for a screw of which no point converges.
 
     """
     check_rough(screw)
     check_ranges(settings, lubricant)
-    law = build_law(screw, lubricant, lambda tasks: run('march', tasks))
-    nodes = surface_nodes(screw, lubricant, law, settings)
-    columns = _columns(screw, lubricant, law, nodes, run)
-    data = _surface(screw, lubricant, settings, law, nodes, columns)
-    held_out = _held_out(data, screw, lubricant, law, settings, run)
+    nodes = surface_nodes(screw, lubricant, settings)
+    columns = _columns(screw, lubricant, nodes, run)
+    data = _surface(screw, lubricant, settings, nodes, columns)
+    held_out = _held_out(data, screw, lubricant, settings, run)
     errors = cell_errors(data, held_out, screw, settings)
     reached = max((one.miss for one in held_out), default=None)
     return replace(data, errors=errors, header={**data.header, 'reached': reached})
 
 
 def _columns(
-    screw: Screw, lubricant: Lubricant, law: AsperityLaw, nodes: Nodes, run: Run
+    screw: Screw, lubricant: Lubricant, nodes: Nodes, run: Run
 ) -> dict[tuple[int, int], tuple[SolvedPoint, ...]]:
     """Return the solved points of each column [load, temperature], from the fastest on."""
     chains, places = {}, {}
@@ -65,9 +63,9 @@ def _columns(
         heat = float(nodes.temperature[k])
         # Loads of either sign share a chain unless their speeds differ.
         name = f'{abs(load)!r} N, temperature {k}, {len(speeds)} from {speeds[0]!r} rad/s'
-        chains[name] = chain_inputs(screw, lubricant, law, abs(load), heat, speeds)
+        chains[name] = chain_inputs(screw, lubricant, abs(load), heat, speeds)
         places[j, k] = name, load
-    results = run('chain', chains)
+    results = run(chains)
     solved = {name: solved_chain(one) if one else None for name, one in results.items()}
     return {
         place: _under(solved[name], load, len(nodes.speeds(*place)))
@@ -83,7 +81,6 @@ def _surface(
     screw: Screw,
     lubricant: Lubricant,
     settings: FullSettings,
-    law: AsperityLaw,
     nodes: Nodes,
     columns: Mapping[tuple[int, int], tuple[SolvedPoint, ...]],
 ) -> SurfaceData:
@@ -101,11 +98,7 @@ def _surface(
         raise InputError('screw: no point of the surface converged, see the reasons above')
     deviation = fields.pop('rcs_deviation')
     header = surface_header(screw, lubricant, settings, nodes.breaks, TIER)
-    header |= {
-        'format_version': format_version(True),
-        'law': law.to_json(),
-        'limit_band': limit_band(screw, lubricant, law),
-    }
+    header |= {'format_version': format_version(True), 'limit_band': limit_band(screw, lubricant)}
     return SurfaceData(
         header=header,
         speed_coordinate=nodes.s,
@@ -117,24 +110,33 @@ def _surface(
         worst_contact=worst,
         mask=mask,
         deviations={'rcs': deviation},
-        standard_errors={'rcs': deviation * law.error_share},
+        standard_errors={'rcs': deviation},
     )
 
 
-def limit_band(screw: Screw, lubricant: Lubricant, law: AsperityLaw) -> list[float]:
+def limit_band(screw: Screw, lubricant: Lubricant) -> list[float]:
     """
-    Return the onset speed over the stated one for the lowest and highest floor of the oil [-].
+    Return the least and the largest onset speed that may be, over the stated one [-].
 
-    At the preload and the reference temperature.
+    At the preload and the reference temperature: over the range of floors of the oil and, where
+    the profile was traced on a new raceway that has run in, over that of the pressure at which
+    this cuts the summits, up to none of it.
 
     """
+    low, high = screw, screw
+    if (screw.roughness.state, screw.roughness.traced) == ('run_in', 'new'):
+        low = run_in_at(screw, screw.roughness.run_in_low)
+        high = with_raceway(screw, state='new')
     place = np.array([0.0]), np.array([lubricant.reference_temperature])
-    floors = lubricant.film_floor_low, lubricant.film_floor, lubricant.film_floor_high
-    low, stated, high = (
-        float(onset_speeds(screw, _with_floor(lubricant, floor), law, *place)[0, 0])
-        for floor in floors
+    least, stated, most = (
+        float(onset_speeds(one, _with_floor(lubricant, floor), *place)[0, 0])
+        for one, floor in (
+            (low, lubricant.film_floor_low),
+            (screw, lubricant.film_floor),
+            (high, lubricant.film_floor_high),
+        )
     )
-    return [low / stated, high / stated]
+    return [least / stated, most / stated]
 
 
 def _with_floor(lubricant: Lubricant, floor: float) -> Lubricant:
@@ -142,20 +144,15 @@ def _with_floor(lubricant: Lubricant, floor: float) -> Lubricant:
 
 
 def _held_out(
-    data: SurfaceData,
-    screw: Screw,
-    lubricant: Lubricant,
-    law: AsperityLaw,
-    settings: FullSettings,
-    run: Run,
+    data: SurfaceData, screw: Screw, lubricant: Lubricant, settings: FullSettings, run: Run
 ) -> list[HeldOut]:
     """Return points that are no nodes, solved and compared with the lookup."""
     points = held_out_points(Surface(data), screw, settings)
     chains = {
-        f'held out {place}': chain_inputs(screw, lubricant, law, abs(load), heat, [speed])
+        f'held out {place}': chain_inputs(screw, lubricant, abs(load), heat, [speed])
         for place, (speed, load, heat) in enumerate(points)
     }
-    results = run('chain', chains)
+    results = run(chains)
     pairs = zip(points, results.values(), strict=True)
     solved = ((point, solved_chain(one).under(point[1])[0]) for point, one in pairs if one)
     surface = Surface(data)

@@ -12,14 +12,13 @@ from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
-from surrogate.asperities.law import AsperityLaw, law_from_json
 from surrogate.builder.tiers import screw_and_oil
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.screw.contacts import ScrewSettings
 from surrogate.screw.solve import rebalance_screw, ScrewSolution, solve_screw
 from surrogate.surface import FIELDS, SolvedPoint
 
-WORK = 'full tier 11'
+WORK = 'full tier 12'
 """Solver and version of what a chain returns, constants of the asperity law with it; part of the
 key under which it is kept."""
 
@@ -37,18 +36,12 @@ class SolvedChain:
 
 
 def chain_inputs(
-    screw: Screw,
-    lubricant: Lubricant,
-    law: AsperityLaw,
-    load: float,
-    temperature: float,
-    speeds: list[float],
+    screw: Screw, lubricant: Lubricant, load: float, temperature: float, speeds: list[float]
 ) -> dict[str, Any]:
     """Return a chain: `load` [N] at least 0, `temperature` [K], falling `speeds` [rad/s]."""
     return {
         'screw': asdict(screw),
         'lubricant': asdict(lubricant),
-        'law': law.to_json(),
         'load': load,
         'temperature': temperature,
         'speeds': speeds,
@@ -81,7 +74,7 @@ def solved_chain(result: Mapping[str, Any]) -> SolvedChain:
 def _points(inputs: Mapping[str, Any]) -> Iterator[tuple[ScrewSolution, ScrewSolution]]:
     """Yield both solutions of each speed; they share their contacts and differ by the balance."""
     screw, lubricant = screw_and_oil(inputs)
-    settings = ScrewSettings(law=law_from_json(inputs['law']))
+    settings = ScrewSettings()
     last: ScrewSolution | None = None
     for speed in inputs['speeds']:
         point = OperatingPoint(speed=speed, load=inputs['load'], temperature=inputs['temperature'])

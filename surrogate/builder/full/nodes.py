@@ -10,19 +10,16 @@ nothing. Temperatures are even in the logarithm of the viscosity, speeds crowd t
 """
 
 from dataclasses import dataclass
-import itertools
 import math
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter, minimum_filter
-from surrogate.asperities.acting import stated_waves
-from surrogate.asperities.law import AsperityLaw
+from surrogate.asperities.law import onset_place
 from surrogate.builder.closed_form import speed_coordinates
 from surrogate.builder.full.settings import FullSettings
-from surrogate.formulas.geometry import screw_contact, SIDES
 from surrogate.formulas.kinematics import no_slip_rates
-from surrogate.formulas.load_sharing import idle_load, normal_force, nut_forces, working_preload
+from surrogate.formulas.load_sharing import idle_load
 from surrogate.formulas.lubricant import lubricant_state
 from surrogate.formulas.starvation import starved_speed
 from surrogate.parameters import Lubricant, Screw
@@ -62,13 +59,11 @@ class Nodes:
         return np.exp(self.s[inside] + self.log_onset[load, temperature])[::-1]
 
 
-def surface_nodes(
-    screw: Screw, lubricant: Lubricant, law: AsperityLaw, settings: FullSettings
-) -> Nodes:
+def surface_nodes(screw: Screw, lubricant: Lubricant, settings: FullSettings) -> Nodes:
     """Return the nodes of a surface of some settings."""
     load, breaks = signed_loads(screw, settings)
     temperature = temperature_nodes(lubricant, settings)
-    onset = onset_speeds(screw, lubricant, law, load, temperature)
+    onset = onset_speeds(screw, lubricant, load, temperature)
     log_onset = np.log(onset)
     s = speed_coordinates(settings, log_onset)
     return Nodes(
@@ -81,27 +76,19 @@ def surface_nodes(
     )
 
 
-def onset_speeds(
-    screw: Screw, lubricant: Lubricant, law: AsperityLaw, load: Array, temperature: Array
-) -> Array:
+def onset_speeds(screw: Screw, lubricant: Lubricant, load: Array, temperature: Array) -> Array:
     """
     Return the screw speeds [rad/s] of the onset over load [N] and temperature [K].
 
     That of the loaded nut, for the side where contact begins faster.
 
     """
-    waves = stated_waves(screw.roughness, screw.ball_roughness)
-    rate = no_slip_rates(screw).entrainment
     oils = [oil_at(lubricant, float(heat)) for heat in temperature]
-    found = np.empty((len(load), len(temperature)))
-    for (j, force), (k, oil) in itertools.product(enumerate(load), enumerate(oils)):
-        loaded = float(nut_forces(force, screw.preload)[0]) or working_preload(screw)
-        pressed = float(normal_force(screw, loaded))
-        found[j, k] = max(
-            law.onset(waves, screw_contact(screw, side), pressed, oil, lubricant.film_floor)
-            for side in SIDES
-        )
-    return np.maximum(found, SMOOTH_ONSET) / starved_speed(lubricant, rate)
+    found = [
+        [onset_place(screw, lubricant, oil, float(force))[0] for oil in oils] for force in load
+    ]
+    least = SMOOTH_ONSET / starved_speed(lubricant, no_slip_rates(screw).entrainment)
+    return np.maximum(found, least)
 
 
 def signed_loads(screw: Screw, settings: FullSettings) -> tuple[Array, list[float]]:

@@ -13,11 +13,8 @@ from typing import Any
 import numba
 import numpy as np
 import scipy
-from surrogate.asperities import marches
-from surrogate.asperities.law import law_from_json
-from surrogate.builder.full import chain
 from surrogate.builder.full.build import build_full, Results
-from surrogate.builder.full.chain import chain_inputs, solve_chain, solved_chain
+from surrogate.builder.full.chain import chain_inputs, solve_chain, solved_chain, WORK
 from surrogate.builder.full.nodes import covering
 from surrogate.builder.full.settings import FullSettings
 from surrogate.builder.tiers import screw_and_oil
@@ -29,14 +26,11 @@ from surrogate.tasks.pool import Pool, run_tasks, TaskOutcome
 from surrogate.tasks.store import TaskStore
 from surrogate.units import RPM, ZERO_CELSIUS
 
-WORK = f'{marches.WORK}, {chain.WORK}'
-TASKS = {'march': marches.solve_march, 'chain': solve_chain}
-
 
 @dataclass(slots=True)
 class TaskRun:
     """
-    Solves tasks on a pool and keeps their results; call it as a builder's `run`.
+    Solves chains on a pool and keeps their results; call it as a builder's `run`.
 
     Counts tasks, how many of them a store had kept, seconds of the workers [s] without those
     kept, and failures with their sentences.
@@ -50,9 +44,9 @@ class TaskRun:
     seconds: float = 0.0
     failures: list[str] = field(default_factory=list)
 
-    def __call__(self, kind: str, tasks: Mapping[str, Mapping[str, Any]]) -> Results:
-        """Solve named tasks; None for one that failed."""
-        progress = Progress(len(tasks), f'{kind}es' if kind == 'march' else f'{kind}s')
+    def __call__(self, tasks: Mapping[str, Mapping[str, Any]]) -> Results:
+        """Solve named chains; None for one that failed."""
+        progress = Progress(len(tasks), 'chains')
 
         def count(outcome: TaskOutcome) -> None:
             progress.step(there=outcome.stored)
@@ -60,10 +54,10 @@ class TaskRun:
             self.kept += outcome.stored
             self.seconds += 0.0 if outcome.stored else outcome.seconds
             if outcome.result is None:
-                self.failures.append(f'{kind}, {outcome.name}: {outcome.sentence}')
+                self.failures.append(f'chain, {outcome.name}: {outcome.sentence}')
                 print(self.failures[-1], file=sys.stderr)
 
-        done = run_tasks(self.pool, TASKS[kind], tasks, store=self.store, report=count)
+        done = run_tasks(self.pool, solve_chain, tasks, store=self.store, report=count)
         return {name: outcome.result for name, outcome in done.items()}
 
 
@@ -118,10 +112,9 @@ def _missing(data: SurfaceData, speed_range: tuple[float, float]) -> Iterator[st
 def solve_full(
     header: Mapping[str, Any], speed: float, load: float, temperature: float
 ) -> SolvedPoint:
-    """Solve a point [rad/s, N, K] with the law of a surface."""
+    """Solve a point [rad/s, N, K] of the screw and oil of a surface."""
     screw, lubricant = screw_and_oil(header['inputs'])
-    law = law_from_json(header['law'])
-    given = chain_inputs(screw, lubricant, law, abs(load), temperature, [speed])
+    given = chain_inputs(screw, lubricant, abs(load), temperature, [speed])
     return solved_chain(solve_chain(given)).under(load)[0]
 
 
