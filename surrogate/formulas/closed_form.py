@@ -34,7 +34,7 @@ from surrogate.parameters import Lubricant, Screw
 
 Array = NDArray[np.float64]
 TIER = 'closed_form'
-FILM_SCALE = 1.9
+FILM_SCALE = 2.7
 """Film ratio that the fit of asperity shares is read at over that of the screw [-], by which RCS
 passes 0.01 where solved contacts under a rolling raceway do."""
 

@@ -11,9 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from surrogate.asperities.acting import speed_at_ratio
-from surrogate.asperities.law import law_from_json, ONSET_RCS
-from surrogate.asperities.marches import inputs_from_json
+from surrogate.asperities.law import rcs_at
 from surrogate.builder.closed_form import build_closed_form, default_settings
 from surrogate.builder.full.nodes import onset_speeds
 from surrogate.builder.tiers import screw_and_oil
@@ -70,43 +68,22 @@ def surface_data(screw: Screw, oil: Lubricant) -> SurfaceData:
 
 @pytest.fixture(scope='session')
 def stand_in() -> SimpleNamespace:
-    """Return `march`, `chain` and `run` of a fast model in place of marches and contacts."""
-    return SimpleNamespace(march=march_stand_in, chain=chain_stand_in, run=run_stand_in)
-
-
-ONSET_RATIO, STEEPNESS = 1.2, 3.0
-
-
-def march_stand_in(inputs: Mapping[str, Any]) -> dict[str, Any]:
-    """Return what `solve_march` returns, with an onset at one ratio and RCS as a power."""
-    given = inputs_from_json(inputs)
-    onset = float(speed_at_ratio(given.waves, given.line, given.oil, np.array(ONSET_RATIO)))
-    x = np.linspace(-1.5, 1.0, 40)
-    rcs = ONSET_RCS / (ONSET_RCS + (1 - ONSET_RCS) * np.exp(STEEPNESS * x))
-    return {
-        'status': 'CONVERGED',
-        'onset': onset,
-        'speed': (onset * np.exp(x)).tolist(),
-        'rcs': rcs.tolist(),
-        'asperity_share': (0.8 * rcs).tolist(),
-        'loss_factor': (1.3 - 0.1 * x).tolist(),
-    }
+    """Return `chain` and `run` of a fast model in place of solved contacts."""
+    return SimpleNamespace(chain=chain_stand_in, run=run_stand_in)
 
 
 def chain_stand_in(inputs: Mapping[str, Any]) -> dict[str, Any]:
     """Return what `solve_chain` returns: formulas, and contact by the law at the onset speed."""
     screw, lubricant = screw_and_oil(inputs)
-    law, load, heat = law_from_json(inputs['law']), inputs['load'], inputs['temperature']
+    load, heat = inputs['load'], inputs['temperature']
     place = np.array([load]), np.array([heat])
-    onset = float(onset_speeds(screw, lubricant, law, *place)[0, 0])
+    onset = float(onset_speeds(screw, lubricant, *place)[0, 0])
     speeds = np.array(inputs['speeds'])
-    touching = law.at(np.log(speeds / onset))
+    touching = rcs_at(np.log(speeds / onset)).tolist()
     return {
         sense: [
-            stand_in_point(formula, float(rcs), float(share))
-            for speed, rcs, share in zip(
-                speeds, touching['rcs'], touching['asperity_share'], strict=True
-            )
+            stand_in_point(formula, rcs, 0.8 * rcs)
+            for speed, rcs in zip(speeds, touching, strict=True)
             for formula in [closed_form.solve(screw, lubricant, float(speed), sign * load, heat)]
         ]
         for sense, sign in (('opposing', 1.0), ('assisting', -1.0))
