@@ -14,7 +14,7 @@ folder         what it holds
 formulas       closed-form tier, a published law a function, author and year in it
 raceway        rough surfaces: fractal, measured, identified
 ehl            one contact, smooth, mixed, dry or rolling; kernels: arrays alone
-asperities     what touches as roughness rolls: marches, law; summits that yield
+asperities     what touches as roughness rolls: law, onset; summits that yield
 contact        a contact as a file: case, record, pictures
 screw          one point of the full tier: contacts, balance of the balls, torque
 builder        datasheet to surface: tiers, sweeps; full: law, nodes, errors
