@@ -89,7 +89,7 @@ class Surface:
 
     @property
     def limit_band(self) -> tuple[float, float]:
-        """Limit of RCS in speed over that in force, for thin and thick boundary films [-]."""
+        """Least and largest limit of RCS in speed over that in force [-]."""
         low, high = self.header.get('limit_band', (math.nan, math.nan))
         return float(low), float(high)
 

@@ -138,7 +138,7 @@ def _limit(axes: Axes, part: Slice, values: Array, levels: list[float]) -> None:
 
 
 def _limit_band(axes: Axes, part: Slice, rcs: Array) -> None:
-    """Draw where the limit of RCS lies with a thinner and a thicker boundary film."""
+    """Draw where the limit of RCS may lie, by the ranges of boundary film and running in."""
     known = rcs[np.isfinite(rcs)]
     if not (known.size and known.min() < RCS_LIMIT < known.max()):
         return
