@@ -13,8 +13,8 @@ from ballscrew_monitor.core.conversions import kelvin
 from courses import constant, Course, moves, Steps
 from feeding import CLEAR_DELAY, FEED, LATE, later, LOAD, OIL, RAMP, TOUCHING
 from scenario import Expected, ExpectedEvent, LimitPoint, OIL_PERIOD, ResidualChange, Scenario
-from surrogate.formulas.closed_form import solve
 from surrogate.parameters import load_lubricant, load_screw
+from surrogate.screw.closed_form import solve
 from surrogate.units import RPM
 
 LIGHT_LOAD = 247.5  # [N] a quarter of the preload: efficiency is judged from here on

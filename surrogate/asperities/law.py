@@ -21,7 +21,7 @@ from surrogate.asperities.onset import onset_of, PRESSURE, TopographyOnset
 from surrogate.ehl import Condition, ContactLubricant
 from surrogate.formulas.geometry import Contact, screw_contact, Side, SIDES
 from surrogate.formulas.kinematics import no_slip_rates
-from surrogate.formulas.line import line_at
+from surrogate.formulas.line import Line, line_at
 from surrogate.formulas.load_sharing import normal_force, nut_forces, working_preload
 from surrogate.formulas.starvation import starved_speed
 from surrogate.parameters import Lubricant, Screw
@@ -100,15 +100,11 @@ class AsperityLaw:
         """
         if not condition.entrainment_speed:
             return AT_REST
-        points, weights = np.polynomial.legendre.leggauss(2 * PLACES)
-        place, share = points[PLACES:], 1.5 * weights[PLACES:] * (1 - points[PLACES:] ** 2)
-        strips, raceway = line_at(contact, condition.load, place), self.onsets[side]
-        with np.errstate(divide='ignore'):
-            onset = np.log(raceway.speeds(strips, oil, floor))
-        over = math.log(condition.entrainment_speed) - onset
+        share, strips, onset = self._strips(side, contact, condition.load, oil, floor)
+        over, acting = math.log(condition.entrainment_speed) - onset, self.onsets[side].acting
         rcs = rcs_at(over)
         apart = [float(share @ rcs_at(over + half * self.deviation)) for half in (-0.5, 0.5)]
-        loss = loss_at(over, strips.max_pressure, raceway.acting.lay if raceway.acting else 0.0)
+        loss = loss_at(over, strips.max_pressure, acting.lay if acting else 0.0)
         # The weights add up to 1 but for rounding.
         return AsperityContact(
             rcs=min(float(share @ rcs), 1.0),
@@ -116,6 +112,36 @@ class AsperityLaw:
             loss_factor=float(share @ loss),
             rcs_deviation=apart[0] - apart[1],
         )
+
+    def shares(
+        self,
+        side: Side,
+        contact: Contact,
+        load: float,
+        oil: ContactLubricant,
+        floor: float,
+        speeds: Array,
+    ) -> tuple[Array, Array]:
+        """Return RCS and asperity share [-] as `contact` has them, at many speeds [m/s]."""
+        share, _, onset = self._strips(side, contact, load, oil, floor)
+        with np.errstate(divide='ignore', invalid='ignore'):
+            over = np.log(speeds) - onset[:, None]
+        rcs = rcs_at(np.where(speeds > 0, over, -math.inf))
+        # Summed place by place, so that a speed does not depend on those beside it.
+        each = ((share[:, None] * values).sum(axis=0) for values in (rcs, share_at(rcs)))
+        touching, carried = (np.minimum(values, 1.0) for values in each)
+        return touching, carried
+
+    def _strips(
+        self, side: Side, contact: Contact, load: float, oil: ContactLubricant, floor: float
+    ) -> tuple[Array, Line, Array]:
+        """Return strips across a contact: share of the load, line, logarithm of the onset."""
+        points, weights = np.polynomial.legendre.leggauss(2 * PLACES)
+        place, share = points[PLACES:], 1.5 * weights[PLACES:] * (1 - points[PLACES:] ** 2)
+        strips = line_at(contact, load, place)
+        with np.errstate(divide='ignore'):
+            onset = np.log(self.onsets[side].speeds(strips, oil, floor))
+        return share, strips, onset
 
 
 def rcs_at(log_speed: ArrayLike) -> Array:

@@ -20,12 +20,11 @@ from numpy.typing import NDArray
 import scipy
 from surrogate.builder.tiers import screw_and_oil
 from surrogate.files import InputError
-from surrogate.formulas import closed_form
-from surrogate.formulas.film import film_ratio_at_share_aihara_1987
-from surrogate.formulas.inlet_heating import SPEED_EXPONENT
-from surrogate.formulas.load_sharing import UNLOADING_RATIO, working_preload
+from surrogate.formulas.load_sharing import UNLOADING_RATIO
 from surrogate.parameters import Lubricant, Screw
 from surrogate.progress import OnProgress
+from surrogate.screw import closed_form
+from surrogate.screw.onset import onset_speeds
 from surrogate.surface import FIELDS, SolvedPoint, Surface
 from surrogate.surface.file import FORMAT, FORMAT_VERSION, SurfaceData
 from surrogate.units import ZERO_CELSIUS
@@ -45,7 +44,6 @@ class SurfaceSettings:
 
     Speeds [rad/s] and loads [N] and temperatures [K] as (low, high), covered everywhere. Numbers
     of nodes: along speed, along load per side below and above unloading, along temperature.
-    `onset_rcs` [-] is the RCS whose speed is the origin of the speed coordinate.
 
     """
 
@@ -56,7 +54,6 @@ class SurfaceSettings:
     load_cells: int = 10
     unloaded_cells: int = 3
     temperature_nodes: int = 9
-    onset_rcs: float = 0.01
 
 
 def default_settings(screw: Screw) -> SurfaceSettings:
@@ -87,9 +84,7 @@ def build_closed_form(
     started = time.perf_counter()
     load, breaks = load_nodes(screw, settings)
     temperature = temperature_nodes(screw, lubricant, settings)
-    log_onset = np.log(
-        onset_speed(screw, lubricant, load[:, None], temperature, settings.onset_rcs)
-    )
+    log_onset = np.log(onset_speeds(screw, lubricant, load, temperature))
     s = speed_coordinates(settings, log_onset)
     total = 2 * len(temperature) - 1
     nodes = _solve(
@@ -153,31 +148,11 @@ def load_nodes(screw: Screw, settings: SurfaceSettings) -> tuple[Array, list[flo
 def temperature_nodes(screw: Screw, lubricant: Lubricant, settings: SurfaceSettings) -> Array:
     """Return temperatures [K] between which the onset speed grows by equal factors."""
     fine = np.linspace(*settings.temperature_range, 400)
-    loaded = np.asarray(working_preload(screw))
-    log_onset = np.log(onset_speed(screw, lubricant, loaded, fine, settings.onset_rcs))
+    log_onset = np.log(onset_speeds(screw, lubricant, np.zeros(1), fine)[0])
     even = np.linspace(log_onset[0], log_onset[-1], settings.temperature_nodes)
     nodes = np.interp(even, log_onset, fine)
     nodes[[0, -1]] = settings.temperature_range
     return nodes
-
-
-def onset_speed(
-    screw: Screw, lubricant: Lubricant, load: Array, temperature: Array, rcs: float
-) -> Array:
-    """Return the speed [rad/s] at which the worst contact reaches `rcs`; arguments broadcast."""
-    target = film_ratio_at_share_aihara_1987(rcs) / closed_form.FILM_SCALE
-    return speed_at_film_ratio(screw, lubricant, load, temperature, target)
-
-
-def speed_at_film_ratio(
-    screw: Screw, lubricant: Lubricant, load: Array, temperature: Array, target: float
-) -> Array:
-    """Return the speed [rad/s] of a film ratio [-] by formula; arguments broadcast."""
-    load, temperature = np.broadcast_arrays(load, temperature)
-    ratio = closed_form.solve(screw, lubricant, 1.0, load, temperature).film_ratio
-    speed = (target / ratio) ** (1 / SPEED_EXPONENT)
-    # Without any load there is no contact and no onset; the node itself is masked.
-    return np.asarray(np.where(np.isfinite(speed), speed, np.nanmedian(speed)))
 
 
 def speed_coordinates(settings: SurfaceSettings, log_onset: Array) -> Array:

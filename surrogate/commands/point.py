@@ -87,7 +87,7 @@ def add_temperature(parser: argparse.ArgumentParser) -> None:
 
 def _point(args: argparse.Namespace) -> int:
     """Solve a point; exit code 1 when it is not converged."""
-    from surrogate.formulas.record import closed_form_record, page
+    from surrogate.screw.closed_form_record import closed_form_record, page
 
     _check(args)
     screw, lubricant = load_screw(args.screw), load_lubricant(args.oil)

@@ -158,11 +158,6 @@ def asperity_share_aihara_1987(film_ratio: ArrayLike) -> Array:
     return np.asarray(np.exp(-1.8 * np.asarray(film_ratio) ** 1.2))
 
 
-def film_ratio_at_share_aihara_1987(share: float) -> float:
-    """Return the film ratio [-] at which the fit gives `share` [-]."""
-    return float((-np.log(share) / 1.8) ** (1 / 1.2))
-
-
 def rolling_force_biboulet_houpert_2010(contact: Contact, g: Groups) -> Array:
     """
     Return the hydrodynamic rolling force on each surface [N].

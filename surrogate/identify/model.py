@@ -13,10 +13,10 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
-from surrogate.formulas import closed_form
 from surrogate.formulas.lubricant import GOLD_EXPONENT_MINERAL, lubricant_state
 from surrogate.identify.data import Array, NoLoadRun
 from surrogate.parameters import Lubricant, Screw
+from surrogate.screw import closed_form
 
 VISCOSITY_BOUNDS = (0.5, 2.0)
 """Viscosity factor [-]: beyond, the sheet is that of another oil or the temperature is wrong."""

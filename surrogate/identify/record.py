@@ -8,13 +8,13 @@ import math
 from typing import Any
 
 import numpy as np
-from surrogate.formulas import closed_form
 from surrogate.formulas.geometry import helix_angle
 from surrogate.formulas.torque import drag_torque_catalogue
 from surrogate.identify.data import NoLoadRun
 from surrogate.identify.fit import Identification, ParameterEstimate
 from surrogate.identify.model import ContactModel, thickened
 from surrogate.parameters import Lubricant, Screw
+from surrogate.screw import closed_form
 from surrogate.units import RPM, ZERO_CELSIUS
 
 UNITS = {

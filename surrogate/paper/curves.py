@@ -10,11 +10,11 @@ from typing import Any, Literal
 import numpy as np
 from surrogate.formulas.geometry import helix_angle
 from surrogate.formulas.load_sharing import nut_forces
-from surrogate.formulas.record import CONSTANT_FRICTION
 from surrogate.formulas.torque import efficiency, torque_constant_friction
 from surrogate.paper.cases import OURS, SMOOTH
 from surrogate.paper.rows import Array, StudyRow
 from surrogate.parameters import Screw
+from surrogate.screw.closed_form_record import CONSTANT_FRICTION
 
 Along = Literal['rpm', 'load']
 NO_CONTACT = 1e-6

@@ -16,13 +16,13 @@ from matplotlib.lines import Line2D
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 from surrogate.asperities.law import AsperityLaw
-from surrogate.formulas.record import CONSTANT_FRICTION
 from surrogate.formulas.torque import efficiency
 from surrogate.paper.curves import constant_friction_efficiency, grid, NO_CONTACT
 from surrogate.paper.figures import captioned_figure, entrainment, finish, shades, STYLES
 from surrogate.paper.rows import Array, StudyRow
 from surrogate.parameters import Screw
 from surrogate.plotting.style import BLUE, GREY, PURPLE, VERMILION
+from surrogate.screw.closed_form_record import CONSTANT_FRICTION
 from surrogate.surface.aims import EFFICIENCY_LIMIT, RCS_LIMIT
 
 SHOWN = (5.0, 50.0, 200.0, 1000.0)

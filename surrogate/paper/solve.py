@@ -18,7 +18,7 @@ from surrogate.asperities.law import AsperityContact
 from surrogate.ehl import Condition, ContactLubricant, ContactSolution, Settings, solve_contact
 from surrogate.ehl.domain import nodes_on_waves
 from surrogate.ehl.friction import contact_friction, ContactFriction
-from surrogate.formulas import closed_form
+from surrogate.formulas.film import asperity_share_aihara_1987
 from surrogate.formulas.geometry import hertz, screw_contact
 from surrogate.formulas.kinematics import entrainment_speed_paper
 from surrogate.formulas.load_sharing import normal_force, nut_forces
@@ -28,6 +28,7 @@ from surrogate.paper.rows import ContactFields, empty_row, StudyRow
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.raceway.fractal import FractalSurface
 from surrogate.raceway.short_waves import subgrid_floor, without_short_waves
+from surrogate.screw import closed_form
 from surrogate.screw.ball_motion import slip_floor
 from surrogate.screw.contacts import ACROSS, ScrewSettings
 from surrogate.screw.nut import contact_slip, ScrewContact
@@ -237,7 +238,12 @@ def _friction(screw: Screw, contact: ScrewContact, film: Any) -> ContactFriction
 def _formulas(screw: Screw, lubricant: Lubricant, task: StudyTask, row: StudyRow) -> StudyRow:
     """Take the screw by published formulas, asperities by a statistical share."""
     found = closed_form.solve(
-        screw, lubricant, task.rpm * RPM, task.load, lubricant.reference_temperature
+        screw,
+        lubricant,
+        task.rpm * RPM,
+        task.load,
+        lubricant.reference_temperature,
+        share_of=asperity_share_aihara_1987,
     )
     loaded = found.contacts[0]
     on_screw = [contact for contact in found.contacts if contact.side == 'screw']

@@ -9,10 +9,10 @@ from typing import Any
 from surrogate.asperities.law import BANDS
 from surrogate.formulas.geometry import opposite_flank_approach, SIDES
 from surrogate.formulas.inlet_heating import heating_factor
-from surrogate.formulas.record import closed_form_record
 from surrogate.formulas.starvation import starved_speed
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.raceway.ball import roughness_sentence
+from surrogate.screw.closed_form_record import closed_form_record
 from surrogate.screw.contacts import ScrewSettings, shortest_on_grid, smooth_film
 from surrogate.screw.nut import rolling_force, ScrewContact
 from surrogate.screw.solve import ScrewSolution, solve_screw, TIER

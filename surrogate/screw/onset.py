@@ -6,6 +6,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
 from surrogate.asperities.law import BANDS, onset_place
 from surrogate.asperities.running_in import working_load, working_pressure
 from surrogate.files import InputError
@@ -19,9 +21,27 @@ from surrogate.raceway.ball import roughness_sentence
 from surrogate.screw.contacts import oil_at
 from surrogate.units import GIGA, MICRO, RPM, ZERO_CELSIUS
 
+Array = NDArray[np.float64]
 MARCHED_RMS, MARCHED_WAVES = (0.06e-6, 0.24e-6), (1.25e-6, 10e-6)
 """Rq and short cut-offs within a factor of 2 of, and among, those of the marched strips [m]."""
+SMOOTH_ONSET = 1e-3
+"""Entrainment speed that stands for the onset of smooth raceways [m/s]."""
 WORDS = {'new': 'new, after its first pass', 'run_in': 'run in'}
+
+
+def onset_speeds(screw: Screw, lubricant: Lubricant, load: Array, temperature: Array) -> Array:
+    """
+    Return the screw speeds [rad/s] of the onset over load [N] and temperature [K].
+
+    That of the loaded nut, for the side where contact begins faster.
+
+    """
+    oils = [oil_at(lubricant, float(heat)) for heat in temperature]
+    found = [
+        [onset_place(screw, lubricant, oil, float(force))[0] for oil in oils] for force in load
+    ]
+    least = SMOOTH_ONSET / starved_speed(lubricant, no_slip_rates(screw).entrainment)
+    return np.maximum(found, least)
 
 
 def with_raceway(screw: Screw, **changes: Any) -> Screw:

@@ -16,7 +16,7 @@ from surrogate.builder.closed_form import build_closed_form, default_settings
 from surrogate.builder.full.nodes import onset_speeds
 from surrogate.builder.tiers import screw_and_oil
 from surrogate.cli import add_commands, Parser
-from surrogate.formulas import closed_form
+from surrogate.screw import closed_form
 from surrogate.parameters import load_lubricant, load_screw, Lubricant, Screw
 from surrogate.surface.file import SurfaceData
 

@@ -17,11 +17,11 @@ from numpy.typing import NDArray
 from surrogate.builder.closed_form import check_ranges, check_rough, surface_header
 from surrogate.builder.full.chain import chain_inputs, solved_chain, SolvedChain
 from surrogate.builder.full.held_out import cell_errors, held_out_points, HeldOut, judged
-from surrogate.builder.full.nodes import Nodes, onset_speeds, surface_nodes
+from surrogate.builder.full.nodes import Nodes, surface_nodes
 from surrogate.builder.full.settings import FullSettings
 from surrogate.files import InputError
 from surrogate.parameters import Lubricant, Screw
-from surrogate.screw.onset import run_in_at, with_raceway
+from surrogate.screw.onset import onset_speeds, run_in_at, with_raceway
 from surrogate.screw.solve import TIER
 from surrogate.surface import FIELDS, SolvedPoint, Surface
 from surrogate.surface.file import format_version, SurfaceData

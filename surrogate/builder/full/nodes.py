@@ -15,15 +15,12 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter, minimum_filter
-from surrogate.asperities.law import onset_place
 from surrogate.builder.closed_form import speed_coordinates
 from surrogate.builder.full.settings import FullSettings
-from surrogate.formulas.kinematics import no_slip_rates
 from surrogate.formulas.load_sharing import idle_load
 from surrogate.formulas.lubricant import lubricant_state
-from surrogate.formulas.starvation import starved_speed
 from surrogate.parameters import Lubricant, Screw
-from surrogate.screw.contacts import oil_at
+from surrogate.screw.onset import onset_speeds
 
 Array = NDArray[np.float64]
 BESIDE = 1e-4
@@ -32,8 +29,6 @@ ROUNDING = 1e-9
 """Error of a mapped speed [-]."""
 LIGHTEST = 0.003
 """Least load of a screw without preload over the largest [-]."""
-SMOOTH_ONSET = 1e-3
-"""Entrainment speed that stands for the onset of smooth raceways [m/s]."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -74,21 +69,6 @@ def surface_nodes(screw: Screw, lubricant: Lubricant, settings: FullSettings) ->
         log_onset=log_onset,
         needed=covering(s, log_onset, settings.speed_range),
     )
-
-
-def onset_speeds(screw: Screw, lubricant: Lubricant, load: Array, temperature: Array) -> Array:
-    """
-    Return the screw speeds [rad/s] of the onset over load [N] and temperature [K].
-
-    That of the loaded nut, for the side where contact begins faster.
-
-    """
-    oils = [oil_at(lubricant, float(heat)) for heat in temperature]
-    found = [
-        [onset_place(screw, lubricant, oil, float(force))[0] for oil in oils] for force in load
-    ]
-    least = SMOOTH_ONSET / starved_speed(lubricant, no_slip_rates(screw).entrainment)
-    return np.maximum(found, least)
 
 
 def signed_loads(screw: Screw, settings: FullSettings) -> tuple[Array, list[float]]:

@@ -21,7 +21,7 @@ import pytest
 from rclpy.serialization import serialize_message
 from sensor_msgs.msg import JointState, Temperature
 from surrogate.files import InputError
-from surrogate.formulas import closed_form
+from surrogate.screw import closed_form
 from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
 
 SECOND = 10**9

@@ -15,7 +15,7 @@ from surrogate.builder.closed_form import (
     temperature_nodes,
 )
 from surrogate.files import InputError
-from surrogate.formulas import closed_form
+from surrogate.screw import closed_form
 from surrogate.surface import FIELDS, Surface, Validity
 
 SMALL = {'speed_nodes': 16, 'load_cells': 3, 'unloaded_cells': 1, 'temperature_nodes': 3}

@@ -9,7 +9,7 @@ import sys
 import numpy as np
 import pytest
 from surrogate.files import InputError
-from surrogate.formulas import closed_form
+from surrogate.screw import closed_form
 from surrogate.parameters import load_lubricant, load_screw
 
 COMMAND = ('identify',)

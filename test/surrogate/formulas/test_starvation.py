@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from surrogate.formulas.closed_form import solve
+from surrogate.screw.closed_form import solve
 from surrogate.formulas.starvation import starved_speed
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from surrogate.ehl import Settings
 from surrogate.files import InputError
-from surrogate.formulas import closed_form
+from surrogate.screw import closed_form
 from surrogate.identify.data import no_load_run
 from surrogate.identify.fit import identify
 from surrogate.identify.model import closed_form_model

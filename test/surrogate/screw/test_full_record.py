@@ -13,7 +13,7 @@ from surrogate.ehl import Settings
 from surrogate.ehl.friction import contact_friction
 from surrogate.files import to_json
 from surrogate.formulas.inlet_heating import SPEED_EXPONENT
-from surrogate.formulas.record import closed_form_record, page
+from surrogate.screw.closed_form_record import closed_form_record, page
 from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
 from surrogate.screw import figures as figures_point
 from surrogate.screw.ball_motion import slip_floor

@@ -10,7 +10,7 @@ import pytest
 from surrogate.asperities.law import AsperityLaw, shipped_law
 from surrogate.ehl import Settings
 from surrogate.files import InputError
-from surrogate.formulas import closed_form
+from surrogate.screw import closed_form
 from surrogate.formulas.geometry import SIDES
 from surrogate.formulas.inlet_heating import SPEED_EXPONENT
 from surrogate.identify.model import thickened

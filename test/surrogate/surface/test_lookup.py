@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 import numpy as np
 import pytest
-from surrogate.formulas import closed_form, torque
+from surrogate.formulas import torque
 from surrogate.formulas.load_sharing import UNLOADING_RATIO
 from surrogate.surface import FIELDS, shipped_surface, Surface, SurfaceError, Validity
 from surrogate.surface.aims import EFFICIENCY_TOLERANCE, RCS_TOLERANCE

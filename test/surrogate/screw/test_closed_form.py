@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 import numpy as np
 import pytest
-from surrogate.formulas import closed_form
+from surrogate.screw import closed_form
 from surrogate.formulas.kinematics import no_slip_rates
 from surrogate.formulas.load_sharing import UNLOADING_RATIO
 from surrogate.formulas.sliding import ellipse_nodes

@@ -8,7 +8,7 @@ import time
 from typing import Any
 
 import numpy as np
-from surrogate.formulas import closed_form, torque
+from surrogate.formulas import torque
 from surrogate.formulas.film import (
     central_film_nijenbanning_1994,
     Groups,
@@ -19,15 +19,14 @@ from surrogate.formulas.geometry import helix_angle, screw_contact
 from surrogate.formulas.load_sharing import nut_forces, UNLOADING_RATIO
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.raceway.ball import roughness_sentence
+from surrogate.screw import closed_form
 from surrogate.surface import regime_of
 from surrogate.units import RPM, ZERO_CELSIUS
 
 CONSTANT_FRICTION = 0.005
 """Effective friction coefficient of the constant-friction comparator [-]."""
 FORMULAS = ('central_film_hamrock_dowson_1977', rolling_force_biboulet_houpert_2010.__name__)
-STATUS = (
-    'closed form: published formulas, asperity contact a fit moved to the onset of the full tier'
-)
+STATUS = 'closed form: published formulas, asperity contact by the topography'
 
 
 def closed_form_record(
@@ -95,7 +94,7 @@ def _contact_record(contact: closed_form.ContactResult) -> dict[str, Any]:
         'central_film_m': float(contact.central_film),
         'minimum_film_m': float(contact.minimum_film),
         'film_ratio': float(contact.film_ratio),
-        'rcs': float(contact.asperity_share),
+        'rcs': float(contact.rcs),
         'asperity_share': float(contact.asperity_share),
         'friction_coefficient': float(contact.friction_coefficient),
         'rolling_force_N': float(contact.rolling_force),

@@ -3,20 +3,19 @@
 """
 Closed-form tier: the whole chain by published formulas, for one point or many at once.
 
-An instant first guess and a cross-check of the full model. Its asperity share is a fit to an
-average-flow model, moved to the onset of the full model, so it is labelled `closed_form` wherever
-it is shown.
-RCS and asperity share are the same number here. Ball inertia, the tilt of the contact lines and
-elastic hysteresis are left to the full model.
+A first guess and a cross-check of the full model, labelled `closed_form` wherever it is shown.
+What asperities do follows from the same topography as there. Ball inertia, the tilt of the contact
+lines, elastic hysteresis and the rolling loss of rough contacts are left to the full model.
 
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from surrogate.asperities.law import law_of
 from surrogate.formulas.film import (
-    asperity_share_aihara_1987,
     central_film_hamrock_dowson_1977,
     film_ratio,
     Groups,
@@ -31,12 +30,12 @@ from surrogate.formulas.lubricant import lubricant_state, LubricantState
 from surrogate.formulas.sliding import sliding_friction
 from surrogate.formulas.starvation import starved_speed
 from surrogate.parameters import Lubricant, Screw
+from surrogate.screw.contacts import oil_at
 
 Array = NDArray[np.float64]
+Shares = tuple[Array, Array]
+"""RCS and asperity share [-]."""
 TIER = 'closed_form'
-FILM_SCALE = 2.7
-"""Film ratio that the fit of asperity shares is read at over that of the screw [-], by which RCS
-passes 0.01 where solved contacts under a rolling raceway do."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -45,7 +44,7 @@ class ContactResult:
     One of the four contacts of the screw, at many points; films are NaN where it carries no load.
 
     Normal force per ball [N], Hertz ellipse, film groups [-], central and minimum film [m], film
-    ratio [-], asperity share [-], friction coefficient [-], rolling force per surface [N],
+    ratio [-], RCS and asperity share [-], friction coefficient [-], rolling force per surface [N],
     friction torque of all balls of the nut on this side [N m], sliding and rolling.
 
     """
@@ -58,6 +57,7 @@ class ContactResult:
     central_film: Array
     minimum_film: Array
     film_ratio: Array
+    rcs: Array
     asperity_share: Array
     friction_coefficient: Array
     rolling_force: Array
@@ -91,24 +91,40 @@ class ScrewResult:
 
 
 def solve(
-    screw: Screw, lubricant: Lubricant, speed: ArrayLike, load: ArrayLike, temperature: ArrayLike
+    screw: Screw,
+    lubricant: Lubricant,
+    speed: ArrayLike,
+    load: ArrayLike,
+    temperature: ArrayLike,
+    *,
+    share_of: Callable[[Array], Array] | None = None,
 ) -> ScrewResult:
     """
     Solve the chain at `speed` [rad/s], at least 0, `load` [N] of any sign, `temperature` [K].
 
     The arguments broadcast against each other. Friction does not depend on the sign of the load,
-    which only picks the nut that is loaded.
+    which only picks the nut that is loaded. RCS and asperity share follow from the topography, or
+    are `share_of` the film ratio.
 
     """
     speed, load, temperature = np.broadcast_arrays(
         *(np.asarray(value, dtype=float) for value in (speed, load, temperature))
     )
     oil = lubricant_state(lubricant, temperature)
-    inlet_speed = starved_speed(lubricant, speed)
+    inlet_speed = starved_speed(lubricant, no_slip_rates(screw).entrainment * speed)
     forces = nut_forces(load, screw.preload)
     nuts: tuple[tuple[NutName, Array], ...] = (('loaded', forces[0]), ('relieved', forces[1]))
+
+    def touching(side: Side, force: Array, ratio: Array) -> Shares:
+        if share_of is None:
+            return touching_shares(screw, lubricant, side, force, temperature, inlet_speed)
+        share = np.where(force > 0, share_of(ratio), 0.0)
+        return share, share
+
     contacts = tuple(
-        _solve_contact(screw, nut, side, normal_force(screw, force), oil, speed, inlet_speed)
+        _solve_contact(
+            screw, nut, side, normal_force(screw, force), oil, speed, inlet_speed, touching
+        )
         for nut, force in nuts
         for side in SIDES
     )
@@ -123,15 +139,16 @@ def _solve_contact(
     oil: LubricantState,
     speed: Array,
     inlet_speed: Array,
+    touching: Callable[[Side, Array, Array], Shares],
 ) -> ContactResult:
     contact, balls = screw_contact(screw, side), screw.loaded_balls_per_nut
     arm = no_slip_rates(screw).entrainment
     ellipse = hertz(contact, force)
     pressed = np.where(force > 0, force, np.nan)
-    g = groups(contact, pressed, arm * inlet_speed, oil.viscosity, oil.pressure_viscosity)
+    g = groups(contact, pressed, inlet_speed, oil.viscosity, oil.pressure_viscosity)
     film = central_film_hamrock_dowson_1977(contact, g)
     ratio = film_ratio(film, screw.composite_rms)
-    share = np.where(force > 0, asperity_share_aihara_1987(FILM_SCALE * ratio), 0.0)
+    rcs, share = touching(side, force, ratio)
     sliding = sliding_friction(screw, side, ellipse, np.nan_to_num(film), share, oil, speed)
     rolling = np.nan_to_num(rolling_force_biboulet_houpert_2010(contact, g))
     return ContactResult(
@@ -143,6 +160,7 @@ def _solve_contact(
         central_film=film,
         minimum_film=minimum_film_hamrock_dowson_1977(contact, g),
         film_ratio=ratio,
+        rcs=rcs,
         asperity_share=share,
         friction_coefficient=sliding.friction_coefficient,
         rolling_force=rolling,
@@ -151,29 +169,46 @@ def _solve_contact(
     )
 
 
+def touching_shares(
+    screw: Screw, lubricant: Lubricant, side: Side, force: Array, temperature: Array, speed: Array
+) -> Shares:
+    """Return RCS and asperity share [-] at entrainment speeds [m/s], 0 without load."""
+    law, contact = law_of(screw), screw_contact(screw, side)
+    rcs, share = np.zeros(force.shape), np.zeros(force.shape)
+    for load, heat in np.unique(np.stack([force.ravel(), temperature.ravel()], axis=1), axis=0):
+        here = (force == load) & (temperature == heat)
+        if load > 0:
+            place = side, contact, float(load), oil_at(lubricant, float(heat))
+            rcs[here], share[here] = law.shares(*place, lubricant.film_floor, speed[here])
+    return rcs, share
+
+
 def _combine(screw: Screw, contacts: tuple[ContactResult, ...], speed: Array) -> ScrewResult:
     ratio = np.stack([contact.film_ratio for contact in contacts])
-    # An unpressed contact is never the worst; with nothing pressed at all the first one answers.
-    worst = np.argmin(np.where(np.isnan(ratio), np.inf, ratio), axis=0)
+    # The thinnest film where none touches. An unpressed contact is never the worst; with nothing
+    # pressed at all the first one answers.
+    thin = np.where(np.isnan(ratio), np.inf, ratio).argmin(axis=0)
+    rcs = np.stack([contact.rcs for contact in contacts])
+    touching = np.where(np.isnan(ratio), -1.0, rcs)
+    worst = np.where(rcs.any(axis=0), touching.argmax(axis=0), thin)
 
-    def at_worst(name: str) -> Array:
+    def of(place: NDArray[np.int64], name: str) -> Array:
         values = np.stack([getattr(contact, name) for contact in contacts])
-        return np.asarray(np.take_along_axis(values, worst[None], axis=0)[0])
+        return np.asarray(np.take_along_axis(values, place[None], axis=0)[0])
 
     normal = np.stack([contact.normal_force for contact in contacts])
     coefficient = np.stack([contact.friction_coefficient for contact in contacts])
     total = normal.sum(axis=0)
     loss = sum(contact.sliding_torque + contact.rolling_torque for contact in contacts)
-    share = at_worst('asperity_share')
     return ScrewResult(
         friction_torque=np.asarray(
             loss + screw.parasitic_torque + screw.parasitic_torque_rate * speed
         ),
-        rcs=share,
-        asperity_share=share,
-        film_ratio=at_worst('film_ratio'),
-        central_film=at_worst('central_film'),
-        minimum_film=at_worst('minimum_film'),
+        rcs=of(worst, 'rcs'),
+        asperity_share=of(worst, 'asperity_share'),
+        film_ratio=of(thin, 'film_ratio'),
+        central_film=of(thin, 'central_film'),
+        minimum_film=of(thin, 'minimum_film'),
         friction_coefficient=np.divide(
             (coefficient * normal).sum(axis=0), total, out=np.zeros_like(total), where=total > 0
         ),
