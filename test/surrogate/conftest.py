@@ -16,8 +16,8 @@ from surrogate.builder.closed_form import build_closed_form, default_settings
 from surrogate.builder.full.nodes import onset_speeds
 from surrogate.builder.tiers import screw_and_oil
 from surrogate.cli import add_commands, Parser
-from surrogate.screw import closed_form
 from surrogate.parameters import load_lubricant, load_screw, Lubricant, Screw
+from surrogate.screw import closed_form
 from surrogate.surface.file import SurfaceData
 
 REFERENCE = Path(__file__).parents[1] / 'reference'
@@ -109,7 +109,6 @@ def stand_in_point(formula: Any, rcs: float, share: float) -> dict[str, Any]:
     }
 
 
-def run_stand_in(kind: str, tasks: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
-    """Solve marches or chains in this process."""
-    solve = {'march': march_stand_in, 'chain': chain_stand_in}[kind]
-    return {name: solve(inputs) for name, inputs in tasks.items()}
+def run_stand_in(tasks: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
+    """Solve chains in this process."""
+    return {name: chain_stand_in(inputs) for name, inputs in tasks.items()}

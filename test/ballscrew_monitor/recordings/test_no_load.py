@@ -21,8 +21,8 @@ import pytest
 from rclpy.serialization import serialize_message
 from sensor_msgs.msg import JointState, Temperature
 from surrogate.files import InputError
-from surrogate.screw import closed_form
 from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
+from surrogate.screw import closed_form
 
 SECOND = 10**9
 RATE = 50  # samples of JointState per second

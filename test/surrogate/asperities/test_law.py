@@ -14,8 +14,8 @@ from surrogate.asperities.law import (
     AT_REST,
     law_of,
     loss_at,
-    ONSET_RCS,
     onset_place,
+    ONSET_RCS,
     rcs_at,
     share_at,
 )

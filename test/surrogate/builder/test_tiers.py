@@ -9,8 +9,8 @@ import sys
 import pytest
 from surrogate.builder import tiers
 from surrogate.files import InputError
-from surrogate.screw import closed_form
 from surrogate.parameters import BallRoughness
+from surrogate.screw import closed_form
 from surrogate.surface import FIELDS
 from surrogate.surface import file as surface_file
 

@@ -9,8 +9,8 @@ import sys
 import numpy as np
 import pytest
 from surrogate.files import InputError
-from surrogate.screw import closed_form
 from surrogate.parameters import load_lubricant, load_screw
+from surrogate.screw import closed_form
 
 COMMAND = ('identify',)
 

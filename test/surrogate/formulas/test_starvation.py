@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from surrogate.screw.closed_form import solve
 from surrogate.formulas.starvation import starved_speed
+from surrogate.screw.closed_form import solve
 
 
 @pytest.mark.parametrize('factor', [0.05, 0.5, 1.0])

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 from surrogate.ehl import Settings
 from surrogate.files import InputError
-from surrogate.screw import closed_form
 from surrogate.identify.data import no_load_run
 from surrogate.identify.fit import identify
 from surrogate.identify.model import closed_form_model
 from surrogate.identify.table import solved_model
 from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
+from surrogate.screw import closed_form
 from surrogate.screw.contacts import ScrewSettings
 from surrogate.screw.solve import solve_screw
 

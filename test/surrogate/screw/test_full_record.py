@@ -13,10 +13,10 @@ from surrogate.ehl import Settings
 from surrogate.ehl.friction import contact_friction
 from surrogate.files import to_json
 from surrogate.formulas.inlet_heating import SPEED_EXPONENT
-from surrogate.screw.closed_form_record import closed_form_record, page
 from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
 from surrogate.screw import figures as figures_point
 from surrogate.screw.ball_motion import slip_floor
+from surrogate.screw.closed_form_record import closed_form_record, page
 from surrogate.screw.contacts import make_contacts, ScrewSettings
 from surrogate.screw.full_record import full_record, law_sentence, solution_record
 from surrogate.screw.nut import contact_slip

@@ -10,12 +10,12 @@ import pytest
 from surrogate.asperities.law import AsperityLaw, shipped_law
 from surrogate.ehl import Settings
 from surrogate.files import InputError
-from surrogate.screw import closed_form
 from surrogate.formulas.geometry import SIDES
 from surrogate.formulas.inlet_heating import SPEED_EXPONENT
 from surrogate.identify.model import thickened
 from surrogate.parameters import BallRoughness, load_lubricant, load_screw, OperatingPoint
 from surrogate.raceway.ball import draw_stated
+from surrogate.screw import closed_form
 from surrogate.screw.ball_balance import balance_ball
 from surrogate.screw.ball_motion import slip_floor
 from surrogate.screw.ball_traction import coulomb_traction

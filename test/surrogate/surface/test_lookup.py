@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from surrogate.formulas import torque
 from surrogate.formulas.load_sharing import UNLOADING_RATIO
+from surrogate.screw import closed_form
 from surrogate.surface import FIELDS, shipped_surface, Surface, SurfaceError, Validity
 from surrogate.surface.aims import EFFICIENCY_TOLERANCE, RCS_TOLERANCE
 from surrogate.surface.file import ENSEMBLE_VERSION, read, SurfaceData, write
