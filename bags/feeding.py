@@ -10,9 +10,9 @@ Speeds [rev/min], loads on the nut [N], oil [degC], times [s].
 from courses import Course
 from scenario import LimitPoint, PERIOD, Span
 
-FEED, CREEP, LOAD, OIL = 900.0, 300.0, 1000.0, 40.0
+FEED, CREEP, LOAD, OIL = 900.0, 150.0, 1000.0, 40.0
 CLEAR_DELAY = 1.0  # [s] of the parameters
-LIMIT_SPEED = 640.0  # [rev/min] at which asperities begin to touch under LOAD in oil of OIL
+LIMIT_SPEED = 351.0  # [rev/min] at which asperities begin to touch under LOAD in oil of OIL
 RAMP = 0.1  # [s] of a change of speed or load
 LATE = PERIOD + 0.001  # [s] by which a sample may come after what it shows
 TOUCHING = LimitPoint(quantity='rcs', value=0.01, speed=LIMIT_SPEED, load=LOAD, oil=OIL)
@@ -29,6 +29,6 @@ def leaves(speed: Course, number: int, limit: float = LIMIT_SPEED) -> Span:
 
 
 def clears(speed: Course, number: int, limit: float = LIMIT_SPEED) -> Span:
-    """Return when a rising speed has cleared; the hysteresis is worth 3 % of the speed."""
-    reached = speed.pass_between(0.9 * limit, 1.13 * limit, number)
+    """Return when a rising speed has cleared; the hysteresis is worth 5 % of the speed."""
+    reached = speed.pass_between(0.9 * limit, 1.155 * limit, number)
     return later(reached, CLEAR_DELAY, CLEAR_DELAY + LATE)

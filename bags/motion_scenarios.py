@@ -38,9 +38,9 @@ def flapping() -> Scenario:
 
 
 def _dips(*, begin: float, half: float, number: int) -> tuple[tuple[float, float], ...]:
-    """Return moves to 400 rev/min for `half` [s] and back, a `number` of times."""
+    """Return moves to 200 rev/min for `half` [s] and back, a `number` of times."""
     starts = [begin + 2 * half * count for count in range(number)]
-    return tuple(move for at in starts for move in ((at, 400.0), (at + half, FEED)))
+    return tuple(move for at in starts for move in ((at, 200.0), (at + half, FEED)))
 
 
 def vertical_axis() -> Scenario:
@@ -56,7 +56,7 @@ def vertical_axis() -> Scenario:
     )
     held = WEIGHT * LEAD / (2 * math.pi)
     more, less = (held + 0.02, held + 0.30), (0.02 - held, 0.30 - held)  # of any sane friction
-    limit = 655.0
+    limit = 350.0
     # The creeping begins from a stop: outside as soon as the screw is not at standstill.
     start = speed.pass_between(-0.5 / RPM, -0.5 / RPM, 2)
     return Scenario(
