@@ -109,7 +109,6 @@ def stand_in_point(formula: Any, rcs: float, share: float) -> dict[str, Any]:
     }
 
 
-def run_stand_in(kind: str, tasks: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
-    """Solve marches or chains in this process."""
-    solve = {'march': march_stand_in, 'chain': chain_stand_in}[kind]
-    return {name: solve(inputs) for name, inputs in tasks.items()}
+def run_stand_in(tasks: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
+    """Solve chains in this process."""
+    return {name: chain_stand_in(inputs) for name, inputs in tasks.items()}

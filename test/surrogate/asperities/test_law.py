@@ -14,8 +14,8 @@ from surrogate.asperities.law import (
     AT_REST,
     law_of,
     loss_at,
-    ONSET_RCS,
     onset_place,
+    ONSET_RCS,
     rcs_at,
     share_at,
 )
@@ -129,6 +129,9 @@ def test_a_screw_has_one_law_whatever_does_not_touch_its_raceways():
     other = replace(
         SCREW,
         name='other',
+        source='elsewhere',
+        hysteresis_loss=0.01,
+        flank_clearance=1e-5,
         parasitic_torque=0.1,
         roughness=replace(SCREW.roughness, asperity_friction=0.12),
     )
