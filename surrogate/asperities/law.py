@@ -161,10 +161,18 @@ def law_of(screw: Screw) -> AsperityLaw:
     Raises InputError as `running_tiles` does. It takes seconds, once for each topography.
 
     """
-    bare = {'name': '', 'source': '', 'hysteresis_loss': 0.0, 'flank_clearance': None}
-    torque = {'parasitic_torque': 0.0, 'parasitic_torque_rate': 0.0}
-    friction = replace(screw.roughness, asperity_friction=0.0)
-    return _law(replace(screw, roughness=friction, **bare, **torque))
+    return _law(
+        replace(
+            screw,
+            name='',
+            source='',
+            roughness=replace(screw.roughness, asperity_friction=0.0),
+            parasitic_torque=0.0,
+            parasitic_torque_rate=0.0,
+            hysteresis_loss=0.0,
+            flank_clearance=None,
+        )
+    )
 
 
 @lru_cache(maxsize=32)

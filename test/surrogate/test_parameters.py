@@ -102,7 +102,7 @@ MISTAKES = [
     ),
     ('rms_um: 0.12', 'rms_um: 0.12\n  lay: longitudinal', 'roughness: fan angle is missing'),
     ('state: new', 'state: old', "state is 'old', allowed is run_in or new"),
-    ('state: new', 'traced: old', "traced is 'old', allowed is run_in or new"),
+    ('state: new', 'traced: old', "traced is 'old', allowed is new or run_in"),
     (
         'state: new',
         'state: new\n  traced: run_in',

@@ -101,7 +101,7 @@ def test_contacts_touch_less_the_faster_they_roll(speed, faster):
 
 def test_rest_touches_everywhere_and_a_smooth_raceway_nowhere():
     assert contact_at(0.0) == AT_REST
-    assert contact_at(1e-6).rcs == pytest.approx(1.0)
+    assert contact_at(1e-9 * ONSET).rcs == pytest.approx(1.0)
     none = contact_at(0.1, 'nut')
     assert (none.rcs, none.asperity_share, none.rcs_deviation) == (0.0, 0.0, 0.0)
     assert none.loss_factor == pytest.approx(1.0)

@@ -200,6 +200,9 @@ def test_what_makes_no_sense_is_refused_before_any_work(screw, oil):
     smooth = replace(screw, roughness=replace(screw.roughness, rms=0.0))
     with pytest.raises(InputError, match='rms_um of roughness is 0 um'):
         build_full(smooth, oil, SETTINGS, None)
+    heavy = with_raceway(replace(screw, working_load=15e3), state='run_in')
+    with pytest.raises(InputError, match='the mean pressure is 2.23 GPa, allowed is'):
+        build_full(heavy, oil, SETTINGS, None)
 
 
 def test_the_band_is_the_onset_under_other_floors(data, screw, oil):
