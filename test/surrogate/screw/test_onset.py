@@ -78,9 +78,9 @@ def test_a_profile_traced_after_running_in_has_one_state(screw, oil, record):
 
 
 def test_a_load_beyond_the_working_load_cuts_too(screw, oil):
-    assert onset_record(screw, oil, -5000.0, KELVIN)['working_load_N'] == 5000.0
-    stated = with_raceway(replace(screw, working_load=900.0), state='run_in', traced='run_in')
-    found = onset_record(stated, oil, 500.0, KELVIN)
+    traced = with_raceway(screw, state='run_in', traced='run_in')
+    assert onset_record(traced, oil, -5000.0, KELVIN)['working_load_N'] == 5000.0
+    found = onset_record(replace(traced, working_load=900.0), oil, 500.0, KELVIN)
     assert (found['working_load_N'], found['working_load_stated']) == (900.0, True)
     assert 'cut under 900 N, ' in onset_page(found)
 
@@ -126,3 +126,20 @@ def test_the_picture_falls_with_the_cutting_pressure(screw, oil, record, monkeyp
     assert all(math.isfinite(one) for one in speeds)
     assert '[rev/min]' in axes.get_ylabel()
     assert '[GPa]' in axes.get_xlabel()
+
+
+def test_the_picture_stays_among_pressures_that_a_sheet_may_state(screw, oil, record, monkeypatch):
+    """For the hardest and the softest one, under the load that cuts."""
+    cut = []
+
+    def speeds(pressed, lubricant, load, kelvin, pressures):
+        cut.append([run_in_at(pressed, one) for one in pressures])
+        return pressures
+
+    monkeypatch.setattr('surrogate.screw.onset_figure.onset_over_pressure', speeds)
+    for hardness, low in ((20e9, 2e9), (7e9, 0.5e9)):
+        sheet = with_raceway(screw, hardness=hardness, run_in_low=low)
+        figure_onset(sheet, oil, record | {'working_pressure_Pa': 1e8, 'working_load_N': 5e3})
+    found = [[one.roughness.run_in_pressure for one in line] for line in cut]
+    assert (found[0][-1], found[1][0]) == (20e9, 0.5e9)
+    assert {one.working_load for line in cut for one in line} == {5e3}
