@@ -14,10 +14,10 @@ folder         what it holds
 formulas       closed-form tier, a published law a function, author and year in it
 raceway        rough surfaces: fractal, measured, identified
 ehl            one contact, smooth, mixed, dry or rolling; kernels: arrays alone
-asperities     what touches as roughness rolls: law, onset; summits that yield
+asperities     what touches as roughness rolls: summits that yield, onset, law
 contact        a contact as a file: case, record, pictures
 screw          one point of the full tier: contacts, balance of the balls, torque
-builder        datasheet to surface: tiers, sweeps; full: law, nodes, errors
+builder        datasheet to surface: tiers, sweeps; full: nodes, errors
 surface        all that the node loads: lookup and file, numpy alone
 on_demand      a full solve for the running node, by a process of its own
 surface_tools  what people do with a surface file: check, query, compare, draw

@@ -48,7 +48,7 @@ SLOW = (
     'ballscrew_monitor/test_signals.py',
     'launch',
     'scripts',
-    'surrogate/asperities/test_marches.py',
+    'surrogate/asperities/test_law.py',
     'surrogate/builder',
     'surrogate/commands',
     'surrogate/contact',

@@ -187,10 +187,16 @@ def law_of(screw: Screw) -> AsperityLaw:
     Raises InputError as `running_tiles` does. It takes seconds, once for each topography.
 
     """
-    friction = replace(screw.roughness, asperity_friction=0.0)
     return _law(
         replace(
-            screw, name='', roughness=friction, parasitic_torque=0.0, parasitic_torque_rate=0.0
+            screw,
+            name='',
+            source='',
+            roughness=replace(screw.roughness, asperity_friction=0.0),
+            parasitic_torque=0.0,
+            parasitic_torque_rate=0.0,
+            hysteresis_loss=0.0,
+            flank_clearance=None,
         )
     )
 

@@ -3,6 +3,7 @@
 """Picture of the onset of contact over the pressure at which summits are cut."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,8 @@ from surrogate.plotting.style import BLUE, draw_picture, new_figure, ORANGE, VER
 from surrogate.screw.onset import onset_over_pressure
 from surrogate.units import GIGA, RPM, ZERO_CELSIUS
 
+PRESSURES = 0.5e9, 20e9
+"""Cutting pressures that a sheet may state [Pa]."""
 STEPS = 8
 """Cutting pressures along the curve [-]."""
 
@@ -29,8 +32,10 @@ def figure_onset(screw: Screw, lubricant: Lubricant, record: Mapping[str, Any]) 
     """Return the onset speed over the cutting pressure, with hardness and running-in marked."""
     low, high = record['states']['run_in']['band']
     sheet = screw.roughness
+    screw = replace(screw, working_load=record['working_load_N'])
     least = max(1.1 * record['working_pressure_Pa'], 0.8 * sheet.run_in_low)
-    pressures = np.geomspace(least, 1.2 * sheet.hardness, STEPS)
+    least, most = np.clip([least, 1.2 * sheet.hardness], *PRESSURES)
+    pressures = np.geomspace(least, most, STEPS)
     place = record['load_N'], record['temperature_K']
     speed = np.array(onset_over_pressure(screw, lubricant, *place, pressures.tolist())) / RPM
     figure = new_figure(6.4, 4.0)

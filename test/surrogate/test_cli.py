@@ -2,15 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """The offline commands as a user types them."""
 
-from dataclasses import replace
 import json
 from pathlib import Path
 
 import numpy as np
 import pytest
-from surrogate.asperities.law import shipped_law
 from surrogate.files import InputError
-from surrogate.surface.file import write
 
 COMMAND = ('point',)
 NEGATIVE = ('-5e-324', '-1e3', '-1E+3', '-.5e1', '-5.', '-0')
@@ -155,33 +152,13 @@ def test_options_of_the_full_tier(run, tmp_path: Path, capsys):
     assert found['inlet_heating'] is True
     assert 0.9 < found['inlet_heating_factor'] < 0.995
     assert [file.suffix for file in tmp_path.iterdir()] == ['.png']
-    for option in (
-        ('--kinematics', 'rolling'),
-        ('--surface', 'any.npz'),
-        ('--inlet-heating',),
-        ('--plot', tmp_path),
-    ):
+    for option in (('--kinematics', 'rolling'), ('--inlet-heating',), ('--plot', tmp_path)):
         with pytest.raises(InputError, match=f'{option[0]} needs --tier full'):
             run(*words, *option)
     blocked = tmp_path / 'file'
     blocked.write_text('')
     with pytest.raises(InputError, match='--plot: .*file cannot be made'):
         run(*words, '--tier', 'full', '--plot', blocked)
-
-
-def test_the_law_of_a_surface_is_taken(run, tmp_path: Path, capsys, surface_data):
-    """That of its marches; a surface of formulas has none, and says of which tier it is."""
-    words = ('--tier', 'full', '--json', '--speed-rpm', '100', '--load-N', '0')
-    law = replace(shipped_law(), source='made up', marches=77)
-    header = {**surface_data.header, 'law': law.to_json()}
-    path = tmp_path / 'marched.npz'
-    write(path, replace(surface_data, header=header))
-    assert run(*words, '--surface', path) == 0
-    found = json.loads(capsys.readouterr().out)
-    assert 'by 77 marches for made up' in found['asperity_law']
-    write(path, surface_data)
-    with pytest.raises(InputError, match='of tier closed_form, allowed is full'):
-        run(*words, '--surface', path)
 
 
 def test_oil_that_is_no_liquid_is_named_with_its_temperature(run):

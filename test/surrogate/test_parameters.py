@@ -101,7 +101,24 @@ MISTAKES = [
         'fractal dimension 2.68 has the rms slope 2.18 deg, stated is 1 deg',
     ),
     ('rms_um: 0.12', 'rms_um: 0.12\n  lay: longitudinal', 'roughness: fan angle is missing'),
-    ('rms_um: 0.12', 'rms_um: 0.12\n  state: old', "state is 'old', allowed is run_in or new"),
+    ('state: new', 'state: old', "state is 'old', allowed is run_in or new"),
+    ('state: new', 'traced: old', "traced is 'old', allowed is new or run_in"),
+    (
+        'state: new',
+        'state: new\n  traced: run_in',
+        'screw.yaml: roughness: traced is run_in and state is new, allowed is state: run_in for a '
+        'profile that was traced after running in',
+    ),
+    (
+        'state: new',
+        'run_in_pressure_GPa: 6.0',
+        'screw.yaml: roughness: run_in_pressure_GPa is 6 GPa between run_in_low_GPa (2) and '
+        'run_in_high_GPa (5), allowed are rising numbers up to the hardness (7 GPa)',
+    ),
+    ('state: new', 'run_in_low_GPa: 3.5', 'is 3 GPa between run_in_low_GPa (3.5) and'),
+    ('state: new', 'hardness_GPa: 4.0', 'allowed are rising numbers up to the hardness (4 GPa)'),
+    ('state: new', 'hardness_GPa: .nan', 'hardness_GPa is nan, allowed is 1 to 20'),
+    ('lead_mm: 10.0', 'lead_mm: 10.0\nworking_load_N: -1.0', 'working_load_N is -1, allowed is 0'),
     ('roughness:\n', 'ball_roughness: {}\nroughness:\n', 'neither rms_um nor grade is given'),
     (
         'roughness:\n',

@@ -45,12 +45,15 @@ def build_full(
     check_rough(screw)
     check_ranges(settings, lubricant)
     nodes = surface_nodes(screw, lubricant, settings)
+    # Before any work: a raceway may not bear the lowest pressure of its range.
+    band = limit_band(screw, lubricant)
     columns = _columns(screw, lubricant, nodes, run)
     data = _surface(screw, lubricant, settings, nodes, columns)
     held_out = _held_out(data, screw, lubricant, settings, run)
     errors = cell_errors(data, held_out, screw, settings)
     reached = max((one.miss for one in held_out), default=None)
-    return replace(data, errors=errors, header={**data.header, 'reached': reached})
+    header = {**data.header, 'limit_band': band, 'reached': reached}
+    return replace(data, errors=errors, header=header)
 
 
 def _columns(
@@ -98,7 +101,7 @@ def _surface(
         raise InputError('screw: no point of the surface converged, see the reasons above')
     deviation = fields.pop('rcs_deviation')
     header = surface_header(screw, lubricant, settings, nodes.breaks, TIER)
-    header |= {'format_version': format_version(True), 'limit_band': limit_band(screw, lubricant)}
+    header |= {'format_version': format_version(True)}
     return SurfaceData(
         header=header,
         speed_coordinate=nodes.s,

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Onset by the topography: limits, order and scaling."""
 
-from dataclasses import replace
 import math
 
 import pytest
@@ -10,6 +9,7 @@ from surrogate.asperities.onset import film_at_onset, onset_of
 from surrogate.ehl import ContactLubricant
 from surrogate.formulas.geometry import screw_contact
 from surrogate.formulas.load_sharing import normal_force
+from surrogate.screw.onset import with_raceway
 
 FLOOR = 3e-9
 OIL = ContactLubricant(viscosity=0.06, pressure_viscosity=2e-8)
@@ -23,12 +23,12 @@ def place(screw):
 
 @pytest.fixture(scope='module')
 def new(screw):
-    return onset_of(screw, 'screw', 'new')
+    return onset_of(screw, 'screw')
 
 
 def test_smooth_raceways_have_none(screw, place):
-    smooth = replace(screw, roughness=replace(screw.roughness, rms=0.0))
-    assert onset_of(smooth, 'screw', 'new').speed(*place, OIL, FLOOR) == 0.0
+    smooth = with_raceway(screw, rms=0.0)
+    assert onset_of(smooth, 'screw').speed(*place, OIL, FLOOR) == 0.0
 
 
 def test_the_film_at_the_onset_is_never_below_the_floor():
@@ -37,7 +37,7 @@ def test_the_film_at_the_onset_is_never_below_the_floor():
 
 
 def test_softer_summits_touch_at_slower_speeds(screw, place, new):
-    run = onset_of(screw, 'screw', 'run_in').speed(*place, OIL, FLOOR)
+    run = onset_of(with_raceway(screw, state='run_in'), 'screw').speed(*place, OIL, FLOOR)
     assert 0.2 < run / new.speed(*place, OIL, FLOOR) < 0.6
 
 
@@ -57,6 +57,6 @@ def test_the_onset_speed_is_one_over_the_viscosity(new, place):
 
 
 def test_a_rougher_raceway_touches_at_faster_speeds(screw, place, new):
-    rough = replace(screw, roughness=replace(screw.roughness, rms=0.18e-6))
-    faster = onset_of(rough, 'screw', 'new').speed(*place, OIL, FLOOR)
+    rough = with_raceway(screw, rms=0.18e-6)
+    faster = onset_of(rough, 'screw').speed(*place, OIL, FLOOR)
     assert faster > 1.3 * new.speed(*place, OIL, FLOOR)

@@ -8,19 +8,21 @@ import math
 import numpy as np
 import pytest
 from surrogate.asperities.running_in import (
-    Cut,
     running_tiles,
     shortest_wave,
     tile_size,
     TILES,
-    USUAL,
+    working_load,
+    working_pressure,
 )
 from surrogate.files import InputError
-from surrogate.formulas.load_sharing import nut_forces
+from surrogate.formulas.geometry import hertz, screw_contact, SIDES
+from surrogate.formulas.load_sharing import normal_force, nut_forces
 from surrogate.parameters import BallRoughness
 from surrogate.raceway.scaling import scale_spectrum
 from surrogate.raceway.stated import spectrum_of
 from surrogate.raceway.tile import draw_tile
+from surrogate.screw.onset import with_raceway
 
 
 def rms(tiles):
@@ -28,20 +30,27 @@ def rms(tiles):
 
 
 def test_without_a_stated_load_the_relieved_nut_is_just_unloaded(screw):
-    assert nut_forces(USUAL.load(screw), screw.preload)[1] == pytest.approx(0.0, abs=1e-6)
-    assert Cut(working_load=1234.0).load(screw) == 1234.0
+    assert nut_forces(working_load(screw), screw.preload)[1] == pytest.approx(0.0, abs=1e-6)
+    assert working_load(replace(screw, working_load=1234.0)) == 1234.0
 
 
-def test_each_state_is_cut_at_its_own_pressure():
-    cut = Cut(hardness=8e9, run_in_pressure=4e9)
-    assert (cut.pressure('new'), cut.pressure('run_in')) == (8e9, 4e9)
-    assert Cut(traced_run_in=True).pressure('run_in') == 7e9
+@pytest.mark.parametrize('side', SIDES)
+def test_the_working_pressure_is_that_of_the_loaded_nut(screw, side):
+    """Under preload alone that of a stated load of 0; beyond unloading, the cube root of it."""
+    contact = screw_contact(screw, side)
+    preload = hertz(contact, float(normal_force(screw, screw.preload))).max_pressure
+    assert working_pressure(replace(screw, working_load=0.0), side) == pytest.approx(preload)
+    light, heavy = (
+        working_pressure(replace(screw, working_load=load), side) for load in (4e3, 32e3)
+    )
+    assert preload < working_pressure(screw, side) < light
+    assert heavy == pytest.approx(2 * light)
 
 
 def test_a_profile_traced_after_running_in_is_cut_at_the_hardness_alone(screw):
     traced, new = (
-        running_tiles(screw, 'screw', state, cut)
-        for state, cut in (('run_in', Cut(traced_run_in=True)), ('new', USUAL))
+        running_tiles(with_raceway(screw, **keys), 'screw')
+        for keys in ({'state': 'run_in', 'traced': 'run_in'}, {'state': 'new'})
     )
     assert len(traced) == TILES
     for one, other in zip(traced, new, strict=True):
@@ -53,29 +62,18 @@ def test_a_softer_cut_lowers_the_summits_more(screw):
     size, shape = tile_size(screw, 'screw')
     waves = scale_spectrum(spectrum_of(screw.roughness))
     whole = rms([draw_tile(waves, draw, size=size, shape=shape) for draw in range(TILES)])
-    new, run = (rms(running_tiles(screw, 'screw', state)) for state in ('new', 'run_in'))
+    new, run = (
+        rms(running_tiles(with_raceway(screw, state=state), 'screw'))
+        for state in ('new', 'run_in')
+    )
     assert 0.001 < 1 - new / whole < 0.02
     assert 0.03 < 1 - run / whole < 0.12
 
 
 def test_waves_that_no_tile_holds_are_refused(screw):
-    long = replace(screw.roughness, cutoff_short=400e-6, cutoff_long=8e-3)
+    long = with_raceway(screw, cutoff_short=400e-6, cutoff_long=8e-3)
     with pytest.raises(InputError, match='waves are longer than half of the contact'):
-        running_tiles(replace(screw, roughness=long), 'screw', 'new')
-
-
-@pytest.mark.parametrize(
-    ('given', 'sentence'),
-    [
-        ({'run_in_pressure': 6e9}, 'run-in pressure is 6 GPa between 2 and 5 GPa, allowed are'),
-        ({'hardness': 4e9}, r'up to the hardness \(4 GPa\)'),
-        ({'hardness': math.nan}, 'allowed are rising numbers'),
-        ({'working_load': -1.0}, 'working load is -1 N, allowed is 0 or more'),
-    ],
-)
-def test_a_cut_that_contradicts_itself_is_refused(given, sentence):
-    with pytest.raises(InputError, match=sentence):
-        Cut(**given)
+        running_tiles(long, 'screw')
 
 
 def test_tiles_hold_the_shortest_wave_on_enough_nodes(screw):
@@ -87,16 +85,15 @@ def test_tiles_hold_the_shortest_wave_on_enough_nodes(screw):
 
 def test_the_ball_is_added(screw):
     rough = replace(screw, ball_roughness=BallRoughness(rms=0.05e-6))
-    both, alone = (rms(running_tiles(one, 'screw', 'new')) for one in (rough, screw))
+    both, alone = (rms(running_tiles(one, 'screw')) for one in (rough, screw))
     assert both == pytest.approx(math.hypot(alone, 0.05e-6), rel=0.1)
 
 
 def test_smooth_raceways_have_no_tiles(screw):
-    smooth = replace(screw, roughness=replace(screw.roughness, rms=0.0))
-    assert running_tiles(smooth, 'screw', 'run_in') == []
+    assert running_tiles(with_raceway(screw, rms=0.0), 'screw') == []
 
 
 def test_a_load_that_presses_harder_than_the_summits_bear_is_refused(screw):
-    cut = Cut(working_load=5e5)
+    pressed = with_raceway(replace(screw, working_load=5e5), state='run_in')
     with pytest.raises(InputError, match='mean pressure is .* GPa, allowed is above 0 and below'):
-        running_tiles(screw, 'screw', 'run_in', cut)
+        running_tiles(pressed, 'screw')

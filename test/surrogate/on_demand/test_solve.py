@@ -7,21 +7,16 @@ import json
 import math
 
 import pytest
-from surrogate.asperities.law import shipped_law
 from surrogate.builder.full.tier import solve_full
 from surrogate.files import to_json
 from surrogate.on_demand.solve import Cancelled, solve_point, solved_frame
 from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
 from surrogate.screw import ScrewSettings, solve_screw
+from surrogate.screw.onset import with_raceway
 from surrogate.surface import FIELDS
 
 SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
-LAW = replace(shipped_law(), onset_ratio=0.8, marches=9)
-HEADER = {
-    'tier': 'full',
-    'inputs': {'screw': asdict(SCREW), 'lubricant': asdict(OIL)},
-    'law': LAW.to_json(),
-}
+HEADER = {'tier': 'full', 'inputs': {'screw': asdict(SCREW), 'lubricant': asdict(OIL)}}
 POINT = {'speed': 6.0, 'opposing_load': 500.0, 'temperature': 313.15}
 
 
@@ -31,7 +26,7 @@ def request(header=HEADER, **changes):
 
 @pytest.fixture(scope='module', name='solved')
 def solve_once():
-    """Return a point solved with the law of its surface, and the steps on the way."""
+    """Return a point solved from the inputs of its surface, and the steps on the way."""
     steps = []
     return solve_point(request(), progress=steps.append), steps
 
@@ -46,24 +41,23 @@ def test_it_is_solved_as_the_surface_was(load):
         assert found.means[name] == pytest.approx(getattr(whole, name), rel=1e-4)
 
 
-def test_a_surface_of_formulas_takes_the_shipped_law():
-    header = {name: value for name, value in HEADER.items() if name != 'law'}
-    found = solve_point(request(header))
+def test_a_surface_of_formulas_is_solved_as_its_screw_is():
+    found = solve_point(request(HEADER | {'tier': 'closed_form'}))
     point = OperatingPoint(speed=6.0, load=500.0, temperature=313.15)
-    alone = solve_screw(SCREW, OIL, point, settings=ScrewSettings(law=shipped_law()))
+    alone = solve_screw(SCREW, OIL, point)
     assert {name: found.means[name] for name in FIELDS} == {
         name: getattr(alone, name) for name in FIELDS
     }
     assert found.worst_contact == alone.worst_contact
     assert found.status == alone.status
-    assert found.means['rcs'] > solve_point(request()).means['rcs'] > 0
+    run_in = HEADER['inputs'] | {'screw': asdict(with_raceway(SCREW, state='run_in'))}
+    assert found.means['rcs'] > solve_point(request({'inputs': run_in})).means['rcs'] > 0
 
 
 def test_what_is_uncertain_is_the_rcs_between_strips(solved):
     found, _ = solved
     assert found.deviations['rcs'] > 0
-    error = found.deviations['rcs'] * LAW.error_share
-    assert found.standard_errors['rcs'] == pytest.approx(error)
+    assert found.standard_errors['rcs'] == found.deviations['rcs']
     for name in set(FIELDS) - {'rcs'}:
         assert math.isnan(found.deviations[name])
         assert math.isnan(found.standard_errors[name])

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from surrogate.asperities.law import shipped_law
+from surrogate.asperities.law import AsperityLaw
 from surrogate.paper.cases import MAP_LOADS, NEEDS, PRELOAD, SMOOTH, SPEEDS, StudyTask, tasks
 from surrogate.paper.marks import marks, table
 from surrogate.paper.report import report
@@ -20,7 +20,7 @@ maps = pytest.importorskip('surrogate.paper.figures_map')
 screws = pytest.importorskip('surrogate.paper.figures_screw')
 entrainment = pytest.importorskip('surrogate.paper.figures').entrainment
 
-SCREW = load_screw('nominal')
+SCREW, LAW = load_screw('nominal'), AsperityLaw(onsets={}, deviation=0.16)
 UNITS = ('[-]', '[mm/s]', '[mN m]', '[nm]', '[N]', '[GPa]', '[µm]', '[rev/min]')
 
 
@@ -142,7 +142,7 @@ def test_torque_with_measurements(study):
 
 def test_stribeck_marks_the_limit_and_the_published_film(study):
     """RCS 0.01; 153 nm at 502.65 mm/s."""
-    figure = screws.figure_stribeck(shipped_law(), list(study.rows.values()))
+    figure = screws.figure_stribeck(LAW, list(study.rows.values()))
     labels = [label for axes in figure.axes for label in axes.get_legend_handles_labels()[1]]
     assert 'limit 0.01' in labels
     assert 'reported, rough: 153 nm at 502.65 mm/s' in labels
@@ -190,13 +190,13 @@ def test_zone_and_maps_need_no_row_beyond_the_map(study):
     """They draw from the map alone."""
     only = [row for row in study.rows.values() if row.load > 0 and row.kind == 'screw']
     assert maps.figure_maps(SCREW, only).axes
-    assert maps.figure_zone(SCREW, shipped_law(), only).axes
+    assert maps.figure_zone(SCREW, LAW, only).axes
 
 
 def test_report_leaves_out_what_the_rows_cannot_tell(study):
     """Without rows neither number nor trend; of some rows only theirs; none is not finite."""
     assert marks(SCREW, {}) == []
-    assert trends(SCREW, shipped_law(), []) == []
+    assert trends(SCREW, LAW, []) == []
     names = [mark.name for mark in marks(SCREW, study.rows)]
     assert len(names) == len(set(names)) > 12
     torque = {
@@ -205,7 +205,7 @@ def test_report_leaves_out_what_the_rows_cannot_tell(study):
     few = marks(SCREW, torque)
     assert 1 < len(few) < 6
     assert table(few).count('\n') == len(few) + 1
-    text = report(SCREW, shipped_law(), torque)
+    text = report(SCREW, LAW, torque)
     assert 'nan' not in text
     assert '| friction torque' in text
     assert '| film over load' not in text

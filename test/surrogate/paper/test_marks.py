@@ -6,7 +6,7 @@ from pathlib import Path
 import re
 
 import pytest
-from surrogate.asperities.law import shipped_law
+from surrogate.asperities.law import law_of
 from surrogate.commands.figures import DRAWS
 from surrogate.paper.cases import NEEDS, StudyTask, tasks
 from surrogate.paper.marks import Mark, marks
@@ -24,7 +24,7 @@ THEORY = TREE / 'docs' / 'theory'
 PAGE = (THEORY / 'published_study.md').read_text(encoding='utf-8')
 NUMBERS = (THEORY / 'published_study_numbers.md').read_text(encoding='utf-8')
 MARKS = marks(SCREW, ROWS)
-TRENDS = trends(SCREW, shipped_law(), ROWS.values())
+TRENDS = trends(SCREW, law_of(SCREW), ROWS.values())
 
 
 def mark(start: str, *words: str) -> Mark:
@@ -43,7 +43,7 @@ def trend(start: str) -> Trend:
 
 def test_page_of_numbers_is_the_report_of_its_rows():
     """What the command writes from the rows."""
-    assert NUMBERS.endswith(report(SCREW, shipped_law(), ROWS))
+    assert NUMBERS.endswith(report(SCREW, law_of(SCREW), ROWS))
 
 
 def test_rows_are_those_of_the_default_run():

@@ -40,12 +40,29 @@ def test_every_number_of_a_sheet_reaches_the_spectrum():
     assert not nominal.cutoff_by_table
 
 
-def test_the_state_is_said_and_changes_no_number():
+def test_the_state_is_said_and_changes_no_wave():
     """Run in by default."""
-    new = replace(STATED, state='new')
-    assert spectrum_of(new) == spectrum_of(STATED)
-    assert roughness_sentence(STATED, None).startswith('raceway (run in): Rq 0.12 um between')
-    assert roughness_sentence(new, None).startswith('raceway (new): Rq 0.12 um between')
+    run_in = replace(STATED, state='run_in')
+    assert spectrum_of(run_in) == spectrum_of(STATED)
+    assert SMOOTH.state == 'run_in'
+    assert roughness_sentence(run_in, None).startswith('raceway (run in): Rq 0.12 um between')
+    assert roughness_sentence(STATED, None).startswith('raceway (new): Rq 0.12 um between')
+
+
+@pytest.mark.parametrize(
+    ('state', 'traced', 'pressure'),
+    [('new', 'new', 6e9), ('run_in', 'new', 4e9), ('run_in', 'run_in', 6e9)],
+)
+def test_each_state_is_cut_at_its_own_pressure(state, traced, pressure):
+    """A profile that was traced after running in was cut by it, and bears the hardness."""
+    sheet = replace(STATED, state=state, traced=traced, hardness=6e9, run_in_pressure=4e9)
+    assert sheet.cutting_pressure == pressure
+
+
+def test_pressures_may_be_equal():
+    """One that is sure, up to the hardness."""
+    same = dict.fromkeys(('hardness', 'run_in_pressure', 'run_in_low', 'run_in_high'), 5e9)
+    assert replace(STATED, state='run_in', **same).cutting_pressure == 5e9
 
 
 def test_what_nobody_stated_is_said():

@@ -20,6 +20,7 @@ from surrogate.screw.closed_form_record import closed_form_record, page
 from surrogate.screw.contacts import make_contacts, ScrewSettings
 from surrogate.screw.full_record import full_record, law_sentence, solution_record
 from surrogate.screw.nut import contact_slip
+from surrogate.screw.onset import with_raceway
 from surrogate.screw.solve import solve_screw
 
 SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
@@ -111,12 +112,19 @@ def test_friction_is_integrated_with_the_slip_of_the_balance(settings):
 
 
 def test_the_record_says_where_contact_is_from():
-    """By the law with its marches, or what stands for it; the scatter of RCS where it rolls."""
-    assert re.search(r'rolls, by \d+ marches for .*, waves down to', law_sentence(SETTINGS))
-    assert law_sentence(STANDING) == 'roughness that stands still'
-    assert law_sentence(replace(SETTINGS, kinematics='smooth')) == 'no roughness'
+    """By the law and its raceway, or what stands for it; the scatter of RCS where it rolls."""
+    new, run_in = (
+        law_sentence(with_raceway(SCREW, state=state), SETTINGS) for state in ('new', 'run_in')
+    )
+    assert new == (
+        'roughness that rolls, new, summits cut at 7 GPa; onset by the topography, within 1.3 of '
+        'nine of ten marches'
+    )
+    assert 'rolls, run in, summits cut at 3 GPa; onset' in run_in
+    assert law_sentence(SCREW, STANDING) == 'roughness that stands still'
+    assert law_sentence(SCREW, replace(SETTINGS, kinematics='smooth')) == 'no roughness'
     _, rolling = record(60, 800.0)
-    assert rolling['asperity_law'] == law_sentence(SETTINGS)
+    assert rolling['asperity_law'] == law_sentence(SCREW, SETTINGS)
     assert rolling['rcs_deviation'] > 0
     point, standing = record(60, 800.0, STANDING)
     assert math.isnan(standing['rcs_deviation'])

@@ -6,15 +6,18 @@ from dataclasses import replace
 import math
 
 import pytest
-from surrogate.asperities.running_in import Cut, USUAL
+from surrogate.asperities.law import onset_place
 from surrogate.files import InputError
+from surrogate.formulas.kinematics import no_slip_rates
+from surrogate.screw.contacts import oil_at
 from surrogate.screw.onset import (
     BANDS,
-    cut_at,
     extrapolated,
     onset_page,
     onset_point,
     onset_record,
+    run_in_at,
+    with_raceway,
 )
 from surrogate.screw.onset_figure import figure_onset
 from surrogate.units import RPM
@@ -37,13 +40,23 @@ def test_both_states_stand_in_the_record(record):
 
 
 def test_the_range_is_that_of_the_bounds_of_the_sheet(screw, oil, record):
-    low = cut_at(USUAL, USUAL.run_in_range[0])
-    found = onset_point(screw, oil, 0.0, KELVIN, 'run_in', low)['speed_rad_s']
+    low = run_in_at(screw, screw.roughness.run_in_low)
+    found = onset_point(low, oil, 0.0, KELVIN)['speed_rad_s']
     assert record['states']['run_in']['speed_range_rad_s'][0] == found
 
 
+def test_a_point_is_where_the_law_of_the_state_says(screw, oil, record):
+    """Speeds of screw and entrainment; a film of the same size as the roughness."""
+    for state, found in record['states'].items():
+        there = with_raceway(screw, state=state)
+        assert found['speed_rad_s'] == onset_place(there, oil, oil_at(oil, KELVIN), 0.0)[0]
+        entrainment = found['speed_rad_s'] * no_slip_rates(screw).entrainment
+        assert found['entrainment_speed_m_s'] == pytest.approx(entrainment)
+        assert 0.3 < found['central_film_m'] / screw.roughness.rms < 2
+
+
 def test_half_the_film_of_starvation_needs_a_faster_speed(screw, oil, record):
-    starved = onset_point(screw, replace(oil, film_factor=0.5), 0.0, KELVIN, 'new')
+    starved = onset_point(screw, replace(oil, film_factor=0.5), 0.0, KELVIN)
     assert starved['speed_rad_s'] > 2 * record['states']['new']['speed_rad_s']
 
 
@@ -56,7 +69,8 @@ def test_the_page_says_where_contact_is_sure_and_where_possible(record):
 
 
 def test_a_profile_traced_after_running_in_has_one_state(screw, oil, record):
-    found = onset_record(screw, oil, 0.0, KELVIN, Cut(traced_run_in=True))
+    traced = with_raceway(screw, state='run_in', traced='run_in')
+    found = onset_record(traced, oil, 0.0, KELVIN)
     assert list(found['states']) == ['run_in']
     speed = found['states']['run_in']['speed_rad_s']
     assert speed == record['states']['new']['speed_rad_s']
@@ -64,7 +78,11 @@ def test_a_profile_traced_after_running_in_has_one_state(screw, oil, record):
 
 
 def test_a_load_beyond_the_working_load_cuts_too(screw, oil):
-    assert onset_record(screw, oil, -5000.0, KELVIN)['working_load_N'] == 5000.0
+    traced = with_raceway(screw, state='run_in', traced='run_in')
+    assert onset_record(traced, oil, -5000.0, KELVIN)['working_load_N'] == 5000.0
+    found = onset_record(replace(traced, working_load=900.0), oil, 500.0, KELVIN)
+    assert (found['working_load_N'], found['working_load_stated']) == (900.0, True)
+    assert 'cut under 900 N, ' in onset_page(found)
 
 
 @pytest.mark.parametrize(
@@ -82,19 +100,19 @@ def test_a_place_that_no_screw_has_is_refused(screw, oil, load, kelvin, sentence
 
 def test_what_was_not_marched_is_called_extrapolated(screw):
     assert extrapolated(screw) == []
-    fine = replace(screw, roughness=replace(screw.roughness, cutoff_short=0.5e-6, rms=0.4e-6))
+    fine = with_raceway(screw, cutoff_short=0.5e-6, rms=0.4e-6)
     assert [text.split()[0] for text in extrapolated(fine)] == ['Rq', 'short']
 
 
 @pytest.mark.parametrize('lay', ['longitudinal', 'transverse'])
 def test_ridges_without_a_fan_have_an_onset(screw, oil, lay):
-    sheet = replace(screw.roughness, lay=lay, fan_angle=0.0)
-    ridges = replace(screw, roughness=sheet)
-    assert onset_point(ridges, oil, 0.0, KELVIN, 'run_in')['speed_rad_s'] > 0
+    ridges = with_raceway(screw, lay=lay, fan_angle=0.0, state='run_in')
+    assert onset_point(ridges, oil, 0.0, KELVIN)['speed_rad_s'] > 0
 
 
 def test_smooth_raceways_say_so(screw, oil):
-    smooth = replace(screw, roughness=replace(screw.roughness, rms=0.0))
+    smooth = with_raceway(screw, rms=0.0)
+    assert onset_place(smooth, oil, oil_at(oil, KELVIN), 0.0)[0] == 0.0
     page = onset_page(onset_record(smooth, oil, 0.0, KELVIN))
     assert 'no contact: raceway and ball are smooth' in page
     assert 'Contact is likely' not in page
@@ -102,9 +120,26 @@ def test_smooth_raceways_say_so(screw, oil):
 
 def test_the_picture_falls_with_the_cutting_pressure(screw, oil, record, monkeypatch):
     monkeypatch.setattr('surrogate.screw.onset_figure.STEPS', 3)
-    axes = figure_onset(screw, oil, USUAL, record).axes[0]
+    axes = figure_onset(screw, oil, record).axes[0]
     speeds = axes.lines[0].get_ydata()
     assert list(speeds) == sorted(speeds)
     assert all(math.isfinite(one) for one in speeds)
     assert '[rev/min]' in axes.get_ylabel()
     assert '[GPa]' in axes.get_xlabel()
+
+
+def test_the_picture_stays_among_pressures_that_a_sheet_may_state(screw, oil, record, monkeypatch):
+    """For the hardest and the softest one, under the load that cuts."""
+    cut = []
+
+    def speeds(pressed, lubricant, load, kelvin, pressures):
+        cut.append([run_in_at(pressed, one) for one in pressures])
+        return pressures
+
+    monkeypatch.setattr('surrogate.screw.onset_figure.onset_over_pressure', speeds)
+    for hardness, low in ((20e9, 2e9), (7e9, 0.5e9)):
+        sheet = with_raceway(screw, hardness=hardness, run_in_low=low)
+        figure_onset(sheet, oil, record | {'working_pressure_Pa': 1e8, 'working_load_N': 5e3})
+    found = [[one.roughness.run_in_pressure for one in line] for line in cut]
+    assert (found[0][-1], found[1][0]) == (20e9, 0.5e9)
+    assert {one.working_load for line in cut for one in line} == {5e3}

@@ -7,7 +7,8 @@ import math
 
 import numpy as np
 import pytest
-from surrogate.asperities.law import AsperityLaw, shipped_law
+from surrogate.asperities import law as asperity_law
+from surrogate.asperities.law import law_of
 from surrogate.ehl import Settings
 from surrogate.files import InputError
 from surrogate.formulas.geometry import SIDES
@@ -37,25 +38,10 @@ STANDING = ScrewSettings(
     rough=Settings(nx=65, ny=129, error_estimate=False),
     nodes_per_wave=3.0,
 )
-LAW = AsperityLaw(
-    onset_ratio=1.2,
-    film_floor=OIL.film_floor,
-    pressure=0.9e9,
-    pressure_power=-0.4,
-    log_speed=(-1.0, 0.0, 0.5),
-    rcs=(0.3, 0.01, 0.0001),
-    asperity_share=(0.25, 0.008, 0.0001),
-    loss_factor=(1.6, 1.3, 1.2),
-    deviation=0.1,
-    standard_error=0.05,
-    marches=8,
-    shortest_wave=3e-6,
-    source='made up',
-)
-ROLLING = ScrewSettings(smooth=SMALL, law=LAW)
+ROLLING = ScrewSettings(smooth=SMALL)
 KINEMATICS = {'rolling': ROLLING, 'standing': STANDING, 'smooth': SMOOTH}
 MIXED = 120
-"""Speed at which some of the load is on asperities under the law [rev/min]."""
+"""Speed at which some of the load is on asperities of the new raceway [rev/min]."""
 WARM = 313.15
 
 
@@ -187,7 +173,7 @@ def test_a_starved_contact_is_taken_at_a_slower_entrainment():
 @pytest.mark.parametrize('settings', KINEMATICS.values(), ids=KINEMATICS)
 def test_rest_is_dry_and_loses_most(settings):
     """At speed zero all load is on asperities, whose friction is the boundary one."""
-    rest, fast = at(0, 500.0, settings), at(2000, 500.0, settings)
+    rest, fast = at(0, 500.0, settings), at(3000, 500.0, settings)
     assert rest.converged, rest.status
     assert rest.rcs == pytest.approx(1.0, abs=1e-3)
     assert rest.film_ratio == 0.0
@@ -237,15 +223,14 @@ def test_all_load_on_asperities_is_coulomb_friction():
 
 
 def test_rolling_roughness_is_the_smooth_contact_with_the_law():
-    """Pressures and film are smooth; share and RCS those of the law, the worst one counts."""
+    """The default. Pressures and film are smooth; RCS that of the law, the worst one counts."""
+    assert ScrewSettings().kinematics == 'rolling'
     found, smooth = at(MIXED, 500.0, ROLLING), at(MIXED, 500.0)
-    point = OperatingPoint(speed=MIXED * math.pi / 30, load=500.0, temperature=WARM)
-    waves = make_contacts(SCREW, OIL, point, ROLLING)[0].waves
     for contact in found.contacts:
         solved = contact.solved
         assert solved.pressed is solved.smooth
-        law = LAW.contact(
-            waves,
+        law = law_of(SCREW).contact(
+            contact.side,
             solved.smooth.contact,
             solved.smooth.condition,
             solved.smooth.lubricant,
@@ -262,22 +247,16 @@ def test_rolling_roughness_is_the_smooth_contact_with_the_law():
     assert found.friction_torque > smooth.friction_torque
 
 
-def test_the_shipped_law_stands_in_where_none_is_given():
-    """The default is roughness that rolls."""
-    assert ScrewSettings().kinematics == 'rolling'
-    default = at(MIXED, 500.0, ScrewSettings(smooth=SMALL))
-    given = at(MIXED, 500.0, replace(ROLLING, law=shipped_law()))
-    assert default.rcs == given.rcs
-    assert default.friction_torque == given.friction_torque
-
-
-def test_rolling_loss_is_that_of_the_smooth_film_times_its_factor():
+def test_rolling_loss_is_that_of_the_smooth_film_times_its_factor(monkeypatch):
     """The oil alone: hysteresis is not multiplied. Torque grows with it."""
-    # Nodes far beyond the onset: the factor fades behind the last one.
-    wide = replace(LAW, log_speed=(LAW.log_speed[0], 0.0, 20.0))
-    twice = replace(wide, loss_factor=(2.0, 2.0, 2.0))
-    once = replace(wide, loss_factor=(1.0, 1.0, 1.0))
-    one, two = (at(600, 0.0, replace(ROLLING, law=law)) for law in (once, twice))
+    # The factor fades beyond the fastest marches.
+    monkeypatch.setattr(asperity_law, 'FASTEST', 20.0)
+    monkeypatch.setattr(asperity_law, 'LOSS_SLOPE', (0.0, 0.0, 0.0))
+    found = []
+    for factor in (1.0, 2.0):
+        monkeypatch.setattr(asperity_law, 'LOSS', (factor, 0.0, 0.0))
+        found.append(at(600, 0.0, ROLLING))
+    one, two = found
     lossy = replace(SCREW, hysteresis_loss=0.01)
     for first, second in zip(one.contacts, two.contacts, strict=True):
         plain = rolling_force(SCREW, first.solved)

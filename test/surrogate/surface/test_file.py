@@ -141,8 +141,6 @@ def unmasked_hole(data: file.SurfaceData) -> dict:
         lambda data: {'mask': data.mask.astype(np.uint8)},
         unmasked_hole,
         lambda data: {'header': {**data.header, 'tier': 'guess'}},
-        lambda data: {'header': {**data.header, 'tier': 'full'}},  # without a law
-        lambda data: {'header': {**data.header, 'tier': 'full', 'law': None}},
         lambda data: {'header': {k: v for k, v in data.header.items() if k != 'settings'}},
         lambda data: {'header': {**data.header, 'inputs': {}}},
         lambda data: {'header': {**data.header, 'load_breaks': [1.0]}},

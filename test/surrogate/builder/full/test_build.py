@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Surfaces of the full tier on a fast stand-in: law, nodes, errors, failures, the header."""
+"""Surfaces of the full tier on a fast stand-in: nodes, band, errors, failures, the header."""
 
 from dataclasses import replace
 import json
@@ -8,13 +8,13 @@ import math
 
 import numpy as np
 import pytest
-from surrogate.asperities.law import law_from_json
 from surrogate.builder.full.build import build_full, limit_band
 from surrogate.builder.full.chain import chain_inputs, solved_chain
 from surrogate.builder.full.nodes import onset_speeds
 from surrogate.builder.full.settings import FullSettings
 from surrogate.files import InputError
 from surrogate.formulas.load_sharing import idle_load
+from surrogate.screw.onset import run_in_at, with_raceway
 from surrogate.surface import FIELDS, Surface, Validity
 from surrogate.surface import file as surface_file
 from surrogate.surface.aims import rcs_tolerance
@@ -37,19 +37,18 @@ def build(screw, oil, stand_in):
 
 
 @pytest.fixture(name='solve')
-def make_solve(screw, oil, data, stand_in):
-    """Return the solve of a point [rad/s, N, K] by the law of the surface."""
-    law = law_from_json(data.header['law'])
+def make_solve(screw, oil, stand_in):
+    """Return the solve of a point [rad/s, N, K] of the surface."""
 
     def solve(speed, load, heat):
-        given = chain_inputs(screw, oil, law, abs(load), heat, [speed])
+        given = chain_inputs(screw, oil, abs(load), heat, [speed])
         return solved_chain(stand_in.chain(given)).under(load)[0]
 
     return solve
 
 
 def test_file_of_the_full_tier_is_read_back(data, tmp_path):
-    """Written, verified and looked up; tier, law, band and scatter between strips are in it."""
+    """Written, verified and looked up; tier, band and scatter between strips are in it."""
     assert json.loads(json.dumps(data.header)) == data.header
     surface_file.write(tmp_path / 'full.npz', data)
     surface = Surface.load(tmp_path / 'full.npz')
@@ -57,18 +56,15 @@ def test_file_of_the_full_tier_is_read_back(data, tmp_path):
     assert surface.header['format_version'] == surface_file.format_version(True)
     low, high = surface.limit_band
     assert 0 < low < 1 < high
-    law = law_from_json(surface.header['law'])
-    assert law.onset_ratio == pytest.approx(1.2, rel=1e-3)
     point = surface.lookup(3.0, 500.0, 313.15)
     assert point.validity is Validity.VALID
     assert point.rcs_std == pytest.approx(0.3 * point.rcs, rel=0.05)
-    assert point.rcs_stderr == pytest.approx(point.rcs_std * law.error_share, rel=0.01)
+    assert point.rcs_stderr == point.rcs_std
     assert math.isnan(point.friction_torque_std)
 
 
 def test_nodes_are_what_solves_give(data, solve):
     """Every field of a node, and none of the masked ones; loads of both signs."""
-    law = law_from_json(data.header['law'])
     known = np.argwhere(~data.mask)
     for i, j, k in known[:: len(known) // 30]:
         speed = math.exp(data.speed_coordinate[i] + data.log_onset[j, k])
@@ -76,8 +72,7 @@ def test_nodes_are_what_solves_give(data, solve):
         for name in FIELDS:
             assert data.fields[name][i, j, k] == pytest.approx(getattr(found, name), rel=1e-6)
         assert data.deviations['rcs'][i, j, k] == pytest.approx(found.rcs_deviation, rel=1e-6)
-        error = found.rcs_deviation * law.error_share
-        assert data.standard_errors['rcs'][i, j, k] == pytest.approx(error, rel=1e-6)
+        assert data.standard_errors['rcs'][i, j, k] == data.deviations['rcs'][i, j, k]
     for name in FIELDS:
         assert np.isnan(data.fields[name][data.mask]).all()
 
@@ -152,8 +147,8 @@ def test_any_range_is_built_and_answers(screw, oil, stand_in, ranges):
 def test_same_work_same_file(data, screw, oil, stand_in):
     """In another order of tasks, as many workers finish them, the file has the same hash."""
 
-    def backwards(kind, tasks):
-        return dict(reversed(stand_in.run(kind, dict(reversed(tasks.items()))).items()))
+    def backwards(tasks):
+        return dict(reversed(stand_in.run(dict(reversed(tasks.items()))).items()))
 
     assert build_full(screw, oil, SETTINGS, backwards).sha256 == data.sha256
     other = replace(SETTINGS, speed_nodes=20)
@@ -165,10 +160,9 @@ def test_both_signs_of_a_load_share_a_chain(screw, oil, stand_in):
     counts = {}
     for low in (-1500.0, 0.0):
 
-        def run(kind, tasks, low=low):
-            if kind == 'chain':
-                counts.setdefault(low, len(tasks))
-            return stand_in.run(kind, tasks)
+        def run(tasks, low=low):
+            counts.setdefault(low, len(tasks))
+            return stand_in.run(tasks)
 
         build_full(screw, oil, replace(SETTINGS, load_range=(low, 1500.0), held_out=1), run)
     assert counts[-1500.0] == counts[0.0]
@@ -177,9 +171,9 @@ def test_both_signs_of_a_load_share_a_chain(screw, oil, stand_in):
 def test_failed_chains_leave_masked_nodes(data, screw, oil, stand_in):
     """The column of the highest load in cold oil; lookups beside it are NaN, others stay."""
 
-    def run(kind, tasks):
+    def run(tasks):
         gone = f'{2000.0!r} N, temperature 0,'
-        done = stand_in.run(kind, tasks)
+        done = stand_in.run(tasks)
         return {name: None if gone in name else one for name, one in done.items()}
 
     broken = build_full(screw, oil, SETTINGS, run)
@@ -192,16 +186,10 @@ def test_failed_chains_leave_masked_nodes(data, screw, oil, stand_in):
     assert surface.lookup(10.0, 100.0, 320.0).validity is Validity.VALID
 
 
-def test_nothing_that_converges_is_one_sentence(screw, oil, stand_in):
-    """No file of masked nodes, and none without a law."""
-
-    def no_chain(kind, tasks):
-        return stand_in.run(kind, tasks) if kind == 'march' else dict.fromkeys(tasks)
-
+def test_nothing_that_converges_is_one_sentence(screw, oil):
+    """No file of masked nodes."""
     with pytest.raises(InputError, match='no point of the surface converged'):
-        build_full(screw, oil, SETTINGS, no_chain)
-    with pytest.raises(InputError, match='asperity law: 0 of 8 marches'):
-        build_full(screw, oil, SETTINGS, lambda kind, tasks: dict.fromkeys(tasks))
+        build_full(screw, oil, SETTINGS, dict.fromkeys)
 
 
 def test_what_makes_no_sense_is_refused_before_any_work(screw, oil):
@@ -212,38 +200,56 @@ def test_what_makes_no_sense_is_refused_before_any_work(screw, oil):
     smooth = replace(screw, roughness=replace(screw.roughness, rms=0.0))
     with pytest.raises(InputError, match='rms_um of roughness is 0 um'):
         build_full(smooth, oil, SETTINGS, None)
+    heavy = with_raceway(replace(screw, working_load=15e3), state='run_in')
+    with pytest.raises(InputError, match='the mean pressure is 2.23 GPa, allowed is'):
+        build_full(heavy, oil, SETTINGS, None)
 
 
 def test_the_band_is_the_onset_under_other_floors(data, screw, oil):
     """1 where all floors are the same, wider for a wider range of the oil."""
-    law = law_from_json(data.header['law'])
-    low, high = limit_band(screw, oil, law)
+    low, high = limit_band(screw, oil)
     assert [low, high] == data.header['limit_band']
     place = np.array([0.0]), np.array([oil.reference_temperature])
     thin = replace(oil, film_floor=oil.film_floor_low)
-    speeds = [onset_speeds(screw, one, law, *place)[0, 0] for one in (thin, oil)]
+    speeds = [onset_speeds(screw, one, *place)[0, 0] for one in (thin, oil)]
     assert low == pytest.approx(speeds[0] / speeds[1])
     sure = replace(oil, film_floor_low=oil.film_floor, film_floor_high=oil.film_floor)
-    assert limit_band(screw, sure, law) == pytest.approx([1.0, 1.0])
+    assert limit_band(screw, sure) == pytest.approx([1.0, 1.0])
 
 
-def test_info_says_what_was_marched_and_reached(data, tmp_path):
+def test_the_band_of_a_run_in_raceway_is_that_of_its_pressures_too(screw, oil):
+    """Between its lowest pressure and no running in at all, each under its floor."""
+    band = limit_band(with_raceway(screw, state='run_in'), oil)
+    new, run_in = limit_band(screw, oil), with_raceway(screw, state='run_in')
+    place = np.array([0.0]), np.array([oil.reference_temperature])
+    speeds = [
+        onset_speeds(one, oil, *place)[0, 0]
+        for one in (run_in_at(screw, screw.roughness.run_in_low), run_in, screw)
+    ]
+    for side, alone, wide in zip((0, 2), new, band, strict=True):
+        assert wide == pytest.approx(alone * speeds[side] / speeds[1], rel=0.1)
+    assert band[0] < new[0] < 1 < new[1] < band[1]
+    traced = with_raceway(screw, state='run_in', traced='run_in')
+    assert limit_band(traced, oil) == pytest.approx(new)
+
+
+def test_info_says_where_contact_begins_and_what_was_reached(data, tmp_path):
     """And nothing of the error where it is not known."""
+    low, high = data.header['limit_band']
     path = tmp_path / 'full.npz'
     for reached in (2.5, None):
         surface_file.write(path, replace(data, header={**data.header, 'reached': reached}))
         page = info_page(info_record(path, surface_file.read(path)))
-        assert 'RCS 0.01 at a film of 1.2 times the roughness that acts' in page
-        assert '10 marches' in page
+        assert f'begins between {low:.2g} and {high:.2g} times the stated speed' in page
         assert ('has 2.5 times the error that is aimed at' in page) is (reached is not None)
 
 
 def test_accuracy_is_not_known_without_a_held_out_point(screw, oil, stand_in):
     """All of them fail: no number, and errors are NaN."""
 
-    def run(kind, tasks):
+    def run(tasks):
         held = all('held out' in name for name in tasks)
-        return dict.fromkeys(tasks) if held else stand_in.run(kind, tasks)
+        return dict.fromkeys(tasks) if held else stand_in.run(tasks)
 
     found = build_full(screw, oil, SETTINGS, run)
     assert found.header['reached'] is None

@@ -7,7 +7,6 @@ import json
 import math
 
 import pytest
-from surrogate.asperities.law import law_from_json, shipped_law
 from surrogate.builder.full import chain as full_chain
 from surrogate.builder.full.chain import chain_inputs, solve_chain, solved_chain, solved_point
 from surrogate.builder.tiers import screw_and_oil
@@ -15,25 +14,25 @@ from surrogate.ehl import Settings, Status
 from surrogate.parameters import BallRoughness, load_lubricant, load_screw, OperatingPoint
 from surrogate.screw import contacts as screw_contacts
 from surrogate.screw.contacts import ScrewSettings
+from surrogate.screw.onset import with_raceway
 from surrogate.screw.solve import solve_screw
 from surrogate.surface import FIELDS
 
-SCREW, OIL, LAW = load_screw('nominal'), load_lubricant('iso_vg_68'), shipped_law()
+SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
 WARM = 313.15
 
 
 def chain(load, heat, speeds, screw=SCREW, oil=OIL):
     """Solve a chain as a worker does, through JSON."""
-    given = chain_inputs(screw, oil, LAW, load, heat, speeds)
+    given = chain_inputs(screw, oil, load, heat, speeds)
     return solve_chain(json.loads(json.dumps(given)))
 
 
-def test_sheets_and_law_survive_json():
-    """Screw, oil and law come back as they were, options that are None among them."""
+def test_sheets_survive_json():
+    """Screw and oil come back as they were, options that are None among them."""
     for screw in (SCREW, replace(SCREW, ball_roughness=BallRoughness(grade='G10'))):
-        inputs = json.loads(json.dumps(chain_inputs(screw, OIL, LAW, 500.0, WARM, [60.0, 6.0])))
+        inputs = json.loads(json.dumps(chain_inputs(screw, OIL, 500.0, WARM, [60.0, 6.0])))
         assert screw_and_oil(inputs) == (screw, OIL)
-        assert law_from_json(inputs['law']) == LAW
 
 
 def test_a_chain_is_the_points_it_says():
@@ -45,7 +44,7 @@ def test_a_chain_is_the_points_it_says():
     for load in (500.0, -500.0):
         for solved, speed in zip(typed.under(load), speeds, strict=True):
             point = OperatingPoint(speed=speed, load=load, temperature=WARM)
-            single = solve_screw(SCREW, OIL, point, settings=ScrewSettings(law=LAW))
+            single = solve_screw(SCREW, OIL, point)
             assert solved.converged
             assert solved.friction_torque == pytest.approx(single.friction_torque, rel=1e-4)
             assert solved.film_ratio == pytest.approx(single.film_ratio, rel=1e-4)
@@ -55,12 +54,11 @@ def test_a_chain_is_the_points_it_says():
     assert typed.opposing[1].rcs > typed.opposing[0].rcs
 
 
-def test_the_law_of_the_inputs_counts():
-    """A later onset touches less at the same speed."""
-    thin = replace(LAW, onset_ratio=0.5 * LAW.onset_ratio)
+def test_the_state_of_the_raceway_counts():
+    """Run in, it touches less at the same speed."""
     few, many = (
-        solve_chain(chain_inputs(SCREW, OIL, law, 0.0, WARM, [10.0]))['opposing'][0]
-        for law in (thin, LAW)
+        chain(0.0, WARM, [10.0], with_raceway(SCREW, state=state))['opposing'][0]
+        for state in ('run_in', 'new')
     )
     assert few['rcs'] < many['rcs']
     assert few['film_ratio'] == many['film_ratio']
@@ -78,7 +76,7 @@ def test_balls_that_move_their_forces_are_solved_again():
     load = 2600.0
     for sense, sign in (('opposing', 1), ('assisting', -1)):
         point = OperatingPoint(speed=300.0, load=sign * load, temperature=WARM)
-        single = solve_screw(SCREW, OIL, point, settings=ScrewSettings(law=LAW))
+        single = solve_screw(SCREW, OIL, point)
         found = chain(load, WARM, [300.0])[sense][0]
         assert found['friction_torque'] == pytest.approx(single.friction_torque, rel=1e-3)
 
@@ -121,7 +119,7 @@ def test_record_of_a_point():
     assert math.isnan(record.rcs_deviation)
     ratios = [contact.film_ratio for contact in found.contacts]
     assert record.worst_contact == ratios.index(min(ratios))
-    rolling = replace(settings, kinematics='rolling', law=LAW)
+    rolling = replace(settings, kinematics='rolling')
     found = solve_screw(SCREW, OIL, replace(point, speed=10.0), settings=rolling)
     record = solved_point(found)
     assert record.rcs_deviation == found.rcs_deviation > 0

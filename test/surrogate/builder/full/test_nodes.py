@@ -7,8 +7,7 @@ import math
 
 import numpy as np
 import pytest
-from surrogate.asperities.acting import stated_waves
-from surrogate.asperities.law import shipped_law
+from surrogate.asperities.law import law_of
 from surrogate.builder.full.nodes import (
     BESIDE,
     covering,
@@ -19,14 +18,13 @@ from surrogate.builder.full.nodes import (
     temperature_nodes,
 )
 from surrogate.builder.full.settings import default_full_settings
-from surrogate.formulas.geometry import screw_contact, SIDES
+from surrogate.formulas.geometry import screw_contact
 from surrogate.formulas.inlet_heating import SPEED_EXPONENT
 from surrogate.formulas.kinematics import no_slip_rates
 from surrogate.formulas.load_sharing import idle_load, normal_force
 from surrogate.formulas.lubricant import lubricant_state
 from surrogate.screw.contacts import oil_at
 
-LAW = shipped_law()
 WARM = 313.15
 
 
@@ -103,12 +101,11 @@ def test_temperatures_are_even_in_the_logarithm_of_the_viscosity(oil, settings, 
 
 def test_the_onset_is_that_of_the_law_on_the_faster_side(screw, oil):
     """By the entrainment of the screw, under preload; faster in hot oil."""
-    found = onset_speeds(screw, oil, LAW, np.array([0.0]), np.array([WARM, 340.0]))
+    found = onset_speeds(screw, oil, np.array([0.0]), np.array([WARM, 340.0]))
     force, fluid = float(normal_force(screw, screw.preload)), oil_at(oil, WARM)
-    waves = stated_waves(screw.roughness, None)
     fastest = max(
-        LAW.onset(waves, screw_contact(screw, side), force, fluid, oil.film_floor)
-        for side in SIDES
+        onset.speed(screw_contact(screw, side), force, fluid, oil.film_floor)
+        for side, onset in law_of(screw).onsets.items()
     )
     assert found[0, 0] == pytest.approx(fastest / no_slip_rates(screw).entrainment)
     assert found[0, 1] > found[0, 0]
@@ -117,24 +114,24 @@ def test_the_onset_is_that_of_the_law_on_the_faster_side(screw, oil):
 def test_a_starved_film_moves_the_onset(screw, oil):
     """To the speed at which the flooded film is that of the onset, divided by the share."""
     place = np.array([0.0, 900.0]), np.array([WARM])
-    flooded = onset_speeds(screw, oil, LAW, *place)
-    starved = onset_speeds(screw, replace(oil, film_factor=0.5), LAW, *place)
+    flooded = onset_speeds(screw, oil, *place)
+    starved = onset_speeds(screw, replace(oil, film_factor=0.5), *place)
     assert starved == pytest.approx(2 ** (1 / SPEED_EXPONENT) * flooded)
 
 
 def test_loads_of_either_sign_have_one_onset(screw, oil):
     """The loaded nut counts, whichever it is; a free screw without load has one, too."""
     loads = np.array([-900.0, 900.0])
-    found = onset_speeds(screw, oil, LAW, loads, np.array([WARM]))
+    found = onset_speeds(screw, oil, loads, np.array([WARM]))
     assert found[0] == pytest.approx(found[1])
-    free = onset_speeds(replace(screw, preload=0.0), oil, LAW, np.zeros(1), np.array([WARM]))
+    free = onset_speeds(replace(screw, preload=0.0), oil, np.zeros(1), np.array([WARM]))
     assert free[0, 0] > 0
 
 
 def test_smooth_raceways_have_a_stand_in(screw, oil):
     """A speed that the logarithm bears."""
     smooth = replace(screw, roughness=replace(screw.roughness, rms=0.0))
-    found = onset_speeds(smooth, oil, LAW, np.zeros(1), np.array([WARM]))
+    found = onset_speeds(smooth, oil, np.zeros(1), np.array([WARM]))
     assert found[0, 0] == pytest.approx(SMOOTH_ONSET / no_slip_rates(screw).entrainment)
 
 
@@ -149,7 +146,7 @@ def test_columns_cover_what_their_neighbours_cover():
 
 def test_speeds_of_a_column_fall_and_reach_beyond_the_range(screw, oil, settings):
     """At every load and temperature, from the nodes that are needed."""
-    nodes = surface_nodes(screw, oil, LAW, settings)
+    nodes = surface_nodes(screw, oil, settings)
     assert nodes.needed.shape == (len(nodes.s), len(nodes.load), len(nodes.temperature))
     assert not nodes.needed.all()
     low, high = settings.speed_range

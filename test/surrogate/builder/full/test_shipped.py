@@ -8,7 +8,6 @@ import math
 
 import numpy as np
 import pytest
-from surrogate.asperities.law import law_from_json
 from surrogate.builder.full.chain import chain_inputs, solve_chain
 from surrogate.surface import find_surface, Surface, Validity
 from surrogate.surface.file import read
@@ -84,8 +83,7 @@ def test_a_node_is_what_the_solver_gives(screw, oil, s):
     i = int(np.searchsorted(DATA.speed_coordinate, s))
     speed = math.exp(DATA.speed_coordinate[i] + DATA.log_onset[j, k])
     load, heat = float(DATA.load[j]), float(DATA.temperature[k])
-    law = law_from_json(DATA.header['law'])
-    found = solve_chain(chain_inputs(screw, oil, law, load, heat, [speed]))['opposing'][0]
+    found = solve_chain(chain_inputs(screw, oil, load, heat, [speed]))['opposing'][0]
     for name in ('film_ratio', 'central_film', 'friction_torque', 'rcs'):
         node = DATA.fields[name][i, j, k]
         assert found[name] == pytest.approx(node, rel=1e-3, abs=1e-9)

@@ -23,14 +23,12 @@ SETTINGS = FullSettings(
     load_cells=2,
     held_out=3,
 )
-MARCHES, CHAINS = 10, 6
+CHAINS = 6
 
 
 @pytest.fixture(autouse=True)
 def fast(monkeypatch, stand_in):
-    """Let marches and chains be those of the stand-in."""
-    monkeypatch.setitem(full_tier.TASKS, 'march', stand_in.march)
-    monkeypatch.setitem(full_tier.TASKS, 'chain', stand_in.chain)
+    """Let chains be those of the stand-in."""
     monkeypatch.setattr(full_tier, 'solve_chain', stand_in.chain)
 
 
@@ -39,13 +37,15 @@ def build(screw, oil, out, pool, settings=SETTINGS):
     return tiers.build_surface('full', screw, oil, settings, pool=pool, out=out)
 
 
-@pytest.mark.parametrize('kept', [MARCHES, MARCHES + CHAINS])
-def test_an_interrupted_build_resumes_to_the_same_file(screw, oil, tmp_path, capsys, here, kept):
+@pytest.mark.parametrize(('most', 'kept'), [(CHAINS - 2, 0), (CHAINS + 2, CHAINS)])
+def test_an_interrupted_build_resumes_to_the_same_file(
+    screw, oil, tmp_path, capsys, here, most, kept
+):
     """Among chains or held-out points: what was kept is not solved again, the hash is the same."""
     whole = here()
     data = build(screw, oil, tmp_path / 'whole.npz', whole)
-    assert whole.solved == MARCHES + CHAINS + SETTINGS.held_out
-    first, second = here(most=kept + 2), here()
+    assert whole.solved == CHAINS + SETTINGS.held_out
+    first, second = here(most=most), here()
     with pytest.raises(KeyboardInterrupt):
         build(screw, oil, tmp_path / 'cut.npz', first)
     resumed = build(screw, oil, tmp_path / 'cut.npz', second)
@@ -55,22 +55,20 @@ def test_an_interrupted_build_resumes_to_the_same_file(screw, oil, tmp_path, cap
     assert second.solved == whole.solved - kept
     with TaskStore(tmp_path / 'cut.npz', full_tier.WORK) as store:
         assert len(store) == whole.solved
-    told = capsys.readouterr().err
-    assert 'marches' in told
-    assert 'chains' in told
+    assert 'chains' in capsys.readouterr().err
 
 
-def test_another_grid_of_the_same_screw_marches_nothing(screw, oil, tmp_path, here):
-    """The law is kept by what it is made from."""
+def test_other_held_out_points_of_the_same_grid_solve_no_node(screw, oil, tmp_path, here):
+    """Chains are kept by what they are made from."""
     build(screw, oil, tmp_path / 'a.npz', here())
     again = here()
-    data = build(screw, oil, tmp_path / 'a.npz', again, replace(SETTINGS, load_cells=3))
-    assert data.provenance['kept_tasks'] >= MARCHES
+    data = build(screw, oil, tmp_path / 'a.npz', again, replace(SETTINGS, held_out=4))
+    assert data.provenance['kept_tasks'] >= CHAINS
     assert data.provenance['tasks'] - data.provenance['kept_tasks'] == again.solved
 
 
 def test_provenance_counts_the_work_and_is_not_hashed(screw, oil, tmp_path, here):
-    """Marches, chains and held-out points; another run of the same work has the same hash."""
+    """Chains and held-out points; another run of the same work has the same hash."""
     pool = here()
     data = build(screw, oil, tmp_path / 'a.npz', pool)
     assert data.provenance['tasks'] == pool.solved
@@ -78,7 +76,7 @@ def test_provenance_counts_the_work_and_is_not_hashed(screw, oil, tmp_path, here
     assert replace(data, provenance={}).sha256 == data.sha256
 
 
-def test_a_point_is_solved_with_the_law_of_the_surface(screw, oil, tmp_path, here):
+def test_a_point_is_solved_from_the_inputs_of_the_surface(screw, oil, tmp_path, here):
     """A check passes at points that were never nodes; the fields are all there."""
     data = build(screw, oil, tmp_path / 'a.npz', here())
     solved = full_tier.solve_full(data.header, 10.0, 300.0, 310.0)
@@ -93,27 +91,19 @@ def test_a_point_is_solved_with_the_law_of_the_surface(screw, oil, tmp_path, her
 def test_failed_tasks_are_named_and_counted(
     screw, oil, tmp_path, monkeypatch, stand_in, capsys, here
 ):
-    """Marches that fail leave the law to the others, and a chain its nodes without a number."""
+    """A chain leaves its nodes without a number."""
 
-    def failing(solve, which):
-        def task(inputs):
-            if which(inputs):
-                raise InputError('no luck')
-            return solve(inputs)
+    def failing(inputs):
+        if inputs['load'] == 1000.0:
+            raise InputError('no luck')
+        return stand_in.chain(inputs)
 
-        return task
-
-    march = failing(stand_in.march, lambda inputs: inputs['draw'] == 3)
-    chain = failing(stand_in.chain, lambda inputs: inputs['load'] == 1000.0)
-    monkeypatch.setitem(full_tier.TASKS, 'march', march)
-    monkeypatch.setitem(full_tier.TASKS, 'chain', chain)
+    monkeypatch.setattr(full_tier, 'solve_chain', failing)
     data = build(screw, oil, tmp_path / 'a.npz', here())
-    assert data.header['law']['marches'] == MARCHES - 1
-    assert data.provenance['failed_tasks'] > 2
+    assert data.provenance['failed_tasks'] == 2
     assert data.mask[:, [0, -1]].all()
     assert not data.mask.all()
     told = capsys.readouterr().err
-    assert re.search(r'march, strip, light again: .*no luck', told)
     assert re.search(r'chain, 1000\.0 N, temperature 0, .*: .*no luck', told)
 
 
@@ -131,7 +121,7 @@ def test_missing_nodes_are_told_with_their_place(
 
     build(screw, oil, tmp_path / 'a.npz', here())
     assert 'missing' not in capsys.readouterr().err
-    monkeypatch.setitem(full_tier.TASKS, 'chain', failing)
+    monkeypatch.setattr(full_tier, 'solve_chain', failing)
     data = build(screw, oil, tmp_path / 'b.npz', here())
     told = re.search(r'(\d+) of \d+ nodes are missing.*', capsys.readouterr().err)
     assert 0 < int(told[1]) <= data.mask.sum()

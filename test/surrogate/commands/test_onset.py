@@ -1,0 +1,70 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The onset command as a user types it: how summits are cut stands in the sheet of the screw."""
+
+import json
+
+import pytest
+from surrogate.files import InputError
+from surrogate.parameters import DATA
+
+COMMAND = ('onset',)
+NOMINAL = (DATA / 'screws' / 'nominal.yaml').read_text(encoding='utf-8')
+
+
+@pytest.fixture
+def record(run, capsys, tmp_path):
+    """Return the function that gives the JSON of the nominal sheet with other keys."""
+
+    def printed(roughness, screw='', *words):
+        path = tmp_path / 'sheet.yaml'
+        path.write_text(screw + NOMINAL.replace('state: new', roughness), encoding='utf-8')
+        assert run('--screw', path, '--json', *words) == 0
+        return json.loads(capsys.readouterr().out)
+
+    return printed
+
+
+def test_the_shipped_sheet_as_a_page(run, capsys):
+    """Both states, though the sheet names one."""
+    assert run('--screw', 'nominal', '--oil', 'iso_vg_68') == 0
+    page = capsys.readouterr().out
+    for part in (
+        'nominal, iso_vg_68: 0 N, 40 degC',
+        'new, after its first pass ',
+        'cut at 7 GPa',
+        'cut at 3 GPa; ',
+        'Contact is likely below',
+        'raceway (new): Rq 0.12 um',
+    ):
+        assert part in page
+
+
+def test_pressures_are_those_of_the_sheet(record):
+    """One that is sure has no range; harder summits touch at faster speeds."""
+    one = 'run_in_pressure_GPa: 3.0\n  run_in_low_GPa: 3.0\n  run_in_high_GPa: 3.0'
+    states = record(f'{one}\n  hardness_GPa: 5.0')['states']
+    assert states['new']['cutting_pressure_Pa'] == 5e9
+    assert states['run_in']['cutting_pressure_Pa'] == 3e9
+    assert states['run_in']['speed_range_rad_s'] == [states['run_in']['speed_rad_s']] * 2
+    assert states['new']['speed_rad_s'] > states['run_in']['speed_rad_s'] > 0
+
+
+def test_load_and_trace_are_those_of_the_sheet(record):
+    """A profile that was traced after running in has no other state."""
+    found = record('traced: run_in', 'working_load_N: 900.0\n', '--load-N', 500)
+    assert list(found['states']) == ['run_in']
+    assert (found['working_load_N'], found['working_load_stated']) == (900.0, True)
+    assert found['load_N'] == 500.0
+
+
+def test_a_picture_is_drawn_where_it_is_asked_for(run, tmp_path, monkeypatch):
+    pytest.importorskip('matplotlib')
+    monkeypatch.setattr('surrogate.screw.onset_figure.STEPS', 2)
+    assert run('--screw', 'nominal', '--oil', 'iso_vg_68', '--plot', tmp_path / 'deep') == 0
+    assert [path.name for path in (tmp_path / 'deep').iterdir()] == ['onset_nominal_iso_vg_68.png']
+
+
+def test_a_temperature_beyond_the_oil_sheet_is_refused(run):
+    with pytest.raises(InputError, match='the range of the oil sheet'):
+        run('--screw', 'nominal', '--oil', 'iso_vg_68', '--temperature-degC', 120)
