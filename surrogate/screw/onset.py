@@ -26,6 +26,8 @@ MARCHED_RMS, MARCHED_WAVES = (0.06e-6, 0.24e-6), (1.25e-6, 10e-6)
 """Rq and short cut-offs within a factor of 2 of, and among, those of the marched strips [m]."""
 SMOOTH_ONSET = 1e-3
 """Entrainment speed that stands for the onset of smooth raceways [m/s]."""
+ABOVE = 1.1
+"""Least pressure at which summits are cut over that of the contact [-]."""
 WORDS = {'new': 'new, after its first pass', 'run_in': 'run in'}
 
 
@@ -47,6 +49,13 @@ def onset_speeds(screw: Screw, lubricant: Lubricant, load: Array, temperature: A
 def with_raceway(screw: Screw, **changes: Any) -> Screw:
     """Return a screw with other keys of its raceway roughness."""
     return replace(screw, roughness=replace(screw.roughness, **changes))
+
+
+def run_in_range(screw: Screw) -> tuple[float, float]:
+    """Return the likely range of the pressure of running in [Pa], which the contact must bear."""
+    pressed = max(working_pressure(screw, side) for side in SIDES)
+    low = max(screw.roughness.run_in_low, ABOVE * pressed)
+    return low, max(screw.roughness.run_in_high, low)
 
 
 def run_in_at(screw: Screw, pressure: float) -> Screw:
@@ -107,7 +116,7 @@ def onset_record(
         }
     if 'new' in states:
         states['run_in']['speed_range_rad_s'] = onset_over_pressure(
-            screw, *place, (sheet.run_in_low, sheet.run_in_high)
+            screw, *place, run_in_range(screw)
         )
     return {
         'screw': screw.name,

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 import numpy as np
 from surrogate.parameters import Lubricant, Screw
 from surrogate.plotting.style import BLUE, draw_picture, new_figure, ORANGE, VERMILION
-from surrogate.screw.onset import onset_over_pressure
+from surrogate.screw.onset import ABOVE, onset_over_pressure
 from surrogate.units import GIGA, RPM, ZERO_CELSIUS
 
 PRESSURES = 0.5e9, 20e9
@@ -33,7 +33,7 @@ def figure_onset(screw: Screw, lubricant: Lubricant, record: Mapping[str, Any]) 
     low, high = record['states']['run_in']['band']
     sheet = screw.roughness
     screw = replace(screw, working_load=record['working_load_N'])
-    least = max(1.1 * record['working_pressure_Pa'], 0.8 * sheet.run_in_low)
+    least = max(ABOVE * record['working_pressure_Pa'], 0.8 * sheet.run_in_low)
     least, most = np.clip([least, 1.2 * sheet.hardness], *PRESSURES)
     pressures = np.geomspace(least, most, STEPS)
     place = record['load_N'], record['temperature_K']

@@ -21,7 +21,7 @@ from surrogate.builder.full.nodes import Nodes, surface_nodes
 from surrogate.builder.full.settings import FullSettings
 from surrogate.files import InputError
 from surrogate.parameters import Lubricant, Screw
-from surrogate.screw.onset import onset_speeds, run_in_at, with_raceway
+from surrogate.screw.onset import onset_speeds, run_in_at, run_in_range, with_raceway
 from surrogate.screw.solve import TIER
 from surrogate.surface import FIELDS, SolvedPoint, Surface
 from surrogate.surface.file import format_version, SurfaceData
@@ -128,7 +128,7 @@ def limit_band(screw: Screw, lubricant: Lubricant) -> list[float]:
     """
     low, high = screw, screw
     if (screw.roughness.state, screw.roughness.traced) == ('run_in', 'new'):
-        low = run_in_at(screw, screw.roughness.run_in_low)
+        low = run_in_at(screw, run_in_range(screw)[0])
         high = with_raceway(screw, state='new')
     place = np.array([0.0]), np.array([lubricant.reference_temperature])
     least, stated, most = (
