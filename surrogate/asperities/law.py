@@ -101,10 +101,10 @@ class AsperityLaw:
         if not condition.entrainment_speed:
             return AT_REST
         share, strips, onset = self._strips(side, contact, condition.load, oil, floor)
-        over, acting = math.log(condition.entrainment_speed) - onset, self.onsets[side].acting
+        over = math.log(condition.entrainment_speed) - onset
         rcs = rcs_at(over)
         apart = [float(share @ rcs_at(over + half * self.deviation)) for half in (-0.5, 0.5)]
-        loss = loss_at(over, strips.max_pressure, acting.lay if acting else 0.0)
+        loss = self._loss(side, over, strips.max_pressure)
         # The weights add up to 1 but for rounding.
         return AsperityContact(
             rcs=min(float(share @ rcs), 1.0),
@@ -113,7 +113,7 @@ class AsperityLaw:
             rcs_deviation=apart[0] - apart[1],
         )
 
-    def shares(
+    def touching(
         self,
         side: Side,
         contact: Contact,
@@ -121,16 +121,21 @@ class AsperityLaw:
         oil: ContactLubricant,
         floor: float,
         speeds: Array,
-    ) -> tuple[Array, Array]:
-        """Return RCS and asperity share [-] as `contact` has them, at many speeds [m/s]."""
-        share, _, onset = self._strips(side, contact, load, oil, floor)
+    ) -> tuple[Array, Array, Array]:
+        """Return RCS, asperity share and loss factor [-] of `contact` at many speeds [m/s]."""
+        share, strips, onset = self._strips(side, contact, load, oil, floor)
         with np.errstate(divide='ignore', invalid='ignore'):
-            over = np.log(speeds) - onset[:, None]
-        rcs = rcs_at(np.where(speeds > 0, over, -math.inf))
+            over = np.where(speeds > 0, np.log(speeds) - onset[:, None], -math.inf)
+        rcs, loss = rcs_at(over), self._loss(side, over, strips.max_pressure[:, None])
         # Summed place by place, so that a speed does not depend on those beside it.
-        each = ((share[:, None] * values).sum(axis=0) for values in (rcs, share_at(rcs)))
-        touching, carried = (np.minimum(values, 1.0) for values in each)
-        return touching, carried
+        rcs, carried, loss = (
+            (share[:, None] * values).sum(axis=0) for values in (rcs, share_at(rcs), loss)
+        )
+        return np.minimum(rcs, 1.0), np.minimum(carried, 1.0), loss
+
+    def _loss(self, side: Side, log_speed: Array, pressure: Array) -> Array:
+        acting = self.onsets[side].acting
+        return loss_at(log_speed, pressure, acting.lay if acting else 0.0)
 
     def _strips(
         self, side: Side, contact: Contact, load: float, oil: ContactLubricant, floor: float

@@ -5,7 +5,7 @@ Closed-form tier: the whole chain by published formulas, for one point or many a
 
 A first guess and a cross-check of the full model, labelled `closed_form` wherever it is shown.
 What asperities do follows from the same topography as there. Ball inertia, the tilt of the contact
-lines, elastic hysteresis and the rolling loss of rough contacts are left to the full model.
+lines and elastic hysteresis are left to the full model.
 
 """
 
@@ -33,8 +33,8 @@ from surrogate.parameters import Lubricant, Screw
 from surrogate.screw.contacts import oil_at
 
 Array = NDArray[np.float64]
-Shares = tuple[Array, Array]
-"""RCS and asperity share [-]."""
+Touching = tuple[Array, Array, Array]
+"""RCS, asperity share and rolling loss over that of a smooth contact [-]."""
 TIER = 'closed_form'
 
 
@@ -103,8 +103,8 @@ def solve(
     Solve the chain at `speed` [rad/s], at least 0, `load` [N] of any sign, `temperature` [K].
 
     The arguments broadcast against each other. Friction does not depend on the sign of the load,
-    which only picks the nut that is loaded. RCS and asperity share follow from the topography, or
-    are `share_of` the film ratio.
+    which only picks the nut that is loaded. What asperities do follows from the topography; with
+    `share_of` RCS and their share follow from the film ratio instead, without more loss.
 
     """
     speed, load, temperature = np.broadcast_arrays(
@@ -115,11 +115,11 @@ def solve(
     forces = nut_forces(load, screw.preload)
     nuts: tuple[tuple[NutName, Array], ...] = (('loaded', forces[0]), ('relieved', forces[1]))
 
-    def touching(side: Side, force: Array, ratio: Array) -> Shares:
+    def touching(side: Side, force: Array, ratio: Array) -> Touching:
         if share_of is None:
-            return touching_shares(screw, lubricant, side, force, temperature, inlet_speed)
+            return asperities_at(screw, lubricant, side, force, temperature, inlet_speed)
         share = np.where(force > 0, share_of(ratio), 0.0)
-        return share, share
+        return share, share, np.ones_like(share)
 
     contacts = tuple(
         _solve_contact(
@@ -139,7 +139,7 @@ def _solve_contact(
     oil: LubricantState,
     speed: Array,
     inlet_speed: Array,
-    touching: Callable[[Side, Array, Array], Shares],
+    touching: Callable[[Side, Array, Array], Touching],
 ) -> ContactResult:
     contact, balls = screw_contact(screw, side), screw.loaded_balls_per_nut
     arm = no_slip_rates(screw).entrainment
@@ -148,9 +148,9 @@ def _solve_contact(
     g = groups(contact, pressed, inlet_speed, oil.viscosity, oil.pressure_viscosity)
     film = central_film_hamrock_dowson_1977(contact, g)
     ratio = film_ratio(film, screw.composite_rms)
-    rcs, share = touching(side, force, ratio)
+    rcs, share, loss = touching(side, force, ratio)
     sliding = sliding_friction(screw, side, ellipse, np.nan_to_num(film), share, oil, speed)
-    rolling = np.nan_to_num(rolling_force_biboulet_houpert_2010(contact, g))
+    rolling = loss * np.nan_to_num(rolling_force_biboulet_houpert_2010(contact, g))
     return ContactResult(
         nut=nut,
         side=side,
@@ -169,18 +169,19 @@ def _solve_contact(
     )
 
 
-def touching_shares(
+def asperities_at(
     screw: Screw, lubricant: Lubricant, side: Side, force: Array, temperature: Array, speed: Array
-) -> Shares:
-    """Return RCS and asperity share [-] at entrainment speeds [m/s], 0 without load."""
+) -> Touching:
+    """Return what asperities do at entrainment speeds [m/s]; nothing without load."""
     law, contact = law_of(screw), screw_contact(screw, side)
-    rcs, share = np.zeros(force.shape), np.zeros(force.shape)
+    rcs, share, loss = np.zeros(force.shape), np.zeros(force.shape), np.ones(force.shape)
     for load, heat in np.unique(np.stack([force.ravel(), temperature.ravel()], axis=1), axis=0):
         here = (force == load) & (temperature == heat)
         if load > 0:
             place = side, contact, float(load), oil_at(lubricant, float(heat))
-            rcs[here], share[here] = law.shares(*place, lubricant.film_floor, speed[here])
-    return rcs, share
+            found = law.touching(*place, lubricant.film_floor, speed[here])
+            rcs[here], share[here], loss[here] = found
+    return rcs, share, loss
 
 
 def _combine(screw: Screw, contacts: tuple[ContactResult, ...], speed: Array) -> ScrewResult:
