@@ -22,7 +22,6 @@ from surrogate.asperities.marches import (
     TRIES,
 )
 from surrogate.ehl.moving import MarchStatus, SpeedRamp
-from surrogate.files import InputError
 from surrogate.formulas.geometry import hertz, screw_contact
 from surrogate.formulas.load_sharing import normal_force
 from surrogate.parameters import BallRoughness, load_lubricant, load_screw
@@ -150,8 +149,7 @@ def test_a_march_that_ends_at_once_has_no_onset(monkeypatch):
 
 
 @pytest.mark.parametrize('rms', [0.0, 1e-11])
-def test_roughness_that_never_touches_is_one_sentence(rms):
+def test_roughness_that_never_touches_is_one_sentence(rms, refused):
     """Smooth, or flattened by any film."""
     fine = replace(SCREW, roughness=replace(SCREW.roughness, rms=rms))
-    with pytest.raises(InputError, match=r'roughness: Rq .* um is flattened before it touches'):
-        strip_inputs(fine, OIL, RUNS[0], FEW)
+    refused('roughness_rq_um', strip_inputs, fine, OIL, RUNS[0], FEW)

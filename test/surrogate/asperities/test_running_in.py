@@ -15,7 +15,6 @@ from surrogate.asperities.running_in import (
     TILES,
     USUAL,
 )
-from surrogate.files import InputError
 from surrogate.formulas.load_sharing import nut_forces
 from surrogate.parameters import BallRoughness
 from surrogate.raceway.scaling import scale_spectrum
@@ -58,24 +57,22 @@ def test_a_softer_cut_lowers_the_summits_more(screw):
     assert 0.03 < 1 - run / whole < 0.12
 
 
-def test_waves_that_no_tile_holds_are_refused(screw):
+def test_waves_that_no_tile_holds_are_refused(screw, refused):
     long = replace(screw.roughness, cutoff_short=400e-6, cutoff_long=8e-3)
-    with pytest.raises(InputError, match='waves are longer than half of the contact'):
-        running_tiles(replace(screw, roughness=long), 'screw', 'new')
+    refused('waves_longer_than', running_tiles, replace(screw, roughness=long), 'screw', 'new')
 
 
 @pytest.mark.parametrize(
     ('given', 'sentence'),
     [
-        ({'run_in_pressure': 6e9}, 'run-in pressure is 6 GPa between 2 and 5 GPa, allowed are'),
-        ({'hardness': 4e9}, r'up to the hardness \(4 GPa\)'),
-        ({'hardness': math.nan}, 'allowed are rising numbers'),
-        ({'working_load': -1.0}, 'working load is -1 N, allowed is 0 or more'),
+        ({'run_in_pressure': 6e9}, 'run_pressure_6'),
+        ({'hardness': 4e9}, 'up_hardness_4'),
+        ({'hardness': math.nan}, 'rising_numbers'),
+        ({'working_load': -1.0}, 'working_load_1'),
     ],
 )
-def test_a_cut_that_contradicts_itself_is_refused(given, sentence):
-    with pytest.raises(InputError, match=sentence):
-        Cut(**given)
+def test_a_cut_that_contradicts_itself_is_refused(given, sentence, refused):
+    refused(sentence, Cut, **given)
 
 
 def test_tiles_hold_the_shortest_wave_on_enough_nodes(screw):
@@ -96,7 +93,6 @@ def test_smooth_raceways_have_no_tiles(screw):
     assert running_tiles(smooth, 'screw', 'run_in') == []
 
 
-def test_a_load_that_presses_harder_than_the_summits_bear_is_refused(screw):
+def test_a_load_that_presses_harder_than_the_summits_bear_is_refused(screw, refused):
     cut = Cut(working_load=5e5)
-    with pytest.raises(InputError, match='mean pressure is .* GPa, allowed is above 0 and below'):
-        running_tiles(screw, 'screw', 'run_in', cut)
+    refused('mean_pressure_gpa', running_tiles, screw, 'screw', 'run_in', cut)

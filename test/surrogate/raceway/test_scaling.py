@@ -222,12 +222,7 @@ def test_shorter_waves_add_and_keep_the_draw():
     np.testing.assert_array_equal(other.phase[: len(one.phase)], one.phase)
 
 
-def test_the_sentence_says_what_was_not_stated():
+def test_the_sentence_says_what_was_not_stated(says):
     """Filters, slope and dimension; the table where the long cut-off is its own."""
-    assert scale_spectrum(SPECTRUM).sentence == (
-        'Rq 0.12 um between 2.5 um and 0.25 mm, rms slope 2.18 deg, D 2.680'
-    )
-    assert scale_spectrum(replace(SPECTRUM, cutoff_long=None)).sentence == (
-        'Rq 0.12 um between 2.5 um and 0.25 mm by the table for Ra = 0.8 Rq, not stated, '
-        'rms slope 2.18 deg, D 2.680'
-    )
+    assert scale_spectrum(SPECTRUM).sentence == says('rq_0_12')
+    assert scale_spectrum(replace(SPECTRUM, cutoff_long=None)).sentence == says('rq_0_12_um')
