@@ -1,13 +1,17 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The nominal cycle as a bag made by its generator, and a short piece of it."""
+"""The sentences that tests ask for by a key, and the nominal cycle as a bag, whole and in part."""
 
+from contextlib import contextmanager
 import importlib
 from importlib.abc import MetaPathFinder
 import os
 from pathlib import Path
+import re
+from string import Formatter
 import sys
 import time
+import tomllib
 
 from hypothesis import HealthCheck, Phase, settings
 from hypothesis.database import DirectoryBasedExampleDatabase
@@ -139,6 +143,58 @@ def _wait_for(condition, what='the condition', *, meanwhile=_pause, deadline=DEA
 def wait_for():
     """Return the one function by which a test waits; all of it is `_wait_for`."""
     return _wait_for
+
+
+def _filled(sentence, values):
+    """Return a sentence with all of its values, and none that it does not name."""
+    assert {name for _, name, *_ in Formatter().parse(sentence) if name} == values.keys(), sentence
+    return sentence.format(**values)
+
+
+@contextmanager
+def _refusal(sentence, values):
+    """Hold that the block raises just this: an InputError, or what the sentence begins with."""
+    with pytest.raises(Exception, match='.') as caught:
+        yield caught
+    kind, said = type(caught.value).__name__, str(caught.value)
+    text = said if kind == 'InputError' else f'{kind}: {said}'
+    parts = _filled(sentence.replace('{...}', '\0'), values).split('\0')
+    pattern = '.*'.join(map(re.escape, parts))
+    assert re.fullmatch(pattern, text, re.DOTALL), f'{text!r} is not {sentence!r}'
+
+
+@pytest.fixture(scope='session')
+def golden_sentences():
+    """Return every sentence of the golden file: by the file of tests, then by its key."""
+    text = (ROOT / 'test' / 'data' / 'sentences.toml').read_text(encoding='utf-8')
+    return tomllib.loads(text)
+
+
+@pytest.fixture(scope='module')
+def says(request, golden_sentences):
+    """Return the function that gives a sentence of this file of tests by its key and values."""
+    sentences = golden_sentences[str(request.path.relative_to(ROOT / 'test'))]
+    return lambda key, /, **values: _filled(sentences[key], values)
+
+
+@pytest.fixture(scope='module')
+def refused(request, golden_sentences):
+    """
+    Return the function that holds that a call, or a block without one, is refused as a key says.
+
+    `refused(key, call, *arguments)` or `with refused(key, **values)`.
+
+    """
+    sentences = golden_sentences[str(request.path.relative_to(ROOT / 'test'))]
+
+    def refuse(key, call=None, /, *args, **named):
+        if call is None:
+            return _refusal(sentences[key], named)
+        with _refusal(sentences[key], {}) as caught:
+            call(*args, **named)
+        return caught
+
+    return refuse
 
 
 @pytest.fixture(scope='session')

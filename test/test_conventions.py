@@ -9,6 +9,7 @@ import re
 import runpy
 import subprocess
 import sys
+import tomllib
 from xml.etree import ElementTree
 
 from packaging.requirements import Requirement
@@ -221,6 +222,20 @@ def test_every_file_of_tests_is_collected() -> None:
         ]
         assert len(names) == len(set(names)), f'{path.name}: a test hides another of its name'
         assert path.name == 'conftest.py' or (path.name.startswith('test_') and names), path.name
+
+
+def test_every_golden_sentence_is_asked_for() -> None:
+    """The file of tests that a table is of names each of its keys, in their order."""
+    folder = TREE / 'test'
+    golden = tomllib.loads((folder / 'data' / 'sentences.toml').read_text(encoding='utf-8'))
+    for name, sentences in golden.items():
+        nodes = ast.walk(ast.parse((folder / name).read_text(encoding='utf-8')))
+        unasked = sentences.keys() - {
+            node.value for node in nodes if isinstance(node, ast.Constant)
+        }
+        assert not unasked, f'{name} asks for no {unasked}'
+        assert list(sentences) == sorted(sentences), name
+    assert list(golden) == sorted(golden)
 
 
 def test_tests_mirror_the_sources() -> None:

@@ -120,7 +120,6 @@ def test_message_survives_the_wire(message: Any) -> None:
 
 
 @pytest.mark.parametrize('value', [1, True, '1'], ids=repr)
-def test_float_field_refuses_what_is_no_float(value: object) -> None:
+def test_float_field_refuses_what_is_no_float(value: object, refused) -> None:
     """With ROS_PYTHON_CHECK_FIELDS=1; without it an int is silently sent as 5e-324."""
-    with pytest.raises(AssertionError, match='float'):
-        OperatingPoint(speed=value)
+    refused('speed_field_type', OperatingPoint, speed=value)

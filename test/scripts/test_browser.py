@@ -47,9 +47,9 @@ def test_a_browser_that_is_there_is_enough(machine, tmp_path, name):
     assert not (tmp_path / 'asked').exists()
 
 
-def test_root_gets_it(machine, tmp_path):
+def test_root_gets_it(machine, tmp_path, says):
     said = machine(id=ROOT, apt_get=NOTES)
-    assert said == 'set-up: installing chromium for the tests of the pages\n'
+    assert said == says('set_up_installing')
     assert (tmp_path / 'asked').read_text().splitlines() == [
         'update',
         'install -y --no-install-recommends chromium',
@@ -59,13 +59,13 @@ def test_root_gets_it(machine, tmp_path):
 @pytest.mark.parametrize(
     ('commands', 'end'),
     [
-        ({'id': ROOT}, ': install Chromium'),
-        ({'id': USER, 'apt_get': NOTES}, ' sudo apt-get install -y chromium'),
-        ({'id': ROOT, 'apt_get': 'exit 100'}, 'could not install chromium, see log/apt.log'),
+        ({'id': ROOT}, 'install_chromium'),
+        ({'id': USER, 'apt_get': NOTES}, 'sudo_apt_get'),
+        ({'id': ROOT, 'apt_get': 'exit 100'}, 'could_install_chromium'),
     ],
 )
-def test_without_it_one_sentence_says_so(machine, tmp_path, commands, end):
+def test_without_it_one_sentence_says_so(machine, tmp_path, commands, end, says):
     said = machine(**commands).splitlines()
-    assert said[-1].startswith('set-up: no page is opened in a browser by the tests')
-    assert said[-1].endswith(end)
+    assert said[-1].startswith(says('set_up_page'))
+    assert said[-1].endswith(says(end))
     assert not (tmp_path / 'asked').exists()

@@ -6,7 +6,6 @@ from dataclasses import replace
 
 import pytest
 from surrogate.datasheet_writer import write_sheet
-from surrogate.files import InputError
 from surrogate.parameters import BallRoughness, load_lubricant, load_screw
 
 
@@ -34,10 +33,8 @@ def test_every_number_comes_back(tmp_path, screw, oil):
     assert sorted(one.name for one in path.parent.iterdir()) == ['oil.yaml', 'screw.yaml']
 
 
-def test_a_place_that_cannot_be_written_is_a_sentence(tmp_path, screw):
+def test_a_place_that_cannot_be_written_is_a_sentence(tmp_path, screw, refused):
     """A directory, and a file where a directory should be."""
-    with pytest.raises(InputError, match='cannot be written, it is not a regular file'):
-        write_sheet(tmp_path, screw)
+    refused('cannot_written_regular', write_sheet, tmp_path, screw)
     (tmp_path / 'file').write_text('x')
-    with pytest.raises(InputError, match='the datasheet cannot be written, '):
-        write_sheet(tmp_path / 'file' / 'screw.yaml', screw)
+    refused('datasheet_cannot_written', write_sheet, tmp_path / 'file' / 'screw.yaml', screw)

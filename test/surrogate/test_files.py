@@ -5,7 +5,6 @@
 import os
 from pathlib import Path
 
-import pytest
 from surrogate.files import replace_file
 
 
@@ -19,7 +18,7 @@ def test_a_file_is_made_with_its_directory_and_replaced(tmp_path: Path):
     assert list(path.parent.iterdir()) == [path]
 
 
-def test_a_failure_leaves_what_was_there(tmp_path: Path, monkeypatch):
+def test_a_failure_leaves_what_was_there(tmp_path: Path, monkeypatch, refused):
     """The disk is full when the bytes are flushed."""
     path = tmp_path / 'file'
     replace_file(path, b'one')
@@ -28,13 +27,11 @@ def test_a_failure_leaves_what_was_there(tmp_path: Path, monkeypatch):
         raise OSError(28, 'No space left on device')
 
     monkeypatch.setattr(os, 'fsync', full)
-    with pytest.raises(OSError, match='No space left on device'):
-        replace_file(path, b'two')
+    refused('space_left_device', replace_file, path, b'two')
     assert path.read_bytes() == b'one'
     assert list(tmp_path.iterdir()) == [path]
 
 
-def test_a_directory_is_not_written_over(tmp_path: Path):
+def test_a_directory_is_not_written_over(tmp_path: Path, refused):
     """Only regular files are replaced."""
-    with pytest.raises(OSError, match='not a regular file'):
-        replace_file(tmp_path, b'one')
+    refused('regular_file', replace_file, tmp_path, b'one')

@@ -179,19 +179,18 @@ def test_keys_of_an_old_datasheet_are_named_with_what_to_write_instead(tmp_path:
     assert '\n' not in str(caught.value)
 
 
-def test_a_rough_ball_beside_a_smooth_raceway_needs_a_dimension(screw):
+def test_a_rough_ball_beside_a_smooth_raceway_needs_a_dimension(screw, refused):
     """The ball shares that of the raceway, which a smooth one need not state."""
     smooth = replace(screw.roughness, rms=0.0, fractal_dimension=None)
     assert replace(screw, roughness=smooth).composite_rms == 0.0
     ball = BallRoughness(grade='G10')
-    with pytest.raises(InputError, match='ball_roughness is given without fractal_dimension'):
-        replace(screw, roughness=smooth, ball_roughness=ball)
+    refused('ball_roughness_given_without', replace, screw, roughness=smooth, ball_roughness=ball)
     rough = replace(screw, roughness=replace(smooth, fractal_dimension=2.5), ball_roughness=ball)
     assert rough.composite_rms == pytest.approx(0.025e-6)
 
 
 @pytest.mark.parametrize(('grade', 'long'), [('G10', 80e-6), ('G28', 250e-6)])
-def test_a_cut_off_that_leaves_the_balls_no_waves_is_refused(screw, grade, long):
+def test_a_cut_off_that_leaves_the_balls_no_waves_is_refused(screw, grade, long, refused):
     """That of the raceway is theirs too, and lies below their own long one."""
     ball = BallRoughness(grade=grade)
     coarse = replace(screw.roughness, cutoff_long=0.8e-3, cutoff_short=long)
@@ -199,8 +198,7 @@ def test_a_cut_off_that_leaves_the_balls_no_waves_is_refused(screw, grade, long)
     sentence = f'cutoff_short_um of roughness is {long * 1e6:g} um, allowed is less than the long'
     with pytest.raises(InputError, match=sentence):
         replace(screw, roughness=coarse, ball_roughness=ball)
-    with pytest.raises(InputError, match='long cut-off'):
-        ball_of(coarse, ball)
+    refused('long_cut_off', ball_of, coarse, ball)
     finer = replace(coarse, cutoff_short=0.99 * long)
     assert replace(screw, roughness=finer, ball_roughness=ball).composite_rms > screw.composite_rms
     assert ball_of(finer, ball) is not None
@@ -241,36 +239,33 @@ def test_a_file_that_is_no_mapping_is_refused(tmp_path: Path, content):
         load_lubricant(str(path))
 
 
-def test_the_source_is_mandatory(tmp_path: Path):
+def test_the_source_is_mandatory(tmp_path: Path, refused):
     """A datasheet without a source is not a datasheet."""
     path = tmp_path / 'screw.yaml'
     path.write_text(re.sub(r'source: >-\n(  .*\n)+', "source: ''\n", SCREW), encoding='utf-8')
-    with pytest.raises(InputError, match='source is .* allowed is a text that is not empty'):
-        load_screw(str(path))
+    refused('source_text_empty', load_screw, str(path))
 
 
 @pytest.mark.parametrize(
     ('change', 'sentence'),
     [
         # The two viscosities must fall with temperature.
-        ({'kinematic_viscosity_100': 70e-6}, 'kinematic_viscosity_100_mm2_s is 70 mm2/s'),
+        ({'kinematic_viscosity_100': 70e-6}, '70_mm2_s'),
         # 60 Pa s contradicts 68 mm2/s times 870 kg/m3 in the same sheet.
-        ({'viscosity': 60.0}, r'viscosity_Pa_s is 60 Pa s, allowed is 0.0296 to 0.118'),
+        ({'viscosity': 60.0}, 'viscosity_pa_s_60_pa'),
         # The anchor lies inside the range of the sheet.
-        ({'minimum_temperature': 50 + ZERO_CELSIUS}, 'reference_temperature_degC is 40 degC'),
-        ({'film_factor': 0.01}, 'film_factor is 0.01, allowed is 0.05 to 1'),
+        ({'minimum_temperature': 50 + ZERO_CELSIUS}, 'reference_temperature_de'),
+        ({'film_factor': 0.01}, 'film_factor_0_01'),
     ],
 )
-def test_an_oil_that_contradicts_itself_is_refused(oil, change, sentence):
+def test_an_oil_that_contradicts_itself_is_refused(oil, change, sentence, refused):
     """Within its own sheet."""
-    with pytest.raises(InputError, match=sentence):
-        replace(oil, **change)
+    refused(sentence, replace, oil, **change)
 
 
-def test_an_unknown_name_lists_the_shipped_ones():
+def test_an_unknown_name_lists_the_shipped_ones(refused):
     """A wrong name is answered with the right ones."""
-    with pytest.raises(InputError, match='nor one of the shipped .*iso_vg_100, iso_vg_32, iso_vg'):
-        load_lubricant('iso_vg_46')
+    refused('nor_one_shipped', load_lubricant, 'iso_vg_46')
 
 
 def test_limits_themselves_are_allowed(screw):

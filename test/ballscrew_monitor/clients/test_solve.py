@@ -92,7 +92,7 @@ def test_all_four_pairs_of_signs_are_those_of_point(node):
     assert efficiencies[0] != pytest.approx(efficiencies[1], rel=1e-3)
 
 
-def test_a_page_about_the_current_point_is_for_a_person(node):
+def test_a_page_about_the_current_point_is_for_a_person(node, says):
     node.start(
         x__max_future=3600.0,
         x__speed__timeout=60.0,
@@ -111,7 +111,7 @@ def test_a_page_about_the_current_point_is_for_a_person(node):
     assert [line.split()[0] for line in lines[2:9]] == [
         *('efficiency', 'RCS', 'asperity', 'film', 'central', 'friction', 'driving')
     ]
-    assert lines[-1] == 'surface not corrected: parameter x.correct_surface is false'
+    assert lines[-1] == says('surface_corrected')
 
 
 def test_what_the_node_cannot_solve_is_a_sentence_and_exit_code_1(node):
@@ -124,17 +124,17 @@ def test_what_the_node_cannot_solve_is_a_sentence_and_exit_code_1(node):
         assert ask(node, *arguments) == (1, '', sentence)
 
 
-def test_half_a_point_is_bad_input(node):
+def test_half_a_point_is_bad_input(node, says):
     for half in (('--speed-rpm', 955), ('--load-N', 500)):
         code, out, err = ask(node, '--axis', 'x', *half)
         assert (code, out) == (2, '')
-        assert err.startswith('ballscrew: speed and load belong together: give both')
+        assert err.startswith(says('speed_load_belong'))
 
 
-def test_without_a_node_it_waits_no_longer_than_told(node):
+def test_without_a_node_it_waits_no_longer_than_told(node, says):
     code, out, err = ask(node, '--axis', 'x', '--wait', 0.5)
     assert (code, out) == (1, '')
-    assert err.startswith('ballscrew: no node offers ballscrew_msgs/action/SolveOperatingPoint')
+    assert err.startswith(says('node_offers_ballscrew_msgs'))
     assert 'within 0.5 s' in err
 
 
@@ -152,17 +152,14 @@ def test_an_interrupt_takes_the_goal_back(node, number):
 
 @pytest.mark.parametrize(
     ('number', 'sentence'),
-    [
-        (signal.SIGINT, 'ballscrew: stopped, the node is no longer active\n'),
-        (signal.SIGKILL, 'ballscrew: /ballscrew_monitor/solve is gone, its node has ended\n'),
-    ],
+    [(signal.SIGINT, 'stopped_node_longer'), (signal.SIGKILL, 'ballscrew_monitor_solve_gone')],
 )
-def test_a_node_that_ends_meanwhile_is_told(node, number, sentence):
+def test_a_node_that_ends_meanwhile_is_told(node, number, sentence, says):
     node.start()
     process = begin(node, '--axis', 'x', *LONG)
     (worker,) = node.until(node.solvers, 'the solve')
     node.stop(number)
-    assert end(process) == (1, '', sentence)
+    assert end(process) == (1, '', says(sentence))
     node.until(lambda: not os.path.exists(f'/proc/{worker}'), 'the end of the worker')
 
 
@@ -186,11 +183,10 @@ def test_a_goal_that_is_accepted_too_late_is_taken_back():
 
 
 @pytest.mark.parametrize(
-    ('interrupted', 'code', 'sentence'),
-    [([], 1, 'ballscrew: /m/solve does not answer within 2 s\n'), ([signal.SIGINT], 130, '')],
+    ('interrupted', 'code', 'sentence'), [([], 1, 'm_solve_does'), ([signal.SIGINT], 130, '')]
 )
 def test_a_server_that_is_never_ready_is_sent_no_goal(
-    monkeypatch, capsys, interrupted, code, sentence
+    monkeypatch, capsys, interrupted, code, sentence, says
 ):
     client = SimpleNamespace(server_is_ready=lambda: False)  # has no way to send
     monkeypatch.setattr(solve, 'ActionClient', lambda *arguments: client)
@@ -200,7 +196,7 @@ def test_a_server_that_is_never_ready_is_sent_no_goal(
     monkeypatch.setattr(_Conversation, '_until', lambda self, given, wait: given())
     talk = _Conversation(None, Question(axis='x'), interrupted)
     assert talk.run(2.0, as_json=False) == code
-    assert capsys.readouterr() == ('', sentence)
+    assert capsys.readouterr() == ('', (sentence and says(sentence)))
 
 
 def test_an_interrupt_before_a_node_is_found_needs_no_words(monkeypatch, capsys):

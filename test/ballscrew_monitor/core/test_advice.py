@@ -75,15 +75,12 @@ def test_a_light_load_may_become_lighter(core):
     assert found == pytest.approx(100.0, rel=1e-4)
 
 
-def test_advice_as_a_sentence(core):
+def test_advice_as_a_sentence(core, says):
     assert Advice().text == ''
     advice = advise(core.point(speed=5.0), core.surface(rcs=faster_is_better), core.limits())
     assert advice.text == 'at this load run at 30 rad/s (286 rev/min)'
     both = Advice(target_speed=30.0, target_load=-1500.0)
-    assert (
-        both.text
-        == 'at this load run at 30 rad/s (286 rev/min) or at this speed load with -1500 N'
-    )
+    assert both.text == says('this_load_run')
 
 
 def test_an_optimal_point_is_its_own_advice(core):

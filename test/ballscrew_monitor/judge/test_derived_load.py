@@ -191,17 +191,13 @@ def test_drag_is_not_taken_off_twice(straight):
     assert derived(at(10.0, 1.125), straight, told()).axial_load == without.axial_load
 
 
-def test_a_share_of_inertia_and_drag_up_to_the_stated_one(straight):
+def test_a_share_of_inertia_and_drag_up_to_the_stated_one(straight, says):
     straight.parasitic_torque = 0.25
     running = at(10.0, 1.0, acceleration=0.25 / INERTIA)
     assert derived(running, straight, told(largest_share=0.5)).validity is Validity.VALID
     below = math.nextafter(0.5, 0.0)
     found = derived(running, straight, told(largest_share=below))
-    assert (found.validity, found.reason) == (
-        Validity.UNKNOWN,
-        'inertia and drag take 0.5 N m and the torque is 1 N m, allowed is a share of 0.5: too '
-        'little is left for the load',
-    )
+    assert (found.validity, found.reason) == (Validity.UNKNOWN, says('inertia_drag_take'))
     assert math.isnan(found.axial_load)
     assert math.isnan(found.uncertainty)
 
@@ -220,14 +216,12 @@ def folded(speed, load):
     return load / 1024.0 + 0.125 - drop
 
 
-def test_a_torque_of_several_loads_is_that_of_none(core):
+def test_a_torque_of_several_loads_is_that_of_none(core, says):
     surface = core.surface(driving_torque=folded)
     surface.lead = math.tau / 1024.0
     found = derived(at(10.0, 0.6), surface, told(inertia=0.0))
     assert found.validity is Validity.UNKNOWN
-    assert found.reason == (
-        'the torque is that of several loads, from 486.4 to 1510 N that oppose the motion'
-    )
+    assert found.reason == says('torque_several_loads')
     wide = derived(at(10.0, 0.6), surface, told(inertia=0.0, torque_uncertainty=0.6))
     assert wide.axial_load == pytest.approx(-0.5 * (486.4 + 1510.4), rel=1e-3)
     # Between 0 and 1.2 N m, from -128 N of the lower branch to 2124.8 N of the upper one.

@@ -67,17 +67,14 @@ def test_a_load_of_a_topic_has_no_uncertainty(core):
     assert math.isnan(point.axial_load_uncertainty)
 
 
-def test_a_finding_says_that_the_load_is_derived(core):
+def test_a_finding_says_that_the_load_is_derived(core, says):
     surface = straight(core, efficiency=0.5)
     finding = run(derived(core, surface), 10.0, 1.125).verdict.findings[0]
-    assert finding.text == (
-        'too much power is lost: efficiency 0.5, limit 0.75, efficiency judged from a load '
-        'derived of the motor torque'
-    )
+    assert finding.text == says('too_much_power')
     monitor = core.monitor(surface)
     monitor.update(sample(Source.LOAD, -1000.0))
     measured = monitor.update(sample(Source.SPEED, 10.0)).verdict.findings[0]
-    assert measured.text == 'too much power is lost: efficiency 0.5, limit 0.75'
+    assert measured.text == says('too_much')
 
 
 def test_the_input_of_the_load_is_called_derived(core):
@@ -142,14 +139,14 @@ def test_a_load_that_is_not_known_is_not_judged(core):
 @pytest.mark.parametrize(
     ('speed', 'torque', 'validity', 'reason'),
     [
-        (10.0, 9.0, PointValidity.LOAD_OUT_OF_RANGE, 'the torque along the motion, 9 N m, asks'),
-        (1e3, 1.0, PointValidity.SPEED_ABOVE_RANGE, 'speed 1000 rad/s is above the surface'),
+        (10.0, 9.0, PointValidity.LOAD_OUT_OF_RANGE, 'torque_along_motion'),
+        (1e3, 1.0, PointValidity.SPEED_ABOVE_RANGE, 'speed_1000_rad'),
     ],
 )
-def test_outside_the_surface_the_limit_is_named(core, speed, torque, validity, reason):
+def test_outside_the_surface_the_limit_is_named(core, speed, torque, validity, reason, says):
     state = run(derived(core), speed, torque)
     assert state.estimate.validity is validity
-    assert state.estimate.reason.startswith(reason)
+    assert state.estimate.reason.startswith(says(reason))
     assert math.isnan(state.point.axial_load)
 
 

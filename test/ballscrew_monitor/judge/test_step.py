@@ -116,16 +116,13 @@ def test_a_glitch_is_counted_and_never_reaches_the_totals(core, glitch):
     assert health.state is InputState.OK
 
 
-def test_the_plausible_limit_itself_is_plausible(core):
+def test_the_plausible_limit_itself_is_plausible(core, says):
     monitor = core.monitor(plausible={Source.SPEED: 300.0, Source.LOAD: 5e3})
     state = core.feed(monitor, core.motion(-300.0, force=-5e3))[-1]
     assert [health.dropped for health in state.inputs[:2]] == [0, 0]
     later = core.feed(monitor, core.motion(10.0, start=START + STEP, force=5001.0))[-1]
     assert later.estimate.validity is PointValidity.NO_INPUT
-    assert later.inputs[1].refusal == (
-        'load 5001 N is beyond the plausible 5000 N: mend the source, its unit or scale, '
-        'or raise limits.plausible_load'
-    )
+    assert later.inputs[1].refusal == says('load_5001_n')
 
 
 @pytest.mark.parametrize('bad', [math.nan, math.inf, -math.inf])
@@ -507,16 +504,13 @@ def test_a_constant_velocity_is_exact_through_every_wrap(core, speed_of_all, off
                 assert state.point.speed == pytest.approx(speed_of_all, abs=1e-6)
 
 
-def test_a_wrap_that_is_not_stated_is_refused_with_its_cure(core):
+def test_a_wrap_that_is_not_stated_is_refused_with_its_cure(core, says):
     monitor = turning(core, wrap=0.0)
     states = [turn(monitor, angle, i) for i, angle in enumerate((6.0, 6.2, 0.1, 0.3, 0.5))]
     assert [state is None for state in states] == [True, False, True, False, False]
     assert states[4].point.speed == pytest.approx(20.0)
     turn(monitor, 6.1, 5)
-    assert monitor.input_status(START)[0].refusal == (
-        'the position jumps by 5.6 rad of the screw within 0.01 s, plausible is a speed of '
-        '50 rad/s: mend the source, or set speed.wrap to the position at which it starts over'
-    )
+    assert monitor.input_status(START)[0].refusal == says('position_jumps_by')
 
 
 @pytest.mark.parametrize('stamp_source', StampSource)

@@ -54,15 +54,13 @@ def test_gates_and_findings_of_a_row(core, changes, gates, expected):
     assert (verdict.zone is Zone.OUTSIDE) == bool({*expected} & {1, 2})
 
 
-def test_findings_say_value_limit_and_sentence(core):
+def test_findings_say_value_limit_and_sentence(core, says):
     rcs, efficiency = judged(core, rcs=0.5, efficiency=0.5)[0].findings
     assert (rcs.value, rcs.limit, rcs.unit) == (0.5, 0.25, '-')
-    assert rcs.text == 'asperities carry too much: RCS 0.5, limit 0.25'
-    assert efficiency.text == 'too much power is lost: efficiency 0.5, limit 0.75'
+    assert rcs.text == says('asperities_carry_too')
+    assert efficiency.text == says('too_much_power')
     _, derived = judged(core, rcs=0.5, efficiency=0.5, derived=3)[0].findings
-    assert derived.text == (
-        f'{efficiency.text}, efficiency judged from a load derived of the motor torque'
-    )
+    assert derived.text == says('efficiency_judged_from', text=efficiency.text)
 
 
 @pytest.mark.parametrize(

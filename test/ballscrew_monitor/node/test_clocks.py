@@ -138,7 +138,7 @@ def test_silence_of_a_lagging_source_stays_on_its_line_of_time(node):
     in_order(heard.states)
 
 
-def test_a_lead_beyond_what_is_allowed_is_refused_and_clears_nothing(node):
+def test_a_lead_beyond_what_is_allowed_is_refused_and_clears_nothing(node, says):
     node.start(**SOON, **QUICK, x__max_lag=3600.0)  # a machine that is busy lags, too
     heard, source = Listener(node), Source(node, node.now)
     source.until(lambda: heard.level == WARN, 'the warning', SLOW)
@@ -151,9 +151,7 @@ def test_a_lead_beyond_what_is_allowed_is_refused_and_clears_nothing(node):
     assert heard.level == WARN
     for health in heard.states[-1].inputs[:2]:
         assert health.state == InputHealth.STATE_BAD
-        assert health.refusal.endswith(
-            'set the clocks of both machines alike, or raise max_future'
-        )
+        assert health.refusal.endswith(says('set_clocks_both'))
 
 
 def test_a_drift_is_told_when_it_has_grown(node):
@@ -219,7 +217,7 @@ class Simulated:
         return self.now
 
 
-def test_stamps_of_the_wall_clock_on_simulated_time(node):
+def test_stamps_of_the_wall_clock_on_simulated_time(node, says):
     node.start(use_sim_time='true', **SOON, **QUICK)
     heard, simulated = Listener(node), Simulated(node)
     source = Source(node, simulated)
@@ -231,10 +229,7 @@ def test_stamps_of_the_wall_clock_on_simulated_time(node):
     refusals = {f'speed {WALL}', f'load {WALL}'}
     source.until(lambda: heard.faults() >= refusals, 'the sentences')
     assert heard.faults() - {diagnostics.CLOCK_STANDS} == refusals
-    assert heard.states[-1].inputs[0].refusal == (
-        'the stamps are of the wall clock and the node runs on simulated time: '
-        'set use_sim_time to false, or stamp with /clock'
-    )
+    assert heard.states[-1].inputs[0].refusal == says('stamps_wall_clock')
     assert heard.level == WARN
 
 

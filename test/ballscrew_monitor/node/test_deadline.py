@@ -70,7 +70,7 @@ def offered(node, **parameters):
     return publisher.qos_profile.deadline, topic
 
 
-def test_over_the_middleware(node):
+def test_over_the_middleware(node, says):
     promise, topic = offered(node, x__publish_period=0.1)
     assert promise.nanoseconds == nanoseconds(deadline())
     refused, heard = [], {30.0: [], 0.5: []}
@@ -87,10 +87,7 @@ def test_over_the_middleware(node):
     assert node.set_parameters(x__publish_period=1.0).successful
     answer = node.set_parameters(x__publish_period=1.5)
     assert not answer.successful
-    assert answer.reason == (
-        'parameter x.publish_period is 1.5 s, while the node is configured at most 1 s, which its '
-        'publisher promises: clean it up first'
-    )
+    assert answer.reason == says('publish_period_1_5')
     assert node.transition('deactivate')
     assert node.transition('cleanup')
     assert node.set_parameters(x__publish_period=1.5).successful

@@ -186,7 +186,7 @@ def test_a_damaged_file_is_one_sentence_and_begins_anew(axis):
     assert path.with_suffix('.sqlite3.aside').exists()
 
 
-def test_a_shelved_warning_calls_nobody_and_outlives_the_node(axis):
+def test_a_shelved_warning_calls_nobody_and_outlives_the_node(axis, says):
     plain = axis.node.listen(Bool, f'{axis.node.name}/x/plain/out_of_zone')
     axis.start(x__plain_topics='true')
     axis.move(SLOW, lambda state: state.event_id == 1, 'the event')
@@ -194,7 +194,7 @@ def test_a_shelved_warning_calls_nobody_and_outlives_the_node(axis):
     node, ask = axis.node, {'axis': 'x', 'duration': 3600.0, 'reason': 'nut is ordered'}
     refused = node.call(ShelveAlarm, 'shelve', **ask | {'reason': ''})
     assert (refused.success, refused.until.sec) == (False, 0)
-    assert refused.message == 'reason has 0 characters, it must say why in 1 to 500'
+    assert refused.message == says('reason_has_0')
     unknown = node.call(ShelveAlarm, 'shelve', **ask | {'axis': 'q'}).message
     assert unknown == "axis 'q' is unknown, known are: x"
     answer = node.call(ShelveAlarm, 'shelve', **ask)

@@ -216,25 +216,22 @@ def test_a_failed_configure_leaves_the_node_alive_with_the_reason(node, name, va
 @pytest.mark.parametrize(
     ('argument', 'sentence'),
     [
-        ('x.limits.rcs:=7.0', 'parameter x.limits.rcs is 7.0 -, allowed is 1e-06 to 0.999 -'),
-        (
-            'x.limits.rcs:=1',
-            'parameter x.limits.rcs is 1, it must be a number with a decimal point',
-        ),
-        ('x.limits.rsc:=0.1', 'parameter x.limits.rsc is unknown'),
-        ('diagnostic_period:=2.0', 'parameter diagnostic_period is unknown'),
-        ("axis:=['y']", 'parameter axis is unknown'),
-        ('y.screw:=nominal', 'parameter y.screw is unknown'),
-        ('x.speed.unit:=rpm', "parameter x.speed.unit is 'rpm', allowed is one of"),
-        ("axes:=['X']", "parameter axes holds 'X'"),
+        ('x.limits.rcs:=7.0', 'limits_rcs_7'),
+        ('x.limits.rcs:=1', 'limits_rcs_1'),
+        ('x.limits.rsc:=0.1', 'limits_rsc_unknown'),
+        ('diagnostic_period:=2.0', 'diagnostic_period_unknown'),
+        ("axis:=['y']", 'unknown'),
+        ('y.screw:=nominal', 'y_screw_unknown'),
+        ('x.speed.unit:=rpm', 'speed_unit_rpm'),
+        ("axes:=['X']", 'axes_holds'),
     ],
 )
-def test_a_bad_parameter_at_start_is_one_sentence_and_exit_code_2(node, argument, sentence):
+def test_a_bad_parameter_at_start_is_one_sentence_and_exit_code_2(node, argument, sentence, says):
     node.start('-p', argument)
     assert node.end() == 2
     said = node.output.read_text().splitlines()
     assert len(said) == 1
-    assert said[0].startswith(f'ballscrew_monitor: {sentence}')
+    assert said[0].startswith(f'ballscrew_monitor: {says(sentence)}')
 
 
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])

@@ -11,8 +11,6 @@ from ballscrew_monitor.node import recording_process
 from ballscrew_monitor.node.recording_process import recording, RecordingProcess
 from ballscrew_monitor.recordings.frames import Frame, FrameKind
 from ballscrew_monitor.settings import parameters
-import pytest
-from surrogate.files import InputError
 
 SETTINGS = {
     'always': True,
@@ -33,28 +31,23 @@ def test_without_a_wish_there_is_none():
     assert recording(values(record='off'), None) is None
 
 
-def test_a_place_is_needed(tmp_path):
-    with pytest.raises(InputError, match='there is no state_dir: set record_dir'):
-        recording(values(), None)
+def test_a_place_is_needed(tmp_path, refused):
+    refused('there_state_dir_set', recording, values(), None)
     assert recording(values(), tmp_path).args[0] == tmp_path / 'recordings'
     assert recording(values(record_dir='/there'), None).args[0] == Path('/there')
 
 
-def test_one_recording_must_not_remove_all_others(tmp_path):
-    with pytest.raises(InputError, match='record_total is 300 MB, it must be at least twice'):
-        recording(values(record_total=300.0), tmp_path)
+def test_one_recording_must_not_remove_all_others(tmp_path, refused):
+    refused('record_total_300_mb', recording, values(record_total=300.0), tmp_path)
 
 
-def test_what_cannot_be_started_is_told_and_takes_nothing(tmp_path, monkeypatch):
+def test_what_cannot_be_started_is_told_and_takes_nothing(tmp_path, monkeypatch, says):
     monkeypatch.setattr(recording_process.sys, 'executable', '/no/python')
     process = RecordingProcess(tmp_path, SETTINGS)
     assert process.lost
     assert not process.put(FRAME)
     assert process.flush()
-    assert process.problem == (
-        'nothing is recorded: the process that records cannot be started, '
-        'No such file or directory'
-    )
+    assert process.problem == says('nothing_recorded_process')
     process.close()
 
 

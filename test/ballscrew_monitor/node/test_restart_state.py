@@ -65,12 +65,12 @@ def fail(*args):
     raise RuntimeError('surprise')
 
 
-def test_what_cannot_be_written_waits(state, monkeypatch):
+def test_what_cannot_be_written_waits(state, monkeypatch, says):
     with monkeypatch.context() as full:
         full.setattr(StateDatabase, 'write', refuse)
         state.keep(record(1), entry(1))
         assert state.work(0.0) == RETRY
-        assert state.problem == f'{state.folder} cannot be written, No space left on device'
+        assert state.problem == says('cannot_written_space', folder=state.folder)
         state.keep(record(2), entry(2))
         assert state.flush() == state.problem
     assert state.work(RETRY) is None
@@ -78,12 +78,12 @@ def test_what_cannot_be_written_waits(state, monkeypatch):
     assert kept(state) == ([1, 2], [2])
 
 
-def test_a_disk_that_is_full_is_tried_until_it_is_not(state):
+def test_a_disk_that_is_full_is_tried_until_it_is_not(state, says):
     database = state._database
     database._database.execute('PRAGMA max_page_count = 1')
     for number in range(100):
         state.keep(record(number), entry(number))
-    assert state.flush() == f'{state.folder} cannot be written, database or disk is full'
+    assert state.flush() == says('cannot_written_database', folder=state.folder)
     assert not database.is_open
     assert state.flush() == ''
     assert kept(state) == (list(range(100)), [99])
@@ -100,11 +100,11 @@ def test_what_waits_is_bounded_and_the_oldest_go(state, monkeypatch):
     assert kept(state)[0] == [2, 3, 4]
 
 
-def test_what_fails_unexpectedly_waits_and_is_told(state, monkeypatch):
+def test_what_fails_unexpectedly_waits_and_is_told(state, monkeypatch, says):
     state.keep(record(1), entry(1))
     with monkeypatch.context() as broken:
         broken.setattr(StateDatabase, 'write', fail)
-        assert state.flush() == f'{state.folder} cannot be written, RuntimeError: surprise'
+        assert state.flush() == says('cannot_written_runtimeerror', folder=state.folder)
     assert state.flush() == ''
     assert kept(state) == ([1], [1])
 
@@ -157,23 +157,23 @@ def test_nobody_waits_for_a_disk_that_does_not_answer(state, monkeypatch):
     state._database.close()
 
 
-def test_what_was_left_is_read_before_anything_is_written(state, monkeypatch):
+def test_what_was_left_is_read_before_anything_is_written(state, monkeypatch, says):
     state.keep(record(41))
     state.close()
     with monkeypatch.context() as broken:
         broken.setattr(state_database, 'set_aside', fail)
         again = RestartState(state.folder)
         again.keep(record(1))
-        assert again.flush() == f'{state.folder} cannot be written, RuntimeError: surprise'
+        assert again.flush() == says('cannot_written_runtimeerror', folder=state.folder)
     assert again.flush() == ''
     assert kept(again) == ([], [41])
     again.close()
 
 
-def test_a_second_node_takes_over_when_the_first_is_gone(state):
+def test_a_second_node_takes_over_when_the_first_is_gone(state, says):
     state.keep(record(41))
     second = RestartState(state.folder)
-    assert second.problem == f'{state.folder} is in use by another node of this name'
+    assert second.problem == says('use_by_another', folder=state.folder)
     second.keep(record(1), entry(1))
     assert second.work(0.0) == RETRY
     state.close()

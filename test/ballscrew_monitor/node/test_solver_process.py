@@ -53,10 +53,10 @@ def test_what_the_worker_imports_is_the_offline_half_alone():
     assert not names & {'rclpy', 'ballscrew_monitor', 'ballscrew_msgs', 'matplotlib'}
 
 
-def test_a_killed_process_says_so(process, wait_for):
+def test_a_killed_process_says_so(process, wait_for, says):
     os.kill(process.pid, signal.SIGKILL)
     (frame,) = wait_for(process.frames, 'a frame')
-    assert frame == {'lost': 'the process of the solve was killed by signal 9'}
+    assert frame == {'lost': says('process_solve_was')}
 
 
 def test_ctrl_c_is_not_for_it(process, wait_for):

@@ -60,15 +60,12 @@ def test_two_files_are_one_bag(short_bag, tmp_path):
     assert times == sorted(times)
 
 
-def test_topics_that_are_missing_or_of_another_type_are_named(short_bag):
+def test_topics_that_are_missing_or_of_another_type_are_named(short_bag, says):
     bag = Bag(short_bag)
     text = sentence(lambda: bag.require({'/load': 'std_msgs/msg/Float64'}))
-    assert text.endswith(
-        'topic /load (std_msgs/msg/Float64) is missing, the bag holds /axial_load, '
-        '/joint_states, /oil_temperature'
-    )
+    assert text.endswith(says('topic_load_std_msgs'))
     text = sentence(lambda: bag.require({'/axial_load': 'std_msgs/msg/Float64'}))
-    assert 'geometry_msgs/msg/WrenchStamped, it must be std_msgs/msg/Float64' in text
+    assert says('geometry_msgs_msg') in text
 
 
 def test_a_topic_without_messages_is_named(tmp_path):
@@ -127,7 +124,7 @@ def test_bad_metadata_is_one_sentence(copy, content, expected):
     assert expected in sentence(lambda: Bag(copy))
 
 
-def test_a_topic_whose_schema_is_missing_is_named(tmp_path):
+def test_a_topic_whose_schema_is_missing_is_named(tmp_path, says):
     path = tmp_path / 'bag.mcap'
     with path.open('wb') as stream:
         writer = Writer(stream)
@@ -136,4 +133,4 @@ def test_a_topic_whose_schema_is_missing_is_named(tmp_path):
         writer.add_message(channel, log_time=1, data=b'', publish_time=1)
         writer.finish()
     text = sentence(lambda: Bag(path).require({'/a': 'std_msgs/msg/Header'}))
-    assert text.endswith('topic /a states no type: its schema is missing')
+    assert text.endswith(says('topic_states_type'))

@@ -113,7 +113,7 @@ def test_an_older_bag_of_the_name_is_gone_from_the_start(tmp_path):
     writer.close()
 
 
-def test_a_crash_costs_no_more_than_the_last_chunks(tmp_path):
+def test_a_crash_costs_no_more_than_the_last_chunks(tmp_path, refused):
     writer = BagWriter(tmp_path, 'bag', compress=False)
     writer.add_topic(HEADERS)
     count = 10 * CHUNK_SIZE // len(DATA)
@@ -123,8 +123,7 @@ def test_a_crash_costs_no_more_than_the_last_chunks(tmp_path):
     with (tmp_path / 'left.mcap').open('rb') as stream:
         kept = read_unfinished(stream)
     assert kept >= 0.7 * count
-    with pytest.raises(InputError, match='left.mcap is truncated or damaged'):
-        Bag(tmp_path / 'left.mcap')
+    refused('left_mcap_truncated', Bag, tmp_path / 'left.mcap')
 
 
 def read_unfinished(stream):
@@ -136,12 +135,11 @@ def read_unfinished(stream):
     return kept
 
 
-def test_an_unknown_type_and_a_bad_directory_are_one_sentence(tmp_path):
+def test_an_unknown_type_and_a_bad_directory_are_one_sentence(tmp_path, refused):
     with BagWriter(tmp_path, 'bag') as writer, pytest.raises(InputError, match='not installed'):
         writer.add_topic(Topic(name='/c', type_name='std_msgs/msg/No', offer=Offer.SENSOR))
     (tmp_path / 'file').write_text('')
-    with pytest.raises(InputError, match='cannot be written'):
-        BagWriter(tmp_path / 'file', 'bag')
+    refused('cannot_written', BagWriter, tmp_path / 'file', 'bag')
 
 
 def break_off(folder, error):
@@ -164,20 +162,19 @@ def test_a_whole_bag_is_there_when_it_is_complete_or_not_at_all(tmp_path):
     assert Bag(folder).topics['/a'].count == 2
 
 
-def test_an_older_bag_and_what_is_beside_it_stay_until_the_next_is_whole(tmp_path):
+def test_an_older_bag_and_what_is_beside_it_stay_until_the_next_is_whole(tmp_path, refused):
     (tmp_path / 'notes.txt').write_text('of the mill')
     for count in (2, 3):
         with whole_bag(tmp_path, 'bag') as writer:
             write(writer, count)
-    with pytest.raises(ValueError, match='in the middle'):
-        break_off(tmp_path, ValueError('in the middle'))
+    refused('middle', break_off, tmp_path, ValueError('in the middle'))
     names = sorted(path.name for path in tmp_path.iterdir())
     assert names == ['bag.mcap', 'metadata.yaml', 'notes.txt']
     assert Bag(tmp_path).topics['/a'].count == 3
 
 
-def test_a_place_where_no_whole_bag_can_be_is_one_sentence(tmp_path):
+def test_a_place_where_no_whole_bag_can_be_is_one_sentence(tmp_path, refused):
     (tmp_path / 'file').write_text('')
     for place in (tmp_path / 'file', tmp_path / 'file' / 'bag'):
-        with pytest.raises(InputError, match='cannot be written'), whole_bag(place, 'bag'):
+        with refused('cannot_written'), whole_bag(place, 'bag'):
             raise AssertionError

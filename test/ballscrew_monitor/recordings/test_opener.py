@@ -73,11 +73,11 @@ def test_a_table_that_is_given_up_leaves_nothing(tmp_path, monkeypatch):
     assert not list(scratch.iterdir())
 
 
-def test_no_log_at_all(tmp_path):
+def test_no_log_at_all(tmp_path, says):
     assert 'does not exist' in sentence(tmp_path / 'nothing')
     assert 'holds no log' in sentence(tmp_path)
     (tmp_path / 'one.csv').touch()
-    assert sentence(tmp_path).endswith('its tables, such as one.csv, are to be named one by one')
+    assert sentence(tmp_path).endswith(says('tables_such_as'))
     odd = tmp_path / 'picture.png'
     odd.write_bytes(b'\x89PNG')
     assert 'is neither a bag nor a table' in sentence(odd)

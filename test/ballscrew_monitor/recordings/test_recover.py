@@ -14,7 +14,6 @@ from ballscrew_monitor.recordings.bag_writer import Announced, BagWriter, Offer,
 from ballscrew_monitor.recordings.recover import recover
 from mcap.reader import make_reader
 import pytest
-from surrogate.files import InputError
 import yaml
 
 TOPIC = Topic(name='/a', type_name='std_msgs/msg/Float64', offer=Offer.LATCHED)
@@ -87,24 +86,20 @@ def test_what_follows_damage_over_the_border_of_chunks_is_recovered(whole):
 
 
 @pytest.mark.parametrize('content', [b'', b'\x89MCAP0\r\n', b'not a recording at all'])
-def test_where_nothing_is_whole_a_sentence_says_so(tmp_path, content):
+def test_where_nothing_is_whole_a_sentence_says_so(tmp_path, content, refused):
     file = tmp_path / 'a.mcap.active'
     file.write_bytes(content)
-    with pytest.raises(InputError, match='holds no message that is whole'):
-        recover(file)
+    refused('holds_message_whole', recover, file)
     assert [*tmp_path.iterdir()] == [file]
 
 
-def test_nothing_is_written_over_and_what_is_not_there_is_said(tmp_path, whole):
+def test_nothing_is_written_over_and_what_is_not_there_is_said(tmp_path, whole, refused):
     active = Path(f'{whole}.active')
     active.write_bytes(whole.read_bytes())
-    with pytest.raises(InputError, match='is there already'):
-        recover(active)
-    with pytest.raises(InputError, match='does not exist'):
-        recover(tmp_path / 'none.mcap')
+    refused('there_already', recover, active)
+    refused('does_exist', recover, tmp_path / 'none.mcap')
     active.unlink()
-    with pytest.raises(InputError, match='holds 0 unfinished recordings'):
-        recover(tmp_path)
+    refused('holds_0_unfinished', recover, tmp_path)
 
 
 def test_types_that_are_not_installed_and_what_a_file_says_of_itself_are_kept(tmp_path):

@@ -128,7 +128,7 @@ def test_two_recordings_of_one_second_have_two_names(tmp_path):
     assert [*seconds_in(tmp_path)] == ['20231114T221320Z', '20231114T221320Z_2']
 
 
-def test_a_full_disk_is_told_and_tried_again(tmp_path, monkeypatch):
+def test_a_full_disk_is_told_and_tried_again(tmp_path, monkeypatch, says):
     retention = retention_in(tmp_path)
     feed(retention, [0])
 
@@ -138,7 +138,7 @@ def test_a_full_disk_is_told_and_tried_again(tmp_path, monkeypatch):
     with monkeypatch.context() as context:
         context.setattr(type(retention._writer), 'write', full)
         retention.take(message(1), 1.0)
-        assert retention.problem == f'nothing is recorded in {tmp_path}: No space left on device'
+        assert retention.problem == says('nothing_recorded_space', tmp_path=tmp_path)
     retention.take(message(5), 5.0)
     assert retention.problem
     retention.take(message(12), 12.0)

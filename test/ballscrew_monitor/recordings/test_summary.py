@@ -41,23 +41,19 @@ def summary_of(event=None, **totals):
     return summarizer.result()
 
 
-def test_totals_are_those_of_the_last_state():
+def test_totals_are_those_of_the_last_state(says):
     summary = make_summary()
     assert (summary.states, summary.judged, summary.running_time) == (2, 1000, 8.0)
     assert summary.lines()[:3] == [
-        'in motion   8.0 s of 10.0 s, 0 revolutions, 123.4 J lost to friction',
-        'regime      boundary 0.0 s (0 %), mixed 8.0 s (100 %), hydrodynamic 0.0 s (0 %)',
-        'zone        optimal 6.0 s (75 %), outside 2.0 s (25 %), unjudged 0.0 s (0 %)',
+        says('motion_8_0'),
+        says('regime_boundary_0'),
+        says('zone_optimal_6'),
     ]
 
 
-def test_an_event_is_listed_once_with_its_last_word():
+def test_an_event_is_listed_once_with_its_last_word(says):
     events = make_summary().lines()[3:]
-    assert events == [
-        'events      2',
-        '   1    3.0 s to   5.0 s  RCS >= 0.01, worst 0.25',
-        '   2    6.0 s to still on  RCS >= 0.01, worst 0.25',
-    ]
+    assert events == ['events      2', says('1_3_0'), says('2_6_0')]
 
 
 def test_an_efficiency_is_told_in_percent():
@@ -88,9 +84,9 @@ def test_no_event_reads_well_only_where_a_motion_was_judged():
         assert still.lines()[-1] == 'events      none, for no motion was judged'
 
 
-def test_shares_are_rounded_as_in_a_verdict():
+def test_shares_are_rounded_as_in_a_verdict(says):
     said = summary_of(running_time=75.6, optimal_time=0.4, outside_time=75.2).lines()[2]
-    assert said.startswith('zone        optimal 0.4 s (0.53 %), outside 75.2 s (99.5 %)')
+    assert said.startswith(says('zone_optimal_0'))
 
 
 def test_without_a_state_there_is_none():

@@ -81,39 +81,34 @@ TORQUE = {'x.torque.topic': 'torque', 'x.torque.field': 'data'}
 @pytest.mark.parametrize(
     ('source', 'assumed', 'stated', 'origin'),
     [
-        (Source.SPEED, ['speed'], ['position.column'], 'worked out from the position'),
-        (Source.SPEED, ['speed.unit'], ['speed.column'], 'measured, unit assumed'),
-        (
-            Source.SPEED,
-            ['speed', 'position.unit'],
-            ['position.column'],
-            'worked out from the position, unit assumed',
-        ),
-        (Source.TEMPERATURE, ['temperature.column'], [], 'measured, column assumed'),
-        (Source.TEMPERATURE, [], ['temperature.column'], 'measured'),
-        (Source.TORQUE, ['torque.column', 'torque.unit'], [], 'measured, column and unit assumed'),
+        (Source.SPEED, ['speed'], ['position.column'], 'worked_out_from'),
+        (Source.SPEED, ['speed.unit'], ['speed.column'], 'measured_unit_assumed'),
+        (Source.SPEED, ['speed', 'position.unit'], ['position.column'], 'worked_out'),
+        (Source.TEMPERATURE, ['temperature.column'], [], 'measured_column_assumed'),
+        (Source.TEMPERATURE, [], ['temperature.column'], 'measured_2'),
+        (Source.TORQUE, ['torque.column', 'torque.unit'], [], 'measured_column_unit'),
         (
             Source.TORQUE,
             ['torque_constant_Nm_per_A'],
             ['current.column'],
-            'worked out from the current, torque constant assumed',
+            'worked_out_from_current',
         ),
-        (Source.TORQUE, [], ['current.column'], 'worked out from the current'),
+        (Source.TORQUE, [], ['current.column'], 'out_from_current'),
         (
             Source.TORQUE,
             ['torque_constant_Nm_per_A'],
             ['current.column', 'torque.column'],
-            'measured',
+            'measured_2',
         ),
     ],
 )
 def test_what_is_worked_out_or_in_part_assumed_is_not_called_measured(
-    judged, source, assumed, stated, origin
+    judged, source, assumed, stated, origin, says
 ):
     known = {'assumed': dict.fromkeys(assumed, {}), 'stated': frozenset(stated)}
     case = judged.case([judged.columns()], values=judged.values(**TORQUE), known=known)
     seen = seen_of(case, source)
-    assert (seen.origin, seen.measured) == (origin, origin == 'measured')
+    assert (seen.origin, seen.measured) == (says(origin), says(origin) == 'measured')
 
 
 def test_a_load_of_the_motor_torque_is_said_so_once(judged):
@@ -145,13 +140,13 @@ def test_a_feed_of_more_than_2_metres_a_second_is_doubted(judged):
 
 @pytest.mark.parametrize('place', ['stated', 'assumed'])
 @pytest.mark.parametrize('speed', [2000.0, 0.1])
-def test_of_a_table_the_map_is_to_be_checked(judged, speed, place):
+def test_of_a_table_the_map_is_to_be_checked(judged, speed, place, says):
     known = {'stated': {'stated': frozenset(['lead_mm'])}, 'assumed': {'assumed': {'lead_mm': {}}}}
     block = judged.columns(speed=speed)
     hints = seen_of(judged.case([block], known=known[place]), Source.SPEED).hints
     assert hints
     for hint in hints:
-        assert hint.endswith('check its unit, its scale and the lead in the map')
+        assert hint.endswith(says('check_unit_scale'))
         assert 'x.speed.unit' not in hint
 
 
@@ -202,17 +197,15 @@ def test_a_recording_that_does_not_number_messages_claims_no_loss(judged):
     assert load_with(judged, known={'numbered': True}, lost=0).lost == 0
 
 
-def test_a_slow_input_is_told_a_timeout_that_would_do(judged):
+def test_a_slow_input_is_told_a_timeout_that_would_do(judged, says):
     hints = load_with(judged, slow=True, longest_gap=2.0).hints
-    assert hints == (
-        'x.load: it comes less often than its timeout allows: set x.load.timeout to 5.0 or more',
-    )
+    assert hints == (says('load_comes_less'),)
 
 
-def test_stamps_of_another_clock_are_doubted(judged):
+def test_stamps_of_another_clock_are_doubted(judged, says):
     assert 'lie 3 s behind' in load_with(judged, lag=3.0, lagging=True).hints[0]
     far = load_with(judged, lag=1.7e9, lagging=True).hints
-    assert far == ('x.load: its stamps are of another clock than those of its arrival',)
+    assert far == (says('load_stamps_another'),)
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,6 @@ from surrogate.builder.closed_form import (
     load_nodes,
     temperature_nodes,
 )
-from surrogate.files import InputError
 from surrogate.screw import closed_form
 from surrogate.screw.onset import onset_speeds
 from surrogate.surface import FIELDS, Surface, Validity
@@ -21,11 +20,10 @@ from surrogate.surface import FIELDS, Surface, Validity
 SMALL = {'speed_nodes': 16, 'load_cells': 3, 'unloaded_cells': 1, 'temperature_nodes': 3}
 
 
-def test_smooth_surfaces_have_no_map(screw, oil):
+def test_smooth_surfaces_have_no_map(screw, oil, refused):
     """Without any roughness the film ratio, a field of the map, has no end."""
     smooth = replace(screw, roughness=replace(screw.roughness, rms=0.0))
-    with pytest.raises(InputError, match='screw nominal: rms_um of roughness is 0 um and the bal'):
-        build_closed_form(smooth, oil, default_settings(smooth))
+    refused('screw_nominal_rms_um', build_closed_form, smooth, oil, default_settings(smooth))
     found = closed_form.solve(smooth, oil, 10.0, 0.0, 313.15)
     assert (float(found.film_ratio), float(found.rcs)) == (math.inf, 0.0)
 
@@ -105,14 +103,13 @@ def test_zero_preload_masks_zero_load_only(screw, oil):
 @pytest.mark.parametrize(
     ('changes', 'sentence'),
     [
-        ({'speed_range': (100.0, 10.0)}, 'speed range is 100 to 10 rad/s, allowed is a low end'),
-        ({'speed_range': (0.0, 10.0)}, 'speed range begins at 0 rad/s, allowed is above 0'),
-        ({'load_range': (5.0, 5.0)}, 'load range is 5 to 5 N'),
-        ({'temperature_range': (313.15, math.nan)}, 'temperature range is 313.15 to nan K'),
-        ({'temperature_range': (263.15, 353.15)}, 'oil iso_vg_68 allows 0 to 100 degC'),
+        ({'speed_range': (100.0, 10.0)}, 'speed_range_100'),
+        ({'speed_range': (0.0, 10.0)}, 'speed_range_begins'),
+        ({'load_range': (5.0, 5.0)}, 'load_range_5'),
+        ({'temperature_range': (313.15, math.nan)}, 'temperature_range_313'),
+        ({'temperature_range': (263.15, 353.15)}, 'oil_iso_vg_68_allows'),
     ],
 )
-def test_a_wrong_range_is_one_sentence(screw, oil, changes, sentence):
+def test_a_wrong_range_is_one_sentence(screw, oil, changes, sentence, refused):
     """Reversed, empty, or beyond the oil's datasheet."""
-    with pytest.raises(InputError, match=sentence):
-        build_closed_form(screw, oil, replace(default_settings(screw), **changes))
+    refused(sentence, build_closed_form, screw, oil, replace(default_settings(screw), **changes))

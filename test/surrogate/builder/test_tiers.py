@@ -6,9 +6,7 @@ from dataclasses import asdict, replace
 import json
 import sys
 
-import pytest
 from surrogate.builder import tiers
-from surrogate.files import InputError
 from surrogate.parameters import BallRoughness
 from surrogate.screw import closed_form
 from surrogate.surface import FIELDS
@@ -20,10 +18,9 @@ def test_every_tier_is_one_of_the_file_format():
     assert set(tiers.TIERS) <= set(surface_file.TIERS)
 
 
-def test_an_unknown_tier_lists_the_known_ones():
+def test_an_unknown_tier_lists_the_known_ones(refused):
     """One sentence."""
-    with pytest.raises(InputError, match="tier is 'guess', allowed is closed_form"):
-        tiers.find_tier('guess')
+    refused('tier_guess_closed_form', tiers.find_tier, 'guess')
 
 
 def test_a_header_gives_back_its_datasheets(surface_data, screw, oil):

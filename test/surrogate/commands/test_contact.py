@@ -11,7 +11,6 @@ import pytest
 from surrogate.contact.rolling import march_case
 from surrogate.ehl import solve_contact, Status
 from surrogate.ehl.moving import MarchStatus
-from surrogate.files import InputError
 from surrogate.parameters import DATA
 
 COMMAND = ('contact',)
@@ -139,10 +138,8 @@ def test_pictures(run, small, tmp_path):
     ]
 
 
-def test_pictures_that_cannot_be_made(run, small, tmp_path, monkeypatch):
+def test_pictures_that_cannot_be_made(run, small, tmp_path, monkeypatch, refused):
     """No directory, no matplotlib: one sentence."""
-    with pytest.raises(InputError, match='--plot: .*small.yaml cannot be written'):
-        run(small, '--plot', small)
+    refused('plot_small_cannot', run, small, '--plot', small)
     monkeypatch.setitem(sys.modules, 'surrogate.contact.figures', None)
-    with pytest.raises(InputError, match='--plot needs matplotlib: install the extra `plot`'):
-        run(small, '--plot', tmp_path / 'plots')
+    refused('plot_needs_matplotlib', run, small, '--plot', tmp_path / 'plots')

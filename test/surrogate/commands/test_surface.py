@@ -8,8 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from surrogate.files import InputError
-from surrogate.surface import shipped_surface, SurfaceError
+from surrogate.surface import shipped_surface
 from surrogate.surface.file import ENSEMBLE_VERSION, read, write
 from surrogate.tasks.store import store_path, TaskStore
 
@@ -43,7 +42,7 @@ def test_check_of_a_shipped_tier_is_of_twenty_points(run, capsys):
     assert '20 of 20 points' in out
 
 
-def test_check_tells_how_far_off_the_limit_of_the_zone_is(run, capsys):
+def test_check_tells_how_far_off_the_limit_of_the_zone_is(run, capsys, refused):
     """In per cent of the speed, at as many points as asked for."""
     words = ('check', 'closed_form', '--points', '2', '--limit-points')
     assert run(*words, '2') == 0
@@ -52,8 +51,7 @@ def test_check_tells_how_far_off_the_limit_of_the_zone_is(run, capsys):
     for line in limits:
         assert line.startswith('RCS is 0.01 at ')
         assert abs(float(line.split()[-5])) < 0.1
-    with pytest.raises(InputError, match='--limit-points is -1, allowed is 0 or more'):
-        run(*words, '-1')
+    refused('limit_points_1', run, *words, '-1')
 
 
 def test_check_finds_a_wrong_surface(run, tmp_path: Path, capsys):
@@ -85,40 +83,35 @@ def test_info_is_strict_json_even_without_errors(run, tmp_path: Path, capsys):
     assert json.loads(capsys.readouterr().out)['errors']['rcs'] == {'max': None, 'p95': None}
 
 
-def test_check_without_time_is_a_failure(run, capsys):
+def test_check_without_time_is_a_failure(run, capsys, refused):
     """Time for no point at all is a failure; a time that is not positive is refused."""
     assert run('check', '--max-seconds', '1e-9') == 1
     out = capsys.readouterr().out
     assert str(shipped_surface(tier='full')) in out
     assert '0 of 20 points' in out
     for text in ('0', '-1', 'nan', 'inf'):
-        with pytest.raises(InputError, match='--max-seconds is .* allowed is above 0'):
-            run('check', '--max-seconds', text)
+        refused('max_seconds_above', run, 'check', '--max-seconds', text)
 
 
 @pytest.mark.parametrize(
     ('words', 'sentence'),
     [
-        (['--speed-range', '100', '10'], '--speed-range is 100 to 10 rpm, allowed is above 0'),
-        (['--speed-range', '0', '10'], '--speed-range is 0 to 10 rpm, allowed is above 0'),
-        (['--load-range', '5', '5'], '--load-range is 5 to 5 N, allowed is the low end first'),
-        (['--temperature-range', '50', 'nan'], '--temperature-range is 50 to nan degC'),
+        (['--speed-range', '100', '10'], 'speed_range_100'),
+        (['--speed-range', '0', '10'], 'speed_range_0'),
+        (['--load-range', '5', '5'], 'load_range_5'),
+        (['--temperature-range', '50', 'nan'], 'temperature_range_50'),
     ],
 )
-def test_a_range_is_refused_in_the_unit_it_was_typed_in(run, words, sentence):
+def test_a_range_is_refused_in_the_unit_it_was_typed_in(run, words, sentence, refused):
     """The user reads the numbers that the user typed."""
-    with pytest.raises(InputError, match=sentence):
-        run('build', *words)
+    refused(sentence, run, 'build', *words)
 
 
-def test_bad_files_reach_the_user_as_sentences(run, tmp_path: Path):
+def test_bad_files_reach_the_user_as_sentences(run, tmp_path: Path, refused):
     """Missing files and unknown names raise the two exceptions that the program reports."""
-    with pytest.raises(SurfaceError, match='no such surface file'):
-        run('info', tmp_path / 'none.npz')
-    with pytest.raises(InputError, match='nor one of the shipped datasheets'):
-        run('build', '--oil', 'water')
-    with pytest.raises(InputError, match='--points is 0'):
-        run('check', '--points', '0')
+    refused('such_surface_file', run, 'info', tmp_path / 'none.npz')
+    refused('nor_one_shipped', run, 'build', '--oil', 'water')
+    refused('points_0', run, 'check', '--points', '0')
 
 
 def test_info_is_a_page_a_person_reads(run, capsys):
@@ -138,7 +131,7 @@ def test_info_is_a_page_a_person_reads(run, capsys):
         assert part in text
 
 
-def test_info_tells_what_draws_leave_uncertain(run, tmp_path: Path, capsys):
+def test_info_tells_what_draws_leave_uncertain(run, tmp_path: Path, capsys, says):
     """Median and largest deviation, in the page and in the record."""
     data = read(CLOSED_FORM)
     spread = np.linspace(0.0, 0.02, data.mask.size).reshape(data.mask.shape)
@@ -148,7 +141,7 @@ def test_info_tells_what_draws_leave_uncertain(run, tmp_path: Path, capsys):
     assert run('info', path) == 0
     text = capsys.readouterr().out
     assert 'deviation: median, max    of the mean' in text
-    assert 'rcs [-]                              0.01        0.02        nan         nan' in text
+    assert says('rcs_0_01') in text
     assert run('info', path, '--json') == 0
     spreads = json.loads(capsys.readouterr().out)['spreads']
     assert spreads['rcs']['std'] == pytest.approx({'median': 0.01, 'max': 0.02})
@@ -167,7 +160,6 @@ def test_clean_removes_kept_results(run, tmp_path: Path, capsys):
     assert 'nothing to remove' in capsys.readouterr().out
 
 
-def test_workers_are_refused_where_they_would_do_nothing(run):
+def test_workers_are_refused_where_they_would_do_nothing(run, refused):
     """The closed form is solved in a second or two, in this process."""
-    with pytest.raises(InputError, match='--workers and --dask have no meaning for tier closed_f'):
-        run('build', '--workers', '2')
+    refused('workers_dask_have', run, 'build', '--workers', '2')

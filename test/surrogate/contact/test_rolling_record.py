@@ -33,7 +33,7 @@ def test_the_record_has_its_keys_and_strict_json(rolling_case, marched):
     assert record['converged'] is True
 
 
-def test_numbers_are_those_of_the_march(rolling_case, marched):
+def test_numbers_are_those_of_the_march(rolling_case, marched, says):
     """Lambda is the smooth central film over the whole Rq; shares are in order."""
     solution, surface = marched
     record = rolling_record(rolling_case, solution, surface)
@@ -46,7 +46,7 @@ def test_numbers_are_those_of_the_march(rolling_case, marched):
     assert record['rcs'] >= record['asperity_share'] > 0
     assert record['rcs_standard_error'] > 0
     rough = record['roughness']
-    assert rough['sentence'].startswith('Rq 0.1 um between 2.5 um and 0.08 mm, rms slope')
+    assert rough['sentence'].startswith(says('rq_0_1'))
     assert rough['sentence'].endswith('are left out')
     assert rough['cutoff_by_table'] is False
     assert rough['fractal_roughness_m'] > 0
@@ -90,12 +90,12 @@ def test_one_place_has_no_standard_error(rolling_case, marched):
     assert '+-' not in line
 
 
-def test_the_page_says_everything_a_person_asks(rolling_case, marched):
+def test_the_page_says_everything_a_person_asks(rolling_case, marched, says):
     """Workshop units, one line each, the status last."""
     solution, surface = marched
     record = rolling_record(rolling_case, solution, surface)
     lines = rolling_page(record, rolling_case, solution).splitlines()
-    assert lines[0].startswith('rolling contact 10 x 10 mm: 3.66445 N, 0.1 m/s')
+    assert lines[0].startswith(says('rolling_contact_10'))
     assert lines[-1] == f'  status: {solution.status.value}'
     names = [line[2:25].strip() for line in lines[1:-1]]
     assert names[-1] == 'march'

@@ -8,7 +8,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 import numpy as np
 import pytest
-from surrogate.files import InputError
 from surrogate.raceway.fractal import fractal_surface, PublishedRoughness
 from surrogate.raceway.measured import measured_surface
 from surrogate.raceway.patch import take_patch, Window
@@ -42,17 +41,11 @@ def test_a_place_has_one_height_whatever_the_grid(x, y):
     assert grid[1, 0] == pytest.approx(alone, rel=1e-9, abs=1e-18)
 
 
-def test_outside_the_map_is_refused():
+def test_outside_the_map_is_refused(refused):
     """The sentence says how far the contact reaches and how far the map does."""
     surface = measured_surface(HEIGHTS, STEP, 2 * STEP, source='map.csv')
-    with pytest.raises(
-        InputError,
-        match=r'map.csv: the contact needs heights to 0.3 mm from its '
-        r'centre along x, the map ends at 0.2 mm: measure a larger area',
-    ):
-        surface.heights([0.0, 0.3e-3], [0.0])
-    with pytest.raises(InputError, match='along y, the map ends at 0.24 mm'):
-        surface.heights([0.0], [-0.25e-3])
+    refused('map_contact_needs', surface.heights, [0.0, 0.3e-3], [0.0])
+    refused('along_y_map', surface.heights, [0.0], [-0.25e-3])
 
 
 @given(x=INSIDE)
@@ -73,7 +66,7 @@ def test_a_profile_goes_on_in_the_other_direction():
     np.testing.assert_allclose(longitudinal, np.repeat(profile.T, 3, axis=0), atol=1e-20)
 
 
-def test_patches_work_as_on_fractal_surfaces():
+def test_patches_work_as_on_fractal_surfaces(refused):
     """Levelled and scaled over the window; a window larger than the map is refused."""
     window = Window(length_x=0.2e-3, length_y=0.4e-3)
     surface = measured_surface(HEIGHTS + 1e-3 * X[:, None] + 1e-6, STEP, 2 * STEP)
@@ -82,15 +75,16 @@ def test_patches_work_as_on_fractal_surfaces():
     assert np.std(patch.heights(x, y)) == pytest.approx(NOMINAL.rms, rel=0.02)
     level = take_patch(measured_surface(HEIGHTS, STEP, 2 * STEP), 'cut', window, NOMINAL.rms)
     assert patch.plane[1] - level.plane[1] == pytest.approx(1e-3, rel=1e-3)
-    with pytest.raises(InputError, match='the map ends at'):
+    with refused('map_ends'):
         take_patch(surface, 'cut', Window(length_x=1e-3, length_y=0.1e-3), NOMINAL.rms)
-    with pytest.raises(InputError, match='flat over the window'):
-        take_patch(
-            measured_surface(np.ones((50, 50)), STEP, STEP),
-            'cut',
-            Window(length_x=2e-5, length_y=2e-5),
-            NOMINAL.rms,
-        )
+    refused(
+        'flat_over_window',
+        take_patch,
+        measured_surface(np.ones((50, 50)), STEP, STEP),
+        'cut',
+        Window(length_x=2e-5, length_y=2e-5),
+        NOMINAL.rms,
+    )
 
 
 def test_the_filter_halves_a_wave_at_its_cutoff():
@@ -107,16 +101,16 @@ def test_the_filter_halves_a_wave_at_its_cutoff():
 @pytest.mark.parametrize(
     ('heights', 'options', 'sentence'),
     [
-        (np.ones(50), {}, '50 points, allowed is 16 or more'),
-        (np.ones((1, 1)), {}, '1 points, allowed is 16 or more'),
-        (np.ones((50, 3)), {}, '50 x 3 points, allowed is 16 or more along a measured direction'),
-        (np.where(np.eye(50) > 0, np.nan, 1.0), {}, '50 of 2500 heights are not finite numbers'),
-        (HEIGHTS, {'shortest_wavelength': 7e-6}, r'is 7 um, allowed is two spacings .* \(8 um\)'),
-        (HEIGHTS, {'outside': 'guess'}, "outside is 'guess', allowed is refuse or mirror"),
-        (HEIGHTS, {'spacing_x': -1.0}, 'a spacing is -1 m, allowed is above 0'),
+        (np.ones(50), {}, '50_points_16'),
+        (np.ones((1, 1)), {}, '1_points_16'),
+        (np.ones((50, 3)), {}, '50_3_points'),
+        (np.where(np.eye(50) > 0, np.nan, 1.0), {}, '50_2500_heights'),
+        (HEIGHTS, {'shortest_wavelength': 7e-6}, '7_um_two'),
+        (HEIGHTS, {'outside': 'guess'}, 'outside_guess_refuse'),
+        (HEIGHTS, {'spacing_x': -1.0}, 'spacing_1_m'),
     ],
 )
-def test_bad_maps_are_one_sentence(heights, options, sentence):
+def test_bad_maps_are_one_sentence(heights, options, sentence, refused):
     """Each says what is wrong and what is allowed."""
-    with pytest.raises(InputError, match=sentence):
+    with refused(sentence):
         measured_surface(heights, **{'spacing_x': STEP, 'spacing_y': 2 * STEP, **options})

@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from surrogate.ehl import Condition, ContactLubricant, Settings, solve_contact
-from surrogate.files import InputError
 from surrogate.formulas.geometry import hertz, screw_contact
 from surrogate.parameters import load_lubricant, load_screw
 from surrogate.raceway.fractal import fractal_surface, PublishedRoughness, theoretical_rms
@@ -38,10 +37,9 @@ def test_long_waves_stay_as_they_are(surface):
     assert np.array_equal(whole.heights(AXIS, AXIS), surface.heights(AXIS, AXIS))
 
 
-def test_a_cut_that_leaves_no_wave_is_refused(surface):
+def test_a_cut_that_leaves_no_wave_is_refused(surface, refused):
     """The sentence names the length and what is allowed."""
-    with pytest.raises(InputError, match=r'5000 um, allowed is the longest .*4000 um'):
-        without_short_waves(surface, 5e-3)
+    refused('5000_um_longest', without_short_waves, surface, 5e-3)
 
 
 def test_rms_of_the_waves_is_that_of_the_formula():

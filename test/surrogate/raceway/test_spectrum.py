@@ -6,7 +6,6 @@ import math
 
 import numpy as np
 import pytest
-from surrogate.files import InputError
 from surrogate.raceway.spectrum import RoughnessSpectrum
 
 FAN = math.radians(20)
@@ -43,26 +42,25 @@ def test_the_waves_of_a_lay_fan_about_its_normal(lay, centre):
 @pytest.mark.parametrize(
     ('changed', 'message'),
     [
-        ({'rms': -1e-7}, 'rms is -0.1 um, allowed is 0 or more'),
-        ({'rms': math.nan}, 'rms is nan um, allowed'),
-        ({'cutoff_long': 2e-6}, r'long cut-off is 2 um, allowed is more than the short one \(2.5'),
-        ({'cutoff_short': 1e-3}, 'long cut-off is 250 um, allowed is more than the short one'),
-        ({'fractal_dimension': 3.2}, 'fractal dimension is 3.2, allowed is 2.01 to 2.99'),
-        ({'fractal_dimension': 1.9}, 'fractal dimension is 1.9, allowed'),
-        ({'fractal_dimension': None}, 'neither fractal dimension nor rms slope is given'),
-        ({'rms_slope': 0.0}, 'rms slope is 0 deg, allowed is above 0'),
-        ({'rms': 0.0, 'rms_slope': 0.01}, 'rms slope is .* with an rms above 0'),
-        ({'lay': 'radial'}, "lay is 'radial', allowed is isotropic, longitudinal or transverse"),
-        ({'lay': 'transverse'}, 'fan angle is missing, lay is transverse, allowed'),
-        ({'fan_angle': FAN}, 'fan angle is given, lay is isotropic, allowed'),
-        ({'lay': 'transverse', 'fan_angle': 2.0}, 'fan angle is 114.592 deg, allowed is 0 to 90'),
-        ({'scale_ratio': 1.0}, 'scale ratio is 1, allowed is above 1'),
-        ({'ridges': 0}, 'number of ridges is 0, allowed is 1, 2'),
-        ({'shortest_wavelength': 1e-3}, 'shortest wave is 1000 um, allowed is above 0 and less'),
-        ({'longest_wavelength': 2e-6}, 'longest wave is 2 um, allowed is more than 2.5 um'),
+        ({'rms': -1e-7}, 'rms_0_1'),
+        ({'rms': math.nan}, 'rms_nan_um'),
+        ({'cutoff_long': 2e-6}, 'long_cut_off'),
+        ({'cutoff_short': 1e-3}, 'long_cut'),
+        ({'fractal_dimension': 3.2}, 'fractal_dimension_3'),
+        ({'fractal_dimension': 1.9}, 'fractal_dimension_1'),
+        ({'fractal_dimension': None}, 'neither_fractal_dimension'),
+        ({'rms_slope': 0.0}, 'rms_slope_0'),
+        ({'rms': 0.0, 'rms_slope': 0.01}, 'rms_slope_with'),
+        ({'lay': 'radial'}, 'lay_radial_isotropic'),
+        ({'lay': 'transverse'}, 'fan_angle_missing'),
+        ({'fan_angle': FAN}, 'fan_angle_given'),
+        ({'lay': 'transverse', 'fan_angle': 2.0}, 'fan_angle_114'),
+        ({'scale_ratio': 1.0}, 'scale_ratio_1'),
+        ({'ridges': 0}, 'number_ridges_0'),
+        ({'shortest_wavelength': 1e-3}, 'shortest_wave_1000'),
+        ({'longest_wavelength': 2e-6}, 'longest_wave_2'),
     ],
 )
-def test_inputs_that_no_roughness_has_are_refused(changed, message):
+def test_inputs_that_no_roughness_has_are_refused(changed, message, refused):
     """One sentence each: what, value, unit, allowed."""
-    with pytest.raises(InputError, match=f'^roughness: {message}'):
-        RoughnessSpectrum(**{'rms': 0.12e-6, 'fractal_dimension': 2.5, **changed})
+    refused(message, RoughnessSpectrum, **{'rms': 0.12e-6, 'fractal_dimension': 2.5, **changed})

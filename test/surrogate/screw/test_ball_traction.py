@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 from surrogate.ehl import Condition, ContactLubricant, Settings, solve_contact, Status
 from surrogate.ehl.friction import contact_friction, NodeStrengths
-from surrogate.files import InputError
 from surrogate.formulas.geometry import hertz, screw_contact
 from surrogate.parameters import load_screw
 from surrogate.screw.ball_motion import no_slip_motion, relative_motion, slip_field, slip_maps
@@ -203,13 +202,9 @@ def test_a_share_from_elsewhere_bears_boundary_friction(solved):
     assert eyring.sum() == pytest.approx(0.75 * smooth.strengths(27.6)[1].sum(), rel=1e-9)
 
 
-def test_inputs_that_make_no_sense_are_refused(solved, screw):
+def test_inputs_that_make_no_sense_are_refused(solved, screw, refused):
     """A contact without solution, a negative coefficient, no floor."""
-    with pytest.raises(InputError, match='without a solved contact'):
-        solved_traction(replace(solved, status=Status.STALLED))
-    with pytest.raises(InputError, match='slip_floor is 0'):
-        solved_traction(solved, slip_floor=0.0)
-    with pytest.raises(InputError, match='coefficient is -0.1'):
-        coulomb_traction(screw, 'nut', -0.1)
-    with pytest.raises(InputError, match='coefficient is nan'):
-        coulomb_traction(screw, 'nut', math.nan)
+    refused('without_solved_contact', solved_traction, replace(solved, status=Status.STALLED))
+    refused('slip_floor_0', solved_traction, solved, slip_floor=0.0)
+    refused('coefficient_0_1', coulomb_traction, screw, 'nut', -0.1)
+    refused('coefficient_nan', coulomb_traction, screw, 'nut', math.nan)

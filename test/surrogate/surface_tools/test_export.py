@@ -10,7 +10,6 @@ import sys
 
 import numpy as np
 import pytest
-from surrogate.files import InputError
 from surrogate.surface import FIELDS, shipped_surface
 from surrogate.surface.file import ENSEMBLE_VERSION, read, write
 from surrogate.surface_tools.fields import FIELD_TEXTS
@@ -71,14 +70,12 @@ def test_a_table_holds_every_node(run, tmp_path):
     assert {row['converged'] for row in rows} == {'1'}
 
 
-def test_what_cannot_be_written_is_one_sentence(run, tmp_path):
+def test_what_cannot_be_written_is_one_sentence(run, tmp_path, refused):
     """A directory in the way."""
-    with pytest.raises(InputError, match='cannot be written, it is not a regular file'):
-        run('--csv', tmp_path)
+    refused('cannot_written_regular', run, '--csv', tmp_path)
 
 
-def test_netcdf_without_xarray_names_the_extra(run, tmp_path, monkeypatch):
+def test_netcdf_without_xarray_names_the_extra(run, tmp_path, monkeypatch, refused):
     """The sentence says what to install."""
     monkeypatch.setitem(sys.modules, 'xarray', None)
-    with pytest.raises(InputError, match='install the extra `netcdf`'):
-        run('--netcdf', tmp_path / 'a.nc')
+    refused('install_extra_netcdf', run, '--netcdf', tmp_path / 'a.nc')

@@ -7,7 +7,6 @@ import sys
 
 import numpy as np
 import pytest
-from surrogate.files import InputError
 from surrogate.surface import shipped_surface, Surface
 from surrogate.surface.file import ENSEMBLE_VERSION, read
 
@@ -98,14 +97,12 @@ def test_pictures_per_temperature(run, tmp_path, capsys):
 
 
 @pytest.mark.parametrize('celsius', [9.9, 80.1])
-def test_a_temperature_that_is_not_covered(run, tmp_path, celsius):
+def test_a_temperature_that_is_not_covered(run, tmp_path, celsius, refused):
     """One sentence with the range."""
-    with pytest.raises(InputError, match='degC, the surface covers 10 to 80 degC'):
-        run('--out', tmp_path, '--temperature-degC', celsius)
+    refused('degc_surface_covers', run, '--out', tmp_path, '--temperature-degC', celsius)
 
 
-def test_without_matplotlib_the_extra_is_named(run, tmp_path, monkeypatch):
+def test_without_matplotlib_the_extra_is_named(run, tmp_path, monkeypatch, refused):
     """The sentence says what to install."""
     monkeypatch.setitem(sys.modules, 'surrogate.surface_tools.figures', None)
-    with pytest.raises(InputError, match='install the extra `plot`'):
-        run('--out', tmp_path)
+    refused('install_extra_plot', run, '--out', tmp_path)

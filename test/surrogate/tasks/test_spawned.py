@@ -26,11 +26,10 @@ def workers(began):
         yield pool
 
 
-def test_calls_return_and_raise(workers, began):
+def test_calls_return_and_raise(workers, began, refused):
     """What the function returns or raises is what the future has."""
     assert workers.submit(math.sqrt, 9.0).result(DEADLINE) == 3.0
-    with pytest.raises(ValueError, match='math domain error'):
-        workers.submit(math.sqrt, -1.0).result(DEADLINE)
+    refused('math_domain_error', workers.submit(math.sqrt, -1.0).result, DEADLINE)
     assert [arguments for arguments, _ in began] == [(9.0,), (-1.0,)]
 
 
@@ -53,27 +52,25 @@ def refuse(arguments, _):
 
 
 @pytest.mark.parametrize('listeners', [(refuse,), (lambda *_: None, refuse)])
-def test_what_a_listener_raises_is_no_lost_process(listeners):
+def test_what_a_listener_raises_is_no_lost_process(listeners, refused):
     """The call has its error, the same process goes on with the next."""
     with SpawnedWorkers(1, *listeners) as pool:
         before = pool.submit(os.getpid).result(DEADLINE)
-        with pytest.raises(BrokenPipeError, match='nobody reads'):
-            pool.submit(tell_share, 0.5).result(DEADLINE)
+        refused('nobody_reads', pool.submit(tell_share, 0.5).result, DEADLINE)
         assert pool.submit(os.getpid).result(DEADLINE) == before
 
 
-def test_what_cannot_be_handed_over_is_that_call_alone(workers):
+def test_what_cannot_be_handed_over_is_that_call_alone(workers, refused):
     """A function without a name, arguments by keyword, a result that has no bytes."""
     with pytest.raises(Exception, match='pickle'):
         workers.submit(lambda: 1).result(DEADLINE)
-    with pytest.raises(TypeError, match='by position'):
-        workers.submit(abs, x=1)
+    refused('by_position', workers.submit, abs, x=1)
     with pytest.raises(Exception, match='pickle'):
         workers.submit(memoryview, b'abc').result(DEADLINE)
     assert workers.submit(abs, -1).result(DEADLINE) == 1
 
 
-def test_the_end_cancels_what_was_not_begun(began):
+def test_the_end_cancels_what_was_not_begun(began, refused):
     """No call is left that is neither done nor cancelled, and none is taken any more."""
     pool = SpawnedWorkers(1, lambda arguments, worker: began.append(worker))
     first = pool.submit(abs, -1)
@@ -82,8 +79,7 @@ def test_the_end_cancels_what_was_not_begun(began):
     pool.shutdown()
     assert all(future.done() for future in later)
     assert later[-1].cancelled() or later[-1].exception() or later[-1].result() == 49
-    with pytest.raises(RuntimeError, match='have been ended'):
-        pool.submit(abs, 1)
+    refused('have_been_ended', pool.submit, abs, 1)
 
 
 def test_the_environment_is_as_it_was_afterwards(monkeypatch):

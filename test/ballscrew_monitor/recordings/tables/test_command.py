@@ -7,16 +7,14 @@ from pathlib import Path
 
 from ballscrew_monitor import cli
 from ballscrew_monitor.recordings.tables.command import print_guess
-import pytest
-from surrogate.files import InputError
 import yaml
 
 
-def test_a_guess_is_a_map_that_works_unedited(mill_log, tmp_path, capsys):
+def test_a_guess_is_a_map_that_works_unedited(mill_log, tmp_path, capsys, says):
     assert cli.main(['import', str(mill_log), '--guess']) == 0
     captured = capsys.readouterr()
     assert set(yaml.safe_load(captured.out)) == {'log', 'axes', 'assumed'}
-    assert 'axis z: the load is not known (Z1_CurrentFeedback is always 0)' in captured.err
+    assert says('z_load_known') in captured.err
     mapping, bag = tmp_path / 'map.yaml', tmp_path / 'bag'
     mapping.write_text(captured.out)
     assert cli.main(['import', str(mill_log), '--config', str(mapping), '--out', str(bag)]) == 0
@@ -27,7 +25,7 @@ def test_a_guess_is_a_map_that_works_unedited(mill_log, tmp_path, capsys):
     assert set(by_bag) == {'x', 'y', 'z'}
     assert f'parameters: those of {bag}' in captured.err
     assert 'assumed of mill.csv, axis z: load = unknown' in captured.err
-    assert 'nothing was judged on axis z: no valid sample of load' in captured.err
+    assert says('nothing_was_judged') in captured.err
     assert cli.main(['replay', str(mill_log), '--map', str(mapping), '--json']) == 0
     captured = capsys.readouterr()
     assert json.loads(captured.out) == by_bag
@@ -43,9 +41,7 @@ def test_what_is_missing_is_named(mill_log, tmp_path, capsys):
     assert 'a table needs a map: ballscrew import' in capsys.readouterr().err
 
 
-def test_a_bag_needs_no_import(short_bag, tmp_path):
+def test_a_bag_needs_no_import(short_bag, tmp_path, refused):
     for log in (short_bag, short_bag / 'short.mcap'):
-        with pytest.raises(InputError, match='a bag needs no import'):
-            print_guess(log)
-    with pytest.raises(InputError, match='cannot be read'):
-        print_guess(Path(tmp_path / 'nothing.csv'))
+        refused('bag_needs_import', print_guess, log)
+    refused('cannot_read', print_guess, Path(tmp_path / 'nothing.csv'))

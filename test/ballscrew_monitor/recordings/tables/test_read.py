@@ -80,68 +80,61 @@ def test_times_of_day_become_seconds(tmp_path):
 
 
 @pytest.mark.parametrize('block', [1, 2, 99])
-def test_a_column_is_read_in_the_form_of_most_cells(tmp_path, monkeypatch, block):
+def test_a_column_is_read_in_the_form_of_most_cells(tmp_path, monkeypatch, block, says):
     monkeypatch.setattr(read, 'BLOCK', block)
     text = 't\n7\n2026-01-02T03:04:05\n8\n2026-01-02T03:04:06\n2026-01-02T03:04:07\n'
     table = open_table(text_log(tmp_path, text), ['t'])
     values = table.head(99)['t']
     assert np.isnan(values).tolist() == [True, False, True, False, False]
     assert values[3] - values[1] == 1.0
-    assert "2 cells without a number, the first is '7' in row 1" in table.notes[0]
+    assert says('2_cells_without') in table.notes[0]
     table = open_table(text_log(tmp_path, 't\n1\n2026-01-02T03:04:05\n3\n'), ['t'])
     np.testing.assert_array_equal(table.head(99)['t'], [1, np.nan, 3])
 
 
-def test_cells_without_a_number_are_unknown_and_counted(tmp_path):
+def test_cells_without_a_number_are_unknown_and_counted(tmp_path, says):
     table = open_table(text_log(tmp_path, 'a,b\n1,2\n1,oops\n1,\n1'), ['a', 'b'])
     assert np.isnan(table.head(99)['b']).tolist() == [False, True, True, True]
-    assert table.notes[0].endswith(
-        "column 'b' holds 3 cells without a number, the first is 'oops' in row 2; "
-        'they count as unknown'
-    )
+    assert table.notes[0].endswith(says('column_b'))
 
 
-def test_cells_that_are_no_finite_number_are_unknown_and_counted(tmp_path):
+def test_cells_that_are_no_finite_number_are_unknown_and_counted(tmp_path, refused, says):
     table = open_table(text_log(tmp_path, 'a\n1\nNaN\ninf\n4\n'), ['a'])
     np.testing.assert_array_equal(table.head(99)['a'], [1, np.nan, np.nan, 4])
     np.testing.assert_array_equal(table.readings['a'].extremes, [1, 4])
-    assert "2 cells without a number, the first is 'NaN' in row 2" in table.notes[0]
+    assert says('2_cells') in table.notes[0]
     path = tmp_path / 'log.parquet'
     pl.DataFrame({'a': [1.0, np.nan, None], 'b': [np.nan] * 3}).write_parquet(path)
-    assert (
-        '2 cells without a number, the first is nan in row 2' in open_table(path, ['a']).notes[0]
-    )
-    with pytest.raises(InputError, match="column 'b' holds no number, but nan"):
-        open_table(path, ['b'])
+    assert says('2_cells_without_number') in open_table(path, ['a']).notes[0]
+    refused('column_b_holds', open_table, path, ['b'])
 
 
 @pytest.mark.parametrize(
     ('text', 'expected'),
     [
-        ('', 'is empty'),
-        ('  \n', 'is empty'),
-        ('a,b\n', 'holds no row'),
-        ('a,b\nx,1\ny,2\n', "column 'a' holds no number, but 'x'"),
-        ('a,b\nNaN,1\nNaN,2\n', "column 'a' holds no number, but 'NaN'"),
-        ('b,c\n1,2\n', "column 'a' is missing, the log holds b, c"),
-        (b'\x00\x01\x02' * 50, 'is no text'),
-        (b'PAR1 and no more', 'cannot be read'),
-        ('# nothing but a comment\n', 'cannot be read'),
+        ('', 'empty'),
+        ('  \n', 'empty'),
+        ('a,b\n', 'holds_row'),
+        ('a,b\nx,1\ny,2\n', 'column_holds_number'),
+        ('a,b\nNaN,1\nNaN,2\n', 'column_holds'),
+        ('b,c\n1,2\n', 'column_missing_log'),
+        (b'\x00\x01\x02' * 50, 'text_2'),
+        (b'PAR1 and no more', 'cannot_read_2'),
+        ('# nothing but a comment\n', 'cannot_read_2'),
     ],
 )
-def test_what_cannot_be_read_is_one_sentence(text, expected, tmp_path):
+def test_what_cannot_be_read_is_one_sentence(text, expected, tmp_path, says):
     with pytest.raises(InputError) as caught:
         open_table(text_log(tmp_path, text), ['a'])
-    assert expected in str(caught.value)
+    assert says(expected) in str(caught.value)
     assert '\n' not in str(caught.value)
 
 
-def test_a_log_that_is_not_there_is_one_sentence(tmp_path):
-    with pytest.raises(InputError, match='cannot be read: No such file'):
-        column_names(tmp_path / 'log.csv')
+def test_a_log_that_is_not_there_is_one_sentence(tmp_path, refused):
+    refused('cannot_read_such', column_names, tmp_path / 'log.csv')
 
 
-def test_parquet_is_read_with_its_types(tmp_path):
+def test_parquet_is_read_with_its_types(tmp_path, refused):
     path = tmp_path / 'log.parquet'
     times = pl.datetime_range(
         pl.datetime(2026, 1, 1), pl.datetime(2026, 1, 1, 0, 0, 2), '1s', eager=True
@@ -154,11 +147,9 @@ def test_parquet_is_read_with_its_types(tmp_path):
     assert list(np.diff(table.head(99)['t'])) == [1.0, 1.0]
     assert np.isnan(table.head(99)['n'][2])
     assert len(table.notes) == 2
-    with pytest.raises(InputError, match="column 'flag' holds Boolean, it must hold numbers"):
-        open_table(path, ['flag'])
+    refused('column_flag_holds', open_table, path, ['flag'])
     path.write_bytes(path.read_bytes()[:-20])
-    with pytest.raises(InputError, match='cannot be read'):
-        open_table(path, ['n'])
+    refused('cannot_read', open_table, path, ['n'])
 
 
 @pytest.mark.parametrize('unit', ['ms', 'us', 'ns'])
@@ -178,10 +169,9 @@ def test_times_and_durations_of_parquet_are_seconds(tmp_path, unit):
     assert len(table.notes) == 2
 
 
-def test_a_column_that_cannot_be_converted_is_one_sentence(tmp_path, monkeypatch):
+def test_a_column_that_cannot_be_converted_is_one_sentence(tmp_path, monkeypatch, refused):
     def fail(texts):
         raise pl.exceptions.InvalidOperationError('conversion failed\nmore of it')
 
     monkeypatch.setattr(cells, '_points', fail)
-    with pytest.raises(InputError, match=r"column 'a' of String cannot .*: conversion failed$"):
-        open_table(text_log(tmp_path, 'a\n1\n'), ['a'])
+    refused('column_string_cannot', open_table, text_log(tmp_path, 'a\n1\n'), ['a'])

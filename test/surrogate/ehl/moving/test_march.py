@@ -11,7 +11,6 @@ from surrogate.ehl import Settings, solve_contact, Status
 from surrogate.ehl.interface import NO_FADING
 from surrogate.ehl.moving import march_contact, MarchSettings, MarchStatus, step
 from surrogate.ehl.newton import solve_grid
-from surrogate.files import InputError
 
 
 def flat(x, y):
@@ -191,32 +190,29 @@ def test_a_stalled_march_says_so(circular, semi_axis, transverse, monkeypatch):
 @pytest.mark.parametrize(
     ('change', 'sentence'),
     [
-        ({'transits': 0.5}, 'transits is 0.5, allowed is 1 or more at each of 1 places'),
-        ({'stride': 0}, 'stride is 0, allowed is a number from 1 to 16'),
-        ({'places': 0}, 'places is 0, allowed is a number from 1 to 1000'),
-        ({'slide_roll_ratio': -1.0}, 'slide_roll_ratio is -1.0, allowed is 0 to 2'),
-        ({'time_cap': 0.0}, 'time_cap is 0.0 s, allowed is above 0'),
-        ({'ripple_eyring_stress': 1.0}, 'ripple_eyring_stress is 1.0 Pa'),
-        ({'side_slip': 2.0}, 'side_slip is 2.0, allowed is -1 to 1'),
-        ({'nx': 64}, 'nx is 64, allowed is an odd number'),
+        ({'transits': 0.5}, 'transits_0_5'),
+        ({'stride': 0}, 'stride_0_number'),
+        ({'places': 0}, 'places_0_number'),
+        ({'slide_roll_ratio': -1.0}, 'slide_roll_ratio_1_0'),
+        ({'time_cap': 0.0}, 'time_cap_0_0'),
+        ({'ripple_eyring_stress': 1.0}, 'ripple_eyring_stress_1_0'),
+        ({'side_slip': 2.0}, 'side_slip_2_0'),
+        ({'nx': 64}, 'nx_64_odd'),
     ],
 )
-def test_bad_settings_are_one_sentence(circular, change, sentence):
+def test_bad_settings_are_one_sentence(circular, change, sentence, refused):
     """What, value, allowed."""
-    with pytest.raises(InputError, match=sentence):
-        circular(flat, **change)
+    refused(sentence, circular, flat, **change)
 
 
-def test_a_raceway_must_go_on_for_ever(circular):
+def test_a_raceway_must_go_on_for_ever(circular, refused):
     """An array ends, and heights that are not finite are none."""
-    with pytest.raises(InputError, match='a strip has no end'):
-        circular(np.zeros((65, 65)))
-    with pytest.raises(InputError, match='not finite'):
-        circular(lambda x, y: np.nan * x * y)
+    refused('strip_has_end', circular, np.zeros((65, 65)))
+    refused('finite', circular, lambda x, y: np.nan * x * y)
 
 
-def test_settings_are_those_of_the_module(moes_case):
+def test_settings_are_those_of_the_module(moes_case, refused):
     """The default march of a smooth nominal raceway asks for as many transits as places."""
     contact, oil, condition, _ = moes_case(100, 10, 'roelands_dh')
-    with pytest.raises(InputError, match='at each of 4 places'):
+    with refused('each_4_places'):
         march_contact(contact, oil, condition, flat, transits=2.0, settings=MarchSettings())
