@@ -12,6 +12,7 @@ from surrogate.builder.full.build import build_full, limit_band
 from surrogate.builder.full.chain import chain_inputs, solved_chain
 from surrogate.builder.full.nodes import onset_speeds
 from surrogate.builder.full.settings import FullSettings
+from surrogate.files import InputError
 from surrogate.formulas.load_sharing import idle_load
 from surrogate.screw.onset import run_in_at, with_raceway
 from surrogate.surface import FIELDS, Surface, Validity
