@@ -8,8 +8,9 @@
 set -u
 cd "$(dirname "$0")/.."
 export ROS_PYTHON_CHECK_FIELDS=1
-# Seconds for one test, so that a middleware that hangs is a failure and not an endless run.
-export PYTEST_TIMEOUT="${PYTEST_TIMEOUT:-600}"
+# Seconds for one test, so that a middleware that hangs is a failure and not an endless run; more
+# than the deadlines of the tests, which tell what did not come.
+export PYTEST_TIMEOUT="${PYTEST_TIMEOUT:-900}"
 # A worker has a core: threads of a numerical library would take that of the other.
 export MKL_NUM_THREADS=1 OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
 failed=''

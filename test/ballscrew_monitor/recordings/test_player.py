@@ -27,7 +27,7 @@ from sensor_msgs.msg import JointState
 from surrogate.files import InputError
 
 ROOT = Path(__file__).resolve().parents[3]
-DEADLINE = 120.0  # [s]
+DEADLINE = 600.0  # [s] which only ends a hang
 QOS = QoSProfile(depth=2000, reliability=QoSReliabilityPolicy.RELIABLE)
 CLOCK_QOS = QoSProfile(depth=2000, reliability=QoSReliabilityPolicy.BEST_EFFORT)
 
