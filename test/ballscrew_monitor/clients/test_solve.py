@@ -35,9 +35,9 @@ POINTS = (
 
 
 def begin(node, *arguments):
-    """Start the command in the domain of a node."""
+    """Start the command in the domain of a node, for which it waits unless told otherwise."""
     return subprocess.Popen(
-        [SCRIPT, 'solve', *map(str, arguments)],
+        [SCRIPT, 'solve', '--wait', str(DEADLINE), *map(str, arguments)],
         env=node.environment,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,

@@ -82,9 +82,10 @@ def listener(domain, short_bag, wait_for):
 
 
 def play(domain, *arguments):
-    """Start the player as a process."""
+    """Start the player as a process, which waits for its listener unless told otherwise."""
+    command = ['ballscrew_monitor', 'play', '--wait', DEADLINE, *arguments]
     return subprocess.Popen(
-        [sys.executable, '-m', 'ballscrew_monitor', 'play', *map(str, arguments)],
+        [sys.executable, '-m', *map(str, command)],
         cwd=ROOT,
         env=child_environment(domain),
         stdout=subprocess.PIPE,
