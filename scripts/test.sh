@@ -3,14 +3,16 @@
 # SPDX-License-Identifier: Apache-2.0
 #
 # The checks, then the tests, whose closing line comes last. Arguments are for pytest.
-# Two workers run the tests, each of them its half of the files until it helps the other; DDS talk
-# is mostly waiting and solves are not. `-n 0` runs all in one process, `-n 8` uses more cores.
+# Three workers run the tests on two cores: DDS talk is mostly waiting and solves are not. Each has
+# its share of the files until it helps the others. `-n 0` runs all in one process, `-n 8` uses more
+# cores.
 set -u
 cd "$(dirname "$0")/.."
 export ROS_PYTHON_CHECK_FIELDS=1
-# Seconds for one test, so that a middleware that hangs is a failure and not an endless run.
-export PYTEST_TIMEOUT="${PYTEST_TIMEOUT:-600}"
-# A worker has a core: threads of a numerical library would take that of the other.
+# Seconds for one test, so that a middleware that hangs is a failure and not an endless run; more
+# than the deadlines of the tests, which tell what did not come.
+export PYTEST_TIMEOUT="${PYTEST_TIMEOUT:-900}"
+# A worker has a core: threads of a numerical library would take that of another.
 export MKL_NUM_THREADS=1 OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
 failed=''
 
@@ -23,7 +25,7 @@ check ruff check --quiet --output-format concise
 check ruff format --check --quiet --output-format concise
 check mypy
 [ -z "$failed" ] || echo "== failed:$failed"
-.venv/bin/pytest -q -n 2 --dist worksteal "$@"
+.venv/bin/pytest -q -n 3 --dist worksteal "$@"
 code=$?
 [ $code != 0 ] || [ -z "$failed" ] || code=1
 exit $code

@@ -18,7 +18,7 @@ from hypothesis.database import DirectoryBasedExampleDatabase
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
-DEADLINE = 120.0  # [s] for anything that another process has to do, however busy the machine
+DEADLINE = 600.0  # [s] which only ends a hang, in this file as in all others
 # No package of a machine with ROS 2.
 OPTIONAL = 'apsw contourpy mcap mcap_ros2 polars rosbags zstandard'.split()
 # Tests that solve contacts, talk over DDS, start processes, draw many pictures, repeat thousands
@@ -213,11 +213,17 @@ def nominal_bag(nominal_cycle, tmp_path_factory):
 
 @pytest.fixture(scope='session')
 def short_bag(nominal_bag, tmp_path_factory):
-    """Return the directory of 3 s of it: creeping with its warning, and a standstill."""
+    """
+    Return the directory of 3 s of it: creeping with its warning, and a standstill.
+
+    It begins with the oil temperature, as the cycle does: a node on a busy machine may judge a
+    speed before it looks for the temperature of the same stamp.
+
+    """
     from ballscrew_monitor.recordings.bag import Bag
 
     directory = tmp_path_factory.mktemp('bags') / 'short'
-    cut(Bag(nominal_bag), directory, 32.995, 36.0)
+    cut(Bag(nominal_bag), directory, 32.9999, 36.005)
     return directory
 
 

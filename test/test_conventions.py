@@ -250,6 +250,15 @@ def test_tests_mirror_the_sources() -> None:
     assert alone == THEMES
 
 
+def test_a_deadline_only_ends_a_hang() -> None:
+    """Every file that has one has the same, long enough for a machine that is busy elsewhere."""
+    texts = [path.read_text() for path in (TREE / 'test').rglob('*.py')]
+    found = {one for text in texts for one in re.findall(r'^DEADLINE = .*?(?=,|$)', text, re.M)}
+    assert found == {'DEADLINE = 600.0  # [s] which only ends a hang'}
+    calls = re.compile(r'^ +timeout=\d|\.(?:run|communicate|wait|join|result)\(.*timeout=\d', re.M)
+    assert not [one for text in texts for one in calls.findall(text)]
+
+
 def test_slow_tests_are_there() -> None:
     """What is named as slow is a file or folder of tests; a move would make it fast unseen."""
     slow = runpy.run_path(str(TREE / 'test' / 'conftest.py'))['SLOW']

@@ -16,6 +16,7 @@ import sys
 import pytest
 
 TREE = Path(__file__).resolve().parent.parent
+DEADLINE = 600.0  # [s] which only ends a hang
 MODULES = {
     package: sorted((TREE / package).rglob('*.py'))
     for package in ('surrogate', 'ballscrew_monitor')
@@ -96,7 +97,7 @@ def loaded_by(statement: str) -> set[str]:
         check=True,
         stdout=subprocess.PIPE,
         text=True,
-        timeout=60,
+        timeout=DEADLINE,
     )
     return set(done.stdout.split())
 

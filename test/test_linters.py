@@ -6,6 +6,7 @@ from pathlib import Path
 
 from ament_flake8.main import main_with_errors
 from ament_pep257.main import main
+import flake8_docstrings
 import pytest
 
 TREE = Path(__file__).resolve().parent.parent
@@ -15,8 +16,14 @@ PATHS = [str(TREE / name) for name in ('setup.py', *FOLDERS) if (TREE / name).ex
 
 @pytest.mark.flake8
 @pytest.mark.linter
-def test_flake8(capsys: pytest.CaptureFixture[str]) -> None:
-    """No finding: the text of a finding is what the assertion shows."""
+def test_flake8(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    """
+    No finding: the text of a finding is what the assertion shows.
+
+    Its plugin for docstrings is left out: `ament_pep257` asks the same program for more codes.
+
+    """
+    monkeypatch.setattr(flake8_docstrings.pep257Checker, 'run', lambda self: ())
     code, findings = main_with_errors(argv=PATHS)
     capsys.readouterr()
     assert code == 0, '\n'.join(findings)

@@ -35,6 +35,7 @@ PAUSE = 2.5e-4  # [s] between two looks at the inputs while messages come, at le
 PAUSE_PER_TOPIC = 2.5e-5  # [s] the same for each topic, five times what a look at it takes
 QUIET = 1.5e-3  # [s] without a message after which the executor waits for the next one
 STAY = 0.02  # [s] longest turn; what becomes ready in one may wait for the next one too
+MOST_LOOKS = 10  # at all topics, while messages come faster than they are looked at
 
 AxisEvent = tuple[Axis, InputSample | Refusal]
 Take = Callable[[Axis, InputSample | Refusal], None]
@@ -203,12 +204,29 @@ class Intake(Waitable):
             found[source] = link_of(self._node, name, read, problem=problem)
         return found
 
+    def _waiting(self) -> list[Arrival]:
+        """
+        Return all that waits in the order of arrival.
+
+        While the topics are looked at one after the other, a message may come to one that has been
+        looked at, and a later message to one that has not. So they are looked at again if anything
+        has arrived since the look began.
+
+        """
+        found: list[Arrival] = []
+        for _ in range(MOST_LOOKS):
+            begin = time.time_ns()
+            look = [one for topic in self._all for one in topic.waiting()]
+            found += look
+            if all(one.received <= begin for one in look):
+                break
+        return sorted(found, key=operator.attrgetter('received'))
+
     def drain(self) -> bool:
         """Hand over all that waits, oldest first; return whether that was anything."""
-        arrivals = [one for topic in self._all for one in topic.waiting()]
+        arrivals = self._waiting()
         if not arrivals:
             return False
-        arrivals.sort(key=operator.attrgetter('received'))
         now, wall = self._node.get_clock().now().nanoseconds, time.time_ns()
         heard: list[Heard] = []
         for arrival in arrivals:

@@ -14,13 +14,13 @@ from ballscrew_monitor.cycle.node_process import child_environment
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-DEADLINE = 120.0  # [s]
+DEADLINE = 600.0  # [s] which only ends a hang
 COMMANDS = {
     'run': ['ballscrew_monitor', 'run', '--bag'],
-    'play': ['ballscrew_monitor', 'play'],
+    'play': ['ballscrew_monitor', 'play', '--wait', str(DEADLINE)],
     'replay': ['ballscrew_monitor', 'replay'],
-    'doctor': ['ballscrew_monitor', 'doctor', '--seconds', '60'],
-    'solve': ['ballscrew_monitor', 'solve', '--axis', 'x', '--wait', '60'],
+    'doctor': ['ballscrew_monitor', 'doctor', '--seconds', str(DEADLINE)],
+    'solve': ['ballscrew_monitor', 'solve', '--axis', 'x', '--wait', str(DEADLINE)],
 }
 STAGES = {'start': '', 'rclpy': 'librcl.so', 'participant': '/dev/shm/fastrtps_'}
 """What a process has mapped at a moment of its start."""

@@ -9,6 +9,7 @@ import subprocess
 import pytest
 
 SCRIPT = Path(__file__).resolve().parents[2] / 'scripts' / 'browser.sh'
+DEADLINE = 600.0  # [s] which only ends a hang
 ROOT, USER = 'echo 0', 'echo 1000'
 NOTES = 'echo "$@" >> asked'
 
@@ -33,7 +34,7 @@ def machine(tmp_path):
             capture_output=True,
             text=True,
             check=True,
-            timeout=60,
+            timeout=DEADLINE,
         )
         assert done.stdout == ''
         return done.stderr

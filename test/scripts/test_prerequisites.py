@@ -12,6 +12,7 @@ import sys
 import pytest
 
 SCRIPT = Path(__file__).resolve().parents[2] / 'scripts' / 'prerequisites.sh'
+DEADLINE = 600.0  # [s] which only ends a hang
 # The interpreter underneath the environment that the tests run in.
 BASE = os.path.realpath(getattr(sys, '_base_executable', sys.executable))
 TRUE = '#!/bin/sh\n'
@@ -48,7 +49,7 @@ def machine(tmp_path: Path) -> Machine:
             capture_output=True,
             text=True,
             check=False,
-            timeout=60,
+            timeout=DEADLINE,
         )
 
     return run

@@ -26,7 +26,7 @@ from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
 
 ROOT = Path(__file__).resolve().parents[3]
-DEADLINE = 120.0  # [s]
+DEADLINE = 600.0  # [s] which only ends a hang
 QOS = QoSProfile(depth=2000, reliability=QoSReliabilityPolicy.RELIABLE)
 CLOCK_QOS = QoSProfile(depth=2000, reliability=QoSReliabilityPolicy.BEST_EFFORT)
 
@@ -81,9 +81,10 @@ def listener(domain, short_bag, wait_for):
 
 
 def play(domain, *arguments):
-    """Start the player as a process."""
+    """Start the player as a process, which waits for its listener unless told otherwise."""
+    command = ['ballscrew_monitor', 'play', '--wait', DEADLINE, *arguments]
     return subprocess.Popen(
-        [sys.executable, '-m', 'ballscrew_monitor', 'play', *map(str, arguments)],
+        [sys.executable, '-m', *map(str, command)],
         cwd=ROOT,
         env=child_environment(domain),
         stdout=subprocess.PIPE,

@@ -16,6 +16,7 @@ from mcap.reader import make_reader
 import pytest
 import yaml
 
+DEADLINE = 600.0  # [s] which only ends a hang
 TOPIC = Topic(name='/a', type_name='std_msgs/msg/Float64', offer=Offer.LATCHED)
 KILLED = """
 import os, signal, sys
@@ -36,7 +37,8 @@ def numbers(path):
 
 
 def test_a_writer_that_was_killed_loses_its_last_chunk_at_most(tmp_path):
-    done = subprocess.run([sys.executable, '-c', KILLED, str(tmp_path)], check=False, timeout=60)
+    killed = [sys.executable, '-c', KILLED, str(tmp_path)]
+    done = subprocess.run(killed, check=False, timeout=DEADLINE)
     assert done.returncode == -signal.SIGKILL
     active = tmp_path / 'flight.mcap.active'
     before = active.read_bytes()

@@ -26,6 +26,7 @@ from surrogate.surface import Regime
 BEGIN = 1_767_600_000 * SECOND
 """First stamp of what is made here [ns]."""
 AXIS_FACTS = {field.name for field in dataclasses.fields(AxisFacts)}
+DEADLINE = 600.0  # [s] which only ends a hang
 BROWSERS = ('chromium', 'chromium-browser', 'google-chrome')
 
 
@@ -53,7 +54,7 @@ def _browse(browser, profile, page, *options):
         check=True,
         capture_output=True,
         text=True,
-        timeout=120,
+        timeout=DEADLINE,
     ).stdout
 
 

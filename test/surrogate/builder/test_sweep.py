@@ -20,7 +20,7 @@ from surrogate.tasks.worker import worker_name
 
 COMMAND = ('surface', 'sweep')
 
-DEADLINE = 60.0
+DEADLINE = 600.0  # [s] which only ends a hang
 THREE = 'screws: [nominal]\noils: [iso_vg_32, iso_vg_68, iso_vg_100]\n'
 BUILDERS = """
 import os

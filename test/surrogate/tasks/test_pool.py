@@ -21,7 +21,7 @@ from surrogate.tasks.store import TaskStore
 from surrogate.tasks.worker import worker_name
 from surrogate.tasks.workers import open_pool
 
-DEADLINE = 60.0
+DEADLINE = 600.0  # [s] which only ends a hang
 HALF_MADE = '.half_made'
 TASKS = (
     f"""
