@@ -32,6 +32,7 @@ COVERED = {
     'ballscrew_monitor/judge/records.py': 'inputs zone sums point monitor step',
     'ballscrew_monitor/judge/views.py': 'inputs',
     'ballscrew_monitor/judge/zone.py': 'views',
+    'surrogate/surface/correction.py': 'found',
     'surrogate/surface/fields.py': 'solved file',
     'surrogate/surface/found.py': 'load_scan correction lookup',
     'surrogate/surface/point.py': 'solved lookup',

@@ -179,10 +179,13 @@ def test_the_half_width_is_the_sum_of_what_is_stated(straight):
     assert found.uncertainty == pytest.approx(expected, rel=1e-9)
 
 
-@pytest.mark.parametrize('torque', [4.0, -3.75])
-def test_the_range_may_reach_beyond_the_surface(straight, torque):
-    found = derived(at(10.0, torque), straight, told(inertia=0.0, torque_uncertainty=1.0))
-    assert found.uncertainty == pytest.approx(1024.0, rel=1e-9)
+@pytest.mark.parametrize('end', [1.0, -1.0])
+def test_the_range_may_reach_beyond_the_surface(core, end):
+    """32 N up to its end, and the rest of the torque as without friction, half as steep."""
+    surface = core.surface(driving_torque=lambda speed, load: load / 512.0)
+    surface.lead = math.tau / 1024.0
+    found = derived(at(10.0, end * 7.75), surface, told(inertia=0.0, torque_uncertainty=1.0))
+    assert found.uncertainty == pytest.approx(32.0 + 0.9375 * 1024.0, rel=1e-9)
 
 
 def test_drag_is_not_taken_off_twice(straight):
