@@ -45,7 +45,7 @@ class BallMotion:
     rotation: tuple[float, float, float]
     screw_angle: float
     nut_angle: float
-    flank: Flank = 1
+    flank: Flank
 
 
 def axis_vector(screw: Screw) -> Array:

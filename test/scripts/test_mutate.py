@@ -38,7 +38,7 @@ def script():
 @pytest.fixture
 def mutate(script, tmp_path):
     """Return the names of the script, at work on a tree of one file."""
-    for function in ('mutants', 'mirror', 'substitute'):
+    for function in ('mutants', 'tests_of', 'substitute'):
         script[function].__globals__['TREE'] = tmp_path
     (tmp_path / 'half.py').write_text(SOURCE)
     (tmp_path / 'test').mkdir()
@@ -46,10 +46,13 @@ def mutate(script, tmp_path):
     return script
 
 
-def test_each_operator_and_number_is_changed_once_and_no_text_or_type(mutate, tmp_path, says):
+def test_each_operator_and_number_is_changed_once_and_no_text_or_type(mutate, tmp_path):
     found = list(mutate['mutants'](tmp_path / 'half.py'))
-    assert [one.name.partition(': ')[2] for one in found] == [
-        says('2_none_2'),
+    assert {one.name for one in found if one.after == '(2.5)'} == {
+        'half.py half: 2.0 -> (2.5) in return -x / 2.0  # of µ'
+    }
+    assert [f'{one.before} -> {one.after}' for one in found] == [
+        'not x < 2 or x is None -> (not x < 2 and x is None)',
         'not x < 2 -> (x < 2)',
         'x < 2 -> (x <= 2)',
         '2 -> (3)',
@@ -58,7 +61,6 @@ def test_each_operator_and_number_is_changed_once_and_no_text_or_type(mutate, tm
         '-x -> (x)',
         '2.0 -> (2.5)',
     ]
-    assert {one.name.partition(': ')[0] for one in found} == {'half.py half'}
     content = (tmp_path / 'half.py').read_bytes()
     for one in found:
         assert content[slice(one.begin, one.end)].decode() == one.before
@@ -66,11 +68,21 @@ def test_each_operator_and_number_is_changed_once_and_no_text_or_type(mutate, tm
 
 def test_a_mutant_is_noticed_or_not_and_the_file_stays(mutate, tmp_path):
     found = list(mutate['mutants'](tmp_path / 'half.py'))
-    tests = mutate['mirror']('half.py')
-    assert mutate['passes'](tests, None, 60.0)
-    noticed = [not mutate['passes'](tests, one, 60.0) for one in found]
+    assert mutate['passes']('half.py', None, 60.0)
+    noticed = [not mutate['passes']('half.py', one, 60.0) for one in found]
     assert noticed == [False, True, False, False, True, True, True, True]
     assert (tmp_path / 'half.py').read_text() == SOURCE
+
+
+def test_every_source_but_pictures_has_tests(script):
+    files = {path for room in script['ROOMS'] for path in (TREE / room).glob('*.py')}
+    names = {str(path.relative_to(TREE)) for path in files if list(script['mutants'](path))}
+    assert set(script['PICTURES']) | {*script['COMPILING'], script['KERNELS']} <= names
+    tests = {name: script['tests_of'](name) for name in names - set(script['PICTURES'])}
+    assert all(tests.values())
+    for name, others in script['COVERED'].items():
+        named = {str(Path('test', name).with_name(f'test_{one}.py')) for one in others.split()}
+        assert named <= set(tests[name])
 
 
 def test_equivalents_are_mutants_and_have_a_reason(script):

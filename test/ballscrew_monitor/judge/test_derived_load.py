@@ -179,9 +179,13 @@ def test_the_half_width_is_the_sum_of_what_is_stated(straight):
     assert found.uncertainty == pytest.approx(expected, rel=1e-9)
 
 
-def test_the_range_may_reach_beyond_the_surface(straight):
-    found = derived(at(10.0, 4.0), straight, told(inertia=0.0, torque_uncertainty=1.0))
-    assert found.uncertainty == pytest.approx(1024.0, rel=1e-9)
+@pytest.mark.parametrize('end', [1.0, -1.0])
+def test_the_range_may_reach_beyond_the_surface(core, end):
+    """32 N up to its end, and the rest of the torque as without friction, half as steep."""
+    surface = core.surface(driving_torque=lambda speed, load: load / 512.0)
+    surface.lead = math.tau / 1024.0
+    found = derived(at(10.0, end * 7.75), surface, told(inertia=0.0, torque_uncertainty=1.0))
+    assert found.uncertainty == pytest.approx(32.0 + 0.9375 * 1024.0, rel=1e-9)
 
 
 def test_drag_is_not_taken_off_twice(straight):
@@ -229,13 +233,35 @@ def test_a_torque_of_several_loads_is_that_of_none(core, says):
 
 
 @pytest.mark.parametrize('torque', [4.5, -4.5, 1e12])
-def test_a_torque_beyond_the_surface(straight, torque):
-    found = derived(at(10.0, torque), straight, told(inertia=0.0))
+@pytest.mark.parametrize('known', [4000.0, 3900.0, 3800.0])
+def test_a_torque_beyond_the_surface(core, torque, known):
+    surface = core.surface(
+        driving_torque=lambda speed, load: load / 1024.0 if abs(load) <= known else math.nan
+    )
+    found = derived(at(10.0, torque), surface, told(inertia=0.0))
     assert found.validity is Validity.LOAD_OUT_OF_RANGE
     assert found.reason == (
         f'the torque along the motion, {torque:.3g} N m, asks for a load outside the surface, '
-        '-4000 to 4000 N that oppose the motion'
+        f'-{known:.0f} to {known:.0f} N that oppose the motion'
     )
+
+
+NAN = math.nan
+
+
+@pytest.mark.parametrize(
+    ('torques', 'found'),
+    [
+        ([-2.0, -1.0, 1.0, 2.0], (1, 1, False)),
+        ([-1.0, 0.0, 1.0], (1, 1, False)),  # one that is the driving torque is not above it
+        ([-1.0, 1.0, 0.0, -1.0, 1.0], (0, 3, False)),
+        ([NAN, 1.0, NAN, 2.0, 3.0], (-1, -1, False)),
+        ([1.0, -1.0, NAN, 1.0], (0, 0, True)),
+        ([NAN, NAN], (-1, -1, False)),
+    ],
+)
+def test_crossings_of_zero(torques, found):
+    assert derived_load.crossings(torques, 0.0, 0, len(torques)) == found
 
 
 def test_a_gap_of_the_surface_that_may_hold_the_load(core):

@@ -62,6 +62,8 @@ def test_an_input_begins_missing_and_is_bad_until_the_next_good_sample():
     good = load.status(1)
     assert (good.state, good.why, good.refusal) == (InputState.OK, None, '')
     assert (good.received, good.dropped) == (2, 1)
+    load.accept(1)
+    assert math.isnan(load.status(1).rate)  # two samples of one stamp
     assert refused_of(load.memory)[Source.LOAD] == {Why.NOT_A_NUMBER: 1}
 
 

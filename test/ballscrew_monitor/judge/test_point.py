@@ -6,12 +6,16 @@ import dataclasses
 import math
 
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.core.estimate import PointSource, PointValidity
+from ballscrew_monitor.core.estimate import DOMINANT_RCS, estimate, PointSource, PointValidity
 from ballscrew_monitor.core.inputs import InputSample, InputState, Refusal, Source, Why
 from ballscrew_monitor.core.judgement import Gate, Zone
 from ballscrew_monitor.core.state import LoadDerivation
+from ballscrew_monitor.judge.point import set_answer
+from ballscrew_monitor.judge.records import Row, Settings
+from hypothesis import given
+from hypothesis import strategies as st
 import pytest
-from surrogate.surface import shipped_surface, Surface
+from surrogate.surface import FILM_RATIO_LIMITS, shipped_surface, Surface
 
 STEP, TIMEOUT = SECOND // 100, SECOND // 2
 START = 1000 * SECOND
@@ -192,3 +196,30 @@ def test_the_load_of_the_shipped_surface_closes_the_circle(core):
         state = run(monitor, speed, known.estimate.machine_torque)
         assert state.point.axial_load == pytest.approx(force, rel=1e-9)
         assert state.estimate.efficiency == pytest.approx(known.estimate.efficiency, rel=1e-9)
+
+
+def on(*limits):
+    """Return numbers, most of them limits or next to one."""
+    beside = [math.nextafter(limit, -math.inf) for limit in limits]
+    return st.sampled_from([*limits, *beside, math.nan]) | st.floats(0.0, 10.0)
+
+
+@given(
+    on(*FILM_RATIO_LIMITS),
+    on(0.25, DOMINANT_RCS),
+    st.sampled_from([(-1, 0), (0, 1), (1, 1), (2, 2), (3, 2)]),
+    st.sampled_from([-1000.0, 1000.0, 0.0]),
+    st.sampled_from([-10.0, 10.0]),
+)
+def test_words_are_those_of_an_estimate(core, film_ratio, rcs, worst, axial_load, speed):
+    contact, nut = worst
+    surface = core.surface(
+        film_ratio=film_ratio, rcs=rcs, worst_contact=contact, worst_nut=nut, driving_torque=0.5
+    )
+    point = core.point(speed=speed, axial_load=axial_load)
+    row = Row(speed=speed, axial_load=axial_load, temperature=point.temperature)
+    row.direction = int(point.direction)
+    set_answer(surface, Settings(rcs=0.25), row)
+    found = estimate(point, surface, rcs_limit=0.25)
+    assert (row.regime, row.contact_state) == (found.regime, found.contact_state)
+    assert (row.machine_nut, row.machine_torque) == (found.worst_nut, found.machine_torque)

@@ -220,6 +220,13 @@ def test_a_loop_of_the_clock_starts_the_filters_over_and_keeps_the_level(core):
     assert over.event.start <= over.event.stamp
 
 
+def test_a_loop_of_the_clock_has_its_first_state_at_once(core):
+    monitor = core.monitor(publish_period=4 * SECOND)
+    told = [3 * SECOND, 3 * SECOND + STEP, SECOND]  # all in one period
+    states = [core.feed(monitor, core.motion(10.0, start=START + at)) for at in told]
+    assert [len(each) for each in states] == [1, 0, 1]
+
+
 def test_a_loop_of_the_clock_opens_the_gates(core):
     """A direction and a light load of another time line hold no more."""
     monitor = core.monitor()

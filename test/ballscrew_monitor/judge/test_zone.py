@@ -231,6 +231,7 @@ def test_an_excursion_keeps_one_sample_as_its_worst(core, rows, raise_delay, cle
         event = event_of(memory, surface, limits)
         assert event.active == (memory.level == Level.WARN)
         if row.edge == records.EVENT_BEGINS:
+            assert event.start == memory.raising_start
             begun = [one for one in rows[:stamp] if one.stamp >= event.start]
         elif event.active:
             begun.append(row)

@@ -152,6 +152,8 @@ def test_idle_nut_and_failure_give_a_reason():
     _, idle = record(600, 3.0 * SCREW.preload)
     assert [bool(c['reason']) for c in idle['contacts']] == [False, False, True, True]
     assert idle['normal_force_relieved_N'] == 0.0
+    # The ratings are those of the formulas, their fitted ranges are left to them.
+    assert [text[:30] for text in idle['warnings']] == ['load: the relieved nut carries']
     failed = ScrewSettings(smooth=Settings(newton_limit=1), kinematics='smooth')
     _, none = record(600, 500.0, failed)
     assert 'smooth contact' in none['status']
