@@ -175,7 +175,6 @@ def test_surrogate_loads_no_ros() -> None:
     ('module', 'heavy'),
     [
         ('surrogate.surface', {'matplotlib', 'numba', 'rclpy', 'scipy', 'yaml'}),
-        ('surrogate.screw.closed_form_record', {'matplotlib', 'numba'}),
         ('surrogate.builder.tiers', {'distributed', 'numba', 'scipy'}),
         ('ballscrew_monitor.report.command', {'contourpy', 'polars', 'scipy'}),
     ],

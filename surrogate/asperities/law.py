@@ -40,7 +40,7 @@ SLOPE, BEND = -4.69, -1.09
 SLOWEST, FASTEST = -1.4, 0.7
 """Ends of the logarithms of the speed by that of the onset that the marches reach [-]."""
 SHARE = 0.84, 0.16
-"""Asperity share over RCS where that is none, and how it rises with RCS [-]."""
+"""Asperity share over RCS where RCS is small, and how it rises with RCS [-]."""
 LOSS, LOSS_SLOPE = (1.28, 0.24, -0.20), (0.03, -0.25, 0.23)
 """Loss at the onset and its slope: usual, over the logarithm of the pressure, over the lay [-]."""
 PRESSURES = 0.4e9, 1.5e9

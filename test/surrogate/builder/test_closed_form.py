@@ -37,7 +37,7 @@ def test_break_nodes_are_nodes(screw):
 
 
 def test_an_onset_is_where_rcs_is_one_percent(screw, oil):
-    """In the middle of the loaded contacts, and so about that over the whole of them."""
+    """In the middle of the loaded contacts, and so about that over all places of them."""
     load, kelvin = np.array([0.0, 1500.0, 3500.0]), 330.0
     speed = onset_speeds(screw, oil, load, np.array([kelvin]))[:, 0]
     contacts = closed_form.solve(screw, oil, speed, load, kelvin).contacts[:2]
