@@ -40,6 +40,7 @@ COVERED = {
     'surrogate/screw/ball_equations.py': 'ball_balance',
     'surrogate/screw/ball_result.py': 'ball_balance',
     'surrogate/screw/ball_sums.py': 'ball_traction',
+    'surrogate/screw/closed_form_record.py': 'full_record',
     'surrogate/screw/contacts.py': 'solve full_record',
     'surrogate/screw/nut.py': 'solve full_record',
     'surrogate/screw/solve.py': 'full_record',

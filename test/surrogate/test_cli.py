@@ -30,7 +30,7 @@ def test_point_as_json(record):
     """The record is strict JSON in SI with four contacts and the tier's name."""
     found = record('--speed-rpm', '600', '--load-N', '1000')
     assert found['tier'] == 'closed_form'
-    assert found['efficiency'] == pytest.approx(0.945, abs=2e-3)
+    assert found['efficiency'] == pytest.approx(0.934, abs=2e-3)
     assert found['entrainment_speed_m_s'] == pytest.approx(0.49657, abs=1e-5)
     assert found['driving_torque_Nm'] == pytest.approx(
         10 / (2 * np.pi) + found['friction_torque_Nm']
@@ -77,7 +77,7 @@ def test_four_quadrants(record, rpm, load, drives):
     found = record('--speed-rpm', rpm, '--load-N', load)
     assert found['back_driving'] is drives
     assert (found['driving_torque_Nm'] < 0) is drives
-    assert found['efficiency'] == pytest.approx(0.942 if drives else 0.945, abs=2e-3)
+    assert found['efficiency'] == pytest.approx(0.929 if drives else 0.934, abs=2e-3)
 
 
 def test_point_as_a_page(run, capsys):
@@ -86,7 +86,7 @@ def test_point_as_a_page(run, capsys):
     text = capsys.readouterr().out
     for part in (
         'tier closed_form: 600 rev/min, 1000 N, 40 degC',
-        'efficiency           0.945',
+        'efficiency           0.934',
         'relieved nut, screw',
         'outside its range',
         'status: closed form',

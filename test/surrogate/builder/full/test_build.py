@@ -199,8 +199,8 @@ def test_what_makes_no_sense_is_refused_before_any_work(screw, oil, refused):
     smooth = replace(screw, roughness=replace(screw.roughness, rms=0.0))
     with pytest.raises(InputError, match='rms_um of roughness is 0 um'):
         build_full(smooth, oil, SETTINGS, None)
-    heavy = with_raceway(replace(screw, working_load=15e3), state='run_in')
-    with pytest.raises(InputError, match='the mean pressure is 2.23 GPa, allowed is'):
+    heavy = with_raceway(replace(screw, working_load=50e3), state='run_in')
+    with pytest.raises(InputError, match='the mean pressure is 3.33 GPa, allowed is'):
         build_full(heavy, oil, SETTINGS, None)
 
 
