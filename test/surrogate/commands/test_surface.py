@@ -43,14 +43,14 @@ def test_check_of_a_shipped_tier_is_of_twenty_points(run, capsys):
 
 
 def test_check_tells_how_far_off_the_limit_of_the_zone_is(run, capsys, refused):
-    """In per cent of the speed, at as many points as asked for."""
+    """In per cent of the speed, at as many points as asked for; one is where the worst changes."""
     words = ('check', 'closed_form', '--points', '2', '--limit-points')
     assert run(*words, '2') == 0
     _, *limits = capsys.readouterr().out.splitlines()
     assert len(limits) == 2
     for line in limits:
         assert line.startswith('RCS is 0.01 at ')
-        assert abs(float(line.split()[-5])) < 0.1
+        assert abs(float(line.split()[-5])) < 1.0
     refused('limit_points_1', run, *words, '-1')
 
 
@@ -120,7 +120,7 @@ def test_info_is_a_page_a_person_reads(run, capsys):
     text = capsys.readouterr().out
     for part in (
         'nominal, iso_vg_68; lead 10 mm, preload 990 N, Rq 0.12 um, film floor 3 nm',
-        'raceway (run in): Rq 0.12 um between 2.5 um and 0.25 mm',
+        'raceway (new): Rq 0.12 um between 2.5 um and 0.25 mm',
         'tier         closed_form, format version 3',
         'kinks at     -2800, 0, 2800 N',
         'temperature  10 to 80 degC, nodes at 10, ',
