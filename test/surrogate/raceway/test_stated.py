@@ -45,7 +45,7 @@ def test_the_state_is_said_and_changes_no_wave():
     run_in = replace(STATED, state='run_in')
     assert spectrum_of(run_in) == spectrum_of(STATED)
     assert SMOOTH.state == 'run_in'
-    assert roughness_sentence(run_in, None).startswith('raceway (new): Rq 0.12 um between')
+    assert roughness_sentence(run_in, None).startswith('raceway (run in): Rq 0.12 um between')
     assert roughness_sentence(STATED, None).startswith('raceway (new): Rq 0.12 um between')
 
 
