@@ -14,7 +14,7 @@ import sys
 from ballscrew_monitor.node.solver_process import path_to_this_code, WHEEL_VARIABLES
 from ballscrew_monitor.settings.middleware import loopback
 
-PATIENCE = ((signal.SIGINT, 8.0), (signal.SIGTERM, 3.0), (signal.SIGKILL, 5.0))  # [s] after each
+PATIENCE = ((signal.SIGINT, 30.0), (signal.SIGTERM, 5.0), (signal.SIGKILL, 5.0))  # [s] after each
 PR_SET_PDEATHSIG = 1
 
 

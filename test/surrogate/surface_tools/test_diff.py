@@ -85,7 +85,7 @@ def test_the_zone_begins_where_rcs_falls_below_its_limit():
     assert SHIPPED.lookup(limits[0], 1000.0, 313.15).rcs == pytest.approx(0.01, abs=1e-6)
     assert SHIPPED.lookup(limits[0] * 0.999, 1000.0, 313.15).rcs > 0.01
     assert limits[1] == pytest.approx(SHIPPED.speed_range[1])
-    assert zone_limits(SHIPPED, 1000.0, 353.15, SHIPPED.speed_range) is None
+    assert zone_limits(SHIPPED, 1000.0, 353.15, (1.0, 200.0)) is None
 
 
 def test_differences_beyond_the_tolerances_exit_with_1(run, tmp_path, capsys):

@@ -10,11 +10,10 @@ import numpy as np
 import pytest
 from surrogate.builder.full.build import build_full, limit_band
 from surrogate.builder.full.chain import chain_inputs, solved_chain
-from surrogate.builder.full.nodes import onset_speeds
 from surrogate.builder.full.settings import FullSettings
 from surrogate.files import InputError
 from surrogate.formulas.load_sharing import idle_load
-from surrogate.screw.onset import run_in_at, with_raceway
+from surrogate.screw.onset import onset_speeds, run_in_at, with_raceway
 from surrogate.surface import FIELDS, Surface, Validity
 from surrogate.surface import file as surface_file
 from surrogate.surface.aims import rcs_tolerance

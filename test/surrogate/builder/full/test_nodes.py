@@ -11,9 +11,7 @@ from surrogate.asperities.law import law_of
 from surrogate.builder.full.nodes import (
     BESIDE,
     covering,
-    onset_speeds,
     signed_loads,
-    SMOOTH_ONSET,
     surface_nodes,
     temperature_nodes,
 )
@@ -24,6 +22,7 @@ from surrogate.formulas.kinematics import no_slip_rates
 from surrogate.formulas.load_sharing import idle_load, normal_force
 from surrogate.formulas.lubricant import lubricant_state
 from surrogate.screw.contacts import oil_at
+from surrogate.screw.onset import onset_speeds, SMOOTH_ONSET
 
 WARM = 313.15
 
