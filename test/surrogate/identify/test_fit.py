@@ -198,7 +198,7 @@ def test_torque_against_the_motion_is_refused(refused):
 
 
 def test_parameters_that_fast_points_cannot_tell_apart_are_named(says):
-    run, contacts = recording(np.geomspace(50.0, 200.0, 12))
+    run, contacts = recording(np.geomspace(70.0, 200.0, 12))
     record = identification_record(SCREW, run, contacts, identify(SCREW, run, contacts, ALL[:1]))
     assert says('viscosity_factor_correlated') in ' | '.join(record['warnings'])
 
