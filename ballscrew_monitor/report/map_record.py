@@ -82,7 +82,7 @@ class OperatingMap:
 
     Rows of the cells of zone (a code) and dwell [s] are of a load, columns of a speed. Points of
     lines and path are speed and load in turn, NaN where a line is interrupted. `others`: borders
-    at other temperatures are among the lines; `banded`: so are those of other boundary films.
+    at other temperatures are among the lines; `banded`: so is the range of that in force.
 
     """
 
@@ -265,6 +265,6 @@ def map_legend(case: AxisCase, chart: OperatingMap) -> list[tuple[tuple[str, ...
         text = 'RCS limit with the coldest and the warmest oil'
         entries.insert(4, (('rcs', 'line', '6 4'), text))
     if chart.banded:
-        text = 'RCS limit with the thinnest and the thickest boundary film'
+        text = 'RCS limit, its range by boundary film and running in'
         entries.insert(4, (('rcs', 'line', '8 3 2 3'), text))
     return entries

@@ -29,7 +29,7 @@ class Field:
     """
     Surface on a grid: speed [rev/min] and opposing load [N]; NaN where it says nothing.
 
-    Limit of RCS in speed over that here, with thin and thick boundary films [-].
+    Least and largest limit of RCS in speed over that here [-].
 
     """
 

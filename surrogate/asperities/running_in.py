@@ -67,6 +67,13 @@ def running_tiles(screw: Screw, side: Side) -> list[Tile]:
     if not fields:
         return []
     pressure, bound = working_pressure(screw, side), screw.roughness.cutting_pressure
+    if not 0 < pressure < bound:
+        raise InputError(
+            f'raceway: under the largest working load of {working_load(screw):g} N the mean '
+            f'pressure is {GIGA * pressure:.3g} GPa, allowed is above 0 and below that at which '
+            f'summits are cut, {GIGA * bound:.3g} GPa: see working_load_N, run_in_pressure_GPa '
+            'and hardness_GPa'
+        )
     size, shape = tile_size(screw, side)
     return [
         _added(

@@ -4,11 +4,10 @@
 
 import argparse
 from pathlib import Path
-import sys
 from typing import Any
 
 from surrogate.commands.output import add_json, show
-from surrogate.commands.point import add_inputs, add_temperature, oil_temperature, prepare
+from surrogate.commands.point import add_inputs, add_temperature, oil_temperature, picture, prepare
 from surrogate.parameters import load_lubricant, load_screw
 
 
@@ -39,7 +38,5 @@ def _onset(args: argparse.Namespace) -> int:
     record = onset_record(screw, lubricant, args.load, oil_temperature(args, lubricant))
     show(record, onset_page, json=args.json)
     if args.plot:
-        from surrogate.screw.onset_figure import draw_onset
-
-        print(draw_onset(args.plot, screw, lubricant, record), file=sys.stderr)
+        picture(args.plot, 'onset_figure', 'draw_onset', screw, lubricant, record)
     return 0

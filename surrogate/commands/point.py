@@ -102,7 +102,7 @@ def _point(args: argparse.Namespace) -> int:
         record = closed_form_record(screw, lubricant, point)
     show(record, page, json=args.json)
     if args.plot:
-        _plot(args.plot, screw, solution, record)
+        picture(args.plot, 'figures', 'draw_point', screw, solution, record)
     return 0 if record.get('converged', True) else 1
 
 
@@ -145,13 +145,15 @@ def prepare(folder: Path) -> None:
         raise InputError(f'--plot: {folder} cannot be made, {error.strerror}') from None
 
 
-def _plot(folder: Path, screw: Screw, solution: Any, record: dict[str, Any]) -> None:
-    """Draw the contacts of a point; only this needs matplotlib."""
+def picture(folder: Path, module: str, function: str, *results: Any) -> None:
+    """Draw by a function of a module of `surrogate.screw`; only this needs matplotlib."""
+    from surrogate.builder.tiers import load_function
+
     try:
-        from surrogate.screw.figures import draw_point
+        draw = load_function(f'surrogate.screw.{module}:{function}')
     except ImportError:
         raise InputError('--plot needs matplotlib: install the extra `plot`') from None
     try:
-        print(draw_point(folder, screw, solution, record), file=sys.stderr)
+        print(draw(folder, *results), file=sys.stderr)
     except OSError as error:
         raise InputError(f'--plot: {folder} cannot be written, {error.strerror}') from None

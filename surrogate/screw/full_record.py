@@ -183,6 +183,8 @@ def law_sentence(screw: Screw, settings: ScrewSettings) -> str:
             settings.kinematics
         ]
     sheet = screw.roughness
+    if not screw.composite_rms:
+        return 'no roughness'
     state = 'new' if sheet.state == 'new' else 'run in'
     return (
         f'roughness that rolls, {state}, summits cut at {GIGA * sheet.cutting_pressure:g} GPa; '

@@ -54,8 +54,9 @@ def with_raceway(screw: Screw, **changes: Any) -> Screw:
 def run_in_range(screw: Screw) -> tuple[float, float]:
     """Return the likely range of the pressure of running in [Pa], which the contact must bear."""
     pressed = max(working_pressure(screw, side) for side in SIDES)
-    low = max(screw.roughness.run_in_low, ABOVE * pressed)
-    return low, max(screw.roughness.run_in_high, low)
+    sheet = screw.roughness
+    low = max(sheet.run_in_low, ABOVE * pressed)
+    return min(low, sheet.run_in_pressure), sheet.run_in_high
 
 
 def run_in_at(screw: Screw, pressure: float) -> Screw:

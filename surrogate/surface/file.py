@@ -148,6 +148,8 @@ def from_bytes(path: str | Path, content: bytes) -> SurfaceData:
             f'{path}: damaged surface, content hash {data.sha256[:16]} differs '
             f'from the stated {str(stated)[:16]}'
         )
+    if 'law' in header:
+        raise SurfaceError(f'{path}: built with an earlier law of contact, build it again')
     _check(path, data)
     return data
 

@@ -130,10 +130,10 @@ def _full_tier(record: Mapping[str, Any]) -> Iterator[str]:
     if record['limit_band'] is not None:
         low, high = record['limit_band']
         yield (
-            f'  contact      begins between {low:.2g} and {high:.2g} times the stated speed, over '
+            f'  contact      begins between {low:.2g} and {high:.2g} times the stated speed, by '
             'the ranges'
         )
-        yield '               of boundary films and of running in'
+        yield '               of the boundary film and, where it applies, of running in'
     if record['accuracy_reached'] is not None:
         yield (
             '  accuracy     the worst held-out point has '

@@ -47,8 +47,8 @@ class Slice:
     """
     The surface at one temperature: speed [rev/min], load [N], fields [load, speed].
 
-    Load below which no efficiency is judged [N]; limit of RCS in speed over that of the fields for
-    the thinnest and thickest boundary film of the oil [-], NaN if not known.
+    Load below which no efficiency is judged [N]; least and largest limit of RCS in speed over that
+    of the fields [-], NaN if not known.
 
     """
 

@@ -12,13 +12,14 @@ from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
+from surrogate.asperities.law import VERSION
 from surrogate.builder.tiers import screw_and_oil
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.screw.contacts import ScrewSettings
 from surrogate.screw.solve import rebalance_screw, ScrewSolution, solve_screw
 from surrogate.surface import FIELDS, SolvedPoint
 
-WORK = 'full tier 12'
+WORK = f'full tier 12, {VERSION}'
 """Solver and version of what a chain returns, constants of the asperity law with it; part of the
 key under which it is kept."""
 

@@ -13,6 +13,7 @@ from surrogate.asperities.law import (
     AsperityLaw,
     AT_REST,
     law_of,
+    LEAST_LOSS,
     loss_at,
     onset_place,
     ONSET_RCS,
@@ -79,6 +80,11 @@ def test_contact_never_grows_with_the_speed(x, step):
 def test_the_loss_at_the_onset_falls_with_the_lay_and_far_beyond_it_is_smooth(lay, expected):
     loss = loss_at(np.array([0.0, 60.0]), np.array([0.9e9, 0.9e9]), lay)
     assert loss == pytest.approx([expected, 1.0])
+
+
+def test_the_loss_stays_in_the_band_of_the_marches():
+    """Ridges along the track under a light load."""
+    assert loss_at(np.array([-1.4]), np.array([0.4e9]), 1.0) == pytest.approx([LEAST_LOSS])
 
 
 def test_heavy_contacts_lose_more_at_the_onset_and_grow_faster_below():

@@ -121,6 +121,7 @@ def test_the_record_says_where_contact_is_from():
         'nine of ten marches'
     )
     assert 'rolls, run in, summits cut at 3 GPa; onset' in run_in
+    assert law_sentence(with_raceway(SCREW, rms=0.0), SETTINGS) == 'no roughness'
     assert law_sentence(SCREW, STANDING) == 'roughness that stands still'
     assert law_sentence(SCREW, replace(SETTINGS, kinematics='smooth')) == 'no roughness'
     _, rolling = record(60, 800.0)

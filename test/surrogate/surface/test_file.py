@@ -264,6 +264,14 @@ def test_what_draws_leave_uncertain_is_written_read_and_hashed(tmp_path: Path, s
     assert len({data.sha256, other.sha256, surface_data.sha256}) == 3
 
 
+def test_a_surface_of_an_earlier_law_must_be_built_again(tmp_path: Path, surface_data):
+    """Such a one carried its law."""
+    old = replace(surface_data, header={**surface_data.header, 'law': {'onset_ratio': 1.6}})
+    file.write(tmp_path / 'old.npz', old)
+    with pytest.raises(file.SurfaceError, match='an earlier law of contact, build it again'):
+        file.read(tmp_path / 'old.npz')
+
+
 def test_without_draws_a_file_is_as_it_was(surface_data):
     """The hash of a file without draws is that of its own version."""
     assert surface_data.header['format_version'] == file.FORMAT_VERSION
