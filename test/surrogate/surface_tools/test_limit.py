@@ -51,7 +51,8 @@ def test_a_curve_that_is_moved_along_the_speed_is_off_by_as_much(surface, shift)
 
 
 def test_formulas_have_their_limit_within_a_hundredth_of_the_speed(surface_data):
-    """Solved again at random points, the same for one seed; a moved onset is seen.
+    """
+    Solved again at random points, the same for one seed; a moved onset is seen.
 
     The largest is near 2100 N, where another contact becomes the worst one.
 
