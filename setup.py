@@ -67,7 +67,6 @@ setup(
         ],
         'surrogate': [
             'py.typed',
-            'data/*.json',
             'data/cases/*.yaml',
             'data/lubricants/*.yaml',
             'data/screws/*.yaml',

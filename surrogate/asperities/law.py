@@ -19,12 +19,9 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.special import expit, logit
 from surrogate.asperities.onset import onset_of, PRESSURE, TopographyOnset
 from surrogate.ehl import Condition, ContactLubricant
-from surrogate.formulas.geometry import Contact, screw_contact, Side, SIDES
-from surrogate.formulas.kinematics import no_slip_rates
+from surrogate.formulas.geometry import Contact, Side, SIDES
 from surrogate.formulas.line import Line, line_at
-from surrogate.formulas.load_sharing import normal_force, nut_forces, working_preload
-from surrogate.formulas.starvation import starved_speed
-from surrogate.parameters import Lubricant, Screw
+from surrogate.parameters import Screw
 
 Array = NDArray[np.float64]
 ONSET_RCS = 0.01
@@ -103,18 +100,12 @@ class AsperityLaw:
         """
         if not condition.entrainment_speed:
             return AT_REST
-        share, strips, onset = self._strips(side, contact, condition.load, oil, floor)
-        over = math.log(condition.entrainment_speed) - onset
-        rcs = rcs_at(over)
-        apart = [float(share @ rcs_at(over + half * self.deviation)) for half in (-0.5, 0.5)]
-        loss = self._loss(side, over, strips.max_pressure)
-        # The weights add up to 1 but for rounding.
-        return AsperityContact(
-            rcs=min(float(share @ rcs), 1.0),
-            asperity_share=min(float(share @ share_at(rcs)), 1.0),
-            loss_factor=float(share @ loss),
-            rcs_deviation=apart[0] - apart[1],
-        )
+        # As stated, and where the onset is off by half of its deviation either way.
+        apart = np.exp(self.deviation * np.array([0.0, -0.5, 0.5]))
+        speeds = condition.entrainment_speed * apart
+        found = self.touching(side, contact, condition.load, oil, floor, speeds)
+        (rcs, slower, faster), (share, *_), (loss, *_) = (values.tolist() for values in found)
+        return AsperityContact(rcs, share, loss, rcs_deviation=slower - faster)
 
     def touching(
         self,
@@ -130,7 +121,8 @@ class AsperityLaw:
         with np.errstate(divide='ignore', invalid='ignore'):
             over = np.where(speeds > 0, np.log(speeds) - onset[:, None], -math.inf)
         rcs, loss = rcs_at(over), self._loss(side, over, strips.max_pressure[:, None])
-        # Summed place by place, so that a speed does not depend on those beside it.
+        # Summed place by place, so that a speed does not depend on those beside it. The weights
+        # add up to 1 but for rounding.
         rcs, carried, loss = (
             (share[:, None] * values).sum(axis=0) for values in (rcs, share_at(rcs), loss)
         )
@@ -216,27 +208,4 @@ def _law(screw: Screw) -> AsperityLaw:
     return AsperityLaw(
         onsets={side: onset_of(screw, side) for side in SIDES},
         deviation=math.log(band) / NINE_OF_TEN,
-    )
-
-
-def onset_place(
-    screw: Screw, lubricant: Lubricant, oil: ContactLubricant, load: float
-) -> tuple[float, Side]:
-    """
-    Return the screw speed [rad/s] at which contact begins under an axial load [N], and the side.
-
-    That of the loaded nut, of the side where contact begins at the faster speed; 0 for smooth
-    raceways. `oil` is the lubricant at its temperature.
-
-    """
-    loaded = float(nut_forces(load, screw.preload)[0]) or working_preload(screw)
-    force, onsets = float(normal_force(screw, loaded)), law_of(screw).onsets
-    rate = float(starved_speed(lubricant, no_slip_rates(screw).entrainment))
-    return max(
-        (
-            onsets[side].speed(screw_contact(screw, side), force, oil, lubricant.film_floor)
-            / rate,
-            side,
-        )
-        for side in SIDES
     )

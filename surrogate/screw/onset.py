@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.asperities.law import BANDS, onset_place
+from surrogate.asperities.law import BANDS, law_of
 from surrogate.asperities.running_in import working_load, working_pressure
 from surrogate.files import InputError
 from surrogate.formulas.geometry import screw_contact, SIDES
@@ -38,9 +38,12 @@ def onset_speeds(screw: Screw, lubricant: Lubricant, load: Array, temperature: A
     That of the loaded nut, for the side where contact begins faster.
 
     """
-    oils = [oil_at(lubricant, float(heat)) for heat in temperature]
     found = [
-        [onset_place(screw, lubricant, oil, float(force))[0] for oil in oils] for force in load
+        [
+            onset_point(screw, lubricant, force, heat)['speed_rad_s']
+            for heat in temperature.tolist()
+        ]
+        for force in load.tolist()
     ]
     least = SMOOTH_ONSET / starved_speed(lubricant, no_slip_rates(screw).entrainment)
     return np.maximum(found, least)
@@ -83,14 +86,17 @@ def onset_point(
     as `running_tiles` does.
 
     """
-    oil = oil_at(lubricant, temperature)
-    speed, side = onset_place(screw, lubricant, oil, load)
-    entrainment = speed * float(starved_speed(lubricant, no_slip_rates(screw).entrainment))
+    oil, onsets = oil_at(lubricant, temperature), law_of(screw).onsets
     loaded = float(nut_forces(load, screw.preload)[0]) or working_preload(screw)
-    line = line_at(screw_contact(screw, side), float(normal_force(screw, loaded)), 0.0)
-    film = 0.0
-    if speed:
+    force, film = float(normal_force(screw, loaded)), 0.0
+    entrainment, side = max(
+        (onsets[side].speed(screw_contact(screw, side), force, oil, lubricant.film_floor), side)
+        for side in SIDES
+    )
+    if entrainment:
+        line = line_at(screw_contact(screw, side), force, 0.0)
         film = float(central_film_line(line, entrainment, oil.viscosity, oil.pressure_viscosity))
+    speed = entrainment / float(starved_speed(lubricant, no_slip_rates(screw).entrainment))
     return {'speed_rad_s': speed, 'entrainment_speed_m_s': entrainment, 'central_film_m': film}
 
 

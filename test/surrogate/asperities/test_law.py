@@ -15,7 +15,6 @@ from surrogate.asperities.law import (
     law_of,
     LEAST_LOSS,
     loss_at,
-    onset_place,
     ONSET_RCS,
     rcs_at,
     share_at,
@@ -24,9 +23,8 @@ from surrogate.asperities.onset import TopographyOnset
 from surrogate.asperities.topography import ActingRoughness
 from surrogate.ehl import Condition, ContactLubricant
 from surrogate.formulas.geometry import screw_contact
-from surrogate.formulas.kinematics import no_slip_rates
 from surrogate.formulas.line import line_at
-from surrogate.parameters import load_lubricant, load_screw
+from surrogate.parameters import load_screw
 
 SCREW = load_screw('nominal')
 CONTACT, LOAD, FLOOR = screw_contact(SCREW, 'screw'), 27.6, 3e-9
@@ -144,17 +142,3 @@ def test_a_screw_has_one_law_whatever_does_not_touch_its_raceways():
     assert law_of(other) is law_of(SCREW)
     run_in = replace(SCREW, roughness=replace(SCREW.roughness, state='run_in'))
     assert law_of(run_in) is not law_of(SCREW)
-
-
-def test_the_onset_of_a_screw_is_that_of_its_faster_side():
-    """By the entrainment of the screw, under preload."""
-    lubricant = load_lubricant('iso_vg_68')
-    speed, side = onset_place(SCREW, lubricant, OIL, 0.0)
-    onsets = law_of(SCREW).onsets
-    force = 27.56
-    each = {
-        one: onsets[one].speed(screw_contact(SCREW, one), force, OIL, lubricant.film_floor)
-        for one in onsets
-    }
-    assert speed * no_slip_rates(SCREW).entrainment == pytest.approx(max(each.values()), rel=0.01)
-    assert each[side] == max(each.values())

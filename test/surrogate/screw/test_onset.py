@@ -6,8 +6,10 @@ from dataclasses import replace
 import math
 
 import pytest
-from surrogate.asperities.law import onset_place
+from surrogate.asperities.law import law_of
+from surrogate.formulas.geometry import screw_contact
 from surrogate.formulas.kinematics import no_slip_rates
+from surrogate.formulas.load_sharing import normal_force
 from surrogate.screw.contacts import oil_at
 from surrogate.screw.onset import (
     BANDS,
@@ -45,10 +47,14 @@ def test_the_range_is_that_of_the_bounds_of_the_sheet(screw, oil, record):
 
 
 def test_a_point_is_where_the_law_of_the_state_says(screw, oil, record):
-    """Speeds of screw and entrainment; a film of the same size as the roughness."""
+    """Of the faster side, by the entrainment; a film of the same size as the roughness."""
+    force, fluid = float(normal_force(screw, screw.preload)), oil_at(oil, KELVIN)
     for state, found in record['states'].items():
-        there = with_raceway(screw, state=state)
-        assert found['speed_rad_s'] == onset_place(there, oil, oil_at(oil, KELVIN), 0.0)[0]
+        onsets = law_of(with_raceway(screw, state=state)).onsets
+        assert found['entrainment_speed_m_s'] == max(
+            onset.speed(screw_contact(screw, side), force, fluid, oil.film_floor)
+            for side, onset in onsets.items()
+        )
         entrainment = found['speed_rad_s'] * no_slip_rates(screw).entrainment
         assert found['entrainment_speed_m_s'] == pytest.approx(entrainment)
         assert 0.3 < found['central_film_m'] / screw.roughness.rms < 2
@@ -110,7 +116,7 @@ def test_ridges_without_a_fan_have_an_onset(screw, oil, lay):
 
 def test_smooth_raceways_say_so(screw, oil):
     smooth = with_raceway(screw, rms=0.0)
-    assert onset_place(smooth, oil, oil_at(oil, KELVIN), 0.0)[0] == 0.0
+    assert onset_point(smooth, oil, 0.0, KELVIN)['speed_rad_s'] == 0.0
     page = onset_page(onset_record(smooth, oil, 0.0, KELVIN))
     assert 'no contact: raceway and ball are smooth' in page
     assert 'Contact is likely' not in page
