@@ -21,6 +21,7 @@ import scipy
 from surrogate.builder.tiers import screw_and_oil
 from surrogate.files import InputError
 from surrogate.formulas.load_sharing import UNLOADING_RATIO
+from surrogate.formulas.lubricant import lubricant_state
 from surrogate.parameters import Lubricant, Screw
 from surrogate.progress import OnProgress
 from surrogate.screw import closed_form
@@ -83,11 +84,13 @@ def build_closed_form(
     check_ranges(settings, lubricant)
     started = time.perf_counter()
     load, breaks = load_nodes(screw, settings)
-    temperature = temperature_nodes(screw, lubricant, settings)
+    temperature = temperature_nodes(
+        lubricant, settings.temperature_range, settings.temperature_nodes
+    )
     log_onset = np.log(onset_speeds(screw, lubricant, load, temperature))
     s = speed_coordinates(settings, log_onset)
     total = 2 * len(temperature) - 1
-    nodes = _solve(
+    nodes = solve_grid(
         screw, lubricant, s, load, temperature, log_onset, lambda done: progress(done, total)
     )
     data = SurfaceData(
@@ -145,14 +148,13 @@ def load_nodes(screw: Screw, settings: SurfaceSettings) -> tuple[Array, list[flo
     return nodes, sorted(set(breaks))
 
 
-def temperature_nodes(screw: Screw, lubricant: Lubricant, settings: SurfaceSettings) -> Array:
-    """Return temperatures [K] between which the onset speed grows by equal factors."""
-    fine = np.linspace(*settings.temperature_range, 400)
-    log_onset = np.log(onset_speeds(screw, lubricant, np.zeros(1), fine)[0])
-    even = np.linspace(log_onset[0], log_onset[-1], settings.temperature_nodes)
-    nodes = np.interp(even, log_onset, fine)
-    nodes[[0, -1]] = settings.temperature_range
-    return nodes
+def temperature_nodes(lubricant: Lubricant, ends: tuple[float, float], number: int) -> Array:
+    """Return temperatures [K] between the ends, even in the logarithm of the viscosity."""
+    fine = np.linspace(*ends, 400)
+    logs = np.log(lubricant_state(lubricant, fine).viscosity)
+    nodes = np.interp(-np.linspace(logs[0], logs[-1], number), -logs, fine)
+    nodes[[0, -1]] = ends
+    return np.asarray(nodes)
 
 
 def speed_coordinates(settings: SurfaceSettings, log_onset: Array) -> Array:
@@ -179,7 +181,7 @@ def measure_errors(
     log_onset = np.log(
         [[surface.onset_speed(force, heat) for heat in temperature] for force in load]
     )
-    solved = _solve(screw, lubricant, s, load, temperature, log_onset, step)
+    solved = solve_grid(screw, lubricant, s, load, temperature, log_onset, step)
     points = [
         surface.lookup(math.exp(s[i] + log_onset[j, k]), float(load[j]), float(temperature[k]))
         for i, j, k in np.ndindex(len(s), len(load), len(temperature))
@@ -193,16 +195,21 @@ def measure_errors(
     }
 
 
-def _solve(
+def solve_grid(
     screw: Screw,
     lubricant: Lubricant,
     s: Array,
     load: Array,
     temperature: Array,
     log_onset: Array,
-    step: Callable[[int], None],
+    step: Callable[[int], None] = lambda done: None,
 ) -> dict[str, Array]:
-    """Solve a grid slice by slice of temperature, which bounds the memory."""
+    """
+    Return fields and worst contacts at mapped speeds [-], loads [N] and temperatures [K].
+
+    Slice by slice of temperature, which bounds the memory; `step` counts them.
+
+    """
     slices: dict[str, list[Array]] = {name: [] for name in (*FIELDS, 'worst_contact')}
     for k, heat in enumerate(temperature):
         speed = np.exp(s[:, None] + log_onset[None, :, k])

@@ -11,13 +11,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-from surrogate.asperities.law import rcs_at
 from surrogate.builder.closed_form import build_closed_form, default_settings
-from surrogate.builder.full.nodes import onset_speeds
 from surrogate.builder.tiers import screw_and_oil
 from surrogate.cli import add_commands, Parser
 from surrogate.parameters import load_lubricant, load_screw, Lubricant, Screw
 from surrogate.screw import closed_form
+from surrogate.surface import FIELDS
 from surrogate.surface.file import SurfaceData
 
 REFERENCE = Path(__file__).parents[1] / 'reference'
@@ -68,42 +67,39 @@ def surface_data(screw: Screw, oil: Lubricant) -> SurfaceData:
 
 @pytest.fixture(scope='session')
 def stand_in() -> SimpleNamespace:
-    """Return `chain` and `run` of a fast model in place of solved contacts."""
-    return SimpleNamespace(chain=chain_stand_in, run=run_stand_in)
+    """Return a fast model in place of solved contacts, and its torque over that of formulas."""
+    return SimpleNamespace(chain=chain_stand_in, run=run_stand_in, torque=torque_of_stand_in)
 
 
 def chain_stand_in(inputs: Mapping[str, Any]) -> dict[str, Any]:
-    """Return what `solve_chain` returns: formulas, and contact by the law at the onset speed."""
+    """Return what `solve_chain` returns: formulas, of which torque and films are corrected."""
     screw, lubricant = screw_and_oil(inputs)
     load, heat = inputs['load'], inputs['temperature']
-    place = np.array([load]), np.array([heat])
-    onset = float(onset_speeds(screw, lubricant, *place)[0, 0])
-    speeds = np.array(inputs['speeds'])
-    touching = rcs_at(np.log(speeds / onset)).tolist()
+    found = closed_form.solve(screw, lubricant, np.array(inputs['speeds']), load, heat)
     return {
         sense: [
-            stand_in_point(formula, rcs, 0.8 * rcs)
-            for speed, rcs in zip(speeds, touching, strict=True)
-            for formula in [closed_form.solve(screw, lubricant, float(speed), sign * load, heat)]
+            stand_in_point(found, place, torque_of_stand_in(speed, sign * load, heat))
+            for place, speed in enumerate(inputs['speeds'])
         ]
         for sense, sign in (('opposing', 1.0), ('assisting', -1.0))
     }
 
 
-def stand_in_point(formula: Any, rcs: float, share: float) -> dict[str, Any]:
-    if not math.isfinite(formula.film_ratio):
+def torque_of_stand_in(speed: float, load: float, heat: float) -> float:
+    """Return the friction torque over that of the formulas [-]: smooth, of either sign."""
+    return 1.1 + 0.02 * math.log(speed) + 1e-5 * load + 1e-3 * (heat - 313.15)
+
+
+def stand_in_point(found: Any, place: int, torque: float) -> dict[str, Any]:
+    values = {name: float(getattr(found, name)[place]) for name in FIELDS}
+    if not math.isfinite(values['film_ratio']):
         return {'converged': False, 'status': 'no load'}
+    values['friction_torque'] *= torque
+    values['central_film'] *= 0.9
     return {
-        'friction_torque': 0.5 * float(formula.friction_torque) + 0.06 * rcs,
-        'rcs': rcs,
-        'asperity_share': share,
-        'film_ratio': float(formula.film_ratio),
-        'central_film': float(formula.central_film),
-        'minimum_film': float(formula.minimum_film),
-        'friction_coefficient': 0.02,
-        'max_pressure': float(formula.max_pressure),
-        'worst_contact': int(formula.worst_contact),
-        'rcs_deviation': 0.3 * rcs,
+        **values,
+        'worst_contact': int(found.worst_contact[place]),
+        'rcs_deviation': 0.3 * values['rcs'],
         'converged': True,
         'status': '',
     }

@@ -1,36 +1,31 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Build a surface of the full tier: every node a solved screw.
+Build a surface of the full tier: formulas at the nodes times the ratio of solved screws to them.
 
-Points that are no nodes are solved last: they measure the error. What is solved, and where, is
-left to the caller.
+Points that are no nodes are solved last: they measure the error. Who solves is left to the caller.
 
 """
 
-from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.builder.closed_form import check_ranges, check_rough, surface_header
-from surrogate.builder.full.chain import chain_inputs, solved_chain, SolvedChain
+from scipy.interpolate import PchipInterpolator
+from surrogate.asperities.law import law_of
+from surrogate.builder.closed_form import check_ranges, check_rough, solve_grid, surface_header
+from surrogate.builder.full.chain import chain_inputs, solved_chain
 from surrogate.builder.full.held_out import cell_errors, held_out_points, HeldOut, judged
 from surrogate.builder.full.nodes import Nodes, surface_nodes
+from surrogate.builder.full.ratios import ratios_at, Run, solve_ratios, solved_grid
 from surrogate.builder.full.settings import FullSettings
-from surrogate.files import InputError
 from surrogate.parameters import Lubricant, Screw
 from surrogate.screw.onset import onset_speeds, run_in_at, run_in_range, with_raceway
 from surrogate.screw.solve import TIER
-from surrogate.surface import FIELDS, SolvedPoint, Surface
+from surrogate.surface import FIELDS, Surface
 from surrogate.surface.file import format_version, SurfaceData
 
 Array = NDArray[np.float64]
-Results = Mapping[str, Mapping[str, Any] | None]
-Run = Callable[[Mapping[str, Mapping[str, Any]]], Results]
-"""Solves named chains: their results, None for a failure."""
-UNSOLVED = SolvedPoint(converged=False, status='The chain failed.')
 
 
 def build_full(
@@ -45,10 +40,9 @@ def build_full(
     check_rough(screw)
     check_ranges(settings, lubricant)
     nodes = surface_nodes(screw, lubricant, settings)
-    # Before any work: a raceway may not bear the lowest pressure of its range.
+    # Before any solve: a raceway may not bear the lowest pressure of its range.
     band = limit_band(screw, lubricant)
-    columns = _columns(screw, lubricant, nodes, run)
-    data = _surface(screw, lubricant, settings, nodes, columns)
+    data = _surface(screw, lubricant, settings, nodes, run)
     held_out = _held_out(data, screw, lubricant, settings, run)
     errors = cell_errors(data, held_out, screw, settings)
     reached = max((one.miss for one in held_out), default=None)
@@ -56,50 +50,20 @@ def build_full(
     return replace(data, errors=errors, header=header)
 
 
-def _columns(
-    screw: Screw, lubricant: Lubricant, nodes: Nodes, run: Run
-) -> dict[tuple[int, int], tuple[SolvedPoint, ...]]:
-    """Return the solved points of each column [load, temperature], from the fastest on."""
-    chains, places = {}, {}
-    for j, k in np.ndindex(nodes.log_onset.shape):
-        load, speeds = float(nodes.load[j]), nodes.speeds(j, k).tolist()
-        heat = float(nodes.temperature[k])
-        # Loads of either sign share a chain unless their speeds differ.
-        name = f'{abs(load)!r} N, temperature {k}, {len(speeds)} from {speeds[0]!r} rad/s'
-        chains[name] = chain_inputs(screw, lubricant, abs(load), heat, speeds)
-        places[j, k] = name, load
-    results = run(chains)
-    solved = {name: solved_chain(one) if one else None for name, one in results.items()}
-    return {
-        place: _under(solved[name], load, len(nodes.speeds(*place)))
-        for place, (name, load) in places.items()
-    }
-
-
-def _under(chain: SolvedChain | None, load: float, count: int) -> tuple[SolvedPoint, ...]:
-    return chain.under(load) if chain else (UNSOLVED,) * count
-
-
 def _surface(
-    screw: Screw,
-    lubricant: Lubricant,
-    settings: FullSettings,
-    nodes: Nodes,
-    columns: Mapping[tuple[int, int], tuple[SolvedPoint, ...]],
+    screw: Screw, lubricant: Lubricant, settings: FullSettings, nodes: Nodes, run: Run
 ) -> SurfaceData:
-    """Return the surface of solved nodes, errors unknown; InputError if all failed."""
-    fields = {name: np.full(nodes.needed.shape, np.nan) for name in (*FIELDS, 'rcs_deviation')}
-    worst = np.zeros(nodes.needed.shape, dtype=np.uint8)
-    mask = np.ones(nodes.needed.shape, dtype=bool)
-    for (j, k), points in columns.items():
-        for i, point in zip(np.flatnonzero(nodes.needed[:, j, k])[::-1], points, strict=True):
-            if point.converged:
-                mask[i, j, k], worst[i, j, k] = False, point.worst_contact
-                for name, values in fields.items():
-                    values[i, j, k] = getattr(point, name)
-    if mask.all():
-        raise InputError('screw: no point of the surface converged, see the reasons above')
-    deviation = fields.pop('rcs_deviation')
+    """Return the surface of formulas times the ratios of solved points, errors unknown."""
+    grid = solved_grid(screw, lubricant, settings)
+    logs = solve_ratios(screw, lubricant, grid, run)
+    ratios, failed = ratios_at(logs, grid, nodes, lubricant)
+    axes = nodes.s, nodes.load, nodes.temperature
+    found = solve_grid(screw, lubricant, *axes, nodes.log_onset)
+    deviation = rcs_deviation(nodes.s, found['rcs'], law_of(screw).deviation)
+    fields = {name: found[name] * ratios.get(name, 1.0) for name in FIELDS}
+    mask = failed | ~np.all([np.isfinite(values) for values in fields.values()], axis=0)
+    for values in (*fields.values(), deviation):
+        values[mask] = np.nan
     header = surface_header(screw, lubricant, settings, nodes.breaks, TIER)
     header |= {'format_version': format_version(True)}
     return SurfaceData(
@@ -110,11 +74,25 @@ def _surface(
         log_onset=nodes.log_onset,
         fields=fields,
         errors=dict.fromkeys(FIELDS, np.full(np.subtract(mask.shape, 1), np.nan)),
-        worst_contact=worst,
+        worst_contact=found['worst_contact'].astype(np.uint8),
         mask=mask,
         deviations={'rcs': deviation},
         standard_errors={'rcs': deviation},
     )
+
+
+def rcs_deviation(s: Array, rcs: Array, deviation: float) -> Array:
+    """
+    Return the change of RCS [-], speeds first, where the onset is off by half a deviation each way.
+
+    `s` are the mapped speeds [-], and `deviation` is that of the logarithm of the onset [-].
+
+    """
+    along = PchipInterpolator(s, rcs)
+    slower, faster = (
+        along(np.clip(s + apart, s[0], s[-1])) for apart in (-0.5 * deviation, 0.5 * deviation)
+    )
+    return np.asarray(slower - faster)
 
 
 def limit_band(screw: Screw, lubricant: Lubricant) -> list[float]:

@@ -13,9 +13,9 @@ from typing import Any
 import numba
 import numpy as np
 import scipy
-from surrogate.builder.full.build import build_full, Results
+from surrogate.builder.full.build import build_full
 from surrogate.builder.full.chain import chain_inputs, solve_chain, solved_chain, WORK
-from surrogate.builder.full.nodes import covering
+from surrogate.builder.full.ratios import Results
 from surrogate.builder.full.settings import FullSettings
 from surrogate.builder.tiers import screw_and_oil
 from surrogate.parameters import Lubricant, Screw
@@ -91,21 +91,20 @@ def shortfalls(data: SurfaceData, settings: FullSettings) -> Iterator[str]:
             f'the largest error at held-out points is {reached:.2g} times the allowed one; the '
             'file says where'
         )
-    yield from _missing(data, settings.speed_range)
+    yield from _missing(data)
 
 
-def _missing(data: SurfaceData, speed_range: tuple[float, float]) -> Iterator[str]:
-    """Yield a sentence if lookups read nodes that have no number."""
-    needed = covering(data.speed_coordinate, data.log_onset, speed_range)
-    place = np.nonzero(data.mask & needed)
+def _missing(data: SurfaceData) -> Iterator[str]:
+    """Yield a sentence if nodes have no number."""
+    place = np.nonzero(data.mask)
     if place[0].size:
         speed = np.exp(data.speed_coordinate[place[0]] + data.log_onset[place[1:]])
         rpm, load = speed / RPM, data.load[place[1]]
         heat = data.temperature[place[2]] - ZERO_CELSIUS
         yield (
-            f'{rpm.size} of {needed.sum()} nodes are missing, they were not solved: '
-            f'{rpm.min():.3g} to {rpm.max():.3g} rev/min, {load.min():g} to {load.max():g} N, '
-            f'{heat.min():.3g} to {heat.max():.3g} degC; lookups beside them are NaN'
+            f'{rpm.size} of {data.mask.size} nodes are missing, points beside them were not '
+            f'solved: {rpm.min():.3g} to {rpm.max():.3g} rev/min, {load.min():g} to '
+            f'{load.max():g} N, {heat.min():.3g} to {heat.max():.3g} degC; lookups there are NaN'
         )
 
 

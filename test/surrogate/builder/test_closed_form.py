@@ -13,6 +13,7 @@ from surrogate.builder.closed_form import (
     load_nodes,
     temperature_nodes,
 )
+from surrogate.formulas.lubricant import lubricant_state
 from surrogate.screw import closed_form
 from surrogate.screw.onset import onset_speeds
 from surrogate.surface import FIELDS, Surface, Validity
@@ -44,13 +45,15 @@ def test_an_onset_is_where_rcs_is_one_percent(screw, oil):
     assert np.maximum(*(one.rcs for one in contacts)) == pytest.approx(0.013, rel=0.05)
 
 
-def test_temperatures_part_the_onset_evenly(screw, oil):
-    """Between two temperature nodes the onset grows by nearly one factor."""
-    nodes = temperature_nodes(screw, oil, default_settings(screw))
-    onset = onset_speeds(screw, oil, np.zeros(1), nodes)[0]
-    steps = np.diff(np.log(onset))
-    assert np.ptp(steps) < 0.02 * steps.mean()
-    assert nodes[[0, -1]].tolist() == list(default_settings(screw).temperature_range)
+@pytest.mark.parametrize('count', [2, 5, 9])
+def test_temperatures_are_even_in_the_logarithm_of_the_viscosity(screw, oil, count):
+    """From end to end of the range."""
+    ends = default_settings(screw).temperature_range
+    found = temperature_nodes(oil, ends, count)
+    assert found[[0, -1]].tolist() == list(ends)
+    steps = np.diff(np.log(lubricant_state(oil, found).viscosity))
+    assert (steps < 0).all()
+    assert steps == pytest.approx(steps.mean(), rel=1e-3)
 
 
 def test_measured_errors_are_those_of_the_lookup(screw, oil):

@@ -8,11 +8,12 @@ import math
 
 import numpy as np
 import pytest
-from surrogate.builder.full.build import build_full, limit_band
+from surrogate.builder.full.build import build_full, limit_band, rcs_deviation
 from surrogate.builder.full.chain import chain_inputs, solved_chain
 from surrogate.builder.full.settings import FullSettings
 from surrogate.files import InputError
 from surrogate.formulas.load_sharing import idle_load
+from surrogate.screw import closed_form
 from surrogate.screw.onset import onset_speeds, run_in_at, with_raceway
 from surrogate.surface import FIELDS, Surface, Validity
 from surrogate.surface import file as surface_file
@@ -57,38 +58,50 @@ def test_file_of_the_full_tier_is_read_back(data, tmp_path):
     assert 0 < low < 1 < high
     point = surface.lookup(3.0, 500.0, 313.15)
     assert point.validity is Validity.VALID
-    assert point.rcs_std == pytest.approx(0.3 * point.rcs, rel=0.05)
+    assert 0 < point.rcs_std < 1
     assert point.rcs_stderr == point.rcs_std
     assert math.isnan(point.friction_torque_std)
 
 
-def test_nodes_are_what_solves_give(data, solve):
-    """Every field of a node, and none of the masked ones; loads of both signs."""
-    known = np.argwhere(~data.mask)
-    for i, j, k in known[:: len(known) // 30]:
+def test_nodes_are_what_solves_give(data, screw, oil, stand_in):
+    """Torque and films are the formulas times the ratio, contact is that of the law."""
+    low, high = SETTINGS.speed_range
+    checked = 0
+    for i, j, k in np.argwhere(~data.mask)[::17]:
         speed = math.exp(data.speed_coordinate[i] + data.log_onset[j, k])
-        found = solve(speed, float(data.load[j]), float(data.temperature[k]))
-        for name in FIELDS:
-            assert data.fields[name][i, j, k] == pytest.approx(getattr(found, name), rel=1e-6)
-        assert data.deviations['rcs'][i, j, k] == pytest.approx(found.rcs_deviation, rel=1e-6)
-        assert data.standard_errors['rcs'][i, j, k] == data.deviations['rcs'][i, j, k]
+        place = speed, float(data.load[j]), float(data.temperature[k])
+        formula = closed_form.solve(screw, oil, *place)
+        assert data.fields['rcs'][i, j, k] == pytest.approx(float(formula.rcs), rel=1e-9)
+        assert data.fields['central_film'][i, j, k] == pytest.approx(0.9 * formula.central_film)
+        if low <= speed <= high:
+            torque = stand_in.torque(*place) * float(formula.friction_torque)
+            assert data.fields['friction_torque'][i, j, k] == pytest.approx(torque, rel=2e-3)
+            checked += 1
+    assert checked > 40
     for name in FIELDS:
         assert np.isnan(data.fields[name][data.mask]).all()
 
 
+def test_deviation_of_rcs_is_that_of_the_onset():
+    """A straight line falls by its slope times the deviation, except where the nodes end."""
+    s = np.linspace(-2.0, 2.0, 9)
+    found = rcs_deviation(s, np.stack([0.5 - 0.2 * s, 0.5 - 0.1 * s], axis=1), 0.3)
+    assert found[1:-1] == pytest.approx(np.tile([0.06, 0.03], (7, 1)))
+    assert found[[0, -1]] == pytest.approx(np.tile([0.03, 0.015], (2, 1)))
+
+
 def test_rcs_at_the_origin_of_the_speed_is_one_percent(data):
-    """And below it falls with the speed to exactly nothing."""
+    """In the middle of the contacts, whose sides touch a little more; RCS falls with the speed."""
     surface = Surface(data)
-    for load in (0.0, 900.0, -1500.0):
-        for heat in (300.0, 325.0):
-            onset = surface.onset_speed(load, heat)
-            assert surface.lookup(onset, load, heat).rcs == pytest.approx(0.01, rel=0.15)
+    for heat in data.temperature.tolist():
+        onset = surface.onset_speed(0.0, heat)
+        assert surface.lookup(onset, 0.0, heat).rcs == pytest.approx(0.013, rel=0.1)
     shares = np.where(data.mask, np.nan, data.fields['rcs'])
     assert not (np.diff(shares, axis=0) > 0).any()
 
 
 def test_every_point_of_the_range_has_an_answer(data):
-    """Corners and random points, though columns leave out speeds that no lookup reads."""
+    """Corners and random points."""
     surface, drawn = Surface(data), np.random.default_rng(5)
     for _ in range(300):
         speed = math.exp(drawn.uniform(*np.log(SETTINGS.speed_range)))
@@ -154,26 +167,13 @@ def test_same_work_same_file(data, screw, oil, stand_in):
     assert build_full(screw, oil, other, stand_in.run).sha256 != data.sha256
 
 
-def test_both_signs_of_a_load_share_a_chain(screw, oil, stand_in):
-    """Where their speeds are the same: a range that is even has half the chains."""
-    counts = {}
-    for low in (-1500.0, 0.0):
-
-        def run(tasks, low=low):
-            counts.setdefault(low, len(tasks))
-            return stand_in.run(tasks)
-
-        build_full(screw, oil, replace(SETTINGS, load_range=(low, 1500.0), held_out=1), run)
-    assert counts[-1500.0] == counts[0.0]
-
-
 def test_failed_chains_leave_masked_nodes(data, screw, oil, stand_in):
     """The column of the highest load in cold oil; lookups beside it are NaN, others stay."""
 
     def run(tasks):
-        gone = f'{2000.0!r} N, temperature 0,'
+        gone = f'{2000.0!r} N, temperature 0'
         done = stand_in.run(tasks)
-        return {name: None if gone in name else one for name, one in done.items()}
+        return {name: None if name == gone else one for name, one in done.items()}
 
     broken = build_full(screw, oil, SETTINGS, run)
     for j in (0, -1):

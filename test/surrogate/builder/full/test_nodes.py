@@ -1,26 +1,18 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Nodes of a full-tier surface: loads beside the idle one, temperatures, onsets, what is read."""
+"""Nodes of a full-tier surface: loads beside the idle one, onsets, speeds."""
 
 from dataclasses import replace
-import math
 
 import numpy as np
 import pytest
 from surrogate.asperities.law import law_of
-from surrogate.builder.full.nodes import (
-    BESIDE,
-    covering,
-    signed_loads,
-    surface_nodes,
-    temperature_nodes,
-)
+from surrogate.builder.full.nodes import BESIDE, signed_loads, surface_nodes
 from surrogate.builder.full.settings import default_full_settings
 from surrogate.formulas.geometry import screw_contact
 from surrogate.formulas.inlet_heating import SPEED_EXPONENT
 from surrogate.formulas.kinematics import no_slip_rates
 from surrogate.formulas.load_sharing import idle_load, normal_force
-from surrogate.formulas.lubricant import lubricant_state
 from surrogate.screw.contacts import oil_at
 from surrogate.screw.onset import onset_speeds, SMOOTH_ONSET
 
@@ -88,16 +80,6 @@ def test_loads_of_a_free_screw_crowd_zero(screw, settings):
     assert (nodes == -nodes[::-1]).all()
 
 
-@pytest.mark.parametrize('count', [2, 5, 9])
-def test_temperatures_are_even_in_the_logarithm_of_the_viscosity(oil, settings, count):
-    """From end to end of the range."""
-    found = temperature_nodes(oil, replace(settings, temperature_nodes=count))
-    assert found[[0, -1]].tolist() == list(settings.temperature_range)
-    steps = np.diff(np.log(lubricant_state(oil, found).viscosity))
-    assert (steps < 0).all()
-    assert steps == pytest.approx(steps.mean(), rel=1e-3)
-
-
 def test_the_onset_is_that_of_the_law_on_the_faster_side(screw, oil):
     """By the entrainment of the screw, under preload; faster in hot oil."""
     found = onset_speeds(screw, oil, np.array([0.0]), np.array([WARM, 340.0]))
@@ -134,24 +116,11 @@ def test_smooth_raceways_have_a_stand_in(screw, oil):
     assert found[0, 0] == pytest.approx(SMOOTH_ONSET / no_slip_rates(screw).entrainment)
 
 
-def test_columns_cover_what_their_neighbours_cover():
-    """The nodes around both ends of the range, seen from every column beside."""
-    s = np.linspace(-5.0, 5.0, 11)
-    log_onset = np.array([[0.0, 1.0, 2.0]])
-    needed = covering(s, log_onset, (math.exp(-0.5), math.exp(1.5)))
-    covered = [s[needed[:, 0, k]][[0, -1]].tolist() for k in range(3)]
-    assert covered == [[-2.0, 2.0], [-3.0, 2.0], [-3.0, 1.0]]
-
-
-def test_speeds_of_a_column_fall_and_reach_beyond_the_range(screw, oil, settings):
-    """At every load and temperature, from the nodes that are needed."""
+def test_speeds_of_every_column_cover_the_range(screw, oil, settings):
+    """At every load and temperature, to both ends."""
     nodes = surface_nodes(screw, oil, settings)
-    assert nodes.needed.shape == (len(nodes.s), len(nodes.load), len(nodes.temperature))
-    assert not nodes.needed.all()
-    low, high = settings.speed_range
-    for j, k in np.ndindex(nodes.log_onset.shape):
-        speeds = nodes.speeds(j, k)
-        assert (np.diff(speeds) < 0).all()
-        assert len(speeds) == nodes.needed[:, j, k].sum()
-        assert speeds[0] >= high * (1 - 1e-9)
-        assert speeds[-1] <= low * (1 + 1e-9)
+    found = nodes.log_speed
+    assert found.shape == (len(nodes.s), len(nodes.load), len(nodes.temperature))
+    low, high = np.log(settings.speed_range)
+    assert (found[0] <= low + 1e-9).all()
+    assert (found[-1] >= high - 1e-9).all()

@@ -1,0 +1,189 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Ratios of solved screws to formulas, which few points tell.
+
+Load sharing, kinematics and the law of asperity contact are the same in both tiers. What is left,
+films, traction and the balance of the balls, differs by a factor that varies slowly with speed,
+load and temperature; RCS and asperity share do not differ.
+
+"""
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import PchipInterpolator
+from scipy.ndimage import distance_transform_edt
+from surrogate.builder.closed_form import temperature_nodes
+from surrogate.builder.full.chain import chain_inputs, solved_chain, SolvedChain
+from surrogate.builder.full.nodes import beside_idle, LIGHTEST, Nodes
+from surrogate.builder.full.settings import FullSettings
+from surrogate.files import InputError
+from surrogate.formulas.load_sharing import UNLOADING_RATIO
+from surrogate.formulas.lubricant import lubricant_state
+from surrogate.parameters import Lubricant, Screw
+from surrogate.screw import closed_form
+from surrogate.surface import FIELDS
+from surrogate.surface.fields import SHARES
+
+Array = NDArray[np.float64]
+CORRECTED = tuple(name for name in FIELDS if name not in SHARES)
+"""Fields that differ between the tiers."""
+SPEEDS = (0.0, 0.25, 0.42, 0.58, 0.71, 0.83, 0.92, 0.96, 1.0)
+"""Solved speeds over the range, in logarithms [-]: they crowd where the balls feel inertia."""
+LOADS = (0.0, 0.375, 0.75, 1.0)
+"""Solved loads between none and the idle load [-]."""
+TEMPERATURES = 3
+"""Number of solved temperatures."""
+SENSES = ('opposing', 'assisting')
+"""Load against the motion, and with it."""
+NEXT_TO_A_FAILURE = 1e-9
+"""Interpolated share of failed points above which a node has one beside it [-]."""
+Results = Mapping[str, Mapping[str, Any] | None]
+Run = Callable[[Mapping[str, Mapping[str, Any]]], Results]
+"""Solves named chains: their results, None for a failure."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class SolvedGrid:
+    """
+    Where screws are solved: rising speeds [rad/s], loads [N], temperatures [K].
+
+    Magnitudes of the load stand in `pieces`, between which the fields jump.
+
+    """
+
+    speeds: Array
+    pieces: tuple[Array, ...]
+    temperature: Array
+
+    @property
+    def loads(self) -> Array:
+        """Return the loads of all pieces [N]."""
+        return np.concatenate(self.pieces)
+
+
+def solved_grid(screw: Screw, lubricant: Lubricant, settings: FullSettings) -> SolvedGrid:
+    """Return the points that are solved for a surface of some settings."""
+    low, high = np.log(settings.speed_range)
+    return SolvedGrid(
+        speeds=np.exp(low + (high - low) * np.array(SPEEDS)),
+        pieces=tuple(_pieces(screw, settings)),
+        temperature=temperature_nodes(lubricant, settings.temperature_range, TEMPERATURES),
+    )
+
+
+def _pieces(screw: Screw, settings: FullSettings) -> Iterator[Array]:
+    """Yield loads [N] up to the idle load and beyond it, as far as the range reaches."""
+    low, high = settings.load_range
+    least = 0.0 if low <= 0 <= high else min(abs(low), abs(high))
+    most, (below, above) = max(abs(low), abs(high)), beside_idle(screw)
+    if above <= 0:
+        yield np.geomspace(max(least, LIGHTEST * most), most, len(LOADS))
+        return
+    if least < above:
+        end = most if most <= above else below
+        yield least + (end - least) * np.array(LOADS)
+    if most > above:
+        ends = np.array([above, UNLOADING_RATIO * screw.preload, most])
+        yield np.unique(np.clip(ends, max(least, above), most))
+
+
+def solve_ratios(
+    screw: Screw, lubricant: Lubricant, grid: SolvedGrid, run: Run
+) -> dict[str, Array]:
+    """
+    Return the logarithms of the ratios by field, [sense, speed, load, temperature].
+
+    NaN where a point did not converge. Raises InputError if none did.
+
+    """
+    formulas = closed_form.solve(
+        screw, lubricant, grid.speeds[:, None, None], grid.loads[:, None], grid.temperature
+    )
+    shape = (len(SENSES), len(grid.speeds), len(grid.loads), len(grid.temperature))
+    logs = {name: np.full(shape, np.nan) for name in CORRECTED}
+    for (j, k), chain in _solved_chains(screw, lubricant, grid, run):
+        for sense, points in enumerate((chain.opposing, chain.assisting)):
+            for i, point in enumerate(reversed(points)):
+                for name in CORRECTED if point.converged else ():
+                    ratio = getattr(point, name) / getattr(formulas, name)[i, j, k]
+                    logs[name][sense, i, j, k] = math.log(ratio)
+    if np.isnan(logs['friction_torque']).all():
+        raise InputError('screw: no point of the surface converged, see the reasons above')
+    return logs
+
+
+def _solved_chains(
+    screw: Screw, lubricant: Lubricant, grid: SolvedGrid, run: Run
+) -> Iterator[tuple[tuple[int, int], SolvedChain]]:
+    """Yield solved chains with the places of their load and temperature on the grid."""
+    speeds, tasks, places = grid.speeds[::-1].tolist(), {}, {}
+    for j, load in enumerate(grid.loads.tolist()):
+        for k, heat in enumerate(grid.temperature.tolist()):
+            name = f'{load!r} N, temperature {k}'
+            tasks[name] = chain_inputs(screw, lubricant, load, heat, speeds)
+            places[name] = j, k
+    for name, result in run(tasks).items():
+        if result:
+            yield places[name], solved_chain(result)
+
+
+def ratios_at(
+    logs: Mapping[str, Array], grid: SolvedGrid, nodes: Nodes, lubricant: Lubricant
+) -> tuple[dict[str, Array], NDArray[np.bool_]]:
+    """
+    Return the ratios of each field at nodes, and which nodes have a failed point beside them.
+
+    Monotone cubics along each axis, constant beyond the solved speeds.
+
+    """
+    failed = np.isnan(logs['friction_torque'])
+    nearest = distance_transform_edt(failed, return_distances=False, return_indices=True)
+    stacked = np.stack([*(values[tuple(nearest)] for values in logs.values()), failed])
+    found = _along_speed(
+        _along_load(_along_temperature(stacked, grid, nodes, lubricant), grid, nodes), grid, nodes
+    )
+    ratios = {name: np.exp(values) for name, values in zip(logs, found)}
+    return ratios, found[-1] > NEXT_TO_A_FAILURE
+
+
+def _along_temperature(
+    values: Array, grid: SolvedGrid, nodes: Nodes, lubricant: Lubricant
+) -> Array:
+    """Return [field, sense, speed, load, temperature] at the temperatures of the nodes."""
+    known, wanted = (
+        -np.log(lubricant_state(lubricant, heat).viscosity)
+        for heat in (grid.temperature, nodes.temperature)
+    )
+    return np.asarray(PchipInterpolator(known, values, axis=4)(wanted))
+
+
+def _along_load(values: Array, grid: SolvedGrid, nodes: Nodes) -> Array:
+    """Return [field, speed, load, temperature] at the signed loads of the nodes."""
+    sizes, opposing = np.abs(nodes.load), nodes.load >= 0
+    gaps = [0.5 * (low[-1] + high[0]) for low, high in zip(grid.pieces, grid.pieces[1:])]
+    owner, firsts = np.searchsorted(gaps, sizes), np.cumsum([0, *map(len, grid.pieces)])
+    found = np.empty((len(values), len(grid.speeds), len(sizes), len(nodes.temperature)))
+    for place, piece in enumerate(grid.pieces):
+        first, last = firsts[place], firsts[place + 1]
+        for sense, signed in enumerate((opposing, ~opposing)):
+            here = (owner == place) & signed
+            along = PchipInterpolator(piece, values[:, sense, :, first:last], axis=2)
+            found[:, :, here] = along(np.clip(sizes[here], piece[0], piece[-1]))
+    return found
+
+
+def _along_speed(values: Array, grid: SolvedGrid, nodes: Nodes) -> Array:
+    """Return [field, speed, load, temperature] at the speeds of the nodes."""
+    known = np.log(grid.speeds)
+    wanted = np.clip(nodes.log_speed, known[0], known[-1])
+    found = np.empty((len(values), *wanted.shape))
+    for j, k in np.ndindex(nodes.log_onset.shape):
+        along = PchipInterpolator(known, values[:, :, j, k], axis=1)
+        found[:, :, j, k] = along(wanted[:, j, k])
+    return found
