@@ -9,7 +9,7 @@ from typing import TextIO
 
 WIDTH = 40
 """Length of the bar in characters."""
-LOG_SHARE, LOG_PAUSE = 0.1, 60.0
+LOG_SHARE, LOG_PAUSE = 0.1, 10.0
 """A log gets a line per this share of the work [-], or after this time [s] if that is sooner."""
 OnProgress = Callable[[int, int], None]
 """Told how much is done, of how much: `Progress.show`, or whatever takes its place."""

@@ -11,6 +11,7 @@ from typing import Any
 from surrogate.commands.output import add_json, show
 from surrogate.files import InputError
 from surrogate.parameters import load_lubricant, load_screw, Lubricant, OperatingPoint, Screw
+from surrogate.surface.shipped import SHIPPED_TIERS
 from surrogate.units import RPM, ZERO_CELSIUS
 
 FULL_ONLY = ('kinematics', 'inlet_heating', 'plot')
@@ -25,8 +26,8 @@ def add_point_command(subparsers: Any) -> None:
     parser.add_argument(
         '--tier',
         choices=('closed_form', 'full'),
-        default='closed_form',
-        help='model: published formulas, or four solved contacts and balanced balls (seconds)',
+        default=SHIPPED_TIERS[0],
+        help='model: four solved contacts and balanced balls (default), or published formulas',
     )
     parser.add_argument(
         '--kinematics',

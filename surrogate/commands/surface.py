@@ -20,6 +20,7 @@ from surrogate.parameters import load_lubricant, load_screw
 from surrogate.progress import Progress
 from surrogate.surface import find_surface
 from surrogate.surface.file import read, write
+from surrogate.surface.shipped import SHIPPED_TIERS
 from surrogate.units import RPM, ZERO_CELSIUS
 
 
@@ -40,7 +41,12 @@ def add_surface_command(subparsers: Any) -> None:
 
 def _add_build(parser: argparse.ArgumentParser) -> None:
     add_inputs(parser)
-    parser.add_argument('--tier', choices=tuple(TIERS), default='closed_form')
+    parser.add_argument(
+        '--tier',
+        choices=tuple(TIERS),
+        default=SHIPPED_TIERS[0],
+        help='solved contacts in a minute (default), or published formulas alone in seconds',
+    )
     for name, unit in (('speed', 'rpm'), ('load', 'N'), ('temperature', 'degC')):
         parser.add_argument(
             f'--{name}-range',
@@ -86,7 +92,7 @@ def _build(args: argparse.Namespace) -> int:
             args.tier, screw, lubricant, settings, progress=progress, pool=pool, out=out
         )
     write(out, data)
-    print(f'{out}: {data.mask.size} nodes, sha256 {data.sha256}')
+    print(f'{out}: tier {args.tier}, {data.mask.size} nodes, sha256 {data.sha256}')
     return 0
 
 

@@ -83,9 +83,10 @@ def _surface(
 
 def rcs_deviation(s: Array, rcs: Array, deviation: float) -> Array:
     """
-    Return the change of RCS [-], speeds first, where the onset is off by half a deviation each way.
+    Return the change of RCS [-] where the onset is off by half of its deviation either way.
 
-    `s` are the mapped speeds [-], and `deviation` is that of the logarithm of the onset [-].
+    `s` are the mapped speeds [-], the first axis of `rcs`; `deviation` is that of the logarithm
+    of the onset [-].
 
     """
     along = PchipInterpolator(s, rcs)

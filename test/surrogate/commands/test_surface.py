@@ -21,7 +21,7 @@ def test_build_info_check(run, tmp_path: Path, capsys):
     """A surface is built, described and found good; a second build is the same surface."""
     path = tmp_path / 'map.npz'
     ranges = ('--load-range', -500, 500, '--temperature-range', 30, 50, '--speed-range', 1, 2000)
-    assert run('build', '--out', path, *ranges) == 0
+    assert run('build', '--tier', 'closed_form', '--out', path, *ranges) == 0
     built = capsys.readouterr().out
     assert run('info', path, '--json') == 0
     info = json.loads(capsys.readouterr().out)
@@ -162,4 +162,4 @@ def test_clean_removes_kept_results(run, tmp_path: Path, capsys):
 
 def test_workers_are_refused_where_they_would_do_nothing(run, refused):
     """The closed form is solved in a second or two, in this process."""
-    refused('workers_dask_have', run, 'build', '--workers', '2')
+    refused('workers_dask_have', run, 'build', '--tier', 'closed_form', '--workers', '2')

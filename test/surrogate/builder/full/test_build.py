@@ -24,6 +24,7 @@ SETTINGS = FullSettings(
     speed_range=(0.5, 100.0),
     load_range=(-2000.0, 2000.0),
     temperature_range=(293.15, 333.15),
+    speed_nodes=24,
     temperature_nodes=4,
     held_out=12,
     load_cells=3,
