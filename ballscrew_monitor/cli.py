@@ -121,8 +121,7 @@ def _import(args: argparse.Namespace) -> int:
 
 def _read_bag(args: argparse.Namespace, lead: float) -> tuple[dict[str, Any], tuple[str, ...]]:
     """Return torque over speed out of a bag, for `identify`; the lead of the screw [m]."""
-    from ballscrew_monitor.core.inputs import Source
-    from ballscrew_monitor.recordings import no_load as no_load_bag
+    from ballscrew_monitor.recordings import no_load
     from ballscrew_monitor.recordings.opener import opened_log
 
     check_middleware(discovers=False)
@@ -130,20 +129,16 @@ def _read_bag(args: argparse.Namespace, lead: float) -> tuple[dict[str, Any], tu
         if getattr(args, name) is None:
             raise InputError(f'--{name.replace("_", "-")} is missing, a bag needs it')
     scale = 1.0 if args.torque_scale is None else args.torque_scale
-    channels = {
-        Source.SPEED: no_load_bag.speed_channel(
-            args.speed_topic, args.speed_field, args.speed_unit or 'rad/s', lead
-        ),
-        Source.TORQUE: no_load_bag.torque_channel(
-            args.torque_topic or args.speed_topic, args.torque_field, scale
-        ),
-    }
+    unit, torque_topic = args.speed_unit or 'rad/s', args.torque_topic or args.speed_topic
+    channels = [
+        no_load.speed_channel(args.speed_topic, args.speed_field, unit, lead),
+        no_load.torque_channel(torque_topic, args.torque_field, scale),
+    ]
     if args.temperature_topic:
-        channels[Source.TEMPERATURE] = no_load_bag.temperature_channel(
-            args.temperature_topic, args.temperature_field or 'temperature'
-        )
+        field = args.temperature_field or 'temperature'
+        channels.append(no_load.temperature_channel(args.temperature_topic, field))
     with opened_log(args.data) as bag:
-        columns, notes = no_load_bag.read_no_load(bag, channels)
+        columns, notes = no_load.read_no_load(bag, channels)
         return columns, (*bag.notes, *notes)
 
 

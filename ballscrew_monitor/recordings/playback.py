@@ -5,13 +5,13 @@
 from collections.abc import Sequence
 import dataclasses
 from pathlib import Path
-import sys
 import threading
 
 from ballscrew_monitor.core.fields import message_class
 from ballscrew_monitor.core.interrupts import DONE, FAILED, interrupts, SIGNALLED
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.player import CLOCK, Player
+from ballscrew_monitor.recordings.words import say
 from ballscrew_monitor.settings import parameters
 from ballscrew_monitor.settings.middleware import notice
 from ballscrew_monitor.settings.topics import absolute, input_topics
@@ -44,10 +44,10 @@ def playback(path: Path, choice: Choice, *, rate: float, patience: float, loop: 
         node = rclpy.create_node('ballscrew_player', start_parameter_services=False)
         try:
             told = list(bag.notes)
-            _say(*filter(None, (notice(), *told)))
+            say(*filter(None, (notice(), *told)))
             player = Player(node, bag, rate=rate, topics=topics)
             code = _play(player, topics, patience, stop, loop)
-            _say(*(note for note in bag.notes if note not in told))
+            say(*(note for note in bag.notes if note not in told))
         finally:
             node.destroy_node()
             rclpy.shutdown()
@@ -98,11 +98,6 @@ def _problem(bag: Bag, topic: str) -> str:
     return ''
 
 
-def _say(*notes: str) -> None:
-    for note in notes:
-        print(f'ballscrew: {note}', file=sys.stderr)
-
-
 def _play(
     player: Player, topics: Sequence[str], patience: float, stop: threading.Event, loop: bool
 ) -> int:
@@ -110,7 +105,7 @@ def _play(
     if stop.is_set():
         return FAILED
     if set(topics) <= set(missing):
-        _say(f'nobody subscribed to {", ".join(topics)} within {patience:g} s')
+        say(f'nobody subscribed to {", ".join(topics)} within {patience:g} s')
         return FAILED
     if missing:
         print(f'nobody listens to {", ".join(missing)}', flush=True)
