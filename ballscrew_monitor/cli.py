@@ -188,7 +188,7 @@ def _recover(args: argparse.Namespace) -> int:
 
 
 def _play(args: argparse.Namespace) -> int:
-    from ballscrew_monitor.recordings.playback import Choice, playback
+    from ballscrew_monitor.recordings.player import Choice, playback
 
     return playback(
         args.bag,

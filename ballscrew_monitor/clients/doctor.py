@@ -14,7 +14,7 @@ from pathlib import Path
 import threading
 from typing import Any
 
-from ballscrew_monitor.clients.surroundings import Hearing, spun, started_node, surroundings
+from ballscrew_monitor.clients.surroundings import Hearing, spun, surroundings
 from ballscrew_monitor.core.conversions import nanoseconds
 from ballscrew_monitor.core.fields import message_class, number_fields
 from ballscrew_monitor.core.inputs import Input, make_input, Source
@@ -22,9 +22,8 @@ from ballscrew_monitor.core.interrupts import interrupts, SIGNALLED
 from ballscrew_monitor.core.links import Link, types_of
 from ballscrew_monitor.messages.doctor import findings, InputFacts, known_range, Surroundings
 from ballscrew_monitor.settings import axis as axis_settings
-from ballscrew_monitor.settings import parameters
+from ballscrew_monitor.settings import parameters, qos
 from ballscrew_monitor.settings.middleware import notice
-from ballscrew_monitor.settings.qos import check_overrides, input_qos, overridden, publishers_on
 from ballscrew_monitor.settings.topics import absolute
 from rclpy.node import Node
 from rclpy.parameter import Parameter
@@ -45,7 +44,7 @@ def doctor(params: Path, *, seconds: float, as_json: bool = False) -> int:
         raise InputError(f'--seconds is {seconds:g} s, allowed is 0.1 to 3600 s')
     values, given = parameters.read_file(params), parameters.read_ros_parameters(params)
     simulated = Parameter('use_sim_time', value=bool(given.get('use_sim_time', False)))
-    started = started_node('ballscrew_doctor', parameter_overrides=[simulated])
+    started = qos.started_node('ballscrew_doctor', parameter_overrides=[simulated])
     with interrupts(threading.Event()) as interrupted, started as node:
         examination = Examination(node, values, given, interrupted)
         facts = examination.listen(seconds)
@@ -81,7 +80,7 @@ class Examination:
         for axis in values['axes']:
             self._try(axis_settings.derivation_of, axis, values)
         topics = {self._topic(*wanted) for wanted in self._wanted}
-        self._try(check_overrides, given, topics)
+        self._try(qos.check_overrides, given, topics)
         self._surfaces = {
             axis: self._try(axis_settings.load_surface, axis, values) for axis in values['axes']
         }
@@ -123,9 +122,9 @@ class Examination:
         link = Link(
             topic=topic,
             type_name=self._value(axis, source, 'type'),
-            publishers=publishers_on(self._node, topic),
-            reliability=overridden(self._given, topic, 'reliability'),
-            durability=overridden(self._given, topic, 'durability'),
+            publishers=qos.publishers_on(self._node, topic),
+            reliability=qos.overridden(self._given, topic, 'reliability'),
+            durability=qos.overridden(self._given, topic, 'durability'),
         )
         types = types_of(link)
         type_name = link.type_name or (types[0] if len(types) == 1 else '')
@@ -156,7 +155,9 @@ class Examination:
             max_future=nanoseconds(self._values[f'{axis}.max_future']),
             max_lag=nanoseconds(self._values[f'{axis}.max_lag']),
         )
-        self._node.create_subscription(made.message_type, link.topic, hearing.take, input_qos())
+        self._node.create_subscription(
+            made.message_type, link.topic, hearing.take, qos.input_qos()
+        )
         return hearing
 
     def _facts(self, axis: str, source: Source, hearing: Hearing | None) -> InputFacts:

@@ -16,11 +16,12 @@ import sys
 import threading
 from typing import Any
 
-from ballscrew_monitor.clients.surroundings import spun, started_node
+from ballscrew_monitor.clients.surroundings import spun
 from ballscrew_monitor.core.conversions import direction_of, opposing_load
 from ballscrew_monitor.core.interrupts import interrupts, SIGNALLED
 from ballscrew_monitor.recordings.words import say
 from ballscrew_monitor.settings.middleware import notice
+from ballscrew_monitor.settings.qos import started_node
 from ballscrew_msgs.action import SolveOperatingPoint
 from ballscrew_msgs.msg import OperatingPoint, PointResult
 from rclpy.action import ActionClient
