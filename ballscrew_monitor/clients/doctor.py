@@ -17,7 +17,7 @@ from typing import Any
 from ballscrew_monitor.clients.surroundings import Hearing, spun, surroundings
 from ballscrew_monitor.core.conversions import nanoseconds
 from ballscrew_monitor.core.fields import message_class, number_fields
-from ballscrew_monitor.core.inputs import Input, make_input, Source
+from ballscrew_monitor.core.inputs import Input, OpenInput, Source
 from ballscrew_monitor.core.interrupts import interrupts, SIGNALLED
 from ballscrew_monitor.core.links import Link, types_of
 from ballscrew_monitor.messages.doctor import findings, InputFacts, known_range, Surroundings
@@ -130,16 +130,11 @@ class Examination:
         type_name = link.type_name or (types[0] if len(types) == 1 else '')
         if not type_name:
             return link, '', None
-        lead = surface.lead if surface else 1.0
+        lead, field = surface.lead if surface else 1.0, self._value(axis, source, 'field')
         try:
-            made = make_input(
-                source,
-                topic=topic,
-                type_name=type_name,
-                field=self._value(axis, source, 'field'),
-                scaling=axis_settings.scaling_of(axis, self._values, source, lead),
-            )
-            return link, type_name, made
+            scaling = axis_settings.scaling_of(axis, self._values, source, lead)
+            one = OpenInput(source=source, topic=topic, field=field, scaling=scaling)
+            return link, type_name, one.close(type_name)
         except InputError as error:
             return link, type_name, str(error)
 

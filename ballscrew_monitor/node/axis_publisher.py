@@ -145,11 +145,7 @@ class AxisPublisher:
 
     def is_dwelling(self, state: State) -> bool:
         """Tell whether the point of a state should be solved; only where that is asked for."""
-        if not self._values[f'{self.name}.solve_on_dwell']:
-            return False
-        return self.dwell.update(
-            state.stamp, state.point, state.estimate, state.verdict, state.limits
-        )
+        return self._values[f'{self.name}.solve_on_dwell'] and self.dwell.update(state)
 
     def correct(self, point: MachinePoint, full: SurfacePoint) -> tuple[bool, str]:
         """Correct the surface by a full solve and keep it; return whether, and what or why not."""

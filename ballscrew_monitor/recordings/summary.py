@@ -202,40 +202,34 @@ class Summarizer:
 
 def event_record(event: Event, *, until: int) -> EventRecord:
     """Return an event as it stands at the stamp `until` [ns]."""
-    quantity, relation = RELATIONS.get(event.cause.code, ('other', 'beyond'))
     point = None if event.advisor is None else event.advisor.point
     return EventRecord(
         event_id=event.number,
         start=event.start,
         duration=seconds(until - event.start),
-        active=event.active,
-        quantity=quantity,
-        relation=relation,
-        worst_value=event.worst_value,
-        limit=event.cause.limit,
         advice=event.advice.text,
         speed=math.nan if point is None else point.speed,
         axial_load=math.nan if point is None else point.axial_load,
-        target_speed=event.advice.target_speed,
-        target_load=event.advice.target_load,
+        **_said(event, event.cause, event.advice),
     )
 
 
 def _event_record(message: OutOfZone) -> EventRecord:
-    quantity, relation = RELATIONS.get(message.cause.code, ('other', 'beyond'))
     return EventRecord(
         event_id=message.event_id,
         start=message.start.sec * SECOND + message.start.nanosec,
         duration=message.duration,
-        active=message.active,
-        quantity=quantity,
-        relation=relation,
-        worst_value=message.worst_value,
-        limit=message.cause.limit,
         advice=message.advice,
-        target_speed=message.cause.target_speed,
-        target_load=message.cause.target_load,
+        **_said(message, message.cause, message.cause),
     )
+
+
+def _said(event: Any, cause: Any, advice: Any) -> dict[str, Any]:
+    """Return what an event and the message of one name alike."""
+    quantity, relation = RELATIONS.get(cause.code, ('other', 'beyond'))
+    said = {'quantity': quantity, 'relation': relation, 'limit': cause.limit}
+    targets = {name: getattr(advice, name) for name in ('target_speed', 'target_load')}
+    return said | targets | {'active': event.active, 'worst_value': event.worst_value}
 
 
 def _rounded(value: float) -> str:

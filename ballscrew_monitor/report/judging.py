@@ -91,6 +91,16 @@ class AxisCase:
         """Return a stamp [ns] as time on the time line of the page [s]."""
         return (stamp + self.survey.shift - self.survey.first) / SECOND
 
+    def span(self, event: EventRecord) -> tuple[float, float]:
+        """Return begin and end of an event on the time line of the page [s]."""
+        return self.since_first(event.start), self.since_first(event.end)
+
+    def shown(self, event: EventRecord) -> tuple[float, float]:
+        """Return the time about an event that its mark or its row leads to [s]."""
+        begin, end = self.span(event)
+        margin = max(1.0, 0.2 * (end - begin))
+        return begin - margin, end + margin
+
     @property
     def begins(self) -> float:
         """Return the date of its first row [s] since 1970, NaN where the log has no calendar."""
