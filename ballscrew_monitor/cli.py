@@ -18,6 +18,7 @@ from typing import Any
 
 from ballscrew_monitor import options
 from ballscrew_monitor.core.interrupts import FAILED, leave_to_python, raise_signals, SIGNALLED
+from ballscrew_monitor.recordings.words import say
 from ballscrew_monitor.settings.middleware import check_middleware
 from surrogate.cli import add_commands, Parser
 from surrogate.files import InputError
@@ -53,16 +54,13 @@ def main(arguments: list[str] | None = None) -> int:
             leave_to_python()
         return int(args.handler(args))
     except (InputError, SurfaceError) as error:
-        print(f'ballscrew: {error}', file=sys.stderr)
+        say(str(error))
         return BAD_INPUT
     except ImportError as error:
         package = (error.name or '').split('.')[0]
         if package not in NEEDED:
             raise
-        print(
-            f'ballscrew: {package} is not installed, this command needs it: {NEEDED[package]}',
-            file=sys.stderr,
-        )
+        say(f'{package} is not installed, this command needs it: {NEEDED[package]}')
         return FAILED
     except BrokenPipeError:
         # The reader, such as `head`, has seen enough; nothing may be written at exit either.
@@ -70,10 +68,10 @@ def main(arguments: list[str] | None = None) -> int:
         return FAILED
     except OSError as error:
         place = error.filename or getattr(args, 'out', None) or 'the output'
-        print(f'ballscrew: {place} cannot be read or written, {error.strerror}', file=sys.stderr)
+        say(f'{place} cannot be read or written, {error.strerror}')
         return FAILED
     except KeyboardInterrupt:
-        print('ballscrew: interrupted', file=sys.stderr)
+        say('interrupted')
         return INTERRUPTED
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from ballscrew_monitor.core.conversions import SECOND, seconds
 from ballscrew_monitor.core.fields import stamp_of
-from ballscrew_monitor.core.state import Event
+from ballscrew_monitor.core.state import Event, TIMES
 from ballscrew_monitor.recordings.declared import plain, written
 from ballscrew_monitor.recordings.words import number, share
 from ballscrew_msgs.msg import BallScrewState, Finding, OutOfZone
@@ -185,10 +185,7 @@ class Summarizer:
         """Return the summary, None without a state."""
         if self._last is None:
             return None
-        totals = self._last.totals
-        names = [
-            field.name for field in dataclasses.fields(Summary) if hasattr(totals, field.name)
-        ]
+        names, totals = (*TIMES, 'revolutions', 'energy_lost'), self._last.totals
         return Summary(
             axis=self._last.axis,
             first=self._first_stamp,
