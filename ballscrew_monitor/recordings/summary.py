@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Summary of a run or a replay: totals, events, and the words for them."""
 
+from collections.abc import Iterable
 import dataclasses
 import math
 from typing import Any
@@ -159,42 +160,26 @@ class Summary:
         )
 
 
-class Summarizer:
-    """Collects the states and events of one axis."""
-
-    def __init__(self) -> None:
-        """Begin with nothing."""
-        self._last: BallScrewState | None = None
-        self._first_stamp = 0
-        self._states = 0
-        self._events: dict[int, EventRecord] = {}
-
-    def add_state(self, state: BallScrewState) -> None:
-        """Take a state; the last one holds the totals."""
-        if not self._states:
-            self._first_stamp = stamp_of(state)
-        self._states += 1
-        self._last = state
-
-    def add_event(self, message: OutOfZone) -> None:
-        """Take the start or the end of an event."""
-        if message.event_id:
-            self._events[message.event_id] = _event_record(message)
-
-    def result(self) -> Summary | None:
-        """Return the summary, None without a state."""
-        if self._last is None:
-            return None
-        names, totals = (*TIMES, 'revolutions', 'energy_lost'), self._last.totals
-        return Summary(
-            axis=self._last.axis,
-            first=self._first_stamp,
-            last=stamp_of(self._last),
-            states=self._states,
-            judged=self._last.judged,
-            events=tuple(self._events[key] for key in sorted(self._events)),
-            **{name: getattr(totals, name) for name in names},
-        )
+def summary_of(said: Iterable[BallScrewState | OutOfZone]) -> Summary | None:
+    """Return what states and events of one axis come to, None without a state."""
+    first, states, last = 0, 0, None
+    events: dict[int, EventRecord] = {}
+    for one in said:
+        if isinstance(one, BallScrewState):
+            first, states, last = first if states else stamp_of(one), states + 1, one
+        elif one.event_id:
+            events[one.event_id] = _event_record(one)
+    if last is None:
+        return None
+    return Summary(
+        axis=last.axis,
+        first=first,
+        last=stamp_of(last),
+        states=states,
+        judged=last.judged,
+        events=tuple(events[key] for key in sorted(events)),
+        **{name: getattr(last.totals, name) for name in (*TIMES, 'revolutions', 'energy_lost')},
+    )
 
 
 def event_record(event: Event, *, until: int) -> EventRecord:
