@@ -35,8 +35,8 @@ Texts = Mapping[Source, str]
 """Sentences of the last refused messages."""
 _POINT: dict[str, Any] = {field.name: field.type for field in dataclasses.fields(MachinePoint)}
 """Names and types of what a row and a point have in common."""
-_PARTS = {f'{regime.word}_time': ('regime_time', regime) for regime in REGIMES} | {
-    f'{zone.name.lower()}_time': ('zone_time', zone) for zone in (Zone.OPTIMAL, Zone.OUTSIDE)
+_PARTS = {f'{regime.word}_time': ('regime_time', int(regime)) for regime in REGIMES} | {
+    f'{zone.name.lower()}_time': ('zone_time', int(zone)) for zone in (Zone.OPTIMAL, Zone.OUTSIDE)
 }
 """Times of the totals that are parts of a list in a memory, and their places there."""
 

@@ -50,13 +50,17 @@ def fill_time(message: Time, stamp: int) -> None:
 
 def fill_point(message: OperatingPoint, point: MachinePoint) -> None:
     """Fill in an operating point."""
-    for name in ('speed', 'axial_load', 'motor_torque', 'axial_load_uncertainty'):
-        setattr(message, name, float(getattr(point, name)))
-    for source in ('speed', 'axial_load', 'temperature', 'motor_torque'):
-        setattr(message, f'{source}_source', int(getattr(point, f'{source}_source')))
+    message.speed = float(point.speed)
+    message.axial_load = float(point.axial_load)
     message.temperature = celsius(float(point.temperature))
+    message.motor_torque = float(point.motor_torque)
+    message.speed_source = int(point.speed_source)
+    message.axial_load_source = int(point.axial_load_source)
+    message.temperature_source = int(point.temperature_source)
+    message.motor_torque_source = int(point.motor_torque_source)
     message.direction = int(point.direction)
     message.direction_held = point.direction_held
+    message.axial_load_uncertainty = float(point.axial_load_uncertainty)
 
 
 def read_point(message: OperatingPoint, *, default_temperature: float) -> MachinePoint:
