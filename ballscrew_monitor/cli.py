@@ -18,6 +18,7 @@ from typing import Any
 
 from ballscrew_monitor import options
 from ballscrew_monitor.core.interrupts import FAILED, leave_to_python, raise_signals, SIGNALLED
+from ballscrew_monitor.recordings.words import say
 from ballscrew_monitor.settings.middleware import check_middleware
 from surrogate.cli import add_commands, Parser
 from surrogate.files import InputError
@@ -53,16 +54,13 @@ def main(arguments: list[str] | None = None) -> int:
             leave_to_python()
         return int(args.handler(args))
     except (InputError, SurfaceError) as error:
-        print(f'ballscrew: {error}', file=sys.stderr)
+        say(str(error))
         return BAD_INPUT
     except ImportError as error:
         package = (error.name or '').split('.')[0]
         if package not in NEEDED:
             raise
-        print(
-            f'ballscrew: {package} is not installed, this command needs it: {NEEDED[package]}',
-            file=sys.stderr,
-        )
+        say(f'{package} is not installed, this command needs it: {NEEDED[package]}')
         return FAILED
     except BrokenPipeError:
         # The reader, such as `head`, has seen enough; nothing may be written at exit either.
@@ -70,10 +68,10 @@ def main(arguments: list[str] | None = None) -> int:
         return FAILED
     except OSError as error:
         place = error.filename or getattr(args, 'out', None) or 'the output'
-        print(f'ballscrew: {place} cannot be read or written, {error.strerror}', file=sys.stderr)
+        say(f'{place} cannot be read or written, {error.strerror}')
         return FAILED
     except KeyboardInterrupt:
-        print('ballscrew: interrupted', file=sys.stderr)
+        say('interrupted')
         return INTERRUPTED
 
 
@@ -121,8 +119,7 @@ def _import(args: argparse.Namespace) -> int:
 
 def _read_bag(args: argparse.Namespace, lead: float) -> tuple[dict[str, Any], tuple[str, ...]]:
     """Return torque over speed out of a bag, for `identify`; the lead of the screw [m]."""
-    from ballscrew_monitor.core.inputs import Source
-    from ballscrew_monitor.recordings import no_load as no_load_bag
+    from ballscrew_monitor.recordings import no_load
     from ballscrew_monitor.recordings.opener import opened_log
 
     check_middleware(discovers=False)
@@ -130,20 +127,16 @@ def _read_bag(args: argparse.Namespace, lead: float) -> tuple[dict[str, Any], tu
         if getattr(args, name) is None:
             raise InputError(f'--{name.replace("_", "-")} is missing, a bag needs it')
     scale = 1.0 if args.torque_scale is None else args.torque_scale
-    channels = {
-        Source.SPEED: no_load_bag.speed_channel(
-            args.speed_topic, args.speed_field, args.speed_unit or 'rad/s', lead
-        ),
-        Source.TORQUE: no_load_bag.torque_channel(
-            args.torque_topic or args.speed_topic, args.torque_field, scale
-        ),
-    }
+    unit, torque_topic = args.speed_unit or 'rad/s', args.torque_topic or args.speed_topic
+    channels = [
+        no_load.speed_channel(args.speed_topic, args.speed_field, unit, lead),
+        no_load.torque_channel(torque_topic, args.torque_field, scale),
+    ]
     if args.temperature_topic:
-        channels[Source.TEMPERATURE] = no_load_bag.temperature_channel(
-            args.temperature_topic, args.temperature_field or 'temperature'
-        )
+        field = args.temperature_field or 'temperature'
+        channels.append(no_load.temperature_channel(args.temperature_topic, field))
     with opened_log(args.data) as bag:
-        columns, notes = no_load_bag.read_no_load(bag, channels)
+        columns, notes = no_load.read_no_load(bag, channels)
         return columns, (*bag.notes, *notes)
 
 
@@ -193,7 +186,7 @@ def _recover(args: argparse.Namespace) -> int:
 
 
 def _play(args: argparse.Namespace) -> int:
-    from ballscrew_monitor.recordings.playback import Choice, playback
+    from ballscrew_monitor.recordings.player import Choice, playback
 
     return playback(
         args.bag,

@@ -14,17 +14,16 @@ from pathlib import Path
 import threading
 from typing import Any
 
-from ballscrew_monitor.clients.surroundings import Hearing, spun, started_node, surroundings
+from ballscrew_monitor.clients.surroundings import Hearing, spun, surroundings
 from ballscrew_monitor.core.conversions import nanoseconds
 from ballscrew_monitor.core.fields import message_class, number_fields
-from ballscrew_monitor.core.inputs import Input, make_input, Source
+from ballscrew_monitor.core.inputs import Input, OpenInput, Source
 from ballscrew_monitor.core.interrupts import interrupts, SIGNALLED
 from ballscrew_monitor.core.links import Link, types_of
 from ballscrew_monitor.messages.doctor import findings, InputFacts, known_range, Surroundings
 from ballscrew_monitor.settings import axis as axis_settings
-from ballscrew_monitor.settings import parameters
+from ballscrew_monitor.settings import parameters, qos
 from ballscrew_monitor.settings.middleware import notice
-from ballscrew_monitor.settings.qos import check_overrides, input_qos, overridden, publishers_on
 from ballscrew_monitor.settings.topics import absolute
 from rclpy.node import Node
 from rclpy.parameter import Parameter
@@ -45,7 +44,7 @@ def doctor(params: Path, *, seconds: float, as_json: bool = False) -> int:
         raise InputError(f'--seconds is {seconds:g} s, allowed is 0.1 to 3600 s')
     values, given = parameters.read_file(params), parameters.read_ros_parameters(params)
     simulated = Parameter('use_sim_time', value=bool(given.get('use_sim_time', False)))
-    started = started_node('ballscrew_doctor', parameter_overrides=[simulated])
+    started = qos.started_node('ballscrew_doctor', parameter_overrides=[simulated])
     with interrupts(threading.Event()) as interrupted, started as node:
         examination = Examination(node, values, given, interrupted)
         facts = examination.listen(seconds)
@@ -81,7 +80,7 @@ class Examination:
         for axis in values['axes']:
             self._try(axis_settings.derivation_of, axis, values)
         topics = {self._topic(*wanted) for wanted in self._wanted}
-        self._try(check_overrides, given, topics)
+        self._try(qos.check_overrides, given, topics)
         self._surfaces = {
             axis: self._try(axis_settings.load_surface, axis, values) for axis in values['axes']
         }
@@ -123,24 +122,19 @@ class Examination:
         link = Link(
             topic=topic,
             type_name=self._value(axis, source, 'type'),
-            publishers=publishers_on(self._node, topic),
-            reliability=overridden(self._given, topic, 'reliability'),
-            durability=overridden(self._given, topic, 'durability'),
+            publishers=qos.publishers_on(self._node, topic),
+            reliability=qos.overridden(self._given, topic, 'reliability'),
+            durability=qos.overridden(self._given, topic, 'durability'),
         )
         types = types_of(link)
         type_name = link.type_name or (types[0] if len(types) == 1 else '')
         if not type_name:
             return link, '', None
-        lead = surface.lead if surface else 1.0
+        lead, field = surface.lead if surface else 1.0, self._value(axis, source, 'field')
         try:
-            made = make_input(
-                source,
-                topic=topic,
-                type_name=type_name,
-                field=self._value(axis, source, 'field'),
-                scaling=axis_settings.scaling_of(axis, self._values, source, lead),
-            )
-            return link, type_name, made
+            scaling = axis_settings.scaling_of(axis, self._values, source, lead)
+            one = OpenInput(source=source, topic=topic, field=field, scaling=scaling)
+            return link, type_name, one.close(type_name)
         except InputError as error:
             return link, type_name, str(error)
 
@@ -156,7 +150,9 @@ class Examination:
             max_future=nanoseconds(self._values[f'{axis}.max_future']),
             max_lag=nanoseconds(self._values[f'{axis}.max_lag']),
         )
-        self._node.create_subscription(made.message_type, link.topic, hearing.take, input_qos())
+        self._node.create_subscription(
+            made.message_type, link.topic, hearing.take, qos.input_qos()
+        )
         return hearing
 
     def _facts(self, axis: str, source: Source, hearing: Hearing | None) -> InputFacts:

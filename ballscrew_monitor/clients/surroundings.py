@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Surroundings in a ROS graph: domain, nodes, topics, and an input as nodes take it."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 import contextlib
 import math
 import os
@@ -16,44 +16,13 @@ from ballscrew_monitor.judge.inputs import accept, take_refusal
 from ballscrew_monitor.judge.monitor import fill, InputWords
 from ballscrew_monitor.judge.records import Event, Memory, Settings
 from ballscrew_monitor.messages.doctor import Heard, Surroundings
-import rclpy
 from rclpy.clock import Clock
-from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
-from rclpy.signals import SignalHandlerOptions
-from surrogate.files import InputError
 
 UDP = Path('/proc/net/udp')
 PORTS, PER_DOMAIN, OFFSETS = 7400, 250, range(10, 60)  # DDSI-RTPS 2.3, 9.6.1
 POLL = 0.05  # [s] longest wait before a signal is noticed
 MOST_DOMAIN = 101  # above, the ports may be those of any client
-
-
-@contextlib.contextmanager
-def started_node(name: str, domain: int | None = None, **options: Any) -> Iterator[Node]:
-    """
-    Start ROS and a node with an executor, until the end; raises InputError where that fails.
-
-    The `domain` is that of the environment unless stated.
-
-    """
-    context = rclpy.Context()
-    try:
-        rclpy.init(
-            context=context, domain_id=domain, signal_handler_options=SignalHandlerOptions.NO
-        )
-    except RuntimeError as error:  # such as a domain that is no number
-        raise InputError(f'ROS cannot start: {" ".join(str(error).split())}') from None
-    options |= {'context': context, 'enable_rosout': False, 'start_parameter_services': False}
-    node = rclpy.create_node(name, **options)
-    executor = SingleThreadedExecutor(context=context)
-    executor.add_node(node)
-    try:
-        yield node
-    finally:
-        executor.shutdown()
-        node.destroy_node()
-        rclpy.shutdown(context=context)
 
 
 def spun(

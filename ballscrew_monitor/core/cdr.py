@@ -15,28 +15,13 @@ import operator
 import struct
 from typing import Any
 
-from ballscrew_monitor.core.fields import message_class
+from ballscrew_monitor.core.fields import FORMATS, message_class
 from rosidl_parser import definition
 from surrogate.files import InputError
 
 HEADER = b'\0\1\0\0'  # little-endian CDR
 LARGEST = 8  # bytes of the largest number, to a multiple of which anything is aligned
 _LENGTH = struct.Struct('<I')
-_FORMATS = {
-    'boolean': '?',
-    'octet': 'B',
-    'float': 'f',
-    'double': 'd',
-    'int8': 'b',
-    'uint8': 'B',
-    'int16': 'h',
-    'uint16': 'H',
-    'int32': 'i',
-    'uint32': 'I',
-    'int64': 'q',
-    'uint64': 'Q',
-}
-
 Encoder = Callable[[bytearray, Any], None]
 
 
@@ -67,14 +52,14 @@ def _message_encoder(message_type: Any) -> Encoder:
 
 def _is_plain(kind: Any) -> bool:
     """Tell whether a field is a number as it stands; an octet is a `bytes` of length one."""
-    return getattr(kind, 'typename', 'octet') in _FORMATS.keys() - {'octet'}
+    return getattr(kind, 'typename', 'octet') in FORMATS.keys() - {'octet'}
 
 
 def _row(fields: Sequence[tuple[str, Any]]) -> Encoder:
     """Return what appends numbers in a row, packed at once."""
     names, kinds = zip(*fields)
     values = operator.attrgetter(*names)
-    codes = [_FORMATS[kind.typename] for kind in kinds]
+    codes = [FORMATS[kind.typename] for kind in kinds]
     packs = [_padded(codes, begin) for begin in range(LARGEST)]
 
     def encode(data: bytearray, message: Any) -> None:
@@ -131,9 +116,9 @@ def _all_of(kind: Any, *, counted: bool) -> Encoder:
 
 def _numbers(kind: Any) -> Encoder:
     name = getattr(kind, 'typename', '')
-    if name not in _FORMATS:
+    if name not in FORMATS:
         raise InputError(f'a field is of type {type(kind).__name__}, which cannot be serialised')
-    code = _FORMATS[name]
+    code = FORMATS[name]
     size = struct.calcsize(f'<{code}')
 
     def encode(data: bytearray, values: Sequence[Any]) -> None:

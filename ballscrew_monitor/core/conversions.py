@@ -168,9 +168,8 @@ def seconds(nanoseconds: int) -> float:
 
 def clock_text(stamp: int) -> str:
     """Return a stamp [ns] for people, in UTC, to the second."""
-    return (
-        f'{datetime.datetime.fromtimestamp(stamp // SECOND, datetime.UTC):%Y-%m-%d %H:%M:%S} UTC'
-    )
+    moment = datetime.datetime.fromtimestamp(stamp // SECOND, datetime.UTC)
+    return f'{moment:%Y-%m-%d %H:%M:%S} UTC'
 
 
 def direction_of(speed: float) -> Direction:

@@ -22,11 +22,22 @@ from surrogate.files import InputError
 _SEGMENT = re.compile(r'([A-Za-z]\w*)(?:\[([^\[\]]+)\])?')
 _DOT = re.compile(r'\.(?![^\[\]]*\])')  # one between brackets belongs to the name of a joint
 _ARRAY = re.compile(r'(?:sequence<(?P<sequence>.+?)(?:, \d+)?>|(?P<array>.+)\[\d+\])')
-_NUMBERS = frozenset(
-    ['float', 'double', 'octet']
-    + [f'{sign}int{bits}' for sign in ('', 'u') for bits in (8, 16, 32, 64)]
-)
-
+FORMATS = {
+    'boolean': '?',
+    'octet': 'B',
+    'float': 'f',
+    'double': 'd',
+    'int8': 'b',
+    'uint8': 'B',
+    'int16': 'h',
+    'uint16': 'H',
+    'int32': 'i',
+    'uint32': 'I',
+    'int64': 'q',
+    'uint64': 'Q',
+}
+"""Numbers of a message, and the letter of `struct` for each."""
+_NUMBERS = FORMATS.keys() - {'boolean'}
 _INDEX = re.compile(r'[+-]?\d+')
 
 
@@ -80,6 +91,12 @@ def message_class(type_name: str) -> MessageClass:
     except (ImportError, AttributeError):
         raise InputError(f'message type {type_name!r} is not installed') from None
     return found
+
+
+def type_name_of(message: Any) -> str:
+    """Return the type of a message as `message_class` takes it."""
+    kind = type(message)
+    return f'{kind.__module__.split(".")[0]}/msg/{kind.__name__}'
 
 
 def stamp_of(message: Any) -> int:

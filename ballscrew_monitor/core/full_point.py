@@ -18,8 +18,9 @@ import types
 from typing import Any, Protocol
 
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.core.estimate import MachinePoint, opposing_load_of, PointEstimate
-from ballscrew_monitor.core.judgement import Gate, Limits, Verdict
+from ballscrew_monitor.core.estimate import MachinePoint, opposing_load_of
+from ballscrew_monitor.core.judgement import Gate
+from ballscrew_monitor.core.state import State
 from surrogate.surface import Found, HasOperatingPoint, Surface
 
 NAN = math.nan
@@ -70,11 +71,8 @@ class Solve(HasOperatingPoint, Protocol):
 
 def solved_at(point: MachinePoint) -> SolvedAt:
     """Return the place on the surface of a point in the machine frame."""
-    return SolvedAt(
-        speed=abs(point.speed),
-        opposing_load=opposing_load_of(point),
-        temperature=point.temperature,
-    )
+    load = opposing_load_of(point)
+    return SolvedAt(speed=abs(point.speed), opposing_load=load, temperature=point.temperature)
 
 
 def compare(full: Found, surface: Found | None) -> Comparison:
@@ -139,32 +137,26 @@ class Dwell:
     _point: MachinePoint | None = None
     _asked: int | None = None
 
-    def update(
-        self,
-        stamp: int,
-        point: MachinePoint,
-        result: PointEstimate,
-        verdict: Verdict,
-        limits: Limits,
-    ) -> bool:
+    def update(self, state: State) -> bool:
         """Take a state; tell whether its point should be solved."""
+        stamp, point = state.stamp, state.point
         if self._point is None or stamp < self._since or not _is_near(point, self._point):
             self._since, self._point = stamp, point
         rested = self._asked is None or not 0 <= stamp - self._asked < PAUSE
-        due = rested and stamp - self._since >= STAY and is_uncertain(result, verdict, limits)
+        due = rested and stamp - self._since >= STAY and is_uncertain(state)
         if due:
             self._asked = stamp
         return due
 
 
-def is_uncertain(result: PointEstimate, verdict: Verdict, limits: Limits) -> bool:
+def is_uncertain(state: State) -> bool:
     """Tell whether the stated error of the surface, or its spread, reaches a limit of the zone."""
-    numbers = result.numbers
-    if numbers is None or numbers.corrected or Gate.STANDSTILL in verdict.gates:
+    numbers, gates = state.estimate.numbers, state.verdict.gates
+    if numbers is None or numbers.corrected or Gate.STANDSTILL in gates:
         return False
-    judged = JUDGED[1:] if Gate.LIGHT_LOAD in verdict.gates else JUDGED
+    judged = JUDGED[1:] if Gate.LIGHT_LOAD in gates else JUDGED
     return any(
-        abs(getattr(numbers, name) - getattr(limits, name))
+        abs(getattr(numbers, name) - getattr(state.limits, name))
         <= max(stated_error(numbers, name), known(getattr(numbers, f'{name}_std')))
         for name in judged
     )

@@ -215,30 +215,17 @@ class OpenInput:
 
     def close(self, type_name: str) -> Input:
         """Return the input for messages of a type; raises InputError when it cannot work."""
-        return make_input(
-            self.source,
+        message_type = fields.message_class(type_name)
+        known = message_type.get_fields_and_field_types()
+        return Input(
+            source=self.source,
             topic=self.topic,
             type_name=type_name,
-            field=self.field,
+            message_type=message_type,
+            read_field=fields.compile_field(self.field, message_type),
             scaling=self.scaling,
+            stamped=known.get('header') == 'std_msgs/Header',
         )
-
-
-def make_input(
-    source: Source, *, topic: str, type_name: str, field: str, scaling: Scaling
-) -> Input:
-    """Return a checked input; raises InputError with the reason when it cannot work."""
-    message_type = fields.message_class(type_name)
-    known = message_type.get_fields_and_field_types()
-    return Input(
-        source=source,
-        topic=topic,
-        type_name=type_name,
-        message_type=message_type,
-        read_field=fields.compile_field(field, message_type),
-        scaling=scaling,
-        stamped=known.get('header') == 'std_msgs/Header',
-    )
 
 
 def implausible_text(source: Source, value: float, most: float) -> str:

@@ -53,7 +53,7 @@ class Step:
 
     """
 
-    stage: str
+    stage: str = ''
     nut: int = 0
     side: int = 0
     iteration: int = 0
@@ -192,15 +192,9 @@ class Solver:
 
 def step_of(frame: dict[str, Any], spent: float) -> Step:
     """Return the step that a frame speaks of, `spent` [s] after the solve began."""
-    numbers = {name: NAN if value is None else value for name, value in frame.items()}
-    fraction = float(numbers.get('fraction', 0.0))
-    left = spent * (1.0 - fraction) / fraction if fraction > 0.0 else NAN
-    return Step(
-        stage=str(numbers.get('stage', '')),
-        nut=int(numbers.get('nut', 0)),
-        side=int(numbers.get('side', 0)),
-        iteration=int(numbers.get('iteration', 0)),
-        residual=float(numbers.get('residual', NAN)),
-        fraction=fraction,
-        seconds_left=left,
-    )
+    known: dict[str, Any] = {
+        name: NAN if value is None else value for name, value in frame.items()
+    }
+    part = known.get('fraction', 0.0)
+    left = spent * (1.0 - part) / part if part > 0.0 else NAN
+    return Step(**known, seconds_left=left)

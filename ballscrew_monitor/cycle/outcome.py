@@ -12,14 +12,13 @@ from collections.abc import Iterator, Mapping, Sequence
 import dataclasses
 import importlib.util
 from pathlib import Path
-import sys
 from typing import Any
 
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.log_facts import LogFacts, parameters_text, PREFIX
 from ballscrew_monitor.recordings.replay import speed_messages
-from ballscrew_monitor.recordings.summary import Summarizer
-from ballscrew_monitor.recordings.words import counted
+from ballscrew_monitor.recordings.summary import summary_of
+from ballscrew_monitor.recordings.words import counted, say
 from ballscrew_monitor.report.logs import JUDGED, PAGE, PICTURE
 from ballscrew_monitor.report.parameters import parameters_for
 from ballscrew_monitor.settings import parameters
@@ -195,20 +194,18 @@ def _write_report(recorded: Bag, plan: Plan) -> list[str]:
     try:
         report_log(recorded, plan.out, parameters_for(recorded, None, plan.params), picture=True)
     except InputError as error:  # of a run that ended too early
-        print(f'ballscrew: no report: {error}', file=sys.stderr)
+        say(f'no report: {error}')
     return [name for name in (PAGE, PICTURE) if (plan.out / name).exists()]
 
 
 def _axis_lines(outcome: Outcome, axis: Axis, recorded: Bag) -> Iterator[str]:
     """Yield what the node said of an axis, in words."""
-    summarizer = Summarizer()
-    state, event = output(axis.name, 'state'), output(axis.name, 'out_of_zone')
-    for message in recorded.messages({state, event}):
-        if message.topic == state:
-            summarizer.add_state(deserialize_message(message.data, BallScrewState))
-        else:
-            summarizer.add_event(deserialize_message(message.data, OutOfZone))
-    summary = summarizer.result()
+    kinds = {
+        output(axis.name, 'state'): BallScrewState,
+        output(axis.name, 'out_of_zone'): OutOfZone,
+    }
+    found = recorded.messages(kinds)
+    summary = summary_of(deserialize_message(one.data, kinds[one.topic]) for one in found)
     yield (
         f'\naxis {axis.name}: screw {axis.surface.screw_name}, oil {axis.surface.oil_name}, '
         f'{axis.surface.tier.replace("_", "-")} model'

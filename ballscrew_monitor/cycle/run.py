@@ -15,7 +15,6 @@ import dataclasses
 import fcntl
 import os
 from pathlib import Path
-import sys
 import threading
 
 from ballscrew_monitor.core.interrupts import DONE, FAILED, interrupts, SIGNALLED
@@ -25,6 +24,7 @@ from ballscrew_monitor.cycle.node_process import confined, NodeProcess, ros_envi
 from ballscrew_monitor.cycle.outcome import LOG, Outcome, Plan, RECORDING
 from ballscrew_monitor.cycle.supervision import RunFailure, Supervision
 from ballscrew_monitor.recordings.bag_writer import BagWriter
+from ballscrew_monitor.recordings.words import say
 from ballscrew_monitor.report.logs import remove_report
 from surrogate.files import InputError
 
@@ -40,15 +40,13 @@ def run(made: Plan) -> int:
             f'parameters {made.params}',
             flush=True,
         )
-        for note in made.bag.notes:
-            print(f'ballscrew: {note}', file=sys.stderr)
+        say(*made.bag.notes)
         remove_report(made.out)  # the recording of this run would belie an earlier one
         outcome = _supervise(made, stop)
     if interrupted:
-        print(f'ballscrew: interrupted, recorded so far: {outcome.recording}', file=sys.stderr)
+        say(f'interrupted, recorded so far: {outcome.recording}')
         return SIGNALLED + interrupted[0]
-    for sentence in outcome.failures:
-        print(f'ballscrew: {sentence}', file=sys.stderr)
+    say(*outcome.failures)
     outcomes.report(made, outcome)
     return FAILED if outcome.failures else DONE
 

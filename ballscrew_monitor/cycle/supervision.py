@@ -22,13 +22,11 @@ from ballscrew_monitor.cycle.status import progress_bar, state_cells, StatusLine
 from ballscrew_monitor.recordings.bag_writer import BagWriter
 from ballscrew_monitor.recordings.player import Played, Player
 from ballscrew_monitor.recordings.recorder import recorded_topics, Recorder
+from ballscrew_monitor.settings.qos import started_node
 from ballscrew_monitor.settings.topics import absolute, input_topics, output
 from ballscrew_msgs.msg import BallScrewState
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
-import rclpy
-from rclpy.executors import SingleThreadedExecutor
 from rclpy.serialization import deserialize_message
-from rclpy.signals import SignalHandlerOptions
 
 START_PATIENCE = 30.0  # [s] until the node is active and matched
 SETTLE_PATIENCE = 2.0  # [s] for the last messages after the end of the bag
@@ -43,36 +41,28 @@ class RunFailure(Exception):
 class Supervision:
     """The ROS side of a run; once closed it leaves no thread and no context behind."""
 
-    def __init__(self, plan: Plan, node: NodeProcess, writer: BagWriter, domain: int) -> None:
+    def __init__(self, plan: Plan, process: NodeProcess, writer: BagWriter, domain: int) -> None:
         """Join the domain and subscribe to the outputs before the node can have any."""
-        self._plan, self._process, self._writer = plan, node, writer
+        self._plan, self._process, self._writer = plan, process, writer
         self._states: dict[str, bytes] = {}
         self._active: set[str] = set()
         self._reason = ''
         self._settled = threading.Event()
         self._played: Played | None = None
         self._broken: BaseException | None = None
-        self._context = rclpy.Context()
-        quiet: dict[str, Any] = {'start_parameter_services': False, 'enable_rosout': False}
-        rclpy.init(
-            context=self._context, domain_id=domain, signal_handler_options=SignalHandlerOptions.NO
-        )
-        self._node = rclpy.create_node('ballscrew_run', context=self._context, **quiet)
-        self._executor = SingleThreadedExecutor(context=self._context)
-        self._executor.add_node(self._node)
+        self._started = contextlib.ExitStack()
+        node = self._started.enter_context(started_node('ballscrew_run', domain))
+        assert node.executor is not None
+        self._executor = node.executor
         topics = list(input_topics(plan.values))
-        self._player = Player(self._node, plan.bag, rate=plan.rate, topics=topics)
+        self._player = Player(node, plan.bag, rate=plan.rate, topics=topics)
         recorded, listeners = recorded_topics(plan.values), self._listeners()
-        self._recorder = Recorder(
-            self._node, writer, recorded, lambda: self._player.now, listeners
-        )
+        self._recorder = Recorder(node, writer, recorded, lambda: self._player.now, listeners)
 
     def close(self) -> None:
         """Leave the domain."""
         self._recorder.close()
-        self._executor.shutdown()
-        self._node.destroy_node()
-        rclpy.shutdown(context=self._context)
+        self._started.close()
 
     def carry_out(self, stop: threading.Event) -> Outcome:
         """Play the whole bag, or until `stop` is set; raises Failure when it cannot go on."""

@@ -45,17 +45,13 @@ def no_load(row: Row, validity: int, code: int, first: float, second: float, thi
 
 
 def derive_load(
-    tables: SurfaceTables,
-    settings: Settings,
-    row: Row,
-    acceleration: float,
-    acceleration_change: float,
+    tables: SurfaceTables, settings: Settings, row: Row, acceleration: float, change: float
 ) -> None:
     """
     Fill in the load that the torque of a moving screw states, or why it is not known.
 
-    The row holds speed, motor torque, temperature and direction; acceleration and by how much it
-    changes [rad/s2] are in the machine frame too. The validity of the row is VALID with a load,
+    The row holds speed, motor torque, temperature and direction; acceleration and its change
+    [rad/s2] are in the machine frame too. The validity of the row is VALID with a load,
     and says why not without. Lookups go to the row.
 
     """
@@ -72,7 +68,7 @@ def derive_load(
     driving = 0.0 - driving if row.direction == NEGATIVE else driving
     margin = settings.torque_uncertainty + settings.parts_uncertainty * parts
     if settings.inertia != 0.0:
-        margin += settings.inertia * acceleration_change
+        margin += settings.inertia * change
     solve(tables, row, driving, margin)
     if row.direction == POSITIVE:
         # Subtracted from zero: a zero load must not become -0.0.

@@ -25,7 +25,7 @@ from ballscrew_monitor.judge.inputs import is_fresh, is_lagging, least_lag, SLOW
 from ballscrew_monitor.judge.records import NOT_KNOWN, RATE_SAMPLES, SHOWN, WHYS
 from ballscrew_monitor.judge.sums import SPEED
 from ballscrew_monitor.judge.zone import ACTIVE
-from surrogate.surface import Regime, Surface
+from surrogate.surface import Regime, REGIMES, Surface
 
 NAN = math.nan
 
@@ -35,6 +35,10 @@ Texts = Mapping[Source, str]
 """Sentences of the last refused messages."""
 _POINT: dict[str, Any] = {field.name: field.type for field in dataclasses.fields(MachinePoint)}
 """Names and types of what a row and a point have in common."""
+_PARTS = {f'{regime.word}_time': ('regime_time', int(regime)) for regime in REGIMES} | {
+    f'{zone.name.lower()}_time': ('zone_time', int(zone)) for zone in (Zone.OPTIMAL, Zone.OUTSIDE)
+}
+"""Times of the totals that are parts of a list in a memory, and their places there."""
 
 
 def point_of(row: Any) -> MachinePoint:
@@ -162,14 +166,10 @@ def totals_of(memory: Any) -> Totals:
     return Totals(
         running_time=int(memory.running_time),
         unjudged_time=int(memory.unjudged_time),
-        boundary_time=int(memory.regime_time[Regime.BOUNDARY]),
-        mixed_time=int(memory.regime_time[Regime.MIXED]),
-        hydrodynamic_time=int(memory.regime_time[Regime.HYDRODYNAMIC]),
-        optimal_time=int(memory.zone_time[Zone.OPTIMAL]),
-        outside_time=int(memory.zone_time[Zone.OUTSIDE]),
         angle=float(memory.angle),
         energy_lost=float(memory.energy_lost),
         since=int(memory.since),
+        **{name: int(getattr(memory, part)[place]) for name, (part, place) in _PARTS.items()},
     )
 
 
@@ -177,11 +177,8 @@ def add_totals(memory: Any, kept: Totals) -> None:
     """Add totals that were kept over a restart."""
     memory.running_time += kept.running_time
     memory.unjudged_time += kept.unjudged_time
-    memory.regime_time[Regime.BOUNDARY] += kept.boundary_time
-    memory.regime_time[Regime.MIXED] += kept.mixed_time
-    memory.regime_time[Regime.HYDRODYNAMIC] += kept.hydrodynamic_time
-    memory.zone_time[Zone.OPTIMAL] += kept.optimal_time
-    memory.zone_time[Zone.OUTSIDE] += kept.outside_time
+    for name, (part, place) in _PARTS.items():
+        getattr(memory, part)[place] += getattr(kept, name)
     memory.angle += kept.angle
     memory.energy_lost += kept.energy_lost
     memory.since = kept.since or memory.since

@@ -65,11 +65,7 @@ def failed(node: str, axis: str, reason: str) -> list[DiagnosticStatus]:
 
 def of_folder(node: str, problem: str) -> DiagnosticStatus:
     """Return the status of what the `node`, by full name, keeps on the disk."""
-    return DiagnosticStatus(
-        name=f'{node.lstrip("/")}: State directory',
-        level=WARN if problem else OK,
-        message=problem or KEPT,
-    )
+    return _of_node(node, 'State directory', problem, KEPT)
 
 
 def defect_text(error: Exception, event: InputSample | Refusal | int | str) -> str:
@@ -89,10 +85,12 @@ def defect_text(error: Exception, event: InputSample | Refusal | int | str) -> s
 
 def recording(node: str, problem: str) -> DiagnosticStatus:
     """Return the status of the recording of the `node`; `problem` is why there is none."""
-    status = DiagnosticStatus(name=f'{node.lstrip("/")}: Recording', level=OK, message=RECORDED)
-    if problem:
-        status.level, status.message = WARN, problem
-    return status
+    return _of_node(node, 'Recording', problem, RECORDED)
+
+
+def _of_node(node: str, part: str, problem: str, fine: str) -> DiagnosticStatus:
+    name, level = f'{node.lstrip("/")}: {part}', WARN if problem else OK
+    return DiagnosticStatus(name=name, level=level, message=problem or fine)
 
 
 def hardware_id(node: str, axis: str, screw: str) -> str:
@@ -131,17 +129,14 @@ def statuses(
         made[2].level = WARN
         made[2].message = f'kept the old surface, the reload is refused: {refused}'
     made[2].values = _values(_surface_values(surface))
+    matched = {source.name.capitalize(): link.matched for source, link in (links or {}).items()}
     made[1].values = _values(
-        [
-            (f'{source.name.capitalize()} publishers [-]', link.matched)
-            for source, link in (links or {}).items()
-        ]
+        [(f'{name} publishers [-]', count) for name, count in matched.items()]
     )
     if state is None or links is None:
+        why = CLOCK_STANDS if clock_stands else NOTHING_YET
         for status in made[:2]:
-            status.level, status.message = STALE, CLOCK_STANDS if clock_stands else NOTHING_YET
-            if links is None:
-                status.message = INACTIVE
+            status.level, status.message = STALE, INACTIVE if links is None else why
     else:
         for status, (level, message) in zip(made, summaries(state, event, links)):
             status.level, status.message = level, message

@@ -16,6 +16,7 @@ from ballscrew_monitor.core.estimate import (
 )
 from ballscrew_monitor.core.full_point import compare, Comparison, solved_at
 from ballscrew_monitor.core.solver import Done, End, Step
+from ballscrew_monitor.core.state import MonitorSettings
 from ballscrew_monitor.messages.state_messages import fill_result, read_point, TIERS
 from ballscrew_msgs.action import SolveOperatingPoint
 from ballscrew_msgs.msg import PointResult
@@ -37,12 +38,8 @@ class SolvableAxis(Protocol):
         """Return the surface that is judged with."""
 
     @property
-    def rcs_limit(self) -> float:
-        """Return the limit of RCS [-]."""
-
-    @property
-    def default_temperature(self) -> float:
-        """Return the oil temperature without a topic [K]."""
+    def settings(self) -> MonitorSettings:
+        """Return limits and parameters in force."""
 
     def current_point(self) -> MachinePoint | str:
         """Return the operating point of now, or why there is none."""
@@ -57,7 +54,7 @@ def requested_point(request: Any, axis: SolvableAxis) -> MachinePoint | str:
         return f'timeout is {request.timeout:g} s, allowed is 0 to {LONGEST_TIMEOUT:g} s'
     if request.use_current:
         return axis.current_point()
-    point = read_point(request.point, default_temperature=axis.default_temperature)
+    point = read_point(request.point, default_temperature=axis.settings.default_temperature)
     if not math.isfinite(point.speed + point.axial_load + point.temperature):
         return 'speed, axial load and temperature of the point must be finite'
     if point.speed == 0.0:
@@ -92,7 +89,7 @@ def result_message(axis: SolvableAxis, point: MachinePoint, done: Done) -> Any:
     """Return the result of a solve that has ended; one that is worth it corrects the surface."""
     result = empty_result(_status(done))
     result.wall_time = float(done.wall_time)
-    answer = estimate(point, axis.surface, rcs_limit=axis.rcs_limit)
+    answer = estimate(point, axis.surface, rcs_limit=axis.settings.limits.rcs)
     fill_result(result.surface, answer, TIERS[axis.surface.tier])
     if done.end is End.SOLVED and done.result['converged']:
         load = solved_at(point).opposing_load
@@ -114,7 +111,7 @@ def read_solved(frame: Mapping[str, Any], *, opposing_load: float, lead: float) 
 def _fill_full(
     result: Any, axis: SolvableAxis, point: MachinePoint, full: SurfacePoint, answer: PointEstimate
 ) -> None:
-    found = estimate_from(point, full, rcs_limit=axis.rcs_limit)
+    found = estimate_from(point, full, rcs_limit=axis.settings.limits.rcs)
     fill_result(result.full, found, PointResult.TIER_FULL)
     _fill_comparison(result, compare(full, answer.numbers))
     result.efficiency_stderr = float(full.efficiency_stderr)

@@ -17,8 +17,7 @@ from ballscrew_monitor.core.advice import Advice
 from ballscrew_monitor.core.conversions import celsius, Direction, SECOND, seconds
 from ballscrew_monitor.core.estimate import MachinePoint, PointEstimate
 from ballscrew_monitor.core.inputs import InputStatus
-from ballscrew_monitor.core.judgement import Limits
-from ballscrew_monitor.core.state import Event, State, TIMES, WINDOW
+from ballscrew_monitor.core.state import Event, MonitorSettings, State, TIMES, WINDOW
 from ballscrew_monitor.judge.views import SOURCES
 from ballscrew_msgs.msg import (
     BallScrewState,
@@ -223,9 +222,9 @@ def out_of_zone_message(axis: str, event: Event, *, shelved: bool) -> OutOfZone:
 
 
 def surface_info_message(
-    axis: str, surface: Surface, limits: Limits, *, stamp: int, default_temperature: float
+    axis: str, surface: Surface, settings: MonitorSettings, *, stamp: int
 ) -> SurfaceInfo:
-    """Return what a surface is, `stamp` [ns], `default_temperature` [K]."""
+    """Return what a surface is and what is judged with it, `stamp` [ns]."""
     errors = surface.errors
     message = SurfaceInfo(
         axis=axis,
@@ -233,25 +232,26 @@ def surface_info_message(
         oil=surface.oil_name,
         tier=TIERS[surface.tier],
         sha256=surface.sha256,
-        rcs_limit=limits.rcs,
-        efficiency_limit=limits.efficiency,
+        rcs_limit=settings.limits.rcs,
+        efficiency_limit=settings.limits.efficiency,
         error_field=list(errors),
         error_max=[float(error[0]) for error in errors.values()],
         error_p95=[float(error[1]) for error in errors.values()],
-        default_temperature=celsius(default_temperature),
+        default_temperature=celsius(settings.default_temperature),
     )
     message.limit_factor_low, message.limit_factor_high = surface.limit_band
-    message.corrected_speed = [float(one.speed) for one in surface.corrections]
-    message.corrected_load = [float(one.opposing_load) for one in surface.corrections]
-    message.corrected_temperature = [
-        celsius(float(one.temperature)) for one in surface.corrections
-    ]
+    for one in surface.corrections:
+        message.corrected_speed.append(float(one.speed))
+        message.corrected_load.append(float(one.opposing_load))
+        message.corrected_temperature.append(celsius(float(one.temperature)))
     message.header.frame_id = axis
     fill_time(message.header.stamp, stamp)
-    for name, (low, high) in (('speed', surface.speed_range), ('axial_load', surface.load_range)):
+    ranges = {
+        'speed': surface.speed_range,
+        'axial_load': surface.load_range,
+        'temperature': map(celsius, surface.temperature_range),
+    }
+    for name, (low, high) in ranges.items():
         setattr(message, f'{name}_min', float(low))
         setattr(message, f'{name}_max', float(high))
-    message.temperature_min, message.temperature_max = (
-        celsius(float(limit)) for limit in surface.temperature_range
-    )
     return message

@@ -12,7 +12,7 @@ from ballscrew_monitor.core.estimate import estimate, MachinePoint
 from ballscrew_monitor.core.full_point import corrected, Dwell, objection, solved_at
 from ballscrew_monitor.core.inputs import InputSample, Refusal, Source
 from ballscrew_monitor.core.links import Link
-from ballscrew_monitor.core.state import Shelving, State
+from ballscrew_monitor.core.state import MonitorSettings, Shelving, State
 from ballscrew_monitor.messages import diagnostics, state_messages
 from ballscrew_monitor.messages.state_messages import TIERS
 from ballscrew_monitor.node.alarm import Alarm
@@ -116,13 +116,9 @@ class AxisPublisher:
 
     def publish_info(self) -> None:
         """Publish what the surface and the limits are."""
-        settings = self.axis.monitor.settings
+        now = self._node.get_clock().now().nanoseconds
         message = state_messages.surface_info_message(
-            self.axis.name,
-            self.axis.surface,
-            settings.limits,
-            stamp=self._node.get_clock().now().nanoseconds,
-            default_temperature=settings.default_temperature,
+            self.name, self.surface, self.settings, stamp=now
         )
         self._info.publish(message)
         self._recording.record(f'~/{self.name}/surface_info', message)
@@ -138,14 +134,9 @@ class AxisPublisher:
         return self.axis.surface
 
     @property
-    def rcs_limit(self) -> float:
-        """Limit of RCS in force [-]."""
-        return self.axis.monitor.settings.limits.rcs
-
-    @property
-    def default_temperature(self) -> float:
-        """Oil temperature without a topic [K]."""
-        return self.axis.monitor.settings.default_temperature
+    def settings(self) -> MonitorSettings:
+        """Limits and parameters in force."""
+        return self.axis.monitor.settings
 
     def current_point(self) -> MachinePoint | str:
         """Return the operating point of now, or why there is none."""
@@ -154,11 +145,7 @@ class AxisPublisher:
 
     def is_dwelling(self, state: State) -> bool:
         """Tell whether the point of a state should be solved; only where that is asked for."""
-        if not self._values[f'{self.name}.solve_on_dwell']:
-            return False
-        return self.dwell.update(
-            state.stamp, state.point, state.estimate, state.verdict, state.limits
-        )
+        return self._values[f'{self.name}.solve_on_dwell'] and self.dwell.update(state)
 
     def correct(self, point: MachinePoint, full: SurfacePoint) -> tuple[bool, str]:
         """Correct the surface by a full solve and keep it; return whether, and what or why not."""
@@ -167,7 +154,7 @@ class AxisPublisher:
     def _correct(self, point: MachinePoint, full: SurfacePoint) -> tuple[bool, str]:
         if not self._values[f'{self.name}.correct_surface']:
             return False, f'parameter {self.name}.correct_surface is false'
-        numbers = estimate(point, self.surface, rcs_limit=self.rcs_limit).numbers
+        numbers = estimate(point, self.surface, rcs_limit=self.settings.limits.rcs).numbers
         problem = objection(full, numbers, self.surface)
         if problem:
             return False, problem
@@ -245,8 +232,9 @@ class AxisPublisher:
 
     def _evaluate(self, point: OperatingPoint) -> PointResult:
         result = PointResult()
-        asked = state_messages.read_point(point, default_temperature=self.default_temperature)
-        answer = estimate(asked, self.surface, rcs_limit=self.rcs_limit)
+        warmth = self.settings.default_temperature
+        asked = state_messages.read_point(point, default_temperature=warmth)
+        answer = estimate(asked, self.surface, rcs_limit=self.settings.limits.rcs)
         state_messages.fill_result(result, answer, TIERS[self.surface.tier])
         return result
 
@@ -322,7 +310,7 @@ class AxisPublisher:
             self.axis.monitor.event,
             self.axis.surface,
             links=links,
-            clock_stands=stood > self.axis.monitor.settings.timeouts[Source.SPEED],
+            clock_stands=stood > self.settings.timeouts[Source.SPEED],
             refused=self.refused,
             defect=self.defect,
         )

@@ -18,18 +18,19 @@ from typing import Any
 
 from ballscrew_monitor.core.cdr import serialized
 from ballscrew_monitor.core.conversions import nanoseconds
+from ballscrew_monitor.core.fields import type_name_of
 from ballscrew_monitor.judge.dump import dump
 from ballscrew_monitor.messages import diagnostics
 from ballscrew_monitor.node.recording_process import recording, RecordingProcess
 from ballscrew_monitor.node.topic import Arrival
 from ballscrew_monitor.recordings.frames import Frame, FrameKind, MOST_SEQUENCE, STRING, VERSION
 from ballscrew_monitor.settings.axis import Axis
-from ballscrew_msgs.msg import OutOfZone
+from ballscrew_msgs.msg import OutOfZone, SurfaceInfo
 from diagnostic_msgs.msg import DiagnosticStatus
 from rclpy.node import Node
 from std_msgs.msg import String
 
-LATCHED = ('OutOfZone', 'SurfaceInfo')
+LATCHED = (OutOfZone, SurfaceInfo)
 CORRECTION = ('speed', 'opposing_load', 'temperature', 'solved')  # of a full solve
 AXIS_PERIOD = nanoseconds(10.0)  # [ns] after which all is said of an axis again
 RESTART = nanoseconds(2.0)  # [ns] after which a lost process is started again, then twice as long
@@ -97,10 +98,8 @@ class Journal:
 
     def say(self, topic: str, message: Any, now: int) -> None:
         """Take a message that the node publishes at `now` [ns] of its clock."""
-        kind = type(message)
-        type_name = f'{kind.__module__.split(".")[0]}/msg/{kind.__name__}'
-        offer = 'LATCHED' if kind.__name__ in LATCHED else 'RELIABLE'
-        self._put(topic, type_name, offer, serialized(message), (now, now, 0))
+        offer = 'LATCHED' if isinstance(message, LATCHED) else 'RELIABLE'
+        self._put(topic, type_name_of(message), offer, serialized(message), (now, now, 0))
 
     def trigger(self, now: int) -> None:
         """Let a recording around events show what has just happened."""

@@ -63,17 +63,13 @@ class ParameterStore:
         row = self._rows.get(parameter.name)
         if row is None:
             return
-        row.check(parameter.name, _plain(parameter.value))
+        name, value, unit = parameter.name, _plain(parameter.value), row.unit
+        row.check(name, value)
         if row.change is Change.UNCONFIGURED and self.locked:
             raise InputError(
-                f'parameter {parameter.name} changes only while the node is unconfigured, '
-                'clean it up first'
+                f'parameter {name} changes only while the node is unconfigured, clean it up first'
             )
-        if self.locked and parameter.name in self.ceilings:
-            self._check_ceiling(parameter.name, _plain(parameter.value), row.unit)
-
-    def _check_ceiling(self, name: str, value: float, unit: str) -> None:
-        if value > self.ceilings[name]:
+        if self.locked and name in self.ceilings and value > self.ceilings[name]:
             raise InputError(
                 f'parameter {name} is {value:g} {unit}, while the node is configured at most '
                 f'{self.ceilings[name]:g} {unit}, which its publisher promises: clean it up first'

@@ -17,7 +17,7 @@ from ballscrew_monitor.core.conversions import Direction, Nut, seconds
 from ballscrew_monitor.core.estimate import ContactState, PointSource, PointValidity
 from ballscrew_monitor.core.inputs import InputStatus, Source, Why
 from ballscrew_monitor.core.judgement import Level, Limits, Reason, Zone
-from ballscrew_monitor.core.state import Totals
+from ballscrew_monitor.core.state import TIMES, Totals
 from ballscrew_monitor.recordings.summary import EventRecord, Summary
 import numpy as np
 from numpy.typing import NDArray
@@ -155,10 +155,6 @@ class AxisOutcome:
         """Return the summary, None without a state."""
         if not self.states:
             return None
-        names = [field.name for field in dataclasses.fields(Totals)]
-        times = {
-            name: seconds(getattr(self.totals, name)) for name in names if name.endswith('_time')
-        }
         return Summary(
             axis=self.axis,
             first=self.first,
@@ -168,5 +164,5 @@ class AxisOutcome:
             events=self.events,
             revolutions=self.totals.revolutions,
             energy_lost=self.totals.energy_lost,
-            **times,
+            **{name: seconds(getattr(self.totals, name)) for name in TIMES},
         )

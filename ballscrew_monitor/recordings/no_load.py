@@ -10,13 +10,13 @@ window means, because samples within a window share the ripple of one revolution
 
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 import dataclasses
 import itertools
 import math
 
 from ballscrew_monitor.core import conversions
-from ballscrew_monitor.core.inputs import Input, InputSample, make_input, Source, Why
+from ballscrew_monitor.core.inputs import Input, InputSample, OpenInput, Source, Why
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.decoding import decode, named_instead
 from ballscrew_monitor.settings.topics import absolute
@@ -33,15 +33,6 @@ SLOWEST = 0.1  # least speed of a steady window [rad/s]
 BIN = 0.05  # width of a bin over its least speed
 FEWEST_WINDOWS = 3  # in a bin
 NO_FUTURE_LIMIT = 1 << 62  # [ns]: in a recording a stamp may differ from the log time
-
-
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Channel:
-    """A number in a bag: topic, path of the field, line from it to SI units."""
-
-    topic: str
-    field: str
-    scaling: conversions.Scaling
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -66,26 +57,30 @@ class Series:
         return Series(time=self.time[first:last], value=self.value[first:last])
 
 
-def speed_channel(topic: str, field: str, unit: str, lead: float) -> Channel:
+def speed_channel(topic: str, field: str, unit: str, lead: float) -> OpenInput:
     """Return the speed in `unit`; a linear one is turned by the lead [m]."""
     scaling = conversions.speed_scaling(unit, scale=1.0, offset=0.0, lead=lead, handedness='right')
-    return Channel(topic=absolute(topic), field=field, scaling=scaling)
+    return _channel(Source.SPEED, topic, field, scaling)
 
 
-def torque_channel(topic: str, field: str, scale: float) -> Channel:
+def torque_channel(topic: str, field: str, scale: float) -> OpenInput:
     """Return the torque, `scale` times the field [N m]."""
     scaling = conversions.torque_scaling(1.0, scale=scale, offset=0.0, handedness='right')
-    return Channel(topic=absolute(topic), field=field, scaling=scaling)
+    return _channel(Source.TORQUE, topic, field, scaling)
 
 
-def temperature_channel(topic: str, field: str) -> Channel:
+def temperature_channel(topic: str, field: str) -> OpenInput:
     """Return the temperature in [degC] as [K]."""
     scaling = conversions.temperature_scaling('degC', scale=1.0, offset=0.0)
-    return Channel(topic=absolute(topic), field=field, scaling=scaling)
+    return _channel(Source.TEMPERATURE, topic, field, scaling)
+
+
+def _channel(source: Source, topic: str, field: str, scaling: conversions.Scaling) -> OpenInput:
+    return OpenInput(source=source, topic=absolute(topic), field=field, scaling=scaling)
 
 
 def read_no_load(
-    bag: Bag, channels: Mapping[Source, Channel]
+    bag: Bag, channels: Sequence[OpenInput]
 ) -> tuple[dict[str, Array], tuple[str, ...]]:
     """
     Return speed, torque and its standard error of every bin, in SI units, and what was left out.
@@ -113,14 +108,14 @@ def read_no_load(
     return _columns(bins), tuple(notes)
 
 
-def _read(bag: Bag, channels: Mapping[Source, Channel]) -> tuple[dict[Source, Series], int]:
+def _read(bag: Bag, channels: Sequence[OpenInput]) -> tuple[dict[Source, Series], int]:
     """Return the samples of every source in the order of their stamps, and how many were bad."""
-    inputs = {source: _input(bag, source, channel) for source, channel in channels.items()}
-    bag.require({one.topic: one.type_name for one in inputs.values()})
-    samples: dict[Source, list[tuple[int, float]]] = {source: [] for source in inputs}
+    inputs = [_input(bag, channel) for channel in channels]
+    bag.require({one.topic: one.type_name for one in inputs})
+    samples: dict[Source, list[tuple[int, float]]] = {one.source: [] for one in inputs}
     refused = 0
-    for message in bag.messages({one.topic for one in inputs.values()}):
-        readers = [one for one in inputs.values() if one.topic == message.topic]
+    for message in bag.messages({one.topic for one in inputs}):
+        readers = [one for one in inputs if one.topic == message.topic]
         decoded, _ = decode(bag, message, readers[0].message_type)
         refused += decoded is None
         for one in readers if decoded is not None else ():
@@ -129,28 +124,22 @@ def _read(bag: Bag, channels: Mapping[Source, Channel]) -> tuple[dict[Source, Se
                 samples[one.source].append((read.stamp - bag.start_time, read.value))
             else:
                 refused += read.why is not Why.OTHER_JOINTS
-    for source, found in samples.items():
-        if not found:
+    for one, channel in zip(inputs, channels, strict=True):
+        if not samples[one.source]:
             raise InputError(
-                f'bag {bag.path}: no message of {inputs[source].topic} holds '
-                f'{channels[source].field}, at least one must{named_instead(bag, inputs[source])}'
+                f'bag {bag.path}: no message of {one.topic} holds {channel.field}, '
+                f'at least one must{named_instead(bag, one)}'
             )
     return {source: _series(found) for source, found in samples.items()}, refused
 
 
-def _input(bag: Bag, source: Source, channel: Channel) -> Input:
+def _input(bag: Bag, channel: OpenInput) -> Input:
     if channel.topic not in bag.topics:
         raise InputError(
             f'bag {bag.path}: topic {channel.topic} is missing, the bag holds '
             f'{", ".join(sorted(bag.topics))}'
         )
-    return make_input(
-        source,
-        topic=channel.topic,
-        type_name=bag.topics[channel.topic].type_name,
-        field=channel.field,
-        scaling=channel.scaling,
-    )
+    return channel.close(bag.topics[channel.topic].type_name)
 
 
 def _series(samples: list[tuple[int, float]]) -> Series:

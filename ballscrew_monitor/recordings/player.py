@@ -7,7 +7,7 @@ Plays a bag over DDS: the serialised messages as they are, and `/clock` from the
 sees a message from its future. In a loop each pass goes on from the end of the one before:
 `/clock` and every stamp in the messages are shifted by whole passes. The messages are offered
 reliably: a subscriber that asks for best effort gets them as such, one that asks for more is not
-refused.
+refused. `playback` does that alone, in the domain of the environment, for whoever listens.
 
 """
 
@@ -15,13 +15,20 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 import dataclasses
 import itertools
+from pathlib import Path
 import threading
 import time
 from typing import Any
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.fields import message_class
+from ballscrew_monitor.core.interrupts import DONE, FAILED, interrupts, SIGNALLED
 from ballscrew_monitor.recordings.bag import Bag, Message
+from ballscrew_monitor.recordings.words import say
+from ballscrew_monitor.settings import parameters
+from ballscrew_monitor.settings.middleware import notice
+from ballscrew_monitor.settings.qos import started_node
+from ballscrew_monitor.settings.topics import absolute, input_topics
 from builtin_interfaces.msg import Time
 from rclpy.duration import Duration
 from rclpy.node import Node
@@ -187,3 +194,95 @@ def _times(part: Any) -> Iterator[Time]:
     elif hasattr(part, 'get_fields_and_field_types'):
         for name in part.get_fields_and_field_types():
             yield from _times(getattr(part, name))
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Choice:
+    """What is to be played: `every` topic, those in `topics`, or the inputs in a file."""
+
+    params: Path
+    topics: Sequence[str] | None = None
+    every: bool = False
+
+
+def playback(path: Path, choice: Choice, *, rate: float, patience: float, loop: bool) -> int:
+    """
+    Play the bag at `path` to whom listens within `patience` [s]; return the exit code.
+
+    Of a damaged bag it plays the intact part, and says how much that is.
+
+    """
+    bag = Bag(path, salvage=True)
+    topics = playable(bag, chosen(bag, choice))
+    stop = threading.Event()
+    with interrupts(stop) as interrupted:
+        with started_node('ballscrew_player', enable_rosout=True) as node:
+            told = list(bag.notes)
+            say(*filter(None, (notice(), *told)))
+            player = Player(node, bag, rate=rate, topics=topics)
+            code = _play(player, topics, patience, stop, loop)
+            say(*(note for note in bag.notes if note not in told))
+        return SIGNALLED + interrupted[0] if interrupted else code
+
+
+def chosen(bag: Bag, choice: Choice) -> list[str]:
+    """Return the topics of the bag to be played; raises InputError if there is none of them."""
+    if choice.every:
+        return [topic for topic in bag.topics if topic != CLOCK]
+    if choice.topics is not None:
+        wanted, whose = list(map(absolute, choice.topics)), 'the topics asked for'
+    else:
+        wanted = list(input_topics(parameters.read_file(choice.params)))
+        whose = f'the inputs in {choice.params}'
+    missing = [topic for topic in wanted if topic not in bag.topics]
+    if missing and (choice.topics or len(missing) == len(wanted)):
+        raise InputError(
+            f'bag {bag.path}: of {whose} it holds no {", ".join(missing)}, it holds '
+            f'{", ".join(sorted(bag.topics))}: give --topics, --all or another --params'
+        )
+    if missing:
+        print(f'the bag holds no {", ".join(missing)}', flush=True)
+    return [topic for topic in dict.fromkeys(wanted) if topic in bag.topics]
+
+
+def playable(bag: Bag, topics: Sequence[str]) -> list[str]:
+    """Return the topics that can be sent, and say which cannot; raises InputError for none."""
+    reasons = {topic: _problem(bag, topic) for topic in topics}
+    for topic, reason in reasons.items():
+        if reason:
+            print(f'not played: {topic}, {reason}', flush=True)
+    found = [topic for topic, reason in reasons.items() if not reason]
+    if not found:
+        raise InputError(f'bag {bag.path}: no topic can be played')
+    return found
+
+
+def _problem(bag: Bag, topic: str) -> str:
+    """Return why a topic cannot be sent, empty if it can."""
+    info = bag.topics[topic]
+    if info.encoding != 'cdr':
+        return f'encoded as {info.encoding}'
+    try:
+        message_class(info.type_name)
+    except InputError as error:
+        return str(error)
+    return ''
+
+
+def _play(
+    player: Player, topics: Sequence[str], patience: float, stop: threading.Event, loop: bool
+) -> int:
+    missing = player.wait_for_subscribers(patience, stop)
+    if stop.is_set():
+        return FAILED
+    if set(topics) <= set(missing):
+        say(f'nobody subscribed to {", ".join(topics)} within {patience:g} s')
+        return FAILED
+    if missing:
+        print(f'nobody listens to {", ".join(missing)}', flush=True)
+    played = player.play(stop, loop=loop)
+    print(
+        f'{player.sent.total()} messages in {player.elapsed:.1f} s of bag time, '
+        f'at most {1e3 * played.lateness:.1f} ms late'
+    )
+    return DONE

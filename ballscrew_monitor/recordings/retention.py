@@ -15,6 +15,7 @@ Each recording is a bag of its own. Time is an argument.
 """
 
 import collections
+from collections.abc import Callable
 import dataclasses
 import datetime
 import json
@@ -87,7 +88,7 @@ class Retention:
             self._retry = now + RETRY
             self._ring.clear()  # what follows does not go on from there
             self._ring_size = 0
-            self._abandon()
+            self._finish(BagWriter.abandon)
 
     def close(self) -> None:
         """Finish the recording that grows."""
@@ -168,16 +169,11 @@ class Retention:
             self._writer.sync()
             self._synced = now
 
-    def _finish(self) -> None:
+    def _finish(self, end: Callable[[BagWriter], None] = BagWriter.close) -> None:
+        """End the recording that grows; one that is abandoned stays to be recovered."""
         writer, self._writer = self._writer, None
         if writer is not None:
-            writer.close()
-
-    def _abandon(self) -> None:
-        """Let go of a recording that cannot be written; what it holds stays to be recovered."""
-        writer, self._writer = self._writer, None
-        if writer is not None:
-            writer.abandon()
+            end(writer)
 
     def _free_folder(self, log_time: int) -> Path:
         """Return a folder named by the time [ns] of the first message, in UTC."""

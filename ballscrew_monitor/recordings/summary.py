@@ -2,13 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Summary of a run or a replay: totals, events, and the words for them."""
 
+from collections.abc import Iterable
 import dataclasses
 import math
 from typing import Any
 
 from ballscrew_monitor.core.conversions import SECOND, seconds
 from ballscrew_monitor.core.fields import stamp_of
-from ballscrew_monitor.core.state import Event
+from ballscrew_monitor.core.state import Event, TIMES
 from ballscrew_monitor.recordings.declared import plain, written
 from ballscrew_monitor.recordings.words import number, share
 from ballscrew_msgs.msg import BallScrewState, Finding, OutOfZone
@@ -159,83 +160,58 @@ class Summary:
         )
 
 
-class Summarizer:
-    """Collects the states and events of one axis."""
-
-    def __init__(self) -> None:
-        """Begin with nothing."""
-        self._last: BallScrewState | None = None
-        self._first_stamp = 0
-        self._states = 0
-        self._events: dict[int, EventRecord] = {}
-
-    def add_state(self, state: BallScrewState) -> None:
-        """Take a state; the last one holds the totals."""
-        if not self._states:
-            self._first_stamp = stamp_of(state)
-        self._states += 1
-        self._last = state
-
-    def add_event(self, message: OutOfZone) -> None:
-        """Take the start or the end of an event."""
-        if message.event_id:
-            self._events[message.event_id] = _event_record(message)
-
-    def result(self) -> Summary | None:
-        """Return the summary, None without a state."""
-        if self._last is None:
-            return None
-        totals = self._last.totals
-        names = [
-            field.name for field in dataclasses.fields(Summary) if hasattr(totals, field.name)
-        ]
-        return Summary(
-            axis=self._last.axis,
-            first=self._first_stamp,
-            last=stamp_of(self._last),
-            states=self._states,
-            judged=self._last.judged,
-            events=tuple(self._events[key] for key in sorted(self._events)),
-            **{name: getattr(totals, name) for name in names},
-        )
+def summary_of(said: Iterable[BallScrewState | OutOfZone]) -> Summary | None:
+    """Return what states and events of one axis come to, None without a state."""
+    first, states, last = 0, 0, None
+    events: dict[int, EventRecord] = {}
+    for one in said:
+        if isinstance(one, BallScrewState):
+            first, states, last = first if states else stamp_of(one), states + 1, one
+        elif one.event_id:
+            events[one.event_id] = _event_record(one)
+    if last is None:
+        return None
+    return Summary(
+        axis=last.axis,
+        first=first,
+        last=stamp_of(last),
+        states=states,
+        judged=last.judged,
+        events=tuple(events[key] for key in sorted(events)),
+        **{name: getattr(last.totals, name) for name in (*TIMES, 'revolutions', 'energy_lost')},
+    )
 
 
 def event_record(event: Event, *, until: int) -> EventRecord:
     """Return an event as it stands at the stamp `until` [ns]."""
-    quantity, relation = RELATIONS.get(event.cause.code, ('other', 'beyond'))
     point = None if event.advisor is None else event.advisor.point
     return EventRecord(
         event_id=event.number,
         start=event.start,
         duration=seconds(until - event.start),
-        active=event.active,
-        quantity=quantity,
-        relation=relation,
-        worst_value=event.worst_value,
-        limit=event.cause.limit,
         advice=event.advice.text,
         speed=math.nan if point is None else point.speed,
         axial_load=math.nan if point is None else point.axial_load,
-        target_speed=event.advice.target_speed,
-        target_load=event.advice.target_load,
+        **_said(event, event.cause, event.advice),
     )
 
 
 def _event_record(message: OutOfZone) -> EventRecord:
-    quantity, relation = RELATIONS.get(message.cause.code, ('other', 'beyond'))
     return EventRecord(
         event_id=message.event_id,
         start=message.start.sec * SECOND + message.start.nanosec,
         duration=message.duration,
-        active=message.active,
-        quantity=quantity,
-        relation=relation,
-        worst_value=message.worst_value,
-        limit=message.cause.limit,
         advice=message.advice,
-        target_speed=message.cause.target_speed,
-        target_load=message.cause.target_load,
+        **_said(message, message.cause, message.cause),
     )
+
+
+def _said(event: Any, cause: Any, advice: Any) -> dict[str, Any]:
+    """Return what an event and the message of one name alike."""
+    quantity, relation = RELATIONS.get(cause.code, ('other', 'beyond'))
+    said = {'quantity': quantity, 'relation': relation, 'limit': cause.limit}
+    targets = {name: getattr(advice, name) for name in ('target_speed', 'target_load')}
+    return said | targets | {'active': event.active, 'worst_value': event.worst_value}
 
 
 def _rounded(value: float) -> str:

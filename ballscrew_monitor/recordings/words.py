@@ -1,9 +1,10 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Numbers as people read them: times, shares, lists."""
+"""Words to people: numbers as they read them, times, shares, lists; and notes on a terminal."""
 
 from collections.abc import Sequence
 import math
+import sys
 
 NONE = '–'
 
@@ -56,3 +57,9 @@ def counted(count: int, name: str) -> str:
 def list_of(parts: Sequence[str]) -> str:
     """Return phrases as one: a, b; and c."""
     return parts[0] if len(parts) == 1 else f'{"; ".join(parts[:-1])}; and {parts[-1]}'
+
+
+def say(*notes: str) -> None:
+    """Print notes to standard error, each with the name of the command."""
+    for note in notes:
+        print(f'ballscrew: {note}', file=sys.stderr)

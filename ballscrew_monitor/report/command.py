@@ -18,7 +18,7 @@ from ballscrew_monitor.recordings.opener import opened_log
 from ballscrew_monitor.recordings.progress import shown_progress
 from ballscrew_monitor.recordings.replay import axes_for
 from ballscrew_monitor.recordings.tables.mapping import read_map
-from ballscrew_monitor.recordings.words import counted
+from ballscrew_monitor.recordings.words import counted, say
 from ballscrew_monitor.report.judging import AxisCase, judge_log, LogCase
 from ballscrew_monitor.report.logs import find_logs, left_out, map_for, PAGE, SUMMARY
 from ballscrew_monitor.report.parameters import LogParameters, parameters_for
@@ -40,7 +40,7 @@ def replay_command(args: argparse.Namespace, nominal: Path) -> int:
     """Do what the command line asks for; return the exit code."""
     logs = find_logs(args.logs, tables=args.map is not None, out=args.out)
     _check(logs, args)
-    _say(*left_out(args.logs, logs, args.out))
+    say(*left_out(args.logs, logs, args.out))
     # With --json, standard output is JSON alone.
     with contextlib.redirect_stdout(sys.stderr if args.json else sys.stdout):
         records, code = _replay(logs, args, nominal)
@@ -86,7 +86,7 @@ def _print_many(
             mapping = map_for(log, args.map, alone=False)
             records[str(log)], code = _print_one(args, nominal, log, mapping)
         except (InputError, SurfaceError) as error:
-            _say(f'{log}: {error}')
+            say(f'{log}: {error}')
             records |= without(str(log), str(error))
             code = FAILED
         codes.append(code)
@@ -103,7 +103,7 @@ def _print_one(
         with shown_progress(bag.duration) as on_done:
             found = judge_log(bag, parameters, on_share=on_done)
         _say_notes(found.notes, parameters)
-        _say(*_silences(bag, parameters.values, found))
+        say(*_silences(bag, parameters.values, found))
     if not args.json:
         print('\n'.join(log_lines(found)))
     return printed_records(summary_record(found)), DONE if found.judged else FAILED
@@ -120,7 +120,7 @@ def _report_one(args: argparse.Namespace, nominal: Path, log: Path) -> tuple[Rec
             result = report_log(bag, args.out, parameters, on_share=on_done)
     _say_notes(result.notes, parameters)
     if result.unjudged:
-        _say(f'nothing was judged on axis {", ".join(result.unjudged)}')
+        say(f'nothing was judged on axis {", ".join(result.unjudged)}')
     for line in result.lines:
         print(line.verdict)
     print(f'report in {args.out / PAGE}')
@@ -185,24 +185,19 @@ def _reason(bag: Bag, fault: str, case: AxisCase | None) -> str:
 
 def _print_entry(entry: 'LogEntry') -> None:
     if entry.result is None:
-        _say(f'{entry.name}: {entry.failure}')
+        say(f'{entry.name}: {entry.failure}')
         return
     for line in entry.result.lines:
         print(f'{entry.name}: {line.verdict}')
-    _say(*(f'{entry.name}: {note}' for note in entry.result.notes))
+    say(*(f'{entry.name}: {note}' for note in entry.result.notes))
     if entry.result.unjudged:
-        _say(f'{entry.name}: nothing was judged on axis {", ".join(entry.result.unjudged)}')
+        say(f'{entry.name}: nothing was judged on axis {", ".join(entry.result.unjudged)}')
 
 
 def _say_origin(parameters: LogParameters) -> None:
-    _say(f'parameters: {parameters.origin}', *parameters.sentences)
+    say(f'parameters: {parameters.origin}', *parameters.sentences)
 
 
 def _say_notes(notes: Sequence[str], parameters: LogParameters) -> None:
     """Say what has not been said of the parameters."""
-    _say(*(note for note in notes if note not in parameters.sentences))
-
-
-def _say(*sentences: str) -> None:
-    for sentence in sentences:
-        print(f'ballscrew: {sentence}', file=sys.stderr)
+    say(*(note for note in notes if note not in parameters.sentences))

@@ -103,17 +103,10 @@ class Answers:
                 name, state_messages.TIERS[one.axis.surface.tier]
             )
             self._events[name] = Event()
-            settings = one.axis.monitor.settings
-            yield (
-                output(name, 'surface_info'),
-                state_messages.surface_info_message(
-                    name,
-                    one.axis.surface,
-                    settings.limits,
-                    stamp=one.log_time,
-                    default_temperature=settings.default_temperature,
-                ),
+            info = state_messages.surface_info_message(
+                name, one.axis.surface, one.axis.monitor.settings, stamp=one.log_time
             )
+            yield output(name, 'surface_info'), info
         yield output(name, 'state'), self._writers[name].write(one.state)
         if one.event is not None:
             self._events[name] = one.event

@@ -21,7 +21,7 @@ from ballscrew_monitor.recordings.axis_run import TimedState
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.columns import AxisOutcome, JudgedColumns
 from ballscrew_monitor.recordings.own_recording import is_as_recorded
-from ballscrew_monitor.recordings.replay import ignore, replay_columns, replay_parts
+from ballscrew_monitor.recordings.replay import ignore, replay_parts
 from ballscrew_monitor.recordings.summary import EventRecord
 from ballscrew_monitor.report.parameters import Assumed, AxisFacts, LogParameters
 from ballscrew_monitor.report.survey import Survey, Surveyor
@@ -90,6 +90,16 @@ class AxisCase:
     def since_first(self, stamp: int) -> float:
         """Return a stamp [ns] as time on the time line of the page [s]."""
         return (stamp + self.survey.shift - self.survey.first) / SECOND
+
+    def span(self, event: EventRecord) -> tuple[float, float]:
+        """Return begin and end of an event on the time line of the page [s]."""
+        return self.since_first(event.start), self.since_first(event.end)
+
+    def shown(self, event: EventRecord) -> tuple[float, float]:
+        """Return the time about an event that its mark or its row leads to [s]."""
+        begin, end = self.span(event)
+        margin = max(1.0, 0.2 * (end - begin))
+        return begin - margin, end + margin
 
     @property
     def begins(self) -> float:
@@ -256,11 +266,8 @@ def _parts(
     bag: Bag, values: Mapping[str, Any], on_share: OnShare, on_state: OnState | None
 ) -> Iterator[JudgedColumns | AxisOutcome]:
     """Yield rows and outcomes; states, which cost more than these, are made only if wanted."""
-    if on_state is None:
-        yield from replay_columns(bag, values, on_done=on_share)
-        return
-    for part in replay_parts(bag, values, on_done=on_share):
-        if isinstance(part, TimedState):
-            on_state(part)
-        else:
+    for part in replay_parts(bag, values, states=on_state is not None, on_done=on_share):
+        if not isinstance(part, TimedState):
             yield part
+        elif on_state is not None:
+            on_state(part)

@@ -3,11 +3,10 @@
 """The report of one recording: a page that a person reads, forwards and prints."""
 
 from collections.abc import Mapping, Sequence
-import datetime
 import math
 from typing import Any
 
-from ballscrew_monitor.core.conversions import seconds
+from ballscrew_monitor.core.conversions import clock_text
 from ballscrew_monitor.recordings.declared import plain
 from ballscrew_monitor.report import page_budget, parts, provenance, time_series
 from ballscrew_monitor.report.judging import AxisCase, LogCase
@@ -32,15 +31,10 @@ def report_page(log: LogCase, maps: Sequence[OperatingMap] | None = None) -> str
     budgets = axis_budgets(log.axes)
     body = _body(log, maps, budgets)
     bare = _page(log, body, [{'map': plain(chart)} for chart in maps])
+    courses = _courses(log, budgets, page_budget.PAGE_BYTES - len(bare.encode()))
     records = [
         {'id': _id(number), 'map': plain(chart), 'course': course}
-        for number, (chart, course) in enumerate(
-            zip(
-                maps,
-                _courses(log, budgets, page_budget.PAGE_BYTES - len(bare.encode())),
-                strict=True,
-            )
-        )
+        for number, (chart, course) in enumerate(zip(maps, courses, strict=True))
     ]
     return _page(log, body, records)
 
@@ -66,6 +60,7 @@ def _courses(log: LogCase, budgets: Sequence[AxisBudget], spare: float) -> list[
 
 
 def _body(log: LogCase, maps: Sequence[OperatingMap], budgets: Sequence[AxisBudget]) -> Markup:
+    axes = enumerate(zip(log.axes, maps, budgets, strict=True))
     return element(
         'main',
         element('h1', f'Ball screw report: {log.name}'),
@@ -76,12 +71,7 @@ def _body(log: LogCase, maps: Sequence[OperatingMap], budgets: Sequence[AxisBudg
         element(
             'noscript', element('p', 'The charts need JavaScript; all else is here without it.')
         ),
-        *(
-            _axis_part(_id(number), case, chart, budget, log)
-            for number, (case, chart, budget) in enumerate(
-                zip(log.axes, maps, budgets, strict=True)
-            )
-        ),
+        *(_axis_part(_id(number), *axis, log) for number, axis in axes),
     )
 
 
@@ -96,12 +86,7 @@ def _when(log: LogCase) -> str:
     last = max(case.survey.last for case in log.axes)
     if any(math.isnan(case.begins) for case in log.axes):
         return f'Recorded over {(last - first) * 1e-9:.1f} s, without a date.'
-    return f'Recorded from {_date(first)} to {_date(last)} UTC.'
-
-
-def _date(stamp: int) -> str:
-    moment = datetime.datetime.fromtimestamp(seconds(stamp), tz=datetime.UTC)
-    return f'{moment:%Y-%m-%d %H:%M:%S}'
+    return f'Recorded from {clock_text(first).removesuffix(" UTC")} to {clock_text(last)}.'
 
 
 def _axis_part(

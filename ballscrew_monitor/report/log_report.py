@@ -26,7 +26,7 @@ from ballscrew_monitor.report.logs import (
 )
 from ballscrew_monitor.report.parameters import LogParameters
 from ballscrew_monitor.report.printed import summary_record
-from ballscrew_monitor.report.store import row_store
+from ballscrew_monitor.report.store import RowStore, scratch_folder
 from ballscrew_monitor.report.verdict import AxisVerdict, verdicts_of
 from surrogate.files import json_text, new_file, replace_file
 
@@ -90,8 +90,8 @@ def report_log(
     InputError when it cannot be read with the parameters.
 
     """
-    with row_store(out) as store:
-        made = store.folder / MADE
+    with scratch_folder(out) as folder:
+        store, made = RowStore(folder), folder / MADE
         with judged_bag(bag, parameters.values, made / JUDGED, parameters.metadata) as add_state:
             log = judge_log(
                 bag,

@@ -212,9 +212,7 @@ def _marks(case: AxisCase, places: dict[int, 'MeanPlace']) -> Iterable[MapMark]:
     for event in reversed(case.worst_first[:MARKED]):
         spot = places[event.event_id].middle
         if spot is not None:
-            begin, end = case.since_first(event.start), case.since_first(event.end)
-            margin = max(1.0, 0.2 * (end - begin))
-            shown = {'begin': begin - margin, 'end': end + margin}
+            shown = dict(zip(('begin', 'end'), case.shown(event)))
             yield MapMark(number=event.event_id, speed=spot[0], load=spot[1], **shown)
 
 

@@ -12,6 +12,7 @@ from typing import Any
 from ballscrew_monitor.recordings import log_facts
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.log_facts import ChosenValues, LogFacts, PREFIX
+from ballscrew_monitor.settings.parameters import flatten
 from surrogate.units import MILLI
 
 Assumed = Mapping[str, Mapping[str, Any]]
@@ -117,7 +118,7 @@ def parameters_for(bag: Bag, given: Path | None, nominal: Path) -> LogParameters
 
 def _still_assumed(facts: LogFacts, chosen: ChosenValues) -> Iterator[log_facts.Assumption]:
     """Yield the assumptions of a log without those that other parameters take the place of."""
-    said = dict(_places(facts.mapping.get('parameters') or {}))
+    said = flatten(facts.mapping.get('parameters') or {})
     for one in facts.assumptions:
         axis, _, place = one.key.partition('.')
         if place not in OF_NODE or not (chosen.is_given or f'{axis}.{OF_NODE[place]}' in said):
@@ -130,7 +131,7 @@ def _axis_facts(
     """Return what is stated and assumed of an axis; the temperature as judged with."""
     assumed = assumed_of(assumptions, axis, chosen.values['axes'])
     mapped = {} if facts is None else facts.mapping.get('axes', {}).get(axis, {})
-    known = dict(_places(mapped)) | {key: one['value'] for key, one in assumed.items()}
+    known = flatten(mapped) | {key: one['value'] for key, one in assumed.items()}
     stated = set(known) - {*assumed, TEMPERATURE}
     if f'{axis}.{OF_NODE[TEMPERATURE]}' in chosen.said and TEMPERATURE not in assumed:
         stated.add(TEMPERATURE)
@@ -180,12 +181,3 @@ def _metadata(bag: Bag, facts: LogFacts | None, chosen: ChosenValues) -> dict[st
         return own
     text = log_facts.parameters_text(chosen.values, chosen.said)
     return own | {f'{PREFIX}parameters': text}
-
-
-def _places(section: Mapping[str, Any], prefix: str = '') -> Iterator[tuple[str, Any]]:
-    """Yield the full names of all values in sections within sections, and the values."""
-    for key, value in section.items():
-        if isinstance(value, Mapping):
-            yield from _places(value, f'{prefix}{key}.')
-        else:
-            yield f'{prefix}{key}', value

@@ -146,8 +146,7 @@ def events_part(case: AxisCase, most: int = MOST_ROWS) -> Markup:
 
 
 def _event_row(case: AxisCase, event: EventRecord, worst: bool) -> TableRow:
-    begin, end = case.since_first(event.start), case.since_first(event.end)
-    margin = max(1.0, 0.2 * (end - begin))
+    begin, shown = case.since_first(event.start), case.shown(event)
     metal = event.quantity == RCS
     cause = 'oil film too thin (RCS)' if metal else f'too much friction ({event.quantity})'
     todo = event.what_to_do
@@ -165,7 +164,7 @@ def _event_row(case: AxisCase, event: EventRecord, worst: bool) -> TableRow:
             ),
             f'at {event.place}: {todo}' if event.place else todo or NONE,
         ),
-        begin=begin - margin,
-        end=end + margin,
+        begin=shown[0],
+        end=shown[1],
         kind='bad' if worst else '',
     )

@@ -75,8 +75,9 @@ def _draw_axis(part: SubFigure, case: AxisCase, chart: OperatingMap) -> None:
     for strip, panel in zip(strips[1:], shown, strict=True):
         _draw_panel(strip, panel, rows)
         for event in case.outcome.events if not panel['bands'] else ():
-            span = case.since_first(event.start), case.since_first(event.end)
-            strip.axvspan(*span, color=COLOURS['outside'], alpha=0.14, linewidth=0.0, zorder=0)
+            strip.axvspan(
+                *case.span(event), color=COLOURS['outside'], alpha=0.14, linewidth=0.0, zorder=0
+            )
     strips[-1].set_xlim(0.0, case.survey.span or 1.0)
     strips[-1].set_xlabel('time [s]')
 
@@ -173,7 +174,7 @@ def _draw_bars(axes: Axes, case: AxisCase, rows: Rows) -> None:
         limits: dict[str, Any] = {'vmin': -0.5, 'vmax': len(colours) - 0.5}
         axes.pcolormesh(edges, [place, place + 0.9], rows[key][None], cmap=cmap, **limits)
     for event in case.worst_first[: map_record.MARKED]:
-        middle = 0.5 * (case.since_first(event.start) + case.since_first(event.end))
+        middle = 0.5 * sum(case.span(event))
         axes.text(middle, 0.45, str(event.event_id), fontsize=8, **CENTRED)
     axes.set_yticks(np.arange(len(BARS)) + 0.45, [title for _, title, _ in reversed(BARS)])
     axes.tick_params(length=0, labelsize=8)

@@ -58,7 +58,7 @@ class RowStore:
     """
     Keeps blocks of rows on disk, by axis, in a `folder`.
 
-    The folder goes when the `row_store` ends, and what else was put there.
+    The folder is a `scratch_folder`, which goes with what else was put there.
 
     """
 
@@ -90,13 +90,6 @@ class RowStore:
             else:
                 nothing = {name: np.empty(0, kind) for name, kind in COLUMNS.items()}
                 frame_of(JudgedColumns(axis='', **nothing)).write_parquet(partial)
-
-
-@contextlib.contextmanager
-def row_store(directory: Path) -> Iterator[RowStore]:
-    """Give a store of rows in a directory of its own below `directory` until the block ends."""
-    with scratch_folder(directory) as folder:
-        yield RowStore(folder)
 
 
 @contextlib.contextmanager

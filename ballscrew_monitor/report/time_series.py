@@ -84,7 +84,7 @@ def series_record(
             for key, title, colours in BARS
         ],
         'events': [
-            {'begin': case.since_first(event.start), 'end': case.since_first(event.end)}
+            dict(zip(('begin', 'end'), case.span(event)))
             for event in case.worst_first[: budget.events]
         ],
         'panels': panels(case),
@@ -206,8 +206,8 @@ def _worst_stretches(case: AxisCase, longest: float) -> tuple[int, list[tuple[fl
     chosen: list[tuple[float, float]] = []
     count = 0
     for event in case.worst_first[: page_budget.WORST]:
-        ends = case.since_first(event.start), case.since_first(event.end)
-        more = _merged([*chosen, *((at - AROUND, at + AROUND) for at in ends)])
+        ends = ((at - AROUND, at + AROUND) for at in case.span(event))
+        more = _merged([*chosen, *ends])
         if _length(more) > longest:
             break
         count, chosen = count + 1, more

@@ -11,7 +11,7 @@ import weakref
 from ballscrew_monitor.core import conversions
 from ballscrew_monitor.core.conversions import nanoseconds, POSITION_UNITS, Scaling
 from ballscrew_monitor.core.fields import check_path
-from ballscrew_monitor.core.inputs import Input, make_input, OpenInput, Source
+from ballscrew_monitor.core.inputs import Input, OpenInput, Source
 from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.core.state import LoadDerivation, MonitorSettings, PositionSettings
 from ballscrew_monitor.judge.monitor import Monitor
@@ -272,10 +272,11 @@ def _input_of(
     topic, field = values[f'{prefix}.topic'], values[f'{prefix}.field']
     kind, scaling = values[f'{prefix}.type'], scaling_of(name, values, source, lead)
     try:
-        if not kind:
-            check_path(field)
-            return OpenInput(source=source, topic=topic, field=field, scaling=scaling)
-        return make_input(source, topic=topic, type_name=kind, field=field, scaling=scaling)
+        one = OpenInput(source=source, topic=topic, field=field, scaling=scaling)
+        if kind:
+            return one.close(kind)
+        check_path(field)
+        return one
     except InputError as error:
         raise InputError(f'parameters {prefix}: {error}') from None
 

@@ -149,7 +149,7 @@ def _given(text: str, *, of_ros: bool = False) -> dict[str, Any]:
                 raise InputError(
                     f'{key} holds no parameters, they must stand below ros__parameters'
                 )
-            given |= _flatten(values)
+            given |= flatten(values)
     if not given:
         raise InputError(f'it says nothing to the node, begin it with /**/{NODE_NAME}:')
     return {name: value for name, value in given.items() if is_of_ros(name) is of_ros}
@@ -198,11 +198,12 @@ def _take_letters_as_ros(root: Any) -> None:
             part.value = str(BARE_LETTERS[part.value])
 
 
-def _flatten(section: Mapping[str, Any], prefix: str = '') -> dict[str, Any]:
+def flatten(section: Mapping[str, Any], prefix: str = '') -> dict[str, Any]:
+    """Return the values in sections within sections by their full names."""
     flat: dict[str, Any] = {}
     for key, value in section.items():
         if isinstance(value, dict):
-            flat |= _flatten(value, f'{prefix}{key}.')
+            flat |= flatten(value, f'{prefix}{key}.')
         else:
             flat[f'{prefix}{key}'] = value
     return flat

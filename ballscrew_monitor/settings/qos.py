@@ -1,12 +1,20 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""QoS of the inputs, what `qos_overrides` may change of it, and what publishers offer."""
+"""
+QoS of the inputs, what `qos_overrides` may change of it, and what publishers offer.
 
-from collections.abc import Collection, Mapping
+And a node of a command in the graph, from its start to its end.
+
+"""
+
+from collections.abc import Collection, Iterator, Mapping
+import contextlib
 from typing import Any
 
 from ballscrew_monitor.core.links import Publisher
+import rclpy
 from rclpy.duration import Duration
+from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.qos import (
     QoSDurabilityPolicy,
@@ -16,6 +24,7 @@ from rclpy.qos import (
     QoSReliabilityPolicy,
 )
 from rclpy.qos_overriding_options import QoSOverridingOptions
+from rclpy.signals import SignalHandlerOptions
 from surrogate.files import InputError
 
 DEPTH, MOST_DEPTH = 200, 100_000
@@ -111,3 +120,30 @@ def publishers_on(node: Node, topic: str) -> tuple[Publisher, ...]:
         )
         for info in node.get_publishers_info_by_topic(topic)
     )
+
+
+@contextlib.contextmanager
+def started_node(name: str, domain: int | None = None, **options: Any) -> Iterator[Node]:
+    """
+    Start ROS and a node with an executor, until the end; raises InputError where that fails.
+
+    The `domain` is that of the environment unless stated.
+
+    """
+    context = rclpy.Context()
+    try:
+        rclpy.init(
+            context=context, domain_id=domain, signal_handler_options=SignalHandlerOptions.NO
+        )
+    except RuntimeError as error:  # such as a domain that is no number
+        raise InputError(f'ROS cannot start: {" ".join(str(error).split())}') from None
+    quiet = {'enable_rosout': False, 'start_parameter_services': False}
+    node = rclpy.create_node(name, context=context, **(quiet | options))
+    executor = SingleThreadedExecutor(context=context)
+    executor.add_node(node)
+    try:
+        yield node
+    finally:
+        executor.shutdown()
+        node.destroy_node()
+        rclpy.shutdown(context=context)

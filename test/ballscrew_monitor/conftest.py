@@ -17,7 +17,6 @@ import sys
 import types
 import warnings
 
-from ballscrew_monitor.clients.surroundings import started_node
 from ballscrew_monitor.core import advice
 from ballscrew_monitor.core.conversions import direction_of, SECOND
 from ballscrew_monitor.core.estimate import MachinePoint, PointSource, PointValidity
@@ -31,6 +30,7 @@ from ballscrew_monitor.cycle.node_process import child_environment
 from ballscrew_monitor.judge import derived_load, point, step
 from ballscrew_monitor.judge.monitor import Monitor
 from ballscrew_monitor.node.solver_process import MODULE, path_to_this_code
+from ballscrew_monitor.settings.qos import started_node
 from ballscrew_msgs.msg import BallScrewState, OutOfZone, SurfaceInfo
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import WrenchStamped

@@ -83,19 +83,11 @@ class TopicDecoder:
             if isinstance(found, int):
                 parts += self._samples(layout, messages, found, (number, axis, source))
             elif isinstance(found, OtherJoints):
-                parts.append(
-                    made(
-                        len(messages),
-                        log_time=messages.log_time,
-                        place=messages.place,
-                        axis=number,
-                        source=source.source,
-                        kind=Kind.OTHER_JOINTS,
-                        stamp=messages.log_time,
-                        arrival=messages.log_time,
-                        note=found,
-                    )
-                )
+                now = messages.log_time
+                times = {'log_time': now, 'stamp': now, 'arrival': now}
+                whose = {'place': messages.place, 'axis': number, 'source': source.source}
+                kind = Kind.OTHER_JOINTS
+                parts.append(made(len(messages), kind=kind, **times, **whose, note=found))
             else:
                 parts.append(self._one_by_one(messages, [(number, axis, source)]))
         return parts

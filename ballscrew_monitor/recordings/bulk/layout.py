@@ -15,24 +15,22 @@ import struct
 from types import SimpleNamespace
 from typing import Any
 
-from ballscrew_monitor.core.fields import message_class, MessageClass, OtherJoints, TooShort
+from ballscrew_monitor.core.cdr import HEADER
+from ballscrew_monitor.core.fields import (
+    FORMATS,
+    message_class,
+    MessageClass,
+    OtherJoints,
+    TooShort,
+)
 from ballscrew_monitor.core.inputs import Input
 from ballscrew_monitor.recordings.bulk.chunks import Integers, unaligned
 import numpy as np
 from numpy.typing import NDArray
 
-LITTLE_ENDIAN = b'\x00\x01\x00\x00'  # encapsulation header of a serialised message
-HEAD = len(LITTLE_ENDIAN)
+HEAD = len(HEADER)
 WORD = 8  # [bytes] compared at once
-KINDS = {
-    'float': '<f4',
-    'double': '<f8',
-    'boolean': '|u1',
-    'char': '|u1',
-    'octet': '|u1',
-    **{f'int{bits}': f'<i{bits // 8}' for bits in (8, 16, 32, 64)},
-    **{f'uint{bits}': f'<u{bits // 8}' for bits in (8, 16, 32, 64)},
-}
+KINDS = {name: f'<{letter}' for name, letter in (FORMATS | {'boolean': 'B', 'char': 'B'}).items()}
 _SEQUENCE = re.compile(r'sequence<(.+?)(?:, \d+)?>')
 _ARRAY = re.compile(r'(.+)\[(\d+)\]')
 _TEXT = re.compile(r'string(<\d+>)?')
@@ -88,7 +86,7 @@ class _Walk:
     """One way through a serialised message; numbers become their places."""
 
     def __init__(self, data: bytes) -> None:
-        if data[:HEAD] != LITTLE_ENDIAN:
+        if data[:HEAD] != HEADER:
             raise NoLayout
         self._data, self._at = data, HEAD
         self.kinds: dict[int, str] = {}

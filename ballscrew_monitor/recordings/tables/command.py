@@ -2,15 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """`ballscrew import`: a first map of a table on standard output, or a bag made by a map."""
 
-from collections.abc import Iterable
 from pathlib import Path
-import sys
 
 from ballscrew_monitor.recordings.bag_files import is_bag
 from ballscrew_monitor.recordings.progress import shown_progress
 from ballscrew_monitor.recordings.tables.convert import convert
 from ballscrew_monitor.recordings.tables.guess import guess
 from ballscrew_monitor.recordings.tables.mapping import read_map
+from ballscrew_monitor.recordings.words import say
 from surrogate.files import InputError
 
 
@@ -19,7 +18,7 @@ def print_guess(log: Path) -> None:
     _check_log(log)
     made = guess(log, shown=shown_progress)
     print(made.text, end='')
-    _say(made.notes)
+    say(*made.notes)
 
 
 def make_bag(log: Path, config: Path | None, out: Path | None) -> None:
@@ -29,7 +28,7 @@ def make_bag(log: Path, config: Path | None, out: Path | None) -> None:
         missing = '--config' if config is None else '--out'
         raise InputError(f'{missing} is missing; --guess prints a first map for --config')
     facts = convert(log, read_map(config), out, shown=shown_progress)
-    _say(facts.notes)
+    say(*facts.notes)
     print(f'{out}: judge it by ballscrew replay {out}')
     for one in facts.assumptions:
         print(f'  assumed {one.key} = {one.value}: {one.reason}')
@@ -40,8 +39,3 @@ def _check_log(log: Path) -> None:
         raise InputError(
             f'log {log} is no table; a bag needs no import, ballscrew replay takes it'
         )
-
-
-def _say(notes: Iterable[str]) -> None:
-    for note in notes:
-        print(f'ballscrew: {note}', file=sys.stderr)

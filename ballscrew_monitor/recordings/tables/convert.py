@@ -18,6 +18,7 @@ from typing import Any
 
 from ballscrew_monitor.core.cdr import serialized
 from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.core.fields import type_name_of
 from ballscrew_monitor.messages.reasons import enough_timeout
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic, whole_bag
 from ballscrew_monitor.recordings.log_facts import Assumption, LogFacts
@@ -36,11 +37,6 @@ from surrogate.files import InputError
 from surrogate.units import MILLI
 
 JOINTS = 'joint_states'
-JOINT, WRENCH, TEMPERATURE = (
-    'sensor_msgs/msg/JointState',
-    'geometry_msgs/msg/WrenchStamped',
-    'sensor_msgs/msg/Temperature',
-)
 SLOW = 0.5  # of the timeout: rows that far apart leave no room for a late one
 PASSES = 3  # over a table, at most, of which each is shown
 SAME = 1e-6  # part by which two leads may differ
@@ -114,7 +110,7 @@ def _axis_parameters(axis: AxisMap) -> dict[str, Any]:
         values['temperature.default'] = axis.temperature
     # A torque that the load was worked out from has nothing to be compared with.
     if by_node or ('torque' in axis.columns and axis.load_from != 'torque'):
-        joint = {'topic': JOINTS, 'type': JOINT}
+        joint = {'topic': JOINTS, 'type': type_name_of(JointState())}
         joint['field'] = f'effort[{axis.name}_axis]'
         values |= {f'torque.{key}': value for key, value in joint.items()}
     return {f'{axis.name}.{key}': value for key, value in values.items()}
@@ -157,13 +153,12 @@ def _write(
     for block in series.blocks():
         agreement.add(block)
         streams = []
-        for name, type_name, message, numbers in _topics(block):
-            topic = Topic(name=absolute(name), type_name=type_name, offer=Offer.RELIABLE)
-            if topic.name not in templates:
-                writer.add_topic(topic)
-                templates[topic.name] = RowTemplate(message, len(numbers))
-            rows = templates[topic.name].rows(block.stamps, numbers)
-            streams.append((topic.name, rows))
+        for name, message, numbers in _topics(block):
+            if name not in templates:
+                kind = type_name_of(message)
+                writer.add_topic(Topic(name=name, type_name=kind, offer=Offer.RELIABLE))
+                templates[name] = RowTemplate(message, len(numbers))
+            streams.append((name, templates[name].rows(block.stamps, numbers)))
         for stamp in block.stamps.tolist():
             for name, rows in streams:
                 writer.write(name, next(rows), log_time=stamp, publish_time=stamp)
@@ -171,19 +166,19 @@ def _write(
         show(done / series.count)
 
 
-def _topics(block: Block) -> Iterator[tuple[str, str, Any, list[Array]]]:
-    """Yield name, type, message with marks and numbers of each topic, the joints last."""
+def _topics(block: Block) -> Iterator[tuple[str, Any, list[Array]]]:
+    """Yield full name, message with marks and numbers of each topic, the joints last."""
     for axis in block.axes:
         (mark,) = marks(1)
         if axis.temperature is not None:
             warm = Temperature(temperature=mark)
-            yield f'{axis.name}/oil_temperature', TEMPERATURE, warm, [axis.temperature]
+            yield absolute(f'{axis.name}/oil_temperature'), warm, [axis.temperature]
         if axis.load is not None:
             load = WrenchStamped()
             load.header.frame_id = f'{axis.name}_nut'
             load.wrench.force.x = mark
-            yield f'{axis.name}/axial_load', WRENCH, load, [axis.load]
-    yield JOINTS, JOINT, *_joints(block)
+            yield absolute(f'{axis.name}/axial_load'), load, [axis.load]
+    yield absolute(JOINTS), *_joints(block)
 
 
 def _joints(block: Block) -> tuple[JointState, list[Array]]:

@@ -71,13 +71,21 @@ def guess(path: Path, *, shown: Shown = silent) -> Guess:
 
 
 class _Guesser:
-    """What is found so far."""
+    """
+    What is found so far.
+
+    `axes` holds the columns of each axis by what they are, `used` what the map says of those that
+    say something, by the same names; the `step` between rows [s] is NaN where it is not known.
+
+    """
 
     def __init__(self, path: Path, shown: Shown) -> None:
         self.path = path
         self.named = [read_name(name) for name in column_names(path)]
         self.assumed: dict[str, dict[str, Any]] = {}
         self.notes: list[str] = []
+        self.used: dict[str, dict[str, dict[str, Any]]] = {}
+        self.step = math.nan
         self.axes = {
             name: chosen
             for name, found in names.by_axis(self.named).items()
@@ -102,13 +110,14 @@ class _Guesser:
         self._forget_texts()
 
     def result(self) -> Guess:
-        time, step = self._time_column()
-        axes = {name: self._axis(name, chosen, step) for name, chosen in self.axes.items()}
+        time = self._time_column()
+        for name in self.axes:
+            self._fill(name)
         if not time:
-            self._assume_rate(axes)
-        self._say_what_is_left_out(axes, time)
+            self._assume_rate()
+        self._say_what_is_left_out(time)
         content: dict[str, Any] = {'log': self.path.name} | ({'time': time} if time else {})
-        content |= {'axes': axes, 'assumed': self.assumed}
+        content |= {'axes': self.used, 'assumed': self.assumed}
         return Guess(content=content, notes=tuple(self.notes))
 
     def _assume(self, key: str, value: Any, reason: str) -> None:
@@ -125,15 +134,15 @@ class _Guesser:
         if not self.axes:
             raise InputError(f'log {self.path}: {"; ".join(self.notes)}')
 
-    def _time_column(self) -> tuple[dict[str, Any], float]:
-        """Return what the map says of the time, and the step between rows [s], NaN: not known."""
+    def _time_column(self) -> dict[str, Any]:
+        """Return what the map says of the time; take the step between rows if it is known."""
         for one in sorted(self.times, key=lambda one: -one.rank):  # by name, then by unit
             values = self.data[one.column]
             if estimates.is_rising(values):
                 return self._time_of(one, values)
-        return {}, math.nan
+        return {}
 
-    def _time_of(self, one: Named, values: Array) -> tuple[dict[str, Any], float]:
+    def _time_of(self, one: Named, values: Array) -> dict[str, Any]:
         unit, absolute, why = estimates.time_unit(values[np.isfinite(values)])
         if one.unit and not absolute:
             unit = one.unit
@@ -143,19 +152,19 @@ class _Guesser:
             )
         if not absolute:
             self._assume_epoch(f'column {one.column} does not count from a known time')
-        step = float(np.nanmedian(np.diff(values))) * conversions.TIME_UNITS[unit]
+        self.step = float(np.nanmedian(np.diff(values))) * conversions.TIME_UNITS[unit]
         place = {'column': one.column}
-        return place if 'time.unit' in self.assumed else place | {'unit': unit}, step
+        return place if 'time.unit' in self.assumed else place | {'unit': unit}
 
     def _assume_epoch(self, why: str) -> None:
         self._assume('time.epoch', EPOCH, f'{why}, and a stamp of 0 means that there is none')
 
-    def _assume_rate(self, axes: Mapping[str, Any]) -> None:
+    def _assume_rate(self) -> None:
         motions = {
-            name: self._motion(name, chosen, axes)
+            name: self._motion(name)
             for name, chosen in self.axes.items()
             if {'speed', 'position'} <= set(chosen)
-            and {self._unit(name, kind, axes) for kind in ('speed', 'position')}
+            and {self._unit(name, kind) for kind in ('speed', 'position')}
             <= set(conversions.LINEAR_SPEED_UNITS | LINEAR_POSITION_UNITS)
         }
         found = estimates.period(list(motions.values()))
@@ -175,35 +184,36 @@ class _Guesser:
         times = ', '.join(one.column for one in self.named if one.kind == 'time')
         return f'the log has no time that rises ({times})' if times else 'the log has no time'
 
-    def _motion(
-        self, name: str, chosen: Mapping[str, Named], axes: Mapping[str, Any]
-    ) -> tuple[Array, Array]:
+    def _motion(self, name: str) -> tuple[Array, Array]:
         """Return positions [m] and speeds [m/s] of an axis."""
+        chosen = self.axes[name]
         position, speed = (self.data[chosen[kind].column] for kind in ('position', 'speed'))
         return (
-            position * LINEAR_POSITION_UNITS[self._unit(name, 'position', axes)],
-            speed * conversions.LINEAR_SPEED_UNITS[self._unit(name, 'speed', axes)],
+            position * LINEAR_POSITION_UNITS[self._unit(name, 'position')],
+            speed * conversions.LINEAR_SPEED_UNITS[self._unit(name, 'speed')],
         )
 
-    def _unit(self, name: str, kind: str, axes: Mapping[str, Any]) -> str:
+    def _unit(self, name: str, kind: str) -> str:
         """Return the unit of an input as the map says or assumes it."""
         assumed = self.assumed.get(f'{name}.{kind}.unit', {}).get('value', '')
-        return str(axes[name][kind].get('unit', assumed))
+        return str(self.used[name][kind].get('unit', assumed))
 
-    def _axis(self, name: str, chosen: Mapping[str, Named], step: float) -> dict[str, Any]:
-        used = {
+    def _fill(self, name: str) -> None:
+        """Let the map say of an axis what its columns and their numbers tell."""
+        chosen = self.axes[name]
+        used = self.used[name] = {
             kind: {'column': chosen[kind].column}
             for kind in INPUTS
             if kind in chosen and self._is_used(chosen[kind])
         }
-        for kind, place in used.items():
-            self._set_unit(name, kind, place, used, chosen, step)
+        for kind in used:
+            self._set_unit(name, kind)
         lead = Surface.load(find_surface('', SCREW, OIL), screw=SCREW, oil=OIL).lead * MILLI
         for key, value in (('screw', SCREW), ('oil', OIL)):
             self._assume(f'{name}.{key}', value, 'the log does not say it; the shipped one')
         why = f'the log does not say it; that of {SCREW}'
         self._assume(f'{name}.lead_mm', float(f'{lead:.6g}'), why)
-        self._set_load(name, used, chosen)
+        self._set_load(name)
         if 'temperature' in used:
             self._set_oil(name, used['temperature'])
         else:
@@ -214,34 +224,26 @@ class _Guesser:
             )
         if 'speed' in used:
             speeds = self.extremes[used['speed']['column']]
-            unit = self._unit(name, 'speed', {name: used})
+            unit = self._unit(name, 'speed')
             self.notes += estimates.oddities(name, speeds, unit, conversions.LINEAR_SPEED_UNITS)
-        return used
 
     def _is_used(self, one: Named) -> bool:
         """Tell whether a column says something: a force or current of nothing but 0 is unknown."""
         silent = estimates.is_silent(self.extremes[one.column])
         return one.kind in ('speed', 'position') or not silent
 
-    def _set_unit(
-        self,
-        name: str,
-        kind: str,
-        place: dict[str, Any],
-        used: Mapping[str, dict[str, Any]],
-        chosen: Mapping[str, Named],
-        step: float,
-    ) -> None:
-        if chosen[kind].unit:
-            place['unit'] = chosen[kind].unit
+    def _set_unit(self, name: str, kind: str) -> None:
+        place, stated = self.used[name][kind], self.axes[name][kind].unit
+        if stated:
+            place['unit'] = stated
             return
         values = self.extremes[place['column']]
         if kind == 'position':
             unit, why = estimates.position_unit(values)
         elif kind == 'speed':
-            metres, speed = self._metres(used, chosen), self.data[place['column']]
+            metres, speed = self._metres(name), self.data[place['column']]
             motion = None if metres is None else (metres, speed)
-            unit, why = estimates.speed_unit(values, motion, step)
+            unit, why = estimates.speed_unit(values, motion, self.step)
         elif kind == 'temperature' and np.nanmin(values) > TEMPERATURE * 5:
             unit, why = 'K', f'its least is {np.nanmin(values):.3g}'
         else:
@@ -250,15 +252,13 @@ class _Guesser:
             f'{name}.{kind}.unit', unit, f'{place["column"]} states none that is known; {why}'
         )
 
-    def _metres(
-        self, used: Mapping[str, dict[str, Any]], chosen: Mapping[str, Named]
-    ) -> Array | None:
+    def _metres(self, name: str) -> Array | None:
         """Return the position of an axis [m], None if there is none that is linear."""
-        if 'position' not in used:
+        if 'position' not in self.used[name]:
             return None
-        values = self.data[used['position']['column']]
-        extremes = self.extremes[used['position']['column']]
-        unit = chosen['position'].unit or estimates.position_unit(extremes)[0]
+        position = self.axes[name]['position']
+        values, extremes = self.data[position.column], self.extremes[position.column]
+        unit = position.unit or estimates.position_unit(extremes)[0]
         return values * LINEAR_POSITION_UNITS[unit] if unit in LINEAR_POSITION_UNITS else None
 
     def _set_oil(self, name: str, place: dict[str, Any]) -> None:
@@ -267,9 +267,8 @@ class _Guesser:
             column = place.pop('column')
             self._assume(f'{name}.temperature.column', column, 'taken for that of the oil')
 
-    def _set_load(
-        self, name: str, used: dict[str, dict[str, Any]], chosen: Mapping[str, Named]
-    ) -> None:
+    def _set_load(self, name: str) -> None:
+        used, chosen = self.used[name], self.axes[name]
         if 'load' in used:
             return
         source = next((kind for kind in ('torque', 'current') if kind in used), '')
@@ -288,7 +287,7 @@ class _Guesser:
         used['load'] = {'unknown': why}
         self.notes.append(f'axis {name}: the load is not known ({why}), nothing will be judged')
 
-    def _say_what_is_left_out(self, axes: Mapping[str, Any], time: Mapping[str, Any]) -> None:
-        used = {part.get('column') for axis in axes.values() for part in axis.values()}
+    def _say_what_is_left_out(self, time: Mapping[str, Any]) -> None:
+        used = {part.get('column') for axis in self.used.values() for part in axis.values()}
         used |= {entry['value'] for entry in self.assumed.values()} | {time.get('column', '')}
         self.notes += names.left_out([one for one in self.named if one.column not in used])

@@ -9,8 +9,8 @@ import time
 
 from ballscrew_monitor import cli
 from ballscrew_monitor.clients.doctor import doctor
-from ballscrew_monitor.clients.surroundings import started_node
 from ballscrew_monitor.cycle.domain import free_domain
+from ballscrew_monitor.settings.qos import started_node
 from geometry_msgs.msg import WrenchStamped
 import pytest
 from rclpy.qos import QoSProfile, QoSReliabilityPolicy

@@ -110,20 +110,20 @@ def test_a_request_holds_the_inputs_of_the_surface_and_no_names_to_look_up(core)
     assert set(request['header']) == {'tier', 'inputs'}
 
 
-def judged(point):
-    """Return a verdict with the gate that is shut at standstill."""
-    still = abs(point.speed) < 0.5
-    return Verdict(zone=Zone.UNKNOWN, gates=(Gate.STANDSTILL,) if still else ())
+def state_at(core, stamp, point, surface):
+    """Return what of a state counts, with the gate that is shut at standstill."""
+    gates = (Gate.STANDSTILL,) if abs(point.speed) < 0.5 else ()
+    found = estimate(point, surface, rcs_limit=core.limits().rcs)
+    facts = {'stamp': stamp, 'point': point, 'estimate': found, 'limits': core.limits()}
+    return types.SimpleNamespace(verdict=Verdict(zone=Zone.UNKNOWN, gates=gates), **facts)
 
 
 def asked(core, stamps, numbers=None, dwell=None, **point):
     """Return the stamps at which a solve is asked for while a point stays as it is."""
-    dwell, limits = dwell or Dwell(), core.limits()
+    dwell = dwell or Dwell()
     surface = core.surface(**({'rcs': 0.25, 'rcs_error': 0.0625} if numbers is None else numbers))
     here = core.point(**point)
-    result = estimate(here, surface, rcs_limit=limits.rcs)
-    verdict = judged(here)
-    return [one for one in stamps if dwell.update(one, here, result, verdict, limits)]
+    return [one for one in stamps if dwell.update(state_at(core, one, here, surface))]
 
 
 def test_a_solve_is_asked_for_after_a_stay_and_not_again_for_a_while(core):
@@ -158,9 +158,8 @@ def test_a_clock_that_is_set_back_begins_the_stay_anew(core):
     ],
 )
 def test_only_a_limit_within_reach_of_the_error_is_uncertain(core, numbers, uncertain):
-    limits, here = core.limits(), core.point()
-    result = estimate(here, core.surface(**numbers), rcs_limit=limits.rcs)
-    assert full_point.is_uncertain(result, judged(here), limits) is uncertain
+    state = state_at(core, START, core.point(), core.surface(**numbers))
+    assert full_point.is_uncertain(state) is uncertain
 
 
 def test_at_standstill_and_outside_the_surface_there_is_nothing_to_solve(core):

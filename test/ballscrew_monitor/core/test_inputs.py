@@ -21,14 +21,14 @@ def joints(*names, velocity=(), stamp=0):
     return message
 
 
-def speed_input(**changes):
+def speed_input(*, type_name='sensor_msgs/msg/JointState', **changes):
     values = {
+        'source': Source.SPEED,
         'topic': 'joint_states',
-        'type_name': 'sensor_msgs/msg/JointState',
         'field': 'velocity[x_axis]',
         'scaling': Scaling(factor=1.0, shift=0.0),
     }
-    return inputs.make_input(Source.SPEED, **(values | changes))
+    return inputs.OpenInput(**(values | changes)).close(type_name)
 
 
 def test_a_header_stamp_is_the_stamp():

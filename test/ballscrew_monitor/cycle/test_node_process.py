@@ -9,12 +9,12 @@ import signal
 import subprocess
 import sys
 
-from ballscrew_monitor.clients.surroundings import started_node
 from ballscrew_monitor.cycle import node_process
 from ballscrew_monitor.cycle.domain import free_domain
 from ballscrew_monitor.cycle.node_process import child_environment, NodeProcess
 from ballscrew_monitor.node.solver_process import path_to_this_code
 from ballscrew_monitor.settings.middleware import loopback
+from ballscrew_monitor.settings.qos import started_node
 from diagnostic_msgs.msg import DiagnosticArray
 import pytest
 

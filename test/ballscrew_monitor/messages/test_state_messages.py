@@ -103,10 +103,9 @@ def test_the_first_event_message_says_that_there_was_none():
 
 
 def test_a_surface_as_a_message(core):
+    settings = core.monitor().settings
     message = over_the_wire(
-        state_messages.surface_info_message(
-            'x', core.surface(), core.limits(), stamp=STAMP, default_temperature=313.15
-        )
+        state_messages.surface_info_message('x', core.surface(), settings, stamp=STAMP)
     )
     assert (message.screw, message.oil, message.tier) == ('constant', 'water', 1)
     assert (message.speed_min, message.axial_load_max) == (0.1, 4000.0)

@@ -7,13 +7,13 @@ import threading
 import time
 import types
 
-from ballscrew_monitor.clients.surroundings import started_node
 from ballscrew_monitor.core.conversions import Scaling
-from ballscrew_monitor.core.inputs import make_input, OpenInput, Source
+from ballscrew_monitor.core.inputs import OpenInput, Source
 from ballscrew_monitor.cycle.domain import free_domain
 from ballscrew_monitor.node import intake as intake_module
 from ballscrew_monitor.node.intake import Intake, PAUSE, QUIET, STAY
 from ballscrew_monitor.node.topic import Topic
+from ballscrew_monitor.settings.qos import started_node
 import pytest
 from rclpy.clock import Clock, ClockType
 from sensor_msgs.msg import JointState
@@ -23,13 +23,9 @@ DEADLINE = 600.0  # [s] which only ends a hang
 
 
 def float_input(source, topic):
-    return make_input(
-        source,
-        topic=topic,
-        type_name='std_msgs/msg/Float64',
-        field='data',
-        scaling=Scaling(factor=1.0, shift=0.0),
-    )
+    scaling = Scaling(factor=1.0, shift=0.0)
+    one = OpenInput(source=source, topic=topic, field='data', scaling=scaling)
+    return one.close('std_msgs/msg/Float64')
 
 
 class Watch:

@@ -19,7 +19,7 @@ from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
 from ballscrew_monitor.recordings.bulk.entries import entries_of
 from ballscrew_monitor.recordings.columns import AxisOutcome, COLUMNS, joined
 from ballscrew_monitor.recordings.replay import replay, replay_columns
-from ballscrew_monitor.recordings.summary import Summarizer
+from ballscrew_monitor.recordings.summary import summary_of
 from ballscrew_monitor.settings import parameters
 from ballscrew_monitor.settings.axis import build_axis
 from hypothesis import given, settings
@@ -72,13 +72,9 @@ def test_every_sample_is_a_row_and_the_states_are_some_of_them(nominal_bag, judg
 
 
 def test_the_outcome_is_that_of_the_states(nominal_bag, judged, values):
-    summarizer = Summarizer()
-    for state, event in replay(Bag(nominal_bag), values):
-        summarizer.add_state(state)
-        if event is not None:
-            summarizer.add_event(event)
+    said = (one for pair in replay(Bag(nominal_bag), values) for one in pair if one is not None)
     columns, outcome = judged
-    summary, expected = outcome.summary(), summarizer.result()
+    summary, expected = outcome.summary(), summary_of(said)
     assert summary.events == expected.events
     for event, told in zip(summary.events, expected.events, strict=True):
         np.testing.assert_equal(

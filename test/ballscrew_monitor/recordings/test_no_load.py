@@ -6,7 +6,6 @@ import json
 import math
 
 from ballscrew_monitor import cli
-from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
 from ballscrew_monitor.recordings.no_load import (
@@ -28,10 +27,10 @@ RATE = 50  # samples of JointState per second
 LEAD = 0.01
 PLATEAU, RAMP = 4.0, 1.0  # [s]
 PLATEAUS = (60, 150, 400, 1000, 2000)  # [rev/min]
-CHANNELS = {
-    Source.SPEED: speed_channel('joint_states', 'velocity[x_axis]', 'rad/s', LEAD),
-    Source.TORQUE: torque_channel('joint_states', 'effort[x_axis]', 1.0),
-}
+CHANNELS = [
+    speed_channel('joint_states', 'velocity[x_axis]', 'rad/s', LEAD),
+    torque_channel('joint_states', 'effort[x_axis]', 1.0),
+]
 SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
 
 
@@ -118,11 +117,11 @@ def test_units_scale_and_temperature(tmp_path):
     speed = np.repeat([0.1, 0.2], 5 * RATE)
     warmth = np.repeat([40.0, 42.0], 5 * RATE)
     bag = write(tmp_path, speed, 2.0 + 0 * speed, warmth=warmth)
-    channels = {
-        Source.SPEED: speed_channel('/joint_states', 'velocity[0]', 'm/s', LEAD),
-        Source.TORQUE: torque_channel('/joint_states', 'effort[0]', 0.25),
-        Source.TEMPERATURE: temperature_channel('oil', 'temperature'),
-    }
+    channels = [
+        speed_channel('/joint_states', 'velocity[0]', 'm/s', LEAD),
+        torque_channel('/joint_states', 'effort[0]', 0.25),
+        temperature_channel('oil', 'temperature'),
+    ]
     columns, _ = read_no_load(bag, channels)
     assert columns['speed'] == pytest.approx([20 * math.pi, 40 * math.pi])
     assert columns['torque'] == pytest.approx([0.5, 0.5])
@@ -160,11 +159,11 @@ def test_a_bag_without_what_is_asked_for_is_refused(tmp_path, refused):
     """Topic, field and joint are named."""
     bag = write(tmp_path, speeds(10.0), speeds(10.0), joint='y_axis')
     refused('message_joint_states_holds', read_no_load, bag, CHANNELS)
-    nowhere = CHANNELS | {Source.SPEED: speed_channel('nope', 'velocity[0]', 'rad/s', LEAD)}
+    nowhere = [speed_channel('nope', 'velocity[0]', 'rad/s', LEAD), *CHANNELS]
     refused('topic_nope_missing', read_no_load, bag, nowhere)
-    odd = CHANNELS | {Source.TORQUE: torque_channel('joint_states', 'effect[0]', 1.0)}
+    odd = [CHANNELS[0], torque_channel('joint_states', 'effect[0]', 1.0)]
     refused('has_field_effect', read_no_load, bag, odd)
-    empty = CHANNELS | {Source.TEMPERATURE: temperature_channel('oil', 'temperature')}
+    empty = [*CHANNELS, temperature_channel('oil', 'temperature')]
     refused('topic_oil_holds', read_no_load, bag, empty)
 
 

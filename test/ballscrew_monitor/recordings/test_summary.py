@@ -5,40 +5,35 @@
 import json
 import math
 
-from ballscrew_monitor.recordings.summary import Summarizer
+from ballscrew_monitor.recordings.summary import summary_of
 from ballscrew_msgs.msg import BallScrewState, Finding, OutOfZone
 from surrogate.files import json_text
 
 
 def make_summary():
     """Return the summary of 10 s with one event that ended and one that did not."""
-    summarizer = Summarizer()
+    said = [OutOfZone()]  # event 0: none so far
     for second in (100, 110):
         state = BallScrewState(axis='x', judged=1000)
         state.header.stamp.sec = second
         state.totals.running_time, state.totals.optimal_time = 8.0, 6.0
         state.totals.outside_time, state.totals.mixed_time = 2.0, 8.0
         state.totals.energy_lost = 123.4
-        summarizer.add_state(state)
-    summarizer.add_event(OutOfZone())  # event 0: none so far
+        said.append(state)
     for number, active in ((1, True), (1, False), (2, True)):
         event = OutOfZone(event_id=number, active=active, duration=2.0, worst_value=0.25)
         event.start.sec = 100 + 3 * number
         event.cause = Finding(code=Finding.CODE_RCS_HIGH, limit=0.01)
-        summarizer.add_event(event)
-    return summarizer.result()
+        said.append(event)
+    return summary_of(said)
 
 
-def summary_of(event=None, **totals):
+def of_one_state(event=None, **totals):
     """Return the summary of one state, and of an event."""
-    summarizer = Summarizer()
     state = BallScrewState(axis='x', judged=100)
     for name, value in totals.items():
         setattr(state.totals, name, value)
-    summarizer.add_state(state)
-    if event is not None:
-        summarizer.add_event(event)
-    return summarizer.result()
+    return summary_of([state] if event is None else [state, event])
 
 
 def test_totals_are_those_of_the_last_state(says):
@@ -59,7 +54,7 @@ def test_an_event_is_listed_once_with_its_last_word(says):
 def test_an_efficiency_is_told_in_percent():
     event = OutOfZone(event_id=1, worst_value=0.0656)
     event.cause = Finding(code=Finding.CODE_EFFICIENCY_LOW, limit=0.85)
-    found = summary_of(event)
+    found = of_one_state(event)
     assert found.lines()[-1].endswith('efficiency < 85 %, worst 6.6 %')
     assert found.events[0].shown(math.nan) == '–'
 
@@ -70,24 +65,24 @@ def test_an_event_that_is_still_on_lasts_to_the_last_state():
 
 
 def test_json_has_units_and_no_nan():
-    record = json.loads(json_text(summary_of(energy_lost=math.nan).record()))
+    record = json.loads(json_text(of_one_state(energy_lost=math.nan).record()))
     assert record['energy_lost_J'] is None
     assert record['running_time_s'] == 0.0
     assert record['events'] == []
 
 
 def test_no_event_reads_well_only_where_a_motion_was_judged():
-    moved = summary_of(running_time=9.0, optimal_time=9.0)
+    moved = of_one_state(running_time=9.0, optimal_time=9.0)
     assert (moved.says_nothing, moved.lines()[-1]) == (False, 'events      none')
-    for still in (summary_of(), summary_of(running_time=9.0, unjudged_time=9.0)):
+    for still in (of_one_state(), of_one_state(running_time=9.0, unjudged_time=9.0)):
         assert still.says_nothing
         assert still.lines()[-1] == 'events      none, for no motion was judged'
 
 
 def test_shares_are_rounded_as_in_a_verdict(says):
-    said = summary_of(running_time=75.6, optimal_time=0.4, outside_time=75.2).lines()[2]
+    said = of_one_state(running_time=75.6, optimal_time=0.4, outside_time=75.2).lines()[2]
     assert said.startswith(says('zone_optimal_0'))
 
 
 def test_without_a_state_there_is_none():
-    assert Summarizer().result() is None
+    assert summary_of([]) is None

@@ -5,7 +5,7 @@
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.report.judging import judge_log
 from ballscrew_monitor.report.parameters import parameters_for
-from ballscrew_monitor.report.store import row_store
+from ballscrew_monitor.report.store import RowStore, scratch_folder
 import pytest
 
 
@@ -17,8 +17,8 @@ def parameters(request, short_bag):
 
 
 def test_rows_are_kept_where_they_are_asked_for(short_bag, parameters, tmp_path):
-    with row_store(tmp_path) as store:
-        kept = judge_log(Bag(short_bag), parameters, rows=store).axes[0]
+    with scratch_folder(tmp_path) as folder:
+        kept = judge_log(Bag(short_bag), parameters, rows=RowStore(folder)).axes[0]
         assert sum(map(len, kept.blocks())) == kept.survey.rows == kept.outcome.rows
     printed = judge_log(Bag(short_bag), parameters).axes[0]
     assert printed.survey == kept.survey

@@ -9,7 +9,7 @@ import sys
 from ballscrew_monitor.core.judgement import Zone
 from ballscrew_monitor.recordings.columns import CODED, COLUMNS, joined
 from ballscrew_monitor.report import store as store_module
-from ballscrew_monitor.report.store import block_of, frame_of, row_store, scratch_folder
+from ballscrew_monitor.report.store import block_of, frame_of, RowStore, scratch_folder
 import numpy as np
 import polars as pl
 import pytest
@@ -45,7 +45,8 @@ def test_codes_count_from_zero_without_a_hole(kind):
 
 def test_parquet_holds_all_rows_by_axis_and_codes_by_name(judged, tmp_path):
     blocks = [judged.columns(0, 60), judged.columns(0, 40, axis='y'), judged.columns(60, 40)]
-    with row_store(tmp_path) as store:
+    with scratch_folder(tmp_path) as folder:
+        store = RowStore(folder)
         for block in blocks:
             store.add(block)
         store.write(tmp_path / 'states.parquet')
@@ -59,8 +60,8 @@ def test_parquet_holds_all_rows_by_axis_and_codes_by_name(judged, tmp_path):
 
 
 def test_no_rows_are_a_file_with_the_same_columns(judged, tmp_path):
-    with row_store(tmp_path) as store:
-        store.write(tmp_path / 'states.parquet')
+    with scratch_folder(tmp_path) as folder:
+        RowStore(folder).write(tmp_path / 'states.parquet')
     empty = pl.read_parquet(tmp_path / 'states.parquet')
     assert empty.schema == frame_of(judged.columns()).schema
     assert empty.height == 0

@@ -106,7 +106,7 @@ def test_the_example_file_is_the_one_made_from_the_table():
 
 def test_the_example_file_holds_every_default():
     assert parameters.read_file(CONFIG / 'example.yaml') == parameters.defaults(['x'])
-    assert len(parameters._flatten(yaml.safe_load(parameters.example_yaml()))) == len(ROWS)
+    assert len(parameters.flatten(yaml.safe_load(parameters.example_yaml()))) == len(ROWS)
 
 
 def test_the_file_of_the_nominal_cycle_is_good():

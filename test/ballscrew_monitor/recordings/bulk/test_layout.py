@@ -4,7 +4,7 @@
 
 from ballscrew_monitor.core.conversions import Scaling
 from ballscrew_monitor.core.fields import OtherJoints, TooShort
-from ballscrew_monitor.core.inputs import make_input, Source
+from ballscrew_monitor.core.inputs import OpenInput, Source
 from ballscrew_monitor.recordings.bulk.layout import Layout, NoLayout, reads_alike
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from geometry_msgs.msg import PoseWithCovarianceStamped, WrenchStamped
@@ -18,13 +18,8 @@ JOINT = 'sensor_msgs/msg/JointState'
 
 
 def reader(type_name, field):
-    return make_input(
-        Source.SPEED,
-        topic='t',
-        type_name=type_name,
-        field=field,
-        scaling=Scaling(factor=1.0, shift=0.0),
-    )
+    scaling = Scaling(factor=1.0, shift=0.0)
+    return OpenInput(source=Source.SPEED, topic='t', field=field, scaling=scaling).close(type_name)
 
 
 def wrench(value):
