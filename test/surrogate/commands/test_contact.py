@@ -27,15 +27,11 @@ def small(tmp_path):
 
 
 def test_contact_as_json(run, capsys, small):
-    """Strict JSON, exit code 0."""
+    """Strict JSON, exit code 0; central film and status on the page."""
     assert run(small, '--json') == 0
     found = json.loads(capsys.readouterr().out)
     assert found['converged'] is True
     assert found['central_film_m'] == pytest.approx(150e-9, rel=0.05)
-
-
-def test_contact_as_a_page(run, capsys, small):
-    """Central film and status."""
     assert run(small) == 0
     out = capsys.readouterr().out
     assert 'central film' in out
@@ -43,7 +39,6 @@ def test_contact_as_a_page(run, capsys, small):
 
 
 def test_a_shipped_case_by_name(run, capsys):
-    """The name of a shipped case is enough."""
     assert run('nominal_smooth', '--json') == 0
     assert json.loads(capsys.readouterr().out)['grid'] == [257, 65]
 
@@ -116,8 +111,6 @@ def test_a_march_that_stalls_exits_with_1(run, capsys, rolling, monkeypatch):
 
 
 def test_an_interrupted_march_leaves_no_traceback(capsys, rolling, monkeypatch):
-    """One line, the exit code of an interrupt."""
-
     def interrupted(step, progress):
         raise KeyboardInterrupt
 
@@ -127,7 +120,6 @@ def test_an_interrupted_march_leaves_no_traceback(capsys, rolling, monkeypatch):
 
 
 def test_pictures(run, small, tmp_path):
-    """--plot writes the pictures and leaves nothing half-written."""
     pytest.importorskip('matplotlib')
     folder = tmp_path / 'deep' / 'plots'
     assert run(small, '--plot', folder) == 0

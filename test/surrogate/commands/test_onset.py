@@ -51,7 +51,6 @@ def test_pressures_are_those_of_the_sheet(record):
 
 
 def test_load_and_trace_are_those_of_the_sheet(record):
-    """A profile that was traced after running in has no other state."""
     found = record('traced: run_in', 'working_load_N: 900.0\n', '--load-N', 500)
     assert list(found['states']) == ['run_in']
     assert (found['working_load_N'], found['working_load_stated']) == (900.0, True)

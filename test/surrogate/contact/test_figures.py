@@ -41,7 +41,6 @@ def mixed():
 
 
 def test_smooth_profiles(smooth):
-    """Film pressure, Hertz, film and floor on the centre line, in GPa and nm."""
     upper, lower = figures.figure_profiles(smooth).axes
     assert list(curves(upper)) == ['film', 'Hertz, dry and smooth']
     np.testing.assert_allclose(
@@ -68,16 +67,12 @@ def test_mixed_profiles(mixed):
     assert len(marks.get_xdata()) == 3
 
 
-def test_maps_cover_the_ellipse(smooth):
-    """Both maps reach beyond both semi-axes as far as the domain does."""
+def test_maps_cover_the_ellipse_and_say_when_they_are_not_converged(smooth):
+    """Beyond both semi-axes as far as the domain does; the title of every picture warns."""
     left, right = figures.figure_maps(smooth).axes[:2]
     for axes in (left, right):
         assert axes.get_xlim()[0] < -1.1e6 * smooth.semi_axis_x
         assert axes.get_ylim()[1] > 1.1e6 * smooth.semi_axis_y
-
-
-def test_a_result_that_is_not_converged_says_so(smooth):
-    """The title of every picture warns."""
     from surrogate.ehl import Status
 
     figure = figures.figure_maps(replace(smooth, status=Status.STALLED))
@@ -85,7 +80,6 @@ def test_a_result_that_is_not_converged_says_so(smooth):
 
 
 def test_all_pictures_are_written(tmp_path, mixed):
-    """Four files for a rough contact, each a PNG."""
     paths = list(figures.draw_contact(tmp_path, *mixed))
     assert [path.name for path in paths] == [
         'contact_profiles.png',

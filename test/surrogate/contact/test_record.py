@@ -86,7 +86,6 @@ def test_friction_and_films_of_the_table(table, name, side):
 
 
 def test_friction_grows_with_slip_from_zero():
-    """No slip, no friction; then monotonic, linear at first."""
     solution, _ = solve_case(SMALL)
     ratios = (0.0, 1e-9, 2e-9, 0.01, 0.1, 1.0)
     found = [friction_coefficient(solution, ratio, 0.1) for ratio in ratios]

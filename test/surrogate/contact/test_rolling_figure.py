@@ -42,7 +42,6 @@ def test_three_panels(marched):
 
 
 def test_a_strip_has_two_lines_for_its_zone(rolling_case):
-    """Its Hertz zone has no end across."""
     strip = CaseStrip(place=0.0, width=60e-6, columns=12)
     rough = replace(rolling_case.roughness, rms=0.02e-6)
     case = replace(rolling_case, strip=strip, roughness=rough, places=1, transits=1.0)

@@ -23,18 +23,14 @@ def strict(record):
     return json.loads(json_text(record))
 
 
-def test_the_record_has_its_keys_and_strict_json(rolling_case, marched):
-    """In order, JSON types."""
+def test_the_record_is_strict_json_of_the_march(rolling_case, marched, says):
+    """Keys in order; Lambda is the smooth central film over the whole Rq; shares are in order."""
     record = rolling_record(rolling_case, *marched)
     assert list(record) == list(RollingRecord.__annotations__)
     assert strict(record)['strip_width_m'] is None
     assert record['kinematics'] == 'rolling'
     assert record['grid'] == [65, 65]
     assert record['converged'] is True
-
-
-def test_numbers_are_those_of_the_march(rolling_case, marched, says):
-    """Lambda is the smooth central film over the whole Rq; shares are in order."""
     solution, surface = marched
     record = rolling_record(rolling_case, solution, surface)
     assert record['film_ratio'] == pytest.approx(solution.central_film / 0.1e-6)
@@ -54,7 +50,6 @@ def test_numbers_are_those_of_the_march(rolling_case, marched, says):
 
 
 def test_the_ball_counts_in_the_film_ratio(rolling_case, marched):
-    """Rq of both is the root of their squares."""
     rough = replace(rolling_case.roughness, ball_rms=0.05e-6)
     record = rolling_record(replace(rolling_case, roughness=rough), *marched)
     assert record['roughness']['rms_m'] == pytest.approx(np.hypot(0.1e-6, 0.05e-6))
@@ -76,7 +71,6 @@ def test_what_was_not_averaged_is_null(rolling_case, marched):
 
 
 def test_one_place_has_no_standard_error(rolling_case, marched):
-    """Null, and no sign on the page."""
     solution, surface = marched
     rcs = replace(solution.rcs, error=float('nan'))
     one = replace(solution, rcs=rcs)
