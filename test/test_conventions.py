@@ -127,7 +127,6 @@ def says_unit(node: ast.FunctionDef | ast.ClassDef, text: str) -> bool:
 
 @pytest.mark.parametrize('path', PACKAGES, ids=name_of)
 def test_docstrings_say_units(path: Path) -> None:
-    """A public function or class with a physical quantity says its [unit]."""
     text = path.read_text()
     for node in public(ast.parse(text).body):
         named = quantities(node)
@@ -144,14 +143,12 @@ def test_units_are_spelt_as_everywhere(path: Path) -> None:
 
 @pytest.mark.parametrize('path', [*SOURCES, TREE / 'setup.py'], ids=name_of)
 def test_sources_carry_copyright_and_licence(path: Path) -> None:
-    """Two lines, the same everywhere."""
     text = path.read_text()
     assert text.startswith(HEADER) or text.split('\n', 1)[1].startswith(HEADER)
 
 
 @pytest.mark.parametrize('path', TEXTS, ids=name_of)
 def test_no_file_knows_the_machine_it_was_written_on(path: Path) -> None:
-    """No path into someone's home or scratch space."""
     assert not re.findall(r'(?<![\w.])/(?:home|root|tmp|work|Users)/\w+', path.read_text())
 
 
@@ -163,7 +160,6 @@ def version_in(name: str, pattern: str) -> str:
 
 
 def test_version_is_the_same_everywhere() -> None:
-    """One number for both packages."""
     assert (
         len(
             {
@@ -213,7 +209,6 @@ def test_manifest_names_what_is_imported() -> None:
 
 
 def test_every_file_of_tests_is_collected() -> None:
-    """Each holds a test, under a name that pytest looks for, and no test hides another."""
     for path in sorted((TREE / 'test').rglob('*.py')):
         names = [
             node.name

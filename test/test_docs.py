@@ -84,7 +84,6 @@ def help_of(capsys, *words: str) -> str:
 
 @pytest.mark.parametrize('page', PAGES, ids=name_of)
 def test_links_lead_somewhere(page: Path):
-    """Every relative link of a page names a file of the repository, and a heading if any."""
     links = re.findall(r'\]\(([^)#]*)(?:#([^)]+))?\)', page.read_text(encoding='utf-8'))
     for target, anchor in links:
         if not target.startswith('http'):
@@ -95,34 +94,29 @@ def test_links_lead_somewhere(page: Path):
 
 @pytest.mark.parametrize('page', PAGES, ids=name_of)
 def test_paths_named_exist(page: Path):
-    """Every path into the repository that a page names is there."""
     for named in CODE_PATH.findall(page.read_text(encoding='utf-8')):
         assert (ROOT / named.rstrip('.')).exists(), named
 
 
 @pytest.mark.parametrize('page', PAGES, ids=name_of)
 def test_functions_named_exist(page: Path):
-    """Every function or class that a page names with its file is defined there."""
     text = page.read_text(encoding='utf-8')
     for file, name in re.findall(r'`([\w/]+/\w+\.py): (\w+)`', text):
         assert defines(ROOT / file, name), f'{file}: {name}'
 
 
 def test_documents_named_in_code_exist():
-    """Every page that a docstring or comment refers to is there."""
     for path in SOURCES:
         for named in re.findall(r'\bdocs/[\w/]+\.md', path.read_text(encoding='utf-8')):
             assert (ROOT / named).exists(), f'{name_of(path)}: {named}'
 
 
 def test_parameter_page_is_the_table():
-    """The page holds the table as the code makes it."""
     page = (DOCS / 'reference' / 'parameters.md').read_text(encoding='utf-8')
     assert markdown_table().strip() in page
 
 
 def test_commands_of_the_readme_exist(capsys):
-    """Each command that the README's table shows is one that the program knows."""
     readme = (ROOT / 'README.md').read_text(encoding='utf-8')
     help_text = help_of(capsys)
     shown = set(re.findall(r'^\| `ballscrew (\w+)', readme, flags=re.MULTILINE))
@@ -133,7 +127,6 @@ def test_commands_of_the_readme_exist(capsys):
 
 @pytest.mark.parametrize('page', [ROOT / 'README.md', *GUIDE, *REFERENCE], ids=name_of)
 def test_commands_of_a_page_have_their_options(page: Path, capsys):
-    """Each option of a command that a page shows is one that the command knows."""
     for command, rest in COMMAND.findall(page.read_text(encoding='utf-8')):
         known = help_of(capsys, *command.split())
         for option in re.findall(r'--[a-zA-Z][\w-]*', rest):
@@ -147,13 +140,11 @@ def test_guide_is_of_few_pages():
 
 @pytest.mark.parametrize('page', GUIDE, ids=name_of)
 def test_guide_is_short(page: Path):
-    """A page of the guide is read in one go."""
     assert len(page.read_text(encoding='utf-8').split()) <= MOST_WORDS
 
 
 @pytest.mark.parametrize('page', [*GUIDE, *REFERENCE], ids=name_of)
 def test_pages_are_without_history(page: Path):
-    """Guide and reference say what is, not what was."""
     assert not HISTORY.findall(words_of(page))
 
 
@@ -175,7 +166,6 @@ def test_sources_are_in_plain_words(path: Path):
 
 
 def test_front_page_leads_to_every_page():
-    """Each page of guide, reference and theory is linked from docs/README.md."""
     front = (DOCS / 'README.md').read_text(encoding='utf-8')
     for page in (*GUIDE, *REFERENCE, *sorted((DOCS / 'theory').glob('*.md'))):
         assert f'({page.relative_to(DOCS)})' in front
@@ -183,14 +173,12 @@ def test_front_page_leads_to_every_page():
 
 @pytest.mark.parametrize('index', ['decisions', 'notes'])
 def test_index_lists_its_pages(index: str):
-    """The first page of a folder links all others."""
     text = (DOCS / index / 'README.md').read_text(encoding='utf-8')
     for page in (DOCS / index).glob('*.md'):
         assert page.name == 'README.md' or f'({page.name})' in text
 
 
 def test_every_picture_is_on_a_page():
-    """No picture is kept that no page shows."""
     text = ''.join(page.read_text(encoding='utf-8') for page in PAGES)
     for picture in DOCS.rglob('*.png'):
         assert f'/{picture.name})' in text, picture.name

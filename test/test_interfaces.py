@@ -52,7 +52,6 @@ def type_of(source: Path) -> Any:
 
 @pytest.mark.parametrize('source', SOURCES, ids=lambda path: path.name)
 def test_every_field_is_explained(source: Path) -> None:
-    """A comment says what it is; a number also says its unit."""
     for kind, name, comment in fields(source):
         assert comment, f'{name} has no comment'
         if kind.startswith('float'):
@@ -60,7 +59,6 @@ def test_every_field_is_explained(source: Path) -> None:
 
 
 def test_zero_is_unknown_in_every_enumeration() -> None:
-    """A message that nobody filled in says that nothing is known."""
     numbers = constants()
     kinds = {name.split('_')[0] for name in numbers if not name.startswith('MAX_')}
     assert kinds == ENUMERATIONS
@@ -71,13 +69,11 @@ def test_zero_is_unknown_in_every_enumeration() -> None:
 
 @pytest.mark.parametrize('kind', sorted(ENUMERATIONS))
 def test_values_of_an_enumeration_are_consecutive(kind: str) -> None:
-    """Values count up without a gap, in the order of the file."""
     values = [value for name, value in constants().items() if name.startswith(f'{kind}_')]
     assert values == list(range(len(values)))
 
 
 def test_all_interfaces_are_generated() -> None:
-    """CMakeLists.txt names every file, and the recorded hashes every type."""
     named = re.findall(r'"(\w+/\w+\.\w+)"', (TREE / 'msg_defs' / 'CMakeLists.txt').read_text())
     assert named == [str(path.relative_to(TREE / 'msg_defs')) for path in SOURCES]
     assert list(RECORD['hashes']) == [
@@ -115,7 +111,6 @@ def type_hash(kind: str) -> str:
     ids=lambda message: type(message).__name__,
 )
 def test_message_survives_the_wire(message: Any) -> None:
-    """What is serialised is what is deserialised."""
     assert deserialize_message(serialize_message(message), type(message)) == message
 
 

@@ -60,19 +60,16 @@ APT = {'apt-get': TRUE, 'apt-cache': '#!/bin/sh\n[ $3 != python3 ] || echo Versi
 
 
 def test_python_is_the_interpreter_underneath(machine: Machine) -> None:
-    """Its path is the only output."""
     done = machine(COMPLETE)
     assert (done.returncode, done.stdout, done.stderr) == (0, f'{BASE}\n', '')
 
 
 def test_shim_that_fails_is_skipped(machine: Machine) -> None:
-    """Candidates are judged by running them."""
     done = machine({**COMPLETE, 'python3': SHIM, 'python3.12': SHIM, 'python3.11': WORKING})
     assert (done.returncode, done.stdout) == (0, f'{BASE}\n')
 
 
 def test_python_that_was_asked_for_is_the_only_candidate(machine: Machine, says) -> None:
-    """No other one is taken in silence."""
     done = machine({**COMPLETE, 'other': SHIM}, PYTHON='other')
     assert done.returncode == 2
     assert done.stderr == says('set_up_python')
@@ -87,7 +84,6 @@ def test_user_gets_one_line_to_type(machine: Machine, says) -> None:
 
 
 def test_machine_without_apt_gets_the_list(machine: Machine, says) -> None:
-    """Another distribution has other names."""
     done = machine({**COMPLETE, 'python3': SHIM})
     assert done.returncode == 2
     assert done.stderr.startswith(says('set_up_install'))
@@ -95,7 +91,6 @@ def test_machine_without_apt_gets_the_list(machine: Machine, says) -> None:
 
 
 def test_root_gets_what_is_missing(machine: Machine, tmp_path: Path) -> None:
-    """Only that is installed, and nothing is asked."""
     lacking = {name: text for name, text in COMPLETE.items() if name != 'g++'}
     apt = f'#!/bin/sh\necho "$@" >> asked\n[ $1 = update ] || : > {tmp_path}/bin/g++\n'
     chmod = shutil.which('chmod')

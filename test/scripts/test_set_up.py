@@ -90,7 +90,6 @@ def test_change_repeats_its_step(set_up: SetUp) -> None:
 
 
 def test_new_environment_is_filled_again(set_up: SetUp) -> None:
-    """All that was in the old one is gone."""
     set_up()
     assert set_up(environment='changed') == ['0', 'environment', 'interfaces', 'bag']
 
@@ -98,7 +97,6 @@ def test_new_environment_is_filled_again(set_up: SetUp) -> None:
 def test_interruption_is_made_good(
     set_up: SetUp, capsys: pytest.CaptureFixture[str], says
 ) -> None:
-    """The next call repeats the step that was at work, also in a change."""
     assert set_up(raises={'interfaces': KeyboardInterrupt()}) == [
         '130',
         'environment',
@@ -113,7 +111,6 @@ def test_interruption_is_made_good(
 def test_failure_is_one_sentence(
     module: ModuleType, set_up: SetUp, capsys: pytest.CaptureFixture[str], says
 ) -> None:
-    """With the end of the log above it."""
     assert set_up(raises={'bag': module.Failure('pip failed with exit code 1')})[0] == '1'
     assert capsys.readouterr().err.endswith(says('set_up_pip'))
 
@@ -168,7 +165,6 @@ def test_failure_beside_others_is_told_from_its_own_log(
 
 
 def test_failing_command_is_named(module: ModuleType, refused) -> None:
-    """Its output is in the log."""
     module.LOG.parent.mkdir()
     with refused('python_s_failed'):
         module.run(sys.executable, '-c', 'print("why"); raise SystemExit(3)')
@@ -176,7 +172,6 @@ def test_failing_command_is_named(module: ModuleType, refused) -> None:
 
 
 def test_key_follows_names_and_contents(module: ModuleType, tmp_path: Path) -> None:
-    """A file that is renamed, changed or added is noticed."""
     first, second = tmp_path / 'a', tmp_path / 'b'
     first.write_text('x')
     keys = [module.digest('step', files=[first])]

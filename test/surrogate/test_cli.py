@@ -27,7 +27,6 @@ def record(run, capsys):
 
 
 def test_point_as_json(record):
-    """The record is strict JSON in SI with four contacts and the tier's name."""
     found = record('--speed-rpm', '600', '--load-N', '1000')
     assert found['tier'] == 'closed_form'
     assert found['efficiency'] == pytest.approx(0.934, abs=2e-3)
@@ -73,7 +72,6 @@ def test_a_negative_number_with_an_exponent_is_no_option(run, capsys, number):
     ],
 )
 def test_four_quadrants(record, rpm, load, drives):
-    """The load drives the screw when it has not the sign of the motion."""
     found = record('--speed-rpm', rpm, '--load-N', load)
     assert found['back_driving'] is drives
     assert (found['driving_torque_Nm'] < 0) is drives
@@ -114,7 +112,6 @@ def test_ratings_are_warned_about(record):
     ],
 )
 def test_a_number_out_of_range_is_refused(run, words, refused):
-    """Not a number and absurd values are one sentence."""
     refused('text', run, *POINT, *words)
 
 
@@ -161,6 +158,5 @@ def test_options_of_the_full_tier(run, tmp_path: Path, capsys):
 
 
 def test_oil_that_is_no_liquid_is_named_with_its_temperature(run):
-    """The sentence speaks of what was typed."""
     with pytest.raises(InputError, match=r'temperature is -40 degC: iso_vg_68: viscosity is'):
         run(*POINT[:-1], 'full', '--speed-rpm', '60', '--load-N', '0', '--temperature-degC', '-40')

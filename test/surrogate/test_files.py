@@ -33,5 +33,4 @@ def test_a_failure_leaves_what_was_there(tmp_path: Path, monkeypatch, refused):
 
 
 def test_a_directory_is_not_written_over(tmp_path: Path, refused):
-    """Only regular files are replaced."""
     refused('regular_file', replace_file, tmp_path, b'one')

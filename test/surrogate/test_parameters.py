@@ -53,7 +53,6 @@ PLACES = {
 
 
 def test_nominal_datasheets_hold_every_quantity_of_the_table(table, screw, oil):
-    """The datasheets and the table of the nominal screw say the same."""
     owners = {'screw': screw, 'oil': oil, 'published': PublishedRoughness()}
     for row in table('nominal_screw.csv'):
         place = PLACES.get(row['quantity'], ('screw', row['quantity'], 1))
@@ -68,13 +67,11 @@ def test_nominal_datasheets_hold_every_quantity_of_the_table(table, screw, oil):
 
 
 def test_vg_68_has_the_nominal_viscosity_at_40_degrees(oil):
-    """The oil is anchored at its reference temperature, exactly."""
     assert float(lubricant_state(oil, 40 + ZERO_CELSIUS).viscosity) == 0.060
 
 
 @pytest.mark.parametrize('name', ['iso_vg_32', 'iso_vg_68', 'iso_vg_100'])
 def test_grades_have_their_viscosity_and_a_source(name):
-    """Each grade has its ISO 3448 number at 40 degC and says where it comes from."""
     oil = load_lubricant(name)
     assert oil.kinematic_viscosity_40 * 1e6 == pytest.approx(int(name.split('_')[-1]))
     assert oil.viscosity == pytest.approx(oil.kinematic_viscosity_40 * oil.density, rel=0.02)
@@ -144,7 +141,6 @@ MISTAKES = [
 
 @pytest.mark.parametrize(('old', 'new', 'sentence'), MISTAKES, ids=[m[2][:30] for m in MISTAKES])
 def test_a_mistake_in_a_datasheet_is_one_sentence(tmp_path: Path, old, new, sentence):
-    """The sentence names the file, the key, the value and what is allowed."""
     path = tmp_path / 'screw.yaml'
     assert old in SCREW
     path.write_text(SCREW.replace(old, new, 1), encoding='utf-8')
@@ -232,7 +228,6 @@ def test_the_film_floor_lies_between_its_bounds(oil):
 
 @pytest.mark.parametrize('content', ['', '3', '[1, 2]', 'name', '\x00'])
 def test_a_file_that_is_no_mapping_is_refused(tmp_path: Path, content):
-    """Anything but a mapping is named as such, whatever YAML makes of it."""
     path = tmp_path / 'oil.yaml'
     path.write_text(content, encoding='utf-8')
     with pytest.raises(InputError, match=r'oil\.yaml: (must be a mapping|cannot be read)'):
@@ -240,7 +235,6 @@ def test_a_file_that_is_no_mapping_is_refused(tmp_path: Path, content):
 
 
 def test_the_source_is_mandatory(tmp_path: Path, refused):
-    """A datasheet without a source is not a datasheet."""
     path = tmp_path / 'screw.yaml'
     path.write_text(re.sub(r'source: >-\n(  .*\n)+', "source: ''\n", SCREW), encoding='utf-8')
     refused('source_text_empty', load_screw, str(path))
@@ -259,12 +253,10 @@ def test_the_source_is_mandatory(tmp_path: Path, refused):
     ],
 )
 def test_an_oil_that_contradicts_itself_is_refused(oil, change, sentence, refused):
-    """Within its own sheet."""
     refused(sentence, replace, oil, **change)
 
 
 def test_an_unknown_name_lists_the_shipped_ones(refused):
-    """A wrong name is answered with the right ones."""
     refused('nor_one_shipped', load_lubricant, 'iso_vg_46')
 
 
@@ -284,7 +276,6 @@ def test_a_point_and_its_mirror_image_are_one_point(speed, load):
 
 
 def test_sheets_are_frozen(screw):
-    """A datasheet cannot be changed by accident."""
     with pytest.raises(AttributeError):
         screw.lead = 0.02
     assert set(asdict(screw)) >= {'lead', 'roughness'}

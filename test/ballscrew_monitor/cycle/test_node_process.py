@@ -95,7 +95,6 @@ def test_its_words_are_kept(tmp_path, wait_for, is_alive):
 
 
 def test_the_node_is_of_this_very_code(monkeypatch):
-    """The folder of both packages comes first, before what the caller has."""
     monkeypatch.setenv('PYTHONPATH', '/somewhere')
     assert path_to_this_code().split(os.pathsep) == [str(ROOT), '/somewhere']
     assert (ROOT / 'ballscrew_monitor').is_dir()

@@ -113,7 +113,6 @@ def check_state(state, wanted, place):
 
 
 def test_rows_are_the_golden_ones(run, golden, core, monkeypatch):
-    """Every number of every row and state of one list of events."""
     rows = []
 
     def observed(tables, settings, memory, *others):

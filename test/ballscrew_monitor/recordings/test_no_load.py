@@ -157,7 +157,6 @@ def test_messages_that_do_not_decode_are_counted_and_named(tmp_path):
 
 
 def test_a_bag_without_what_is_asked_for_is_refused(tmp_path, refused):
-    """Topic, field and joint are named."""
     bag = write(tmp_path, speeds(10.0), speeds(10.0), joint='y_axis')
     refused('message_joint_states_holds', read_no_load, bag, CHANNELS)
     nowhere = CHANNELS | {Source.SPEED: speed_channel('nope', 'velocity[0]', 'rad/s', LEAD)}
@@ -196,7 +195,6 @@ def test_the_command_finds_the_parasitic_torque_in_a_bag(tmp_path, capsys):
 
 
 def test_a_bag_needs_its_fields(tmp_path, capsys):
-    """The option that is missing is named."""
     write(tmp_path / 'bag', speeds(10.0), speeds(10.0))
     words = ['identify', str(tmp_path / 'bag'), '--speed-topic', 'joint_states']
     assert cli.main(words) == 2

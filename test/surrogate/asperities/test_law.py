@@ -67,7 +67,6 @@ def test_beyond_the_curve_all_touches_or_nothing():
 
 @given(x=st.floats(-20.0, 20.0), step=st.floats(1e-3, 3.0))
 def test_contact_never_grows_with_the_speed(x, step):
-    """RCS and share fall and stay between 0 and 1; share is no more than RCS."""
     rcs = rcs_at(np.array([x, x + step]))
     for values in (rcs, share_at(rcs)):
         assert 0 <= values[1] <= values[0] <= 1
@@ -81,7 +80,6 @@ def test_the_loss_at_the_onset_falls_with_the_lay_and_far_beyond_it_is_smooth(la
 
 
 def test_the_loss_stays_in_the_band_of_the_marches():
-    """Ridges along the track under a light load."""
     assert loss_at(np.array([-1.4]), np.array([0.4e9]), 1.0) == pytest.approx([LEAST_LOSS])
 
 

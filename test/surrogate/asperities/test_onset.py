@@ -48,7 +48,6 @@ def test_a_thicker_boundary_film_touches_at_faster_speeds(new, place, floor, sig
 
 
 def test_the_onset_speed_is_one_over_the_viscosity(new, place):
-    """Film and reduction know the viscosity by its product with the speed alone."""
     thick, thin = (
         new.speed(*place, ContactLubricant(viscosity=eta, pressure_viscosity=2e-8), FLOOR)
         for eta in (0.2, 0.02)

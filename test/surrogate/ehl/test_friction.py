@@ -131,13 +131,11 @@ def test_slip_floor_regularises_the_direction(solved):
     ],
 )
 def test_bad_input_is_one_sentence(solved, wrong):
-    """Shape, finiteness and ranges."""
     with pytest.raises(InputError):
         contact_friction(solved, **wrong)
 
 
 def test_barus_viscosity(nominal):
-    """eta0 exp(alpha p)."""
     oil = replace(nominal[1], law='barus_incompressible')
     assert float(viscosity_of(oil, 1e9)) == pytest.approx(0.06 * np.exp(20.0))
 

@@ -43,7 +43,6 @@ def test_first_moment_is_the_couette_integral(nominal):
 
 
 def test_same_groups_same_answer(solved, nominal):
-    """A contact ten times as large with the same groups has ten times the film."""
     contact, oil = nominal
     larger = Contact(
         radius_x=10 * contact.radius_x,

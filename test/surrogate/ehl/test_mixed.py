@@ -143,7 +143,6 @@ def test_vanishing_roughness_is_the_smooth_contact(nominal, raceway):
 
 
 def test_heights_and_function_are_the_same_roughness(chain, nominal, raceway):
-    """An array on the solution grid gives the solution of the function it was taken from."""
     x, y = np.meshgrid(chain[0].x, chain[0].y, indexing='ij')
     found = solve_contact(
         *nominal,
@@ -172,7 +171,6 @@ def test_half_grid_says_how_far_films_and_shares_are_known(chain, nominal, racew
 
 
 def test_heights_at_nodes_give_the_same_errors(chain, nominal, raceway):
-    """Every second height of an array is the half grid of the function."""
     found = chain[SPEEDS.index(0.015)]
     x, y = np.meshgrid(found.x, found.y, indexing='ij')
     again = solve_contact(

@@ -78,7 +78,6 @@ def limited(at_hertz, change):
 
 
 def test_small_changes_on_contact_are_taken_whole(at_hertz):
-    """Newton is left alone near the solution."""
     change = [-1e-3, -1e-6, 0.0, 1e-6, 0.5]
     assert limited(at_hertz, change) == pytest.approx(change, rel=1e-12)
 

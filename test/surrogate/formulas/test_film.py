@@ -53,7 +53,6 @@ def moes(load, material, radius_ratio):
 
 
 def test_central_film_stays_4_to_11_percent_above_converged_solutions(table):
-    """Hamrock and Dowson's central film is high by the margin known for it."""
     for row in table('ehl_dimensional.csv'):
         contact, _, g = dimensional(row)
         ratio = laws.central_film_hamrock_dowson_1977(contact, g) / (float(row['hc_nm']) * 1e-9)
@@ -61,7 +60,6 @@ def test_central_film_stays_4_to_11_percent_above_converged_solutions(table):
 
 
 def test_minimum_film_is_within_7_percent_for_the_long_ellipse(table):
-    """From ellipticity 3 on the minimum film is good."""
     row = next(r for r in table('ehl_dimensional.csv') if r['case'] == 'ball_screw_ellipse')
     contact, _, g = dimensional(row)
     found = laws.minimum_film_hamrock_dowson_1977(contact, g)
@@ -69,7 +67,6 @@ def test_minimum_film_is_within_7_percent_for_the_long_ellipse(table):
 
 
 def test_minimum_film_of_the_papers_own_case(table):
-    """The paper's case U 1.683e-12, W 1.106e-7, G 4522 gives its printed film within 6 %."""
     row = next(r for r in table('ehl_dimensional.csv') if r['case'] == 'hamrock_dowson_k1')
     contact, _, g = dimensional(row)
     assert g.speed == pytest.approx(1.683e-12, rel=2e-3)
@@ -89,7 +86,6 @@ def test_minimum_film_of_the_papers_own_case(table):
     ],
 )
 def test_nijenbanning_values(load, material, ratio, film):
-    """Values of the fit in Moes scale."""
     contact, g = moes(load, material, ratio)
     found = laws.central_film_nijenbanning_1994(contact, g) / np.sqrt(2 * g.speed)
     assert found == pytest.approx(film, rel=1e-3)
@@ -139,7 +135,6 @@ def test_rolling_force_has_its_isoviscous_limit(load, factor):
 
 
 def test_a_resting_contact_has_no_film_and_no_rolling_force():
-    """Speed zero is legal and gives exact zeros."""
     contact = Contact(radius_x=0.003, radius_y=0.08, reduced_modulus=2.26e11)
     g = laws.groups(contact, 27.6, 0.0, 0.06, 2e-8)
     assert laws.central_film_hamrock_dowson_1977(contact, g) == 0.0
@@ -148,12 +143,10 @@ def test_a_resting_contact_has_no_film_and_no_rolling_force():
 
 @pytest.mark.parametrize(('ratio', 'share'), [(0.1, 0.89), (0.5, 0.46), (1, 0.17), (2, 0.016)])
 def test_asperity_share_printed_values(ratio, share):
-    """The fit's values at four film ratios, to the digits printed."""
     assert laws.asperity_share_aihara_1987(ratio) == pytest.approx(share, rel=0.035)
 
 
 def test_every_range_names_a_formula_and_real_groups():
-    """The table of ranges cannot name a formula or group that does not exist."""
     import surrogate.formulas.film as module
 
     for formula, ranges in laws.RANGES.items():
@@ -164,7 +157,6 @@ def test_every_range_names_a_formula_and_real_groups():
 
 
 def test_leaving_a_range_is_told_with_numbers():
-    """The phrase names group, value and range."""
     _, g = moes(500, 10, 25.0)
     assert laws.outside_range('central_film_nijenbanning_1994', g) == (
         'radius_ratio 25 (fitted 1 to 20)',

@@ -63,7 +63,6 @@ def test_ellipticity_solves_the_legendre_form(radius_x, radius_y):
 
 @given(RADII, RADII, st.floats(0.1, 1e4))
 def test_turning_a_contact_by_90_degrees_swaps_the_axes(radius_x, radius_y, load):
-    """The orientation is a matter of naming."""
     one = hertz(Contact(radius_x=radius_x, radius_y=radius_y, reduced_modulus=2e11), load)
     other = hertz(Contact(radius_x=radius_y, radius_y=radius_x, reduced_modulus=2e11), load)
     assert one.semi_axis_x == pytest.approx(other.semi_axis_y, rel=1e-9)
@@ -72,7 +71,6 @@ def test_turning_a_contact_by_90_degrees_swaps_the_axes(radius_x, radius_y, load
 
 @given(st.floats(0.1, 1e3), st.floats(1.5, 8.0))
 def test_hertz_scales_with_the_cube_root_of_the_load(load, factor):
-    """Pressure and axes grow as Q^(1/3), the approach as Q^(2/3)."""
     contact = Contact(radius_x=0.003, radius_y=0.08, reduced_modulus=2.26e11)
     small, large = hertz(contact, load), hertz(contact, factor**3 * load)
     assert large.max_pressure == pytest.approx(factor * small.max_pressure, rel=1e-9)
@@ -81,7 +79,6 @@ def test_hertz_scales_with_the_cube_root_of_the_load(load, factor):
 
 
 def test_no_load_is_no_contact():
-    """At zero load everything is zero, in an array as well."""
     contact = Contact(radius_x=0.003, radius_y=0.08, reduced_modulus=2.26e11)
     found = hertz(contact, [0.0, 10.0])
     assert found.max_pressure[0] == found.semi_axis_x[0] == found.approach[0] == 0.0

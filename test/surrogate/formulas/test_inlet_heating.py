@@ -25,7 +25,6 @@ def test_factor_by_hand():
 
 
 def test_factor_falls_with_speed_and_rises_with_conductivity():
-    """From 1 at rest; oil that carries heat away is less affected."""
     factors = [heating_factor(SCREW, OIL, 'screw', 27.6, us, WARM) for us in (0, 0.1, 1, 10)]
     assert factors[0] == 1.0
     assert factors[0] > factors[1] > factors[2] > factors[3] > 0.5
@@ -39,7 +38,6 @@ def test_slope_of_viscosity_is_that_of_the_law():
 
 
 def test_heated_films_are_thinner_by_the_factor_and_it_is_off_by_default():
-    """At 1000 rev/min the smooth film falls by the factor, within 0.3 %."""
     small = Settings(nx=129, ny=65, error_estimate=False)
     cold = ScrewSettings(smooth=small, kinematics='smooth')
     assert not cold.inlet_heating

@@ -16,7 +16,6 @@ ANGLES = st.floats(math.radians(25), math.radians(65))
 
 
 def test_kinematics_table(table, screw):
-    """All five columns to the digits printed."""
     rates = no_slip_rates(screw)
     for row in table('kinematics.csv'):
         speed = float(row['speed_rpm']) * math.pi / 30

@@ -62,7 +62,6 @@ def test_amplitude_curve(n, left):
 
 @given(n=st.floats(0.0, 100.0), more=st.floats(1e-3, 10.0))
 def test_longer_waves_are_flattened_more(n, more):
-    """From 1 for the shortest towards 0."""
     short, long = (
         float(laws.amplitude_reduction_venner_1997(x, 1.0, 1.0, 1.0)) for x in (n, n + more)
     )
@@ -71,7 +70,6 @@ def test_longer_waves_are_flattened_more(n, more):
 
 @given(speed=st.floats(1e-3, 1.0))
 def test_the_film_does_not_fall_with_the_speed(speed):
-    """Nor with the viscosity."""
     slow, fast = laws.central_film_line(LINE, np.array([1.0, 1.2]) * speed, 0.06, 2e-8)
     assert 0 < slow < fast
     assert float(laws.central_film_line(LINE, speed, 0.12, 2e-8)) > slow

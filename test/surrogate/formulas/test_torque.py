@@ -47,7 +47,6 @@ def test_power_in_is_power_out_plus_loss(friction, load):
 
 @given(FRICTION, LOAD)
 def test_a_driving_load_gives_what_friction_leaves(friction, load):
-    """Back-driving: the torque taken from the screw over the torque of the load."""
     ideal = load * LEAD / (2 * math.pi)
     found = laws.efficiency(friction, -load, LEAD)
     if friction < ideal:
@@ -70,7 +69,6 @@ def test_slope_is_the_derivative(friction, load, sign):
 
 
 def test_what_is_unknown_stays_unknown():
-    """A NaN torque or load gives a NaN efficiency, in either quadrant."""
     for load in (1000.0, -1000.0):
         assert math.isnan(laws.efficiency(math.nan, load, LEAD))
     assert math.isnan(laws.efficiency(0.1, math.nan, LEAD))
@@ -103,7 +101,6 @@ def test_no_float_of_the_load_raises(friction, load, sign):
 
 
 def test_a_frictionless_screw_is_perfect_both_ways():
-    """Without friction nothing is lost."""
     assert laws.efficiency(0.0, 5.0, LEAD) == laws.efficiency(0.0, -5.0, LEAD) == 1.0
 
 

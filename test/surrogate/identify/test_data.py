@@ -41,7 +41,6 @@ def test_columns_come_in_si_units_whatever_their_order(csv):
 
 
 def test_a_column_is_named_by_hand(csv):
-    """Its unit stands at the end."""
     path = csv('motor_speed_rad_s,speed_rpm,axis_torque_Nm\n2,1,0.5\n')
     columns = read_drag_csv(path, speed_column='motor_speed_rad_s', torque_column='axis_torque_Nm')
     assert columns['speed'] == [2.0]
@@ -69,12 +68,10 @@ def test_a_column_is_named_by_hand(csv):
     ],
 )
 def test_a_mistake_is_one_sentence_with_its_line(csv, text, sentence, refused):
-    """Never a number made of a mistake."""
     refused(sentence, read_drag_csv, csv(text))
 
 
 def test_what_is_no_text_is_refused(tmp_path, refused):
-    """Neither a missing file nor a picture is a CSV."""
     refused('cannot_read_such', read_drag_csv, tmp_path / 'nothing.csv')
     (tmp_path / 'bytes.csv').write_bytes(b'\xff\xfe\x00\x80')
     refused('cannot_read_as', read_drag_csv, tmp_path / 'bytes.csv')
@@ -84,7 +81,6 @@ def test_what_is_no_text_is_refused(tmp_path, refused):
     ('column', 'unit'), [('rpm_speed', '_rpm, _rad_s'), ('torque_Nm', '_rpm')]
 )
 def test_a_column_named_by_hand_needs_its_unit(csv, column, unit, refused):
-    """The quantity is said by the option, the unit by the name."""
     path = csv('rpm_speed,torque_Nm\n1,2\n')
     with pytest.raises(InputError, match=f'column {column} has no unit of a speed .*_rpm'):
         read_drag_csv(path, speed_column=column)

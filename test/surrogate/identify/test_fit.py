@@ -174,7 +174,6 @@ def test_what_the_data_cannot_tell_has_no_interval(says):
     ],
 )
 def test_a_run_that_cannot_tell_is_refused(speed, sentence, refused):
-    """One speed, few points, none."""
     run = no_load_run({'speed': speed, 'torque': speed}, source='synthetic', temperature=WARM)
     nothing = ContactModel(
         torque=lambda factor, friction: 0 * run.speed,

@@ -21,7 +21,6 @@ def test_a_mean_has_its_textbook_error():
 
 
 def test_a_line_has_the_covariance_of_numpy():
-    """Whatever the scale of the columns; correlation from it."""
     x = np.linspace(1.0, 9.0, 15)
     y = 1e6 * x + DRAWN.standard_normal(15)
     fit, expected = np.polyfit(x, y, 1, cov=True)

@@ -89,7 +89,6 @@ def test_many_speeds_share_a_few_nodes(formulas):
 
 
 def test_viscosity_and_friction_are_met_over_their_ranges(formulas):
-    """Wherever the fit may go, one solve per node."""
     run = run_at(np.geomspace(50, 2000, 12))
     model, exact = solved_model(SCREW, OIL, run, BOTH), closed_form_model(SCREW, OIL, run)
     assert len(formulas) == len(set(formulas)) == 24
@@ -129,7 +128,6 @@ def test_solved_contacts_and_a_known_answer():
 
 
 def test_a_run_that_one_table_cannot_hold_is_refused(formulas, refused):
-    """Temperatures and loads far apart."""
     rpm = [60.0, 200.0, 600.0]
     warm = run_at(rpm, temperature=np.array([300.0, 310.0, 330.0]))
     refused('up_16_7', solved_model, SCREW, OIL, warm)
@@ -138,7 +136,6 @@ def test_a_run_that_one_table_cannot_hold_is_refused(formulas, refused):
 
 
 def test_a_speed_that_is_not_solved_is_named(formulas, monkeypatch, refused):
-    """A failed solve refuses the fit and says why."""
     failed = Stub(math.nan, converged=False, status='It stalled.')
     monkeypatch.setattr('surrogate.identify.table.solve_screw', lambda *given, **options: failed)
     refused('60_rev_min', solved_model, SCREW, OIL, run_at([60, 200, 600]))

@@ -89,7 +89,6 @@ def hump(x, y):
 
 
 def test_all_pictures_are_written(study):
-    """One PNG per figure; nothing else is left."""
     paths = list(figures.draw_figures(study, tuple(NEEDS)))
     assert [path.name for path in paths] == [
         'paper_04_surface.png',
@@ -110,7 +109,6 @@ def test_all_pictures_are_written(study):
 
 @pytest.mark.parametrize('name', tuple(NEEDS))
 def test_axes_say_quantity_and_unit(study, name):
-    """Every labelled axis ends in a unit, and every picture has a caption and a label."""
     for draw in figures._pictures(study, name, None).values():
         figure = draw()
         labels = [
@@ -126,7 +124,6 @@ def test_axes_say_quantity_and_unit(study, name):
 
 
 def test_torque_with_measurements(study):
-    """Of rolling and standing roughness; measurements stand at their speed and torque."""
     measured = screws.MeasuredTorque(
         rpm=np.array([100.0]), torque=np.array([0.05]), deviation=np.array([0.01])
     )
@@ -150,7 +147,6 @@ def test_stribeck_marks_the_limit_and_the_published_film(study):
 
 
 def test_measurements_are_read_and_refused():
-    """Deviation is optional; a missing column or word is an error."""
     found = screws.read_measured([{'speed_rev_min': '60', 'torque_Nm': '0.2'}])
     assert (found.rpm[0], found.torque[0], found.deviation[0]) == (60.0, 0.2, 0.0)
     for line in ({'speed': '60', 'torque_Nm': '0.2'}, {'speed_rev_min': 'x', 'torque_Nm': '1'}):
@@ -172,7 +168,6 @@ def test_maps_meet_their_nodes(study):
 
 
 def test_a_point_that_failed_leaves_a_gap(study):
-    """Its profile is left out, and the map bridges it between its neighbours."""
     failed = [
         StudyTask(kind='contact', rpm=600.0, load=PRELOAD).key,
         StudyTask(kind='screw', rpm=SPEEDS[3], load=MAP_LOADS[0]).key,

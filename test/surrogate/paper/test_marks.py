@@ -42,7 +42,6 @@ def trend(start: str) -> Trend:
 
 
 def test_page_of_numbers_is_the_report_of_its_rows():
-    """What the command writes from the rows."""
     assert NUMBERS.endswith(report(SCREW, law_of(SCREW), ROWS))
 
 
@@ -66,12 +65,10 @@ def test_rows_are_those_of_the_default_run():
     ],
 )
 def test_sentences_have_the_numbers_of_the_table(words):
-    """As the page prints them."""
     assert words in ' '.join(PAGE.split())
 
 
 def test_every_picture_is_there_and_small():
-    """Each picture of the page is a small PNG, and each in the folder is on the page."""
     pictures = TREE / 'docs' / 'pictures'
     shown = set(re.findall(r'\]\(\.\./pictures/(paper_\w+\.png)\)', PAGE))
     assert shown == {path.name for path in pictures.glob('paper_*.png')}
@@ -101,7 +98,6 @@ def test_film_is_that_of_the_study():
     ],
 )
 def test_what_agrees(name, standing, rolling):
-    """What the page says of standing and of rolling roughness."""
     found = trend(name)
     assert (found.standing.agrees, found.rolling.agrees) == (standing, rolling)
 

@@ -44,7 +44,6 @@ def test_more_draws_are_more_tasks_of_rough_contacts():
     [(('5',), 6, "figure is '5', allowed are 4, 6b"), (('7',), 0, 'draws is 0, allowed is 1')],
 )
 def test_what_is_not_made_is_refused(figures, draws, words):
-    """One sentence."""
     with pytest.raises(InputError, match=words):
         tasks(figures, draws)
 
@@ -62,7 +61,6 @@ def test_rows_come_back_as_they_were_written(tmp_path):
 
 
 def test_a_broken_table_is_refused(tmp_path, refused):
-    """With its path."""
     (tmp_path / 'paper.csv').write_text('inputs,kind,rpm\na,contact,fast\n')
     refused('paper_cannot_read', read_rows, tmp_path / 'paper.csv')
     assert read_rows(tmp_path / 'none.csv') == {}
@@ -100,7 +98,6 @@ def test_a_study_goes_on_where_it_stopped(tmp_path):
 
 
 def test_rows_of_an_earlier_version_are_refused(tmp_path):
-    """They came without the results that are kept now."""
     write_rows(tmp_path / 'paper.csv', [BASE])
     with open_pool(1) as pool, pytest.raises(InputError, match='rows without the kept results'):
         run_study(tmp_path, tasks(('7',), 1), pool)
@@ -152,7 +149,6 @@ def test_constant_friction_is_that_of_the_table(table):
 
 
 def test_the_map_is_a_grid():
-    """Loads by speeds, of the rolling screw; NaN for what did not converge."""
     rows = [
         replace(BASE, kind='screw', load=load, rpm=rpm, rcs=load * rpm)
         for load in (50.0, 100.0)
@@ -167,6 +163,5 @@ def test_the_map_is_a_grid():
 
 
 def test_key_names_the_task():
-    """A row has the key of its task."""
     task = StudyTask(kind='contact', rpm=5.0, load=0.0, draw=0)
     assert task.key == BASE.key == 'contact_ours_5rpm_0N_draw0'

@@ -53,7 +53,6 @@ def test_scales_and_planes_go_into_the_sum():
 
 
 def test_a_smooth_ball_changes_nothing():
-    """Rq 0 is a second field of height 0."""
     smooth = scale_spectrum(RoughnessSpectrum(rms=0.0))
     x = np.linspace(0, 1e-3, 30)
     np.testing.assert_allclose(

@@ -53,7 +53,6 @@ def rms_over(surface, window, points=(151, 451)):
 
 @given(x=PLACE, y=PLACE, seed=st.integers(0, 2**32))
 def test_heights_are_the_published_sum(x, y, seed):
-    """The matrix product and the printed double sum agree to rounding."""
     found = fractal_surface(COARSE, seed).heights([x], [y])[0, 0]
     assert found == pytest.approx(direct_sum(COARSE, seed, x, y), rel=1e-9, abs=1e-16)
 
@@ -82,7 +81,6 @@ def test_rms_follows_from_the_constants():
 
 
 def test_a_shorter_wave_adds_and_changes_nothing():
-    """Refining the surface keeps its long waves, so that resolution studies compare one draw."""
     long, short = fractal_surface(COARSE, 3), fractal_surface(NOMINAL, 3)
     count = len(long.phase)
     assert len(short.phase) == count + 5 * NOMINAL.ridges
@@ -153,7 +151,6 @@ def test_a_shift_moves_the_place_to_the_centre(x, y, seed):
 
 
 def test_a_lay_runs_along_its_direction():
-    """A longitudinal lay is smooth along x and rough along y, a transverse one the reverse."""
     x = np.arange(0, 1e-3, 2e-6)
     lags = np.array([4])
     ratio = {}
@@ -170,7 +167,6 @@ def test_a_lay_runs_along_its_direction():
 
 
 def test_a_lay_keeps_the_rms():
-    """Only directions differ, so the rms over a large area is that of the isotropic surface."""
     x = np.linspace(-40e-3, 40e-3, 300)
     rms = [
         np.sqrt(
@@ -196,7 +192,6 @@ def test_a_lay_keeps_the_rms():
     ],
 )
 def test_bad_input_is_one_sentence(act, sentence, says):
-    """Each mistake names the value and what is allowed."""
     with pytest.raises(InputError) as caught:
         act()
     assert says(sentence) in str(caught.value)

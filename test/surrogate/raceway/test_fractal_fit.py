@@ -54,7 +54,6 @@ def test_dimension_and_roughness_come_back(seed):
 
 @pytest.mark.parametrize('dimension', [2.2, 2.4, 2.85])
 def test_other_dimensions_come_back(dimension):
-    """The fit is not tuned to the nominal surface."""
     other = replace(NOMINAL, fractal_dimension=dimension)
     fit = identify_fractal(fractal_surface(other, 1).heights(ALONG, TRACES), SPACING, NOMINAL)
     assert fit.fractal_dimension == pytest.approx(dimension, abs=0.03)
@@ -103,5 +102,4 @@ def test_a_profile_across_a_lay():
     ],
 )
 def test_bad_profiles_are_one_sentence(heights, spacing, sentence, refused):
-    """Each says what is wrong and what is allowed."""
     refused(sentence, identify_fractal, heights, spacing, NOMINAL)

@@ -64,7 +64,6 @@ def test_a_map_as_a_matrix_and_as_points(tmp_path):
 
 
 def test_options_reach_the_surface(tmp_path):
-    """Filter and mirror are those of the measured surface."""
     path = write(tmp_path, 'x_um,z_nm', *columns(X, PROFILE))
     found = read_surface(path, shortest_wavelength=4e-6, outside='mirror')
     assert found.shortest_wavelength == 4e-6
@@ -99,7 +98,6 @@ def test_options_reach_the_surface(tmp_path):
     ],
 )
 def test_bad_files_are_one_sentence(tmp_path, lines, sentence, refused):
-    """The sentence names the file, the line and what is allowed."""
     path = write(tmp_path, *lines)
     with refused(sentence) as caught:
         read_surface(path)
@@ -108,7 +106,6 @@ def test_bad_files_are_one_sentence(tmp_path, lines, sentence, refused):
 
 
 def test_files_that_cannot_be_read(tmp_path, refused):
-    """No file, no text."""
     refused('there_such_file', read_surface, tmp_path / 'absent.csv')
     path = tmp_path / 'binary.csv'
     path.write_bytes(bytes(range(256)))

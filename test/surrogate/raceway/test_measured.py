@@ -33,7 +33,6 @@ def test_points_are_kept_and_places_between_interpolated():
 
 @given(x=INSIDE, y=st.floats(-0.24e-3, 0.24e-3))
 def test_a_place_has_one_height_whatever_the_grid(x, y):
-    """As with fractal surfaces."""
     surface = measured_surface(HEIGHTS, STEP, 2 * STEP)
     alone = surface.heights([x], [y])[0, 0]
     grid = surface.heights([0.1e-3, x, -0.1e-3], [y, 0.0])
@@ -42,7 +41,6 @@ def test_a_place_has_one_height_whatever_the_grid(x, y):
 
 
 def test_outside_the_map_is_refused(refused):
-    """The sentence says how far the contact reaches and how far the map does."""
     surface = measured_surface(HEIGHTS, STEP, 2 * STEP, source='map.csv')
     refused('map_contact_needs', surface.heights, [0.0, 0.3e-3], [0.0])
     refused('along_y_map', surface.heights, [0.0], [-0.25e-3])
@@ -111,6 +109,5 @@ def test_the_filter_halves_a_wave_at_its_cutoff():
     ],
 )
 def test_bad_maps_are_one_sentence(heights, options, sentence, refused):
-    """Each says what is wrong and what is allowed."""
     with refused(sentence):
         measured_surface(heights, **{'spacing_x': STEP, 'spacing_y': 2 * STEP, **options})

@@ -28,7 +28,6 @@ def one_wave(along, across, amplitude=1e-7):
 
 @given(width=st.floats(1e-4, 5e-3), seed=st.integers(0, 50), y=st.floats(-1e-3, 1e-3))
 def test_heights_repeat_across_the_track(width, seed, y):
-    """To rounding, at any place, after any number of widths."""
     surface = periodic_across(draw_raceway(scale_spectrum(SPECTRUM), seed), width).surface
     heights = surface.heights(np.linspace(0, 1e-3, 7), y + width * np.array([0, 1, -1, 10]))
     np.testing.assert_allclose(heights, heights[:, :1] * np.ones(4), atol=1e-17)
@@ -84,7 +83,6 @@ def test_ridges_along_the_track_stay_so():
 
 
 def test_what_has_no_period_is_refused(refused):
-    """A width that is not positive, and a surface that slopes."""
     refused('strip_width_1', periodic_across, one_wave(1.0, 1.0), -1e-3)
     with refused('slopes_across_track'):
         periodic_across(replace(one_wave(1.0, 1.0), plane=(0.0, 0.0, 1e-3)), 1e-3)

@@ -192,13 +192,11 @@ def test_a_slope_fixes_the_dimension(dimension, cutoff):
     ],
 )
 def test_slopes_that_no_dimension_has_are_refused(changed, message, refused):
-    """Beyond the range of dimensions, or another than that of the stated one."""
     with refused(message):
         scale_spectrum(replace(SPECTRUM, **changed))
 
 
 def test_smooth_is_a_roughness():
-    """Rq 0 needs no slope and gives height 0 everywhere."""
     scaled = scale_spectrum(RoughnessSpectrum(rms=0.0))
     assert scaled.rms_slope == 0.0
     assert not draw_raceway(scaled, 0).heights(np.arange(5.0), np.arange(3.0)).any()

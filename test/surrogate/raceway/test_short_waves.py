@@ -38,7 +38,6 @@ def test_long_waves_stay_as_they_are(surface):
 
 
 def test_a_cut_that_leaves_no_wave_is_refused(surface, refused):
-    """The sentence names the length and what is allowed."""
     refused('5000_um_longest', without_short_waves, surface, 5e-3)
 
 

@@ -312,7 +312,6 @@ def assert_unknown(found):
 
 
 def test_failures_give_no_numbers(screw):
-    """An iteration cut short, and no friction at all."""
     short = coulomb(
         screw, SPEED, 0.05, normal_force=27.6, settings=BalanceSettings(newton_limit=1)
     )
@@ -324,7 +323,6 @@ def test_failures_give_no_numbers(screw):
 
 
 def test_an_unloaded_ball_is_legal(screw):
-    """No contact, no loss, no motion to speak of."""
     for given_load in ({'normal_force': 0.0}, {'axial_force': 0.0}):
         found = coulomb(screw, SPEED, 0.05, **given_load)
         assert found.status is BalanceStatus.UNLOADED
@@ -347,7 +345,6 @@ def test_an_unloaded_ball_is_legal(screw):
     ],
 )
 def test_inputs_that_make_no_sense_are_refused(screw, given_input, text):
-    """What, value, unit, allowed."""
     laws = {f'{side}_traction': coulomb_traction(screw, side, 0.05) for side in SIDES}
     with pytest.raises(InputError, match=text):
         balance_ball(screw, **{'speed': SPEED, **laws, **given_input})

@@ -93,7 +93,6 @@ def test_spins_add_up_to_that_of_the_screw(speed, rotation, angle, flank):
 
 
 def test_the_even_split_has_the_spin_of_the_rates(screw):
-    """Half the spin at each contact, on both flanks."""
     for flank in (1, -1):
         motion = ball_motion.no_slip_motion(screw, 10.0, flank)
         for side in SIDES:

@@ -96,8 +96,6 @@ def test_pure_spin_on_a_circle(screw):
 @pytest.mark.parametrize('law', LAWS.values(), ids=LAWS)
 @given(motion=MOTIONS, load=st.floats(1.0, 100.0), direction=st.sampled_from([1.0, -1.0]))
 def test_derivatives_and_power(law, motion, load, direction):
-    """Derivatives agree with central differences, the power with forces times rates."""
-
     def values(at, force):
         return integrate_traction(SCREW, 'nut', law, force, at, direction=direction).values
 
@@ -156,7 +154,6 @@ def test_a_sample_has_about_the_friction(solved):
 
 
 def test_a_higher_floor_softens_the_law(screw):
-    """The floor of the call counts where it is above that of the law."""
     law, motion = coulomb_traction(screw, 'screw', 0.05), np.array([1e-3, 0, 0, 0, 0])
     soft = integrate_traction(screw, 'screw', law, 10.0, motion, slip_floor=1e-2)
     hard = integrate_traction(screw, 'screw', law, 10.0, motion, slip_floor=1e-9)
@@ -204,7 +201,6 @@ def test_a_share_from_elsewhere_bears_boundary_friction(solved):
 
 
 def test_inputs_that_make_no_sense_are_refused(solved, screw, refused):
-    """A contact without solution, a negative coefficient, no floor."""
     refused('without_solved_contact', solved_traction, replace(solved, status=Status.STALLED))
     refused('slip_floor_0', solved_traction, solved, slip_floor=0.0)
     refused('coefficient_0_1', coulomb_traction, screw, 'nut', -0.1)

@@ -35,7 +35,6 @@ def test_ellipse_nodes_integrate_the_hertz_pressure_and_its_moment():
 
 
 def test_torque_is_the_sum_of_its_parts(screw, oil):
-    """Sliding and rolling of four contacts and the parasitic torque add up."""
     dragging = replace(screw, parasitic_torque=0.02, parasitic_torque_rate=1e-3)
     result = solve(dragging, oil, 600.0, 1000.0)
     parts = sum(c.sliding_torque + c.rolling_torque for c in result.contacts)
@@ -64,7 +63,6 @@ def test_torque_has_an_interior_minimum_and_rcs_falls(screw, oil):
 
 
 def test_at_rest_the_asperities_carry_everything(screw, oil):
-    """The limit of slow motion: RCS 1, boundary friction, and no jump from the slowest speed."""
     rest, crawl = solve(screw, oil, 0.0, 1000.0), solve(screw, oil, 1e-9, 1000.0)
     assert rest.rcs == 1.0
     assert rest.friction_coefficient == pytest.approx(screw.roughness.asperity_friction)
@@ -82,7 +80,6 @@ def test_a_boundary_lubricated_contact_rubs_by_the_slip_arm(screw, oil):
 @settings(max_examples=40)
 @given(st.floats(0.0, 2000.0), st.floats(0.0, 3.9), st.floats(283.0, 353.0))
 def test_friction_does_not_know_the_direction_of_the_load(rpm, ratio, kelvin):
-    """Two equal nuts: the sign of the load picks the nut, not the friction."""
     from surrogate.parameters import load_lubricant, load_screw
 
     screw, oil = load_screw('nominal'), load_lubricant('iso_vg_68')
@@ -109,7 +106,6 @@ def test_a_share_by_the_film_ratio_takes_the_place_of_the_topography(screw, oil)
 
 
 def test_an_unloaded_nut_costs_nothing(screw, oil):
-    """Past unloading the relieved nut has no film, no contact and no loss."""
     result = solve(screw, oil, 600.0, 1.01 * UNLOADING_RATIO * screw.preload)
     for contact in result.contacts[2:]:
         assert contact.normal_force == contact.sliding_torque == contact.rolling_torque == 0
@@ -128,7 +124,6 @@ def test_without_preload_and_load_nothing_is_pressed(screw, oil):
 
 
 def test_many_points_are_many_single_points(screw, oil):
-    """An array of points gives, bit for bit, what each point gives by itself."""
     rpm, load = np.array([10.0, 600.0, 2000.0]), np.array([-3000.0, 0.0, 2000.0])
     many = solve(screw, oil, rpm, load)
     for i in range(3):

@@ -83,7 +83,6 @@ def test_parts_of_the_contacts_add_up_to_the_torque():
 
 
 def test_friction_coefficient_lies_between_film_and_boundary():
-    """At rest it is the boundary coefficient, with a film well below it."""
     _, rest = record(0, 500.0)
     _, moving = record(600, 500.0)
     assert rest['friction_coefficient'] == pytest.approx(
@@ -94,7 +93,6 @@ def test_friction_coefficient_lies_between_film_and_boundary():
 
 @pytest.mark.parametrize('settings', [SETTINGS, STANDING], ids=['rolling', 'standing'])
 def test_friction_is_integrated_with_the_slip_of_the_balance(settings):
-    """On screw and nut alike, the power over the slip field is that which the ball loses."""
     point = OperatingPoint(speed=60 * math.pi / 30, load=800.0, temperature=313.15)
     # Contacts under the very forces of the balance.
     agreed = replace(settings, coupling_tolerance=1e-4)
@@ -149,7 +147,6 @@ def test_coarse_waves_and_moved_forces_are_warned_about():
 
 
 def test_idle_nut_and_failure_give_a_reason():
-    """No number without a contact, and none after a solve that failed."""
     _, idle = record(600, 3.0 * SCREW.preload)
     assert [bool(c['reason']) for c in idle['contacts']] == [False, False, True, True]
     assert idle['normal_force_relieved_N'] == 0.0

@@ -133,7 +133,6 @@ def test_the_picture_falls_with_the_cutting_pressure(screw, oil, record, monkeyp
 
 
 def test_the_picture_stays_among_pressures_that_a_sheet_may_state(screw, oil, record, monkeypatch):
-    """For the hardest and the softest one, under the load that cuts."""
     cut = []
 
     def speeds(pressed, lubricant, load, kelvin, pressures):

@@ -85,7 +85,6 @@ def test_nuts_with_one_load_share_their_contacts():
 
 
 def test_a_warm_start_saves_work_and_changes_nothing():
-    """From a point 20 % slower, rough: the same numbers, fewer Newton iterations."""
     near = at(20, 400.0, STANDING)
     point = OperatingPoint(speed=24 * math.pi / 30, load=400.0, temperature=WARM)
     warm = solve_screw(SCREW, OIL, point, settings=STANDING, start=near)
@@ -111,7 +110,6 @@ def test_full_tier_is_near_the_formulas_at_full_film():
 
 
 def test_beyond_unloading_the_relieved_nut_is_idle():
-    """Its contacts are not solved and lose nothing; zero preload is the same at any load."""
     found = at(600, 3.0 * SCREW.preload)
     assert found.converged, found.status
     assert found.normal_forces[1] == 0.0
@@ -135,7 +133,6 @@ def test_a_nut_about_to_unload_is_idle_and_named():
 
 
 def test_the_raceway_belongs_to_the_draw():
-    """The same for every side and load; another draw is another place."""
     first, again, other = (draw_stated(SCREW.roughness, None, draw) for draw in (3, 3, 4))
     x, y = np.linspace(-4e-5, 4e-5, 9), np.linspace(-3e-4, 3e-4, 9)
     assert np.array_equal(first.heights(x, y), again.heights(x, y))
@@ -296,7 +293,6 @@ def test_parasitic_torque_is_added_and_never_hidden_in_friction():
 
 
 def test_a_contact_that_fails_is_named_and_leaves_no_number():
-    """The status says which; everything else is NaN."""
     settings = ScrewSettings(smooth=Settings(newton_limit=1), kinematics='smooth')
     found = at(600, 500.0, settings)
     assert not found.converged

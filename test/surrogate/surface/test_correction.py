@@ -276,13 +276,11 @@ def test_a_newer_solve_beside_a_node_replaces_both_sides_of_the_older():
     ],
 )
 def test_what_cannot_correct_is_one_sentence(where, solved, sentence, refused):
-    """Outside, at a node, not converged, impossible numbers."""
     assert NEAREST == 0.01
     refused(sentence, SHIPPED.with_correction, at(where), SimpleNamespace(**solved))
 
 
 def test_masked_cells_are_not_corrected(surface_data, refused):
-    """Where the surface has no number there is nothing to pull."""
     mask = surface_data.mask.copy()
     mask[:, :, 4] = True
     holed = Surface(replace(surface_data, mask=mask))

@@ -30,7 +30,6 @@ def rewrite(path: Path, **changes) -> None:
 
 
 def test_what_is_written_is_read(tmp_path: Path, surface_data: file.SurfaceData):
-    """A round trip keeps every array, the header and the hash."""
     path = tmp_path / 'a' / 'map.npz'
     file.write(path, surface_data)
     back = file.read(path)
@@ -58,7 +57,6 @@ def test_the_hash_covers_content_and_not_provenance(surface_data: file.SurfaceDa
 @settings(max_examples=30)
 @given(st.integers(0, len(SHIPPED) - 1))
 def test_a_truncated_file_is_refused(refused, tmp_path_factory, length):
-    """Whatever is cut off, the answer is one sentence and never a surface."""
     path = tmp_path_factory.mktemp('cut') / 'cut.npz'
     path.write_bytes(SHIPPED[:length])
     with refused('cut_npz') as caught:
@@ -83,7 +81,6 @@ def test_a_flipped_byte_is_refused_or_harmless(tmp_path_factory, place, change):
 
 
 def test_an_unknown_version_is_told_before_anything_else(tmp_path: Path, refused):
-    """A newer format is not called damaged."""
     path = tmp_path / 'new.npz'
     rewrite(path, format_version=file.ENSEMBLE_VERSION + 1)
     refused('surface_format_version', file.read, path)
@@ -91,7 +88,6 @@ def test_an_unknown_version_is_told_before_anything_else(tmp_path: Path, refused
 
 @pytest.mark.parametrize('version', [1, 2])
 def test_a_surface_of_another_roughness_model_must_be_built_again(tmp_path: Path, version):
-    """The sentence says why the file is refused and how to build it."""
     path = tmp_path / 'old.npz'
     rewrite(path, format_version=version)
     sentence = f'old.npz: surface format version {version}, the roughness model has changed'
@@ -110,7 +106,6 @@ def test_a_surface_of_another_roughness_model_must_be_built_again(tmp_path: Path
     ],
 )
 def test_a_changed_header_is_refused(tmp_path: Path, changes, sentence, refused):
-    """The header is part of the hash."""
     path = tmp_path / 'changed.npz'
     rewrite(path, **changes)
     refused(sentence, file.read, path)
@@ -156,7 +151,6 @@ def test_a_hash_over_broken_parts_does_not_save_them(
 
 @pytest.mark.parametrize('content', [b'', b'hello', b'PK\x03\x04'])
 def test_something_else_is_not_a_surface(tmp_path: Path, content, refused):
-    """Neither an empty file nor text nor a torn archive."""
     path = tmp_path / 'else.npz'
     path.write_bytes(content)
     refused('damaged_surface_file', file.read, path)
@@ -203,7 +197,6 @@ def test_the_largest_content_is_not_refused_for_its_size(tmp_path: Path, refused
 
 
 def test_an_array_that_states_more_than_there_is_memory_is_refused(tmp_path: Path, refused):
-    """A few bytes with a head that speaks of 8 PB."""
     path = tmp_path / 'empty.npz'
     head = io.BytesIO()
     large = {'descr': '<f8', 'fortran_order': False, 'shape': (10**15,)}
@@ -214,12 +207,10 @@ def test_an_array_that_states_more_than_there_is_memory_is_refused(tmp_path: Pat
 
 
 def test_a_missing_file_is_one_sentence(tmp_path: Path, refused):
-    """No such file."""
     refused('such_surface_file', file.read, tmp_path / 'none.npz')
 
 
 def test_a_device_is_not_written_over(surface_data: file.SurfaceData, refused):
-    """A target that is no regular file stays what it is."""
     refused('regular_file', file.write, '/dev/null', surface_data)
     assert Path('/dev/null').is_char_device()
 

@@ -50,7 +50,6 @@ def test_rising_data_rise_between_the_nodes(widths, rises):
 
 
 def test_straight_lines_are_exact_and_nodes_are_hit():
-    """Linear data have their slope, and a node gives its value."""
     nodes = np.array([0.0, 1.0, 3.0, 4.0])
     assert monotone_slopes(nodes, 2 * nodes + 1) == pytest.approx(np.full(4, 2.0))
     values = np.array([1.0, 5.0, 2.0, 2.0])

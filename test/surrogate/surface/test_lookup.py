@@ -46,7 +46,6 @@ def node_speed(data: SurfaceData, i: int, j: int, k: int) -> float:
 
 
 def test_shipped_closed_form_is_the_one_that_is_built(surface):
-    """The shipped file holds what the builder builds today."""
     assert SHIPPED.header == surface.header
     point = (62.8, 1000.0, 313.15)
     for name in FIELDS:
@@ -91,7 +90,6 @@ def test_lookup_agrees_with_the_model(speed, load, kelvin):
 @settings(max_examples=60)
 @given(SPEEDS, st.floats(1.001, 3.0), LOADS, KELVINS)
 def test_rcs_never_rises_with_speed(shipped, speed, factor, load, kelvin):
-    """A monotone field stays monotone between the nodes."""
     faster = min(speed * factor, 229.0)
     slow, fast = (shipped.lookup(w, load, kelvin) for w in (speed, faster))
     assert fast.rcs <= slow.rcs + 1e-9
@@ -151,7 +149,6 @@ def test_lookup_is_continuous(shipped, speed, load, kelvin, name):
     ],
 )
 def test_outside_is_an_answer_and_never_a_number(shipped, point, validity):
-    """No extrapolation: NaN and the reason."""
     found = shipped.lookup(*point)
     assert found.validity is validity
     for name in (*FIELDS, 'efficiency', 'driving_torque', 'rcs_error', 'efficiency_error'):
@@ -166,7 +163,6 @@ EDGES = [0.0, 5e-324, 2.2e-308, 2.3e-308, 1e-200, 60.0, 1000.0, 300.0, 1e308, 1.
 @both
 @given(*[st.sampled_from([*EDGES, *(-edge for edge in EDGES)]) | st.floats()] * 3)
 def test_every_float_has_an_answer(shipped, speed, load, kelvin):
-    """Numbers with VALID, NaN without, and nothing raises."""
     found = shipped.lookup(speed, load, kelvin)
     told = (found.friction_torque, found.rcs, found.film_ratio, found.efficiency)
     assert all(map(math.isfinite, told)) is (found.validity is Validity.VALID)
@@ -176,7 +172,6 @@ def test_every_float_has_an_answer(shipped, speed, load, kelvin):
 
 @both
 def test_limits_of_the_ranges_belong_to_the_surface(shipped):
-    """Each end of each range can be looked up."""
     for speed in shipped.speed_range:
         for load in shipped.load_range:
             for kelvin in shipped.temperature_range:
@@ -259,7 +254,6 @@ def test_memory_is_at_most_four_times_the_file(tier):
 
 
 def test_a_surface_of_another_screw_or_oil_is_refused(tmp_path: Path, surface_data, refused):
-    """The sentence names both."""
     path = tmp_path / 'other.npz'
     write(path, surface_data)
     assert Surface.load(path, screw='nominal', oil='iso_vg_68').tier == 'closed_form'
@@ -301,7 +295,6 @@ def test_spread_over_draws_is_looked_up(surface_data):
 
 
 def test_spread_does_not_touch_the_fields(surface_data):
-    """With draws or without, the fields are the same."""
     plain, drawn = Surface(surface_data), Surface(with_draws(surface_data))
     point = (62.8, 1000.0, 313.15)
     for name in FIELDS:

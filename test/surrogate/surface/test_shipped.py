@@ -10,7 +10,6 @@ import surrogate.surface.shipped
 
 
 def test_an_unshipped_surface_lists_the_shipped_ones(refused):
-    """A missing map names what there is."""
     refused('shipped_nominal_iso_vg_68', shipped_surface, 'nominal', 'iso_vg_32')
 
 

@@ -49,7 +49,6 @@ def test_a_good_surface_passes(says):
 
 
 def test_another_seed_means_other_points():
-    """The same seed the same ones."""
     first, again, other = (check_surface(DATA, 10, seed, always) for seed in (1, 1, 2))
     assert first == again != other
 
@@ -90,7 +89,6 @@ def test_errors_that_the_file_understates_fail():
 
 
 def test_errors_that_the_file_does_not_state_are_said():
-    """They are not held against it."""
     silent = {name: np.full_like(error, np.nan) for name, error in DATA.errors.items()}
     result = check_surface(replace(DATA, errors=silent), 5, 1, always)
     assert result.passed

@@ -49,7 +49,6 @@ def test_equal_surfaces_do_not_differ(run, capsys, monkeypatch):
 
 
 def test_a_surface_may_be_a_shipped_tier(run, capsys):
-    """As for the other commands on a file."""
     assert run('closed_form', CLOSED_FORM) == 0
     assert capsys.readouterr().out.endswith('within the tolerances\n')
 
@@ -99,7 +98,6 @@ def test_differences_beyond_the_tolerances_exit_with_1(run, tmp_path, capsys):
 
 
 def test_an_answer_of_one_alone_is_a_difference(run, tmp_path, capsys):
-    """A hole in one of the surfaces."""
     mask = DATA.mask.copy()
     mask[:, 5, :] = True
     write(tmp_path / 'holed.npz', replace(DATA, mask=mask))
@@ -120,7 +118,6 @@ def test_other_inputs_are_listed(run, tmp_path, capsys, screw, oil, says):
 
 
 def test_nothing_in_common_is_one_sentence(refused):
-    """Ranges that do not meet."""
     warm = replace(DATA, temperature=DATA.temperature + 100.0)
     refused('surfaces_have_temperature', diff_record, DATA, warm)
 

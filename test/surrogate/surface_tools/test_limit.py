@@ -20,13 +20,11 @@ def load_surface(surface_data):
 
 @pytest.mark.parametrize('load', [-900.0, 0.0, 3300.0])
 def test_speed_at_the_limit_is_found(surface, load):
-    """The lookup says the limit there."""
     speed = limit_speed(surface, load, 313.15)
     assert surface.lookup(speed, load, 313.15).rcs == pytest.approx(RCS_LIMIT, rel=1e-6)
 
 
 def test_no_limit_where_rcs_stays_on_one_side(surface_data):
-    """No point is found, and nothing is solved."""
     rcs = np.zeros_like(surface_data.fields['rcs'])
     calm = replace(surface_data, fields={**surface_data.fields, 'rcs': rcs})
     assert limit_speed(Surface(calm), 0.0, 313.15) is None
@@ -34,7 +32,6 @@ def test_no_limit_where_rcs_stays_on_one_side(surface_data):
 
 
 def test_no_limit_where_an_answer_is_missing(surface_data, surface):
-    """A masked node beside the limit is no error of the search."""
     s = math.log(limit_speed(surface, 0.0, 313.15) / surface.onset_speed(0.0, 313.15))
     mask = surface_data.mask.copy()
     mask[np.searchsorted(surface_data.speed_coordinate, s) - 1] = True

@@ -133,7 +133,6 @@ def test_a_table_for_a_table(run, tmp_path, capsys):
     ],
 )
 def test_a_wrong_table_is_one_sentence(run, tmp_path, text, sentence):
-    """File, line, column."""
     table = tmp_path / 'in.csv'
     table.write_text(text)
     with pytest.raises(InputError, match=sentence):
@@ -150,7 +149,6 @@ def test_a_wrong_table_is_one_sentence(run, tmp_path, text, sentence):
     ],
 )
 def test_words_that_do_not_go_together(run, words, sentence):
-    """What is asked for must be clear."""
     with pytest.raises(InputError, match=sentence):
         run(*words)
 

@@ -151,7 +151,6 @@ def numbers(count: int) -> dict[str, dict[str, float]]:
 
 
 def test_results_do_not_depend_on_workers(tasks, pool):
-    """One process or two: the same results, in the order of the inputs."""
     found = []
     with open_pool(1) as alone:
         both = [run_tasks(workers, tasks.root, numbers(20)) for workers in (alone, pool)]
@@ -368,6 +367,5 @@ def test_a_wrong_pool_is_one_sentence(monkeypatch, workers, dask, sentence, refu
 
 
 def test_dask_that_is_not_installed_names_the_extra(monkeypatch, refused):
-    """The sentence says what to install."""
     monkeypatch.setitem(sys.modules, 'distributed', None)
     refused('install_extra_dask', open_pool, 2, 'local')

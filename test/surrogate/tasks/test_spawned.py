@@ -34,12 +34,10 @@ def test_calls_return_and_raise(workers, began, refused):
 
 
 def test_map_keeps_the_order(workers):
-    """As every executor does."""
     assert list(workers.map(operator.neg, range(20))) == [-n for n in range(20)]
 
 
 def test_a_lost_process_is_the_loss_of_its_call(workers):
-    """The next call finds another process."""
     with pytest.raises(LostWorker):
         workers.submit(os._exit, 3).result(DEADLINE)
     assert workers.submit(abs, -1).result(DEADLINE) == 1

@@ -81,7 +81,6 @@ def test_a_key_is_the_content(refused):
 
 
 def test_only_plain_results_are_kept(tmp_path: Path):
-    """An array, or a key that would be taken for a float, is refused and nothing is written."""
     with TaskStore(tmp_path / 'map.npz', WORK) as store:
         for result in ({'a': np.zeros(3)}, {'$float': '1'}, {1: 2.0}):
             with pytest.raises(TypeError):
@@ -159,7 +158,6 @@ def test_results_of_another_version_are_refused(tmp_path: Path, refused):
 
 @pytest.mark.parametrize('content', [b'hello', b'hello\n', b'{}\n', b'[1]\n'])
 def test_something_else_is_not_a_store(tmp_path: Path, content, refused):
-    """A file of another kind is neither read nor written over."""
     out = tmp_path / 'map.npz'
     store_path(out).write_bytes(content)
     refused('store_results', TaskStore, out, WORK)
@@ -196,7 +194,6 @@ def test_a_full_disk_costs_nothing_that_was_kept(tmp_path: Path):
 
 
 def test_a_place_that_cannot_be_written_is_one_sentence(tmp_path: Path, refused):
-    """A directory in the way, a file where a directory is needed."""
     store_path(tmp_path / 'a.npz').mkdir()
     (tmp_path / 'file').write_text('')
     for out in (tmp_path / 'a.npz', tmp_path / 'file' / 'b.npz'):

@@ -83,7 +83,6 @@ def inner(field):
 @pytest.mark.parametrize('contact', CONTACTS.values(), ids=CONTACTS)
 @pytest.mark.parametrize('across', [SHAPE[1], SHAPE[1] - 1], ids=('even', 'odd'))
 def test_many_steps_solve_the_rows_of_all_lines(planes, contact, across):
-    """From zero as from anywhere, for an even and an odd number of lines."""
     contact, planes = contact[:, :across], planes[..., :across]
     rhs, start = np.random.default_rng(8).normal(size=(2, SHAPE[0], across))
     start[[0, -1]] = start[:, [0, -1]] = 0
@@ -141,7 +140,6 @@ def test_lines_of_a_period_reach_across_its_sides(planes, contact):
 
 @pytest.mark.parametrize('across', [7, 8])
 def test_kinds_join_to_what_was_parted(across):
-    """Bit for bit."""
     field, again = np.random.default_rng(11).normal(size=(5, across)), np.zeros((5, across))
     kinds = np.zeros((2, 5, line.lines_of_a_kind(across)))
     line.part(field, kinds)
@@ -171,7 +169,6 @@ def test_film_lines_solve_the_rows_of_contact_nodes(planes, contact):
 
 @pytest.mark.parametrize('contact', CONTACTS.values(), ids=CONTACTS)
 def test_the_box_changes_no_bit(planes, contact):
-    """Same as on the whole grid after one step and after three."""
     rng = np.random.default_rng(7)
     rhs, total = rng.normal(size=(2, *SHAPE))
     total[[0, -1]] = total[:, [0, -1]] = 0
@@ -181,7 +178,6 @@ def test_the_box_changes_no_bit(planes, contact):
 
 
 def test_the_box_has_a_node_to_spare_off_the_border():
-    """Ends are excluded; nothing is in the box of no contact."""
     assert contact_box(CONTACTS['inside']) == (3, 9, 4, 11)
     assert contact_box(CONTACTS['at all borders']) == WHOLE
     assert contact_box(CONTACTS['one']) == (2, 5, 11, 13)

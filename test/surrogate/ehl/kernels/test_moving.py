@@ -42,7 +42,6 @@ def rows_of(film, mass, carried, stride=1):
 
 @pytest.mark.parametrize('stride', [1, 2, 3])
 def test_rows_are_the_plain_twins(film, stride):
-    """Node by node; the rows that columns from outside reach are of order 1."""
     rng = np.random.default_rng(4)
     mass, carried = 0.05 * rng.random((2, 9, 8)) + 0.01
     rows, _, _, out = rows_of(film, mass, carried, stride)
@@ -102,7 +101,6 @@ def test_dissipation_is_flow_times_rise(film):
 
 
 def test_shear_thins_as_the_plain_twin(film):
-    """The fluidity grows by sinh(S)/S, its logarithm falls by as much; the border stays."""
     rng = np.random.default_rng(7)
     pressure, thinned = rng.random((9, 8)), film.copy()
     thin_by_shear(pressure, thinned, 30.0, 20.0)

@@ -201,12 +201,10 @@ def test_a_stalled_march_says_so(circular, semi_axis, transverse, monkeypatch):
     ],
 )
 def test_bad_settings_are_one_sentence(circular, change, sentence, refused):
-    """What, value, allowed."""
     refused(sentence, circular, flat, **change)
 
 
 def test_a_raceway_must_go_on_for_ever(circular, refused):
-    """An array ends, and heights that are not finite are none."""
     refused('strip_has_end', circular, np.zeros((65, 65)))
     refused('finite', circular, lambda x, y: np.nan * x * y)
 
