@@ -50,16 +50,12 @@ def test_a_terminal_gets_a_bar_with_rate_and_time_left():
     assert lines[3].startswith('[' + 40 * '#' + ']')
 
 
-def test_a_log_gets_a_line_per_tenth():
-    """A thousand fast steps are ten lines and no control characters."""
+def test_a_log_gets_a_line_per_tenth_or_minute():
+    """A thousand fast steps are ten lines; of slow ones no silence is longer than 80 s."""
     lines = run(io.StringIO(), 1000, 0.01).splitlines()
     assert len(lines) == 10
     assert lines[0] == '100/1000 solves, 100 per s, 9 s left'
     assert lines[-1].startswith('1000/1000 solves')
-
-
-def test_a_slow_log_gets_a_line_per_minute():
-    """A thousand slow steps of 40 s: no silence longer than 80 s until the tenth is due."""
     assert (
         run(io.StringIO(), 1000, 40.0).splitlines()[0] == '2/1000 solves, 40 s each, 11.1 h left'
     )

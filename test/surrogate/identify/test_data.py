@@ -6,7 +6,6 @@ import math
 
 import numpy as np
 import pytest
-from surrogate.files import InputError
 from surrogate.identify.data import no_load_run, read_drag_csv
 
 WARM = 313.15
@@ -77,13 +76,11 @@ def test_what_is_no_text_is_refused(tmp_path, refused):
     refused('cannot_read_as', read_drag_csv, tmp_path / 'bytes.csv')
 
 
-@pytest.mark.parametrize(
-    ('column', 'unit'), [('rpm_speed', '_rpm, _rad_s'), ('torque_Nm', '_rpm')]
-)
-def test_a_column_named_by_hand_needs_its_unit(csv, column, unit, refused):
+def test_a_column_named_by_hand_needs_its_unit(csv, refused):
     path = csv('rpm_speed,torque_Nm\n1,2\n')
-    with pytest.raises(InputError, match=f'column {column} has no unit of a speed .*_rpm'):
-        read_drag_csv(path, speed_column=column)
+    for column in ('rpm_speed', 'torque_Nm'):
+        with refused('column_has_unit', column=column):
+            read_drag_csv(path, speed_column=column)
     refused('column_nope_missing', read_drag_csv, path, speed_column='nope')
 
 
@@ -106,9 +103,9 @@ def test_points_at_standstill_are_left_out_and_counted():
 @pytest.mark.parametrize(
     ('name', 'value'), [('torque', math.nan), ('speed', math.inf), ('torque_std', 0.0)]
 )
-def test_numbers_that_are_none_are_refused(name, value):
+def test_numbers_that_are_none_are_refused(name, value, refused):
     """Whoever reads the data: a run holds finite numbers only."""
     columns = {'speed': np.ones(2), 'torque': np.ones(2), 'torque_std': np.ones(2)}
     columns[name][1] = value
-    with pytest.raises(InputError, match=f'{name} of point 2 is .*, allowed is a finite number'):
+    with refused('point_2_finite', name=name):
         no_load_run(columns, source='data', temperature=WARM)

@@ -89,19 +89,11 @@ def test_lookup_agrees_with_the_model(speed, load, kelvin):
 @both
 @settings(max_examples=60)
 @given(SPEEDS, st.floats(1.001, 3.0), LOADS, KELVINS)
-def test_rcs_never_rises_with_speed(shipped, speed, factor, load, kelvin):
+def test_rcs_never_rises_and_film_never_thins_with_speed(shipped, speed, factor, load, kelvin):
+    """The film strictly; in the full tier once it is off the floor."""
     faster = min(speed * factor, 229.0)
     slow, fast = (shipped.lookup(w, load, kelvin) for w in (speed, faster))
     assert fast.rcs <= slow.rcs + 1e-9
-
-
-@both
-@settings(max_examples=60)
-@given(SPEEDS, st.floats(1.001, 3.0), LOADS, KELVINS)
-def test_film_never_thins_with_speed(shipped, speed, factor, load, kelvin):
-    """Strictly; in the full tier once the film is off the floor."""
-    faster = min(speed * factor, 229.0)
-    slow, fast = (shipped.lookup(w, load, kelvin) for w in (speed, faster))
     if shipped.tier == 'full' and slow.central_film <= OFF_FLOOR * floor_of(shipped):
         assert fast.central_film >= LEAST_ON_FLOOR * floor_of(shipped)
     else:

@@ -79,16 +79,13 @@ def test_what_does_not_converge_is_counted_and_not_compared(monkeypatch):
     assert none.unsolved == 10
 
 
-def test_errors_that_the_file_understates_fail():
+def test_errors_that_the_file_understates_fail_and_those_it_does_not_state_are_said():
     """A file whose stated errors are a hundredth of the true ones is not believed."""
     lying = replace(DATA, errors={name: 0.01 * error for name, error in DATA.errors.items()})
     result = check_surface(lying, 30, 1, always)
     assert result.efficiency <= EFFICIENCY_TOLERANCE
     assert not result.passed
     assert result.stated['rcs'] > STATED_FACTOR
-
-
-def test_errors_that_the_file_does_not_state_are_said():
     silent = {name: np.full_like(error, np.nan) for name, error in DATA.errors.items()}
     result = check_surface(replace(DATA, errors=silent), 5, 1, always)
     assert result.passed

@@ -24,14 +24,11 @@ def test_speed_at_the_limit_is_found(surface, load):
     assert surface.lookup(speed, load, 313.15).rcs == pytest.approx(RCS_LIMIT, rel=1e-6)
 
 
-def test_no_limit_where_rcs_stays_on_one_side(surface_data):
+def test_no_limit_where_rcs_stays_on_one_side_or_an_answer_is_missing(surface_data, surface):
     rcs = np.zeros_like(surface_data.fields['rcs'])
     calm = replace(surface_data, fields={**surface_data.fields, 'rcs': rcs})
     assert limit_speed(Surface(calm), 0.0, 313.15) is None
     assert not list(limit_errors(calm, 3, 1, lambda: True))
-
-
-def test_no_limit_where_an_answer_is_missing(surface_data, surface):
     s = math.log(limit_speed(surface, 0.0, 313.15) / surface.onset_speed(0.0, 313.15))
     mask = surface_data.mask.copy()
     mask[np.searchsorted(surface_data.speed_coordinate, s) - 1] = True

@@ -226,13 +226,17 @@ def test_what_an_earlier_run_tells_late_is_not_heard(tasks, monkeypatch):
 
 
 def test_a_task_that_kills_its_workers_ends_as_a_sentence(tasks, pool):
-    """It is given up after a few tries, and costs no other task its result."""
-    inputs = {f'{number}': {'x': number, 'kill': number == 3} for number in range(10)}
-    outcomes = run_tasks(pool, tasks.kill_worker, inputs)
-    assert outcomes['3'].sentence == f'its worker was lost {MOST_TRIES} times'
-    assert len(set(outcomes['3'].lost)) == MOST_TRIES
-    for name, outcome in outcomes.items():
-        assert outcome.result == (None if name == '3' else {'x': int(name)})
+    """Also by half a message in a pipe; given up after a few tries, it costs no other result."""
+    inputs = {f'{one}': {'x': one, 'kill': one == 3, 'cut': one == 3} for one in range(10)}
+    for task, result in (
+        (tasks.kill_worker, lambda number: {'x': number}),
+        (tasks.send_half, lambda number: {'text': 1000 * 'x'}),
+    ):
+        outcomes = run_tasks(pool, task, inputs)
+        assert outcomes['3'].sentence == f'its worker was lost {MOST_TRIES} times'
+        assert len(set(outcomes['3'].lost)) == MOST_TRIES
+        for name, outcome in outcomes.items():
+            assert outcome.result == (None if name == '3' else result(int(name)))
 
 
 def test_a_module_that_ends_its_process_is_told(tmp_path: Path, monkeypatch):
@@ -258,15 +262,6 @@ def test_a_module_that_workers_do_not_have_is_told(tmp_path: Path, monkeypatch, 
     with open_pool(1) as pool:
         outcome = run_tasks(pool, gone_tasks.task, {'a': {}})['a']
     assert outcome.sentence == says('module_named_gone_tasks')
-
-
-def test_a_kill_in_the_middle_of_a_result_is_only_a_lost_worker(tasks, pool):
-    """Half a message in a pipe stops neither the other tasks nor the end of the pool."""
-    inputs = {f'{number}': {'cut': number == 3} for number in range(10)}
-    outcomes = run_tasks(pool, tasks.send_half, inputs)
-    assert outcomes['3'].sentence == f'its worker was lost {MOST_TRIES} times'
-    for name, outcome in outcomes.items():
-        assert outcome.result == (None if name == '3' else {'text': 1000 * 'x'})
 
 
 def test_kept_results_are_not_solved_again(tasks, pool, tmp_path: Path):

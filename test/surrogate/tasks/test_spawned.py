@@ -26,14 +26,11 @@ def workers(began):
         yield pool
 
 
-def test_calls_return_and_raise(workers, began, refused):
+def test_calls_return_and_raise_and_map_keeps_the_order(workers, began, refused):
     """What the function returns or raises is what the future has."""
     assert workers.submit(math.sqrt, 9.0).result(DEADLINE) == 3.0
     refused('math_domain_error', workers.submit(math.sqrt, -1.0).result, DEADLINE)
     assert [arguments for arguments, _ in began] == [(9.0,), (-1.0,)]
-
-
-def test_map_keeps_the_order(workers):
     assert list(workers.map(operator.neg, range(20))) == [-n for n in range(20)]
 
 
