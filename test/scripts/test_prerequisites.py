@@ -23,7 +23,7 @@ SHIM = '#!/bin/sh\necho "pyenv: command not found" >&2\nexit 127\n'
 Machine = Callable[..., 'subprocess.CompletedProcess[str]']
 
 
-def put(folder: Path, name: str, text: str) -> None:
+def put(folder, name, text):
     """Write a command into a folder."""
     path = folder / name
     path.write_text(text)
@@ -31,14 +31,14 @@ def put(folder: Path, name: str, text: str) -> None:
 
 
 @pytest.fixture
-def machine(tmp_path: Path) -> Machine:
+def machine(tmp_path):
     """Return a function that runs the script on a machine with just these commands."""
     folder = tmp_path / 'bin'
     folder.mkdir()
     for name in ('id', 'mkdir', 'sed', 'sh', 'tail'):
         (folder / name).symlink_to(shutil.which(name) or name)
 
-    def run(commands: dict[str, str], **variables: str) -> 'subprocess.CompletedProcess[str]':
+    def run(commands, **variables):
         for name, text in commands.items():
             (folder / name).unlink(missing_ok=True)
             put(folder, name, text)
@@ -59,23 +59,23 @@ COMPLETE = {'git': TRUE, 'make': TRUE, 'g++': TRUE, 'python3': WORKING}
 APT = {'apt-get': TRUE, 'apt-cache': '#!/bin/sh\n[ $3 != python3 ] || echo Version: 3.12.3-0\n'}
 
 
-def test_python_is_the_interpreter_underneath(machine: Machine) -> None:
+def test_python_is_the_interpreter_underneath(machine):
     done = machine(COMPLETE)
     assert (done.returncode, done.stdout, done.stderr) == (0, f'{BASE}\n', '')
 
 
-def test_shim_that_fails_is_skipped(machine: Machine) -> None:
+def test_shim_that_fails_is_skipped(machine):
     done = machine({**COMPLETE, 'python3': SHIM, 'python3.12': SHIM, 'python3.11': WORKING})
     assert (done.returncode, done.stdout) == (0, f'{BASE}\n')
 
 
-def test_python_that_was_asked_for_is_the_only_candidate(machine: Machine, says) -> None:
+def test_python_that_was_asked_for_is_the_only_candidate(machine, says):
     done = machine({**COMPLETE, 'other': SHIM}, PYTHON='other')
     assert done.returncode == 2
     assert done.stderr == says('set_up_python')
 
 
-def test_user_gets_one_line_to_type(machine: Machine, says) -> None:
+def test_user_gets_one_line_to_type(machine, says):
     """Nothing is installed for a user who is not root, and sudo is never called."""
     lacking = {name: text for name, text in COMPLETE.items() if name not in ('g++', 'python3')}
     done = machine({**lacking, **APT, 'id': '#!/bin/sh\necho 1000\n', 'python3': SHIM})
@@ -83,14 +83,14 @@ def test_user_gets_one_line_to_type(machine: Machine, says) -> None:
     assert done.stderr == says('set_up_type')
 
 
-def test_machine_without_apt_gets_the_list(machine: Machine, says) -> None:
+def test_machine_without_apt_gets_the_list(machine, says):
     done = machine({**COMPLETE, 'python3': SHIM})
     assert done.returncode == 2
     assert done.stderr.startswith(says('set_up_install'))
     assert done.stderr.count('\n') == 1
 
 
-def test_root_gets_what_is_missing(machine: Machine, tmp_path: Path) -> None:
+def test_root_gets_what_is_missing(machine, tmp_path):
     lacking = {name: text for name, text in COMPLETE.items() if name != 'g++'}
     apt = f'#!/bin/sh\necho "$@" >> asked\n[ $1 = update ] || : > {tmp_path}/bin/g++\n'
     chmod = shutil.which('chmod')
@@ -109,7 +109,7 @@ def test_root_gets_what_is_missing(machine: Machine, tmp_path: Path) -> None:
     ]
 
 
-def test_failing_apt_is_said(machine: Machine, says) -> None:
+def test_failing_apt_is_said(machine, says):
     """The reason is the end of its output."""
     lacking = {name: text for name, text in COMPLETE.items() if name != 'make'}
     done = machine(

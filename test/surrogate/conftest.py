@@ -2,12 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reference tables and shared objects of the offline tests."""
 
-from collections.abc import Mapping
 import csv
 import math
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -16,14 +14,13 @@ from surrogate.builder.closed_form import build_closed_form, default_settings
 from surrogate.builder.full.nodes import onset_speeds
 from surrogate.builder.tiers import screw_and_oil
 from surrogate.cli import add_commands, Parser
-from surrogate.parameters import load_lubricant, load_screw, Lubricant, Screw
+from surrogate.parameters import load_lubricant, load_screw
 from surrogate.screw import closed_form
-from surrogate.surface.file import SurfaceData
 
 REFERENCE = Path(__file__).parents[1] / 'reference'
 
 
-def rows(name: str) -> list[dict[str, str]]:
+def rows(name):
     """Return the rows of a reference table, without its header lines."""
     lines = (REFERENCE / name).read_text(encoding='utf-8').splitlines()
     return list(csv.DictReader(line for line in lines if not line.startswith('#')))
@@ -49,30 +46,30 @@ def run(request):
 
 
 @pytest.fixture(scope='session')
-def screw() -> Screw:
+def screw():
     """Return the nominal screw."""
     return load_screw('nominal')
 
 
 @pytest.fixture(scope='session')
-def oil() -> Lubricant:
+def oil():
     """Return the nominal oil."""
     return load_lubricant('iso_vg_68')
 
 
 @pytest.fixture(scope='session')
-def surface_data(screw: Screw, oil: Lubricant) -> SurfaceData:
+def surface_data(screw, oil):
     """Build the nominal surface once."""
     return build_closed_form(screw, oil, default_settings(screw))
 
 
 @pytest.fixture(scope='session')
-def stand_in() -> SimpleNamespace:
+def stand_in():
     """Return `chain` and `run` of a fast model in place of solved contacts."""
     return SimpleNamespace(chain=chain_stand_in, run=run_stand_in)
 
 
-def chain_stand_in(inputs: Mapping[str, Any]) -> dict[str, Any]:
+def chain_stand_in(inputs):
     """Return what `solve_chain` returns: formulas, and contact by the law at the onset speed."""
     screw, lubricant = screw_and_oil(inputs)
     load, heat = inputs['load'], inputs['temperature']
@@ -90,7 +87,7 @@ def chain_stand_in(inputs: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
-def stand_in_point(formula: Any, rcs: float, share: float) -> dict[str, Any]:
+def stand_in_point(formula, rcs, share):
     if not math.isfinite(formula.film_ratio):
         return {'converged': False, 'status': 'no load'}
     return {
@@ -109,6 +106,6 @@ def stand_in_point(formula: Any, rcs: float, share: float) -> dict[str, Any]:
     }
 
 
-def run_stand_in(tasks: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
+def run_stand_in(tasks):
     """Solve chains in this process."""
     return {name: chain_stand_in(inputs) for name, inputs in tasks.items()}

@@ -3,7 +3,6 @@
 """The offline commands as a user types them."""
 
 import json
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -19,7 +18,7 @@ POINT = ['--screw', 'nominal', '--oil', 'iso_vg_68', '--tier', 'closed_form']
 def record(run, capsys):
     """Return the function that gives the JSON that a point prints."""
 
-    def printed(*words: str) -> dict:
+    def printed(*words):
         assert run(*POINT, '--json', *words) == 0
         return json.loads(capsys.readouterr().out)
 
@@ -137,7 +136,7 @@ def test_full_tier_is_solved_and_a_failure_is_an_exit_code(run, capsys, monkeypa
     assert run(*words) == 1
 
 
-def test_options_of_the_full_tier(run, tmp_path: Path, capsys):
+def test_options_of_the_full_tier(run, tmp_path, capsys):
     """Kinematics, inlet heating and picture reach the solve; the other tier refuses them."""
     words = ('--speed-rpm', '600', '--load-N', '0', '--json')
     more = ('--kinematics', 'smooth', '--inlet-heating', '--plot', tmp_path)

@@ -3,7 +3,6 @@
 """Files that appear whole or not at all."""
 
 import os
-from pathlib import Path
 
 from surrogate.files import replace_file
 
@@ -19,7 +18,7 @@ def test_a_file_is_made_with_its_directory_and_replaced(tmp_path, refused):
     refused('regular_file', replace_file, tmp_path, b'one')
 
 
-def test_a_failure_leaves_what_was_there(tmp_path: Path, monkeypatch, refused):
+def test_a_failure_leaves_what_was_there(tmp_path, monkeypatch, refused):
     """The disk is full when the bytes are flushed."""
     path = tmp_path / 'file'
     replace_file(path, b'one')

@@ -4,7 +4,6 @@
 
 from dataclasses import asdict, replace
 import math
-from pathlib import Path
 import re
 
 from hypothesis import given
@@ -209,7 +208,7 @@ def test_a_file_that_is_no_mapping_is_refused(tmp_path, content, refused):
     refused(sentence, load_lubricant, str(path))
 
 
-def test_the_source_is_mandatory(tmp_path: Path, refused):
+def test_the_source_is_mandatory(tmp_path, refused):
     path = tmp_path / 'screw.yaml'
     path.write_text(re.sub(r'source: >-\n(  .*\n)+', "source: ''\n", SCREW), encoding='utf-8')
     refused('source_text_empty', load_screw, str(path))

@@ -12,7 +12,7 @@ from surrogate.progress import bar, Progress
 class Terminal(io.StringIO):
     """A stream that says that it is a terminal."""
 
-    def isatty(self) -> bool:
+    def isatty(self):
         """Tell so."""
         return True
 

@@ -235,9 +235,7 @@ def test_a_wrong_file_has_its_sentence(name, domain, tmp_path, monkeypatch, caps
         ('monitor: {%s: {axes: [x]}}', 'says_nothing_node'),
     ],
 )
-def test_a_file_that_the_node_refuses_is_bad_input(
-    text, sentence, domain, tmp_path, monkeypatch, says
-):
+def test_a_refused_file_is_bad_input(text, sentence, domain, tmp_path, monkeypatch, says):
     monkeypatch.setenv('ROS_DOMAIN_ID', str(domain))
     path = tmp_path / 'params.yaml'
     path.write_text(text % 'ros__parameters', encoding='utf-8')
@@ -246,10 +244,7 @@ def test_a_file_that_the_node_refuses_is_bad_input(
     assert says(sentence) in str(caught.value)
 
 
-def test_a_time_that_is_none_is_bad_input(tmp_path, refused):
+def test_bad_times_and_domains_are_bad_input(tmp_path, refused, monkeypatch):
     refused('seconds_0_s', doctor, write(tmp_path, {}), seconds=0.0)
-
-
-def test_a_domain_that_is_no_number_is_bad_input(tmp_path, monkeypatch, refused):
     monkeypatch.setenv('ROS_DOMAIN_ID', 'here')
     refused('ros_cannot_start', doctor, write(tmp_path, {}), seconds=1.0)

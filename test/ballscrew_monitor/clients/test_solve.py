@@ -185,7 +185,7 @@ def test_a_goal_that_is_accepted_too_late_is_taken_back():
 @pytest.mark.parametrize(
     ('interrupted', 'code', 'sentence'), [([], 1, 'm_solve_does'), ([signal.SIGINT], 130, '')]
 )
-def test_a_server_that_is_never_ready_is_sent_no_goal(
+def test_a_server_not_ready_is_sent_no_goal(
     monkeypatch, capsys, interrupted, code, sentence, says
 ):
     client = SimpleNamespace(server_is_ready=lambda: False)  # has no way to send

@@ -24,11 +24,15 @@ def heavier_is_better(speed, load):
 
 
 @pytest.mark.parametrize('sign', [1.0, -1.0])
-def test_the_border_is_found_from_its_optimal_side(core, sign):
+def test_a_border_is_found_from_its_optimal_side_and_the_load_keeps_its_sense(core, sign):
     point = core.point(speed=sign * 5.0, axial_load=-sign * 1000.0)
     found = advise(point, core.surface(rcs=faster_is_better), core.limits()).target_speed
     assert sign * found == pytest.approx(30.0, rel=1e-5)
     assert sign * found >= 30.0
+    point = core.point(speed=10.0, axial_load=sign * 1000.0)
+    found = advise(point, core.surface(efficiency=heavier_is_better), core.limits()).target_load
+    assert sign * found == pytest.approx(1500.0, rel=1e-4)
+    assert sign * found >= 1500.0
 
 
 def test_the_nearer_of_two_borders_wins(core):
@@ -54,20 +58,9 @@ def test_a_speed_that_is_no_advice(core, speed, rcs):
     assert math.isnan(found.target_speed)
 
 
-@pytest.mark.parametrize('sign', [1.0, -1.0])
-def test_the_load_keeps_its_sense(core, sign):
-    point = core.point(speed=10.0, axial_load=sign * 1000.0)
-    found = advise(point, core.surface(efficiency=heavier_is_better), core.limits()).target_load
-    assert sign * found == pytest.approx(1500.0, rel=1e-4)
-    assert sign * found >= 1500.0
-
-
-def test_to_leave_the_efficiency_unjudged_is_no_advice(core):
+def test_advice_under_a_light_load(core):
     surface = core.surface(efficiency=0.5)
     assert math.isnan(advise(core.point(axial_load=300.0), surface, core.limits()).target_load)
-
-
-def test_a_light_load_may_become_lighter(core):
     surface = core.surface(
         rcs=lambda speed, load: 1.0 if abs(load) > 100.0 else 0.0, efficiency=0.5
     )

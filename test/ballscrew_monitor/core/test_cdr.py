@@ -40,12 +40,9 @@ def test_it_is_what_ros_writes_but_for_padding_and_end(filled, name):
         assert not any(mine for mine, other in zip(ours, theirs) if mine != other)
 
 
-def test_nothing_follows_an_empty_array():
+def test_empty_arrays_and_messages_without_fields():
     assert serialized(JointState())[-16:] == bytes(16)
     assert len(serialized(JointState())) == 36
-
-
-def test_a_message_without_fields_has_one_byte():
     assert serialized(Empty()) == b'\0\1\0\0\0'
     assert serialized(UInt8(data=7)) == b'\0\1\0\0\7'
 

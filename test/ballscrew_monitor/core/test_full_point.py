@@ -126,19 +126,19 @@ def asked(core, stamps, numbers=None, dwell=None, **point):
     return [one for one in stamps if dwell.update(one, here, result, verdict, limits)]
 
 
-def test_a_solve_is_asked_for_after_a_stay_and_not_again_for_a_while(core):
+def test_a_solve_is_asked_for_after_a_stay_inside_the_surface_and_not_again_for_a_while(core):
     stamps = range(START, START + STAY + PAUSE + SECOND, SECOND)
     assert asked(core, stamps) == [START + STAY, START + STAY + PAUSE]
+    stamps = [START, START + STAY]
+    assert asked(core, stamps, speed=0.2) == []
+    assert asked(core, stamps, speed=500.0) == []
 
 
-def test_whoever_moves_on_does_not_dwell(core):
+def test_whoever_moves_on_does_not_dwell_and_a_clock_that_is_set_back_begins_the_stay_anew(core):
     dwell, stamps = Dwell(), range(START, START + 2 * STAY, SECOND)
     for stamp in stamps:
         speed = 10.0 * (1.0 + 0.01 * ((stamp - START) // SECOND))
         assert asked(core, [stamp], dwell=dwell, speed=speed) == []
-
-
-def test_a_clock_that_is_set_back_begins_the_stay_anew(core):
     dwell = Dwell()
     assert asked(core, [START], dwell=dwell) == []
     assert asked(core, [START - STAY, START - 1], dwell=dwell) == []
@@ -161,9 +161,3 @@ def test_only_a_limit_within_reach_of_the_error_is_uncertain(core, numbers, unce
     limits, here = core.limits(), core.point()
     result = estimate(here, core.surface(**numbers), rcs_limit=limits.rcs)
     assert full_point.is_uncertain(result, judged(here), limits) is uncertain
-
-
-def test_at_standstill_and_outside_the_surface_there_is_nothing_to_solve(core):
-    stamps = [START, START + STAY]
-    assert asked(core, stamps, speed=0.2) == []
-    assert asked(core, stamps, speed=500.0) == []

@@ -31,16 +31,13 @@ def speed_input(**changes):
     return inputs.make_input(Source.SPEED, **(values | changes))
 
 
-def test_a_header_stamp_is_the_stamp():
+def test_a_header_stamp_is_the_stamp_and_without_one_the_time_of_reception_counts():
     sample = speed_input().read(
         joints('x_axis', velocity=[3.0], stamp=NOW - 5), now=NOW, max_future=0
     )
     assert sample == InputSample(
         source=Source.SPEED, value=3.0, stamp=NOW - 5, stamp_source=StampSource.HEADER, arrival=NOW
     )
-
-
-def test_without_a_stamp_the_time_of_reception_counts():
     unstamped = speed_input(type_name='std_msgs/msg/Float64', field='data')
     for sample in (
         speed_input().read(joints('x_axis', velocity=[3.0]), now=NOW, max_future=0),
@@ -129,12 +126,9 @@ def test_a_message_about_other_joints_is_refused_as_such():
     )
 
 
-def test_the_value_is_scaled():
+def test_the_value_is_scaled_and_an_open_input_is_closed_by_a_type(refused):
     speed = speed_input(scaling=Scaling(factor=2.0, shift=1.0))
     assert speed.read(joints('x_axis', velocity=[3.0]), now=NOW, max_future=0).value == 7.0
-
-
-def test_an_open_input_is_closed_by_a_type(refused):
     opened = inputs.OpenInput(
         source=Source.SPEED, topic='speed', field='data', scaling=Scaling(factor=2.0, shift=0.0)
     )

@@ -36,10 +36,15 @@ def test_ports_are_those_of_the_specification():
     assert highest < 32768  # from here on the kernel gives ports to clients
 
 
-def test_two_at_a_time_get_different_domains():
+def test_a_domain_is_held_by_one_at_a_time():
     with free_domain() as one, free_domain() as other:
         assert one != other
         assert {one, other} <= set(domains.DOMAINS)
+    with free_domain() as found:
+        with domains.held(found) as free:
+            assert not free
+    with domains.held(found) as free:
+        assert free
 
 
 def test_a_domain_with_a_participant_is_not_free():
@@ -49,14 +54,6 @@ def test_a_domain_with_a_participant_is_not_free():
             participant.bind(('', port(found, 1)))
             assert not domains.is_free(found)
         assert domains.is_free(found)
-
-
-def test_a_domain_is_held_by_one_at_a_time():
-    with free_domain() as found:
-        with domains.held(found) as free:
-            assert not free
-    with domains.held(found) as free:
-        assert free
 
 
 def test_when_all_are_taken_it_says_so(monkeypatch, refused):
@@ -120,22 +117,16 @@ def test_what_is_of_another_user_is_kept(folder, monkeypatch):
     assert not stale(folder, {7, 8})
 
 
-def test_a_port_is_stale_in_a_free_domain_only(folder):
+def test_which_ports_are_stale(folder):
     ports = stale(folder, {7}) - stale(folder, set())
     assert names(ports) == {PORT, f'sem.{PORT}_mutex'}
     assert len(stale(folder, {7, 8}) - stale(folder, {7})) == 2
-
-
-def test_a_port_of_no_domain_is_stale_when_its_lock_can_be_had(folder):
-    assert 'fastrtps_port7000' not in names(stale(folder, {7, 8}))
-    (folder / 'fastrtps_port7000_el').touch()
-    assert {'fastrtps_port7000', 'fastrtps_port7000_el'} <= names(stale(folder, set()))
-
-
-def test_a_port_that_somebody_listens_to_is_kept(folder):
     with (folder / f'fastdds_port{port(8, 1) + 1}_sl').open() as listener:
         fcntl.flock(listener, fcntl.LOCK_SH)
         assert stale(folder, {8}) == stale(folder, set())
+    assert 'fastrtps_port7000' not in names(stale(folder, {7, 8}))
+    (folder / 'fastrtps_port7000_el').touch()
+    assert {'fastrtps_port7000', 'fastrtps_port7000_el'} <= names(stale(folder, set()))
 
 
 def test_what_cannot_be_opened_is_kept(folder):

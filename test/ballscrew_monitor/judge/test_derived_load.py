@@ -94,9 +94,7 @@ def motor_torque(surface, speed, force, *, acceleration=0.0, temperature=313.15)
 
 
 @given(either, SPEEDS, SIGNS, LOADS, SIGNS, KELVINS, st.floats(-100.0, 100.0))
-def test_the_load_comes_back_in_all_four_quadrants(
-    surface, amount, way, force, sign, temperature, acceleration
-):
+def test_the_load_comes_back(surface, amount, way, force, sign, temperature, acceleration):
     assume(not IDLE[0] < force < IDLE[1])
     speed, load = way * amount, sign * force
     torque = motor_torque(surface, speed, load, acceleration=acceleration, temperature=temperature)
@@ -110,9 +108,7 @@ def test_the_load_comes_back_in_all_four_quadrants(
 
 
 @given(either, SPEEDS, SIGNS, LOADS, SIGNS, st.floats(0.001, 0.5), st.floats(-1.0, 1.0))
-def test_the_uncertainty_holds_the_load_for_every_torque_within_its_own(
-    surface, amount, way, force, sign, uncertainty, off
-):
+def test_the_uncertainty_holds_the_load(surface, amount, way, force, sign, uncertainty, off):
     speed, load = way * amount, sign * force
     torque = motor_torque(surface, speed, load)
     assume(torque is not None)

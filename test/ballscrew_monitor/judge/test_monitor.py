@@ -155,16 +155,13 @@ def test_totals_reset(core):
     assert (state.totals.running_time, state.judged) == (STEP, 12)
 
 
-def test_new_limits_hold_from_the_next_sample(core):
+def test_new_limits_and_a_new_surface_hold_from_the_next_sample(core):
     monitor = core.monitor(core.surface(rcs=0.5), core.limits(raise_delay=0))
     assert core.feed(monitor, core.motion(10.0))[-1].verdict.zone is Zone.OUTSIDE
     limits = core.limits(rcs=0.625, raise_delay=0)
     monitor.settings = dataclasses.replace(monitor.settings, limits=limits)
     state = core.feed(monitor, core.motion(10.0, start=START + STEP))[-1]
     assert (state.verdict.zone, state.limits) == (Zone.OPTIMAL, limits)
-
-
-def test_a_new_surface_answers_from_the_next_sample(core):
     monitor = core.monitor(core.surface(rcs=0.5))
     core.feed(monitor, core.motion(10.0))
     monitor.use_surface(core.surface(rcs=0.125))

@@ -300,14 +300,11 @@ def test_a_speed_slower_than_its_timeout_is_warned_of(core, period):
     assert monitor.event.start == START + period
 
 
-def test_a_slow_speed_that_stands_in_between_is_outside_anew(core):
+def test_stays_outside_that_are_not_of_one_piece_are_no_warning(core):
     monitor = slow_is_bad(core)
     for i in range(20):
         core.feed(monitor, core.motion(0.0 if i % 2 else 10.0, start=START + i * SECOND))
     assert monitor.level is Level.UNKNOWN
-
-
-def test_one_hole_between_two_short_stays_outside_is_no_warning(core):
     monitor = slow_is_bad(core)
     core.feed(monitor, core.motion(10.0, count=20))
     core.feed(monitor, core.motion(10.0, start=START + 60 * SECOND, count=20))

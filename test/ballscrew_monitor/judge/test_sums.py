@@ -77,14 +77,11 @@ def test_each_sample_lasts_until_the_next():
     assert totals.revolutions == 1.5
 
 
-def test_a_gap_a_standstill_and_a_step_back_add_nothing():
+def test_what_adds_nothing_and_what_is_counted_as_not_judged():
     nothing = Totals(since=BEGIN)
     assert add_up(row(), row(GAP + 1)) == nothing
     assert add_up(row(speed=0.2, gates=STANDSTILL), row(GAP)) == nothing
     assert add_up(row(), row(-1)) == nothing
-
-
-def test_motion_that_is_not_judged_is_counted_as_such():
     totals = add_up(row(speed=150.0, validity=3, zone=0, regime=0), row(GAP))
     assert (totals.running_time, totals.unjudged_time) == (GAP, GAP)
     assert (totals.revolutions, totals.energy_lost) == (75.0 / TURN, 0.0)

@@ -152,12 +152,9 @@ def test_anything_else_starts_the_clearing_over(core, spoiler):
     assert set(levels(core, signs, level=Level.WARN)) == {Level.WARN}
 
 
-def test_the_hysteresis_band_keeps_a_warning_but_brings_the_first_ok(core):
+def test_the_hysteresis_band_and_what_cannot_be_judged_keep_a_warning(core):
     assert levels(core, [BAND] * 200, level=Level.WARN)[-1] is Level.WARN
     assert levels(core, [BAND] * 200)[-1] is Level.OK
-
-
-def test_what_cannot_be_judged_does_not_hide_a_warning(core):
     found = levels(core, [OUTSIDE, UNKNOWN] * 26, level=Level.OK)
     assert found[-2:] == [Level.WARN, Level.WARN]
 

@@ -92,14 +92,11 @@ def test_names_and_hardware_of_two_machines_and_two_axes_differ(core):
     assert diagnostics.failed('/mill/monitor', 'x', 'why')[0].name == made[0].name
 
 
-def test_all_is_well(core):
+def test_all_is_well_once_the_delay_is_over(core):
     made = after(core, LOAD, SPEED)
     assert [status.level for status in made.values()] == [OK, OK, OK]
     assert made['Lubrication'].message == 'optimal'
     assert {status.hardware_id for status in made.values()} == {'x: constant'}
-
-
-def test_before_the_delay_is_over_nothing_is_ok(core):
     status = after(core, LOAD, SPEED, clear_delay=SECOND)['Lubrication']
     assert said(status) == (WARN, 'not judged for long enough yet')
 

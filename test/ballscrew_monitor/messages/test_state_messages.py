@@ -86,15 +86,12 @@ def test_a_used_message_keeps_nothing_of_the_state_before(core):
     assert 'above the surface' in fresh.result.reason
 
 
-def test_an_event_as_a_message(core):
+def test_an_event_as_a_message_and_that_there_was_none(core):
     _, monitor = one_state(core, surface=core.surface(rcs=0.5), limits=core.limits(raise_delay=0))
     message = over_the_wire(state_messages.out_of_zone_message('x', monitor.event, shelved=True))
     assert (message.axis, message.event_id, message.active) == ('x', 1, True)
     assert (message.start.sec, message.duration, message.worst_value) == (1_000_000_000, 0.0, 0.5)
     assert message.cause.code == msg.Finding.CODE_RCS_HIGH
-
-
-def test_the_first_event_message_says_that_there_was_none():
     message = over_the_wire(state_messages.out_of_zone_message('x', Event(), shelved=False))
     assert (message.event_id, message.active, message.duration) == (0, False, 0.0)
     assert math.isnan(message.worst_value)

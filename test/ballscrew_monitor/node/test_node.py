@@ -460,9 +460,7 @@ DEFECTS = {
 
 
 @pytest.mark.parametrize(('owner', 'name', 'use', 'place'), DEFECTS.values(), ids=DEFECTS)
-def test_a_defect_is_the_error_of_its_axis_alone(
-    monkeypatch, tmp_path, capfd, owner, name, use, place
-):
+def test_a_defect_is_of_its_axis(monkeypatch, tmp_path, capfd, owner, name, use, place):
     """Each part of the judgement of x fails wherever it is used, and y goes on."""
     monkeypatch.setattr(recording_process.sys, 'executable', '/no/python')
     part, told = getattr(owner, name), []

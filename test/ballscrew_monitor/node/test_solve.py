@@ -280,12 +280,15 @@ def take_back(node, goal):
     assert (status, result.success, result.status) == (CANCELED, False, 'cancelled')
 
 
-def test_an_overdue_solve_says_how_far_it_came(node):
+def test_an_overdue_solve_says_how_far_it_came_and_a_killed_node_leaves_no_worker(node, is_alive):
     node.start()
     status, result = Solves(node).ask(**LONG, timeout=0.5).end()
     assert status == ABORTED
     assert result.status.startswith('stopped after its timeout of 0.5 s, ')
     assert not node.solvers()
+    _, worker = solving(node)
+    node.stop(signal.SIGKILL)
+    node.until(lambda: not is_alive(worker), 'the end of the worker')
 
 
 def test_a_signal_during_a_solve_ends_goal_worker_and_node(node, is_alive):
@@ -296,13 +299,6 @@ def test_a_signal_during_a_solve_ends_goal_worker_and_node(node, is_alive):
     status, result = goal.end()
     assert (status, result.status) == (ABORTED, 'stopped, the node is no longer active')
     assert 'Traceback' not in node.output.read_text()
-
-
-def test_a_killed_node_leaves_no_worker(node, is_alive):
-    node.start()
-    _, worker = solving(node)
-    node.stop(signal.SIGKILL)
-    node.until(lambda: not is_alive(worker), 'the end of the worker')
 
 
 def solving(node):

@@ -193,10 +193,13 @@ def test_a_damaged_file_is_kept_aside(make, tmp_path, where, end):
     assert stamps(tmp_path) == [100]
 
 
-def test_a_killed_beginning_is_begun_once_more(make, tmp_path):
+def test_a_killed_beginning_is_begun_again_and_a_removed_file_noticed(make, tmp_path):
     (tmp_path / FILE).touch()
     database = make()
     assert (database.found, database.damage) == ({}, [])
+    assert database.is_open
+    (tmp_path / FILE).unlink()
+    assert not database.is_open
 
 
 def test_a_full_disk_loses_nothing_that_was_kept(make, tmp_path, refused):
@@ -244,13 +247,6 @@ def test_somebody_who_reads_without_an_end_does_not_let_the_journal_grow(make, t
     database.fill(1000)
     assert stamps(tmp_path)[-1] == 1000
     assert database.size() < LIMIT
-
-
-def test_a_file_that_is_removed_is_noticed(make, tmp_path):
-    database = make()
-    assert database.is_open
-    (tmp_path / FILE).unlink()
-    assert not database.is_open
 
 
 def test_who_reads_is_told_why_there_is_nothing_to_read(make, tmp_path, refused):

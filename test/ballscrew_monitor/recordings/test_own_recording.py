@@ -325,9 +325,7 @@ def test_a_replay_takes_the_parameters_of_the_recording_and_follows_it(tmp_path)
 
 
 @pytest.mark.parametrize(('module', 'name'), [(journal, 'VERSION'), (dump, 'MEMORY_VERSION')])
-def test_a_recording_of_another_version_is_an_ordinary_bag_and_says_so(
-    tmp_path, monkeypatch, module, name
-):
+def test_a_recording_of_another_version_is_an_ordinary_bag(tmp_path, monkeypatch, module, name):
     with monkeypatch.context() as other:
         other.setattr(module, name, 1 if name == 'VERSION' else MEMORY_VERSION + 1)
         node = SmallNode(tmp_path)

@@ -225,9 +225,7 @@ def foreign_bag(short_bag, tmp_path):
     return path
 
 
-def test_the_inputs_of_the_node_are_played_unless_told_otherwise(
-    foreign_bag, capsys, refused, says
-):
+def test_inputs_are_played_unless_told_otherwise(foreign_bag, capsys, refused, says):
     bag = Bag(foreign_bag)
     params = ROOT / 'config' / 'nominal_cycle.yaml'
     inputs = set(input_topics(read_file(params)))

@@ -158,9 +158,7 @@ def test_a_topic_that_comes_later_is_recorded_too(tmp_path, always):
     assert [one.topic for one in Bag(path).messages()] == ['/a'] * 3 + ['/b']
 
 
-def test_a_topic_that_is_announced_while_nothing_can_be_written_is_known_later(
-    tmp_path, monkeypatch
-):
+def test_a_topic_announced_while_nothing_is_written_is_known_later(tmp_path, monkeypatch):
     retention = retention_in(tmp_path)
 
     def refuse(*unused):

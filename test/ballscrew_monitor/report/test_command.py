@@ -70,13 +70,10 @@ def test_several_recordings_are_printed_one_after_the_other(logs, capsys, says):
     assert says('broken_mcap_neither') in shown.err
 
 
-def test_several_recordings_are_one_json(logs, capsys):
+def test_several_recordings_are_one_json_and_a_broken_one_is_null(logs, capsys, says):
     assert cli.main(['replay', str(logs / 'first'), str(logs / 'second <script>'), '--json']) == 0
     record = json.loads(capsys.readouterr().out)
     assert [one['x']['judged'] for one in record.values()] == [300, 300]
-
-
-def test_a_recording_that_cannot_be_read_is_null_with_a_reason(logs, capsys, says):
     broken = str(logs / 'broken.mcap')
     assert cli.main(['replay', broken, str(logs / 'first'), '--json']) == 1
     record = json.loads(capsys.readouterr().out)

@@ -32,20 +32,14 @@ def written(judged, tmp_path):
     return path, text
 
 
-def test_hostile_names_are_text(written):
+def test_hostile_names_are_text_the_verdict_comes_first_and_what_was_assumed_is_tagged(written):
     _, text = written
     assert HOSTILE not in text
     assert html.escape(HOSTILE) in text
     assert text.count('<script') == text.count('</script') == len(CHARTS) + 1
-
-
-def test_the_verdict_comes_first_and_all_axes_have_one(written):
     main = written[1].partition('<main>')[2]
     assert re.findall(r'<strong>([^<]*)</strong>', main) == ['Outside:', 'Good:', 'Not known:']
     assert main.index('class="verdict') < main.index('class="map"')
-
-
-def test_what_was_assumed_is_tagged_so(written):
     assert '<span class="tag assumed">assumed</span>' in written[1]
 
 
@@ -62,12 +56,9 @@ def test_a_load_that_was_worked_out_is_not_called_measured(judged, says):
     assert '<span class="tag assumed">assumed</span>' in screw
 
 
-def test_where_all_is_known_there_is_no_caution(judged):
+def test_where_all_is_known_there_is_no_caution_and_long_tables_are_cut(judged):
     text = report_page(judged.log(judged.case([judged.columns()])))
     assert 'Assumed, neither' not in text
-
-
-def test_tables_are_cut_and_say_so(judged):
     events = [judged.event(number + 1, 0.1 * number, 0.05) for number in range(1200)]
     case = judged.case([judged.columns(count=100)], events)
     text = report_page(judged.log(case))

@@ -214,22 +214,19 @@ def test_a_message_that_does_not_decode_is_counted(short_bag, params, tmp_path):
     assert inputs['load']['refused'] == '1 that do not decode'
 
 
-def test_a_report_is_written_where_nothing_is_judged(short_bag, params, tmp_path):
+def test_a_bag_may_be_not_judged_but_must_fit(short_bag, params, tmp_path, refused):
     values = read_file(params) | {'x.speed.field': 'velocity[nope]'}
     result = report_log(Bag(short_bag), tmp_path, LogParameters(values=values, origin='mine'))
     assert not result.judged
     assert result.unjudged == ['x']
     assert 'Not known' in (tmp_path / 'report.html').read_text()
-
-
-def test_a_bag_that_does_not_fit_leaves_nothing(short_bag, params, tmp_path, refused):
     values = read_file(params) | {'x.load.topic': 'nope'}
     with refused('topic_nope'):
         report_log(Bag(short_bag), tmp_path / 'out', LogParameters(values=values, origin='mine'))
     assert not list((tmp_path / 'out').glob('*'))
 
 
-def test_events_are_a_line_each(judged, tmp_path):
+def test_events_are_a_line_each_and_none_is_a_table_without_lines(judged, tmp_path):
     events = [judged.event(1, 0.1, 0.2), judged.event(2, 0.5, 0.1, active=True)]
     case = judged.case([judged.columns()], events)
     write_events(tmp_path / 'events.csv', judged.log(case))
@@ -243,9 +240,6 @@ def test_events_are_a_line_each(judged, tmp_path):
     assert [float(rows[0][name]) for name in ('speed_rad_s', 'axial_load_N')] == [45.0, -1200.0]
     assert (rows[0]['target_speed_rad_s'], rows[0]['target_load_N']) == ('60.0', 'nan')
     assert int(rows[0]['start_stamp_ns']) == judged.begin + 100_000_000
-
-
-def test_no_event_is_a_table_without_lines(judged, tmp_path):
     log = judged.log(judged.case([judged.columns()]))
     write_events(tmp_path / 'events.csv', log)
     assert (tmp_path / 'events.csv').read_text().startswith('axis,event_id,')

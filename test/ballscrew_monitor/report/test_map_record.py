@@ -18,7 +18,7 @@ def test_time_spent_is_that_in_motion(judged):
     assert plain(record)['dwell']['longest'] == pytest.approx(cells.max())
 
 
-def test_the_border_is_where_the_surface_has_the_limit(judged):
+def test_the_border_is_where_the_surface_has_the_limit_and_the_zone_on_both_sides_of_it(judged):
     case = judged.case([judged.columns()])
     record = operating_map(case)
     border = next(line for line in record.lines if line.kind == 'rcs')
@@ -27,10 +27,6 @@ def test_the_border_is_where_the_surface_has_the_limit(judged):
     speed, load = points[len(points) // 2]
     found = case.surface.lookup(speed * np.pi / 30.0, float(load), 313.15)
     assert found.rcs == pytest.approx(case.settings.limits.rcs, rel=0.15)
-
-
-def test_the_zone_is_left_and_right_of_the_border(judged):
-    record = operating_map(judged.case([judged.columns()]))
     assert (record.zone[:, 0] == OUTSIDE).all()
     assert (record.zone[-1, -8:] == OPTIMAL).any()
 

@@ -90,9 +90,7 @@ def test_a_page_of_an_hour_at_1_khz_is_small(judged, hour):
 @pytest.mark.parametrize(
     ('axes', 'events', 'gaps', 'least'), [(16, 60, 0, 16), (4, 3000, 1200, 4), (16, 3000, 1200, 0)]
 )
-def test_a_page_of_many_axes_or_events_is_small_too(
-    judged, axis, one_map, axes, events, gaps, least
-):
+def test_a_page_of_many_is_small(judged, axis, one_map, axes, events, gaps, least):
     case = axis('x', events, gaps=gaps)
     page = report_page(judged.log(*[case] * axes))
     assert 0.85 * MOST_BYTES < len(page.encode()) < MOST_BYTES

@@ -95,12 +95,9 @@ def test_a_difference_of_torque_is_split_by_direction(judged, forward, backward,
         assert sentence in part
 
 
-def test_one_direction_tells_no_friction(judged):
+def test_one_direction_tells_no_friction_and_without_torque_there_is_no_comparison(judged):
     part = torque_part(judged.case([judged.columns(motor_torque=1.7, motor_torque_source=1)]))
     assert 'Only one direction was recorded' in part
-
-
-def test_without_a_measured_torque_there_is_no_comparison(judged):
     assert torque_part(judged.case([judged.columns()])) == ''
 
 
@@ -114,13 +111,10 @@ def test_seconds_are_told_for_each_reason(judged, says):
     assert says('speed_has_gap') in part
 
 
-def test_gaps_lead_to_their_moment(judged, says):
+def test_gaps_lead_to_their_moment_and_what_could_be_judged_adds_up(judged, says):
     part = gaps_part(judged.case([judged.columns(0, 10), judged.columns(310, 10)]))
     assert says('speed_has_1') in part
     assert 'data-begin="-0.9100" data-end="4.1000"' in part
-
-
-def test_what_could_be_judged_adds_up_to_the_recording(judged, says):
     blocks = [judged.columns(0, 51), judged.columns(250, 51)]
     rows = gaps_part(judged.case(blocks)).partition('</table>')[0].split('<tr')[2:]
     rest, known = rows

@@ -33,13 +33,10 @@ def test_it_does_not_depend_on_the_blocks(judged):
     assert whole.span == pytest.approx(1.0)
 
 
-def test_time_and_energy_are_summed_over_rows(judged):
+def test_time_and_energy_are_summed_over_rows_and_standstill_costs_none(judged):
     found = survey_of(judged.columns(speed=10.0, friction_torque=0.5))
     assert found.reasons == {Reason.JUDGED: pytest.approx(0.99)}
     assert found.energy[Zone.OPTIMAL] == pytest.approx(0.99 * 5.0)
-
-
-def test_standstill_costs_no_energy(judged):
     found = survey_of(judged.columns(speed=0.0, reason=Reason.STANDSTILL, zone=Zone.UNKNOWN))
     assert sum(found.energy.values()) == 0.0
     assert math.isnan(found.opposing.mean)

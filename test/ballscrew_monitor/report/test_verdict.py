@@ -58,9 +58,7 @@ SAID = (
 
 
 @pytest.mark.parametrize(('columns', 'total', 'said'), SAID)
-def test_one_sentence_says_how_an_axis_did_and_another_what_to_do(
-    judged, columns, total, said, says
-):
+def test_sentences_say_how_an_axis_did_and_what_to_do(judged, columns, total, said, says):
     verdict = verdict_of(judged.case([judged.columns(**columns)], totals=total))
     assert f'{verdict.whole} {verdict.remedy}' == says(said)
 

@@ -37,13 +37,10 @@ def test_a_tier_chooses_its_shipped_surface(tier):
     assert build(surface=tier).surface.tier == tier
 
 
-def test_a_topic_makes_an_input():
+def test_a_topic_makes_an_input_and_an_empty_type_leaves_it_open():
     axis = build(temperature__topic='oil', torque__topic='torque')
     assert [source.source for source in axis.inputs] == list(Source)
     assert axis.monitor.settings.timeouts[Source.TEMPERATURE] == 30 * SECOND
-
-
-def test_an_empty_type_leaves_the_input_open():
     axis = build(speed__type='')
     assert [source.source for source in axis.inputs] == [Source.LOAD]
     assert [source.source for source in axis.open_inputs] == [Source.SPEED]
@@ -74,7 +71,7 @@ MOTOR = {
 }
 
 
-def test_a_load_of_the_motor_torque_has_no_topic():
+def test_only_a_load_of_a_topic_has_one_and_is_not_derived():
     axis = build(**MOTOR, inertia=2e-3, load__largest_share=0.25, acceleration_window=0.1)
     assert [source.source for source in axis.inputs] == [Source.TORQUE, Source.SPEED]
     assert axis.topics == {Source.TORQUE: 'torque', Source.SPEED: 'joint_states'}
@@ -87,9 +84,6 @@ def test_a_load_of_the_motor_torque_has_no_topic():
         parts_uncertainty=0.2,
         largest_share=0.25,
     )
-
-
-def test_a_load_of_a_topic_is_not_derived():
     assert build().monitor.settings.derivation is None
 
 
@@ -156,13 +150,17 @@ def test_a_surface_of_another_screw_is_refused(refused):
     refused('configured_other', build, surface=str(shipped_surface()), screw='other')
 
 
-def test_live_parameters_are_taken_over():
+def test_live_parameters_and_a_new_surface_are_taken_over_at_once():
     axis = build()
     values = parameters.defaults(['x']) | {'x.limits.rcs': 0.5, 'x.max_future': 2.0}
     axis.adapt(values)
     assert axis.monitor.settings == settings_of('x', values, axis.surface)
     assert axis.monitor.settings.limits.rcs == 0.5
     assert axis.max_future == 2 * SECOND
+    axis = build()
+    other = build().surface
+    axis.use_surface(other, parameters.defaults(['x']))
+    assert axis.surface is axis.monitor.surface is other
 
 
 def test_what_is_plausible_is_stated_or_three_times_the_surface():
@@ -174,10 +172,3 @@ def test_what_is_plausible_is_stated_or_three_times_the_surface():
     }
     stated = build(limits__plausible_speed=300.0, limits__plausible_load=5e3)
     assert stated.monitor.settings.plausible == {Source.SPEED: 300.0, Source.LOAD: 5e3}
-
-
-def test_a_new_surface_is_used_at_once():
-    axis = build()
-    other = build().surface
-    axis.use_surface(other, parameters.defaults(['x']))
-    assert axis.surface is axis.monitor.surface is other

@@ -100,16 +100,10 @@ def test_each_axis_has_parameters_of_its_own():
     assert sum(name.startswith('x.') for name in values) == len(AXIS_ROWS)
 
 
-def test_the_example_file_is_the_one_made_from_the_table():
+def test_the_files_of_examples_are_those_of_the_table():
     assert (CONFIG / 'example.yaml').read_text() == parameters.example_yaml()
-
-
-def test_the_example_file_holds_every_default():
     assert parameters.read_file(CONFIG / 'example.yaml') == parameters.defaults(['x'])
     assert len(parameters._flatten(yaml.safe_load(parameters.example_yaml()))) == len(ROWS)
-
-
-def test_the_file_of_the_nominal_cycle_is_good():
     values = parameters.read_file(CONFIG / 'nominal_cycle.yaml')
     assert values['x.temperature.topic'] == 'oil_temperature'
 
@@ -164,12 +158,9 @@ def test_a_missing_file_is_refused(tmp_path, refused):
     refused('cannot_read', parameters.read_file, tmp_path / 'none.yaml')
 
 
-def test_quoted_letters_and_groups_of_one_letter_are_texts(tmp_path):
+def test_letters_and_units_need_no_quotes_where_they_stand_as_texts(tmp_path):
     path = written(tmp_path, "/**: {ros__parameters: {axes: [x, 'y'], y: {oil: a}}}")
     assert parameters.read_file(path)['y.oil'] == 'a'
-
-
-def test_the_newton_needs_no_quotes(tmp_path):
     path = written(
         tmp_path, '/**: {ros__parameters: {x: {load: {unit: N}, screw: &n "N", oil: *n}}}'
     )

@@ -4,7 +4,6 @@
 
 from dataclasses import replace
 import json
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -25,7 +24,7 @@ def written(folder, **changes):
     return path
 
 
-def test_build_info_check(run, tmp_path: Path, capsys):
+def test_build_info_check(run, tmp_path, capsys):
     """A surface is built, described and found good; a second build is the same surface."""
     path = tmp_path / 'map.npz'
     ranges = ('--load-range', -500, 500, '--temperature-range', 30, 50, '--speed-range', 1, 2000)
@@ -120,7 +119,7 @@ def test_info_is_a_page_a_person_reads(run, capsys):
         assert part in text
 
 
-def test_info_tells_what_draws_leave_uncertain(run, tmp_path: Path, capsys, says):
+def test_info_tells_what_draws_leave_uncertain(run, tmp_path, capsys, says):
     """Median and largest deviation, in the page and in the record."""
     spread = np.linspace(0.0, 0.02, DATA.mask.size).reshape(DATA.mask.shape)
     header = {**DATA.header, 'format_version': ENSEMBLE_VERSION}
@@ -135,7 +134,7 @@ def test_info_tells_what_draws_leave_uncertain(run, tmp_path: Path, capsys, says
     assert spreads['rcs']['stderr'] == {'median': None, 'max': None}
 
 
-def test_clean_removes_kept_results(run, tmp_path: Path, capsys):
+def test_clean_removes_kept_results(run, tmp_path, capsys):
     """The command that a refused store names does what the sentence says."""
     out = tmp_path / 'map.npz'
     with TaskStore(out, 'test 1'):

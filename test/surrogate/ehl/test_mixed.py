@@ -49,7 +49,7 @@ def test_every_speed_converges_and_keeps_its_promises(chain):
     ('place', 'tolerance', 'films', 'shares'),
     [(3, 1e-4, 2e-5, 1e-5), (3, 3e-3, 1e-3, 1e-4), (6, 1e-4, 2e-5, 1e-5), (6, 3e-3, 1e-3, 1e-3)],
 )
-def test_what_is_left_of_the_flux_moves_nothing(
+def test_the_rest_of_the_flux_moves_nothing(
     chain, nominal, raceway, place, tolerance, films, shares
 ):
     """Against a thousandth of the tolerance: thin films and RCS, as contact begins and grows."""
@@ -180,9 +180,7 @@ def test_heights_at_nodes_give_the_same_errors(chain, nominal, raceway):
 
 
 @pytest.mark.parametrize('speed', [0.03, 0.004])
-def test_the_way_over_the_half_grid_ends_where_the_long_one_does(
-    nominal, raceway, speed, monkeypatch
-):
+def test_the_half_grid_leads_to_the_same_solution(nominal, raceway, speed, monkeypatch):
     """From cold, without and with contact: the same solution, with fewer Krylov iterations."""
     condition = Condition(load=27.6, entrainment_speed=speed)
     short = solve_contact(*nominal, condition, roughness=raceway, settings=SETTINGS)

@@ -24,7 +24,7 @@ SCREW, LAW = load_screw('nominal'), AsperityLaw(onsets={}, deviation=0.16)
 UNITS = ('[-]', '[mm/s]', '[mN m]', '[nm]', '[N]', '[GPa]', '[µm]', '[rev/min]')
 
 
-def made_up(task: StudyTask) -> StudyRow:
+def made_up(task):
     """Return a row with numbers of the right size: friction falls, then rises with speed."""
     slow = 1 / (1 + (task.rpm / 8) ** 4)
     torque = 0.02 + 0.07 * slow + 1e-4 * task.rpm

@@ -9,12 +9,12 @@ import pytest
 from surrogate.asperities.law import law_of
 from surrogate.commands.figures import DRAWS
 from surrogate.paper.cases import NEEDS, StudyTask, tasks
-from surrogate.paper.marks import Mark, marks
+from surrogate.paper.marks import marks
 from surrogate.paper.report import report
 from surrogate.paper.rows import read_rows
 from surrogate.paper.solve import solve_task
 from surrogate.paper.study import known_inputs
-from surrogate.paper.trends import Trend, trends
+from surrogate.paper.trends import trends
 from surrogate.parameters import load_lubricant, load_screw
 
 TREE = Path(__file__).parents[3]
@@ -27,7 +27,7 @@ MARKS = marks(SCREW, ROWS)
 TRENDS = trends(SCREW, law_of(SCREW), ROWS.values())
 
 
-def mark(start: str, *words: str) -> Mark:
+def mark(start, *words):
     """Return the one number whose name begins so and holds all the words."""
     begun = [one for one in MARKS if one.name.startswith(start)]
     found = [one for one in begun if all(word in one.name for word in words)]
@@ -35,7 +35,7 @@ def mark(start: str, *words: str) -> Mark:
     return found[0]
 
 
-def trend(start: str) -> Trend:
+def trend(start):
     """Return the one trend whose name begins so."""
     (found,) = (one for one in TRENDS if one.name.startswith(start))
     return found

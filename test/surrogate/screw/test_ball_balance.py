@@ -221,9 +221,7 @@ def test_weak_friction_leaves_the_motion_without_gross_slip(screw, load, flank):
 
 @FEW
 @given(SCREWS, FRICTION, SPEEDS, LOADS, SIGNS)
-def test_the_other_flank_turned_the_other_way_is_the_same_ball(
-    screw, friction, speed, load, sense
-):
+def test_the_other_flank_is_the_same_ball(screw, friction, speed, load, sense):
     """Half a turn about n: t, b, k, flank and speed change sign, nothing else."""
     first = coulomb(screw, sense * speed, friction, axial_force=load, flank=1)
     second = coulomb(screw, -sense * speed, friction, axial_force=load, flank=-1)

@@ -13,14 +13,14 @@ from surrogate.ehl import Settings
 from surrogate.formulas.kinematics import no_slip_rates
 from surrogate.formulas.load_sharing import UNLOADING_RATIO
 from surrogate.formulas.sliding import ellipse_nodes
-from surrogate.parameters import Lubricant, OperatingPoint, Screw
+from surrogate.parameters import OperatingPoint
 from surrogate.screw import closed_form, ScrewSettings, solve_screw
 
 RPM = math.pi / 30
 WARM = 313.15
 
 
-def solve(screw: Screw, oil: Lubricant, rpm, load, kelvin=WARM) -> closed_form.ScrewResult:
+def solve(screw, oil, rpm, load, kelvin=WARM):
     """Solve at rev/min."""
     return closed_form.solve(screw, oil, np.asarray(rpm) * RPM, load, kelvin)
 

@@ -19,7 +19,7 @@ SHIPPED = CLOSED_FORM.read_bytes()
 WHOLE = file.read(CLOSED_FORM).sha256
 
 
-def rewrite(path: Path, **changes) -> None:
+def rewrite(path, **changes):
     """Write the shipped file again with changes to its header, keeping the stated hash."""
     with np.load(CLOSED_FORM, allow_pickle=False) as archive:
         arrays = {name: archive[name] for name in archive.files}
@@ -29,7 +29,7 @@ def rewrite(path: Path, **changes) -> None:
     np.savez(path, **arrays)
 
 
-def test_what_is_written_is_read(tmp_path: Path, surface_data: file.SurfaceData):
+def test_what_is_written_is_read(tmp_path, surface_data):
     path = tmp_path / 'a' / 'map.npz'
     file.write(path, surface_data)
     back = file.read(path)
@@ -40,7 +40,7 @@ def test_what_is_written_is_read(tmp_path: Path, surface_data: file.SurfaceData)
     assert [found.name for found in path.parent.iterdir()] == ['map.npz']
 
 
-def test_the_hash_covers_content_and_not_provenance(surface_data: file.SurfaceData):
+def test_the_hash_covers_content_and_not_provenance(surface_data):
     """Another build time is the same surface; another number is not."""
     later = replace(surface_data, provenance={'built': 'later'})
     assert later.sha256 == surface_data.sha256
@@ -99,18 +99,18 @@ def test_a_surface_of_another_roughness_model_must_be_built_again(tmp_path, vers
         ({'format_version': file.ENSEMBLE_VERSION + 1}, 'surface_format_version'),
     ],
 )
-def test_a_changed_header_is_refused(tmp_path: Path, changes, sentence, refused):
+def test_a_changed_header_is_refused(tmp_path, changes, sentence, refused):
     path = tmp_path / 'changed.npz'
     rewrite(path, **changes)
     refused(sentence, file.read, path)
 
 
-def settings_with(data: file.SurfaceData, **changes) -> dict:
+def settings_with(data, **changes):
     """Return the change of the header that changes settings."""
     return {'header': {**data.header, 'settings': {**data.header['settings'], **changes}}}
 
 
-def unmasked_hole(data: file.SurfaceData) -> dict:
+def unmasked_hole(data):
     """Return fields with a NaN that no mask tells of."""
     rcs = data.fields['rcs'].copy()
     rcs[3, 3, 3] = np.nan
@@ -134,9 +134,7 @@ def unmasked_hole(data: file.SurfaceData) -> dict:
         lambda data: settings_with(data, speed_range='all'),
     ],
 )
-def test_a_hash_over_broken_parts_does_not_save_them(
-    tmp_path: Path, surface_data, change, refused
-):
+def test_broken_parts_are_refused_with_their_hash(tmp_path, surface_data, change, refused):
     """A file that verifies but whose parts do not fit is refused too."""
     path = tmp_path / 'broken.npz'
     file.write(path, replace(surface_data, **change(surface_data)))
@@ -144,7 +142,7 @@ def test_a_hash_over_broken_parts_does_not_save_them(
 
 
 @pytest.mark.parametrize('content', [b'', b'hello', b'PK\x03\x04'])
-def test_something_else_is_not_a_surface(tmp_path: Path, content, refused):
+def test_something_else_is_not_a_surface(tmp_path, content, refused):
     path = tmp_path / 'else.npz'
     path.write_bytes(content)
     refused('damaged_surface_file', file.read, path)
@@ -161,7 +159,7 @@ def test_other_arrays_and_no_file_are_not_a_surface(tmp_path, refused):
     refused('such_surface_file', file.read, tmp_path / 'none.npz')
 
 
-def stored(path: Path, *sizes: int) -> None:
+def stored(path, *sizes):
     """Write zeros, which take a thousandth of the room when packed."""
     with zipfile.ZipFile(path, 'w', zipfile.ZIP_DEFLATED, compresslevel=1) as archive:
         for number, size in enumerate(sizes):
@@ -170,7 +168,7 @@ def stored(path: Path, *sizes: int) -> None:
                     entry.write(bytes(min(2**20, size - begin)))
 
 
-def test_a_small_file_that_unpacks_to_much_is_refused_unread(tmp_path: Path, monkeypatch):
+def test_a_small_file_that_unpacks_to_much_is_refused_unread(tmp_path, monkeypatch):
     """By the sum over its arrays: each of them alone would do."""
     path = tmp_path / 'bomb.npz'
     half = file.LARGEST_FILE // 2
@@ -184,14 +182,14 @@ def test_a_small_file_that_unpacks_to_much_is_refused_unread(tmp_path: Path, mon
             file.read(path)
 
 
-def test_the_largest_content_is_not_refused_for_its_size(tmp_path: Path, refused):
+def test_the_largest_content_is_not_refused_for_its_size(tmp_path, refused):
     """Exactly at the limit it is read, and found to be no surface."""
     path = tmp_path / 'large.npz'
     stored(path, file.LARGEST_FILE)
     refused('surface_file', file.read, path)
 
 
-def test_an_array_that_states_more_than_there_is_memory_is_refused(tmp_path: Path, refused):
+def test_an_array_that_states_more_than_there_is_memory_is_refused(tmp_path, refused):
     path = tmp_path / 'empty.npz'
     head = io.BytesIO()
     large = {'descr': '<f8', 'fortran_order': False, 'shape': (10**15,)}
@@ -201,13 +199,11 @@ def test_an_array_that_states_more_than_there_is_memory_is_refused(tmp_path: Pat
     refused('damaged_surface', file.read, path)
 
 
-def test_a_device_is_not_written_over(surface_data: file.SurfaceData, refused):
+def test_a_device_is_not_written_over(surface_data, refused):
     assert Path('/dev/null').is_char_device()
 
 
-def test_a_failed_write_leaves_the_old_file(
-    tmp_path: Path, surface_data: file.SurfaceData, monkeypatch, refused
-):
+def test_a_failed_write_leaves_the_old_file(tmp_path, surface_data, monkeypatch, refused):
     """A full disk does not cost the previous surface, and nothing half-written stays."""
     path = tmp_path / 'map.npz'
     file.write(path, surface_data)
@@ -222,7 +218,7 @@ def test_a_failed_write_leaves_the_old_file(
     assert [found.name for found in tmp_path.iterdir()] == ['map.npz']
 
 
-def with_draws(data: file.SurfaceData, **changes) -> file.SurfaceData:
+def with_draws(data, **changes):
     """Return the surface with an ensemble of draws."""
     spread = np.full(data.mask.shape, 0.01)
     parts = {'deviations': {'rcs': spread}, 'standard_errors': {'rcs': 0.5 * spread}}
@@ -230,7 +226,7 @@ def with_draws(data: file.SurfaceData, **changes) -> file.SurfaceData:
     return replace(data, **{'header': header, **parts, **changes})
 
 
-def test_what_draws_leave_uncertain_is_written_read_and_hashed(tmp_path: Path, surface_data):
+def test_what_draws_leave_uncertain_is_written_read_and_hashed(tmp_path, surface_data):
     """A round trip keeps the arrays; each of their bits is in the hash."""
     path = tmp_path / 'map.npz'
     data = with_draws(surface_data)
@@ -245,7 +241,7 @@ def test_what_draws_leave_uncertain_is_written_read_and_hashed(tmp_path: Path, s
     assert len({data.sha256, other.sha256, surface_data.sha256}) == 3
 
 
-def test_a_surface_of_an_earlier_law_must_be_built_again(tmp_path: Path, surface_data):
+def test_a_surface_of_an_earlier_law_must_be_built_again(tmp_path, surface_data):
     """Such a one carried its law."""
     old = replace(surface_data, header={**surface_data.header, 'law': {'onset_ratio': 1.6}})
     file.write(tmp_path / 'old.npz', old)
@@ -271,7 +267,7 @@ def test_without_draws_a_file_is_as_it_was(surface_data):
         lambda data: {'standard_errors': {'rcs': np.zeros(data.mask.shape, dtype=np.float32)}},
     ],
 )
-def test_impossible_spreads_are_refused(tmp_path: Path, surface_data, change, refused):
+def test_impossible_spreads_are_refused(tmp_path, surface_data, change, refused):
     """Of no field, of another shape, below zero, without the version that has them."""
     path = tmp_path / 'broken.npz'
     file.write(path, with_draws(surface_data, **change(surface_data)))

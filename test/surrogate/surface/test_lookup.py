@@ -4,7 +4,6 @@
 
 from dataclasses import replace
 import math
-from pathlib import Path
 import tracemalloc
 
 from hypothesis import given, settings
@@ -16,7 +15,7 @@ from surrogate.formulas.load_sharing import UNLOADING_RATIO
 from surrogate.screw import closed_form
 from surrogate.surface import FIELDS, shipped_surface, Surface, Validity
 from surrogate.surface.aims import EFFICIENCY_TOLERANCE, RCS_TOLERANCE
-from surrogate.surface.file import ENSEMBLE_VERSION, read, SurfaceData, write
+from surrogate.surface.file import ENSEMBLE_VERSION, read, write
 
 SPEEDS = st.floats(0.06, 229.0)
 LOADS = st.floats(-3960.0, 3960.0)
@@ -30,17 +29,17 @@ OFF_FLOOR, LEAST_ON_FLOOR = 1.01, 0.9
 
 
 @pytest.fixture(scope='module')
-def surface(surface_data: SurfaceData) -> Surface:
+def surface(surface_data):
     """Return the nominal surface, freshly built."""
     return Surface(surface_data)
 
 
-def floor_of(surface: Surface) -> float:
+def floor_of(surface):
     """Return the film floor of the oil [m]."""
     return float(surface.header['inputs']['lubricant']['film_floor'])
 
 
-def node_speed(data: SurfaceData, i: int, j: int, k: int) -> float:
+def node_speed(data, i, j, k):
     """Return the speed of a node."""
     return math.exp(data.speed_coordinate[i] + data.log_onset[j, k])
 
@@ -245,7 +244,7 @@ def test_memory_is_at_most_four_times_the_file(tier):
     assert used <= 4 * path.stat().st_size
 
 
-def test_a_surface_of_another_screw_or_oil_is_refused(tmp_path: Path, surface_data, refused):
+def test_a_surface_of_another_screw_or_oil_is_refused(tmp_path, surface_data, refused):
     path = tmp_path / 'other.npz'
     write(path, surface_data)
     assert Surface.load(path, screw='nominal', oil='iso_vg_68').tier == 'closed_form'
@@ -253,7 +252,7 @@ def test_a_surface_of_another_screw_or_oil_is_refused(tmp_path: Path, surface_da
     refused('built_lubricant_iso_vg_68', Surface.load, path, oil='iso_vg_32')
 
 
-def with_draws(data: SurfaceData) -> SurfaceData:
+def with_draws(data):
     """Return the surface with an ensemble: deviations that grow with speed, errors a third."""
     deviation = np.exp(0.1 * data.speed_coordinate)[:, None, None] * np.ones_like(data.mask)
     return replace(
@@ -334,9 +333,7 @@ def test_the_worst_contact_is_that_of_the_nearest_node(surface_data, axis, fract
 @pytest.mark.parametrize(
     ('speed', 'validity'), [(1e-8, Validity.SPEED_BELOW_RANGE), (1e8, Validity.SPEED_ABOVE_RANGE)]
 )
-def test_a_speed_off_the_nodes_has_no_answer_whatever_range_is_stated(
-    surface_data, speed, validity
-):
+def test_a_speed_off_the_nodes_has_no_answer(surface_data, speed, validity):
     """Nothing is extrapolated where the stated range is wider than the nodes."""
     header = surface_data.header
     settings = header['settings'] | {'speed_range': [1e-9, 1e9]}

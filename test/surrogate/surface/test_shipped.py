@@ -19,7 +19,7 @@ def test_a_surface_is_found_by_path_or_tier(tmp_path, refused):
     refused('shipped_nominal_iso_vg_68', shipped_surface, 'nominal', 'iso_vg_32')
 
 
-def test_without_a_wish_solved_contacts_come_first(tmp_path: Path, monkeypatch, refused):
+def test_without_a_wish_solved_contacts_come_first(tmp_path, monkeypatch, refused):
     """Nothing means the full tier where such a file is shipped, otherwise the closed form."""
     for wanted in (None, ''):
         assert find_surface(wanted) == shipped_surface() == shipped_surface(tier='full')

@@ -17,12 +17,12 @@ from surrogate.surface_tools.check import check_surface, STATED_FACTOR
 DATA = read(shipped_surface(tier='closed_form'))
 
 
-def always() -> bool:
+def always():
     """Tell that there is time."""
     return True
 
 
-def with_solver(monkeypatch, solve) -> list[tuple[float, float, float]]:
+def with_solver(monkeypatch, solve):
     """Make the full tier solve by a function; return the points that it is asked for."""
     asked = []
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from surrogate.builder.closed_form import build_closed_form, default_settings
 from surrogate.surface import shipped_surface, Surface
-from surrogate.surface.file import read, SurfaceData, write
+from surrogate.surface.file import read, write
 from surrogate.surface_tools.diff import diff_record, zone_limits
 
 COMMAND = ('surface', 'diff')
@@ -27,7 +27,7 @@ def coarse(monkeypatch):
     monkeypatch.setattr('surrogate.surface_tools.diff.LINES', (7, 3))
 
 
-def scaled(data: SurfaceData, **factors: float) -> SurfaceData:
+def scaled(data, **factors):
     """Return a surface with some fields multiplied."""
     fields = {name: factors.get(name, 1.0) * values for name, values in data.fields.items()}
     return replace(data, fields=fields)

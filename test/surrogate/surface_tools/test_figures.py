@@ -29,7 +29,7 @@ def part():
     return figures.cut(SHIPPED, 313.15)
 
 
-def titles(figure) -> list[str]:
+def titles(figure):
     """Return the titles of the panels."""
     return [axes.get_title() for axes in figure.axes if axes.get_title()]
 

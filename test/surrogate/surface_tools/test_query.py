@@ -25,7 +25,7 @@ CLOSED_FORM = shipped_surface(tier='closed_form')
 def query(run, capsys):
     """Return the function that gives the JSON of a point."""
 
-    def answer(*words) -> dict:
+    def answer(*words):
         assert run(*words, '--json') in (0, 1)
         return json.loads(capsys.readouterr().out)
 

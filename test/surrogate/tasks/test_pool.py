@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tasks on real processes: same results for any workers, and none lost with its worker."""
 
-from collections.abc import Iterator
 import contextlib
 import importlib
 import os
@@ -117,7 +116,7 @@ def pool(tasks):
 
 
 @pytest.fixture
-def pipes(tmp_path: Path) -> dict[str, str]:
+def pipes(tmp_path):
     """Return named pipes: a task says hello with its process number, then waits at the gate."""
     names = {name: str(tmp_path / name) for name in ('hello', 'second', 'gate')}
     for path in names.values():
@@ -125,16 +124,16 @@ def pipes(tmp_path: Path) -> dict[str, str]:
     return names
 
 
-def read(path: str) -> str:
+def read(path):
     """Return what one writer says on a named pipe."""
     with open(path) as pipe:
         return pipe.read()
 
 
-def killer(pipes: dict[str, str], seen: list[int]) -> threading.Thread:
+def killer(pipes, seen):
     """Kill the worker that begins the waiting task first, and let the second one pass."""
 
-    def work() -> None:
+    def work():
         seen.append(int(read(pipes['hello'])))
         os.kill(seen[0], signal.SIGKILL)
         seen.append(int(read(pipes['hello'])))
@@ -145,7 +144,7 @@ def killer(pipes: dict[str, str], seen: list[int]) -> threading.Thread:
     return thread
 
 
-def numbers(count: int) -> dict[str, dict[str, float]]:
+def numbers(count):
     """Return inputs of many small tasks."""
     return {f'task {number}': {'x': number / 7} for number in range(count)}
 
@@ -239,7 +238,7 @@ def test_a_task_that_kills_its_workers_ends_as_a_sentence(tasks, pool):
             assert outcome.result == (None if name == '3' else result(int(name)))
 
 
-def test_a_module_that_ends_its_process_is_told(tmp_path: Path, monkeypatch):
+def test_a_module_that_ends_its_process_is_told(tmp_path, monkeypatch):
     """Every process that imports it ends: a sentence, and no endless loop."""
     (tmp_path / 'deadly_tasks.py').write_text(
         f'import os\nif os.getpid() != {os.getpid()}:\n    os._exit(3)\n'
@@ -253,7 +252,7 @@ def test_a_module_that_ends_its_process_is_told(tmp_path: Path, monkeypatch):
     assert outcome.sentence == f'its worker was lost {MOST_TRIES} times'
 
 
-def test_a_module_that_workers_do_not_have_is_told(tmp_path: Path, monkeypatch, says):
+def test_a_module_that_workers_do_not_have_is_told(tmp_path, monkeypatch, says):
     """The other tasks go on."""
     (tmp_path / 'gone_tasks.py').write_text('def task(inputs):\n    return {}\n')
     with monkeypatch.context() as here:
@@ -264,7 +263,7 @@ def test_a_module_that_workers_do_not_have_is_told(tmp_path: Path, monkeypatch, 
     assert outcome.sentence == says('module_named_gone_tasks')
 
 
-def test_kept_results_are_not_solved_again(tasks, pool, tmp_path: Path):
+def test_kept_results_are_not_solved_again(tasks, pool, tmp_path):
     """The second run solves what has failed alone; both give the same results."""
     inputs = {**numbers(5), 'bad': {'x': -1.0}}
     told: list[str] = []
@@ -287,7 +286,7 @@ def test_a_worker_has_one_thread_and_ignores_ctrl_c(tasks, pool):
 
 
 @contextlib.contextmanager
-def parent(tmp_path: Path, tasks, pipes: dict[str, str]) -> Iterator[subprocess.Popen[str]]:
+def parent(tmp_path, tasks, pipes):
     """Start a program with two workers at work, in a session of its own."""
     script = tmp_path / 'parent.py'
     script.write_text(PARENT)
@@ -308,7 +307,7 @@ def parent(tmp_path: Path, tasks, pipes: dict[str, str]) -> Iterator[subprocess.
 
 
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
-def test_no_worker_outlives_its_parent(tasks, tmp_path: Path, pipes, number):
+def test_no_worker_outlives_its_parent(tasks, tmp_path, pipes, number):
     """
     Ctrl-C reaches the whole group, a kill the parent alone: all are gone, no one chatters.
 

@@ -46,14 +46,11 @@ def change(stream, at, data):
 EXPECTED = [bytes([number]) * (number + 1) for number in range(COUNT)]
 
 
-def test_all_messages_of_a_chunk_are_found(written):
+def test_messages_and_channels_of_a_chunk_are_found(written):
     found = read_chunk(*written)
     assert contents(found) == EXPECTED
     assert found.log_time.tolist() == list(range(COUNT))
     assert len(np.unique(found.channel)) == 2
-
-
-def test_channels_are_those_of_the_topics(written):
     assert list(chunk_indexes(written[0], ['/b'])[1].values()) == ['/b']
     assert chunk_indexes(written[0], ['/c']) == ([], {})
 
@@ -70,14 +67,10 @@ def test_an_index_that_lies_is_not_believed(written, offset):
     assert contents(read_chunk(stream, place)) == EXPECTED
 
 
-def test_an_index_of_a_part_is_not_believed(written):
+def test_an_index_of_a_part_is_not_believed_and_damage_is_told(written, refused):
     stream, place = written
     change(stream, place.chunk_start_offset + place.chunk_length, b'\x0f')
     assert contents(read_chunk(stream, place)) == EXPECTED
-
-
-def test_damage_is_told(written, refused):
-    stream, place = written
     change(stream, place.chunk_start_offset + place.chunk_length - 3, b'\xff')
     refused('checksum_wrong', read_chunk, stream, place)
     change(stream, place.chunk_start_offset, b'\x01')

@@ -83,7 +83,7 @@ def test_every_sample_of_the_small_log_is_judged_or_refused_with_a_reason(mill_b
     check_every_sample(mill_bag, 300)
 
 
-def test_the_bag_says_what_it_was_made_of(mill_bag):
+def test_the_bag_says_what_it_was_made_of_and_so_does_the_file_alone(mill_bag):
     facts = facts_of(mill_bag)
     assert facts.source == 'mill.csv'
     assert facts.mapping['axes']['x']['speed'] == {'column': 'X1_ActualVelocity'}
@@ -98,9 +98,6 @@ def test_the_bag_says_what_it_was_made_of(mill_bag):
     together = next(one for one in said if one.startswith('assumed of mill.csv, all axes: '))
     assert 'lead_mm = 10.0' in together
     assert 'time.rate_Hz = 10.0' in together
-
-
-def test_the_file_alone_says_it_too(mill_bag):
     assert Bag(mill_bag.files[0]).metadata == mill_bag.metadata
 
 
@@ -113,9 +110,6 @@ def test_parameters_are_those_given_else_its_own_else_the_nominal(mill_bag, shor
     nominal = values_for(Bag(short_bag), None, NOMINAL)
     assert (nominal.values, nominal.is_nominal) == (parameters.read_file(NOMINAL), True)
     assert nominal.origin.endswith('the nominal ones')
-
-
-def test_what_somebody_gave_a_value_is_told_from_defaults(mill_bag, short_bag):
     said = values_for(mill_bag, None, NOMINAL).said
     assert {'axes', 'y.load.topic', 'x.temperature.default'} <= said
     assert 'x.limits.rcs' not in said

@@ -130,8 +130,14 @@ def test_what_cannot_be_read_is_one_sentence(text, expected, tmp_path, says):
     assert '\n' not in str(caught.value)
 
 
-def test_a_log_that_is_not_there_is_one_sentence(tmp_path, refused):
+def test_what_is_not_there_or_not_converted_is_a_sentence(tmp_path, refused, monkeypatch):
     refused('cannot_read_such', column_names, tmp_path / 'log.csv')
+
+    def fail(texts):
+        raise pl.exceptions.InvalidOperationError('conversion failed\nmore of it')
+
+    monkeypatch.setattr(cells, '_points', fail)
+    refused('column_string_cannot', open_table, text_log(tmp_path, 'a\n1\n'), ['a'])
 
 
 def test_parquet_is_read_with_its_types(tmp_path, refused):
@@ -167,11 +173,3 @@ def test_times_and_durations_of_parquet_are_seconds(tmp_path, unit):
     np.testing.assert_array_equal(table.head(99)['span'], [1.5, np.nan, 3600.0])
     np.testing.assert_array_equal(table.head(99)['clock'], [2.0, 3600.0, np.nan])
     assert len(table.notes) == 2
-
-
-def test_a_column_that_cannot_be_converted_is_one_sentence(tmp_path, monkeypatch, refused):
-    def fail(texts):
-        raise pl.exceptions.InvalidOperationError('conversion failed\nmore of it')
-
-    monkeypatch.setattr(cells, '_points', fail)
-    refused('column_string_cannot', open_table, text_log(tmp_path, 'a\n1\n'), ['a'])

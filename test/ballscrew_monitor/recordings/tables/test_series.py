@@ -85,19 +85,16 @@ def test_quantities_are_those_of_the_screw(read):
     assert found.temperature == pytest.approx([40.0, 20.0])
 
 
-def test_the_force_of_no_torque_is_no_negative_zero():
-    assert math.copysign(1.0, force_of(np.zeros(1), lead=0.01, efficiency=0.9)[0]) == 1.0
-
-
 def test_rotary_units_need_no_lead_and_scale_and_offset_come_first(read):
     speed = {'column': 'v', 'unit': 'rev/min', 'scale': 2.0, 'offset': 60.0}
     made = read({'t': [0, 1], 'v': [0, 30]}, AXIS | {'speed': speed})
     assert made.axes[0].speed == pytest.approx([2 * math.pi, 4 * math.pi])
 
 
-def test_an_unknown_load_is_no_zero(read):
+def test_an_unknown_load_is_no_zero_and_that_of_no_torque_no_negative_zero(read):
     made = read({'t': [0, 1], 'v': [1, 1]}, AXIS | {'load': {'unknown': 'no sensor'}})
     assert np.isnan(made.axes[0].load).all()
+    assert math.copysign(1.0, force_of(np.zeros(1), lead=0.01, efficiency=0.9)[0]) == 1.0
 
 
 def test_the_speed_may_be_the_slope_of_the_position(read):
@@ -107,13 +104,10 @@ def test_the_speed_may_be_the_slope_of_the_position(read):
     assert np.isnan(made.axes[0].speed[-1])
 
 
-def test_a_rate_makes_stamps(read):
+def test_a_rate_makes_stamps_and_a_time_of_the_universal_clock_stays(read):
     made = read({'v': [1, 2, 3]}, rate_Hz=10.0, epoch='2000-01-01T00:00:00Z')
     assert np.diff(made.stamps).tolist() == [10**8] * 2
     assert made.usual_period == pytest.approx(0.1)
-
-
-def test_a_time_of_the_universal_clock_stays(read):
     made = read({'t': [1_767_323_045_500, 1_767_323_046_500], 'v': [1, 2]}, column='t', unit='ms')
     assert made.stamps.tolist() == [1_767_323_045_500_000_000, 1_767_323_046_500_000_000]
 
@@ -180,14 +174,11 @@ def test_rows_in_reverse_are_joined_once(small_reads, tmp_path, write_csv, monke
     assert sum(moved) <= 3 * 5000  # not once per block
 
 
-def test_rows_without_a_time_are_left_out_and_counted(read, refused):
+def test_rows_without_a_time_and_huge_gaps_are_said(read, refused, says):
     made = read({'t': ['0', '', '2'], 'v': [1, 2, 3]})
     assert len(made.stamps) == len(made.axes[0].speed) == 2
     assert made.notes[-1].endswith('1 rows without a time are left out')
     refused('holds_1_rows', read, {'t': ['0', '', ''], 'v': [1, 2, 3]})
-
-
-def test_huge_gaps_are_said(read, says):
     made = read({'t': [0, 0.1, 0.2, 3600, 3600.1], 'v': [1] * 5})
     assert says('1_gap_longer') in made.notes[0]
 
@@ -231,20 +222,17 @@ def test_the_unit_that_fits_is_named_where_another_is_stated(notes, factor, unit
         assert all(f'in {stated} says: {unit} fits' in note for note in found)
 
 
-def test_a_gap_and_a_row_without_a_number_say_nothing(notes):
+def test_a_gap_a_row_without_a_number_noise_and_rest_say_nothing(notes):
     late = np.where(np.arange(400) < 200, TIME, TIME + 30.0)
     position = np.where(np.arange(400) < 200, POSITION, POSITION + 5e3)
     position[50] = np.nan
     assert not notes(SPEED, 'mm/s', position, late)
+    noise = np.random.default_rng(1).normal(size=400)
+    assert not notes(1e3 * noise, 'mm/s')
+    assert not notes(0.0 * SPEED, 'mm/s')
+    assert not notes(SPEED, 'mm/s', 0.0 * POSITION)
 
 
 def test_the_sign_and_a_factor_of_no_unit_are_told(notes):
     assert notes(-SPEED, 'mm/s')[0].endswith('one of both has the wrong sign of its scale')
     assert notes(3.0 * SPEED, 'mm/s')[0].endswith('the time and the lead')
-
-
-def test_what_is_not_of_one_motion_or_at_rest_is_not_compared(notes):
-    noise = np.random.default_rng(1).normal(size=400)
-    assert not notes(1e3 * noise, 'mm/s')
-    assert not notes(0.0 * SPEED, 'mm/s')
-    assert not notes(SPEED, 'mm/s', 0.0 * POSITION)

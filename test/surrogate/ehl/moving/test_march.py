@@ -71,7 +71,7 @@ def test_a_standing_raceway_comes_to_the_steady_solution(circular, semi_axis, tr
 
 
 @pytest.mark.parametrize('length', [1.0, 2.0])
-def test_a_wave_keeps_the_amplitude_of_the_published_curve(
+def test_a_wave_keeps_its_published_amplitude(
     circular, smooth_march, semi_axis, transverse, length
 ):
     """Ad/Ai = 1/(1 + 0.15 n + 0.015 n^2), n = (lambda/a) sqrt(M/L): Venner, Lubrecht."""
