@@ -59,31 +59,22 @@ COMPLETE = {'git': TRUE, 'make': TRUE, 'g++': TRUE, 'python3': WORKING}
 APT = {'apt-get': TRUE, 'apt-cache': '#!/bin/sh\n[ $3 != python3 ] || echo Version: 3.12.3-0\n'}
 
 
-def test_python_is_the_interpreter_underneath(machine):
+def test_python_underneath_that_works_or_was_asked_for_is_the_only_candidate(machine, says):
     done = machine(COMPLETE)
     assert (done.returncode, done.stdout, done.stderr) == (0, f'{BASE}\n', '')
-
-
-def test_shim_that_fails_is_skipped(machine):
     done = machine({**COMPLETE, 'python3': SHIM, 'python3.12': SHIM, 'python3.11': WORKING})
     assert (done.returncode, done.stdout) == (0, f'{BASE}\n')
-
-
-def test_python_that_was_asked_for_is_the_only_candidate(machine, says):
     done = machine({**COMPLETE, 'other': SHIM}, PYTHON='other')
     assert done.returncode == 2
     assert done.stderr == says('set_up_python')
 
 
-def test_user_gets_one_line_to_type(machine, says):
+def test_what_is_lacking_is_one_line_to_type_or_a_list(machine, says):
     """Nothing is installed for a user who is not root, and sudo is never called."""
     lacking = {name: text for name, text in COMPLETE.items() if name not in ('g++', 'python3')}
     done = machine({**lacking, **APT, 'id': '#!/bin/sh\necho 1000\n', 'python3': SHIM})
     assert done.returncode == 2
     assert done.stderr == says('set_up_type')
-
-
-def test_machine_without_apt_gets_the_list(machine, says):
     done = machine({**COMPLETE, 'python3': SHIM})
     assert done.returncode == 2
     assert done.stderr.startswith(says('set_up_install'))

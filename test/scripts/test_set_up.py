@@ -75,21 +75,12 @@ def set_up(module, monkeypatch):
     return run
 
 
-def test_second_call_does_nothing(set_up):
-    """Neither pip nor cmake."""
+def test_a_change_repeats_its_step_and_a_new_environment_all(set_up):
+    """A second call does nothing, neither pip nor cmake."""
     assert set_up() == ['0', 'environment', 'interfaces', 'bag']
     assert set_up() == ['0']
-
-
-def test_change_repeats_its_step(set_up):
-    """Only that one; what a step makes may also just be gone."""
-    set_up()
     assert set_up(interfaces='changed') == ['0', 'interfaces']
     assert set_up(interfaces='changed', bag='lost') == ['0', 'bag']
-
-
-def test_new_environment_is_filled_again(set_up):
-    set_up()
     assert set_up(environment='changed') == ['0', 'environment', 'interfaces', 'bag']
 
 

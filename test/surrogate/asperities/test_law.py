@@ -51,14 +51,10 @@ def contact_at(speed, side='screw', law=LAW):
     return law.contact(side, CONTACT, condition, OIL, FLOOR)
 
 
-def test_the_curve_passes_what_the_marches_have():
+def test_the_curve_passes_what_the_marches_have_and_ends_at_all_or_nothing():
     """RCS 0.01 at the onset, about 0.14 at half and 0.44 at a quarter of its speed."""
     assert float(rcs_at(0.0)) == pytest.approx(ONSET_RCS)
     assert rcs_at(np.log([0.5, 0.25])) == pytest.approx([0.14, 0.44], rel=0.05)
-
-
-def test_beyond_the_curve_all_touches_or_nothing():
-    """At no speed RCS is 1; fast it is exactly 0."""
     found = rcs_at(np.array([-math.inf, -12.0, 3.0, math.inf]))
     assert found.tolist() == pytest.approx([1.0, 1.0, 0.0, 0.0], abs=1e-4)
     assert found[2:].tolist() == [0.0, 0.0]
@@ -79,11 +75,8 @@ def test_the_loss_at_the_onset_falls_with_the_lay_and_far_beyond_it_is_smooth(la
     assert loss == pytest.approx([expected, 1.0])
 
 
-def test_the_loss_stays_in_the_band_of_the_marches():
+def test_the_loss_stays_in_its_band_and_heavy_contacts_lose_more():
     assert loss_at(np.array([-1.4]), np.array([0.4e9]), 1.0) == pytest.approx([LEAST_LOSS])
-
-
-def test_heavy_contacts_lose_more_at_the_onset_and_grow_faster_below():
     light, heavy = (
         loss_at(np.array([-1.0, 0.0]), np.full(2, pressure), 0.0) for pressure in (0.5e9, 1.2e9)
     )

@@ -99,13 +99,10 @@ def test_a_rescaled_patch_rolls_on_the_level(rolling_case):
     assert solution.converged
 
 
-def test_nodes_too_far_apart_are_said(rolling_case, caplog):
+def test_nodes_too_far_apart_are_said_and_too_few_transits_refused(rolling_case, caplog, refused):
     grid = CaseGrid(nx=17, ny=17)
     case = replace(rolling_case, grid=grid, places=1, transits=1.0)
     with caplog.at_level(logging.WARNING):
         march_case(case)
     assert 'um apart along x, the shortest wavelength is' in caplog.text
-
-
-def test_transits_that_are_too_few(rolling_case, refused):
     refused('transits_1_0', march_case, replace(rolling_case, transits=1.0))

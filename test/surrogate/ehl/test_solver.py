@@ -71,15 +71,17 @@ def test_results_are_frozen_and_statuses_are_sentences(nominal):
     assert all(status.value.endswith('.') and ' ' in status.value for status in Status)
 
 
-def test_no_time_is_a_status(nominal):
+def test_no_time_and_no_iterations_are_a_status_without_numbers(nominal):
+    """Films, shares and forces are NaN, not those of the last iterate."""
     found = solve_contact(*nominal, NOMINAL, settings=Settings(time_cap=1e-3))
     assert found.status is Status.OUT_OF_TIME
     assert not found.converged
-
-
-def test_no_iterations_is_a_status(nominal):
     found = solve_contact(*nominal, NOMINAL, settings=replace(SMALL, newton_limit=1))
     assert found.status is Status.STALLED
+    found = solve_contact(*nominal, NOMINAL, settings=Settings(newton_limit=1))
+    assert not found.converged
+    known = ('central_film', 'minimum_film', 'rcs', 'asperity_share', 'rolling_force')
+    assert all(math.isnan(getattr(found, name)) for name in known)
 
 
 def test_smooth_contact_that_the_grid_makes_up_is_refused(moes_case):
@@ -155,14 +157,6 @@ def test_the_long_axis_works_or_says_no():
     assert found.converged, found.status.value
     assert found.semi_axis_x > 5 * found.semi_axis_y
     assert 0 < found.minimum_film < found.central_film
-
-
-def test_numbers_of_a_solve_that_did_not_converge_are_unknown(nominal):
-    """Out of time: films, shares and forces are NaN, not those of the last iterate."""
-    found = solve_contact(*nominal, NOMINAL, settings=Settings(newton_limit=1))
-    assert not found.converged
-    known = ('central_film', 'minimum_film', 'rcs', 'asperity_share', 'rolling_force')
-    assert all(math.isnan(getattr(found, name)) for name in known)
 
 
 def test_a_film_that_hardly_deforms_the_bodies_says_how_much_is_cut_off(nominal):

@@ -52,14 +52,12 @@ def moes(load, material, radius_ratio):
     )
 
 
-def test_central_film_stays_4_to_11_percent_above_converged_solutions(table):
+def test_films_of_hamrock_and_dowson_against_converged_solutions(table):
+    """Central film 4 to 11 % above; minimum film within 7 % for the long ellipse."""
     for row in table('ehl_dimensional.csv'):
         contact, _, g = dimensional(row)
         ratio = laws.central_film_hamrock_dowson_1977(contact, g) / (float(row['hc_nm']) * 1e-9)
         assert 1.04 < ratio < 1.11, row['case']
-
-
-def test_minimum_film_is_within_7_percent_for_the_long_ellipse(table):
     row = next(r for r in table('ehl_dimensional.csv') if r['case'] == 'ball_screw_ellipse')
     contact, _, g = dimensional(row)
     found = laws.minimum_film_hamrock_dowson_1977(contact, g)
@@ -100,7 +98,7 @@ def test_nijenbanning_against_incompressible_solutions(table):
             assert found == pytest.approx(float(row['Hc']), rel=0.15)
 
 
-def test_rolling_force_lies_above_the_short_domains(table):
+def test_rolling_force_of_short_domains_and_of_the_nominal_contact(table, screw):
     """A finite domain cuts the inlet and so the rolling force, by up to half."""
     row = next(r for r in table('ehl_dimensional.csv') if r['rolling_coefficient'])
     contact, load, g = dimensional(row)
@@ -108,10 +106,6 @@ def test_rolling_force_lies_above_the_short_domains(table):
     assert 1.0 < ratio / float(row['rolling_coefficient']) < 1.6
     # Extrapolated to a far inlet from the values at 4.5 and 10 half-widths, which fall as 1/x.
     assert ratio == pytest.approx(4.55e-4, rel=0.10)
-
-
-def test_rolling_force_of_the_nominal_contact(screw):
-    """The nominal contact tends to 1.05e-3 of its load for a far inlet; the fit is 20 % below."""
     from surrogate.formulas.geometry import screw_contact
 
     contact = screw_contact(screw, 'screw')
@@ -146,7 +140,7 @@ def test_asperity_share_printed_values(ratio, share):
     assert laws.asperity_share_aihara_1987(ratio) == pytest.approx(share, rel=0.035)
 
 
-def test_every_range_names_a_formula_and_real_groups():
+def test_ranges_name_formulas_and_groups_and_leaving_one_is_told():
     import surrogate.formulas.film as module
 
     for formula, ranges in laws.RANGES.items():
@@ -154,9 +148,6 @@ def test_every_range_names_a_formula_and_real_groups():
         for name, (low, high) in ranges.items():
             assert hasattr(laws.Groups, name)
             assert low < high
-
-
-def test_leaving_a_range_is_told_with_numbers():
     _, g = moes(500, 10, 25.0)
     assert laws.outside_range('central_film_nijenbanning_1994', g) == (
         'radius_ratio 25 (fitted 1 to 20)',

@@ -17,11 +17,12 @@ SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
 WARM = 313.15
 
 
-def test_factor_by_hand():
+def test_factor_by_hand_and_slope_of_viscosity():
     """L = 1, p/E' = 0.005, S = 0: 0.934 / 1.213; without heating exactly 1."""
     found = film_factor_gupta_1992(pressure=0.005, loading=1.0, slide_roll=0.0)
     assert found == pytest.approx(0.934 / 1.213)
     assert film_factor_gupta_1992(pressure=0.005, loading=0.0, slide_roll=0.02) == 1.0
+    assert viscosity_slope(OIL, WARM) == pytest.approx(0.05, abs=0.01)
 
 
 def test_factor_falls_with_speed_and_rises_with_conductivity():
@@ -30,11 +31,6 @@ def test_factor_falls_with_speed_and_rises_with_conductivity():
     assert factors[0] > factors[1] > factors[2] > factors[3] > 0.5
     other = replace(OIL, thermal_conductivity=0.28)
     assert heating_factor(SCREW, other, 'screw', 27.6, 1.0, WARM) > factors[2]
-
-
-def test_slope_of_viscosity_is_that_of_the_law():
-    """Against a wide difference of the logarithm: 4 to 6 % per kelvin near 40 degC."""
-    assert viscosity_slope(OIL, WARM) == pytest.approx(0.05, abs=0.01)
 
 
 def test_heated_films_are_thinner_by_the_factor_and_it_is_off_by_default():

@@ -42,13 +42,10 @@ def test_past_unloading_one_nut_carries_everything(factor):
     assert loaded == load
 
 
-def test_zero_preload_is_legal():
+def test_zero_preload_is_legal_and_a_share_of_the_rating_stands_for_it(screw):
     loaded, relieved = nut_forces([0.0, 100.0], 0.0)
     assert loaded.tolist() == [0.0, 100.0]
     assert relieved.tolist() == [0.0, 0.0]
-
-
-def test_a_share_of_the_rating_stands_for_no_preload(screw):
     free = replace(screw, preload=0.0)
     assert working_preload(screw) == working_preload(screw, 0.02) == screw.preload
     assert working_preload(free) == 0.01 * screw.static_rating

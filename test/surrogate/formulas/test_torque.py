@@ -68,17 +68,14 @@ def test_slope_is_the_derivative(friction, load, sign):
         )
 
 
-def test_what_is_unknown_stays_unknown():
+def test_efficiencies_that_are_unknown_zero_or_one():
     for load in (1000.0, -1000.0):
         assert math.isnan(laws.efficiency(math.nan, load, LEAD))
     assert math.isnan(laws.efficiency(0.1, math.nan, LEAD))
-
-
-def test_zero_load_has_efficiency_zero():
-    """By definition, from either side."""
     assert laws.efficiency(0.1, 0.0, LEAD) == 0.0
     assert laws.efficiency(0.1, -0.0, LEAD) == 0.0
     assert laws.driving_torque(0.1, 0.0, LEAD) == 0.1
+    assert laws.efficiency(0.0, 5.0, LEAD) == laws.efficiency(0.0, -5.0, LEAD) == 1.0
 
 
 @given(
@@ -98,10 +95,6 @@ def test_no_float_of_the_load_raises(friction, load, sign):
     elif math.isfinite(ideal):
         assert 0.0 <= found <= 1.0
         assert 0.0 <= slope < math.inf
-
-
-def test_a_frictionless_screw_is_perfect_both_ways():
-    assert laws.efficiency(0.0, 5.0, LEAD) == laws.efficiency(0.0, -5.0, LEAD) == 1.0
 
 
 def test_catalogue_drag(screw):

@@ -39,11 +39,16 @@ def test_columns_come_in_si_units_whatever_their_order(csv):
     assert columns['temperature'] == pytest.approx([313.15, 314.15])
 
 
-def test_a_column_is_named_by_hand(csv):
+def test_a_column_named_by_hand_needs_its_unit(csv, refused):
     path = csv('motor_speed_rad_s,speed_rpm,axis_torque_Nm\n2,1,0.5\n')
     columns = read_drag_csv(path, speed_column='motor_speed_rad_s', torque_column='axis_torque_Nm')
     assert columns['speed'] == [2.0]
     assert columns['torque'] == [0.5]
+    path = csv('rpm_speed,torque_Nm\n1,2\n')
+    for column in ('rpm_speed', 'torque_Nm'):
+        with refused('column_has_unit', column=column):
+            read_drag_csv(path, speed_column=column)
+    refused('column_nope_missing', read_drag_csv, path, speed_column='nope')
 
 
 @pytest.mark.parametrize(
@@ -74,14 +79,6 @@ def test_what_is_no_text_is_refused(tmp_path, refused):
     refused('cannot_read_such', read_drag_csv, tmp_path / 'nothing.csv')
     (tmp_path / 'bytes.csv').write_bytes(b'\xff\xfe\x00\x80')
     refused('cannot_read_as', read_drag_csv, tmp_path / 'bytes.csv')
-
-
-def test_a_column_named_by_hand_needs_its_unit(csv, refused):
-    path = csv('rpm_speed,torque_Nm\n1,2\n')
-    for column in ('rpm_speed', 'torque_Nm'):
-        with refused('column_has_unit', column=column):
-            read_drag_csv(path, speed_column=column)
-    refused('column_nope_missing', read_drag_csv, path, speed_column='nope')
 
 
 def test_points_at_standstill_are_left_out_and_counted():

@@ -127,15 +127,12 @@ def test_solved_contacts_and_a_known_answer():
     assert [one.value for one in found.estimates] == pytest.approx((0.12, 4e-4), rel=1e-4)
 
 
-def test_a_run_that_one_table_cannot_hold_is_refused(formulas, refused):
+def test_what_one_table_cannot_hold_or_is_not_solved_is_refused(formulas, refused, monkeypatch):
     rpm = [60.0, 200.0, 600.0]
     warm = run_at(rpm, temperature=np.array([300.0, 310.0, 330.0]))
     refused('up_16_7', solved_model, SCREW, OIL, warm)
     loaded = run_at(rpm, load=np.array([0.0, 0.0, 300.0]))
     refused('load_n_up_200', solved_model, SCREW, OIL, loaded)
-
-
-def test_a_speed_that_is_not_solved_is_named(formulas, monkeypatch, refused):
     failed = Stub(math.nan, converged=False, status='It stalled.')
     monkeypatch.setattr('surrogate.identify.table.solve_screw', lambda *given, **options: failed)
     refused('60_rev_min', solved_model, SCREW, OIL, run_at([60, 200, 600]))

@@ -41,12 +41,8 @@ def trend(start):
     return found
 
 
-def test_page_of_numbers_is_the_report_of_its_rows():
+def test_page_of_numbers_is_the_report_of_the_rows_of_the_default_run():
     assert NUMBERS.endswith(report(SCREW, law_of(SCREW), ROWS))
-
-
-def test_rows_are_those_of_the_default_run():
-    """Every task once, all of the shipped datasheets and law, all converged."""
     wanted = {task.key: task for task in tasks(tuple(NEEDS), DRAWS)}
     assert set(ROWS) == set(wanted)
     known = known_inputs()
@@ -76,10 +72,12 @@ def test_every_picture_is_there_and_small():
     assert all((pictures / name).stat().st_size < 300_000 for name in shown)
 
 
-def test_film_is_that_of_the_study():
+def test_film_is_that_of_the_study_and_every_trend_has_its_rolling_side():
     """Smooth within 1 %, and rough by the trend."""
     assert mark('central film, smooth, 502.65').value == pytest.approx(153.0, rel=0.01)
     assert trend('central film').standing.agrees == trend('central film').rolling.agrees == 'yes'
+    assert all(one.rolling for one in TRENDS)
+    assert len(TRENDS) == 12
 
 
 @pytest.mark.parametrize(
@@ -102,12 +100,6 @@ def test_what_agrees(name, standing, rolling):
     assert (found.standing.agrees, found.rolling.agrees) == (standing, rolling)
 
 
-def test_every_trend_has_its_rolling_side():
-    """A trend that only one model tells would be no comparison."""
-    assert all(one.rolling for one in TRENDS)
-    assert len(TRENDS) == 12
-
-
 def test_asperities_move_to_the_centre():
     """By more than two standard errors; RCS of the loaded nut falls by as much near its edge."""
     for name in ('distance of the asperity load', 'RCS, one contact, standing, 10 rev/min'):
@@ -115,18 +107,14 @@ def test_asperities_move_to_the_centre():
         assert change.value < -2 * change.error < 0
 
 
-def test_statistical_contact_makes_efficiency_rise():
-    """Without rolling losses: at every step with contact, and over the whole range of speeds."""
+def test_statistical_contact_and_other_rules_of_friction():
+    """Efficiency rises without rolling losses; the central film changes sliding a little."""
     assert mark('efficiency, statistical share', 'least step').value > 1e-4
     first, last = (
         mark('efficiency, statistical share', f', {rpm} rev/min').value for rpm in ('2', '1000')
     )
     assert last > first + 0.03
     assert mark('statistical share, loaded nut').value > 1.1
-
-
-def test_other_rules_of_friction():
-    """The central film changes sliding by a few percent; friction along the track is no rule."""
     assert 1.01 < mark('sliding torque with the central film').value < 1.08
     assert mark('torque of friction along the track over ours').value > 5
 

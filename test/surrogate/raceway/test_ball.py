@@ -42,7 +42,7 @@ def test_a_pair_is_the_plain_sum_of_both():
     assert pair.shortest_wavelength == min(raceway.shortest_wavelength, ball.shortest_wavelength)
 
 
-def test_scales_and_planes_go_into_the_sum():
+def test_scales_and_planes_go_into_the_sum_and_a_smooth_ball_changes_nothing():
     """A patch of one and a raw surface of the other add as they stand."""
     x, y = np.linspace(-1e-4, 1e-4, 20), np.linspace(-4e-4, 4e-4, 20)
     one = replace(draw_raceway(RACEWAY, 1), scale=1.7, plane=(1e-7, 1e-4, -2e-4))
@@ -50,9 +50,6 @@ def test_scales_and_planes_go_into_the_sum():
     np.testing.assert_allclose(
         summed(one, other).heights(x, y), one.heights(x, y) + other.heights(x, y), atol=1e-18
     )
-
-
-def test_a_smooth_ball_changes_nothing():
     smooth = scale_spectrum(RoughnessSpectrum(rms=0.0))
     x = np.linspace(0, 1e-3, 30)
     np.testing.assert_allclose(

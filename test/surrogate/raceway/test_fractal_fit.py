@@ -71,18 +71,14 @@ def test_a_straight_line_through_the_logarithms_is_biased():
     assert 3 - slope / 2 == pytest.approx(2.637, abs=0.02)
 
 
-def test_one_profile_is_enough_for_a_rough_answer():
-    """One profile: D within 0.1, no error estimate; its slope and height do not matter."""
+def test_one_profile_is_enough_and_a_lay_is_profiled_across():
+    """D within 0.1 without error estimate; slope and height of a profile do not matter."""
     profile = fractal_surface(NOMINAL, 0).heights(ALONG, [0.0])[:, 0]
     fit = identify_fractal(profile, SPACING, NOMINAL)
     assert fit.fractal_dimension == pytest.approx(2.68, abs=0.1)
     assert math.isnan(fit.dimension_error)
     tilted = identify_fractal(profile + 1e-3 + 0.01 * ALONG, SPACING, NOMINAL)
     assert tilted.fractal_dimension == pytest.approx(fit.fractal_dimension, abs=1e-4)
-
-
-def test_a_profile_across_a_lay():
-    """A surface with a lay is identified across it, from traces that are far apart along it."""
     surface = fractal_surface(NOMINAL, 2, lay='longitudinal')
     heights = surface.heights(np.linspace(0, 80e-3, 64), ALONG).T
     fit = identify_fractal(heights, SPACING, NOMINAL, lay='longitudinal', across=True)

@@ -105,11 +105,13 @@ def test_bad_files_are_one_sentence(tmp_path, lines, sentence, refused):
     assert '\n' not in str(caught.value)
 
 
-def test_files_that_cannot_be_read(tmp_path, refused):
+def test_files_that_cannot_be_read_or_need_the_library(tmp_path, refused, monkeypatch):
     refused('there_such_file', read_surface, tmp_path / 'absent.csv')
     path = tmp_path / 'binary.csv'
     path.write_bytes(bytes(range(256)))
     refused('cannot_read_as', read_surface, path)
+    monkeypatch.setitem(sys.modules, 'SurfaceTopography', None)
+    refused('needs_surfacetopography', read_surface, write(tmp_path, 'nothing', name='map.x3p'))
 
 
 def test_areal_files(tmp_path, refused):
@@ -123,9 +125,3 @@ def test_areal_files(tmp_path, refused):
     assert (found.spacing_x, found.spacing_y) == pytest.approx((0.5e-6, 2e-6))
     garbage = write(tmp_path, 'nothing', name='map.x3p')
     refused('map_x3p_cannot', read_surface, garbage)
-
-
-def test_without_the_library_areal_files_are_refused(tmp_path, monkeypatch, refused):
-    """One sentence names the extra to install."""
-    monkeypatch.setitem(sys.modules, 'SurfaceTopography', None)
-    refused('needs_surfacetopography', read_surface, write(tmp_path, 'nothing', name='map.x3p'))

@@ -76,13 +76,18 @@ def test_coulomb_ellipse_is_that_of_hertz(screw):
     assert y.max() == pytest.approx(float(ellipse.semi_axis_y), rel=0.01)
 
 
-def test_uniform_slip_gives_the_whole_friction(screw):
+def test_uniform_slip_gives_the_whole_friction_and_a_higher_floor_less(screw):
     """Force mu Q against the slip, power mu Q V."""
     law = coulomb_traction(screw, 'screw', 0.05)
     wrench = integrate_traction(screw, 'screw', law, 27.6, np.array([0.3, -0.4, 0, 0, 0]))
     assert wrench.values[0] == pytest.approx(-0.6 * 0.05 * 27.6, rel=1e-6)
     assert wrench.values[1] == pytest.approx(0.8 * 0.05 * 27.6, rel=1e-6)
     assert wrench.power == pytest.approx(0.05 * 27.6 * 0.5, rel=1e-6)
+    law, motion = coulomb_traction(screw, 'screw', 0.05), np.array([1e-3, 0, 0, 0, 0])
+    soft = integrate_traction(screw, 'screw', law, 10.0, motion, slip_floor=1e-2)
+    hard = integrate_traction(screw, 'screw', law, 10.0, motion, slip_floor=1e-9)
+    assert soft.values[0] == pytest.approx(-0.5 / math.sqrt(101), rel=1e-9)
+    assert hard.values[0] == pytest.approx(-0.5 / math.sqrt(1.01), rel=1e-9)
 
 
 def test_pure_spin_on_a_circle(screw):
@@ -151,14 +156,6 @@ def test_a_sample_has_about_the_friction(solved):
     assert part.values[:2] == pytest.approx(whole.values[:2], rel=0.02)
     assert law.sample() is law
     assert LAWS['coulomb'].sample() is LAWS['coulomb']
-
-
-def test_a_higher_floor_softens_the_law(screw):
-    law, motion = coulomb_traction(screw, 'screw', 0.05), np.array([1e-3, 0, 0, 0, 0])
-    soft = integrate_traction(screw, 'screw', law, 10.0, motion, slip_floor=1e-2)
-    hard = integrate_traction(screw, 'screw', law, 10.0, motion, slip_floor=1e-9)
-    assert soft.values[0] == pytest.approx(-0.5 / math.sqrt(101), rel=1e-9)
-    assert hard.values[0] == pytest.approx(-0.5 / math.sqrt(1.01), rel=1e-9)
 
 
 def test_solved_contact_sums_as_its_friction(solved):

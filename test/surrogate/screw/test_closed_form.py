@@ -62,15 +62,12 @@ def test_torque_has_an_interior_minimum_and_rcs_falls(screw, oil):
     assert np.all(np.diff(result.rcs[result.rcs > 0]) < 0)
 
 
-def test_at_rest_the_asperities_carry_everything(screw, oil):
+def test_at_rest_the_asperities_carry_everything_and_rub_by_the_slip_arm(screw, oil):
+    """Torque above the helical part of mu_a times the Hertz-weighted slip arm."""
     rest, crawl = solve(screw, oil, 0.0, 1000.0), solve(screw, oil, 1e-9, 1000.0)
     assert rest.rcs == 1.0
     assert rest.friction_coefficient == pytest.approx(screw.roughness.asperity_friction)
     assert rest.friction_torque == pytest.approx(crawl.friction_torque, rel=1e-3)
-
-
-def test_a_boundary_lubricated_contact_rubs_by_the_slip_arm(screw, oil):
-    """At rest the torque is mu_a times the Hertz-weighted slip arm, above its helical part."""
     rest = solve(screw, oil, 0.0, 0.0)
     normal = sum(float(c.normal_force) for c in rest.contacts) * screw.loaded_balls_per_nut
     helical = screw.roughness.asperity_friction * normal * no_slip_rates(screw).helical_slip
@@ -105,17 +102,14 @@ def test_a_share_by_the_film_ratio_takes_the_place_of_the_topography(screw, oil)
     assert found.rcs == found.asperity_share == 0.0
 
 
-def test_an_unloaded_nut_costs_nothing(screw, oil):
+def test_an_unloaded_nut_and_no_preload_cost_nothing(screw, oil):
+    """At zero load without preload there is no film to speak of and no friction."""
     result = solve(screw, oil, 600.0, 1.01 * UNLOADING_RATIO * screw.preload)
     for contact in result.contacts[2:]:
         assert contact.normal_force == contact.sliding_torque == contact.rolling_torque == 0
         assert np.isnan(contact.central_film)
     assert result.worst_contact in (0, 1)
     assert np.isfinite(result.friction_torque)
-
-
-def test_without_preload_and_load_nothing_is_pressed(screw, oil):
-    """Zero preload is legal; at zero load there is no film to speak of and no friction."""
     loose = replace(screw, preload=0.0)
     result = solve(loose, oil, 600.0, [0.0, 500.0])
     assert result.friction_torque[0] == 0.0

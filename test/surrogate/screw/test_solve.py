@@ -64,18 +64,13 @@ def test_torque_from_loads_is_that_of_the_lost_power(rpm, load):
     assert found.load_change < 0.01
 
 
-def test_preload_alone_loses_power_and_has_no_efficiency():
-    """Both nuts carry the preload; nothing drives the screw."""
+def test_preload_alone_loses_power_and_the_nuts_share_their_contacts():
+    """Both nuts carry the preload; nothing drives the screw; each contact has its own ball."""
     found = at(600, 0.0)
     assert found.normal_forces[0] == pytest.approx(found.normal_forces[1])
     assert found.efficiency == 0
     assert not found.back_driving
     assert found.driving_torque == pytest.approx(found.friction_torque, rel=1e-8)
-
-
-def test_nuts_with_one_load_share_their_contacts():
-    """Without axial load both nuts have the same two contacts, each with its own ball."""
-    found = at(600, 0.0)
     first, second, third, fourth = found.contacts
     assert first.pressed is third.pressed
     assert second.pressed is fourth.pressed

@@ -204,13 +204,11 @@ def test_bad_settings_are_one_sentence(circular, change, sentence, refused):
     refused(sentence, circular, flat, **change)
 
 
-def test_a_raceway_must_go_on_for_ever(circular, refused):
+def test_raceways_that_end_and_fewer_transits_than_places_are_refused(
+    circular, refused, moes_case
+):
     refused('strip_has_end', circular, np.zeros((65, 65)))
     refused('finite', circular, lambda x, y: np.nan * x * y)
-
-
-def test_settings_are_those_of_the_module(moes_case, refused):
-    """The default march of a smooth nominal raceway asks for as many transits as places."""
     contact, oil, condition, _ = moes_case(100, 10, 'roelands_dh')
     with refused('each_4_places'):
         march_contact(contact, oil, condition, flat, transits=2.0, settings=MarchSettings())

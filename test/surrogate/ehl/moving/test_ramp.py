@@ -33,15 +33,12 @@ def column(rcs):
     )
 
 
-def test_the_onset_of_a_power_law_is_its_own():
+def test_the_onset_of_a_power_law_is_its_own_in_a_scattered_column_too():
     """RCS = 0.01 (u0/u)^6 passes 0.01 at u0, whatever means are taken of a slow ramp."""
     ramp = column(lambda u: 0.01 * (0.013 / u) ** 6)
     for transits in (1.0, 2.0):
         assert ramp.onset(transits=transits) == pytest.approx(0.013, rel=0.03)
     assert ramp.onset(rcs=0.3) == pytest.approx(0.013 * (0.01 / 0.3) ** (1 / 6), rel=0.03)
-
-
-def test_the_onset_of_a_scattered_column_is_that_of_its_trend():
     rng = np.random.default_rng(1)
     ramp = column(lambda u: 0.01 * (0.013 / u) ** 6 * rng.uniform(0.4, 1.6, u.size))
     assert ramp.onset() == pytest.approx(0.013, rel=0.1)
