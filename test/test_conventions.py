@@ -85,7 +85,6 @@ OPTIONAL = {
 
 
 def name_of(path):
-    """Return the path within the tree."""
     return str(path.relative_to(TREE))
 
 

@@ -54,7 +54,6 @@ MOST_PAGES, MOST_WORDS = 10, 900
 
 
 def name_of(page):
-    """Return the path of a page within the repository."""
     return str(page.relative_to(ROOT))
 
 

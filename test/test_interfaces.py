@@ -43,7 +43,6 @@ def constants():
 
 
 def type_of(source):
-    """Return the generated class of an interface."""
     module = importlib.import_module(f'ballscrew_msgs.{source.parent.name}')
     return getattr(module, source.stem)
 

@@ -1,11 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""
-Imports: `surrogate` never ROS, the node of `surrogate` the lookup alone, all downward.
-
-Once as the sources say it, once as a fresh process does it.
-
-"""
+"""Imports downward, as sources say and as a fresh process does it; `surrogate` never ROS."""
 
 import ast
 from pathlib import Path

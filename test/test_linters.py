@@ -17,12 +17,7 @@ PATHS = [str(TREE / name) for name in ('setup.py', *FOLDERS) if (TREE / name).ex
 @pytest.mark.flake8
 @pytest.mark.linter
 def test_flake8(capsys, monkeypatch):
-    """
-    No finding: the text of a finding is what the assertion shows.
-
-    Its plugin for docstrings is left out: `ament_pep257` asks the same program for more codes.
-
-    """
+    """No finding but of docstrings, for which `ament_pep257` asks the same program for more."""
     monkeypatch.setattr(flake8_docstrings.pep257Checker, 'run', lambda self: ())
     code, findings = main_with_errors(argv=PATHS)
     capsys.readouterr()

@@ -385,7 +385,6 @@ class NodeProcess:
             raise AssertionError(f'{late}, the node said:\n{self.output.read_text()}') from late
 
     def spin(self):
-        """Take a message, or wait a little for one."""
         self.node.executor.spin_once(timeout_sec=0.02)
 
     def now(self):
@@ -464,7 +463,6 @@ class NodeProcess:
         return self.call(ChangeState, 'change_state', transition=request.transition).success
 
     def lifecycle(self):
-        """Return the label of the lifecycle state."""
         return self.call(GetState, 'get_state').current_state.label
 
     def machine(self, speed_topic='joint_states', load_topic='axial_load'):
@@ -541,12 +539,10 @@ class NodeProcess:
         ]
 
     def stop(self, number=signal.SIGINT):
-        """Send a signal; return the exit code."""
         self.process.send_signal(number)
         return self.end()
 
     def end(self):
-        """Wait until the node has ended; return the exit code."""
         return self.process.wait(DEADLINE)
 
     def close(self):
@@ -584,7 +580,6 @@ def bound_addresses():
 
 
 def target_of(link):
-    """Return what a link names; nothing if it is gone."""
     try:
         return os.readlink(link)
     except FileNotFoundError:

@@ -22,7 +22,6 @@ VISCOSITY = 'oil: viscosity is -1 Pa s, allowed is above 0'
 
 
 def python(*arguments, **environment):
-    """Run Python on this code; return what came of it."""
     return subprocess.run(
         [sys.executable, *map(str, arguments)],
         cwd=ROOT,

@@ -23,7 +23,6 @@ def axes_of(name):
 
 
 def inputs_of(axis):
-    """Return the inputs of an axis by what they measure."""
     return {one.source: one for one in axis.inputs}
 
 

@@ -31,7 +31,6 @@ def test_half():
 
 @pytest.fixture
 def script():
-    """Return the names of the script."""
     return runpy.run_path(str(TREE / 'scripts' / 'mutate.py'))
 
 

@@ -24,7 +24,6 @@ Machine = Callable[..., 'subprocess.CompletedProcess[str]']
 
 
 def put(folder, name, text):
-    """Write a command into a folder."""
     path = folder / name
     path.write_text(text)
     path.chmod(0o755)

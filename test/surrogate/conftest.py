@@ -28,7 +28,6 @@ def rows(name):
 
 @pytest.fixture(scope='session')
 def table():
-    """Return the reader of the reference tables."""
     return rows
 
 
@@ -47,19 +46,16 @@ def run(request):
 
 @pytest.fixture(scope='session')
 def screw():
-    """Return the nominal screw."""
     return load_screw('nominal')
 
 
 @pytest.fixture(scope='session')
 def oil():
-    """Return the nominal oil."""
     return load_lubricant('iso_vg_68')
 
 
 @pytest.fixture(scope='session')
 def surface_data(screw, oil):
-    """Build the nominal surface once."""
     return build_closed_form(screw, oil, default_settings(screw))
 
 
@@ -107,5 +103,4 @@ def stand_in_point(formula, rcs, share):
 
 
 def run_stand_in(tasks):
-    """Solve chains in this process."""
     return {name: chain_stand_in(inputs) for name, inputs in tasks.items()}

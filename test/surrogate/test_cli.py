@@ -16,8 +16,6 @@ POINT = ['--screw', 'nominal', '--oil', 'iso_vg_68', '--tier', 'closed_form']
 
 @pytest.fixture
 def record(run, capsys):
-    """Return the function that gives the JSON that a point prints."""
-
     def printed(*words):
         assert run(*POINT, '--json', *words) == 0
         return json.loads(capsys.readouterr().out)

@@ -10,10 +10,7 @@ from surrogate.progress import bar, Progress
 
 
 class Terminal(io.StringIO):
-    """A stream that says that it is a terminal."""
-
     def isatty(self):
-        """Tell so."""
         return True
 
 
@@ -127,7 +124,6 @@ def test_the_first_step_shows_how_far_it_is(stream, expected, lines):
 
 
 def refuse(text):
-    """Write to nobody."""
     raise BrokenPipeError
 
 

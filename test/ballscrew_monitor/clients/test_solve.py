@@ -46,18 +46,15 @@ def begin(node, *arguments):
 
 
 def end(process):
-    """Wait for the command; return its exit code and what it said."""
     out, err = process.communicate(timeout=DEADLINE)
     return process.returncode, out, err
 
 
 def ask(node, *arguments):
-    """Run the command; return its exit code and what it said."""
     return end(begin(node, *arguments))
 
 
 def said(node, words):
-    """Tell whether the node has said something."""
     return words in node.output.read_text()
 
 

@@ -48,13 +48,10 @@ def test_empty_arrays_and_messages_without_fields():
 
 
 class Wide:
-    """A message with a text of wide characters."""
-
     SLOT_TYPES = (definition.UnboundedWString(),)
 
     @staticmethod
     def get_fields_and_field_types():
-        """Return the names and types of the fields."""
         return {'data': 'wstring'}
 
 

@@ -33,7 +33,6 @@ def world_fixture():
 
 
 def make_world():
-    """Return a solver and the list of the processes that it has started."""
     started = []
 
     def start():

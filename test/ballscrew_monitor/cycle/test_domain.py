@@ -1,11 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""
-A ROS domain of one's own, and which files of FastDDS are removed.
-
-Those of killed processes go, never those of living ones.
-
-"""
+"""A ROS domain of one's own; files of FastDDS go with killed processes, never with living ones."""
 
 from collections import Counter
 import contextlib
@@ -187,7 +182,6 @@ def test_what_a_killed_process_leaves_is_removed_and_a_living_one_keeps_its_own(
 
 @pytest.fixture
 def runs(tmp_path, shared_memory):
-    """Return a function that makes the context of a run of the tests, and who has cleaned."""
     cleaned = []
 
     def make(name):

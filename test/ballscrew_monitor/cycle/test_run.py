@@ -36,7 +36,6 @@ STATE = '/ballscrew_monitor/x/state'
 
 
 def start(*arguments):
-    """Start `ballscrew run` as a process."""
     return subprocess.Popen(
         [sys.executable, '-u', '-m', 'ballscrew_monitor', 'run', *map(str, arguments)],
         cwd=ROOT,
@@ -69,7 +68,6 @@ def patient(tmp_path_factory):
 
 @pytest.fixture(scope='module')
 def finished(short_bag, patient, tmp_path_factory):
-    """Return the directory, the output and the exit code of a run."""
     out = tmp_path_factory.mktemp('run') / 'out'
     with start('--bag', short_bag, '--params', patient, '--out', out) as process:
         text, errors = process.communicate(timeout=DEADLINE)

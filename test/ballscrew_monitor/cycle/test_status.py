@@ -11,7 +11,6 @@ import pytest
 
 
 def make_state(**changes):
-    """Return the state of a facing cut."""
     state = BallScrewState(
         level=BallScrewState.LEVEL_OK, zone=BallScrewState.ZONE_OPTIMAL, event_id=3
     )
@@ -95,10 +94,7 @@ def test_a_narrow_terminal_keeps_speed_and_warning():
 
 
 class Terminal(io.StringIO):
-    """A stream that says it is a terminal."""
-
     def isatty(self):
-        """Say so."""
         return True
 
 

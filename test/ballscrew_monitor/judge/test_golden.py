@@ -51,7 +51,6 @@ INPUT = (
 
 
 def close(found, wanted):
-    """Tell whether two numbers agree."""
     if isinstance(wanted, float):
         same = math.isnan(found) and math.isnan(wanted)
         return same or math.isclose(found, wanted, rel_tol=TOLERANCE)
@@ -59,7 +58,6 @@ def close(found, wanted):
 
 
 def check(found, wanted, names, place):
-    """Compare attributes with columns."""
     for name in names:
         here, there = getattr(found, name), getattr(wanted, name)
         assert close(-1 if here is None else here, there), f'{place}: {name} {here} {there}'

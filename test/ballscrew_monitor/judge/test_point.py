@@ -48,7 +48,6 @@ def sample(source, value, stamp=START):
 
 
 def run(monitor, speed, torque, stamp=START):
-    """Take a torque and a speed; return the state."""
     assert monitor.update(sample(Source.TORQUE, torque, stamp)) is None
     return monitor.update(sample(Source.SPEED, speed, stamp))
 

@@ -30,7 +30,6 @@ SAMPLES = st.lists(st.tuples(STEPS, VALUES), min_size=1, max_size=60)
 
 
 def stamped(steps):
-    """Return stamps and values."""
     stamp, made = START, []
     for step, value in steps:
         stamp += step
@@ -128,7 +127,6 @@ COMPILED = [compiled(each) for each in (slope_take, slope_of, slope_change)]
 
 
 def slopes(samples, window=SHORT, of=slope_of):
-    """Return the slope after each sample, or what else is `of` the ring."""
     ring, found = SlopeRing(), []
     for stamp, value in samples:
         slope_take(ring, window, GAP, stamp, value)
@@ -180,7 +178,6 @@ def test_the_response_of_few_samples_is_the_least_squares_line(count, omega):
 
 
 def changes(values, step=STEP):
-    """Return how the slope changes after each sample."""
     samples = [(START + i * step, value) for i, value in enumerate(values)]
     return slopes(samples, of=lambda ring: slope_change(ring, SHORT))
 

@@ -454,7 +454,6 @@ def turning(core, wrap=math.tau):
 
 
 def turn(monitor, angle, i):
-    """Take a load and a position; return the state."""
     monitor.update(load(-1000.0, START + i * STEP))
     return monitor.update(speed(angle, START + i * STEP))
 

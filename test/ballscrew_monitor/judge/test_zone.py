@@ -23,12 +23,10 @@ below = lambda value: math.nextafter(value, -math.inf)  # noqa: E731
 
 
 def numbers(core, **changes):
-    """Return settings as numbers."""
     return core.monitor(limits=core.limits(**changes)).numbers
 
 
 def judged(core, memory=None, **changes):
-    """Return a row with its gates and zone."""
     values = {'validity': 1, 'speed': 10.0, 'axial_load': -1000.0, 'rcs': 0.0, 'efficiency': 0.9}
     row, settings = Row(**(values | changes)), numbers(core)
     shut_gates(settings, memory or Memory(), row)
@@ -123,7 +121,6 @@ def test_bands_are_exhaustive(core, rcs, efficiency):
 
 
 def levels(core, signs, *, level=Level.UNKNOWN, step=STEP, period=0, **limits):
-    """Return the level after each of rows that are one step apart."""
     settings, found = numbers(core, **limits), []
     memory = Memory(level=int(level), level_since=-1)
     for i, (zone, clears) in enumerate(signs):

@@ -54,7 +54,6 @@ def said(status):
 
 
 def values_of(status):
-    """Return the values of a status by key."""
     return {pair.key: pair.value for pair in status.values}
 
 
@@ -303,7 +302,6 @@ DERIVED = {
 
 
 def straight(core, drag=0.0):
-    """Return a surface whose torque follows the load."""
     surface = core.surface(driving_torque=lambda speed, load: load / 1024.0)
     surface.parasitic_torque, surface.lead = drag, math.tau / 1024.0
     return surface

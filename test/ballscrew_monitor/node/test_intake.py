@@ -54,7 +54,6 @@ def nothing():
 
 
 def turns(intake):
-    """Let the intake have a turn."""
     with pytest.raises(StopIteration):
         intake.execute(None).send(None)
 
@@ -88,7 +87,6 @@ class Bench:
         self.drain_events()
 
     def matched(self):
-        """Return how many publishers each input is matched with."""
         return {source: link.matched for source, link in self.intake.links(self.axis).items()}
 
     def until(self, condition, meanwhile=None):

@@ -40,15 +40,12 @@ class Axis:
         self.publish = None
 
     def start(self, **parameters):
-        """Start the node, the first time with its machine."""
         self.states.clear()
         self.events.clear()
         self.node.start(**{'state_dir': self.folder} | AT_ONCE | parameters)
         self.publish = self.publish or self.node.machine()
 
     def move(self, speed, condition, what):
-        """Move until a state fulfils a condition; return the state."""
-
         def moved():
             self.publish(speed)
             return next((one for one in reversed(self.states) if condition(one)), None)
@@ -56,7 +53,6 @@ class Axis:
         return self.node.until(moved, what)
 
     def kill(self):
-        """Kill the node, as the system does."""
         self.node.process.kill()
         assert self.node.process.wait() == -signal.SIGKILL
 
@@ -68,7 +64,6 @@ class Axis:
         return last[0][1]
 
     def kept(self):
-        """Return the row of the axis on the disk."""
         if not (self.folder / FILE).exists():
             return None
         place = f'file:{self.folder / FILE}?mode=ro'
@@ -91,7 +86,6 @@ class Axis:
         self.node.until(lambda: self.events[-1].active, 'the event')
 
     def log(self):
-        """Return the event log."""
         return [entry.record() for entry in read_entries(self.folder)]
 
 

@@ -27,12 +27,10 @@ class Opened(StateDatabase):
         self.found = self.load()
 
     def setting(self, name):
-        """Return what a setting is."""
         return self._database.execute(f'PRAGMA {name}').fetchone()[0]
 
     @property
     def event(self):
-        """Return the number of the last event that was found."""
         return self.found[AxisRecord, 'x'].event
 
     def fill(self, *numbers):

@@ -41,7 +41,6 @@ def values():
 
 @pytest.fixture(scope='module')
 def judged(nominal_bag, values):
-    """Return the columns of the nominal cycle and its outcome."""
     *blocks, outcome = replay_columns(Bag(nominal_bag), values)
     assert isinstance(outcome, AxisOutcome)
     return joined(blocks), outcome
@@ -171,7 +170,6 @@ STEP = 10_000_000  # [ns]
 
 
 def alone():
-    """Return the axis with a fresh monitor."""
     monitor = Monitor(AXIS.surface, AXIS.monitor.settings)
     return dataclasses.replace(AXIS, monitor=monitor)
 

@@ -20,12 +20,10 @@ OF_MCAP = {'storage_identifier': 'mcap'}
 
 @pytest.fixture
 def copy(short_bag, tmp_path):
-    """Return a copy of the short bag that may be damaged."""
     return shutil.copytree(short_bag, tmp_path / 'copy')
 
 
 def sentence(action):
-    """Return the one sentence in which `action` fails."""
     with pytest.raises(InputError) as caught:
         action()
     text = str(caught.value)

@@ -23,7 +23,6 @@ DATA = bytes(100)
 
 
 def write(writer, count, *, topic=HEADERS, begin=1000):
-    """Announce a topic, and write messages of it."""
     writer.add_topic(topic)
     for number in range(count):
         writer.write(topic.name, DATA, log_time=begin + number, publish_time=begin + number - 1)
@@ -143,7 +142,6 @@ def test_an_unknown_type_and_a_bad_directory_are_one_sentence(tmp_path, refused)
 
 
 def break_off(folder, error):
-    """Fail in the middle of a bag."""
     with whole_bag(folder, 'bag') as writer:
         write(writer, 1)
         raise error

@@ -66,7 +66,6 @@ def _replayed(request):
 
 
 def read_by_mcap(directory):
-    """Return topic and bytes of every message, as the MCAP library reads them."""
     with (directory / 'cycle.mcap').open('rb') as stream:
         found = make_reader(stream, validate_crcs=True).iter_messages(log_time_order=False)
         return [(channel.topic, message.data) for _, channel, message in found]

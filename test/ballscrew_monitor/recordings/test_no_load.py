@@ -46,7 +46,6 @@ def speeds(*plateaus):
 
 
 def stamped(message, place):
-    """Give a message the time of its place."""
     message.header.stamp.sec, message.header.stamp.nanosec = divmod(
         100 * SECOND + place * SECOND // RATE, SECOND
     )

@@ -74,7 +74,6 @@ class Listener:
 
 @pytest.fixture
 def listener(domain, short_bag, wait_for):
-    """Return a listener to the topics of the short bag."""
     made = Listener(domain, Bag(short_bag).topics, wait_for)
     yield made
     made.close()

@@ -27,7 +27,6 @@ BEGIN = 100 * SECOND
 
 @pytest.fixture
 def values():
-    """Return the parameters of the nominal cycle."""
     return parameters.read_file(CONFIG)
 
 
@@ -60,7 +59,6 @@ def write(directory, *timed):
 
 
 def every_state():
-    """Return parameters with which each sample gives a state."""
     return parameters.defaults(['x']) | {'x.publish_period': 0.0}
 
 

@@ -27,7 +27,6 @@ DATA = serialize_message(Float64(data=1.0))
 
 
 def topic(number, name, offer='SENSOR'):
-    """Return what announces a topic."""
     stated = {'name': name, 'type': 'std_msgs/msg/Float64', 'offer': offer}
     return Frame(FrameKind.TOPIC, topic=number, body=json.dumps(stated).encode())
 
@@ -52,7 +51,6 @@ def feed(retention, seconds, triggers=()):
 
 
 def seconds_in(folder):
-    """Return the seconds of the messages in each recording, by its name."""
     return {
         path.name: [(one.log_time - EPOCH) // SECOND for one in Bag(path).messages()]
         for path in sorted(folder.glob('*'))

@@ -29,7 +29,6 @@ TYPES = {
 
 @pytest.fixture(scope='module')
 def messages(short_bag):
-    """Return the messages of the short bag."""
     return list(Bag(short_bag).messages())
 
 
@@ -60,19 +59,16 @@ def write(path, messages, storage, compression=CompressionMode.NONE):
 
 @pytest.fixture
 def sqlite_file(messages, tmp_path):
-    """Return a sqlite3 file of the messages."""
     return next(write(tmp_path / 'bag', messages, StoragePlugin.SQLITE3).glob('*.db3'))
 
 
 def overwrite(file, begin, content):
-    """Write over some bytes of a file."""
     with file.open('r+b') as stream:
         stream.seek(begin)
         stream.write(content)
 
 
 def flip(file, at):
-    """Change one byte of a file."""
     overwrite(file, at, bytes([file.read_bytes()[at] ^ 0x55]))
 
 

@@ -30,7 +30,6 @@ def make_summary():
 
 
 def summary_of(event=None, **totals):
-    """Return the summary of one state, and of an event."""
     summarizer = Summarizer()
     state = BallScrewState(axis='x', judged=100)
     for name, value in totals.items():

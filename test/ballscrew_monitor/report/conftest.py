@@ -164,12 +164,10 @@ def make_case(blocks, events=(), *, totals=None, values=None, known=None, **chan
 
 
 def make_log(*cases, **changes):
-    """Return a recording that was judged."""
     return LogCase(**{'name': 'log', 'parameters': 'my.yaml', 'axes': cases} | changes)
 
 
 def make_values(axis='x', **changes):
-    """Return parameters of an axis with an oil temperature."""
     return defaults([axis]) | {f'{axis}.temperature.topic': 'oil_temperature'} | changes
 
 

@@ -13,7 +13,6 @@ import pytest
 
 @pytest.fixture
 def logs(short_bag, tmp_path):
-    """Return a folder of two recordings and a broken one."""
     folder = tmp_path / 'logs'
     for name in ('first', 'second <script>'):
         shutil.copytree(short_bag, folder / name)

@@ -29,13 +29,11 @@ from rclpy.serialization import deserialize_message
 
 @pytest.fixture(scope='module')
 def params(request):
-    """Return the parameters of the nominal cycle."""
     return request.config.rootpath / 'config' / 'nominal_cycle.yaml'
 
 
 @pytest.fixture(scope='module')
 def reported(short_bag, params, tmp_path_factory):
-    """Return the result and the directory of the report on the short bag."""
     out = tmp_path_factory.mktemp('out') / 'report'
     bag = Bag(short_bag)
     return report_log(bag, out, parameters_for(bag, None, params)), out
@@ -187,7 +185,6 @@ def test_what_a_kill_leaves_goes_with_the_next_report(short_bag, params, tmp_pat
 
 
 def files(folder):
-    """Return the files in a folder and below, from there."""
     return sorted(path.relative_to(folder) for path in folder.rglob('*') if path.is_file())
 
 

@@ -20,7 +20,6 @@ from surrogate.units import RPM
 
 @pytest.fixture(scope='module')
 def surface():
-    """Return the shipped surface."""
     return Surface.load(shipped_surface())
 
 

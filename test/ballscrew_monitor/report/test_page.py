@@ -1,11 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""
-A page is whole in itself, lets nothing else run, and its vendored part is the released one.
-
-Numbers come back as they were, and no text ends its element.
-
-"""
+"""A page is whole in itself and lets nothing else run; numbers come back, text ends no element."""
 
 import base64
 import hashlib
@@ -109,7 +104,6 @@ def test_what_is_not_known_is_sorted_last_both_ways(browse, tmp_path):
 
 
 def unpacked(record):
-    """Return packed numbers as the page reads them."""
     steps = np.frombuffer(base64.b64decode(record['data']), dtype='<u2')
     if 'runs' in record:
         steps = np.repeat(steps, np.frombuffer(base64.b64decode(record['runs']), dtype='<u4'))
@@ -159,8 +153,6 @@ def test_no_text_ends_the_element_that_holds_it():
 
 
 class Tags(HTMLParser):
-    """Collects the tags and the text of a page."""
-
     def __init__(self):
         super().__init__()
         self.tags, self.text = [], ''

@@ -20,7 +20,6 @@ SMOOTH = (DATA / 'cases' / 'nominal_smooth.yaml').read_text(encoding='utf-8')
 
 @pytest.fixture
 def small(tmp_path):
-    """Return the path of the nominal smooth case on a small grid."""
     path = tmp_path / 'small.yaml'
     path.write_text(SMOOTH + 'grid: [65, 33]\n', encoding='utf-8')
     return path

@@ -42,7 +42,6 @@ def write(folder, **keys):
 
 
 def load(folder, **keys):
-    """Return a case."""
     return load_case(write(folder, **keys))
 
 

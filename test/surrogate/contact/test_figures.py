@@ -20,13 +20,11 @@ ROUGH = replace(
 
 
 def curves(axes):
-    """Return the labelled curves of a panel."""
     return {line.get_label(): line for line in axes.get_lines()}
 
 
 @pytest.fixture(scope='module')
 def smooth():
-    """Return a smooth solution."""
     return solve_case(SMOOTH)[0]
 
 

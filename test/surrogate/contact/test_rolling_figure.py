@@ -14,7 +14,6 @@ figures = pytest.importorskip('surrogate.contact.rolling_figure')
 
 
 def panels(solution):
-    """Return the panels of a picture by the letter of their title."""
     return {axes.get_title()[:3]: axes for axes in figures.figure_rolling(solution).axes}
 
 

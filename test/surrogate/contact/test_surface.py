@@ -88,7 +88,6 @@ def test_bad_surfaces_are_one_sentence(load, rough, sentence, refused):
 
 
 def standard(load, **keys):
-    """Return a roughness by the standard and its surface."""
     case = load(roughness={**STANDARD, **keys})
     return case.roughness, case_surface(case)
 

@@ -11,7 +11,6 @@ from surrogate.formulas.geometry import Contact, hertz
 
 
 def integral(solution, field):
-    """Integrate a field that vanishes on the border."""
     area = (solution.x[1] - solution.x[0]) * (solution.y[1] - solution.y[0])
     return field.sum() * area
 

@@ -123,12 +123,7 @@ def test_dry_contact_is_that_of_an_independent_solver(nominal, raceway):
 
 
 def test_vanishing_roughness_is_the_smooth_contact(nominal, raceway):
-    """
-    A thousandth of the roughness gives the resolved smooth film to 1 %, without contact.
-
-    Surfaces that may touch are solved with another wedge.
-
-    """
+    """A thousandth of the roughness, solved with another wedge, gives the smooth film to 1 %."""
     condition = Condition(load=27.6, entrainment_speed=0.5)
     settings = replace(SETTINGS, nx=129, ny=65)
     fine = solve_contact(*nominal, condition, settings=replace(settings, nx=257))

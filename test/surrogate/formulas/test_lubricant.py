@@ -15,12 +15,7 @@ def test_d341_passes_through_both_anchors():
 
 
 def test_d341_between_the_anchors():
-    """
-    By hand at 65 degC.
-
-    Log log falls from 0.264099 by 3.62445 x 0.033356, so nu is 23.9 mm2/s.
-
-    """
+    """By hand at 65 degC: log log falls from 0.264099 by 3.62445 x 0.033356 to 23.9 mm2/s."""
     assert lubricant.kinematic_viscosity_astm_d341(338.15, 68e-6, 8.7e-6) == pytest.approx(
         23.88e-6, rel=1e-3
     )
@@ -37,12 +32,7 @@ def test_a_warmer_oil_is_thinner_lighter_and_softer(kelvin):
 
 
 def test_roelands_printed_value_and_barus_for_small_pressure():
-    """
-    At 1 GPa.
-
-    Z 0.571713, (6.10204)^z 2.81233, e^(6.85659 x 1.81233) x 0.06 Pa s = 14 958 Pa s.
-
-    """
+    """At 1 GPa Z is 0.571713, (6.10204)^z 2.81233, e^(6.85659 x 1.81233) x 0.06 = 14 958 Pa s."""
     assert lubricant.viscosity_roelands_1966(1e9, 0.06, 2e-8) == pytest.approx(14958, rel=1e-3)
     rise = np.log(lubricant.viscosity_roelands_1966(1.0e3, 0.06, 2e-8) / 0.06)
     assert rise / 1.0e3 == pytest.approx(2e-8, rel=1e-4)

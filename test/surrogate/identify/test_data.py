@@ -13,8 +13,6 @@ WARM = 313.15
 
 @pytest.fixture
 def csv(tmp_path):
-    """Return what writes a CSV and returns its path."""
-
     def write(text):
         path = tmp_path / 'drag.csv'
         path.write_text(text, encoding='utf-8')

@@ -115,7 +115,6 @@ def test_mean_and_spread_over_draws():
 
 
 def line(at, mean):
-    """Return a curve without spread."""
     nothing = np.full(len(at), math.nan)
     return curves.Curve(
         at=np.array(at), mean=np.array(mean), deviation=nothing, error=nothing, draws=1

@@ -22,7 +22,6 @@ def write(folder, *lines, name='surface.csv'):
 
 
 def columns(*values):
-    """Return the lines of a table."""
     return [','.join(repr(float(number)) for number in row) for row in zip(*values, strict=True)]
 
 

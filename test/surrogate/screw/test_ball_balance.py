@@ -294,7 +294,6 @@ def test_absurd_friction_converges_or_says_so(screw, friction, sense):
 
 
 def assert_unknown(found):
-    """Assert that a balance that failed gives no number."""
     assert found.status in (
         BalanceStatus.STALLED,
         BalanceStatus.OUT_OF_RANGE,

@@ -21,7 +21,6 @@ WARM = 313.15
 
 
 def solve(screw, oil, rpm, load, kelvin=WARM):
-    """Solve at rev/min."""
     return closed_form.solve(screw, oil, np.asarray(rpm) * RPM, load, kelvin)
 
 

@@ -187,12 +187,7 @@ def test_energy_holds_whatever_the_roughness_does(settings, load):
 
 
 def test_all_load_on_asperities_is_coulomb_friction():
-    """
-    At rest the torque is that of balls balanced between contacts of that coefficient.
-
-    One nut pushes against the motion, the other with it.
-
-    """
+    """At rest: one nut pushes balls of that coefficient against the motion, the other with it."""
     rest, floor = at(0, 0.0, ROLLING), slip_floor(SCREW, CREEP)
     first, second = (
         coulomb_traction(SCREW, side, SCREW.roughness.asperity_friction, slip_floor=floor)

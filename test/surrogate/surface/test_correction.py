@@ -37,7 +37,6 @@ SOLUTIONS = st.builds(
 
 
 def turn(surface, cell):
-    """Return a cell of the surface."""
     return tuple(number % count for number, count in zip(cell, surface.cells))
 
 
@@ -53,7 +52,6 @@ def place(surface, cell, fractions):
 
 
 def at(where, speed_sign=1.0):
-    """Return the point of a full solve."""
     return SimpleNamespace(
         speed=speed_sign * where[0], opposing_load=where[1], temperature=where[2]
     )

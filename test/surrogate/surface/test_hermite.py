@@ -32,7 +32,6 @@ def curve(nodes, values, breaks=NONE):
 
 
 def interpolate(nodes, values, x, breaks=NONE):
-    """Evaluate at one place."""
     return curve(nodes, values, breaks)(x)
 
 

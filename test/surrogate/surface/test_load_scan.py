@@ -16,7 +16,6 @@ SHIPPED = [Surface.load(shipped_surface(tier=tier)) for tier in ('closed_form', 
 
 
 def scanned(surface, speed, temperature):
-    """Return the scanned loads and their driving torques."""
     scan(surface.tables, speed, temperature)
     return np.array(surface.tables.scan_loads), np.array(surface.tables.scan_torques)
 

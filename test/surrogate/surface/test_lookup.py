@@ -30,17 +30,14 @@ OFF_FLOOR, LEAST_ON_FLOOR = 1.01, 0.9
 
 @pytest.fixture(scope='module')
 def surface(surface_data):
-    """Return the nominal surface, freshly built."""
     return Surface(surface_data)
 
 
 def floor_of(surface):
-    """Return the film floor of the oil [m]."""
     return float(surface.header['inputs']['lubricant']['film_floor'])
 
 
 def node_speed(data, i, j, k):
-    """Return the speed of a node."""
     return math.exp(data.speed_coordinate[i] + data.log_onset[j, k])
 
 

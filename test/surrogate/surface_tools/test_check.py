@@ -18,7 +18,6 @@ DATA = read(shipped_surface(tier='closed_form'))
 
 
 def always():
-    """Tell that there is time."""
     return True
 
 

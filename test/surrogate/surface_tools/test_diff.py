@@ -28,7 +28,6 @@ def coarse(monkeypatch):
 
 
 def scaled(data, **factors):
-    """Return a surface with some fields multiplied."""
     fields = {name: factors.get(name, 1.0) * values for name, values in data.fields.items()}
     return replace(data, fields=fields)
 

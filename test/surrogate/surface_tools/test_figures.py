@@ -25,12 +25,10 @@ def coarse(monkeypatch):
 
 @pytest.fixture(scope='module')
 def part():
-    """Return the surface at 40 degC."""
     return figures.cut(SHIPPED, 313.15)
 
 
 def titles(figure):
-    """Return the titles of the panels."""
     return [axes.get_title() for axes in figure.axes if axes.get_title()]
 
 

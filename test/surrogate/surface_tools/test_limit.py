@@ -14,7 +14,6 @@ from surrogate.surface_tools.limit import limit_error, limit_errors, limit_speed
 
 @pytest.fixture(name='surface')
 def load_surface(surface_data):
-    """Return the surface of formulas."""
     return Surface(surface_data)
 
 
@@ -45,12 +44,7 @@ def test_a_curve_that_is_moved_along_the_speed_is_off_by_as_much(surface, shift)
 
 
 def test_formulas_have_their_limit_within_a_hundredth_of_the_speed(surface_data):
-    """
-    Solved again at random points, the same for one seed; a moved onset is seen.
-
-    The largest is near 2100 N, where another contact becomes the worst one.
-
-    """
+    """The largest is near 2100 N, where another contact becomes the worst; a moved one is seen."""
     found = list(limit_errors(surface_data, 8, 1, lambda: True))
     assert len(found) == 8
     assert max(abs(one.error) for one in found) < 1e-2

@@ -23,8 +23,6 @@ CLOSED_FORM = shipped_surface(tier='closed_form')
 
 @pytest.fixture
 def query(run, capsys):
-    """Return the function that gives the JSON of a point."""
-
     def answer(*words):
         assert run(*words, '--json') in (0, 1)
         return json.loads(capsys.readouterr().out)

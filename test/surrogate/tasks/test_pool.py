@@ -110,7 +110,6 @@ def tasks(tmp_path_factory):
 
 @pytest.fixture(scope='module')
 def pool(tasks):
-    """Return a pool of two workers for tests that need no other one."""
     with open_pool(2) as workers:
         yield workers
 
@@ -145,7 +144,6 @@ def killer(pipes, seen):
 
 
 def numbers(count):
-    """Return inputs of many small tasks."""
     return {f'task {number}': {'x': number / 7} for number in range(count)}
 
 

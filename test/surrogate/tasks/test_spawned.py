@@ -15,13 +15,11 @@ DEADLINE = 600.0  # [s] which only ends a hang
 
 @pytest.fixture
 def began():
-    """Return the list of what was begun."""
     return []
 
 
 @pytest.fixture
 def workers(began):
-    """Return two workers."""
     with SpawnedWorkers(2, lambda arguments, worker: began.append((arguments, worker))) as pool:
         yield pool
 

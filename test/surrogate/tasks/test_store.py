@@ -44,7 +44,6 @@ def bits(value):
 
 
 def filled(out, number=3):
-    """Keep some results and return the bytes of the file."""
     with TaskStore(out, WORK) as store:
         for one in range(number):
             store.put(f'key{one}', {'rcs': one / 3})

@@ -32,13 +32,11 @@ def written():
 
 
 def contents(found):
-    """Return the messages in their order."""
     ends = found.begin + found.size
     return [found.data[begin:end] for begin, end in zip(found.begin, ends)]
 
 
 def change(stream, at, data):
-    """Write over some bytes of a file."""
     stream.seek(at)
     stream.write(data)
 

@@ -1,11 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""
-The entries of a bag are what its messages say one by one, in the same order.
-
-They are put into order by arrays as one by one.
-
-"""
+"""Entries put into order by arrays are what the messages of a bag say one by one."""
 
 import heapq
 import itertools
@@ -183,7 +178,6 @@ def alone(bag, axes):
 
 
 def at_once(bag, axes):
-    """Return the batches of entries."""
     return list(ordered_entries(bag, axes, PERIOD, on_done=lambda share: None))
 
 
@@ -240,7 +234,6 @@ def test_files_that_overlap_and_chunks_out_of_order(tmp_path, axes, monkeypatch)
 
 
 def damaged(path, at):
-    """Change one byte of a file."""
     data = bytearray(path.read_bytes())
     data[at] ^= 0x55
     path.write_bytes(data)

@@ -11,7 +11,6 @@ LEAD_MM = 10.0
 
 
 def mill_columns(rows=ROWS):
-    """Return the columns of the log by name."""
     time = np.arange(rows) / RATE
     columns = {}
     for number, axis in enumerate('XYZ'):
@@ -54,11 +53,9 @@ def mill_log(tmp_path):
 
 @pytest.fixture(scope='session')
 def write_csv():
-    """Return the function that writes columns as a CSV file."""
     return write_table
 
 
 @pytest.fixture(scope='session')
 def mill():
-    """Return the function that makes the columns of the log."""
     return mill_columns

@@ -73,7 +73,6 @@ def check_every_sample(bag, rows):
 
 @pytest.fixture(scope='module')
 def mill_bag(tmp_path_factory, write_csv, mill):
-    """Return the bag of the small log."""
     folder = tmp_path_factory.mktemp('mill')
     return converted(write_csv(folder / 'mill.csv', mill()), folder / 'bag')
 

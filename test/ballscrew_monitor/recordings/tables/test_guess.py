@@ -15,8 +15,6 @@ SPEED = 100.0 * np.sin(TIME)
 
 @pytest.fixture
 def guessed(tmp_path, write_csv):
-    """Return a function that guesses at a log of columns."""
-
     def make(columns, **how):
         return guess(write_csv(tmp_path / 'log.csv', columns, **how))
 

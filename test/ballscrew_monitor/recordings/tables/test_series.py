@@ -24,7 +24,6 @@ AXIS = {'lead_mm': 10.0, 'speed': {'column': 'v', 'unit': 'mm/s'}}
 
 
 def joined(series):
-    """Return all rows of a series at once."""
     blocks = list(series.blocks())
     axes = [
         types.SimpleNamespace(
@@ -60,7 +59,6 @@ def read(tmp_path, write_csv, request, monkeypatch):
 
 @pytest.fixture
 def small_reads(monkeypatch):
-    """Let tables be read a hundred rows at a time."""
     monkeypatch.setattr(read_module, 'BLOCK', 100)
 
 

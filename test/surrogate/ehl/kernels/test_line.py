@@ -21,7 +21,6 @@ def make_planes():
 
 
 def marked(*nodes):
-    """Return a mask of nodes."""
     mask = np.zeros(SHAPE, bool)
     for node in nodes:
         mask[node] = True
@@ -76,7 +75,6 @@ CONTACTS = {
 
 
 def inner(field):
-    """Return a field without its border."""
     return field[1:-1, 1:-1]
 
 

@@ -28,13 +28,11 @@ def march(raceway, strip=LINE, transits=1.0, **settings):
 
 
 def flat(x, y):
-    """Return a raceway without roughness."""
     return 0.0 * x * y
 
 
 @pytest.fixture(scope='module')
 def smooth():
-    """Return the march of the smooth strip."""
     return march(flat)
 
 

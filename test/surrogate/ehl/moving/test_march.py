@@ -14,7 +14,6 @@ from surrogate.ehl.newton import solve_grid
 
 
 def flat(x, y):
-    """Return a raceway without roughness."""
     return 0.0 * x * y
 
 
