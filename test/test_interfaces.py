@@ -59,9 +59,8 @@ def test_zero_is_unknown_in_every_enumeration():
     numbers = constants()
     kinds = {name.split('_')[0] for name in numbers if not name.startswith('MAX_')}
     assert kinds == ENUMERATIONS
-    assert {f'{kind}_UNKNOWN' for kind in kinds} == {
-        name for name, value in numbers.items() if value == 0
-    }
+    expected = {name for name, value in numbers.items() if value == 0}
+    assert {f'{kind}_UNKNOWN' for kind in kinds} == expected
 
 
 @pytest.mark.parametrize('kind', sorted(ENUMERATIONS))
@@ -73,9 +72,8 @@ def test_values_of_an_enumeration_are_consecutive(kind):
 def test_all_interfaces_are_generated():
     named = re.findall(r'"(\w+/\w+\.\w+)"', (TREE / 'msg_defs' / 'CMakeLists.txt').read_text())
     assert named == [str(path.relative_to(TREE / 'msg_defs')) for path in SOURCES]
-    assert list(RECORD['hashes']) == [
-        f'ballscrew_msgs/{path.parent.name}/{path.stem}' for path in SOURCES
-    ]
+    expected = [f'ballscrew_msgs/{path.parent.name}/{path.stem}' for path in SOURCES]
+    assert list(RECORD['hashes']) == expected
 
 
 @pytest.mark.parametrize('source', SOURCES, ids=lambda path: path.name)

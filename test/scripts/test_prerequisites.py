@@ -93,10 +93,8 @@ def test_root_gets_what_is_missing(machine, tmp_path):
         }
     )
     assert (done.returncode, done.stdout) == (0, f'{BASE}\n')
-    assert (tmp_path / 'asked').read_text().splitlines() == [
-        'update',
-        'install -y --no-install-recommends g++',
-    ]
+    expected = ['update', 'install -y --no-install-recommends g++']
+    assert (tmp_path / 'asked').read_text().splitlines() == expected
 
 
 def test_failing_apt_is_said(machine, says):
@@ -111,8 +109,5 @@ def test_failing_apt_is_said(machine, says):
         }
     )
     assert done.returncode == 2
-    assert done.stderr.splitlines() == [
-        'set-up: installing make',
-        'no network',
-        says('set_up_apt'),
-    ]
+    expected = ['set-up: installing make', 'no network', says('set_up_apt')]
+    assert done.stderr.splitlines() == expected

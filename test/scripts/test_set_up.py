@@ -85,11 +85,8 @@ def test_a_change_repeats_its_step_and_a_new_environment_all(set_up):
 
 
 def test_interruption_is_made_good(set_up, capsys, says):
-    assert set_up(raises={'interfaces': KeyboardInterrupt()}) == [
-        '130',
-        'environment',
-        'interfaces',
-    ]
+    expected = ['130', 'environment', 'interfaces']
+    assert set_up(raises={'interfaces': KeyboardInterrupt()}) == expected
     assert capsys.readouterr().err == says('set_up_interrupted')
     assert set_up() == ['0', 'interfaces', 'bag']
     set_up(interfaces='changed', raises={'interfaces': KeyboardInterrupt()})

@@ -28,15 +28,10 @@ def test_point_as_json(record):
     assert found['tier'] == 'closed_form'
     assert found['efficiency'] == pytest.approx(0.934, abs=2e-3)
     assert found['entrainment_speed_m_s'] == pytest.approx(0.49657, abs=1e-5)
-    assert found['driving_torque_Nm'] == pytest.approx(
-        10 / (2 * np.pi) + found['friction_torque_Nm']
-    )
-    assert [(c['nut'], c['side']) for c in found['contacts']] == [
-        ('loaded', 'screw'),
-        ('loaded', 'nut'),
-        ('relieved', 'screw'),
-        ('relieved', 'nut'),
-    ]
+    expected = 10 / (2 * np.pi) + found['friction_torque_Nm']
+    assert found['driving_torque_Nm'] == pytest.approx(expected)
+    wanted = [('loaded', 'screw'), ('loaded', 'nut'), ('relieved', 'screw'), ('relieved', 'nut')]
+    assert [(c['nut'], c['side']) for c in found['contacts']] == wanted
     assert found['normal_force_loaded_N'] > 27.6 > found['normal_force_relieved_N']
     assert found['regime'] == 'mixed'
 

@@ -53,9 +53,8 @@ def test_a_log_gets_a_line_per_tenth_or_minute():
     assert len(lines) == 10
     assert lines[0] == '100/1000 solves, 100 per s, 9 s left'
     assert lines[-1].startswith('1000/1000 solves')
-    assert (
-        run(io.StringIO(), 1000, 40.0).splitlines()[0] == '2/1000 solves, 40 s each, 11.1 h left'
-    )
+    expected = '2/1000 solves, 40 s each, 11.1 h left'
+    assert run(io.StringIO(), 1000, 40.0).splitlines()[0] == expected
 
 
 def test_what_was_there_does_not_count_for_the_rate():

@@ -105,9 +105,8 @@ def test_a_page_about_the_current_point_is_for_a_person(node, says):
     lines = out.splitlines()
     assert lines[0].startswith('axis x: Solved')
     assert lines[1].split() == ['full', 'solve', 'surface']
-    assert [line.split()[0] for line in lines[2:9]] == [
-        *('efficiency', 'RCS', 'asperity', 'film', 'central', 'friction', 'driving')
-    ]
+    expected = [*('efficiency', 'RCS', 'asperity', 'film', 'central', 'friction', 'driving')]
+    assert [line.split()[0] for line in lines[2:9]] == expected
     assert lines[-1] == says('surface_corrected')
 
 

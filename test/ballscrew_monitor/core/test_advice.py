@@ -37,12 +37,10 @@ def test_a_border_is_found_from_its_optimal_side_and_the_load_keeps_its_sense(co
 
 def test_the_nearer_of_two_borders_wins(core):
     surface = core.surface(rcs=lambda speed, load: 0.0 if speed < 8.0 or speed > 50.0 else 1.0)
-    assert advise(core.point(speed=10.0), surface, core.limits()).target_speed == pytest.approx(
-        8.0
-    )
-    assert advise(core.point(speed=45.0), surface, core.limits()).target_speed == pytest.approx(
-        50.0
-    )
+    found = advise(core.point(speed=10.0), surface, core.limits()).target_speed
+    assert found == pytest.approx(8.0)
+    made = advise(core.point(speed=45.0), surface, core.limits()).target_speed
+    assert made == pytest.approx(50.0)
 
 
 @pytest.mark.parametrize(
@@ -78,9 +76,8 @@ def test_advice_as_a_sentence(core, says):
 
 def test_an_optimal_point_is_its_own_advice(core):
     point = core.point(speed=7.0, axial_load=-600.0)
-    assert advise(point, core.surface(), core.limits()) == Advice(
-        target_speed=7.0, target_load=-600.0
-    )
+    expected = Advice(target_speed=7.0, target_load=-600.0)
+    assert advise(point, core.surface(), core.limits()) == expected
 
 
 @pytest.mark.parametrize('sign', [1.0, -1.0])

@@ -61,9 +61,8 @@ def test_joints_are_found_by_name_and_other_joints_and_short_arrays_are_told_apa
     read = compile_field('velocity[robot.x]', JointState)  # a dot in its name
     assert read(joints('robot', 'robot.x', velocity=[1.0, 2.0])) == 2.0
     read = compile_field('velocity[x_axis]', JointState)
-    assert read(joints('y_axis', velocity=[1.0])) == fields.OtherJoints(
-        'velocity', 'x_axis', ('y_axis',)
-    )
+    expected = fields.OtherJoints('velocity', 'x_axis', ('y_axis',))
+    assert read(joints('y_axis', velocity=[1.0])) == expected
     assert read(joints('x_axis')) == fields.TooShort('velocity', 'x_axis', 0)
     short = compile_field('position[3]', JointState)(joints('x_axis'))
     assert short == fields.TooShort('position', '3', 0)

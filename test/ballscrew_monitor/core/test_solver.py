@@ -72,9 +72,8 @@ def test_one_after_another_in_the_order_in_which_they_came(world):
     for now, one in enumerate(jobs, start=1):
         assert process.sent[-1] == {'solve': one.request}
         process.out = [{'solved': {'rcs': 0.5}}]
-        assert solver.poll(float(now)) == [
-            Done(job=one, end=End.SOLVED, result={'rcs': 0.5}, wall_time=1.0)
-        ]
+        expected = [Done(job=one, end=End.SOLVED, result={'rcs': 0.5}, wall_time=1.0)]
+        assert solver.poll(float(now)) == expected
     assert not solver.busy
 
 

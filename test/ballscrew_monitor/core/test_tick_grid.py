@@ -18,10 +18,8 @@ def test_a_clock_that_is_set_back_is_ticked_on_at_once():
     ticks = TickGrid(PERIOD)
     begin = 2 * HOUR
     assert ticks.tick(begin) == begin
-    assert [ticks.tick(begin - HOUR + step) for step in (100, 200)] == [
-        begin - HOUR + 100,
-        begin - HOUR + 200,
-    ]
+    expected = [begin - HOUR + 100, begin - HOUR + 200]
+    assert [ticks.tick(begin - HOUR + step) for step in (100, 200)] == expected
 
 
 def test_for_how_long_the_clock_has_stood():

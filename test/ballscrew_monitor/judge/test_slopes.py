@@ -68,9 +68,8 @@ def assert_line(ring, samples, scale):
     span = max(newest[-1][0] - newest[0][0], 1) / SECOND
     tolerance = {'rel': 1e-12, 'abs': 4e-12 * scale / min(span, 1.0), 'nan_ok': True}
     assert slope_of(ring) == pytest.approx(slope, **tolerance)
-    assert slope_change(ring, WINDOW) == pytest.approx(
-        abs(least_squares(newest) - slope), **tolerance
-    )
+    expected = abs(least_squares(newest) - slope)
+    assert slope_change(ring, WINDOW) == pytest.approx(expected, **tolerance)
 
 
 @given(SAMPLES, st.floats(-10.0, 10.0))

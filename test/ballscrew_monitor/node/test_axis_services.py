@@ -51,10 +51,8 @@ def test_an_axis_is_served_by_itself(two):
     node, publish, surface = two
     answers = [node.call(Trigger, f'x/{name}') for name in ('acknowledge', 'reset_totals')]
     assert [answer.success for answer in answers] == [True, True]
-    assert [answer.message for answer in answers] == [
-        'acknowledged of x',
-        'set the totals to zero of x',
-    ]
+    expected = ['acknowledged of x', 'set the totals to zero of x']
+    assert [answer.message for answer in answers] == expected
     state = last_after(node, publish)
     assert (state['x'].event_id, state['y'].event_id) == (2, 1)
     assert state['x'].totals.running_time < state['y'].totals.running_time

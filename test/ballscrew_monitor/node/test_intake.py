@@ -340,10 +340,8 @@ def test_an_open_input_takes_the_type_of_its_publisher(bench):
     assert list(bench.intake.topics) == ['/late']
     late.publish(Float64(data=5.0))
     bench.until(lambda: len(bench.taken) == 2)
-    assert {(event.source, event.value) for event in bench.taken} == {
-        (Source.SPEED, 5.0),
-        (Source.TORQUE, 5.0),
-    }
+    expected = {(Source.SPEED, 5.0), (Source.TORQUE, 5.0)}
+    assert {(event.source, event.value) for event in bench.taken} == expected
 
 
 def test_an_open_input_whose_field_is_not_in_the_type_says_so_and_waits_on(bench):

@@ -74,9 +74,8 @@ def test_what_is_written_is_found_again(make, tmp_path):
     database.close()
     assert {path.name for path in tmp_path.iterdir()} == {'lock', FILE}
     found = make().found
-    assert {key: one.row() for key, one in found.items()} == {
-        key: one.row() for key, one in records.items()
-    }
+    expected = {key: one.row() for key, one in records.items()}
+    assert {key: one.row() for key, one in found.items()} == expected
 
 
 def test_a_second_node_waits_until_the_first_is_gone(make, tmp_path):

@@ -157,9 +157,8 @@ def test_the_curves_of_the_layouts_are_numbers_over_a_growing_time(written, read
     states = [message for topic, message in read(directory) if topic == STATE]
     wanted = [message for topic, message in messages if topic == STATE]
     for path in re.findall(rf'"{STATE}\.([\w.]+)"', LAYOUT.read_text()):
-        assert [number(state, path) for state in states] == [
-            number(state, path) for state in wanted
-        ]
+        expected = [number(state, path) for state in wanted]
+        assert [number(state, path) for state in states] == expected
     assert [stamp_of(state) for state in states] == [stamp_of(state) for state in wanted]
 
 

@@ -89,10 +89,8 @@ def test_it_reads_back():
     reader = make_reader(io.BytesIO(ours(True, at_once)), validate_crcs=True)
     found = [(channel.topic, one.data) for _, channel, one in reader.iter_messages()]
     assert len(found) == COUNT
-    assert sorted(found) == sorted(
-        (TOPICS[number - 1], content) for number, content in zip(NUMBERS, CONTENTS)
-    )
+    expected = sorted((TOPICS[number - 1], content) for number, content in zip(NUMBERS, CONTENTS))
+    assert sorted(found) == expected
     statistics = reader.get_summary().statistics
-    assert statistics.channel_message_counts == {
-        number: int((NUMBERS == number).sum()) for number in (1, 2, 3)
-    }
+    wanted = {number: int((NUMBERS == number).sum()) for number in (1, 2, 3)}
+    assert statistics.channel_message_counts == wanted

@@ -83,11 +83,8 @@ def test_samples_are_taken_by_stamp_and_the_load_before_the_speed(tmp_path):
         (times[2] + 2, speed_message(times[1], 20.0)),
         (times[2] + 3, load_message(times[1], -2.0)),
     )
-    assert judged(bag) == [
-        (times[0], 10.0, -1.0, 1),
-        (times[1], 20.0, -2.0, 2),
-        (times[2], 30.0, -3.0, 3),
-    ]
+    expected = [(times[0], 10.0, -1.0, 1), (times[1], 20.0, -2.0, 2), (times[2], 30.0, -3.0, 3)]
+    assert judged(bag) == expected
 
 
 def test_the_end_of_the_data_is_seen_on_the_grid_of_ticks(tmp_path):

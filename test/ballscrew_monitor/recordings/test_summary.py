@@ -43,11 +43,8 @@ def summary_of(event=None, **totals):
 def test_a_summary_has_the_last_totals_and_each_event_once(says):
     summary = make_summary()
     assert (summary.states, summary.judged, summary.running_time) == (2, 1000, 8.0)
-    assert summary.lines()[:3] == [
-        says('motion_8_0'),
-        says('regime_boundary_0'),
-        says('zone_optimal_6'),
-    ]
+    expected = [says('motion_8_0'), says('regime_boundary_0'), says('zone_optimal_6')]
+    assert summary.lines()[:3] == expected
     events = make_summary().lines()[3:]
     assert events == ['events      2', says('1_3_0'), says('2_6_0')]
     assert [summary.span(event) for event in summary.events] == [(3.0, 5.0), (6.0, 10.0)]

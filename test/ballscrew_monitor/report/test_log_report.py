@@ -41,17 +41,11 @@ def reported(short_bag, params, tmp_path_factory):
 
 def test_all_products_are_there_and_nothing_else(reported):
     result, out = reported
-    assert sorted(path.name for path in out.iterdir()) == [
-        'events.csv',
-        'judged',
-        'report.html',
-        'states.parquet',
-        'summary.json',
-    ]
+    expected = ['events.csv', 'judged', 'report.html', 'states.parquet', 'summary.json']
+    assert sorted(path.name for path in out.iterdir()) == expected
     assert result.judged
-    assert [(line.axis, line.standing, line.warnings) for line in result.lines] == [
-        ('x', 'bad', 1)
-    ]
+    wanted = [('x', 'bad', 1)]
+    assert [(line.axis, line.standing, line.warnings) for line in result.lines] == wanted
 
 
 def test_states_are_all_samples_of_the_speed(reported, short_bag):
@@ -117,9 +111,8 @@ def test_the_judged_bag_says_of_what_log_it_is(short_bag, params, tmp_path):
     bag.metadata = own | {'robot': 'press 7'}
     report_log(bag, tmp_path, parameters_for(bag, None, params))
     found = Bag(tmp_path / 'judged').metadata
-    assert {key: text.strip() for key, text in found.items()} == {
-        key: text.strip() for key, text in own.items()
-    }
+    expected = {key: text.strip() for key, text in own.items()}
+    assert {key: text.strip() for key, text in found.items()} == expected
 
 
 def test_the_judged_bag_carries_the_parameters_it_was_judged_with(short_bag, params, tmp_path):
@@ -229,10 +222,8 @@ def test_events_are_a_line_each_and_none_is_a_table_without_lines(judged, tmp_pa
     write_events(tmp_path / 'events.csv', judged.log(case))
     with (tmp_path / 'events.csv').open(newline='', encoding='utf-8') as file:
         rows = list(csv.DictReader(file))
-    assert [(row['axis'], row['event_id'], row['active']) for row in rows] == [
-        ('x', '1', 'False'),
-        ('x', '2', 'True'),
-    ]
+    expected = [('x', '1', 'False'), ('x', '2', 'True')]
+    assert [(row['axis'], row['event_id'], row['active']) for row in rows] == expected
     assert float(rows[1]['start_s']) == 0.5
     assert [float(rows[0][name]) for name in ('speed_rad_s', 'axial_load_N')] == [45.0, -1200.0]
     assert (rows[0]['target_speed_rad_s'], rows[0]['target_load_N']) == ('60.0', 'nan')

@@ -60,14 +60,8 @@ def test_panels_and_numbers_are_those_of_the_page(judged):
     bars, strips = strips_of(judged, case)
     assert [text.get_text() for text in bars.texts] == ['7']
     assert bars.texts[0].get_position()[0] == pytest.approx(0.4)
-    assert [title.split()[0] for title in strips] == [
-        'Screw',
-        'Axial',
-        'Oil',
-        'Efficiency,',
-        'Film',
-        'RCS:',
-    ]
+    expected = ['Screw', 'Axial', 'Oil', 'Efficiency,', 'Film', 'RCS:']
+    assert [title.split()[0] for title in strips] == expected
     load = strips['Axial load, positive along the axis [N]']
     np.testing.assert_array_equal(load.lines[0].get_ydata(), judged.columns().axial_load)
     (shade,) = load.patches

@@ -47,10 +47,8 @@ def test_an_axis_of_which_only_standstill_was_judged_says_so(judged, says):
     first, verdict, *_ = log_lines(judged.log(case))
     assert first == says('80_speed_samples')
     assert verdict.endswith(says('0_2_s'))
-    assert lines_of(case, 'not judged') == [
-        '0.79 s: the screw stands still',
-        '0.2 s: no valid sample of the load',
-    ]
+    expected = ['0.79 s: the screw stands still', '0.2 s: no valid sample of the load']
+    assert lines_of(case, 'not judged') == expected
 
 
 def test_lines_of_an_axis_that_is_well_has_gaps_warns_or_has_no_rows(judged, says):

@@ -92,8 +92,5 @@ def test_torque_is_compared_by_direction(judged):
             block, direction=directions, motor_torque=torque, machine_torque=machine
         )
     ).torque
-    assert (found.count, found.forward, found.backward) == (
-        100,
-        pytest.approx(0.2),
-        pytest.approx(-0.4),
-    )
+    expected = (100, pytest.approx(0.2), pytest.approx(-0.4))
+    assert (found.count, found.forward, found.backward) == expected

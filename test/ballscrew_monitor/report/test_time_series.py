@@ -107,11 +107,8 @@ def test_codes_are_ordered_by_how_bad_they_are(judged):
         regime=[3, 2, 1],
     )
     codes = codes_of(rows_of(judged.case([block]), block, ()))
-    assert {key: found.tolist() for key, found in codes.items()} == {
-        'regime': [1, 2, 3],
-        'zone': [2, 3, 4],
-        'level': [1, 2, 3],
-    }
+    expected = {'regime': [1, 2, 3], 'zone': [2, 3, 4], 'level': [1, 2, 3]}
+    assert {key: found.tolist() for key, found in codes.items()} == expected
 
 
 def test_temperature_is_in_degrees_celsius(judged):

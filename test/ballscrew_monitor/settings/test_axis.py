@@ -166,9 +166,7 @@ def test_live_parameters_and_a_new_surface_are_taken_over_at_once():
 def test_what_is_plausible_is_stated_or_three_times_the_surface():
     axis = build()
     fastest, load = axis.surface.speed_range[1], axis.surface.load_range[1]
-    assert axis.monitor.settings.plausible == {
-        Source.SPEED: 3.0 * fastest,
-        Source.LOAD: 3.0 * load,
-    }
+    expected = {Source.SPEED: 3.0 * fastest, Source.LOAD: 3.0 * load}
+    assert axis.monitor.settings.plausible == expected
     stated = build(limits__plausible_speed=300.0, limits__plausible_load=5e3)
     assert stated.monitor.settings.plausible == {Source.SPEED: 300.0, Source.LOAD: 5e3}

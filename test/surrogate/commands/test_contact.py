@@ -122,11 +122,8 @@ def test_pictures(run, small, tmp_path):
     pytest.importorskip('matplotlib')
     folder = tmp_path / 'deep' / 'plots'
     assert run(small, '--plot', folder) == 0
-    assert sorted(path.name for path in folder.iterdir()) == [
-        'contact_3d.png',
-        'contact_maps.png',
-        'contact_profiles.png',
-    ]
+    expected = ['contact_3d.png', 'contact_maps.png', 'contact_profiles.png']
+    assert sorted(path.name for path in folder.iterdir()) == expected
 
 
 def test_pictures_that_cannot_be_made(run, small, tmp_path, monkeypatch, refused):

@@ -35,9 +35,8 @@ def test_json_is_strict_and_whole(run, capsys, data):
     assert run(data, '--json') == 0
     record = json.loads(capsys.readouterr().out)
     values = {one['name']: one['value'] for one in record['parameters']}
-    assert values == pytest.approx(
-        {'parasitic_torque': 0.12, 'parasitic_torque_rate': 4e-4, 'torque_offset': 0.03}, abs=1e-9
-    )
+    expected = {'parasitic_torque': 0.12, 'parasitic_torque_rate': 4e-4, 'torque_offset': 0.03}
+    assert values == pytest.approx(expected, abs=1e-9)
     assert record['points'] == 10
     assert record['temperature_K'] == pytest.approx(313.15)
     assert record['data'] == 'drag.csv'

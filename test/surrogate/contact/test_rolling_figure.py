@@ -33,11 +33,8 @@ def test_three_panels(marched):
     assert lines['film at the centre'].get_xdata()[-1] == pytest.approx(solution.transits)
     assert lines['floor 3 nm'].get_ydata()[0] == pytest.approx(3.0)
     assert lines['next place'].get_xdata()[0] == pytest.approx(solution.transits / 2)
-    assert [found[letter].get_ylabel() for letter in ('(a)', '(b)', '(c)')] == [
-        'y across the track [µm]',
-        'RCS per semi-axis [%]',
-        'film [nm]',
-    ]
+    expected = ['y across the track [µm]', 'RCS per semi-axis [%]', 'film [nm]']
+    assert [found[letter].get_ylabel() for letter in ('(a)', '(b)', '(c)')] == expected
 
 
 def test_a_strip_has_two_lines_for_its_zone(rolling_case):

@@ -34,9 +34,8 @@ def test_the_record_is_strict_json_of_the_march(rolling_case, marched, says):
     solution, surface = marched
     record = rolling_record(rolling_case, solution, surface)
     assert record['film_ratio'] == pytest.approx(solution.central_film / 0.1e-6)
-    assert record['memory_length_m'] == pytest.approx(
-        solution.memory * solution.x_nodes[-1] / solution.x[-1], rel=1e-6
-    )
+    expected = solution.memory * solution.x_nodes[-1] / solution.x[-1]
+    assert record['memory_length_m'] == pytest.approx(expected, rel=1e-6)
     assert record['thin_film_m'] == [1e-9, 3e-9, 5e-9, 10e-9]
     assert np.all(np.diff(record['thin_share']) >= 0)
     assert record['rcs'] >= record['asperity_share'] > 0

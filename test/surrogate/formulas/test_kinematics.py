@@ -19,15 +19,12 @@ def test_kinematics_table(table, screw):
     rates = no_slip_rates(screw)
     for row in table('kinematics.csv'):
         speed = float(row['speed_rpm']) * math.pi / 30
-        assert entrainment_speed_paper(screw, speed) * 1e3 == pytest.approx(
-            float(row['paper_entrainment_mm_s']), abs=0.006
-        )
-        assert rates.entrainment * speed * 1e3 == pytest.approx(
-            float(row['entrainment_mm_s']), abs=0.006
-        )
-        assert rates.helical_slip * speed * 1e3 == pytest.approx(
-            float(row['helical_slip_per_contact_mm_s']), abs=0.006
-        )
+        expected = float(row['paper_entrainment_mm_s'])
+        assert entrainment_speed_paper(screw, speed) * 1e3 == pytest.approx(expected, abs=0.006)
+        wanted = float(row['entrainment_mm_s'])
+        assert rates.entrainment * speed * 1e3 == pytest.approx(wanted, abs=0.006)
+        found = rates.helical_slip * speed * 1e3
+        assert found == pytest.approx(float(row['helical_slip_per_contact_mm_s']), abs=0.006)
         assert rates.orbit * speed == pytest.approx(float(row['orbit_rate_rad_s']), abs=6e-4)
         assert rates.rolling * speed == pytest.approx(float(row['rolling_rate_rad_s']), rel=5e-4)
 
@@ -62,9 +59,8 @@ def test_entrainment_is_the_mean_of_both_surfaces(screw):
     """Entrainment r_m (1 - g^2)/(2 cos alpha) is 1.2 % below the published w r_m/2."""
     g = curvature_ratio(screw)
     exact = no_slip_rates(screw).entrainment
-    assert exact == pytest.approx(
-        screw.pitch_radius * (1 - g**2) / (2 * math.cos(helix_angle(screw))), rel=1e-14
-    )
+    expected = screw.pitch_radius * (1 - g**2) / (2 * math.cos(helix_angle(screw)))
+    assert exact == pytest.approx(expected, rel=1e-14)
     assert exact / entrainment_speed_paper(screw, 1.0) == pytest.approx(0.988, abs=5e-4)
 
 

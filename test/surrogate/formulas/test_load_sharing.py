@@ -29,9 +29,8 @@ def test_preload_sharing_table(table):
 def test_both_equations_hold(ratio, preload):
     loaded, relieved = nut_forces(ratio * preload, preload)
     assert loaded - relieved == pytest.approx(abs(ratio) * preload, rel=1e-9, abs=1e-9 * preload)
-    assert loaded ** (2 / 3) + relieved ** (2 / 3) == pytest.approx(
-        2 * preload ** (2 / 3), rel=1e-9
-    )
+    expected = 2 * preload ** (2 / 3)
+    assert loaded ** (2 / 3) + relieved ** (2 / 3) == pytest.approx(expected, rel=1e-9)
 
 
 @given(st.floats(1.0, 10.0))

@@ -63,9 +63,8 @@ def test_slope_is_the_derivative(friction, load, sign):
     step, load = 1e-4 * friction, sign * load
     low, high = (laws.efficiency(friction + side * step, load, LEAD) for side in (-1, 1))
     if low > 0 and high > 0:
-        assert laws.efficiency_slope(friction, load, LEAD) == pytest.approx(
-            (low - high) / (2 * step), rel=1e-3
-        )
+        expected = (low - high) / (2 * step)
+        assert laws.efficiency_slope(friction, load, LEAD) == pytest.approx(expected, rel=1e-3)
 
 
 def test_efficiencies_that_are_unknown_zero_or_one():
@@ -100,7 +99,6 @@ def test_no_float_of_the_load_raises(friction, load, sign):
 def test_catalogue_drag(screw):
     """0.05 (tan alpha)^-0.5 F L/(2 pi) is 0.25 N m for the nominal nut."""
     found = laws.drag_torque_catalogue(screw.preload, screw.lead, helix_angle(screw))
-    assert found == pytest.approx(
-        0.05 / math.sqrt(math.tan(helix_angle(screw))) * 990 * 0.01 / 6.2832, rel=1e-4
-    )
+    expected = 0.05 / math.sqrt(math.tan(helix_angle(screw))) * 990 * 0.01 / 6.2832
+    assert found == pytest.approx(expected, rel=1e-4)
     assert found == pytest.approx(0.250, abs=1e-3)

@@ -45,9 +45,8 @@ def test_a_surface_of_formulas_is_solved_as_its_screw_is():
     found = solve_point(request(HEADER | {'tier': 'closed_form'}))
     point = OperatingPoint(speed=6.0, load=500.0, temperature=313.15)
     alone = solve_screw(SCREW, OIL, point)
-    assert {name: found.means[name] for name in FIELDS} == {
-        name: getattr(alone, name) for name in FIELDS
-    }
+    expected = {name: getattr(alone, name) for name in FIELDS}
+    assert {name: found.means[name] for name in FIELDS} == expected
     assert found.worst_contact == alone.worst_contact
     assert found.status == alone.status
     run_in = HEADER['inputs'] | {'screw': asdict(with_raceway(SCREW, state='run_in'))}

@@ -136,9 +136,8 @@ def test_constant_friction_is_that_of_the_table(table):
     screw = replace(SCREW, preload=1000.0)
     for load in (0.5, 1.0, 2.0):
         expected = float(row[f'eta_at_{load:g}_preload'])
-        assert curves.constant_friction_efficiency(screw, 1000.0 * load) == pytest.approx(
-            expected, abs=1e-3
-        )
+        found = curves.constant_friction_efficiency(screw, 1000.0 * load)
+        assert found == pytest.approx(expected, abs=1e-3)
 
 
 def test_the_map_is_a_grid():

@@ -102,10 +102,8 @@ def test_table_and_summary():
         judged.Trend(name='one', published='falls', standing=no, rolling=yes),
         judged.Trend(name='two', published='rises', standing=None, rolling=no),
     ]
-    assert judged.trend_table(found).splitlines()[2:] == [
-        '| one | falls | b | no | a | yes |',
-        '| two | rises |  |  | b | no |',
-    ]
+    expected = ['| one | falls | b | no | a | yes |', '| two | rises |  |  | b | no |']
+    assert judged.trend_table(found).splitlines()[2:] == expected
     assert judged.summary(found).splitlines() == [
         '* Rolling roughness, agree: one.',
         '* Rolling roughness, agree in part: none.',

@@ -145,9 +145,8 @@ def test_a_shift_moves_the_place_to_the_centre(x, y, seed):
     raw = fractal_surface(COARSE, seed)
     for surface in (raw, take_patch(raw, 'rescaled', HERTZ, COARSE.rms)):
         moved = shifted(surface, x, y)
-        assert moved.heights([1e-5], [2e-5])[0, 0] == pytest.approx(
-            surface.heights([x + 1e-5], [y + 2e-5])[0, 0], rel=1e-6, abs=1e-14
-        )
+        expected = surface.heights([x + 1e-5], [y + 2e-5])[0, 0]
+        assert moved.heights([1e-5], [2e-5])[0, 0] == pytest.approx(expected, rel=1e-6, abs=1e-14)
 
 
 def test_a_lay_runs_along_its_direction():

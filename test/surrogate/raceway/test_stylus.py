@@ -88,9 +88,8 @@ def test_a_sampled_wave_has_the_expected_rms_and_slope(wavelength, angle):
     period = wavelength / math.cos(angle) / SPACING
     whole = rough[: round(int(len(rough) / period) * period)]
     reading = stylus.read_waves(2 * math.pi * math.cos(angle) / wavelength, BAND)
-    assert stylus.profile_rms(whole) == pytest.approx(
-        1e-7 * math.sqrt(reading.height / 2), rel=0.01
-    )
+    expected = 1e-7 * math.sqrt(reading.height / 2)
+    assert stylus.profile_rms(whole) == pytest.approx(expected, rel=0.01)
     slope = math.atan(1e-7 * math.sqrt(reading.slope / 2))
     assert stylus.profile_rms_slope(whole, SPACING) == pytest.approx(slope, rel=0.01)
 

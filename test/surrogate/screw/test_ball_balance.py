@@ -294,11 +294,8 @@ def test_absurd_friction_converges_or_says_so(screw, friction, sense):
 
 
 def assert_unknown(found):
-    assert found.status in (
-        BalanceStatus.STALLED,
-        BalanceStatus.OUT_OF_RANGE,
-        BalanceStatus.UNDETERMINED,
-    )
+    expected = (BalanceStatus.STALLED, BalanceStatus.OUT_OF_RANGE, BalanceStatus.UNDETERMINED)
+    assert found.status in expected
     assert found.motion is None
     assert math.isnan(found.torque)
     assert math.isnan(found.energy_torque)

@@ -44,9 +44,8 @@ def test_kinematics_table(table, screw, flank):
         for side in SIDES:
             along, across = ball_motion.slip_field(screw, side, motion, 0.0, 0.0)
             assert along == pytest.approx(0.0, abs=1e-12)
-            assert abs(across) * 1e3 == pytest.approx(
-                float(row['helical_slip_per_contact_mm_s']), abs=0.006
-            )
+            expected = float(row['helical_slip_per_contact_mm_s'])
+            assert abs(across) * 1e3 == pytest.approx(expected, abs=0.006)
 
 
 @given(RATES, RATES, st.tuples(RATES, RATES, RATES), ANGLES, ANGLES, FLANKS)
@@ -114,6 +113,5 @@ def test_points_keep_their_shape(screw):
 def test_slip_floor_follows_slow_motion_only(screw):
     """1 % of the helical slip, at most 1e-4 m/s, the same both ways."""
     assert ball_motion.slip_floor(screw, 1e3) == ball_motion.slip_floor(screw, -1e3) == 1e-4
-    assert ball_motion.slip_floor(screw, 1.0) == pytest.approx(
-        0.01 * no_slip_rates(screw).helical_slip
-    )
+    expected = 0.01 * no_slip_rates(screw).helical_slip
+    assert ball_motion.slip_floor(screw, 1.0) == pytest.approx(expected)

@@ -80,9 +80,8 @@ def test_the_heating_factor_is_that_by_which_a_starved_contact_is_slowed():
 def test_friction_coefficient_lies_between_film_and_boundary():
     _, rest = record(0, 500.0)
     _, moving = record(600, 500.0)
-    assert rest['friction_coefficient'] == pytest.approx(
-        SCREW.roughness.asperity_friction, rel=0.02
-    )
+    expected = SCREW.roughness.asperity_friction
+    assert rest['friction_coefficient'] == pytest.approx(expected, rel=0.02)
     assert 0 < moving['friction_coefficient'] < 0.5 * rest['friction_coefficient']
 
 

@@ -58,9 +58,8 @@ def test_lookup_is_exact_at_the_nodes(surface, surface_data):
             continue
         found = surface.lookup(speed, float(data.load[j]), float(data.temperature[k]))
         for name in FIELDS:
-            assert getattr(found, name) == pytest.approx(
-                float(data.fields[name][i, j, k]), rel=1e-11, abs=1e-15
-            )
+            expected = float(data.fields[name][i, j, k])
+            assert getattr(found, name) == pytest.approx(expected, rel=1e-11, abs=1e-15)
         checked += 1
     assert checked > 500
 
@@ -75,9 +74,8 @@ def test_lookup_agrees_with_the_model(speed, load, kelvin):
     solved = closed_form.solve(screw, oil, speed, load, kelvin)
     found = SHIPPED.lookup(speed, load, kelvin)
     if abs(load) > 0.25 * screw.preload:
-        assert found.efficiency == pytest.approx(
-            torque.efficiency(float(solved.friction_torque), load, screw.lead), abs=0.003
-        )
+        expected = torque.efficiency(float(solved.friction_torque), load, screw.lead)
+        assert found.efficiency == pytest.approx(expected, abs=0.003)
     assert found.rcs == pytest.approx(float(solved.rcs), abs=0.003)
     assert found.film_ratio == pytest.approx(float(solved.film_ratio), rel=0.01)
 

@@ -53,9 +53,8 @@ def test_a_scaled_field_differs_by_its_scale():
     """A torque 1 % higher: the largest difference is 1 % of the largest torque, no other field."""
     fields = diff_record(DATA, scaled(DATA, friction_torque=1.01))['fields']
     at = fields['friction_torque']['at']
-    assert fields['friction_torque']['max'] == pytest.approx(
-        0.01 * SHIPPED.lookup(*at).friction_torque
-    )
+    expected = 0.01 * SHIPPED.lookup(*at).friction_torque
+    assert fields['friction_torque']['max'] == pytest.approx(expected)
     assert fields['friction_torque']['p95'] < fields['friction_torque']['max']
     assert fields['rcs']['max'] == 0.0
     assert 0 < fields['efficiency']['max'] < 0.01

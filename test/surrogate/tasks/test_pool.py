@@ -154,9 +154,8 @@ def test_results_do_not_depend_on_workers(tasks, pool):
     for outcomes in both:
         assert list(outcomes) == list(numbers(20))
         found.append([outcome.result for outcome in outcomes.values()])
-        assert {outcome.worker.partition('/')[0] for outcome in outcomes.values()} == {
-            worker_name().partition('/')[0]
-        }
+        expected = {worker_name().partition('/')[0]}
+        assert {outcome.worker.partition('/')[0] for outcome in outcomes.values()} == expected
     assert found[0] == found[1]
     assert found[0] == [tasks.root(inputs) for inputs in numbers(20).values()]
 

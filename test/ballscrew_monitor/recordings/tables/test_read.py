@@ -20,10 +20,8 @@ def text_log(tmp_path, text):
 
 def test_numbers_come_as_they_are(tmp_path):
     table = open_table(text_log(tmp_path, 'a,b,c\n1,2,x\n3,4e1,y\n'), ['b', 'a'])
-    assert {name: list(values) for name, values in table.head(99).items()} == {
-        'a': [1, 3],
-        'b': [2, 40],
-    }
+    expected = {'a': [1, 3], 'b': [2, 40]}
+    assert {name: list(values) for name, values in table.head(99).items()} == expected
     assert table.rows == 2
     assert not table.notes
 

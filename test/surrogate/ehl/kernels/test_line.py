@@ -98,9 +98,8 @@ def test_a_step_solves_every_other_line(planes):
     assert not once[:, ::2].any()
     assert rows(planes, contact, once)[1:-1, 1:-1:2] == pytest.approx(rhs[1:-1, 1:-1:2], abs=1e-12)
     np.testing.assert_array_equal(twice[:, 1::2], once[:, 1::2])
-    assert rows(planes, contact, twice)[1:-1, 2:-1:2] == pytest.approx(
-        rhs[1:-1, 2:-1:2], abs=1e-12
-    )
+    expected = rhs[1:-1, 2:-1:2]
+    assert rows(planes, contact, twice)[1:-1, 2:-1:2] == pytest.approx(expected, abs=1e-12)
 
 
 def test_half_of_a_symmetric_field_is_solved_as_the_whole(planes):
