@@ -80,9 +80,8 @@ def test_the_outcome_is_that_of_the_states(nominal_bag, judged, values):
     summary, expected = outcome.summary(), summarizer.result()
     assert summary.events == expected.events
     for event, told in zip(summary.events, expected.events, strict=True):
-        np.testing.assert_equal(
-            (event.target_speed, event.target_load), (told.target_speed, told.target_load)
-        )
+        wanted = (told.target_speed, told.target_load)
+        np.testing.assert_equal((event.target_speed, event.target_load), wanted)
         assert event.place.endswith(' N')
         assert told.place == ''  # a message does not tell
     assert summary.states == expected.states < outcome.rows

@@ -41,14 +41,12 @@ def mixed():
 def test_smooth_profiles(smooth):
     upper, lower = figures.figure_profiles(smooth).axes
     assert list(curves(upper)) == ['film', 'Hertz, dry and smooth']
-    np.testing.assert_allclose(
-        curves(upper)['film'].get_ydata(), 1e-9 * smooth.film_pressure[:, 16]
-    )
+    expected = 1e-9 * smooth.film_pressure[:, 16]
+    np.testing.assert_allclose(curves(upper)['film'].get_ydata(), expected)
     hertz = curves(upper)['Hertz, dry and smooth'].get_ydata()
     assert max(hertz) == pytest.approx(1e-9 * smooth.hertz_pressure, rel=1e-2)
-    np.testing.assert_allclose(
-        curves(lower)['film on this line'].get_ydata(), 1e9 * smooth.film[:, 16]
-    )
+    wanted = 1e9 * smooth.film[:, 16]
+    np.testing.assert_allclose(curves(lower)['film on this line'].get_ydata(), wanted)
     assert curves(lower)['film floor'].get_ydata()[0] == pytest.approx(3.0)
     assert upper.get_ylabel().endswith('[GPa]')
     assert lower.get_ylabel().endswith('[nm]')

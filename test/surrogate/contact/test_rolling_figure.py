@@ -27,9 +27,8 @@ def test_three_panels(marched):
     (along,) = [line for line in found['(b)'].get_lines() if len(line.get_xdata()) > 2]
     np.testing.assert_allclose(along.get_ydata(), 100 * solution.rcs_along)
     lines = {line.get_label(): line for line in found['(c)'].get_lines()}
-    np.testing.assert_allclose(
-        lines['film at the centre'].get_ydata(), 1e9 * solution.centre_films
-    )
+    wanted = 1e9 * solution.centre_films
+    np.testing.assert_allclose(lines['film at the centre'].get_ydata(), wanted)
     assert lines['film at the centre'].get_xdata()[-1] == pytest.approx(solution.transits)
     assert lines['floor 3 nm'].get_ydata()[0] == pytest.approx(3.0)
     assert lines['next place'].get_xdata()[0] == pytest.approx(solution.transits / 2)

@@ -49,9 +49,8 @@ def test_keys_of_a_generated_surface(load):
     draw = shifted(fractal_surface(constants, 3, lay='longitudinal'), 1e-3, 0.0)
     expected = take_patch(draw, 'cut', Window(length_x=0.2e-3, length_y=0.3e-3), 1.0)
     x = np.linspace(-4e-5, 4e-5, 9)
-    np.testing.assert_allclose(
-        case_surface(case).heights(x, x), expected.heights(x, x), rtol=1e-9, atol=1e-18
-    )
+    wanted = expected.heights(x, x)
+    np.testing.assert_allclose(case_surface(case).heights(x, x), wanted, rtol=1e-9, atol=1e-18)
     assert case_surface(load(roughness={'rms_um': 0})) is None
 
 

@@ -30,9 +30,8 @@ def test_expected_structure_function_is_the_mean_of_many():
         ],
         axis=(0, 2),
     )
-    np.testing.assert_allclose(
-        measured, expected_structure_function(NOMINAL, lags * SPACING), rtol=0.06
-    )
+    expected = expected_structure_function(NOMINAL, lags * SPACING)
+    np.testing.assert_allclose(measured, expected, rtol=0.06)
 
 
 def test_far_apart_heights_differ_by_twice_the_variance():
