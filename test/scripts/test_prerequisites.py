@@ -68,12 +68,15 @@ def test_python_underneath_that_works_or_was_asked_for_is_the_only_candidate(mac
     assert done.stderr == says('set_up_python')
 
 
-def test_what_is_lacking_is_one_line_to_type_or_a_list(machine, says):
+def test_user_gets_one_line_to_type(machine, says):
     """Nothing is installed for a user who is not root, and sudo is never called."""
     lacking = {name: text for name, text in COMPLETE.items() if name not in ('g++', 'python3')}
     done = machine({**lacking, **APT, 'id': '#!/bin/sh\necho 1000\n', 'python3': SHIM})
     assert done.returncode == 2
     assert done.stderr == says('set_up_type')
+
+
+def test_machine_without_apt_gets_the_list(machine, says):
     done = machine({**COMPLETE, 'python3': SHIM})
     assert done.returncode == 2
     assert done.stderr.startswith(says('set_up_install'))
