@@ -161,9 +161,8 @@ def test_a_missing_file_is_refused(tmp_path, refused):
 def test_letters_and_units_need_no_quotes_where_they_stand_as_texts(tmp_path):
     path = written(tmp_path, "/**: {ros__parameters: {axes: [x, 'y'], y: {oil: a}}}")
     assert parameters.read_file(path)['y.oil'] == 'a'
-    path = written(
-        tmp_path, '/**: {ros__parameters: {x: {load: {unit: N}, screw: &n "N", oil: *n}}}'
-    )
+    alias = '{x: {load: {unit: N}, screw: &n "N", oil: *n}}'
+    path = written(tmp_path, f'/**: {{ros__parameters: {alias}}}')
     values = parameters.read_file(path)
     assert (values['x.load.unit'], values['x.screw'], values['x.oil']) == ('N', 'N', 'N')
 

@@ -27,6 +27,10 @@ MARKS = marks(SCREW, ROWS)
 TRENDS = trends(SCREW, law_of(SCREW), ROWS.values())
 
 
+def task_of(kind, rpm, load, **more):
+    return StudyTask(kind=kind, rpm=float(rpm), load=float(load), **more)
+
+
 def mark(start, *words):
     """Return the one number whose name begins so and holds all the words."""
     begun = [one for one in MARKS if one.name.startswith(start)]
@@ -122,46 +126,26 @@ def test_statistical_contact_and_other_rules_of_friction():
 @pytest.mark.parametrize(
     ('task', 'columns', 'tolerance'),
     [
+        (task_of('contact', 600, 2400), 'central_film minimum_film', 2e-3),
+        (task_of('contact', 600, 2400, case='short inlet'), 'central_film max_pressure', 2e-3),
         (
-            StudyTask(kind='contact', rpm=600.0, load=2400.0),
-            ('central_film', 'minimum_film'),
-            2e-3,
-        ),
-        (
-            StudyTask(kind='contact', rpm=600.0, load=2400.0, case='short inlet'),
-            ('central_film', 'max_pressure'),
-            2e-3,
-        ),
-        (
-            StudyTask(kind='contact', rpm=10.0, load=0.0, draw=3),
-            ('rcs', 'asperity_share', 'asperity_distance', 'mean_film'),
+            task_of('contact', 10, 0, draw=3),
+            'rcs asperity_share asperity_distance mean_film',
             0.02,
         ),
+        (task_of('contact', 5, 1000, draw=1, case='relieved nut'), 'rcs mean_film', 0.02),
         (
-            StudyTask(kind='contact', rpm=5.0, load=1000.0, draw=1, case='relieved nut'),
-            ('rcs', 'mean_film'),
-            0.02,
-        ),
-        (
-            StudyTask(kind='screw', rpm=1000.0, load=1000.0),
-            ('friction_torque', 'sliding_torque', 'track_torque', 'central_film'),
+            task_of('screw', 1000, 1000),
+            'friction_torque sliding_torque track_torque central_film',
             5e-3,
         ),
+        (task_of('screw', 300, 0), 'friction_torque friction_coefficient rcs rcs_deviation', 5e-3),
         (
-            StudyTask(kind='screw', rpm=300.0, load=0.0),
-            ('friction_torque', 'friction_coefficient', 'rcs', 'rcs_deviation'),
-            5e-3,
-        ),
-        (
-            StudyTask(kind='screw', rpm=20.0, load=0.0, draw=0, case='standing'),
-            ('friction_torque', 'friction_coefficient', 'rcs', 'asperity_coefficient'),
+            task_of('screw', 20, 0, draw=0, case='standing'),
+            'friction_torque friction_coefficient rcs asperity_coefficient',
             0.02,
         ),
-        (
-            StudyTask(kind='formulas', rpm=600.0, load=2400.0),
-            ('rcs_loaded', 'friction_torque'),
-            1e-4,
-        ),
+        (task_of('formulas', 600, 2400), 'rcs_loaded friction_torque', 1e-4),
     ],
     ids=lambda value: value.key if isinstance(value, StudyTask) else '',
 )
@@ -170,6 +154,6 @@ def test_rows_are_what_the_code_solves(task, columns, tolerance):
     kept = ROWS[task.key]
     row, _ = solve_task(SCREW, OIL, task, kept.inputs)
     assert row.status == kept.status
-    for name in columns:
+    for name in columns.split():
         assert getattr(kept, name) > 0
         assert getattr(row, name) == pytest.approx(getattr(kept, name), rel=tolerance), name
