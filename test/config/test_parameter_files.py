@@ -15,7 +15,6 @@ FILES = sorted(CONFIG.glob('*.yaml'))
 
 
 def axes_of(name):
-    """Return the axes of a file by name, as the node builds them."""
     values = parameters.read_file(CONFIG / name)
     axes, reasons = build_axes(values, lambda topic: f'/{topic}')
     assert not reasons

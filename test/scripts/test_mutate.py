@@ -36,7 +36,6 @@ def script():
 
 @pytest.fixture
 def mutate(script, tmp_path):
-    """Return the names of the script, at work on a tree of one file."""
     for function in ('mutants', 'tests_of', 'substitute'):
         script[function].__globals__['TREE'] = tmp_path
     (tmp_path / 'half.py').write_text(SOURCE)

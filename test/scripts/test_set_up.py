@@ -25,7 +25,6 @@ SetUp = Callable[..., list[str]]
 
 @pytest.fixture
 def module(tmp_path, monkeypatch):
-    """Return the script as a module that works on an empty tree."""
     specification = importlib.util.spec_from_file_location('set_up', SCRIPT)
     assert specification is not None
     assert specification.loader is not None

@@ -21,7 +21,6 @@ REFERENCE = Path(__file__).parents[1] / 'reference'
 
 
 def rows(name):
-    """Return the rows of a reference table, without its header lines."""
     lines = (REFERENCE / name).read_text(encoding='utf-8').splitlines()
     return list(csv.DictReader(line for line in lines if not line.startswith('#')))
 

@@ -112,7 +112,6 @@ def make_domain():
 
 
 def write(folder, changes, extra=''):
-    """Write a parameter file whose axis x differs from a good one."""
     lines = [f'      {name}: {value}\n' for name, value in (GOOD | changes).items()]
     path = folder / 'params.yaml'
     text = '/**/ballscrew_monitor:\n  ros__parameters:\n' + extra + '    x:\n' + ''.join(lines)
@@ -136,7 +135,6 @@ def patient(examine, as_expected):
 
 @pytest.fixture
 def examined(domain, monkeypatch, capsys):
-    """Return what says of a parameter file without a finding what the doctor says."""
     monkeypatch.setenv('ROS_DOMAIN_ID', str(domain))
 
     def examine(path):

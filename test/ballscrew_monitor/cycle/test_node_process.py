@@ -34,7 +34,6 @@ def listen_for_a_sign(domain, wait_for):
 
 @pytest.fixture
 def node(tmp_path, monkeypatch, wait_for):
-    """Return the node as a child, with its signal handlers in place."""
     monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
     with free_domain() as domain:
         process = NodeProcess(PARAMS, tmp_path / 'node.log', domain=domain)

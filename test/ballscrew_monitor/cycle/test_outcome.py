@@ -11,7 +11,6 @@ import pytest
 
 
 def make_outcome(**states):
-    """Return the outcome of a run with the last states by axis."""
     return Outcome(
         recording=Path('cycle.mcap'),
         sent=Counter(),

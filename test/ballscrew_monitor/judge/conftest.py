@@ -48,7 +48,6 @@ class Golden:
         self.surface = Surface.load(DATA / 'golden_surface.npz')
 
     def table(self, prefix, which):
-        """Return rows of a table, each a namespace of its columns."""
         columns = {
             name.removeprefix(prefix): column[which].tolist()
             for name, column in self.arrays.items()
@@ -108,7 +107,6 @@ def settings_of(text):
 
 
 def kept_of(text):
-    """Return what was kept from before, as it is on file."""
     known = json.loads(text)
     shelving = Shelving(until=known['shelved_until'], reason='kept')
     return Memory(

@@ -74,7 +74,6 @@ def derived_number(surface, how, course):
 
 
 def derived(running, surface, how):
-    """Return the load that follows, and in words why not."""
     row = derived_number(surface, how, running)
     return SimpleNamespace(
         validity=Validity(row.validity),

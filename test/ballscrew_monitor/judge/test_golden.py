@@ -64,7 +64,6 @@ def check(found, wanted, names, place):
 
 
 def check_row(row, memory, wanted, texts, monitor, place):
-    """Compare a row and the memory after it with a row on file."""
     check(row, wanted, SAME, place)
     if wanted.published:
         check(row, wanted, REST, place)
@@ -90,7 +89,6 @@ def check_row(row, memory, wanted, texts, monitor, place):
 
 
 def check_state(state, wanted, place):
-    """Compare a state with one on file."""
     check(state, wanted, ('stamp', 'level_since', 'event_id', 'judged'), place)
     check(state, wanted, ('measured_torque', 'torque_residual'), place)
     assert state.shelving.until == wanted.shelved_until, place

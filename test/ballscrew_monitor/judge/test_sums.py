@@ -19,7 +19,6 @@ BEGIN = 1000 * SECOND
 
 
 def row(stamp=0, **changes):
-    """Return a row that is optimal unless told otherwise."""
     values = {'speed': 10.0, 'axial_load': -1000.0, 'rcs': 0.0, 'efficiency': 0.9, 'zone': 1}
     values |= {'validity': 1, 'film_ratio': 3.0, 'friction_torque': 0.125, 'regime': 3}
     return Row(**(values | {'stamp': BEGIN + stamp} | changes))

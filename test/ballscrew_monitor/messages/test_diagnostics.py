@@ -31,7 +31,6 @@ def sample(source, value, stamp=START):
 
 
 def after(core, *events, surface=None, clock_stands=False, settings=None, links=None, **limits):
-    """Return the statuses after some events, by their part, and the monitor."""
     delays = {'raise_delay': 0, 'clear_delay': 0}
     limits, state = core.limits(**(delays | limits)), None
     monitor = core.monitor(surface, limits, **(settings or {}))
@@ -257,7 +256,6 @@ def test_messages_hold_no_measured_numbers(core):
 
 
 def first_words(text):
-    """Return what a message begins with, up to where its cure begins."""
     return re.split('[:,]', text, maxsplit=1)[0].strip()
 
 

@@ -14,7 +14,6 @@ SAMPLES = 3
 
 
 def warned(states):
-    """Tell whether the last of all samples is judged, and is a warning."""
     judged = [(state.judged, state.level) for state in states]
     return judged[-1:] == [(SAMPLES, BallScrewState.LEVEL_WARN)]
 

@@ -29,7 +29,6 @@ class Source:
         return self.node.stamped(message, self.node.now() + ahead)
 
     def says(self):
-        """Return the faults that the node names now."""
         levels = self.node.levels()
         sentences = levels[-1][1].split('; ') if levels else []
         of_speed = [text for text in sentences if text.startswith('speed')]

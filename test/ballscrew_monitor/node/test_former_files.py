@@ -56,7 +56,6 @@ def logged(kind, number, ending=''):
 
 @pytest.fixture(name='start')
 def make_start(tmp_path):
-    """Return what starts a node after files of the former format, some of them changed."""
     opened = []
 
     def start(**changes):

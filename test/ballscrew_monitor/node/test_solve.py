@@ -33,8 +33,6 @@ SOLVING = 'contact'  # a word of the stages of a solve
 
 
 class Goal:
-    """A goal that was sent, and what has come back."""
-
     def __init__(self, node, client, request):
         self._node = node
         self.feedback = []
@@ -283,7 +281,6 @@ def test_a_signal_during_a_solve_ends_goal_worker_and_node(node, is_alive):
 
 
 def solving(node):
-    """Begin a long solve; return its goal and the process that does it."""
     goal = Solves(node).ask(**LONG)
     assert goal.accepted
     goal.poll()  # asks for the result

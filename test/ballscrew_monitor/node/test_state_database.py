@@ -19,8 +19,6 @@ LIMIT = 400_000  # [B]
 
 
 class Opened(StateDatabase):
-    """A database that is opened at once."""
-
     def __init__(self, folder, limit=LIMIT):
         self.damage, self.notices = [], []
         super().__init__(folder, limit, damage=self.damage, notices=self.notices)
@@ -48,7 +46,6 @@ class Opened(StateDatabase):
 
 @pytest.fixture(name='make')
 def make_database(tmp_path):
-    """Return what opens databases, which are closed at the end."""
     with contextlib.ExitStack() as stack:
 
         def make(folder=tmp_path, **changes):

@@ -72,7 +72,6 @@ def read_by_mcap(directory):
 
 
 def read_by_mcap_ros2(directory):
-    """Return topic and message of every message, decoded by the schemas in the bag."""
     with (directory / 'cycle.mcap').open('rb') as stream:
         reader = make_reader(stream, decoder_factories=[DecoderFactory()])
         return [
@@ -81,7 +80,6 @@ def read_by_mcap_ros2(directory):
 
 
 def read_by_rosbags(directory):
-    """Return topic and message of every message, decoded by the schemas in the bag."""
     with AnyReader([directory]) as reader:
         return [
             (connection.topic, reader.deserialize(data, connection.msgtype))

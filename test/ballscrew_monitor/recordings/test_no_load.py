@@ -53,7 +53,6 @@ def stamped(message, place):
 
 
 def write(folder, speed, torque, *, warmth=None, joint='x_axis'):
-    """Write a bag with one message per sample and return it."""
     with BagWriter(folder, 'bag') as writer:
         for name, kind in (('joint_states', 'JointState'), ('oil', 'Temperature')):
             writer.add_topic(

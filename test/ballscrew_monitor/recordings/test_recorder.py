@@ -24,7 +24,6 @@ DEADLINE = 600.0  # [s] which only ends a hang
 
 @pytest.fixture
 def spinner(domain):
-    """Return a node in a free domain, and a way to spin it."""
     context = rclpy.Context()
     rclpy.init(context=context, domain_id=domain)
     node = rclpy.create_node('recorder', context=context)

@@ -44,7 +44,6 @@ def load_message(stamp, load):
 
 
 def write(directory, *timed):
-    """Write pairs of a log time and a (topic, message); return the bag."""
     with BagWriter(directory, 'bag') as writer:
         for name, kind in (
             ('/joint_states', 'sensor_msgs/msg/JointState'),
@@ -63,7 +62,6 @@ def every_state():
 
 
 def judged(bag, **changes):
-    """Return copies of the numbers that matter of every state of the replay."""
     values = every_state() | changes
     return [
         (stamp_of(state), state.point.speed, state.point.axial_load, state.judged)

@@ -42,7 +42,6 @@ def plain(messages):
 
 
 def write(path, messages, storage, compression=CompressionMode.NONE):
-    """Write messages of the topics of the short bag by rosbags."""
     store = get_typestore(Stores.ROS2_JAZZY)
     writer = Writer(path, version=9, storage_plugin=storage)
     if compression is not CompressionMode.NONE:

@@ -11,7 +11,6 @@ from surrogate.files import json_text
 
 
 def make_summary():
-    """Return the summary of 10 s with one event that ended and one that did not."""
     summarizer = Summarizer()
     for second in (100, 110):
         state = BallScrewState(axis='x', judged=1000)

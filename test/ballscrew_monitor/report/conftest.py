@@ -112,7 +112,6 @@ def make_event(number, start, duration, **changes):
 
 
 def make_status(source, **changes):
-    """Return the status of an input that does well."""
     values = {
         'source': source,
         'state': InputState.OK,

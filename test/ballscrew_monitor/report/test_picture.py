@@ -13,7 +13,6 @@ from surrogate.plotting.style import DPI
 
 
 def small_map(*marks):
-    """Return a map without lines, which take most of the time."""
     return OperatingMap(
         temperature=40.0,
         others=False,
@@ -49,7 +48,6 @@ def test_a_failure_leaves_no_picture(judged, tmp_path, monkeypatch):
 
 
 def strips_of(judged, case):
-    """Return the axes of the bars and of the panels."""
     (part,) = picture.figure_log(judged.log(case), [small_map()]).subfigs
     bars, *strips = part.subfigs[1].axes
     return bars, {strip.get_title(loc='left'): strip for strip in strips}

@@ -34,7 +34,6 @@ def mill_columns(rows=ROWS):
 
 
 def write_table(path, columns, *, separator=',', form='{:.5g}'):
-    """Write columns of numbers or texts as a CSV file; return its path."""
     names = list(columns)
     lines = [separator.join(names)]
     for row in zip(*columns.values(), strict=True):
@@ -46,7 +45,6 @@ def write_table(path, columns, *, separator=',', form='{:.5g}'):
 
 @pytest.fixture
 def mill_log(tmp_path):
-    """Return the log as a file, with a text in its last column."""
     columns = mill_columns() | {'Machining_Process': ['Prep'] * ROWS}
     return write_table(tmp_path / 'mill.csv', columns)
 

@@ -40,13 +40,11 @@ TYPES = {
 
 
 def converted(log, out):
-    """Return the bag of a log by the map that is guessed."""
     convert(log, make_map(guess(log).content), out)
     return Bag(out)
 
 
 def states_of(bag):
-    """Return for each axis the states of all its samples, as what matters of them."""
     values = parameters_of(bag)
     found = {axis: [] for axis in values['axes']}
     for axis in values['axes']:
