@@ -47,15 +47,12 @@ def test_the_worst_code_of_a_bucket_is_kept():
     assert kept.rows()['zone'].tolist() == [4, 4, 1, 1]
 
 
-def test_rows_between_include_both_ends_but_the_last_instant_and_slices_are_joined_and_sorted():
+def test_rows_are_cut_joined_and_broken_at_a_hole():
     rows = make_rows([0.0, 1.0, 2.0, 3.0, 4.0], range(5))
     assert buckets.between(rows, [(1.0, 2.5), (4.0, 5.0)])['time'].tolist() == [1.0, 2.0, 4.0]
     assert buckets.between(rows, []).size == 0
     rows = buckets.in_order(np.concatenate([make_rows([2.0], [1.0]), make_rows([1.0], [2.0])]))
     assert rows['speed'].tolist() == [2.0, 1.0]
-
-
-def test_a_hole_becomes_a_break():
     rows = buckets.with_breaks(make_rows([0.0, 0.1, 5.0], [1.0, 2.0, 3.0], [2, 2, 2]), 1.0)
     assert np.isnan(rows['speed'][2])
     assert rows['zone'].tolist() == [2, 2, 0, 2]

@@ -21,12 +21,15 @@ def statuses(judged, source=None, **changes):
     return tuple(judged.status(one, **(changes if one in chosen else {})) for one in Source)
 
 
-def test_an_input_is_shown_in_its_unit(judged):
+def test_an_input_is_shown_in_its_unit_and_if_always_late_as_a_whole(judged):
     values = judged.values(**{'x.speed.unit': 'rev/min'})
     speed = seen_of(judged.case([judged.columns()], values=values), Source.SPEED)
     assert speed.low == pytest.approx(100.0 * 30.0 / math.pi, rel=0.01)
     assert (speed.origin, speed.unit, speed.hints) == ('measured', 'rev/min', ())
     assert speed.rate == pytest.approx(100.0)
+    blocks = [judged.columns(place, 1) for place in range(0, 1000, 100)]
+    case = judged.case(blocks, inputs=statuses(judged, received=10))
+    assert seen_of(case, Source.SPEED).rate == pytest.approx(1.0)
 
 
 @pytest.mark.parametrize(
@@ -54,12 +57,6 @@ def test_a_gap_of_an_input_of_its_own_rate_is_left_out_with_its_timeout(judged, 
     block = judged.columns(axial_load_source=sources)
     case = judged.case([block], values=values, inputs=inputs, refused=refused)
     assert seen_of(case, Source.LOAD).rate == pytest.approx(rate)
-
-
-def test_of_an_input_that_is_always_late_the_whole_counts(judged):
-    blocks = [judged.columns(place, 1) for place in range(0, 1000, 100)]
-    case = judged.case(blocks, inputs=statuses(judged, received=10))
-    assert seen_of(case, Source.SPEED).rate == pytest.approx(1.0)
 
 
 @pytest.mark.parametrize(
@@ -157,12 +154,17 @@ def load_with(judged, known=None, **changes):
     return seen_of(judged.case([judged.columns()], inputs=inputs, known=known), Source.LOAD)
 
 
-def test_an_input_that_is_well_has_no_trouble_and_without_numbers_claims_no_loss(judged):
+def test_an_input_that_is_well_has_no_trouble_and_a_slow_or_foreign_one_is_doubted(judged, says):
     assert load_with(judged, lag=0.001).troubles == {}
     assert load_with(judged, known={'numbered': True}).troubles == {}
     load = load_with(judged, lost=0)
     assert (load.lost, load.troubles) == (None, {})
     assert load_with(judged, known={'numbered': True}, lost=0).lost == 0
+    hints = load_with(judged, slow=True, longest_gap=2.0).hints
+    assert hints == (says('load_comes_less'),)
+    assert 'lie 3 s behind' in load_with(judged, lag=3.0, lagging=True).hints[0]
+    far = load_with(judged, lag=1.7e9, lagging=True).hints
+    assert far == (says('load_stamps_another'),)
 
 
 @pytest.mark.parametrize(
@@ -178,14 +180,6 @@ def test_an_input_that_is_well_has_no_trouble_and_without_numbers_claims_no_loss
 )
 def test_troubles_of_the_messages_are_told(judged, changes, trouble, text):
     assert load_with(judged, known={'numbered': True}, **changes).troubles == {trouble: text}
-
-
-def test_slow_inputs_and_stamps_of_another_clock_are_doubted(judged, says):
-    hints = load_with(judged, slow=True, longest_gap=2.0).hints
-    assert hints == (says('load_comes_less'),)
-    assert 'lie 3 s behind' in load_with(judged, lag=3.0, lagging=True).hints[0]
-    far = load_with(judged, lag=1.7e9, lagging=True).hints
-    assert far == (says('load_stamps_another'),)
 
 
 @pytest.mark.parametrize(

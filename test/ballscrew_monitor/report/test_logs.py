@@ -110,12 +110,9 @@ def test_the_folder_of_the_reports_to_come_holds_no_recordings(tmp_path):
     assert names(found, tmp_path) == ['a.csv']
 
 
-def test_what_is_named_twice_is_taken_once_and_what_is_not_there_is_kept(tmp_path):
+def test_what_is_named_twice_is_taken_once_and_nothing_is_refused(tmp_path, refused):
     gone = tmp_path / 'gone.mcap'
     assert find_logs([gone, gone]) == [gone]
-
-
-def test_a_folder_without_a_recording_is_a_sentence_and_says_what_tables_need(tmp_path, refused):
     refused('holds_recording_hold', find_logs, [tmp_path])
     touch(tmp_path / 'one.csv')
     refused('import_one_guess', find_logs, [tmp_path])

@@ -30,7 +30,7 @@ def field_of(surface, loads, temperature=40.0, speeds=SPEEDS):
     return sample(surface, temperature, speeds=speeds, loads=loads)
 
 
-def test_it_is_the_surface_and_nothing_where_a_temperature_is_outside(surface):
+def test_it_is_the_surface_and_the_zone_is_where_limits_are_kept(surface):
     field = field_of(surface, (-500.0, 2000.0))
     assert field.efficiency.shape == (field.load.size, field.speed.size)
     point = surface.lookup(field.speed[50] * RPM, field.load[90], 313.15)
@@ -42,6 +42,12 @@ def test_it_is_the_surface_and_nothing_where_a_temperature_is_outside(surface):
     assert (middles.speed > field.speed[:-1]).all()
     assert middles.rcs[3, 5] == pytest.approx(field.rcs[3:5, 5:7].mean())
     assert np.isnan(field_of(surface, (-500.0, 500.0), 200.0).rcs).all()
+    times = {'raise_delay': 0, 'clear_delay': 0, 'hysteresis': 0.0}
+    limits = Limits(rcs=0.01, efficiency=0.85, light_load=0.0, standstill_speed=0.5, **times)
+    strict = field.is_optimal(limits)
+    assert (strict == ((field.rcs < 0.01) & (field.efficiency >= 0.85))).all()
+    light = dataclasses.replace(limits, light_load=1e4)
+    assert field.is_optimal(light).sum() > strict.sum()
 
 
 def test_loads_go_around_the_run_and_speeds_begin_where_they_are_judged(surface):
@@ -53,16 +59,6 @@ def test_loads_go_around_the_run_and_speeds_begin_where_they_are_judged(surface)
     assert loads_around(surface, math.nan, math.nan, light_load=250.0) == (-420.0, 420.0)
     assert judged_speeds(surface, 0.5) == pytest.approx((0.5, surface.speed_range[1]))
     assert judged_speeds(surface, 1e4) == pytest.approx(surface.speed_range)
-
-
-def test_the_zone_is_where_limits_are_kept(surface):
-    field = field_of(surface, (-500.0, 2000.0))
-    times = {'raise_delay': 0, 'clear_delay': 0, 'hysteresis': 0.0}
-    limits = Limits(rcs=0.01, efficiency=0.85, light_load=0.0, standstill_speed=0.5, **times)
-    strict = field.is_optimal(limits)
-    assert (strict == ((field.rcs < 0.01) & (field.efficiency >= 0.85))).all()
-    light = dataclasses.replace(limits, light_load=1e4)
-    assert field.is_optimal(light).sum() > strict.sum()
 
 
 def test_a_map_is_at_a_whole_degree_and_others_are_further_than_two():

@@ -190,7 +190,7 @@ def test_a_table_states_values_and_moments():
     assert 'script' not in [tag for tag, _ in tags]
 
 
-def test_a_bar_has_parts_as_long_as_they_are_large():
+def test_a_bar_has_parts_as_long_as_they_are_large_and_swatches_their_class():
     rects = [
         attrs
         for tag, attrs in parsed(page.share_bar([(3.0, 'a'), (1.0, 'b')], 't')).tags
@@ -198,9 +198,6 @@ def test_a_bar_has_parts_as_long_as_they_are_large():
     ]
     assert [rect['width'] for rect in rects] == ['750.00', '250.00']
     assert 'width="0.00"' in page.share_bar([(0.0, 'a')], 't')
-
-
-def test_swatches():
     assert 'line-rcs' in page.swatch('rcs', 'line')
     assert 'fill-zone' in page.swatch('zone')
     assert 'line-hatch' in page.swatch('hatch', 'dots')

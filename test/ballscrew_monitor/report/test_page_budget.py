@@ -105,14 +105,12 @@ def test_a_page_of_many_is_small(judged, axis, one_map, axes, events, gaps, leas
         assert page.count(f', the longest {min(MOST_ROWS, 4 * MOST_ROWS // axes)} are') == axes
 
 
-def test_what_some_do_not_want_is_for_the_others():
+def test_shares_are_fair_and_samples_are_for_the_worst_events_of_all_axes(judged):
     assert fair_shares(90.0, [10.0, 100.0, 60.0]) == [10.0, 40.0, 40.0]
     assert fair_shares(500.0, [10.0, 100.0, 60.0]) == [10.0, 100.0, 60.0]
     assert fair_shares(-1.0, [10.0]) == [0.0]
     assert fair_shares(1.0, []) == []
 
-
-def test_every_sample_is_for_the_worst_events_of_all_axes(judged):
     def case(*depths):
         events = [judged.event(n + 1, n, 0.5, worst_value=d) for n, d in enumerate(depths)]
         return judged.case([judged.columns()], events)

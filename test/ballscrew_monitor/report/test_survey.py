@@ -33,13 +33,16 @@ def test_it_does_not_depend_on_the_blocks(judged):
     assert whole.span == pytest.approx(1.0)
 
 
-def test_time_and_energy_are_summed_over_rows_and_standstill_costs_none(judged):
+def test_time_and_energy_are_summed_and_only_measured_inputs_have_extremes(judged):
     found = survey_of(judged.columns(speed=10.0, friction_torque=0.5))
     assert found.reasons == {Reason.JUDGED: pytest.approx(0.99)}
     assert found.energy[Zone.OPTIMAL] == pytest.approx(0.99 * 5.0)
     found = survey_of(judged.columns(speed=0.0, reason=Reason.STANDSTILL, zone=Zone.UNKNOWN))
     assert sum(found.energy.values()) == 0.0
     assert math.isnan(found.opposing.mean)
+    found = survey_of(judged.columns(temperature_source=2))
+    assert math.isnan(found.inputs[Source.TEMPERATURE].low)
+    assert found.inputs[Source.LOAD].high == pytest.approx(-950.0)
 
 
 def test_gaps_are_listed_longest_first_and_are_no_time_of_a_reason(judged):
@@ -74,12 +77,6 @@ def test_a_stray_stamp_makes_the_log_the_time_line(judged):
     assert not found.by_stamp
     assert found.span == pytest.approx(0.99)
     assert found.shift == 1000
-
-
-def test_only_measured_inputs_have_extremes(judged):
-    found = survey_of(judged.columns(temperature_source=2))
-    assert math.isnan(found.inputs[Source.TEMPERATURE].low)
-    assert found.inputs[Source.LOAD].high == pytest.approx(-950.0)
 
 
 def test_torque_is_compared_by_direction(judged):

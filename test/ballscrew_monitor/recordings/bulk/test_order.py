@@ -332,14 +332,11 @@ def test_batches_come_in_the_order_of_a_heap(steps, cuts):
     assert values == one_by_one(found)
 
 
-def test_stamps_decades_apart_are_put_into_order_too():
+def test_stamps_decades_apart_are_ordered_and_arrivals_wait():
     found = entries([BEGIN, BEGIN, BEGIN], [0, BEGIN // MS, 1], [0, 1, 0])
     order = StampOrder()
     parts = [order.push(found), order.finish()]
     assert joined(parts).value.tolist() == [1.0, 2.0, 0.0]
-
-
-def test_arrivals_wait_until_nothing_earlier_can_come():
     found = entries([BEGIN + 3 * MS, BEGIN + MS, BEGIN + 2 * MS], [0, 0, 0], [0, 0, 0])
     arrivals = Arrivals(1000 * MS)
     first = arrivals.push(found, BEGIN + 3 * MS)

@@ -75,9 +75,21 @@ def mill_bag(tmp_path_factory, write_csv, mill):
     return converted(write_csv(folder / 'mill.csv', mill()), folder / 'bag')
 
 
-def test_every_sample_of_the_small_log_is_judged_or_refused_with_a_reason(mill_bag):
+def test_every_sample_is_judged_with_parameters_given_else_own_else_nominal(mill_bag, short_bag):
     assert mill_bag.types == TYPES
     check_every_sample(mill_bag, 300)
+    given = values_for(mill_bag, NOMINAL, NOMINAL)
+    assert (given.values['axes'], given.is_given, given.is_nominal) == (['x'], True, False)
+    own = values_for(mill_bag, None, NOMINAL)
+    assert (own.values['axes'], own.is_given, own.is_nominal) == (['x', 'y', 'z'], False, False)
+    assert own.origin == f'those of {mill_bag.path}'
+    nominal = values_for(Bag(short_bag), None, NOMINAL)
+    assert (nominal.values, nominal.is_nominal) == (parameters.read_file(NOMINAL), True)
+    assert nominal.origin.endswith('the nominal ones')
+    said = values_for(mill_bag, None, NOMINAL).said
+    assert {'axes', 'y.load.topic', 'x.temperature.default'} <= said
+    assert 'x.limits.rcs' not in said
+    assert not values_for(Bag(short_bag), None, NOMINAL).said
 
 
 def test_the_bag_says_what_it_was_made_of_and_so_does_the_file_alone(mill_bag):
@@ -96,21 +108,6 @@ def test_the_bag_says_what_it_was_made_of_and_so_does_the_file_alone(mill_bag):
     assert 'lead_mm = 10.0' in together
     assert 'time.rate_Hz = 10.0' in together
     assert Bag(mill_bag.files[0]).metadata == mill_bag.metadata
-
-
-def test_parameters_are_those_given_else_its_own_else_the_nominal(mill_bag, short_bag):
-    given = values_for(mill_bag, NOMINAL, NOMINAL)
-    assert (given.values['axes'], given.is_given, given.is_nominal) == (['x'], True, False)
-    own = values_for(mill_bag, None, NOMINAL)
-    assert (own.values['axes'], own.is_given, own.is_nominal) == (['x', 'y', 'z'], False, False)
-    assert own.origin == f'those of {mill_bag.path}'
-    nominal = values_for(Bag(short_bag), None, NOMINAL)
-    assert (nominal.values, nominal.is_nominal) == (parameters.read_file(NOMINAL), True)
-    assert nominal.origin.endswith('the nominal ones')
-    said = values_for(mill_bag, None, NOMINAL).said
-    assert {'axes', 'y.load.topic', 'x.temperature.default'} <= said
-    assert 'x.limits.rcs' not in said
-    assert not values_for(Bag(short_bag), None, NOMINAL).said
 
 
 def test_the_text_of_parameters_holds_what_is_said_and_what_is_not_usual():

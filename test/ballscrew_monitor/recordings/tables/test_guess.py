@@ -86,11 +86,15 @@ def test_position_and_time_tell_the_unit_of_the_speed(factor, unit, guessed):
     assert made.content['assumed']['x.speed.unit']['value'] == unit
 
 
-def test_the_rate_cannot_always_be_told(guessed):
+def test_what_cannot_be_told_is_said_or_refused(guessed, refused):
     made = guessed({'x_vel': SPEED, 'x_force': SPEED})
     entry = made.content['assumed']['time.rate_Hz']
     assert entry['value'] > 0
     assert 'nothing in it tells the rate' in entry['reason']
+    refused('column_looks_like', guessed, {'a': TIME, 'b': TIME})
+    made = guessed({'t': TIME, 'x_speed_furlong': SPEED, 'x_force': SPEED})
+    reason = made.content['assumed']['x.speed.unit']['reason']
+    assert reason.startswith('x_speed_furlong states none that is known')
 
 
 def test_of_a_long_log_the_first_rows_tell_the_rate_and_all_the_ranges(guessed, monkeypatch, says):
@@ -112,10 +116,6 @@ def test_what_is_odd_is_said_and_a_column_of_texts_is_left_out(guessed, says, re
     assert list(made.content['axes']) == ['x']
     assert any("column 'y_vel' holds no number" in note for note in made.notes)
     refused('holds_number', guessed, {'t': TIME, 'x_vel': words})
-
-
-def test_a_log_without_a_speed_is_refused(guessed, refused):
-    refused('column_looks_like', guessed, {'a': TIME, 'b': TIME})
 
 
 def test_what_another_unit_or_place_is_of_is_left_out(guessed, says):
@@ -171,12 +171,6 @@ def test_a_time_by_name_comes_before_one_by_unit_and_one_that_does_not_rise_is_s
     made = guessed({'Zeit_ms': 0 * TIME, 'x_vel': SPEED, 'x_force': SPEED})
     reason = made.content['assumed']['time.rate_Hz']['reason']
     assert reason.startswith('the log has no time that rises (Zeit_ms)')
-
-
-def test_a_unit_that_is_not_known_is_not_said_to_be_missing(guessed):
-    made = guessed({'t': TIME, 'x_speed_furlong': SPEED, 'x_force': SPEED})
-    reason = made.content['assumed']['x.speed.unit']['reason']
-    assert reason.startswith('x_speed_furlong states none that is known')
 
 
 def test_a_speed_without_a_number_is_none_and_the_position_is_used(guessed, says):

@@ -90,13 +90,10 @@ def test_a_column_is_read_in_the_form_of_most_cells(tmp_path, monkeypatch, block
     np.testing.assert_array_equal(table.head(99)['t'], [1, np.nan, 3])
 
 
-def test_cells_without_a_number_are_unknown_and_counted(tmp_path, says):
+def test_cells_without_a_finite_number_are_unknown_and_counted(tmp_path, says, refused):
     table = open_table(text_log(tmp_path, 'a,b\n1,2\n1,oops\n1,\n1'), ['a', 'b'])
     assert np.isnan(table.head(99)['b']).tolist() == [False, True, True, True]
     assert table.notes[0].endswith(says('column_b'))
-
-
-def test_cells_that_are_no_finite_number_are_unknown_and_counted(tmp_path, refused, says):
     table = open_table(text_log(tmp_path, 'a\n1\nNaN\ninf\n4\n'), ['a'])
     np.testing.assert_array_equal(table.head(99)['a'], [1, np.nan, np.nan, 4])
     np.testing.assert_array_equal(table.readings['a'].extremes, [1, 4])

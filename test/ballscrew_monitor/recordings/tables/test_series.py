@@ -89,13 +89,10 @@ def test_rotary_units_need_no_lead_and_scale_and_offset_come_first(read):
     assert made.axes[0].speed == pytest.approx([2 * math.pi, 4 * math.pi])
 
 
-def test_an_unknown_load_is_no_zero_and_that_of_no_torque_no_negative_zero(read):
+def test_an_unknown_load_is_no_zero_and_speed_may_be_the_slope_of_position(read):
     made = read({'t': [0, 1], 'v': [1, 1]}, AXIS | {'load': {'unknown': 'no sensor'}})
     assert np.isnan(made.axes[0].load).all()
     assert math.copysign(1.0, force_of(np.zeros(1), lead=0.01, efficiency=0.9)[0]) == 1.0
-
-
-def test_the_speed_may_be_the_slope_of_the_position(read):
     axis = {'lead_mm': 10.0, 'position': {'column': 'p', 'unit': 'm'}}
     made = read({'t': [0, 1, 2, 2], 'p': [0.0, 0.01, 0.02, 0.02]}, axis)
     assert made.axes[0].speed[:2] == pytest.approx([2 * math.pi] * 2)
@@ -122,10 +119,16 @@ def test_huge_times_are_refused_in_one_sentence(times, epoch, read, refused):
     refused('give_stamps_after', read, {'t': times, 'v': [1, 2, 3]}, column='t', unit='s', **epoch)
 
 
-def test_rows_out_of_order_are_sorted_and_counted(read, says):
+def test_rows_out_of_order_without_a_time_or_after_a_gap_are_said(read, says, refused):
     made = read({'t': [0, 2, 1, 3], 'v': [0, 2, 1, 3]})
     assert made.axes[0].speed == pytest.approx(np.arange(4) * 0.2 * math.pi)
     assert made.notes[0].endswith(says('1_rows_earlier'))
+    made = read({'t': ['0', '', '2'], 'v': [1, 2, 3]})
+    assert len(made.stamps) == len(made.axes[0].speed) == 2
+    assert made.notes[-1].endswith('1 rows without a time are left out')
+    refused('holds_1_rows', read, {'t': ['0', '', ''], 'v': [1, 2, 3]})
+    made = read({'t': [0, 0.1, 0.2, 3600, 3600.1], 'v': [1] * 5})
+    assert says('1_gap_longer') in made.notes[0]
 
 
 @pytest.mark.parametrize('spread', [2, 40, 1000])
@@ -172,15 +175,6 @@ def test_rows_in_reverse_are_joined_once(small_reads, tmp_path, write_csv, monke
     assert sum(moved) <= 3 * 5000  # not once per block
 
 
-def test_rows_without_a_time_and_huge_gaps_are_said(read, refused, says):
-    made = read({'t': ['0', '', '2'], 'v': [1, 2, 3]})
-    assert len(made.stamps) == len(made.axes[0].speed) == 2
-    assert made.notes[-1].endswith('1 rows without a time are left out')
-    refused('holds_1_rows', read, {'t': ['0', '', ''], 'v': [1, 2, 3]})
-    made = read({'t': [0, 0.1, 0.2, 3600, 3600.1], 'v': [1] * 5})
-    assert says('1_gap_longer') in made.notes[0]
-
-
 @pytest.fixture
 def notes(tmp_path, write_csv):
     """Return a function that imports speeds stated in a unit, and returns what is said of them."""
@@ -220,7 +214,7 @@ def test_the_unit_that_fits_is_named_where_another_is_stated(notes, factor, unit
         assert all(f'in {stated} says: {unit} fits' in note for note in found)
 
 
-def test_a_gap_a_row_without_a_number_noise_and_rest_say_nothing(notes):
+def test_a_gap_noise_and_rest_say_nothing_a_wrong_sign_or_factor_is_told(notes):
     late = np.where(np.arange(400) < 200, TIME, TIME + 30.0)
     position = np.where(np.arange(400) < 200, POSITION, POSITION + 5e3)
     position[50] = np.nan
@@ -229,8 +223,5 @@ def test_a_gap_a_row_without_a_number_noise_and_rest_say_nothing(notes):
     assert not notes(1e3 * noise, 'mm/s')
     assert not notes(0.0 * SPEED, 'mm/s')
     assert not notes(SPEED, 'mm/s', 0.0 * POSITION)
-
-
-def test_the_sign_and_a_factor_of_no_unit_are_told(notes):
     assert notes(-SPEED, 'mm/s')[0].endswith('one of both has the wrong sign of its scale')
     assert notes(3.0 * SPEED, 'mm/s')[0].endswith('the time and the lead')
