@@ -66,15 +66,12 @@ def test_advice_under_a_light_load(core):
     assert found == pytest.approx(100.0, rel=1e-4)
 
 
-def test_advice_as_a_sentence(core, says):
+def test_advice_is_a_sentence_and_an_optimal_point_its_own(core, says):
     assert Advice().text == ''
     advice = advise(core.point(speed=5.0), core.surface(rcs=faster_is_better), core.limits())
     assert advice.text == 'at this load run at 30 rad/s (286 rev/min)'
     both = Advice(target_speed=30.0, target_load=-1500.0)
     assert both.text == says('this_load_run')
-
-
-def test_an_optimal_point_is_its_own_advice(core):
     point = core.point(speed=7.0, axial_load=-600.0)
     expected = Advice(target_speed=7.0, target_load=-600.0)
     assert advise(point, core.surface(), core.limits()) == expected

@@ -31,7 +31,7 @@ def test_ports_are_those_of_the_specification():
     assert highest < 32768  # from here on the kernel gives ports to clients
 
 
-def test_a_domain_is_held_by_one_at_a_time():
+def test_a_domain_is_held_by_one_at_a_time_and_not_free_with_a_participant():
     with free_domain() as one, free_domain() as other:
         assert one != other
         assert {one, other} <= set(domains.DOMAINS)
@@ -40,9 +40,6 @@ def test_a_domain_is_held_by_one_at_a_time():
             assert not free
     with domains.held(found) as free:
         assert free
-
-
-def test_a_domain_with_a_participant_is_not_free():
     with free_domain() as found:
         assert domains.is_free(found)
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as participant:
@@ -83,12 +80,16 @@ def names(paths):
     return {path.name for path in paths}
 
 
-def test_a_segment_is_stale_when_its_lock_can_be_had(folder):
+def test_a_segment_is_stale_when_its_lock_can_be_opened_and_had(folder):
     assert names(stale(folder, set())) == {SEGMENT, f'{SEGMENT}_el'}
     with (folder / f'{SEGMENT}_el').open() as owner:
         fcntl.flock(owner, fcntl.LOCK_EX)
         assert not stale(folder, set())
     assert names(stale(folder, set())) == {SEGMENT, f'{SEGMENT}_el'}
+    lock = folder / f'{SEGMENT}_el'
+    lock.unlink()
+    lock.mkdir()
+    assert not stale(folder, set())
 
 
 @pytest.mark.parametrize('name', [SEGMENT, f'{SEGMENT}_el'])
@@ -122,13 +123,6 @@ def test_which_ports_are_stale(folder):
     assert 'fastrtps_port7000' not in names(stale(folder, {7, 8}))
     (folder / 'fastrtps_port7000_el').touch()
     assert {'fastrtps_port7000', 'fastrtps_port7000_el'} <= names(stale(folder, set()))
-
-
-def test_what_cannot_be_opened_is_kept(folder):
-    lock = folder / f'{SEGMENT}_el'
-    lock.unlink()
-    lock.mkdir()
-    assert not stale(folder, set())
 
 
 @pytest.fixture

@@ -100,16 +100,13 @@ def test_the_node_is_of_this_very_code(monkeypatch):
     assert (ROOT / 'surrogate').is_dir()
 
 
-def test_the_environment_is_of_this_machine_and_without_borrowed_libraries(monkeypatch):
+def test_the_environment_is_of_this_machine_and_has_the_libraries_of_ros(monkeypatch):
     monkeypatch.setenv('_ROS_WHEELS_BOOTSTRAP_COMPLETE', '1')
     monkeypatch.setenv('LD_LIBRARY_PATH', '/somewhere')
     made = child_environment(7)
     assert made['ROS_DOMAIN_ID'] == '7'
     assert made.items() >= loopback().items()
     assert not set(made) & set(node_process.WHEEL_VARIABLES)
-
-
-def test_a_stock_ros_keeps_its_library_path(monkeypatch):
     monkeypatch.delenv('_ROS_WHEELS_BOOTSTRAP_COMPLETE', raising=False)
     monkeypatch.setenv('LD_LIBRARY_PATH', '/opt/ros/jazzy/lib')
     assert child_environment(7)['LD_LIBRARY_PATH'] == '/opt/ros/jazzy/lib'

@@ -74,7 +74,7 @@ def finished(short_bag, patient, tmp_path_factory):
     return out, text, errors, process.returncode
 
 
-def test_it_succeeds_and_leaves_its_products(finished):
+def test_it_succeeds_and_leaves_its_products_and_no_process(finished, is_alive):
     out, text, errors, code = finished
     assert (code, errors) == (0, '')
     assert {path.name for path in out.iterdir() if not path.name.startswith('.')} == {
@@ -84,6 +84,8 @@ def test_it_succeeds_and_leaves_its_products(finished):
     assert '300 sent, 300 judged' in text
     assert re.search(r'^\[#+\.*\] 0:\d\d left .* rev/min .* RCS ', text, flags=re.MULTILINE)
     assert 'zone        optimal' in text
+    pid = int(re.search(r'process (\d+)', finished[1]).group(1))
+    assert not is_alive(pid)
 
 
 def test_its_page_is_that_of_a_replay_and_another_library_reads_its_recording(finished, tmp_path):
@@ -114,11 +116,6 @@ def test_its_page_shows_what_the_node_judged(finished, says):
     assert all(zones[point] == judged[point] for point in paired)
     (note,) = json.loads((finished[0] / 'summary.json').read_text())['notes']
     assert note.startswith(says('during_run_node'))
-
-
-def test_no_process_is_left(finished, is_alive):
-    pid = int(re.search(r'process (\d+)', finished[1]).group(1))
-    assert not is_alive(pid)
 
 
 def test_the_recording_holds_inputs_and_outputs(finished, short_bag):

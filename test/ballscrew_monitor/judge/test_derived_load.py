@@ -154,16 +154,13 @@ def test_four_quadrants_by_hand(straight, speed, torque, load):
     assert found.axial_load == pytest.approx(load, rel=1e-12)
 
 
-def test_inertia_is_taken_off_in_the_machine_frame(straight):
+def test_inertia_is_taken_off_and_the_half_width_is_the_sum_of_what_is_stated(straight):
     for way in (1.0, -1.0):
         for acceleration in (100.0, -100.0):
             running = at(way * 10.0, way * 1.125 + INERTIA * acceleration)
             running = at(running[0], running[3], acceleration=acceleration)
             found = derived(running, straight, told())
             assert found.axial_load == pytest.approx(-way * 1024.0, rel=1e-9)
-
-
-def test_the_half_width_is_the_sum_of_what_is_stated(straight):
     straight.numbers |= {'friction_torque_error': 0.0625, 'friction_torque_stderr': 0.03125}
     straight.parasitic_torque = 0.25
     how = told(torque_uncertainty=0.125, parts_uncertainty=0.5)
@@ -267,9 +264,6 @@ def test_a_gap_of_the_surface_that_may_hold_the_load(core):
     )
     assert derived(at(10.0, 1.125), surface, told()).validity is Validity.MASKED
     assert derived(at(10.0, 2.125), surface, told()).validity is Validity.VALID
-
-
-def test_a_surface_without_answers(core):
     surface = core.surface(driving_torque=math.nan)
     assert derived(at(10.0, 1.0), surface, told()).validity is Validity.MASKED
 

@@ -76,7 +76,7 @@ def test_each_sample_lasts_until_the_next():
     assert totals.revolutions == 1.5
 
 
-def test_what_adds_nothing_and_what_is_counted_as_not_judged():
+def test_what_adds_nothing_is_not_judged_or_is_reset():
     nothing = Totals(since=BEGIN)
     assert add_up(row(), row(GAP + 1)) == nothing
     assert add_up(row(speed=0.2, gates=STANDSTILL), row(GAP)) == nothing
@@ -84,6 +84,12 @@ def test_what_adds_nothing_and_what_is_counted_as_not_judged():
     totals = add_up(row(speed=150.0, validity=3, zone=0, regime=0), row(GAP))
     assert (totals.running_time, totals.unjudged_time) == (GAP, GAP)
     assert (totals.revolutions, totals.energy_lost) == (75.0 / TURN, 0.0)
+    memory = Memory()
+    add_up(row(), row(GAP), memory=memory)
+    clear_totals(memory)
+    assert totals_of(memory) == Totals()
+    totals = add_up(row(2 * GAP), memory=memory)
+    assert (totals.running_time, totals.since) == (GAP, BEGIN + 2 * GAP)
 
 
 streams = st.lists(
@@ -124,12 +130,3 @@ def test_parts_add_up_exactly_and_are_kept_bit_for_bit(stream, data):
     assert judged == totals.optimal_time + totals.outside_time
     assert judged == totals.boundary_time + totals.mixed_time + totals.hydrodynamic_time
     assert 0 <= totals.running_time <= stamp
-
-
-def test_a_reset_begins_at_zero_and_loses_no_time():
-    memory = Memory()
-    add_up(row(), row(GAP), memory=memory)
-    clear_totals(memory)
-    assert totals_of(memory) == Totals()
-    totals = add_up(row(2 * GAP), memory=memory)
-    assert (totals.running_time, totals.since) == (GAP, BEGIN + 2 * GAP)

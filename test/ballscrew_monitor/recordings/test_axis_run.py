@@ -90,7 +90,7 @@ def test_the_outcome_is_that_of_the_states(nominal_bag, judged, values):
     assert outcome.judged == np.count_nonzero(columns.judged)
 
 
-def test_columns_tell_zones_reasons_and_times(judged):
+def test_columns_tell_zones_reasons_and_times_and_blocks_join(judged):
     columns, outcome = judged
     assert set(columns.reason) == {Reason.JUDGED, Reason.STANDSTILL}
     np.testing.assert_array_equal(columns.zone == 0, columns.reason == Reason.STANDSTILL)
@@ -98,10 +98,6 @@ def test_columns_tell_zones_reasons_and_times(judged):
     assert seconds(outside) == pytest.approx(seconds(outcome.totals.outside_time), abs=0.02)
     assert np.isnan(columns.measured_torque).all()  # the bag has no torque
     assert all(reason.text for reason in Reason)
-
-
-def test_blocks_of_one_axis_join(judged):
-    columns, _ = judged
     twice = joined([columns, columns])
     assert len(twice) == 2 * len(columns)
     for name, kind in COLUMNS.items():

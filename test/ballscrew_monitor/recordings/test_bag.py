@@ -32,7 +32,7 @@ def sentence(action):
     return text
 
 
-def test_messages_come_by_log_time(short_bag):
+def test_messages_come_by_log_time_of_the_topics_that_are_chosen(short_bag):
     bag = Bag(short_bag)
     messages = list(bag.messages())
     times = [message.log_time for message in messages]
@@ -40,9 +40,6 @@ def test_messages_come_by_log_time(short_bag):
     assert (times[0], times[-1]) == (bag.start_time, bag.end_time)
     assert len(messages) == sum(info.count for info in bag.topics.values())
     assert bag.duration == pytest.approx(3.0, abs=0.02)
-
-
-def test_topics_can_be_chosen_and_a_file_is_a_bag_too(short_bag):
     bag = Bag(short_bag / 'short.mcap')
     assert {message.topic for message in bag.messages(['/axial_load'])} == {'/axial_load'}
     bag.require(TYPES)

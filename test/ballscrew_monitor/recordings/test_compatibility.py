@@ -120,7 +120,7 @@ def test_every_byte_is_read_as_it_was_written_and_the_metadata_is_of_version_9(w
     assert not re.search(r'[&*]id\d', text)
 
 
-def test_rosbags_finds_types_counts_times_and_qos(written):
+def test_rosbags_finds_all_of_a_topic_and_a_schema_holds_every_type_inside(written):
     directory, messages = written
     with AnyReader([directory]) as reader:
         counts = {topic: info.msgcount for topic, info in reader.topics.items() if info.msgcount}
@@ -131,9 +131,6 @@ def test_rosbags_finds_types_counts_times_and_qos(written):
     assert kinds == {topic.name: topic.type_name for topic in TOPICS}
     assert all(counts[topic] == [name for name, _ in messages].count(topic) for topic in counts)
     assert offers[EVENT][0].durability.name == 'TRANSIENT_LOCAL'
-
-
-def test_a_schema_holds_every_type_inside(written):
     with (written[0] / 'cycle.mcap').open('rb') as stream:
         schemas = make_reader(stream).get_summary().schemas.values()
     assert {schema.name for schema in schemas} == {topic.type_name for topic in TOPICS}

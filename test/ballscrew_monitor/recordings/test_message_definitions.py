@@ -13,15 +13,12 @@ import pytest
 from surrogate.files import InputError
 
 
-def test_dependencies_follow_the_definition_with_their_names():
+def test_dependencies_follow_the_definition_once_with_their_names():
     parts = message_definition('sensor_msgs/msg/JointState').split(f'{SEPARATOR}\n')
     assert 'float64[] velocity' in parts[0]
     expected = ['MSG: builtin_interfaces/Time', 'MSG: std_msgs/Header']
     assert [part.splitlines()[0] for part in parts[1:]] == expected
     assert all(part.endswith('\n') for part in parts)
-
-
-def test_a_type_is_included_once_however_often_it_is_used():
     text = message_definition('ballscrew_msgs/msg/BallScrewState')
     names = re.findall('^MSG: (.*)$', text, flags=re.MULTILINE)
     assert len(names) == len(set(names))

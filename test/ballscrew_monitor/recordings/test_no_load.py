@@ -154,7 +154,9 @@ def test_messages_that_do_not_decode_are_counted_and_named(tmp_path):
     assert bad.notes[0].endswith('; 2 such messages were refused')
 
 
-def test_a_bag_without_what_is_asked_for_is_refused(tmp_path, refused):
+def test_a_bag_without_what_is_asked_for_or_without_its_fields_is_refused(
+    tmp_path, refused, capsys
+):
     bag = write(tmp_path, speeds(10.0), speeds(10.0), joint='y_axis')
     refused('message_joint_states_holds', read_no_load, bag, CHANNELS)
     nowhere = CHANNELS | {Source.SPEED: speed_channel('nope', 'velocity[0]', 'rad/s', LEAD)}
@@ -163,6 +165,10 @@ def test_a_bag_without_what_is_asked_for_is_refused(tmp_path, refused):
     refused('has_field_effect', read_no_load, bag, odd)
     empty = CHANNELS | {Source.TEMPERATURE: temperature_channel('oil', 'temperature')}
     refused('topic_oil_holds', read_no_load, bag, empty)
+    write(tmp_path / 'bag', speeds(10.0), speeds(10.0))
+    words = ['identify', str(tmp_path / 'bag'), '--speed-topic', 'joint_states']
+    assert cli.main(words) == 2
+    assert '--speed-field is missing, a bag needs it' in capsys.readouterr().err
 
 
 def test_the_command_finds_the_parasitic_torque_in_a_bag(tmp_path, capsys):
@@ -190,10 +196,3 @@ def test_the_command_finds_the_parasitic_torque_in_a_bag(tmp_path, capsys):
     found = json.loads(capsys.readouterr().out)['friction_torque_Nm']
     bare = float(closed_form.solve(SCREW, OIL, point.speed, 0.0, 313.15).friction_torque)
     assert found == pytest.approx(bare + 0.12 + 4e-4 * point.speed, rel=0.01)
-
-
-def test_a_bag_needs_its_fields(tmp_path, capsys):
-    write(tmp_path / 'bag', speeds(10.0), speeds(10.0))
-    words = ['identify', str(tmp_path / 'bag'), '--speed-topic', 'joint_states']
-    assert cli.main(words) == 2
-    assert '--speed-field is missing, a bag needs it' in capsys.readouterr().err

@@ -21,7 +21,7 @@ def build(**changes):
     return build_axis('x', values)
 
 
-def test_defaults_make_an_axis_of_the_shipped_surface():
+def test_defaults_make_an_axis_of_the_shipped_surface_and_what_is_plausible():
     axis = build()
     assert (axis.surface.screw_name, axis.surface.oil_name) == ('nominal', 'iso_vg_68')
     assert axis.surface.tier == 'full'
@@ -30,6 +30,12 @@ def test_defaults_make_an_axis_of_the_shipped_surface():
     limits = axis.monitor.settings.limits
     assert limits.light_load == 0.25 * axis.surface.preload
     assert (limits.raise_delay, limits.clear_delay) == (SECOND // 2, SECOND)
+    axis = build()
+    fastest, load = axis.surface.speed_range[1], axis.surface.load_range[1]
+    expected = {Source.SPEED: 3.0 * fastest, Source.LOAD: 3.0 * load}
+    assert axis.monitor.settings.plausible == expected
+    stated = build(limits__plausible_speed=300.0, limits__plausible_load=5e3)
+    assert stated.monitor.settings.plausible == {Source.SPEED: 300.0, Source.LOAD: 5e3}
 
 
 @pytest.mark.parametrize('tier', ['closed_form', 'full'])
@@ -87,14 +93,11 @@ def test_only_a_load_of_a_topic_has_one_and_is_not_derived():
     assert build().monitor.settings.derivation is None
 
 
-def test_a_torque_that_is_only_compared_has_the_unit_of_the_drive():
+def test_units_of_a_drive_and_of_positions_reach_the_inputs():
     axis = build(
         torque__topic='current', torque__unit='A', torque__constant=0.5, handedness='left'
     )
     assert axis.inputs[1].scaling(4.0) == -2.0
-
-
-def test_a_position_unit_makes_the_speed_of_positions():
     assert build().monitor.settings.positions is None
     axis = build(speed__unit='deg', speed__field='position[0]', speed__wrap=360.0)
     positions = axis.monitor.settings.positions
@@ -161,12 +164,3 @@ def test_live_parameters_and_a_new_surface_are_taken_over_at_once():
     other = build().surface
     axis.use_surface(other, parameters.defaults(['x']))
     assert axis.surface is axis.monitor.surface is other
-
-
-def test_what_is_plausible_is_stated_or_three_times_the_surface():
-    axis = build()
-    fastest, load = axis.surface.speed_range[1], axis.surface.load_range[1]
-    expected = {Source.SPEED: 3.0 * fastest, Source.LOAD: 3.0 * load}
-    assert axis.monitor.settings.plausible == expected
-    stated = build(limits__plausible_speed=300.0, limits__plausible_load=5e3)
-    assert stated.monitor.settings.plausible == {Source.SPEED: 300.0, Source.LOAD: 5e3}
