@@ -46,13 +46,16 @@ def test_a_header_stamp_is_the_stamp_and_without_one_the_time_of_reception_count
         assert (sample.stamp, sample.stamp_source) == (NOW, StampSource.RECEIVE)
 
 
-def test_a_stamp_exactly_as_far_ahead_as_allowed_is_taken():
+def test_a_stamp_as_far_ahead_as_allowed_is_taken_and_any_before_a_clock_starts():
     speed = speed_input()
     limit = joints('x_axis', velocity=[3.0], stamp=NOW + 7)
     beyond = joints('x_axis', velocity=[3.0], stamp=NOW + 8)
     assert isinstance(speed.read(limit, now=NOW, max_future=7), InputSample)
     refusal = speed.read(beyond, now=NOW, max_future=7)
     assert (refusal.source, refusal.why, refusal.arrival) == (Source.SPEED, Why.FUTURE, NOW)
+    message = joints('x_axis', velocity=[3.0], stamp=NOW)
+    sample = speed_input().read(message, now=0, max_future=0)
+    assert (sample.stamp, sample.arrival) == (NOW, NOW)
 
 
 @pytest.mark.parametrize(
@@ -76,12 +79,6 @@ def test_a_refused_stamp_says_what_mends_it(ahead, why, words):
     refusal = speed_input().read(message, now=SECOND, max_future=SECOND // 2)
     assert refusal.why is why
     assert all(word in refusal.text for word in words)
-
-
-def test_a_clock_that_has_not_started_refuses_no_stamp_and_times_nothing():
-    message = joints('x_axis', velocity=[3.0], stamp=NOW)
-    sample = speed_input().read(message, now=0, max_future=0)
-    assert (sample.stamp, sample.arrival) == (NOW, NOW)
 
 
 @pytest.mark.parametrize('now', [0, NOW])

@@ -59,10 +59,14 @@ def ends(done):
     return [(one.job, one.end, one.sentence) for one in done]
 
 
-def test_no_process_is_started_before_it_is_needed(world):
+def test_no_process_is_started_before_it_is_needed_and_closing_ends_it(world):
     solver, started = world
     assert solver.poll(0.0) == []
     assert (started, solver.busy) == ([], False)
+    solver, started = begin(world, job())
+    solver.close()
+    assert started[0].killed
+    assert not solver.busy
 
 
 def test_one_after_another_in_the_order_in_which_they_came(world):
@@ -153,13 +157,6 @@ def test_a_solve_ends_at_its_timeout_which_counts_from_its_begin(world):
     assert started[0].killed
     assert started[1].sent == [{'solve': second.request}]
     assert solver.poll(9.9) == []
-
-
-def test_closing_ends_the_process(world):
-    solver, started = begin(world, job())
-    solver.close()
-    assert started[0].killed
-    assert not solver.busy
 
 
 def test_a_step_without_numbers_knows_none():

@@ -305,7 +305,7 @@ def straight(core, drag=0.0):
     return surface
 
 
-def test_a_derived_load_is_told_with_its_uncertainty(core):
+def test_a_derived_load_is_told_with_its_uncertainty_or_why_it_is_not(core):
     torque = sample(Source.TORQUE, 1.0)
     found = after(core, torque, SPEED, surface=straight(core), settings=DERIVED)
     lubrication, inputs = values_of(found['Lubrication']), values_of(found['Inputs'])
@@ -314,10 +314,6 @@ def test_a_derived_load_is_told_with_its_uncertainty(core):
     assert lubrication['Axial load uncertainty [N]'] == '128'
     assert (inputs['Load state'], inputs['Torque state']) == ('DERIVED', 'OK')
     assert found['Inputs'].level == OK
-
-
-def test_a_torque_that_does_not_tell_the_load(core):
-    torque = sample(Source.TORQUE, 1.0)
     found = after(core, torque, SPEED, surface=straight(core, 0.75), settings=DERIVED)
     text = 'not judged: the motor torque does not tell the load here'
     assert said(found['Lubrication']) == (WARN, text)

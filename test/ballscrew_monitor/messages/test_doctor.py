@@ -146,7 +146,7 @@ def test_the_limit_of_what_is_plausible_belongs_to_it(high, count):
     assert len(findings(around(), [facts(heard=heard(0.0, high))], 3.0)) == count
 
 
-def test_gaps_longer_than_the_timeout_and_silence_are_findings(says):
+def test_gaps_silence_and_more_messages_than_one_core_takes_are_findings(says):
     assert findings(around(), [facts(heard=heard(gap=0.5))], 3.0) == []
     (said,) = findings(around(), [facts(heard=heard(gap=0.6))], 3.0)
     assert said.endswith('set x.speed.timeout to 2.0 or more')
@@ -154,9 +154,6 @@ def test_gaps_longer_than_the_timeout_and_silence_are_findings(says):
     (said,) = findings(around(), [facts(heard=silent)], 3.0)
     assert said == says('speed_publisher_joint_states')
     assert findings(around(), [facts(heard=silent, timeout=30.0)], 3.0) == []
-
-
-def test_more_messages_than_one_core_takes(says):
     axes = [facts(heard=heard(rate=1600.0)) for _ in range(2)]
     assert findings(around(), axes, 3.0) == []
     axes.append(facts(heard=heard(rate=1.0)))
