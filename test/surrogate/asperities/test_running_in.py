@@ -76,14 +76,11 @@ def test_what_no_tile_holds_and_no_summit_bears_is_refused(screw, refused):
     refused('mean_pressure_above', running_tiles, pressed, 'screw')
 
 
-def test_tiles_hold_the_shortest_wave_on_enough_nodes(screw):
+def test_tiles_hold_the_shortest_wave_and_the_ball_and_smooth_raceways_have_none(screw):
     (length, width), (rows, columns) = tile_size(screw, 'nut')
     assert shortest_wave(screw) * rows / length >= 8
     assert shortest_wave(screw) * columns / width >= 8
     assert rows % 2 == columns % 2 == 0
-
-
-def test_the_ball_is_added_and_smooth_raceways_have_no_tiles(screw):
     rough = replace(screw, ball_roughness=BallRoughness(rms=0.05e-6))
     both, alone = (rms(running_tiles(one, 'screw')) for one in (rough, screw))
     assert both == pytest.approx(math.hypot(alone, 0.05e-6), rel=0.1)

@@ -25,7 +25,7 @@ def small(tmp_path):
     return path
 
 
-def test_contact_as_json(run, capsys, small):
+def test_contact_as_json_of_a_path_or_a_shipped_name(run, capsys, small):
     """Strict JSON, exit code 0; central film and status on the page."""
     assert run(small, '--json') == 0
     found = json.loads(capsys.readouterr().out)
@@ -35,9 +35,6 @@ def test_contact_as_json(run, capsys, small):
     out = capsys.readouterr().out
     assert 'central film' in out
     assert 'status: Converged' in out
-
-
-def test_a_shipped_case_by_name(run, capsys):
     assert run('nominal_smooth', '--json') == 0
     assert json.loads(capsys.readouterr().out)['grid'] == [257, 65]
 
@@ -118,16 +115,13 @@ def test_an_interrupted_march_leaves_no_traceback(capsys, rolling, monkeypatch):
     assert capsys.readouterr().err.splitlines()[-1] == 'ballscrew: interrupted'
 
 
-def test_pictures(run, small, tmp_path):
+def test_pictures_are_written_or_refused_in_a_sentence(run, small, tmp_path, monkeypatch, refused):
+    """No directory, no matplotlib: one sentence."""
     pytest.importorskip('matplotlib')
     folder = tmp_path / 'deep' / 'plots'
     assert run(small, '--plot', folder) == 0
     expected = ['contact_3d.png', 'contact_maps.png', 'contact_profiles.png']
     assert sorted(path.name for path in folder.iterdir()) == expected
-
-
-def test_pictures_that_cannot_be_made(run, small, tmp_path, monkeypatch, refused):
-    """No directory, no matplotlib: one sentence."""
     refused('plot_small_cannot', run, small, '--plot', small)
     monkeypatch.setitem(sys.modules, 'surrogate.contact.figures', None)
     refused('plot_needs_matplotlib', run, small, '--plot', tmp_path / 'plots')

@@ -31,7 +31,9 @@ def data(tmp_path):
     return path
 
 
-def test_json_is_strict_and_whole(run, capsys, data):
+def test_json_is_whole_and_only_the_screw_is_written_where_the_oil_is_kept(
+    run, capsys, data, tmp_path
+):
     assert run(data, '--json') == 0
     record = json.loads(capsys.readouterr().out)
     values = {one['name']: one['value'] for one in record['parameters']}
@@ -40,6 +42,10 @@ def test_json_is_strict_and_whole(run, capsys, data):
     assert record['points'] == 10
     assert record['temperature_K'] == pytest.approx(313.15)
     assert record['data'] == 'drag.csv'
+    assert run(data) == 0
+    assert [path.name for path in tmp_path.iterdir()] == ['drag.csv']
+    assert run(data, '--out', tmp_path / 'found.yaml') == 0
+    assert sorted(path.name for path in tmp_path.iterdir()) == ['drag.csv', 'found.yaml']
 
 
 def test_the_written_sheet_gives_the_measured_torque(run, capsys, data, tmp_path, says):
@@ -56,13 +62,6 @@ def test_the_written_sheet_gives_the_measured_torque(run, capsys, data, tmp_path
     assert says('parasitic_torque_identified') in screw.source
     assert str(tmp_path) not in sheet.read_text(encoding='utf-8')
     assert screw.name == 'nominal_identified'
-
-
-def test_only_the_screw_is_written_where_the_oil_is_not_fitted(run, data, tmp_path):
-    assert run(data) == 0
-    assert [path.name for path in tmp_path.iterdir()] == ['drag.csv']
-    assert run(data, '--out', tmp_path / 'found.yaml') == 0
-    assert sorted(path.name for path in tmp_path.iterdir()) == ['drag.csv', 'found.yaml']
 
 
 def test_the_full_tier_is_asked_for_by_name(run, data, monkeypatch, capsys):

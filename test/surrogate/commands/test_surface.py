@@ -41,15 +41,12 @@ def test_build_info_check(run, tmp_path, capsys):
     assert 'passed, hash verified, 5 of 5 points' in capsys.readouterr().out
 
 
-def test_check_of_a_shipped_tier_is_of_twenty_points(run, capsys):
+def test_check_is_of_twenty_points_and_tells_how_far_off_the_limit_is(run, capsys, refused):
+    """In per cent of the speed, at as many points as asked for; one is where the worst changes."""
     assert run('check', 'closed_form') == 0
     out = capsys.readouterr().out
     assert str(CLOSED_FORM) in out
     assert '20 of 20 points' in out
-
-
-def test_check_tells_how_far_off_the_limit_of_the_zone_is(run, capsys, refused):
-    """In per cent of the speed, at as many points as asked for; one is where the worst changes."""
     words = ('check', 'closed_form', '--points', '2', '--limit-points')
     assert run(*words, '2') == 0
     _, *limits = capsys.readouterr().out.splitlines()
@@ -60,16 +57,13 @@ def test_check_tells_how_far_off_the_limit_of_the_zone_is(run, capsys, refused):
     refused('limit_points_1', run, *words, '-1')
 
 
-def test_check_finds_a_wrong_surface(run, tmp_path, capsys):
+def test_check_finds_a_wrong_surface_and_info_is_strict_json_without_errors(run, tmp_path, capsys):
     """Numbers that are not those of the datasheets; a map without answers is not good either."""
     wrong = {**DATA.fields, 'rcs': 0.5 * DATA.fields['rcs']}
     assert run('check', written(tmp_path, fields=wrong)) == 1
     assert 'FAILED' in capsys.readouterr().out
     assert run('check', written(tmp_path, mask=np.ones_like(DATA.mask))) == 1
     assert '20 without an answer' in capsys.readouterr().out
-
-
-def test_info_is_strict_json_even_without_errors(run, tmp_path, capsys):
     errors = {name: np.full_like(values, np.nan) for name, values in DATA.errors.items()}
     assert run('info', written(tmp_path, errors=errors), '--json') == 0
     assert json.loads(capsys.readouterr().out)['errors']['rcs'] == {'max': None, 'p95': None}

@@ -38,7 +38,8 @@ def mixed():
     return replace(solution, asperity_pressure=asperity, contact_mask=mask), surface
 
 
-def test_smooth_profiles(smooth):
+def test_smooth_profiles_and_maps_cover_the_ellipse(smooth):
+    """Maps go beyond both semi-axes; the title of what did not converge warns."""
     upper, lower = figures.figure_profiles(smooth).axes
     assert list(curves(upper)) == ['film', 'Hertz, dry and smooth']
     expected = 1e-9 * smooth.film_pressure[:, 16]
@@ -50,6 +51,14 @@ def test_smooth_profiles(smooth):
     assert curves(lower)['film floor'].get_ydata()[0] == pytest.approx(3.0)
     assert upper.get_ylabel().endswith('[GPa]')
     assert lower.get_ylabel().endswith('[nm]')
+    left, right = figures.figure_maps(smooth).axes[:2]
+    for axes in (left, right):
+        assert axes.get_xlim()[0] < -1.1e6 * smooth.semi_axis_x
+        assert axes.get_ylim()[1] > 1.1e6 * smooth.semi_axis_y
+    from surrogate.ehl import Status
+
+    figure = figures.figure_maps(replace(smooth, status=Status.STALLED))
+    assert 'NOT CONVERGED' in figure.get_suptitle()
 
 
 def test_mixed_profiles(mixed):
@@ -61,18 +70,6 @@ def test_mixed_profiles(mixed):
     assert max(curves(loaded)['asperities'].get_ydata()) == pytest.approx(1.0)
     marks = curves(figure.axes[3])['asperity contact']
     assert len(marks.get_xdata()) == 3
-
-
-def test_maps_cover_the_ellipse_and_say_when_they_are_not_converged(smooth):
-    """Beyond both semi-axes as far as the domain does; the title of every picture warns."""
-    left, right = figures.figure_maps(smooth).axes[:2]
-    for axes in (left, right):
-        assert axes.get_xlim()[0] < -1.1e6 * smooth.semi_axis_x
-        assert axes.get_ylim()[1] > 1.1e6 * smooth.semi_axis_y
-    from surrogate.ehl import Status
-
-    figure = figures.figure_maps(replace(smooth, status=Status.STALLED))
-    assert 'NOT CONVERGED' in figure.get_suptitle()
 
 
 def test_all_pictures_are_written(tmp_path, mixed):

@@ -48,28 +48,11 @@ def test_the_record_is_strict_json_of_the_march(rolling_case, marched, says):
     assert rough['shortest_wavelength_m'] >= 20e-6
 
 
-def test_the_ball_counts_in_the_film_ratio(rolling_case, marched):
+def test_the_ball_counts_in_the_film_ratio_and_one_place_has_no_error(rolling_case, marched):
     rough = replace(rolling_case.roughness, ball_rms=0.05e-6)
     record = rolling_record(replace(rolling_case, roughness=rough), *marched)
     assert record['roughness']['rms_m'] == pytest.approx(np.hypot(0.1e-6, 0.05e-6))
     assert 'ball Rq 0.05 um' in record['roughness']['sentence']
-
-
-def test_what_was_not_averaged_is_null(rolling_case, marched):
-    """A march without a smooth film to start from has a status and no numbers."""
-    solution, surface = marched
-    inputs = {
-        one: getattr(solution, one) for one in ('contact', 'lubricant', 'condition', 'settings')
-    }
-    bare = MovingSolution(**inputs, status=MarchStatus.NO_SMOOTH_FILM)
-    record = strict(rolling_record(rolling_case, bare, surface))
-    assert record['converged'] is False
-    assert record['status'] == MarchStatus.NO_SMOOTH_FILM.value
-    assert [record[key] for key in AVERAGED] == [None] * len(AVERAGED)
-    assert record['thin_share'] == [None] * 4
-
-
-def test_one_place_has_no_standard_error(rolling_case, marched):
     solution, surface = marched
     rcs = replace(solution.rcs, error=float('nan'))
     one = replace(solution, rcs=rcs)
@@ -83,9 +66,20 @@ def test_one_place_has_no_standard_error(rolling_case, marched):
     assert '+-' not in line
 
 
-def test_the_page_says_everything_a_person_asks(rolling_case, marched, says):
-    """Workshop units, one line each, the status last."""
+def test_what_was_not_averaged_is_null_and_the_page_says_all_a_person_asks(
+    rolling_case, marched, says
+):
+    """A march without a smooth film has a status and no numbers; the page has workshop units."""
     solution, surface = marched
+    inputs = {
+        one: getattr(solution, one) for one in ('contact', 'lubricant', 'condition', 'settings')
+    }
+    bare = MovingSolution(**inputs, status=MarchStatus.NO_SMOOTH_FILM)
+    record = strict(rolling_record(rolling_case, bare, surface))
+    assert record['converged'] is False
+    assert record['status'] == MarchStatus.NO_SMOOTH_FILM.value
+    assert [record[key] for key in AVERAGED] == [None] * len(AVERAGED)
+    assert record['thin_share'] == [None] * 4
     record = rolling_record(rolling_case, solution, surface)
     lines = rolling_page(record, rolling_case, solution).splitlines()
     assert lines[0].startswith(says('rolling_contact_10'))

@@ -12,7 +12,7 @@ from surrogate.raceway.fractal import fractal_surface, PublishedRoughness
 from surrogate.raceway.patch import take_patch, Window
 
 
-def test_what_a_case_states_reaches_the_solver(load):
+def test_what_a_case_states_reaches_the_solver_and_too_coarse_a_grid_is_said(load, caplog, says):
     """Grid, domain and floor; a stated domain has no tail of the rolling force."""
     case = load(grid=[65, 33], domain=[-4.5, 1.5, 3], film_floor_nm=1.0)
     settings = case_settings(case, case_surface(case))
@@ -20,6 +20,12 @@ def test_what_a_case_states_reaches_the_solver(load):
     assert settings.film_floor == pytest.approx(1e-9)
     assert settings.meniscus_length == 0.0
     assert case_settings(load(), None).meniscus_length > 0
+    keys = {'roughness': {'rms_um': 0.12}, 'grid': [129, 65]}
+    case = load(**keys)
+    with caplog.at_level(logging.WARNING, 'surrogate.contact.solve'):
+        case_settings(case, case_surface(case))
+    (line,) = caplog.messages
+    assert says('um_apart_along') in line
 
 
 def test_a_generated_surface_is_the_published_one(load):
@@ -47,15 +53,6 @@ def test_the_grid_of_a_smooth_case_follows_its_shape_and_error(load):
     assert coarse.film_error > 0.005 > found.film_error
     assert found.settings.nx == 513
     assert found.newton_iterations > coarse.newton_iterations
-
-
-def test_a_grid_too_coarse_for_the_surface_is_said(load, caplog, says):
-    keys = {'roughness': {'rms_um': 0.12}, 'grid': [129, 65]}
-    case = load(**keys)
-    with caplog.at_level(logging.WARNING, 'surrogate.contact.solve'):
-        case_settings(case, case_surface(case))
-    (line,) = caplog.messages
-    assert says('um_apart_along') in line
 
 
 def test_solve_smooth_and_rough(load):

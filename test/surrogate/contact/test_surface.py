@@ -132,18 +132,14 @@ def test_the_slope_fixes_the_dimension(load):
     assert ', G ' in words
 
 
-def test_waves_left_out_are_said(load):
-    """With their rms: what is left and what is left out add up to all of them."""
+def test_waves_left_out_are_said_and_a_ball_adds_its_roughness(load):
+    """Rms of what is left out or added: the root of the sum of squares."""
     _, whole = standard(load, seed=2)
     rough, found = standard(load, seed=2, shortest_wavelength_um=20)
     assert found.shortest_wavelength >= 20e-6
     words = roughness_words(rough, found)
     lost = float(words.split('rms ')[-1].split(' nm')[0]) * 1e-9
     assert math.hypot(lost, wave_rms(found)) == pytest.approx(wave_rms(whole), rel=1e-3)
-
-
-def test_a_ball_adds_its_roughness(load):
-    """By its Rq or its grade; Rq of both is the root of the squares."""
     bare, alone = standard(load)
     by_rms, both = standard(load, ball_rms_um=0.05)
     assert composite_rms(bare) == pytest.approx(0.12e-6)

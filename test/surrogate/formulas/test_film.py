@@ -10,11 +10,15 @@ from surrogate.formulas import film as laws
 from surrogate.formulas.geometry import Contact
 
 
-def test_film_ratio_of_smooth_surfaces_has_no_end():
+def test_smooth_surfaces_have_no_end_of_the_ratio_and_resting_contacts_no_film():
     """Infinite above a film, 0 without one, unknown where the film is."""
     film = np.array([1e-7, 0.0, np.nan])
     np.testing.assert_array_equal(laws.film_ratio(film, 0.0), [np.inf, 0.0, np.nan])
     np.testing.assert_allclose(laws.film_ratio(film, 1e-7), [1.0, 0.0, np.nan])
+    contact = Contact(radius_x=0.003, radius_y=0.08, reduced_modulus=2.26e11)
+    g = laws.groups(contact, 27.6, 0.0, 0.06, 2e-8)
+    assert laws.central_film_hamrock_dowson_1977(contact, g) == 0.0
+    assert laws.rolling_force_biboulet_houpert_2010(contact, g) == 0.0
 
 
 def dimensional(row):
@@ -52,7 +56,7 @@ def moes(load, material, radius_ratio):
     )
 
 
-def test_films_of_hamrock_and_dowson_against_converged_solutions(table):
+def test_hamrock_and_dowson_against_converged_solutions_and_their_own_case(table):
     """Central film 4 to 11 % above; minimum film within 7 % for the long ellipse."""
     for row in table('ehl_dimensional.csv'):
         contact, _, g = dimensional(row)
@@ -62,9 +66,6 @@ def test_films_of_hamrock_and_dowson_against_converged_solutions(table):
     contact, _, g = dimensional(row)
     found = laws.minimum_film_hamrock_dowson_1977(contact, g)
     assert found == pytest.approx(float(row['hmin_nm']) * 1e-9, rel=0.07)
-
-
-def test_minimum_film_of_the_papers_own_case(table):
     row = next(r for r in table('ehl_dimensional.csv') if r['case'] == 'hamrock_dowson_k1')
     contact, _, g = dimensional(row)
     assert g.speed == pytest.approx(1.683e-12, rel=2e-3)
@@ -124,13 +125,6 @@ def test_rolling_force_has_its_isoviscous_limit(load, factor):
         contact, fast
     ) / laws.rolling_force_biboulet_houpert_2010(contact, slow)
     assert gain == pytest.approx(factor ** (2 / 3), rel=1e-3)
-
-
-def test_a_resting_contact_has_no_film_and_no_rolling_force():
-    contact = Contact(radius_x=0.003, radius_y=0.08, reduced_modulus=2.26e11)
-    g = laws.groups(contact, 27.6, 0.0, 0.06, 2e-8)
-    assert laws.central_film_hamrock_dowson_1977(contact, g) == 0.0
-    assert laws.rolling_force_biboulet_houpert_2010(contact, g) == 0.0
 
 
 @pytest.mark.parametrize(('ratio', 'share'), [(0.1, 0.89), (0.5, 0.46), (1, 0.17), (2, 0.016)])

@@ -17,15 +17,12 @@ SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
 WARM = 313.15
 
 
-def test_factor_by_hand_and_slope_of_viscosity():
+def test_the_factor_by_hand_falls_with_speed_and_rises_with_conductivity():
     """L = 1, p/E' = 0.005, S = 0: 0.934 / 1.213; without heating exactly 1."""
     found = film_factor_gupta_1992(pressure=0.005, loading=1.0, slide_roll=0.0)
     assert found == pytest.approx(0.934 / 1.213)
     assert film_factor_gupta_1992(pressure=0.005, loading=0.0, slide_roll=0.02) == 1.0
     assert viscosity_slope(OIL, WARM) == pytest.approx(0.05, abs=0.01)
-
-
-def test_factor_falls_with_speed_and_rises_with_conductivity():
     factors = [heating_factor(SCREW, OIL, 'screw', 27.6, us, WARM) for us in (0, 0.1, 1, 10)]
     assert factors[0] == 1.0
     assert factors[0] > factors[1] > factors[2] > factors[3] > 0.5

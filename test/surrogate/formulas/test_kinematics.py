@@ -55,17 +55,13 @@ def test_rates_satisfy_the_slip_equations(angle, lead, flank):
     assert abs(rotation @ -to_screw) == pytest.approx(rates.spin, rel=1e-9)
 
 
-def test_entrainment_is_the_mean_of_both_surfaces(screw):
-    """Entrainment r_m (1 - g^2)/(2 cos alpha) is 1.2 % below the published w r_m/2."""
+def test_entrainment_is_the_mean_of_both_surfaces_and_slip_helical(screw):
+    """Entrainment is 1.2 % below the published w r_m/2, the slip at the centre 2 % of it."""
     g = curvature_ratio(screw)
     exact = no_slip_rates(screw).entrainment
     expected = screw.pitch_radius * (1 - g**2) / (2 * math.cos(helix_angle(screw)))
     assert exact == pytest.approx(expected, rel=1e-14)
     assert exact / entrainment_speed_paper(screw, 1.0) == pytest.approx(0.988, abs=5e-4)
-
-
-def test_slip_at_the_centre_is_helical_and_two_percent_of_the_entrainment(screw):
-    """At the centre spin vanishes; only the two constant parts remain."""
     rates = no_slip_rates(screw)
     assert slip_arm(screw, 'screw', 0.0, 0.0, 0.0) == pytest.approx(rates.helical_slip)
     assert slip_arm(screw, 'screw', 0.0, 0.0, 3e-4) > rates.helical_slip

@@ -37,7 +37,7 @@ def test_columns_come_in_si_units_whatever_their_order(csv):
     assert columns['temperature'] == pytest.approx([313.15, 314.15])
 
 
-def test_a_column_named_by_hand_needs_its_unit(csv, refused):
+def test_a_column_named_by_hand_needs_its_unit_and_a_file_a_text(csv, refused, tmp_path):
     path = csv('motor_speed_rad_s,speed_rpm,axis_torque_Nm\n2,1,0.5\n')
     columns = read_drag_csv(path, speed_column='motor_speed_rad_s', torque_column='axis_torque_Nm')
     assert columns['speed'] == [2.0]
@@ -47,6 +47,9 @@ def test_a_column_named_by_hand_needs_its_unit(csv, refused):
         with refused('column_has_unit', column=column):
             read_drag_csv(path, speed_column=column)
     refused('column_nope_missing', read_drag_csv, path, speed_column='nope')
+    refused('cannot_read_such', read_drag_csv, tmp_path / 'nothing.csv')
+    (tmp_path / 'bytes.csv').write_bytes(b'\xff\xfe\x00\x80')
+    refused('cannot_read_as', read_drag_csv, tmp_path / 'bytes.csv')
 
 
 @pytest.mark.parametrize(
@@ -71,12 +74,6 @@ def test_a_column_named_by_hand_needs_its_unit(csv, refused):
 )
 def test_a_mistake_is_one_sentence_with_its_line(csv, text, sentence, refused):
     refused(sentence, read_drag_csv, csv(text))
-
-
-def test_what_is_no_text_is_refused(tmp_path, refused):
-    refused('cannot_read_such', read_drag_csv, tmp_path / 'nothing.csv')
-    (tmp_path / 'bytes.csv').write_bytes(b'\xff\xfe\x00\x80')
-    refused('cannot_read_as', read_drag_csv, tmp_path / 'bytes.csv')
 
 
 def test_points_at_standstill_are_left_out_and_counted():

@@ -137,13 +137,16 @@ def test_torque_with_measurements(study):
     assert bars.get_ydata()[0] == pytest.approx(50.0)
 
 
-def test_stribeck_marks_the_limit_and_the_published_film(study):
+def test_stribeck_marks_limit_and_film_and_zone_needs_the_map_alone(study):
     """RCS 0.01; 153 nm at 502.65 mm/s."""
     figure = screws.figure_stribeck(LAW, list(study.rows.values()))
     labels = [label for axes in figure.axes for label in axes.get_legend_handles_labels()[1]]
     assert 'limit 0.01' in labels
     assert 'reported, rough: 153 nm at 502.65 mm/s' in labels
     assert {'asperity share', 'film share'} <= set(labels)
+    only = [row for row in study.rows.values() if row.load > 0 and row.kind == 'screw']
+    assert maps.figure_maps(SCREW, only).axes
+    assert maps.figure_zone(SCREW, LAW, only).axes
 
 
 def test_measurements_are_read_and_refused():
@@ -154,7 +157,7 @@ def test_measurements_are_read_and_refused():
             screws.read_measured([line])
 
 
-def test_maps_meet_their_nodes(study):
+def test_maps_meet_their_nodes_and_a_point_that_failed_leaves_a_gap(study):
     """Between the nodes lies a map that returns them; efficiency rises with load."""
     speed, load, rcs, eta = maps.fine_map(SCREW, list(study.rows.values()))
     corner = study.rows[
@@ -165,9 +168,6 @@ def test_maps_meet_their_nodes(study):
     assert eta[-1, 0] == pytest.approx(ideal / (ideal + corner.friction_torque))
     assert (np.diff(eta, axis=0) > 0).all()
     assert (speed[-1], load[0]) == (pytest.approx(SPEEDS[-1]), pytest.approx(MAP_LOADS[0]))
-
-
-def test_a_point_that_failed_leaves_a_gap(study):
     failed = [
         StudyTask(kind='contact', rpm=600.0, load=PRELOAD).key,
         StudyTask(kind='screw', rpm=SPEEDS[3], load=MAP_LOADS[0]).key,
@@ -179,13 +179,6 @@ def test_a_point_that_failed_leaves_a_gap(study):
     assert len(labels) == 4
     assert not [label for label in labels if '600 rev/min' in label]
     assert np.isfinite(maps.fine_map(SCREW, list(rows.values()))[3]).all()
-
-
-def test_zone_and_maps_need_no_row_beyond_the_map(study):
-    """They draw from the map alone."""
-    only = [row for row in study.rows.values() if row.load > 0 and row.kind == 'screw']
-    assert maps.figure_maps(SCREW, only).axes
-    assert maps.figure_zone(SCREW, LAW, only).axes
 
 
 def test_report_leaves_out_what_the_rows_cannot_tell(study):

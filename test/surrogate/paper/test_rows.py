@@ -19,31 +19,24 @@ SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
 BASE = StudyRow(inputs='a', kind='contact', rpm=5.0, load=0.0, draw=0, status='CONVERGED', rcs=0.1)
 
 
-def test_every_task_is_asked_once():
-    """Figures share their solves; what keeps most fields wins."""
+def test_every_task_is_asked_once_and_more_draws_are_more_rough_contacts(refused):
+    """Figures share their solves; the whole screw rolls without draws, but for one."""
     wanted = tasks(tuple(NEEDS), 6)
     assert len({task.key for task in wanted}) == len(wanted)
     first = next(task for task in wanted if (task.rpm, task.load, task.draw) == (5.0, 0.0, 0))
     assert first.fields == 'map'
     assert len(tasks(('7',), 1)) == 4
-
-
-def test_more_draws_are_more_tasks_of_rough_contacts():
-    """Of the study's roughness; the whole screw rolls and has none, but for one that stands."""
     few, many = (tasks(('trends',), draws) for draws in (2, 6))
     more = {task.key for task in many} - {task.key for task in few}
     assert len(more) == len(many) - len(few) > 4
     assert {task.kind for task in many if task.key in more} == {'contact'}
     assert {task.draw for task in many if task.kind == 'screw' and task.rolls} == {SMOOTH}
     assert {task.draw for task in many if task.kind == 'screw' and not task.rolls} == {0}
-
-
-def test_what_is_not_made_is_refused(refused):
     refused('figure_5', tasks, ('5',), 6)
     refused('draws_0', tasks, ('7',), 0)
 
 
-def test_rows_come_back_as_they_were_written_by_the_key_of_their_task(tmp_path):
+def test_rows_come_back_by_their_key_and_broken_tables_are_refused(tmp_path, refused):
     """NaN, negative draws and names with blanks included; rows of other inputs are left."""
     rows = [BASE, replace(BASE, draw=SMOOTH, case=SHORT, load=500.0), replace(BASE, inputs='b')]
     write_rows(tmp_path / 'paper.csv', rows)
@@ -55,9 +48,6 @@ def test_rows_come_back_as_they_were_written_by_the_key_of_their_task(tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ['paper.csv']
     task = StudyTask(kind='contact', rpm=5.0, load=0.0, draw=0)
     assert task.key == BASE.key == 'contact_ours_5rpm_0N_draw0'
-
-
-def test_broken_tables_and_rows_of_an_earlier_version_are_refused(tmp_path, refused):
     (tmp_path / 'paper.csv').write_text('inputs,kind,rpm\na,contact,fast\n')
     refused('paper_cannot_read', read_rows, tmp_path / 'paper.csv')
     assert read_rows(tmp_path / 'none.csv') == {}
@@ -121,26 +111,13 @@ def line(at, mean):
     )
 
 
-def test_crossing_by_logarithms():
+def test_crossing_by_logarithms_and_the_map_is_a_grid():
     """Between 0.1 and 0.001 half way in the logarithm; NaN where it never passes."""
     assert curves.crossing(line([10.0, 40.0], [0.1, 0.001]), 0.01) == pytest.approx(20.0)
     assert curves.crossing(line([10.0, 40.0], [0.01, 0.0]), 0.01) == pytest.approx(10.0)
     assert math.isnan(curves.crossing(line([10.0, 40.0], [0.1, 0.02]), 0.01))
     assert math.isnan(curves.crossing(line([10.0, 40.0], [0.001, 0.0]), 0.01))
     assert curves.lowest(line([1.0, 2.0, 3.0], [5.0, 4.0, 6.0])) == (2.0, 4.0)
-
-
-def test_constant_friction_is_that_of_the_table(table):
-    """The comparator of the maps is the reference table's, at its preload of 1 kN."""
-    row = table('constant_friction.csv')[0]
-    screw = replace(SCREW, preload=1000.0)
-    for load in (0.5, 1.0, 2.0):
-        expected = float(row[f'eta_at_{load:g}_preload'])
-        found = curves.constant_friction_efficiency(screw, 1000.0 * load)
-        assert found == pytest.approx(expected, abs=1e-3)
-
-
-def test_the_map_is_a_grid():
     rows = [
         replace(BASE, kind='screw', load=load, rpm=rpm, rcs=load * rpm)
         for load in (50.0, 100.0)
@@ -152,3 +129,13 @@ def test_the_map_is_a_grid():
     np.testing.assert_array_equal(speeds, [5.0, 10.0])
     np.testing.assert_array_equal(loads, [50.0, 100.0])
     np.testing.assert_array_equal(values, [[250.0, math.nan], [500.0, 1000.0]])
+
+
+def test_constant_friction_is_that_of_the_table(table):
+    """The comparator of the maps is the reference table's, at its preload of 1 kN."""
+    row = table('constant_friction.csv')[0]
+    screw = replace(SCREW, preload=1000.0)
+    for load in (0.5, 1.0, 2.0):
+        expected = float(row[f'eta_at_{load:g}_preload'])
+        found = curves.constant_friction_efficiency(screw, 1000.0 * load)
+        assert found == pytest.approx(expected, abs=1e-3)

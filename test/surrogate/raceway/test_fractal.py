@@ -104,8 +104,8 @@ def test_a_rescaled_patch_has_the_rms_of_the_datasheet(seed):
     assert abs(np.polyfit(y, heights.mean(axis=0), 1)[0]) * 1.6e-3 < 0.05 * NOMINAL.rms
 
 
-def test_the_factor_of_a_patch_is_logged(caplog):
-    """One line says kind, rms before, window and factor."""
+def test_the_factor_of_a_patch_is_logged_and_another_one_starts_raw(caplog):
+    """One line says kind, rms before, window and factor; a second patch replaces the first."""
     with caplog.at_level(logging.INFO, 'surrogate.raceway.patch'):
         patch = take_patch(fractal_surface(NOMINAL, 0), 'rescaled', HERTZ, NOMINAL.rms)
     (line,) = caplog.messages
@@ -113,6 +113,11 @@ def test_the_factor_of_a_patch_is_logged(caplog):
     assert line == (
         f'patch rescaled: rms {1e6 * before:.4g} um over 0.2 x 1.6 mm, times {patch.scale:.4g}'
     )
+    surface = fractal_surface(NOMINAL, 5)
+    once = take_patch(surface, 'cut', SMALL, NOMINAL.rms)
+    again = take_patch(take_patch(surface, 'rescaled', HERTZ, 9e-6), 'cut', SMALL, NOMINAL.rms)
+    assert again.scale == once.scale == 1.0
+    assert again.plane == once.plane
 
 
 def test_cut_patches_scatter_by_draw():
@@ -128,15 +133,6 @@ def test_cut_patches_scatter_by_draw():
     assert np.percentile(tilted, 10) == pytest.approx(0.06e-6, abs=0.01e-6)
     assert 0.1e-6 < tilted.max() < 0.16e-6
     assert np.all(levelled <= tilted * 1.001)
-
-
-def test_taking_a_patch_again_starts_from_the_raw_surface():
-    """A second patch replaces the first instead of scaling it once more."""
-    surface = fractal_surface(NOMINAL, 5)
-    once = take_patch(surface, 'cut', SMALL, NOMINAL.rms)
-    again = take_patch(take_patch(surface, 'rescaled', HERTZ, 9e-6), 'cut', SMALL, NOMINAL.rms)
-    assert again.scale == once.scale == 1.0
-    assert again.plane == once.plane
 
 
 @given(x=PLACE, y=PLACE, seed=st.integers(0, 20))

@@ -20,8 +20,8 @@ ALONG = np.arange(0, 4e-3, SPACING)
 TRACES = np.linspace(0, 4e-3, 64)
 
 
-def test_expected_structure_function_is_the_mean_of_many():
-    """Over many places and draws the measured function tends to the expected one."""
+def test_the_structure_function_is_the_mean_of_many_and_tends_to_the_variance():
+    """Over many places and draws; heights far apart differ by 2 Rq^2 on average."""
     lags = np.array([1, 4, 16, 64])
     measured = np.mean(
         [
@@ -32,10 +32,6 @@ def test_expected_structure_function_is_the_mean_of_many():
     )
     expected = expected_structure_function(NOMINAL, lags * SPACING)
     np.testing.assert_allclose(measured, expected, rtol=0.06)
-
-
-def test_far_apart_heights_differ_by_twice_the_variance():
-    """The structure function of waves tends to 2 Rq^2 on average."""
     far = np.mean(expected_structure_function(NOMINAL, np.linspace(0.05, 0.5, 4000)))
     assert far == pytest.approx(2 * theoretical_rms(NOMINAL) ** 2, rel=0.1)
 

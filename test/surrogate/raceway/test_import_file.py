@@ -25,8 +25,8 @@ def columns(*values):
     return [','.join(repr(float(number)) for number in row) for row in zip(*values, strict=True)]
 
 
-def test_a_profile_with_places(tmp_path):
-    """Along x or y, with units of each column, comments and blank lines left out."""
+def test_a_profile_with_places_in_one_column_or_one_line(tmp_path):
+    """Along x or y, with units of each column; the spacing says along which direction."""
     lines = columns(X, PROFILE)
     along = read_surface(write(tmp_path, '# stylus', 'x_um, z_nm', '', *lines))
     assert along.raw.shape == (40, 1)
@@ -36,10 +36,6 @@ def test_a_profile_with_places(tmp_path):
     assert across.raw.shape == (1, 40)
     assert across.spacing_y == pytest.approx(0.5e-3)
     np.testing.assert_allclose(across.raw[0], PROFILE * 1e-6)
-
-
-def test_a_profile_in_one_column_or_one_line(tmp_path):
-    """Both mean the same; the spacing says along which direction it was measured."""
     column = read_surface(write(tmp_path, 'z_nm,spacing_x_um=0.5', *PROFILE))
     line = read_surface(write(tmp_path, 'z_nm spacing_x_nm=500', ';'.join(map(str, PROFILE))))
     across = read_surface(write(tmp_path, 'z_nm,spacing_y_um=5e-1', *PROFILE))
@@ -49,7 +45,7 @@ def test_a_profile_in_one_column_or_one_line(tmp_path):
     assert line.spacing_x == pytest.approx(column.spacing_x) == pytest.approx(0.5e-6)
 
 
-def test_a_map_as_a_matrix_and_as_points(tmp_path):
+def test_a_map_as_a_matrix_and_as_points_and_options(tmp_path):
     """Columns run along x and lines along y; points come in any order."""
     matrix = read_surface(write(tmp_path, 'z_nm,spacing_x_um=0.5,spacing_y_um=2', *columns(*MAP)))
     places = [part.ravel() for part in np.meshgrid(X, Y, indexing='ij')]
@@ -60,9 +56,6 @@ def test_a_map_as_a_matrix_and_as_points(tmp_path):
         np.testing.assert_allclose(found.raw, MAP * 1e-9)
         assert (found.spacing_x, found.spacing_y) == pytest.approx((0.5e-6, 2e-6))
         assert found.heights([0.0], [0.0]).shape == (1, 1)
-
-
-def test_options_reach_the_surface(tmp_path):
     path = write(tmp_path, 'x_um,z_nm', *columns(X, PROFILE))
     found = read_surface(path, shortest_wavelength=4e-6, outside='mirror')
     assert found.shortest_wavelength == 4e-6

@@ -47,8 +47,8 @@ def test_waves_move_by_half_a_step_across_or_keep_their_length(width, seed):
     np.testing.assert_array_equal(after.phase, before.phase)
 
 
-def test_the_cost_falls_with_the_width():
-    """A surface that fits already costs nothing; ten times the width costs a tenth or less."""
+def test_the_cost_falls_with_the_width_and_single_waves_keep_their_length():
+    """A steep wave keeps its length, one that runs across keeps its part along the track."""
     surface = draw_raceway(scale_spectrum(SPECTRUM), 1)
     narrow, wide, wider = (periodic_across(surface, width) for width in (5e-4, 5e-3, 5e-2))
     for name in ('turn', 'length_change', 'largest_length_change'):
@@ -57,10 +57,6 @@ def test_the_cost_falls_with_the_width():
     assert wider.length_change < 0.02 * narrow.length_change
     again = periodic_across(wide.surface, wide.width)
     assert (again.turn, again.length_change, again.lost) == pytest.approx((0, 0, 0), abs=1e-9)
-
-
-def test_single_waves():
-    """A steep wave keeps its length, one that runs across keeps its part along the track."""
     turned = periodic_across(one_wave(40.0, 1.1), 1e-3)
     assert turned.surface.wave_number_y == pytest.approx(2e3 * math.pi)
     assert turned.length_change == pytest.approx(0, abs=1e-12)
