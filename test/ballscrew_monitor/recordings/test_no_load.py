@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Torque over speed out of a bag: what counts as steady, bins, errors, and the command on it."""
 
+import itertools
 import json
 import math
 
@@ -137,16 +138,11 @@ def test_numbers_that_are_none_are_counted(tmp_path):
     assert notes[1] == '5 messages held no finite number'
 
 
-def test_messages_that_do_not_decode_are_counted_and_named(tmp_path):
+def test_messages_that_do_not_decode_are_counted_and_named(copy_bag, tmp_path):
     speed = speeds(0.0, 10.0, 40.0)
     whole = write(tmp_path / 'whole', speed, 0.01 * speed)
-    with BagWriter(tmp_path / 'bad', 'bag') as writer:
-        for name, kind in whole.types.items():
-            writer.add_topic(Topic(name=name, type_name=kind, offer=Offer.SENSOR))
-        for number, message in enumerate(whole.messages()):
-            data = message.data[:20] if number in (500, 600) else message.data
-            writer.write(message.topic, data, log_time=message.log_time, publish_time=0)
-    bad = Bag(tmp_path / 'bad')
+    ends = itertools.chain([None] * 500, [20], [None] * 99, [20], itertools.repeat(None))
+    bad = copy_bag(whole, tmp_path / 'bad', lambda one: one.data[: next(ends)])
     columns, notes = read_no_load(bad, CHANNELS)
     assert columns['speed'] == pytest.approx([10.0, 40.0])
     assert notes[-1] == '2 messages held no finite number'

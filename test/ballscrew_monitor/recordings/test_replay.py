@@ -175,7 +175,7 @@ def test_an_empty_type_is_that_of_the_bag(tmp_path, refused):
     [lambda data: b'', lambda data: data[:21], lambda data: data[:4] + b'\xff' * len(data)],
     ids=['empty', 'truncated', 'garbage'],
 )
-def test_a_message_that_does_not_decode_is_refused_and_the_rest_judged(damage, tmp_path, says):
+def test_what_does_not_decode_is_refused_and_the_rest_judged(damage, copy_bag, tmp_path, says):
     times = [BEGIN + 10_000_000 * number for number in range(5)]
     bag = write(
         tmp_path / 'whole',
@@ -183,14 +183,12 @@ def test_a_message_that_does_not_decode_is_refused_and_the_rest_judged(damage, t
         *((time, speed_message(time, 100.0)) for time in times),
     )
     speed = 'sensor_msgs/msg/JointState'
-    with BagWriter(tmp_path / 'bad', 'bag') as writer:
-        for name, kind in bag.types.items():
-            writer.add_topic(Topic(name=name, type_name=kind, offer=Offer.SENSOR))
-        for message in bag.messages():
-            bad = message.log_time in times[2:4] and message.topic == '/joint_states'
-            data = damage(message.data) if bad else message.data
-            writer.write(message.topic, data, log_time=message.log_time, publish_time=0)
-    bad = Bag(tmp_path / 'bad')
+
+    def damaged(message):
+        bad = message.log_time in times[2:4] and message.topic == '/joint_states'
+        return damage(message.data) if bad else message.data
+
+    bad = copy_bag(bag, tmp_path / 'bad', damaged)
     states = [state for state, _ in replay(bad, every_state())]
     assert states[-1].judged == 3
     assert states[-1].inputs[0].dropped == 2

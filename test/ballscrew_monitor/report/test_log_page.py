@@ -13,8 +13,8 @@ import pytest
 HOSTILE = '</script><script>document.body.dataset.errors = 1</script><img src=x onerror=alert(1)>'
 
 
-@pytest.fixture
-def written(judged, tmp_path):
+@pytest.fixture(scope='module')
+def written(judged, tmp_path_factory):
     """Return a page of two axes, one with a torque, with hostile names, and its text."""
     events = [judged.event(1, 10.0, 5.0, advice=HOSTILE)]
     values = judged.values('y', **{'y.torque.topic': HOSTILE, 'y.torque.field': 'data'})
@@ -27,7 +27,7 @@ def written(judged, tmp_path):
     ]
     named = {'name': HOSTILE, 'parameters': HOSTILE, 'notes': [HOSTILE]}
     text = report_page(judged.log(*axes, empty=['z'], assumptions=assumptions, **named))
-    path = tmp_path / 'report.html'
+    path = tmp_path_factory.mktemp('page') / 'report.html'
     path.write_text(text)
     return path, text
 

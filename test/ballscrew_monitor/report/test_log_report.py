@@ -8,7 +8,6 @@ import shutil
 
 from ballscrew_monitor.core.fields import stamp_of
 from ballscrew_monitor.recordings.bag import Bag
-from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
 from ballscrew_monitor.recordings.replay import replay
 from ballscrew_monitor.report.log_report import (
     JUDGED_SHARE,
@@ -173,23 +172,16 @@ def files(folder):
     return sorted(path.relative_to(folder) for path in folder.rglob('*') if path.is_file())
 
 
-def test_a_message_that_does_not_decode_is_counted(short_bag, params, tmp_path):
-    bag, damaged = Bag(short_bag), tmp_path / 'damaged'
-    load = read_file(params)['x.load.topic']
-    with BagWriter(damaged, 'damaged') as writer:
-        for name, info in bag.topics.items():
-            writer.add_topic(Topic(name=name, type_name=info.type_name, offer=Offer.SENSOR))
-        left = 1
-        for message in bag.messages(None):
-            cut = message.topic == absolute(load) and left
-            left -= bool(cut)
-            writer.write(
-                message.topic,
-                message.data[:12] if cut else message.data,
-                log_time=message.log_time,
-                publish_time=message.publish_time,
-            )
-    found = Bag(damaged)
+def test_a_message_that_does_not_decode_is_counted(short_bag, params, copy_bag, tmp_path):
+    load, cut = absolute(read_file(params)['x.load.topic']), []
+
+    def damaged(message):
+        if message.topic != load or cut:
+            return message.data
+        cut.append(message)
+        return message.data[:12]
+
+    found = copy_bag(Bag(short_bag), tmp_path / 'damaged', damaged)
     result = report_log(found, tmp_path / 'out', parameters_for(found, params, params))
     assert result.judged
     inputs = json.loads((tmp_path / 'out' / 'summary.json').read_text())['axes']['x']['inputs']
